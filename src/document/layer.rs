@@ -1,0 +1,104 @@
+//! A layer: how it meets what lies beneath, and what it holds.
+//! Floor 4.
+
+use super::{live::Live, mask::LayerMask};
+use crate::math::srgb::Color;
+use crate::paint::{Gradient, PictureSource, PlacedImage, Placement, Stroke};
+use crate::raster::{BlendMode, Outside, TileGrid};
+use crate::shading::{RadianceScaling, Shading};
+use std::sync::Arc;
+
+/// One layer of a document.
+#[derive(Clone)]
+pub struct Layer {
+    pub name: String,
+    pub visible: bool,
+    /// `[0, 1]`.
+    pub opacity: f32,
+    pub blend: BlendMode,
+    /// Blend linear light instead of encoded values.
+    pub blend_linear: bool,
+    /// Paint only where the nearest layer beneath that is not itself clipped has coverage.
+    pub clip_below: bool,
+    pub lock: Lock,
+    pub mask: Option<LayerMask>,
+    /// Paint nothing outside the surface.
+    pub clip_to_surface: bool,
+    pub content: Content,
+}
+
+impl Layer {
+    pub fn new(name: impl Into<String>, content: Content) -> Self {
+        Self {
+            name: name.into(),
+            visible: true,
+            opacity: 1.0,
+            blend: BlendMode::Normal,
+            blend_linear: false,
+            clip_below: false,
+            lock: Lock::None,
+            mask: None,
+            clip_to_surface: true,
+            content,
+        }
+    }
+}
+
+/// What of a layer may not be painted on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Lock {
+    #[default]
+    None,
+    Alpha,
+    All,
+}
+
+/// What a layer holds. Live content keeps its parameters and, beside them, the tiles rendered from them.
+#[derive(Clone)]
+pub enum Content {
+    Fill(Color),
+    Pixels(PixelLayer),
+    Image(Live<PlacedImage>),
+    Gradient(Live<Gradient>),
+    Strokes(Live<StrokeList>),
+    Shading(Live<Shading>),
+    RadianceScaling(RadianceScaling),
+    Normals(NormalLayer),
+    Group(Group),
+}
+
+/// A paint layer.
+#[derive(Clone)]
+pub struct PixelLayer {
+    /// Where the pixels came from, if a file; empty for pixels painted here.
+    pub file: String,
+    pub x: i32,
+    pub y: i32,
+    /// On the canvas lattice, offset applied.
+    pub tiles: TileGrid,
+}
+
+/// The strokes of a stroke layer, in the order they were painted. Shared, so that adding one copies pointers.
+#[derive(Clone, Default)]
+pub struct StrokeList {
+    pub strokes: Vec<Arc<Stroke>>,
+}
+
+/// A detail normal map combined onto the surface: what stands above in its group sees the combined normals.
+#[derive(Clone)]
+pub struct NormalLayer {
+    pub source: PictureSource,
+    pub placement: Placement,
+    pub outside: Outside,
+    /// `≥ 0`; 1 is the map as it is.
+    pub strength: f32,
+}
+
+/// Layers flattened together before they meet what lies beneath.
+#[derive(Clone, Default)]
+pub struct Group {
+    /// Bottom first.
+    pub layers: Vec<Arc<Layer>>,
+    /// Blend each layer with what lies beneath the group, as if the group were not there.
+    pub pass_through: bool,
+}

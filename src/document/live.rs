@@ -1,0 +1,115 @@
+//! Live content: parameters, and beside them the tiles they were rendered to, kept for as long as both stand.
+//! Floor 4. Rendering itself is the marks' (`paint`, `shading`).
+
+use crate::paint::Scene;
+use crate::raster::{Tile, TileAt};
+use std::sync::{Arc, Mutex, OnceLock};
+
+/// Parameters with their rendered tiles. A clone shares both, so undo renders nothing again.
+#[derive(Clone)]
+pub struct Live<T> {
+    params: Arc<T>,
+    rendered: Arc<Rendered>,
+}
+
+/// The tiles of one scene; replaced when the layer is seen on another canvas or surface.
+#[derive(Default)]
+struct Rendered {
+    seen: Mutex<Option<(Scene, Arc<Cells>)>>,
+}
+
+/// One cell a tile of the canvas, filled when first asked for.
+struct Cells {
+    cols: i32,
+    rows: i32,
+    cells: Vec<OnceLock<Option<Arc<Tile>>>>,
+}
+
+impl Cells {
+    fn for_scene(scene: &Scene) -> Self {
+        let side = |n: u32| n.div_ceil(crate::raster::TILE as u32) as i32;
+        let (cols, rows) = (side(scene.size.width), side(scene.size.height));
+        Self { cols, rows, cells: (0..cols * rows).map(|_| OnceLock::new()).collect() }
+    }
+    fn cell(&self, at: TileAt) -> Option<&OnceLock<Option<Arc<Tile>>>> {
+        let inside = (0..self.cols).contains(&at.col) && (0..self.rows).contains(&at.row);
+        inside.then(|| &self.cells[(at.row * self.cols + at.col) as usize])
+    }
+}
+
+impl<T> Live<T> {
+    pub fn new(params: T) -> Self {
+        Self { params: Arc::new(params), rendered: Arc::default() }
+    }
+    pub fn params(&self) -> &T {
+        &self.params
+    }
+    /// New parameters that change only some tiles: those for which `keeps` is true are taken over as they are rendered.
+    pub fn with(&self, params: T, keeps: impl Fn(TileAt) -> bool) -> Self {
+        let next = Self::new(params);
+        let seen = self.lock().clone();
+        if let Some((scene, old)) = seen {
+            let cells = Cells::for_scene(&scene);
+            for at in TileAt::covering(scene.size.rect()).filter(|&at| keeps(at)) {
+                if let (Some(from), Some(to)) = (old.cell(at).and_then(OnceLock::get), cells.cell(at)) {
+                    let _ = to.set(from.clone());
+                }
+            }
+            *next.lock() = Some((scene, Arc::new(cells)));
+        }
+        next
+    }
+    /// A tile of the layer on a scene, rendered by `render` unless it has been.
+    pub fn tile(&self, scene: &Scene, at: TileAt, render: impl FnOnce() -> Option<Tile>) -> Option<Arc<Tile>> {
+        let cells = self.cells(scene);
+        cells.cell(at)?.get_or_init(|| render().map(Arc::new)).clone()
+    }
+    /// Both are the same value with the same rendered tiles.
+    pub fn ptr_eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.params, &other.params)
+    }
+    fn cells(&self, scene: &Scene) -> Arc<Cells> {
+        let mut seen = self.lock();
+        match &*seen {
+            Some((s, cells)) if s.is_same(scene) => cells.clone(),
+            _ => {
+                let cells = Arc::new(Cells::for_scene(scene));
+                *seen = Some((scene.clone(), cells.clone()));
+                cells
+            }
+        }
+    }
+    fn lock(&self) -> std::sync::MutexGuard<'_, Option<(Scene, Arc<Cells>)>> {
+        self.rendered.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Size;
+
+    #[test]
+    fn a_tile_is_rendered_once_and_kept_through_clones() {
+        let scene = Scene { size: Size::new(100, 100), surface: None };
+        let live = Live::new(3);
+        let at = TileAt::new(1, 0);
+        let blank = || Tile::from_bytes(vec![255; 64 * 64 * 4]);
+        let first = live.tile(&scene, at, blank).unwrap();
+        let again = live.clone().tile(&scene, at, || unreachable!()).unwrap();
+        assert!(Arc::ptr_eq(&first, &again));
+        assert!(live.tile(&scene, TileAt::new(2, 0), blank).is_none(), "beyond the canvas there are no tiles");
+    }
+    #[test]
+    fn new_parameters_keep_the_tiles_they_do_not_touch() {
+        let scene = Scene { size: Size::new(128, 64), surface: None };
+        let live = Live::new(1);
+        let blank = || Tile::from_bytes(vec![255; 64 * 64 * 4]);
+        let (left, right) = (TileAt::new(0, 0), TileAt::new(1, 0));
+        let kept = live.tile(&scene, left, blank).unwrap();
+        live.tile(&scene, right, blank);
+        let next = live.with(2, |at| at == left);
+        assert!(Arc::ptr_eq(&kept, &next.tile(&scene, left, || unreachable!()).unwrap()));
+        assert!(next.tile(&scene, right, || None).is_none());
+    }
+}

@@ -1,0 +1,48 @@
+//! Floor 4: the document is a value. Cheap to clone, never changed while shared: an edit is a new document, undo a list
+//! of them, and what must be redrawn is what differs by pointer.
+
+pub mod flatten;
+pub mod layer;
+pub mod live;
+pub mod mask;
+
+pub use flatten::flatten;
+pub use layer::{Content, Group, Layer, Lock, NormalLayer, PixelLayer, StrokeList};
+pub use live::Live;
+pub use mask::{LayerMask, MaskKind};
+
+use crate::{math::Size, paint::Scene, surface::Surface};
+use std::sync::Arc;
+
+/// A picture in the making: the canvas, the shape it is painted on, and the layers, bottom first.
+#[derive(Clone)]
+pub struct Document {
+    pub size: Size,
+    pub surface: Option<Arc<Surface>>,
+    pub layers: Vec<Arc<Layer>>,
+}
+
+impl Document {
+    pub fn empty(size: Size) -> Self {
+        Self { size, surface: None, layers: Vec::new() }
+    }
+    /// The canvas as the bottom layer sees it.
+    pub fn scene(&self) -> Scene {
+        Scene { size: self.size, surface: self.surface.clone() }
+    }
+    /// Every layer, groups opened, bottom first, with its path such as `layers[2].layers[0]`.
+    pub fn walk(&self) -> Vec<(String, &Arc<Layer>)> {
+        fn visit<'a>(prefix: &str, layers: &'a [Arc<Layer>], out: &mut Vec<(String, &'a Arc<Layer>)>) {
+            for (i, layer) in layers.iter().enumerate() {
+                let path = format!("{prefix}layers[{i}]");
+                if let Content::Group(group) = &layer.content {
+                    visit(&format!("{path}."), &group.layers, out);
+                }
+                out.push((path, layer));
+            }
+        }
+        let mut out = Vec::new();
+        visit("", &self.layers, &mut out);
+        out
+    }
+}

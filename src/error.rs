@@ -1,0 +1,44 @@
+//! The one error type: what went wrong, in which file, at which field, as a sentence.
+//! Floor 0. Shown once, by the window or by the command line; library code passes it on.
+
+use std::path::{Path, PathBuf};
+
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// A failure an artist can act on. Its `Display` is one sentence that names the file and, where there is one, the field.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The operating system refused.
+    #[error("{}: {source}", file.display())]
+    Io { file: PathBuf, source: std::io::Error },
+    /// The bytes are not what their format promises.
+    #[error("{}: cannot be read: {reason}", file.display())]
+    Decode { file: PathBuf, reason: String },
+    /// Well formed, but a feature this program does not have.
+    #[error("{}: not supported: {reason}", file.display())]
+    Unsupported { file: PathBuf, reason: String },
+    /// A value out of its range or of the wrong kind; `field` is a path such as `layers[2].operator.gamma`.
+    #[error("{}: {field}: {reason}", file.display())]
+    Invalid { file: PathBuf, field: String, reason: String },
+    /// Larger than the budget allows; the sentence says which figure and how to raise it.
+    #[error("{}: too large: {reason}", file.display())]
+    TooLarge { file: PathBuf, reason: String },
+}
+
+impl Error {
+    pub fn io(file: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Self::Io { file: file.as_ref().into(), source }
+    }
+    pub fn decode(file: impl AsRef<Path>, reason: impl ToString) -> Self {
+        Self::Decode { file: file.as_ref().into(), reason: reason.to_string() }
+    }
+    pub fn unsupported(file: impl AsRef<Path>, reason: impl ToString) -> Self {
+        Self::Unsupported { file: file.as_ref().into(), reason: reason.to_string() }
+    }
+    pub fn invalid(file: impl AsRef<Path>, field: impl ToString, reason: impl ToString) -> Self {
+        Self::Invalid { file: file.as_ref().into(), field: field.to_string(), reason: reason.to_string() }
+    }
+    pub fn too_large(file: impl AsRef<Path>, reason: impl ToString) -> Self {
+        Self::TooLarge { file: file.as_ref().into(), reason: reason.to_string() }
+    }
+}

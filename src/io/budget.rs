@@ -1,0 +1,59 @@
+//! The budget every reader is given: nothing sizes an allocation from a file's own figures without asking it.
+//! Floor 5.
+
+use crate::{Error, Result, math::Size};
+use std::path::Path;
+
+/// Ceilings for what one file may ask for. Raised by `--max-pixels` and `--max-side`.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// Longest side of a picture, px.
+    pub side_px: u32,
+    /// Pixels of a picture.
+    pub area_px: u64,
+    /// Bytes of a JSON text.
+    pub json_bytes: u64,
+    /// Nesting of a JSON text.
+    pub json_depth: usize,
+    pub layers: usize,
+    pub group_depth: usize,
+    /// Anchors a layer.
+    pub anchors: usize,
+    /// Samples a stroke.
+    pub samples: usize,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self {
+            side_px: 32_768,
+            area_px: 268_435_456,
+            json_bytes: 16 << 20,
+            json_depth: 64,
+            layers: 2_000,
+            group_depth: 32,
+            anchors: 10_000,
+            samples: 1_000_000,
+        }
+    }
+}
+
+impl Budget {
+    /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.
+    pub fn size(&self, file: &Path, width: u64, height: u64) -> Result<Size> {
+        if width == 0 || height == 0 {
+            return Err(Error::decode(file, format!("a picture of {width} × {height} pixels has no pixels")));
+        }
+        if width.max(height) > u64::from(self.side_px) {
+            let reason =
+                format!("{width} × {height} pixels; a side may have {} (raise it with --max-side)", self.side_px);
+            return Err(Error::too_large(file, reason));
+        }
+        if width * height > self.area_px {
+            let reason =
+                format!("{width} × {height} pixels; a picture may have {} (raise it with --max-pixels)", self.area_px);
+            return Err(Error::too_large(file, reason));
+        }
+        Ok(Size::new(width as u32, height as u32))
+    }
+}

@@ -1,0 +1,5 @@
+//! Floor 5: files. One module a format; each brings what it reads into the program's own conventions at the door.
+
+pub mod budget;
+
+pub use budget::Budget;

@@ -1,0 +1,9 @@
+//! Floor 0: numbers without pictures. Vectors are `glam`'s; a position and a direction are both `Vec2`, told apart by name.
+
+pub mod hash;
+pub mod rect;
+pub mod simd;
+pub mod srgb;
+
+pub use glam::{Affine2, Mat2, Mat3, Vec2, Vec3, Vec4, vec2, vec3};
+pub use rect::{Rect, Size};

@@ -1,0 +1,16 @@
+//! Floor 3: marks. Each is a footprint (*where*: operator, anchors, weights) times a source (*what*: tip, ramp, image),
+//! evaluated over tiles. It knows nothing of the layer tree.
+
+pub mod adjust;
+pub mod brush;
+pub mod gradient;
+pub mod image;
+pub mod scene;
+pub mod stroke;
+
+pub use adjust::Adjust;
+pub use brush::{Brush, Tip};
+pub use gradient::{Gradient, Stop};
+pub use image::{PictureSource, PlacedImage, Placement};
+pub use scene::{Filter, Scene};
+pub use stroke::{Sample, Stroke};

@@ -1,0 +1,192 @@
+//! A sparse grid of tiles: the pixels of a paint layer, cheap to clone, shared tile by tile.
+//! Floor 1.
+
+use super::tile::{TILE, Tile, TileAt};
+use crate::math::Rect;
+use std::sync::Arc;
+
+/// Tiles on the canvas lattice; what is not held is transparent. It may reach beyond the canvas on every side.
+///
+/// A clone shares everything; writing one tile of a shared grid copies the list of tiles, never their pixels.
+#[derive(Clone, Default)]
+pub struct TileGrid {
+    /// Columns and rows of tiles held, half open, in tile units.
+    extent: TileExtent,
+    tiles: Arc<Vec<Option<Arc<Tile>>>>,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+struct TileExtent {
+    col0: i32,
+    row0: i32,
+    cols: i32,
+    rows: i32,
+}
+
+impl TileExtent {
+    fn index(self, at: TileAt) -> Option<usize> {
+        let (c, r) = (at.col - self.col0, at.row - self.row0);
+        (c >= 0 && r >= 0 && c < self.cols && r < self.rows).then(|| (r * self.cols + c) as usize)
+    }
+    /// The smallest extent that holds this one and one more tile.
+    fn with(self, at: TileAt) -> Self {
+        if self.cols == 0 || self.rows == 0 {
+            return Self { col0: at.col, row0: at.row, cols: 1, rows: 1 };
+        }
+        let (col0, row0) = (self.col0.min(at.col), self.row0.min(at.row));
+        let (col1, row1) = ((self.col0 + self.cols).max(at.col + 1), (self.row0 + self.rows).max(at.row + 1));
+        Self { col0, row0, cols: col1 - col0, rows: row1 - row0 }
+    }
+}
+
+impl TileGrid {
+    /// An empty grid ready for the tiles of a pixel rectangle, so that writing them does not grow it.
+    pub fn for_rect(rect: Rect) -> Self {
+        if rect.is_empty() {
+            return Self::default();
+        }
+        let (a, b) = (TileAt::of_pixel(rect.x0, rect.y0), TileAt::of_pixel(rect.x1 - 1, rect.y1 - 1));
+        let extent = TileExtent { col0: a.col, row0: a.row, cols: b.col - a.col + 1, rows: b.row - a.row + 1 };
+        Self { extent, tiles: Arc::new(vec![None; (extent.cols * extent.rows) as usize]) }
+    }
+    pub fn tile(&self, at: TileAt) -> Option<&Arc<Tile>> {
+        self.tiles[self.extent.index(at)?].as_ref()
+    }
+    /// Puts a tile in place, or removes it.
+    pub fn set(&mut self, at: TileAt, tile: Option<Arc<Tile>>) {
+        if self.extent.index(at).is_none() {
+            if tile.is_none() {
+                return;
+            }
+            self.grow(self.extent.with(at));
+        }
+        if let Some(i) = self.extent.index(at) {
+            Arc::make_mut(&mut self.tiles)[i] = tile;
+        }
+    }
+    fn grow(&mut self, extent: TileExtent) {
+        let mut tiles = vec![None; (extent.cols * extent.rows) as usize];
+        for (at, tile) in self.iter() {
+            if let Some(i) = extent.index(at) {
+                tiles[i] = Some(tile.clone());
+            }
+        }
+        *self = Self { extent, tiles: Arc::new(tiles) };
+    }
+    /// The tiles that hold something, row by row.
+    pub fn iter(&self) -> impl Iterator<Item = (TileAt, &Arc<Tile>)> {
+        let e = self.extent;
+        self.tiles.iter().enumerate().filter_map(move |(i, tile)| {
+            let i = i as i32;
+            Some((TileAt::new(e.col0 + i % e.cols, e.row0 + i / e.cols), tile.as_ref()?))
+        })
+    }
+    /// The pixels of all held tiles, a multiple of [`TILE`] on every side.
+    pub fn bounds(&self) -> Rect {
+        self.iter().fold(Rect::EMPTY, |r, (at, _)| r.union(at.rect()))
+    }
+    /// A premultiplied pixel; transparent where there is no tile.
+    pub fn pixel(&self, x: i32, y: i32) -> [u8; 4] {
+        let at = TileAt::of_pixel(x, y);
+        let Some(tile) = self.tile(at) else { return [0; 4] };
+        let i = ((y - at.rect().y0) as usize * TILE + (x - at.rect().x0) as usize) * 4;
+        tile.bytes()[i..i + 4].try_into().unwrap_or([0; 4])
+    }
+    /// Both grids are the same value in memory: nothing has changed between them.
+    pub fn ptr_eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.tiles, &other.tiles)
+    }
+    /// The tiles in which two grids differ, by pointer.
+    pub fn changed_tiles<'a>(&'a self, other: &'a Self) -> Vec<TileAt> {
+        if self.ptr_eq(other) {
+            return Vec::new();
+        }
+        let differs = |a: Option<&Arc<Tile>>, b: Option<&Arc<Tile>>| match (a, b) {
+            (None, None) => false,
+            (Some(a), Some(b)) => !Arc::ptr_eq(a, b),
+            _ => true,
+        };
+        TileAt::covering(self.bounds().union(other.bounds()))
+            .filter(|&at| differs(self.tile(at), other.tile(at)))
+            .collect()
+    }
+    /// Cuts straight-alpha RGBA bytes (`width · height · 4`, row by row) into premultiplied tiles, at a canvas offset.
+    pub fn from_straight_rgba(rgba: &[u8], width: usize, height: usize, x: i32, y: i32) -> Self {
+        let rect = Rect::new(x, y, x.saturating_add(width as i32), y.saturating_add(height as i32));
+        let mut grid = Self::for_rect(rect);
+        for at in TileAt::covering(rect) {
+            let area = at.rect().intersect(rect);
+            let mut bytes = vec![0u8; TILE * TILE * 4];
+            for py in area.y0..area.y1 {
+                let from = ((py - y) as usize * width + (area.x0 - x) as usize) * 4;
+                let to = ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
+                let n = area.width() * 4;
+                premultiply(&rgba[from..from + n], &mut bytes[to..to + n]);
+            }
+            if bytes.iter().any(|&b| b != 0) {
+                grid.set(at, Tile::from_bytes(bytes).map(Arc::new));
+            }
+        }
+        grid
+    }
+    /// Straight-alpha RGBA bytes of a pixel rectangle, row by row.
+    pub fn to_straight_rgba(&self, rect: Rect) -> Vec<u8> {
+        let mut out = vec![0u8; rect.width() * rect.height() * 4];
+        for at in TileAt::covering(rect) {
+            let Some(tile) = self.tile(at) else { continue };
+            let area = at.rect().intersect(rect);
+            for py in area.y0..area.y1 {
+                let from = ((py - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
+                let to = ((py - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize) * 4;
+                let n = area.width() * 4;
+                unpremultiply(&tile.bytes()[from..from + n], &mut out[to..to + n]);
+            }
+        }
+        out
+    }
+}
+
+/// Straight bytes to premultiplied bytes, rounded to nearest.
+pub fn premultiply(straight: &[u8], premultiplied: &mut [u8]) {
+    for (s, p) in straight.chunks_exact(4).zip(premultiplied.chunks_exact_mut(4)) {
+        let a = u32::from(s[3]);
+        for c in 0..3 {
+            p[c] = ((u32::from(s[c]) * a + 127) / 255) as u8;
+        }
+        p[3] = s[3];
+    }
+}
+
+/// Premultiplied bytes to straight bytes, rounded to nearest; transparent pixels become transparent black.
+pub fn unpremultiply(premultiplied: &[u8], straight: &mut [u8]) {
+    for (p, s) in premultiplied.chunks_exact(4).zip(straight.chunks_exact_mut(4)) {
+        let a = u32::from(p[3]);
+        for c in 0..3 {
+            s[c] = if a == 0 { 0 } else { ((u32::from(p[c]) * 255 + a / 2) / a).min(255) as u8 };
+        }
+        s[3] = p[3];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_cut_into_tiles_comes_back_whole() {
+        let (w, h) = (130, 70);
+        let rgba: Vec<u8> = (0..w * h).flat_map(|i| [(i % 251) as u8, (i % 83) as u8, (i % 7) as u8, 255]).collect();
+        let grid = TileGrid::from_straight_rgba(&rgba, w, h, -5, 3);
+        assert_eq!(grid.to_straight_rgba(Rect::new(-5, 3, 125, 73)), rgba);
+        assert_eq!(grid.pixel(-6, 3), [0; 4]);
+    }
+    #[test]
+    fn a_clone_shares_every_tile_until_one_is_written() {
+        let a = TileGrid::from_straight_rgba(&[255; 4 * 128 * 128], 128, 128, 0, 0);
+        let mut b = a.clone();
+        assert!(a.ptr_eq(&b));
+        b.set(TileAt::new(1, 1), None);
+        assert_eq!(a.changed_tiles(&b), [TileAt::new(1, 1)]);
+        assert!(Arc::ptr_eq(a.tile(TileAt::new(0, 0)).unwrap(), b.tile(TileAt::new(0, 0)).unwrap()));
+    }
+}

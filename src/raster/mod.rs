@@ -1,0 +1,17 @@
+//! Floor 1: pixels that know nothing of the surface. Tiles and tile grids hold layers; planes and textures hold what
+//! is sampled and never edited; blend modes and samplers work on both.
+
+pub mod blend;
+pub mod grid;
+pub mod picture;
+pub mod plane;
+pub mod sampler;
+pub mod texture;
+pub mod tile;
+
+pub use blend::BlendMode;
+pub use grid::TileGrid;
+pub use picture::Picture;
+pub use plane::Plane;
+pub use texture::{Outside, Texture};
+pub use tile::{TILE, Tile, TileAt};

@@ -1,0 +1,50 @@
+//! A decoded picture: what a file held, before it becomes a texture, a tip or an environment.
+//! Floor 1. Reading files is `io::picture`'s work.
+
+use crate::math::{Size, srgb};
+use std::sync::Arc;
+
+/// Straight (not premultiplied) RGBA, row by row, the top row first. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    pub size: Size,
+    pub texels: Texels,
+}
+
+/// The two kinds of light a file can hold.
+#[derive(Clone, Debug)]
+pub enum Texels {
+    /// Display-referred: sRGB-encoded bytes.
+    Srgb8(Arc<[[u8; 4]]>),
+    /// Scene-referred (EXR, HDR): linear light, finite and not negative, alpha in `[0, 1]`.
+    Linear(Arc<[[f32; 4]]>),
+}
+
+impl Picture {
+    /// `None` unless there is one texel per pixel and at least one pixel.
+    pub fn srgb8(size: Size, texels: Vec<[u8; 4]>) -> Option<Self> {
+        (size.area() > 0 && texels.len() == size.area()).then(|| Self { size, texels: Texels::Srgb8(texels.into()) })
+    }
+    /// As [`Picture::srgb8`]; NaN and negative light become 0, infinite light the largest half float.
+    pub fn linear(size: Size, mut texels: Vec<[f32; 4]>) -> Option<Self> {
+        const HALF_MAX: f32 = 65504.0;
+        for [r, g, b, a] in &mut texels {
+            for c in [r, g, b] {
+                *c = c.max(0.0).min(HALF_MAX);
+            }
+            *a = a.max(0.0).min(1.0);
+        }
+        (size.area() > 0 && texels.len() == size.area()).then(|| Self { size, texels: Texels::Linear(texels.into()) })
+    }
+    /// Linear light of one texel, straight alpha.
+    pub fn linear_at(&self, x: usize, y: usize) -> [f32; 4] {
+        let i = y * self.size.width as usize + x;
+        match &self.texels {
+            Texels::Linear(t) => t[i],
+            Texels::Srgb8(t) => {
+                let [r, g, b, a] = t[i];
+                [srgb::decode_u8(r), srgb::decode_u8(g), srgb::decode_u8(b), f32::from(a) / 255.0]
+            }
+        }
+    }
+}

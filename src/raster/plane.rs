@@ -1,0 +1,88 @@
+//! A contiguous map: one value per pixel, row by row, the top row first.
+//! Floor 1. Not for layers, which are sparse tiles (`grid`).
+
+use crate::math::Size;
+
+/// `size.area()` values; pixel (x, y) is at index `y · width + x`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane<T> {
+    size: Size,
+    values: Vec<T>,
+}
+
+impl<T: Copy> Plane<T> {
+    pub fn filled(size: Size, value: T) -> Self {
+        Self { size, values: vec![value; size.area()] }
+    }
+    /// `None` where `values` does not hold exactly one value per pixel.
+    pub fn from_values(size: Size, values: Vec<T>) -> Option<Self> {
+        (values.len() == size.area()).then_some(Self { size, values })
+    }
+    /// Computes every pixel from its column and row, rows in parallel.
+    pub fn from_fn(size: Size, value: impl Fn(usize, usize) -> T + Sync) -> Self
+    where
+        T: Send + Sync + Default,
+    {
+        use rayon::prelude::*;
+        let width = size.width.max(1) as usize;
+        let mut values = vec![T::default(); size.area()];
+        values.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            for (x, v) in row.iter_mut().enumerate() {
+                *v = value(x, y);
+            }
+        });
+        Self { size, values }
+    }
+    pub fn map<U: Copy + Send + Sync + Default>(&self, f: impl Fn(T) -> U + Sync) -> Plane<U>
+    where
+        T: Send + Sync,
+    {
+        Plane::from_fn(self.size, |x, y| f(self.at(x, y)))
+    }
+    pub fn size(&self) -> Size {
+        self.size
+    }
+    pub fn width(&self) -> usize {
+        self.size.width as usize
+    }
+    pub fn height(&self) -> usize {
+        self.size.height as usize
+    }
+    /// The value at column `x`, row `y`, both inside the map.
+    #[inline(always)]
+    pub fn at(&self, x: usize, y: usize) -> T {
+        self.values[y * self.size.width as usize + x]
+    }
+    /// The value at a column and row, or `None` beyond the map.
+    pub fn get(&self, x: i32, y: i32) -> Option<T> {
+        self.size.rect().contains(x, y).then(|| self.at(x as usize, y as usize))
+    }
+    /// The nearest value inside the map.
+    #[inline(always)]
+    pub fn clamped(&self, x: i32, y: i32) -> T {
+        let (w, h) = (self.size.width as i32, self.size.height as i32);
+        self.at(x.clamp(0, w - 1) as usize, y.clamp(0, h - 1) as usize)
+    }
+    #[inline(always)]
+    pub fn set(&mut self, x: usize, y: usize, value: T) {
+        self.values[y * self.size.width as usize + x] = value;
+    }
+    #[inline(always)]
+    pub fn row(&self, y: usize) -> &[T] {
+        let w = self.size.width as usize;
+        &self.values[y * w..(y + 1) * w]
+    }
+    pub fn row_mut(&mut self, y: usize) -> &mut [T] {
+        let w = self.size.width as usize;
+        &mut self.values[y * w..(y + 1) * w]
+    }
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+    pub fn into_values(self) -> Vec<T> {
+        self.values
+    }
+}

@@ -1,0 +1,146 @@
+//! A texture: a picture ready to be sampled, premultiplied 8-bit sRGB with its mip levels.
+//! Floor 1. Never edited; shared by `Arc`. Sampling is `sampler`.
+
+use super::picture::{Picture, Texels};
+use crate::math::{Size, srgb};
+
+/// What a lookup beyond the picture's border finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Outside {
+    /// Nothing: transparent.
+    None,
+    /// The nearest border texel.
+    Clamp,
+    /// The picture again.
+    Repeat,
+    /// The picture mirrored at its border (… b a | a b …).
+    #[default]
+    Mirror,
+}
+
+impl Outside {
+    /// The texel that stands at index `i` of a row of `n`, `n ≥ 1`; `None` where there is none.
+    #[inline(always)]
+    pub fn index(self, i: i32, n: i32) -> Option<i32> {
+        if (0..n).contains(&i) {
+            return Some(i);
+        }
+        match self {
+            Outside::None => None,
+            Outside::Clamp => Some(i.clamp(0, n - 1)),
+            Outside::Repeat => Some(i.rem_euclid(n)),
+            Outside::Mirror => {
+                let m = i.rem_euclid(2 * n);
+                Some(if m < n { m } else { 2 * n - 1 - m })
+            }
+        }
+    }
+}
+
+/// One mip level.
+#[derive(Clone)]
+pub struct Level {
+    pub size: Size,
+    /// Premultiplied RGBA, sRGB-encoded, row by row.
+    pub texels: Vec<[u8; 4]>,
+}
+
+/// A mip chain; level 0 is the picture itself, each next one half as large down to 1 × 1.
+#[derive(Clone)]
+pub struct Texture {
+    levels: Vec<Level>,
+}
+
+impl Texture {
+    /// Encodes scene-referred pictures (clipped at 1), premultiplies, and builds the mip chain.
+    pub fn new(picture: &Picture) -> Self {
+        let texels = match &picture.texels {
+            Texels::Srgb8(t) => t.iter().map(|&[r, g, b, a]| premultiplied_u8([r, g, b, a])).collect(),
+            Texels::Linear(t) => t
+                .iter()
+                .map(|&[r, g, b, a]| {
+                    let e = |v: f32| srgb::quantise(srgb::encode(v).min(1.0) * a);
+                    [e(r), e(g), e(b), srgb::quantise(a)]
+                })
+                .collect(),
+        };
+        let mut levels = vec![Level { size: picture.size, texels }];
+        while let Some(next) = levels.last().and_then(halved) {
+            levels.push(next);
+        }
+        Self { levels }
+    }
+    pub fn size(&self) -> Size {
+        self.levels[0].size
+    }
+    /// Level 0 is the picture; there is always at least one.
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+}
+
+fn premultiplied_u8(straight: [u8; 4]) -> [u8; 4] {
+    let mut out = [0; 4];
+    super::grid::premultiply(&straight, &mut out);
+    out
+}
+
+/// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side is odd, weighted by area).
+fn halved(level: &Level) -> Option<Level> {
+    let Size { width: w, height: h } = level.size;
+    if w == 1 && h == 1 {
+        return None;
+    }
+    let size = Size::new((w / 2).max(1), (h / 2).max(1));
+    let (xs, ys) = (covered(w, size.width), covered(h, size.height));
+    let mut texels = Vec::with_capacity(size.area());
+    for y in &ys {
+        for x in &xs {
+            let mut sum = [0.0f32; 4];
+            for &(j, wy) in y {
+                for &(i, wx) in x {
+                    let t = level.texels[(j * w + i) as usize];
+                    for c in 0..4 {
+                        sum[c] += wx * wy * f32::from(t[c]);
+                    }
+                }
+            }
+            texels.push(sum.map(|v| (v + 0.5) as u8));
+        }
+    }
+    Some(Level { size, texels })
+}
+
+/// For each of `to` cells, the cells of `from ≥ to` it covers and their weights, which add up to 1.
+fn covered(from: u32, to: u32) -> Vec<Vec<(u32, f32)>> {
+    let ratio = from as f32 / to as f32;
+    (0..to)
+        .map(|i| {
+            let (a, b) = (i as f32 * ratio, (i + 1) as f32 * ratio);
+            (a as u32..(b.ceil() as u32).min(from))
+                .map(|j| (j, ((b.min(j as f32 + 1.0) - a.max(j as f32)) / ratio).max(0.0)))
+                .collect()
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mirror_repeats_the_border_texel() {
+        let m: Vec<_> = (-3..7).map(|i| Outside::Mirror.index(i, 3).unwrap()).collect();
+        assert_eq!(m, [2, 1, 0, 0, 1, 2, 2, 1, 0, 0]);
+        assert_eq!(Outside::None.index(-1, 3), None);
+        assert_eq!(Outside::Repeat.index(-1, 3), Some(2));
+    }
+    #[test]
+    fn the_last_level_is_the_mean_colour() {
+        let texels = (0..15).map(|i| [i * 16, 0, 0, 255]).collect();
+        let t = Texture::new(&Picture::srgb8(Size::new(5, 3), texels).unwrap());
+        let last = t.levels().last().unwrap();
+        assert_eq!(last.size, Size::new(1, 1));
+        assert!(last.texels[0][0].abs_diff(112) <= 1, "{:?}", last.texels[0]);
+    }
+}

@@ -1,0 +1,120 @@
+//! A tile: 64 × 64 pixels of a layer, premultiplied 8-bit sRGB, shared and never edited while shared.
+//! Floor 1. The storage depth is hidden here, so that 16-bit tiles can come without touching layers or files.
+
+use crate::math::{Rect, srgb::quantise};
+use tiny_skia::Pixmap;
+
+/// Side of a tile, in pixels. 64² f32 RGBA is 64 KiB: one layer of a flattening stays in the second-level cache.
+pub const TILE: usize = 64;
+/// Pixels of a tile.
+pub const TILE_AREA: usize = TILE * TILE;
+
+/// One tile's pixels in flight: premultiplied, sRGB-encoded, f32, row by row.
+pub type TileF32 = [[f32; 4]; TILE_AREA];
+
+/// A fresh transparent [`TileF32`] on the heap.
+pub fn transparent_f32() -> Box<TileF32> {
+    vec![[0.0f32; 4]; TILE_AREA].into_boxed_slice().try_into().expect("a vector of TILE_AREA pixels")
+}
+
+/// Which tile of the canvas lattice: tile (0, 0) holds canvas pixel (0, 0); negative tiles lie left of and above it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TileAt {
+    pub col: i32,
+    pub row: i32,
+}
+
+impl TileAt {
+    pub const fn new(col: i32, row: i32) -> Self {
+        Self { col, row }
+    }
+    /// The tile that holds a canvas pixel.
+    pub fn of_pixel(x: i32, y: i32) -> Self {
+        Self { col: x.div_euclid(TILE as i32), row: y.div_euclid(TILE as i32) }
+    }
+    /// The canvas pixels of the tile.
+    pub fn rect(self) -> Rect {
+        let t = TILE as i32;
+        Rect::new(self.col * t, self.row * t, (self.col + 1) * t, (self.row + 1) * t)
+    }
+    /// All tiles that a pixel rectangle touches, row by row.
+    pub fn covering(rect: Rect) -> impl Iterator<Item = TileAt> {
+        let r = if rect.is_empty() { Rect::EMPTY } else { rect };
+        let (a, b) = (TileAt::of_pixel(r.x0, r.y0), TileAt::of_pixel(r.x1 - 1, r.y1 - 1));
+        let rows = if r.is_empty() { 0..0 } else { a.row..b.row + 1 };
+        rows.flat_map(move |row| (a.col..b.col + 1).map(move |col| TileAt { col, row }))
+    }
+}
+
+/// The pixels of one tile. `None` in a grid stands for a transparent one.
+#[derive(Clone)]
+pub struct Tile {
+    pixmap: Pixmap,
+    opaque: bool,
+}
+
+impl Tile {
+    /// A tile of `TILE_AREA · 4` premultiplied bytes; colours above alpha are lowered to it.
+    pub fn from_bytes(mut rgba: Vec<u8>) -> Option<Tile> {
+        if rgba.len() != TILE_AREA * 4 {
+            return None;
+        }
+        let mut opaque = true;
+        for p in rgba.chunks_exact_mut(4) {
+            let a = p[3];
+            opaque &= a == 255;
+            p[..3].iter_mut().for_each(|c| *c = (*c).min(a));
+        }
+        let size = tiny_skia::IntSize::from_wh(TILE as u32, TILE as u32)?;
+        Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque })
+    }
+    /// Quantises a tile; `None` where it is wholly transparent.
+    pub fn quantised(pixels: &TileF32) -> Option<Tile> {
+        let mut bytes = vec![0u8; TILE_AREA * 4];
+        quantise_pixels(pixels, &mut bytes);
+        if bytes.chunks_exact(4).all(|p| p[3] == 0) {
+            return None;
+        }
+        Tile::from_bytes(bytes)
+    }
+    /// Every alpha is 255.
+    pub fn is_opaque(&self) -> bool {
+        self.opaque
+    }
+    /// Premultiplied RGBA bytes, row by row.
+    pub fn bytes(&self) -> &[u8] {
+        self.pixmap.data()
+    }
+    pub fn pixmap(&self) -> &Pixmap {
+        &self.pixmap
+    }
+}
+
+crate::widest! {
+    /// Rounds premultiplied f32 pixels to bytes; `bytes` holds four for each pixel.
+    pub fn quantise_pixels(pixels: &[[f32; 4]], bytes: &mut [u8]) {
+        for (p, b) in pixels.iter().zip(bytes.chunks_exact_mut(4)) {
+            for c in 0..4 {
+                b[c] = quantise(p[c]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_left_of_the_canvas_have_negative_columns() {
+        assert_eq!(TileAt::of_pixel(-1, 64), TileAt::new(-1, 1));
+        assert_eq!(TileAt::covering(Rect::new(-1, 0, 65, 1)).count(), 3);
+        assert_eq!(TileAt::covering(Rect::EMPTY).count(), 0);
+    }
+    #[test]
+    fn colours_never_exceed_their_alpha() {
+        let tile = Tile::from_bytes([200, 100, 0, 128].repeat(TILE_AREA)).unwrap();
+        assert_eq!(&tile.bytes()[..4], &[128, 100, 0, 128]);
+        assert!(!tile.is_opaque());
+    }
+}

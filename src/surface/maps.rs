@@ -1,0 +1,117 @@
+//! The surface: normals, depth and coverage in the one convention of the program, whole and finite everywhere.
+//! Floor 2. Not here: files and their conventions (`io::maps`).
+
+use super::{grow, links};
+use crate::math::{Size, Vec2, Vec3, vec2, vec3};
+use crate::raster::Plane;
+
+/// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
+pub struct Maps {
+    /// Camera space: +x right, +y **up**, +z to the viewer. Zero, NaN or infinite where there is no surface; any length.
+    pub normals: Plane<Vec3>,
+    /// 0 near … 1 far over the surface; not finite where there is none.
+    pub depth: Plane<f32>,
+    /// Coverage by the surface, 255 wholly covered.
+    pub coverage: Plane<u8>,
+}
+
+/// Why maps do not make a surface.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SurfaceError {
+    #[error("the maps differ in size: normals {normals}, {other} {size}")]
+    SizesDiffer { normals: Size, other: &'static str, size: Size },
+    #[error("there is no surface at all: every pixel is background")]
+    Empty,
+}
+
+/// A picture of an object's shape. Every value is finite; where coverage is 0 the nearest surface values stand, so that
+/// filters may read across the silhouette.
+pub struct Surface {
+    size: Size,
+    /// n̄ = (n_x, −n_y): image axes, y down.
+    nbar_x: Plane<f32>,
+    nbar_y: Plane<f32>,
+    nz: Plane<f32>,
+    depth: Plane<f32>,
+    coverage: Plane<u8>,
+    /// Which neighbours belong to the same piece of surface (`links`).
+    links: Plane<u8>,
+    depth_range_px: f32,
+}
+
+impl Surface {
+    /// Normalises, drops what is not finite, grows the valid values outward and finds the depth jumps.
+    pub fn new(maps: Maps) -> Result<Self, SurfaceError> {
+        let size = maps.normals.size();
+        for (other, s) in [("depth", maps.depth.size()), ("mask", maps.coverage.size())] {
+            if s != size {
+                return Err(SurfaceError::SizesDiffer { normals: size, other, size: s });
+            }
+        }
+        let mut coverage = maps.coverage;
+        let valid = Plane::from_fn(size, |x, y| {
+            let n = maps.normals.at(x, y);
+            coverage.at(x, y) > 0 && maps.depth.at(x, y).is_finite() && n.is_finite() && n.length() > 1e-6
+        });
+        // A partly covered pixel at the rim without a normal of its own borrows its neighbour's; further in it is a hole.
+        grow::punch_holes(&mut coverage, &valid);
+        let nearest = grow::nearest(&valid).ok_or(SurfaceError::Empty)?;
+        let unit = |x: usize, y: usize| {
+            let n = maps.normals.values()[nearest.at(x, y) as usize].normalize_or(Vec3::Z);
+            vec3(n.x, -n.y, n.z)
+        };
+        let nbar_x = Plane::from_fn(size, |x, y| unit(x, y).x);
+        let nbar_y = Plane::from_fn(size, |x, y| unit(x, y).y);
+        let nz = Plane::from_fn(size, |x, y| unit(x, y).z);
+        let depth = nearest.map(|i| maps.depth.values()[i as usize].clamp(0.0, 1.0));
+        let depth_range_px = links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
+        let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
+        Ok(Self { size, nbar_x, nbar_y, nz, depth, coverage, links, depth_range_px })
+    }
+    pub fn size(&self) -> Size {
+        self.size
+    }
+    /// n̄ at a pixel, image axes (y down), length ≤ 1.
+    #[inline(always)]
+    pub fn nbar(&self, x: usize, y: usize) -> Vec2 {
+        vec2(self.nbar_x.at(x, y), self.nbar_y.at(x, y))
+    }
+    /// The unit normal, camera space (y up).
+    #[inline(always)]
+    pub fn normal(&self, x: usize, y: usize) -> Vec3 {
+        vec3(self.nbar_x.at(x, y), -self.nbar_y.at(x, y), self.nz.at(x, y))
+    }
+    /// z at a pixel, 0 near … 1 far.
+    #[inline(always)]
+    pub fn depth(&self, x: usize, y: usize) -> f32 {
+        self.depth.at(x, y)
+    }
+    /// Coverage at a pixel, 0 … 255.
+    #[inline(always)]
+    pub fn coverage(&self, x: usize, y: usize) -> u8 {
+        self.coverage.at(x, y)
+    }
+    /// n̄_x, n̄_y (image axes) and n_z as planes, for loops over rows.
+    pub fn normal_planes(&self) -> [&Plane<f32>; 3] {
+        [&self.nbar_x, &self.nbar_y, &self.nz]
+    }
+    pub fn depth_plane(&self) -> &Plane<f32> {
+        &self.depth
+    }
+    pub fn coverage_plane(&self) -> &Plane<u8> {
+        &self.coverage
+    }
+    /// For each pixel, which of its four neighbours continue the same surface: bits of [`links`].
+    pub fn links_plane(&self) -> &Plane<u8> {
+        &self.links
+    }
+    /// Z: how many pixels deep the range 0 … 1 of depth is, estimated from how depth and normals agree.
+    pub fn depth_range_px(&self) -> f32 {
+        self.depth_range_px
+    }
+    /// The pixel that holds a canvas point, clamped into the map.
+    pub fn pixel_of(&self, q: Vec2) -> (usize, usize) {
+        let clamp = |v: f32, n: u32| (v.max(0.0) as usize).min(n as usize - 1);
+        (clamp(q.x, self.size.width), clamp(q.y, self.size.height))
+    }
+}

@@ -1,0 +1,17 @@
+//! Floor 2: the shape that is painted on, and how an image bends over it.
+//!
+//! [`Surface`] holds the maps in one convention (camera space, image axes for n̄, depth 0 near … 1 far); nothing above
+//! the door (`io`) knows of any other. [`operator`] holds the equations, [`anchor`] where they are pinned,
+//! [`deformation`] evaluates them over tiles.
+
+pub mod anchor;
+pub mod deformation;
+pub mod grow;
+pub mod links;
+pub mod maps;
+pub mod operator;
+
+pub use anchor::{Anchor, Bend, Weights};
+pub use deformation::Deformation;
+pub use maps::{Maps, Surface, SurfaceError};
+pub use operator::Operator;
