@@ -11,6 +11,8 @@ pub struct Budget {
     pub side_px: u32,
     /// Pixels of a picture.
     pub area_px: u64,
+    /// Bytes of any one file.
+    pub file_bytes: u64,
     /// Bytes of a JSON text.
     pub json_bytes: u64,
     /// Nesting of a JSON text.
@@ -28,6 +30,7 @@ impl Default for Budget {
         Self {
             side_px: 32_768,
             area_px: 268_435_456,
+            file_bytes: 2 << 30,
             json_bytes: 16 << 20,
             json_depth: 64,
             layers: 2_000,

@@ -1,5 +1,7 @@
 //! Floor 5: files. One module a format; each brings what it reads into the program's own conventions at the door.
 
 pub mod budget;
+pub mod files;
 
 pub use budget::Budget;
+pub use files::{Files, Folder, Given};
