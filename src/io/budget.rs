@@ -15,6 +15,8 @@ pub struct Budget {
     pub file_bytes: u64,
     /// Bytes of a JSON text.
     pub json_bytes: u64,
+    /// Values of a JSON text; each takes some eighty bytes once parsed.
+    pub json_values: usize,
     /// Nesting of a JSON text.
     pub json_depth: usize,
     pub layers: usize,
@@ -32,6 +34,7 @@ impl Default for Budget {
             area_px: 268_435_456,
             file_bytes: 2 << 30,
             json_bytes: 16 << 20,
+            json_values: 4_000_000,
             json_depth: 64,
             layers: 2_000,
             group_depth: 32,

@@ -2,6 +2,7 @@
 
 pub mod budget;
 pub mod files;
+pub mod json;
 
 pub use budget::Budget;
 pub use files::{Files, Folder, Given};

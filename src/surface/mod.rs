@@ -6,6 +6,7 @@
 
 pub mod anchor;
 pub mod deformation;
+pub mod fit;
 pub mod grow;
 pub mod links;
 pub mod maps;

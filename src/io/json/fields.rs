@@ -1,0 +1,236 @@
+//! Reading values out of JSON: every value knows its path, so that every refusal can name it.
+//! Floor 5. Ranges are checked here, at the door; what is read holds values that cannot be wrong.
+
+use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
+use crate::{Error, Result};
+use serde_json::{Map, Value};
+use std::{ops::RangeInclusive, path::Path};
+
+/// Coordinates in canvas px: far beyond every canvas, well within what f32 resolves.
+pub const COORDINATE: RangeInclusive<f32> = -1e6..=1e6;
+
+/// The path of a key below another: `layers[2]` and `operator` make `layers[2].operator`.
+pub fn below(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+/// One JSON value and the path that leads to it.
+#[derive(Clone)]
+pub struct Node<'a> {
+    file: &'a Path,
+    path: String,
+    value: &'a Value,
+}
+
+impl<'a> Node<'a> {
+    pub fn root(file: &'a Path, value: &'a Value) -> Self {
+        Self { file, path: String::new(), value }
+    }
+    /// Where the value stands, such as `layers[2].operator.gamma`.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+    pub fn value(&self) -> &'a Value {
+        self.value
+    }
+    /// A refusal of this value.
+    pub fn refused(&self, reason: impl ToString) -> Error {
+        let field = if self.path.is_empty() { "the document" } else { &self.path };
+        Error::invalid(self.file, field, reason)
+    }
+    /// Names this value in a failure that it led to.
+    pub fn led_to(&self, error: Error) -> Error {
+        Error::At { file: self.file.into(), field: self.path.clone(), error: Box::new(error) }
+    }
+    fn wrong_kind(&self, wanted: &str) -> Error {
+        let is = match self.value {
+            Value::Null => "null",
+            Value::Bool(_) => "true or false",
+            Value::Number(_) => "a number",
+            Value::String(_) => "a text",
+            Value::Array(_) => "a list",
+            Value::Object(_) => "an object",
+        };
+        self.refused(format!("is {is}; it must be {wanted}"))
+    }
+    /// An object, field by field.
+    pub fn fields(&self) -> Result<Fields<'a>> {
+        let map = self.value.as_object().ok_or_else(|| self.wrong_kind("an object"))?;
+        Ok(Fields { node: self.clone(), map, known: Vec::new() })
+    }
+    /// A list of at most `most` items.
+    pub fn list(&self, most: usize) -> Result<Vec<Node<'a>>> {
+        let items = self.value.as_array().ok_or_else(|| self.wrong_kind("a list"))?;
+        if items.len() > most {
+            let reason = format!("{} has {} items; it may have {most}", self.path, items.len());
+            return Err(Error::too_large(self.file, reason));
+        }
+        let item = |(i, value)| Node { file: self.file, path: format!("{}[{i}]", self.path), value };
+        Ok(items.iter().enumerate().map(item).collect())
+    }
+    /// A list of `least` to `most` numbers, as one point, vector or reading.
+    pub fn numbers(&self, least: usize, most: usize, range: RangeInclusive<f32>) -> Result<Vec<f32>> {
+        let items = self.value.as_array().ok_or_else(|| self.wrong_kind("a list of numbers"))?;
+        if !(least..=most).contains(&items.len()) {
+            let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
+            return Err(self.refused(format!("has {} items; it must have {wanted}", items.len())));
+        }
+        self.list(most)?.iter().map(|item| item.number(range.clone())).collect()
+    }
+    pub fn number(&self, range: RangeInclusive<f32>) -> Result<f32> {
+        let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a number"))?;
+        let (low, high) = (*range.start(), *range.end());
+        // As f32 first: a number just beyond the range in f64 may be its end in f32.
+        if !range.contains(&(number as f32)) {
+            return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
+        }
+        Ok(number as f32)
+    }
+    pub fn integer(&self, range: RangeInclusive<i64>) -> Result<i64> {
+        let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a whole number"))?;
+        // 12.0 is a whole number too: other programs write it so.
+        let whole = (number.fract() == 0.0).then_some(number as i64);
+        let whole = whole.ok_or_else(|| self.refused(format!("is {number}; it must be a whole number")))?;
+        if !range.contains(&whole) {
+            let (low, high) = (range.start(), range.end());
+            return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
+        }
+        Ok(whole)
+    }
+    pub fn boolean(&self) -> Result<bool> {
+        self.value.as_bool().ok_or_else(|| self.wrong_kind("true or false"))
+    }
+    pub fn text(&self) -> Result<&'a str> {
+        self.value.as_str().ok_or_else(|| self.wrong_kind("a text"))
+    }
+    /// Canvas px.
+    pub fn point(&self) -> Result<Vec2> {
+        self.numbers(2, 2, COORDINATE).map(|v| vec2(v[0], v[1]))
+    }
+    pub fn vector(&self, range: RangeInclusive<f32>) -> Result<Vec3> {
+        self.numbers(3, 3, range).map(|v| vec3(v[0], v[1], v[2]))
+    }
+    pub fn color(&self) -> Result<Color> {
+        let text = self.text()?;
+        Color::parse(text).ok_or_else(|| self.refused(format!("is “{text}”; a colour reads #rrggbb or #rrggbbaa")))
+    }
+    /// One of the names of a table.
+    pub fn one_of<T: Copy>(&self, table: &[(T, &str)]) -> Result<T> {
+        let text = self.text()?;
+        let found = table.iter().find(|(_, name)| *name == text).map(|(value, _)| *value);
+        found.ok_or_else(|| {
+            let names: Vec<_> = table.iter().map(|(_, name)| *name).collect();
+            self.refused(format!("is “{text}”; it must be one of {}", names.join(", ")))
+        })
+    }
+}
+
+/// The fields of one object. Each is asked for by name; [`Fields::finish`] refuses those that were never asked for.
+pub struct Fields<'a> {
+    node: Node<'a>,
+    map: &'a Map<String, Value>,
+    known: Vec<&'static str>,
+}
+
+impl<'a> Fields<'a> {
+    /// The object itself.
+    pub fn node(&self) -> &Node<'a> {
+        &self.node
+    }
+    /// A field, where it is there.
+    pub fn get(&mut self, name: &'static str) -> Option<Node<'a>> {
+        self.known.push(name);
+        self.map.get(name).map(|value| self.below(name, value))
+    }
+    /// A field that has no default.
+    pub fn required(&mut self, name: &'static str) -> Result<Node<'a>> {
+        let found = self.get(name);
+        found.ok_or_else(|| self.below(name, &Value::Null).refused("is missing"))
+    }
+    fn below(&self, name: &str, value: &'a Value) -> Node<'a> {
+        Node { file: self.node.file, path: below(&self.node.path, name), value }
+    }
+    pub fn number(&mut self, name: &'static str, default: f32, range: RangeInclusive<f32>) -> Result<f32> {
+        self.get(name).map_or(Ok(default), |node| node.number(range))
+    }
+    pub fn boolean(&mut self, name: &'static str, default: bool) -> Result<bool> {
+        self.get(name).map_or(Ok(default), |node| node.boolean())
+    }
+    pub fn color(&mut self, name: &'static str, default: Color) -> Result<Color> {
+        self.get(name).map_or(Ok(default), |node| node.color())
+    }
+    pub fn point(&mut self, name: &'static str, default: Vec2) -> Result<Vec2> {
+        self.get(name).map_or(Ok(default), |node| node.point())
+    }
+    pub fn one_of<T: Copy>(&mut self, name: &'static str, table: &[(T, &str)], default: T) -> Result<T> {
+        self.get(name).map_or(Ok(default), |node| node.one_of(table))
+    }
+    /// Refuses a field that nobody asked for, naming its path and the known name it resembles.
+    pub fn finish(self) -> Result<()> {
+        let Some((name, value)) = self.map.iter().find(|(name, _)| !self.known.contains(&name.as_str())) else {
+            return Ok(());
+        };
+        let near = self.known.iter().filter(|known| differences(known, name) <= 1 + known.len() / 4);
+        let reason = match near.min_by_key(|known| differences(known, name)) {
+            Some(known) => format!("is unknown; did you mean “{known}”?"),
+            None => format!("is unknown; known here are {}", self.known.join(", ")),
+        };
+        Err(self.below(name, value).refused(reason))
+    }
+}
+
+/// How many letters must be put in, left out or replaced to turn one word into the other (Levenshtein).
+fn differences(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().take(64).collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
+        for (j, cb) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn root(value: &Value) -> Fields<'_> {
+        Node::root(Path::new("r.json"), value).fields().unwrap()
+    }
+    #[test]
+    fn an_unknown_field_is_named_with_the_one_that_was_meant() {
+        let value = json!({ "operator": { "gama": 1 } });
+        let mut operator = root(&value).get("operator").unwrap().fields().unwrap();
+        operator.number("gamma", 1.0, 0.0..=8.0).unwrap();
+        let said = operator.finish().unwrap_err().to_string();
+        assert_eq!(said, "r.json: operator.gama: is unknown; did you mean “gamma”?");
+        let value = json!({ "zebra": 1 });
+        let mut fields = root(&value);
+        fields.boolean("visible", true).unwrap();
+        assert!(fields.finish().unwrap_err().to_string().contains("known here are visible"));
+    }
+    #[test]
+    fn values_out_of_range_or_of_the_wrong_kind_are_named() {
+        let value = json!({ "a": 2, "b": "x", "c": [1], "d": 1e300, "e": "#12", "f": 1.5 });
+        let mut f = root(&value);
+        let says = |r: Result<f32>, what: &str| assert!(r.unwrap_err().to_string().contains(what));
+        says(f.number("a", 0.0, 0.0..=1.0), "a: is 2; it must be between 0 and 1");
+        says(f.number("b", 0.0, 0.0..=1.0), "b: is a text; it must be a number");
+        says(f.point("c", Vec2::ZERO).map(|p| p.x), "c: has 1 items; it must have 2");
+        says(f.number("d", 0.0, COORDINATE), "must be between");
+        says(f.color("e", Color::BLACK).map(|_| 0.0), "#rrggbb");
+        says(f.get("f").unwrap().integer(0..=9).map(|_| 0.0), "a whole number");
+        says(f.required("g").map(|_| 0.0), "g: is missing");
+    }
+    #[test]
+    fn words_differ_by_the_letters_to_change() {
+        assert_eq!(differences("gamma", "gama"), 1);
+        assert_eq!(differences("", "abc"), 3);
+        assert_eq!(differences("flow", "blend"), 4);
+    }
+}

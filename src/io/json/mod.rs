@@ -1,0 +1,8 @@
+//! JSON as documents use it: text checked before it is parsed, values read by fields that know their own path.
+//! Floor 5. What the fields mean is `recipe`'s.
+
+pub mod fields;
+pub mod text;
+
+pub use fields::{Fields, Node};
+pub use text::parse;
