@@ -1,7 +1,7 @@
 //! The surface: normals, depth and coverage in the one convention of the program, whole and finite everywhere.
 //! Floor 2. Not here: files and their conventions (`io::maps`).
 
-use super::{grow, links};
+use super::{curvature::CurvatureCache, grow, links};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 
@@ -37,6 +37,7 @@ pub struct Surface {
     /// Which neighbours belong to the same piece of surface (`links`).
     links: Plane<u8>,
     depth_range_px: f32,
+    curvatures: CurvatureCache,
 }
 
 impl Surface {
@@ -66,7 +67,17 @@ impl Surface {
         let depth = nearest.map(|i| maps.depth.values()[i as usize].clamp(0.0, 1.0));
         let depth_range_px = links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
         let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
-        Ok(Self { size, nbar_x, nbar_y, nz, depth, coverage, links, depth_range_px })
+        Ok(Self {
+            size,
+            nbar_x,
+            nbar_y,
+            nz,
+            depth,
+            coverage,
+            links,
+            depth_range_px,
+            curvatures: CurvatureCache::default(),
+        })
     }
     pub fn size(&self) -> Size {
         self.size
@@ -108,6 +119,9 @@ impl Surface {
     /// Z: how many pixels deep the range 0 … 1 of depth is, estimated from how depth and normals agree.
     pub fn depth_range_px(&self) -> f32 {
         self.depth_range_px
+    }
+    pub(super) fn curvatures(&self) -> &CurvatureCache {
+        &self.curvatures
     }
     /// The pixel that holds a canvas point, clamped into the map.
     pub fn pixel_of(&self, q: Vec2) -> (usize, usize) {

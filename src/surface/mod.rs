@@ -5,6 +5,7 @@
 //! [`deformation`] evaluates them over tiles.
 
 pub mod anchor;
+pub mod curvature;
 pub mod deformation;
 pub mod fit;
 pub mod grow;
@@ -13,6 +14,7 @@ pub mod maps;
 pub mod operator;
 
 pub use anchor::{Anchor, Bend, Weights};
+pub use curvature::Curvature;
 pub use deformation::Deformation;
 pub use maps::{Maps, Surface, SurfaceError};
 pub use operator::Operator;

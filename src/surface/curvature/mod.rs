@@ -1,0 +1,128 @@
+//! View-centred curvature: how the surface bends as seen by the viewer (MATH 4; RS sec. 4, after Vergne et al. 2009).
+//! Floor 2. Here: what curvature is and its equations. Not here: the fast way to compute it over a whole map (`tiles`),
+//! what is done with it (`shading::radiance`, the detail of D_n).
+
+mod fade;
+mod tiles;
+
+#[cfg(test)]
+mod reference;
+
+use super::Surface;
+use crate::math::{Vec2, Vec3, vec2};
+use crate::raster::Plane;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Below this n_z a slope is not followed further: the surface is seen edge-on.
+pub const GRAZING_NZ: f32 = 0.05;
+
+/// The curvature tensor H of every pixel: axes x right, y **up**; convex > 0; per pixel, before the curvature scale *s*.
+pub struct Curvature {
+    pub hxx: Plane<f32>,
+    pub hxy: Plane<f32>,
+    pub hyy: Plane<f32>,
+    /// 0 at the mask's edge, at depth jumps and off the surface; 1 from three pixels on. Every κ is multiplied by it.
+    pub fade: Plane<f32>,
+}
+
+/// The slope of the surface as seen: minus g of MATH 4, in image axes (y **down**).
+///
+/// g = (−n_x / n_z, −n_y / n_z) with n_z ≥ 0.05; with n̄ = (n_x, −n_y) the slope is n̄ / n_z. `nbar` and `nz` may be a
+/// normal of any length, such as a weighted sum of normals; the bound then holds for its direction.
+#[inline(always)]
+pub fn slope(nbar_x: f32, nbar_y: f32, nz: f32) -> (f32, f32) {
+    let length = (nbar_x * nbar_x + nbar_y * nbar_y + nz * nz).sqrt();
+    // The smallest normal float only keeps 0 / 0 out.
+    let upright = 1.0 / nz.max(GRAZING_NZ * length).max(f32::MIN_POSITIVE);
+    (nbar_x * upright, nbar_y * upright)
+}
+
+/// H = −½ (∇g + ∇gᵀ) from the derivatives of the slope in image axes (y **down**): `[h_xx, h_xy, h_yy]`, y **up** (MATH 4).
+///
+/// Turning y over negates the slope's second component and the derivative along y: the diagonal stays, h_xy changes sign.
+#[inline(always)]
+pub fn tensor(dx_slope: (f32, f32), dy_slope: (f32, f32)) -> [f32; 3] {
+    [dx_slope.0, -0.5 * (dy_slope.0 + dx_slope.1), dy_slope.1]
+}
+
+impl Curvature {
+    /// κ = tanh(s (k_u + k_v)), faded: in (−1, 1), convex > 0 (MATH 4). `scale_px`: *s*.
+    #[inline(always)]
+    pub fn kappa(&self, x: usize, y: usize, scale_px: f32) -> f32 {
+        self.fade.at(x, y) * (scale_px * (self.hxx.at(x, y) + self.hyy.at(x, y))).tanh()
+    }
+    /// κ(ℓ) = tanh(s [(H + λA) ℓ_u² + (H − λA) ℓ_v² + H ℓ_z²]), faded (MATH 4).
+    ///
+    /// * `lambda`: in `[−1, 1]`; 0 is isotropic.
+    /// * `light`: ℓ, toward the light, camera space (y up), any length; zero counts as the view direction.
+    ///
+    /// Needs no eigenvectors: A (ℓ_u² − ℓ_v²) is twice the trace-free part of the tensor along ℓ.
+    #[inline(always)]
+    pub fn kappa_along(&self, x: usize, y: usize, scale_px: f32, lambda: f32, light: Vec3) -> f32 {
+        let l = light.normalize_or(Vec3::Z);
+        let [hxx, hxy, hyy] = self.tensor(x, y);
+        let aniso = (hxx - hyy) * (l.x * l.x - l.y * l.y) + 4.0 * hxy * l.x * l.y;
+        self.fade.at(x, y) * (scale_px * (hxx + hyy + lambda * aniso)).tanh()
+    }
+    /// Principal curvatures k_u ≥ k_v, per pixel, and the unit direction u (y up, sign arbitrary); v is u turned by 90°.
+    pub fn principal(&self, x: usize, y: usize) -> (f32, f32, Vec2) {
+        let [hxx, hxy, hyy] = self.tensor(x, y);
+        let (mean, half) = (0.5 * (hxx + hyy), 0.5 * (hxx - hyy));
+        let radius = half.hypot(hxy);
+        let angle = 0.5 * hxy.atan2(half);
+        (mean + radius, mean - radius, vec2(angle.cos(), angle.sin()))
+    }
+    /// `[h_xx, h_xy, h_yy]` of a pixel.
+    #[inline(always)]
+    pub fn tensor(&self, x: usize, y: usize) -> [f32; 3] {
+        [self.hxx.at(x, y), self.hxy.at(x, y), self.hyy.at(x, y)]
+    }
+}
+
+/// The curvatures of one surface that were asked for, by blur; the last few are kept.
+#[derive(Default)]
+pub(super) struct CurvatureCache {
+    kept: Mutex<Vec<(u32, Arc<Curvature>)>>,
+}
+
+impl CurvatureCache {
+    /// Several scales of one layer are weighed at once; more than these are computed again.
+    const KEPT: usize = 6;
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(u32, Arc<Curvature>)>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+    /// Never computes under the lock: a thread that waits for its own pool's work would stand still.
+    fn get_or_compute(&self, blur_px: f32, compute: impl FnOnce() -> Curvature) -> Arc<Curvature> {
+        let key = blur_px.to_bits();
+        let find = |kept: &[(u32, Arc<Curvature>)]| kept.iter().find(|(k, _)| *k == key).map(|(_, c)| c.clone());
+        if let Some(found) = find(&self.lock()) {
+            return found;
+        }
+        let computed = Arc::new(compute());
+        let mut kept = self.lock();
+        if let Some(found) = find(&kept) {
+            return found;
+        }
+        if kept.len() >= Self::KEPT {
+            kept.remove(0);
+        }
+        kept.push((key, computed.clone()));
+        computed
+    }
+}
+
+impl Surface {
+    /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at all).
+    ///
+    /// Neither the blur nor the differences cross the mask's edge or a depth jump. Kept: asking again costs nothing.
+    /// Ask once before going parallel; threads that ask at the same time may each compute it.
+    pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
+        // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.
+        let blur_px = blur_px.max(0.0).min(0.5 * self.size().longer_side());
+        self.curvatures().get_or_compute(blur_px, || tiles::compute(self, blur_px))
+    }
+}
+
+#[cfg(test)]
+mod tests;
