@@ -89,6 +89,14 @@ impl Rect {
             y1: self.y1.max(other.y1),
         }
     }
+    /// One that reaches `margin` pixels further on every side; an empty one stays empty.
+    pub fn grown(self, margin: i32) -> Rect {
+        if self.is_empty() {
+            return Rect::EMPTY;
+        }
+        let (low, high) = (|v: i32| v.saturating_sub(margin), |v: i32| v.saturating_add(margin));
+        Rect { x0: low(self.x0), y0: low(self.y0), x1: high(self.x1), y1: high(self.y1) }
+    }
     pub fn contains(self, x: i32, y: i32) -> bool {
         x >= self.x0 && x < self.x1 && y >= self.y0 && y < self.y1
     }

@@ -18,17 +18,47 @@ pub struct Brush {
     pub spacing: f32,
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
-    /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark.
+    /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
     pub softness: f32,
     pub tip: Tip,
+    pub dynamics: Dynamics,
 }
 
 /// What a dab looks like before it is bent.
 #[derive(Clone)]
 pub enum Tip {
     Round,
-    /// A picture: an opaque grey one is coverage (white covers… see `stroke`), one with alpha a coloured stamp.
+    /// A picture whose longer side is the diameter. Opaque and grey throughout, it is coverage, white covering wholly;
+    /// any other is a stamp in its own colours.
     Picture(PictureSource),
+}
+
+/// How the pen drives a dab: one row a property.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dynamics {
+    pub size: Drive,
+    pub flow: Drive,
+}
+
+/// How one property follows the pen.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Drive {
+    /// Share of the value that pressure scales, `[0, 1]`: 0 ignores the pen, 1 vanishes with it.
+    pub pressure: f32,
+}
+
+impl Drive {
+    /// The factor of the property at a pressure in `[0, 1]`.
+    pub fn factor(self, pressure: f32) -> f32 {
+        1.0 - self.pressure * (1.0 - pressure)
+    }
+}
+
+impl Default for Dynamics {
+    /// A lighter hand paints fainter, not thinner.
+    fn default() -> Self {
+        Self { size: Drive { pressure: 0.0 }, flow: Drive { pressure: 1.0 } }
+    }
 }
 
 impl Default for Brush {
@@ -42,6 +72,7 @@ impl Default for Brush {
             rotation: 0.0,
             softness: 0.0,
             tip: Tip::Round,
+            dynamics: Dynamics::default(),
         }
     }
 }

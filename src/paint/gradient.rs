@@ -1,9 +1,13 @@
 //! The gradient tool: a colour ramp between two anchors, bent before it is applied (SF sec. 5.2, fig. 8).
-//! Floor 3.
+//! Floor 3. Not here: the ramp itself (`ramp`), D (`surface::deformation`).
 
-use super::scene::Filter;
-use crate::math::{Vec2, srgb::Color};
-use crate::surface::Operator;
+use super::ramp::Ramp;
+use super::scene::{Filter, Scene};
+use crate::math::{Rect, Vec2, srgb::Color};
+use crate::raster::tile::{TILE, transparent_f32};
+use crate::raster::{Tile, TileAt};
+use crate::surface::deformation::{Deformation, DeformedRect};
+use crate::surface::{Anchor, Bend, Operator, Weights, links};
 
 /// A colour at a place of the ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,4 +26,132 @@ pub struct Gradient {
     pub stops: Vec<Stop>,
     pub operator: Operator,
     pub filter: Filter,
+}
+
+impl Gradient {
+    /// The *where*: both ends are anchors, and their weights change along the segment (MATH 2).
+    pub fn bend(&self) -> Bend {
+        let anchors = vec![Anchor::fixed(self.from), Anchor::fixed(self.to)];
+        Bend { operator: self.operator, anchors, weights: Weights::Segment }
+    }
+    /// One tile of the layer. `None` where it is transparent, without stops, or beyond the canvas.
+    pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
+        let ramp = Ramp::new(&self.stops)?;
+        let area = at.rect().intersect(scene.size.rect());
+        if area.is_empty() {
+            return None;
+        }
+        // One more pixel on every side, for the differences.
+        let field = Projection::over(self, scene, area.grown(1).intersect(scene.size.rect()));
+        let mut pixels = transparent_f32();
+        for y in area.y0..area.y1 {
+            let row = (y - at.rect().y0) as usize * TILE;
+            for x in area.x0..area.x1 {
+                let color = match self.filter {
+                    Filter::Bilinear => ramp.at(field.at(x, y)),
+                    Filter::Antialias => ramp.mean(field.at(x, y), field.footprint(x, y, scene)),
+                };
+                pixels[row + (x - at.rect().x0) as usize] = color;
+            }
+        }
+        Tile::quantised(&pixels)
+    }
+}
+
+/// t(D(q)), before it is clamped, at every pixel centre of a rectangle.
+struct Projection {
+    rect: Rect,
+    t: Vec<f32>,
+    /// ∇t on a flat canvas.
+    flat: Vec2,
+}
+
+impl Projection {
+    fn over(gradient: &Gradient, scene: &Scene, rect: Rect) -> Self {
+        let bend = gradient.bend();
+        let mut d = DeformedRect::default();
+        Deformation::new(scene.surface.as_deref(), scene.size, &bend).fill(rect, &mut d);
+        let (from, along) = (gradient.from, gradient.to - gradient.from);
+        let squared = along.length_squared();
+        if squared > 0.0 {
+            let flat = along / squared;
+            let t = d.x.iter().zip(&d.y).map(|(&x, &y)| (x - from.x) * flat.x + (y - from.y) * flat.y).collect();
+            Self { rect, t, flat }
+        } else {
+            // A segment without length: all of the canvas lies beyond its end.
+            Self { rect, t: vec![1.0; d.x.len()], flat: Vec2::ZERO }
+        }
+    }
+    fn at(&self, x: i32, y: i32) -> f32 {
+        self.t[(y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize]
+    }
+    /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the pixel's square in every direction.
+    ///
+    /// Differenced only between neighbours of one surface; where there are none, D is the identity or as good as.
+    fn footprint(&self, x: i32, y: i32, scene: &Scene) -> f32 {
+        let linked = scene.surface.as_deref().map_or(0, |s| s.links_plane().at(x as usize, y as usize));
+        let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: f32| {
+            let back = if linked & before != 0 { 1 } else { 0 };
+            let ahead = if linked & after != 0 { 1 } else { 0 };
+            match back + ahead {
+                0 => flat,
+                n => (self.at(x + ahead * dx, y + ahead * dy) - self.at(x - back * dx, y - back * dy)) / n as f32,
+            }
+        };
+        let dx = slope(links::LEFT, links::RIGHT, 1, 0, self.flat.x);
+        let dy = slope(links::UP, links::DOWN, 0, 1, self.flat.y);
+        dx.hypot(dy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, vec2};
+
+    fn black_to_white(from: Vec2, to: Vec2) -> Gradient {
+        let stops = vec![Stop { t: 0.0, color: Color::BLACK }, Stop { t: 1.0, color: Color::WHITE }];
+        Gradient { from, to, stops, operator: Operator::None, filter: Filter::Antialias }
+    }
+    fn pixel(gradient: &Gradient, x: i32, y: i32) -> [u8; 4] {
+        let scene = Scene { size: Size::new(100, 100), surface: None };
+        let at = TileAt::of_pixel(x, y);
+        let tile = gradient.render_tile(&scene, at).unwrap();
+        let i = ((y - at.rect().y0) as usize * TILE + (x - at.rect().x0) as usize) * 4;
+        tile.bytes()[i..i + 4].try_into().unwrap()
+    }
+
+    #[test]
+    fn the_ramp_runs_along_the_segment_and_is_constant_across_it() {
+        let gradient = black_to_white(vec2(10.0, 50.0), vec2(90.0, 50.0));
+        assert_eq!(pixel(&gradient, 5, 3), [0, 0, 0, 255]);
+        assert_eq!(pixel(&gradient, 95, 97), [255; 4]);
+        for y in [0, 40, 99] {
+            // t = (49.5 + 0.5 − 10) / 80 at the centre of pixel 49 is 0.49375.
+            assert_eq!(pixel(&gradient, 49, y), [126, 126, 126, 255]);
+        }
+    }
+    #[test]
+    fn both_filters_agree_on_a_slow_ramp_and_differ_at_a_sharp_edge() {
+        let slow = black_to_white(vec2(10.0, 20.0), vec2(90.0, 70.0));
+        let exact = Gradient { filter: Filter::Bilinear, ..slow.clone() };
+        assert!(pixel(&slow, 44, 47)[0].abs_diff(pixel(&exact, 44, 47)[0]) <= 1);
+        // All of black to white falls into the right half of pixel 50.
+        let sharp = black_to_white(vec2(50.5, 0.0), vec2(51.0, 0.0));
+        assert_eq!(pixel(&sharp, 50, 10)[0], 64);
+        assert_eq!(pixel(&Gradient { filter: Filter::Bilinear, ..sharp }, 50, 10)[0], 0);
+    }
+    #[test]
+    fn a_segment_without_length_shows_the_last_stop() {
+        let gradient = black_to_white(vec2(30.0, 30.0), vec2(30.0, 30.0));
+        assert_eq!(pixel(&gradient, 5, 5), [255; 4]);
+    }
+    #[test]
+    fn beyond_the_canvas_nothing_is_painted() {
+        let gradient = black_to_white(vec2(10.0, 50.0), vec2(90.0, 50.0));
+        let scene = Scene { size: Size::new(100, 100), surface: None };
+        assert!(gradient.render_tile(&scene, TileAt::new(2, 0)).is_none());
+        let edge = gradient.render_tile(&scene, TileAt::new(1, 1)).unwrap();
+        assert_eq!(&edge.bytes()[(TILE * TILE - 1) * 4..], [0; 4]);
+    }
 }

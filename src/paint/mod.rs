@@ -5,11 +5,12 @@ pub mod adjust;
 pub mod brush;
 pub mod gradient;
 pub mod image;
+mod ramp;
 pub mod scene;
 pub mod stroke;
 
 pub use adjust::Adjust;
-pub use brush::{Brush, Tip};
+pub use brush::{Brush, Drive, Dynamics, Tip};
 pub use gradient::{Gradient, Stop};
 pub use image::{PictureSource, PlacedImage, Placement};
 pub use scene::{Filter, Scene};

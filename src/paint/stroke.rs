@@ -2,8 +2,11 @@
 //! Floor 3.
 
 use super::brush::Brush;
-use crate::math::{Vec2, srgb::Color};
+use super::scene::Scene;
+use crate::math::{Rect, Vec2, srgb::Color};
+use crate::raster::{Tile, TileAt};
 use crate::surface::Operator;
+use std::sync::Arc;
 
 /// One reading of the pen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,11 +21,46 @@ pub struct Sample {
     pub time_secs: f32,
 }
 
-/// One stroke of a stroke layer.
+impl Sample {
+    /// A sample as a mouse gives it: full pressure, upright.
+    pub fn at(at: Vec2) -> Self {
+        Self { at, pressure: 1.0, tilt: Vec2::ZERO, time_secs: 0.0 }
+    }
+}
+
+/// One stroke of a stroke layer. Never changed once made: the dabs found from it are kept beside it.
 #[derive(Clone)]
 pub struct Stroke {
-    pub brush: Brush,
-    pub operator: Operator,
-    pub color: Color,
-    pub samples: Vec<Sample>,
+    brush: Brush,
+    operator: Operator,
+    color: Color,
+    samples: Vec<Sample>,
+}
+
+impl Stroke {
+    pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
+        Self { brush, operator, color, samples }
+    }
+    pub fn brush(&self) -> &Brush {
+        &self.brush
+    }
+    pub fn operator(&self) -> Operator {
+        self.operator
+    }
+    /// The colour of one-colour tips; of a stamp only its alpha counts.
+    pub fn color(&self) -> Color {
+        self.color
+    }
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+    /// The pixels that the stroke can touch; never fewer.
+    pub fn bounds(&self, scene: &Scene) -> Rect {
+        scene.size.rect()
+    }
+}
+
+/// One tile of a stroke layer, the first stroke lowest. `None` where it is transparent.
+pub fn render_tile(_strokes: &[Arc<Stroke>], _scene: &Scene, _at: TileAt) -> Option<Tile> {
+    None
 }

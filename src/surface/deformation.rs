@@ -30,4 +30,10 @@ impl<'a> Deformation<'a> {
     pub fn at(&self, x: i32, y: i32) -> Vec2 {
         Vec2::new(x as f32 + 0.5, y as f32 + 0.5)
     }
+    /// [`Deformation::at`] for every pixel of a rectangle within the canvas.
+    pub fn fill(&self, rect: Rect, out: &mut DeformedRect) {
+        let pixels = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
+        (out.x, out.y) = pixels.map(|(x, y)| self.at(x, y).into()).unzip();
+        out.rect = Some(rect);
+    }
 }
