@@ -4,14 +4,16 @@
 pub mod blend;
 pub mod grid;
 pub mod picture;
+pub mod planar;
 pub mod plane;
 pub mod sampler;
 pub mod texture;
 pub mod tile;
 
-pub use blend::BlendMode;
+pub use blend::{BlendMode, Coverage, Mix, Paint};
 pub use grid::TileGrid;
 pub use picture::Picture;
+pub use planar::PlanarTile;
 pub use plane::Plane;
 pub use texture::{Outside, Texture};
 pub use tile::{TILE, Tile, TileAt};

@@ -1,0 +1,273 @@
+//! Blending by rows: the fast twin of `spec`, premultiplied, eight pixels an instruction where the processor can.
+//! Floor 1. Tested against `spec` for every mode.
+//!
+//! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T = αs αb B(D/αb, S/αs).
+//! For most modes T needs no division. *Atop* leaves out the first term and keeps the backdrop's alpha: a clipped layer.
+
+use super::{BlendMode, Coverage, Mix, Paint, spec};
+use crate::math::srgb;
+use crate::raster::planar::Row;
+use crate::raster::tile::TILE;
+
+crate::widest! {
+    /// Blends paint, weighted by its coverage, into all rows of a tile.
+    pub fn blend_rows(rows: &mut [Row], mix: Mix, paint: &Paint<'_>, coverage: &Coverage) {
+        if let (Paint::Bytes(tile), None, BlendMode::Normal, false, false) =
+            (paint, coverage.mask(), mix.mode, mix.linear, mix.atop)
+        {
+            for (row, bytes) in rows.iter_mut().zip(tile.bytes().chunks_exact(4 * TILE)) {
+                bytes_over(row, bytes, coverage.opacity());
+            }
+            return;
+        }
+        for (y, row) in rows.iter_mut().enumerate() {
+            let mut source = Row::TRANSPARENT;
+            load(&mut source, paint, y, coverage);
+            if mix.linear {
+                in_linear_light(row, &mut source, mix);
+            } else {
+                blend_row(row, &source, mix);
+            }
+        }
+    }
+
+    /// Moves every row toward another by its coverage: a pass-through group or an adjustment, faded.
+    pub fn mix_rows(rows: &mut [Row], toward: &[Row], coverage: &Coverage) {
+        for (y, (row, toward)) in rows.iter_mut().zip(toward).enumerate() {
+            let mut t = [coverage.opacity(); TILE];
+            multiply_by_mask(&mut t, coverage, y);
+            let Row { rgb, a } = row;
+            for (to, from) in rgb.iter_mut().chain([a]).zip(toward.rgb.iter().chain([&toward.a])) {
+                for x in 0..TILE {
+                    to[x] += (from[x] - to[x]) * t[x];
+                }
+            }
+        }
+    }
+}
+
+/// Source-over straight from bytes: the common case, in one pass.
+#[inline(always)]
+fn bytes_over(row: &mut Row, bytes: &[u8], opacity: f32) {
+    let unit = opacity / 255.0;
+    let Row { rgb: [r, g, b], a } = row;
+    for (x, p) in bytes.chunks_exact(4).enumerate().take(TILE) {
+        let p = i32::from_le_bytes([p[0], p[1], p[2], p[3]]);
+        let channel = |shift: u32| ((p >> shift) & 255) as f32 * unit;
+        let sa = channel(24);
+        let rest = 1.0 - sa;
+        r[x] = channel(0) + r[x] * rest;
+        g[x] = channel(8) + g[x] * rest;
+        b[x] = channel(16) + b[x] * rest;
+        a[x] = sa + a[x] * rest;
+    }
+}
+
+/// Row `y` of the paint, times its coverage.
+#[inline(always)]
+fn load(row: &mut Row, paint: &Paint<'_>, y: usize, coverage: &Coverage) {
+    let k = coverage.opacity();
+    match paint {
+        Paint::Solid(color) => {
+            let [r, g, b, a] = color.map(|v| v * k);
+            *row = Row { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] };
+        }
+        Paint::Bytes(tile) => {
+            let unit = k / 255.0;
+            let Row { rgb: [r, g, b], a } = &mut *row;
+            for (x, p) in tile.bytes()[y * 4 * TILE..].chunks_exact(4).enumerate().take(TILE) {
+                let p = i32::from_le_bytes([p[0], p[1], p[2], p[3]]);
+                r[x] = (p & 255) as f32 * unit;
+                g[x] = ((p >> 8) & 255) as f32 * unit;
+                b[x] = ((p >> 16) & 255) as f32 * unit;
+                a[x] = ((p >> 24) & 255) as f32 * unit;
+            }
+        }
+        Paint::Planar(tile) => {
+            *row = tile.rows()[y];
+            if k < 1.0 {
+                each_channel(row, &[k; TILE]);
+            }
+        }
+    }
+    if coverage.mask().is_some() {
+        let mut t = [1.0; TILE];
+        multiply_by_mask(&mut t, coverage, y);
+        each_channel(row, &t);
+    }
+}
+
+#[inline(always)]
+fn multiply_by_mask(t: &mut [f32; TILE], coverage: &Coverage, y: usize) {
+    if let Some(mask) = coverage.mask() {
+        for (t, m) in t.iter_mut().zip(&mask[y * TILE..]) {
+            *t *= m;
+        }
+    }
+}
+
+#[inline(always)]
+fn each_channel(row: &mut Row, factor: &[f32; TILE]) {
+    let Row { rgb, a } = row;
+    for channel in rgb.iter_mut().chain([a]) {
+        for x in 0..TILE {
+            channel[x] *= factor[x];
+        }
+    }
+}
+
+#[inline(always)]
+fn blend_row(d: &mut Row, s: &Row, mix: Mix) {
+    match mix.mode {
+        BlendMode::Normal => separable(d, s, mix, |s, _, _, ab| s * ab),
+        BlendMode::Multiply => separable(d, s, mix, |s, d, _, _| s * d),
+        BlendMode::Screen => separable(d, s, mix, |s, d, as_, ab| s * ab + d * as_ - s * d),
+        BlendMode::Overlay => separable(d, s, mix, |s, d, as_, ab| hard_light(d, s, ab, as_)),
+        BlendMode::Darken => separable(d, s, mix, |s, d, as_, ab| least(s * ab, d * as_)),
+        BlendMode::Lighten => separable(d, s, mix, |s, d, as_, ab| greatest(s * ab, d * as_)),
+        BlendMode::ColorDodge => separable(d, s, mix, color_dodge),
+        BlendMode::ColorBurn => separable(d, s, mix, color_burn),
+        BlendMode::HardLight => separable(d, s, mix, hard_light),
+        BlendMode::SoftLight => separable(d, s, mix, soft_light),
+        BlendMode::Difference => separable(d, s, mix, |s, d, as_, ab| (s * ab - d * as_).abs()),
+        BlendMode::Exclusion => separable(d, s, mix, |s, d, as_, ab| s * ab + d * as_ - 2.0 * s * d),
+        BlendMode::Hue => non_separable(d, s, mix, |cb, cs| set_lum(set_sat(cs, sat(cb)), spec::lum(cb))),
+        BlendMode::Saturation => non_separable(d, s, mix, |cb, cs| set_lum(set_sat(cb, sat(cs)), spec::lum(cb))),
+        BlendMode::Color => non_separable(d, s, mix, |cb, cs| set_lum(cs, spec::lum(cb))),
+        BlendMode::Luminosity => non_separable(d, s, mix, |cb, cs| set_lum(cb, spec::lum(cs))),
+        BlendMode::Plus => plus(d, s, mix),
+    }
+}
+
+/// `term(S, D, αs, αb)` is T.
+#[inline(always)]
+fn separable(d: &mut Row, s: &Row, mix: Mix, term: impl Fn(f32, f32, f32, f32) -> f32 + Copy) {
+    let outside = if mix.atop { 0.0 } else { 1.0 };
+    let (ab, as_) = (&mut d.a, &s.a);
+    for (d, s) in d.rgb.iter_mut().zip(&s.rgb) {
+        for x in 0..TILE {
+            let beyond = s[x] * (outside * (1.0 - ab[x]));
+            d[x] = beyond + term(s[x], d[x], as_[x], ab[x]) + d[x] * (1.0 - as_[x]);
+        }
+    }
+    for x in 0..TILE {
+        ab[x] += as_[x] * (outside * (1.0 - ab[x]));
+    }
+}
+
+#[inline(always)]
+fn non_separable(d: &mut Row, s: &Row, mix: Mix, b: impl Fn([f32; 3], [f32; 3]) -> [f32; 3] + Copy) {
+    let outside = if mix.atop { 0.0 } else { 1.0 };
+    let Row { rgb: [dr, dg, db], a: ab } = d;
+    let Row { rgb: [sr, sg, sb], a: as_ } = s;
+    for x in 0..TILE {
+        let (ab, as_) = (&mut ab[x], as_[x]);
+        let (inv_b, inv_s) = (reciprocal(*ab), reciprocal(as_));
+        let mixed = b([dr[x] * inv_b, dg[x] * inv_b, db[x] * inv_b], [sr[x] * inv_s, sg[x] * inv_s, sb[x] * inv_s]);
+        let (both, beyond, rest) = (as_ * *ab, outside * (1.0 - *ab), 1.0 - as_);
+        dr[x] = sr[x] * beyond + mixed[0] * both + dr[x] * rest;
+        dg[x] = sg[x] * beyond + mixed[1] * both + dg[x] * rest;
+        db[x] = sb[x] * beyond + mixed[2] * both + db[x] * rest;
+        *ab += as_ * beyond;
+    }
+}
+
+#[inline(always)]
+fn plus(d: &mut Row, s: &Row, mix: Mix) {
+    let ab = &mut d.a;
+    for (d, s) in d.rgb.iter_mut().zip(&s.rgb) {
+        for x in 0..TILE {
+            // Clipped, only the share on the backdrop counts, and its alpha is the ceiling.
+            let (share, ceiling) = if mix.atop { (ab[x], ab[x]) } else { (1.0, 1.0) };
+            d[x] = least(s[x] * share + d[x], ceiling);
+        }
+    }
+    if !mix.atop {
+        for (ab, as_) in ab.iter_mut().zip(&s.a) {
+            *ab = least(*ab + as_, 1.0);
+        }
+    }
+}
+
+// One instruction each on x86-64, unlike `f32::min` and `max`, which also order NaN; rows hold none.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+#[inline(always)]
+fn greatest(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+/// 1/a, 0 at 0.
+#[inline(always)]
+fn reciprocal(a: f32) -> f32 {
+    if a > 0.0 { 1.0 / a } else { 0.0 }
+}
+
+#[inline(always)]
+fn hard_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
+    let dark = 2.0 * s * d;
+    let light = as_ * ab - 2.0 * (as_ - s) * (ab - d);
+    if 2.0 * s <= as_ { dark } else { light }
+}
+#[inline(always)]
+fn color_dodge(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
+    let full = as_ * ab;
+    let lit = if s < as_ { least(full, as_ * as_ * d / (as_ - s)) } else { full };
+    if d > 0.0 { lit } else { 0.0 }
+}
+#[inline(always)]
+fn color_burn(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
+    let full = as_ * ab;
+    let burnt = if s > 0.0 { full - least(full, as_ * as_ * (ab - d) / s) } else { 0.0 };
+    if d < ab { burnt } else { full }
+}
+#[inline(always)]
+fn soft_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
+    let cb = d * reciprocal(ab);
+    let steep = ((16.0 * cb - 12.0) * cb + 4.0) * cb;
+    let curve = if cb <= 0.25 { steep } else { cb.sqrt() };
+    let tilt = 2.0 * s - as_;
+    d * as_ + if tilt <= 0.0 { tilt * d * (1.0 - cb) } else { tilt * ab * (curve - cb) }
+}
+
+#[inline(always)]
+fn sat([r, g, b]: [f32; 3]) -> f32 {
+    greatest(greatest(r, g), b) - least(least(r, g), b)
+}
+#[inline(always)]
+fn set_sat(c: [f32; 3], s: f32) -> [f32; 3] {
+    let n = least(least(c[0], c[1]), c[2]);
+    let k = s * reciprocal(sat(c));
+    c.map(|v| (v - n) * k)
+}
+#[inline(always)]
+fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
+    let shift = l - spec::lum(c);
+    let c = c.map(|v| v + shift);
+    let n = least(least(c[0], c[1]), c[2]);
+    let x = greatest(greatest(c[0], c[1]), c[2]);
+    let up = if n < 0.0 { l * reciprocal(l - n) } else { 1.0 };
+    let c = c.map(|v| l + (v - l) * up);
+    let down = if x > 1.0 { (1.0 - l) * reciprocal(x - l) } else { 1.0 };
+    c.map(|v| l + (v - l) * down)
+}
+
+/// Decodes both, blends linear light, encodes again.
+#[inline(always)]
+fn in_linear_light(d: &mut Row, s: &mut Row, mix: Mix) {
+    through_straight(d, srgb::decode);
+    through_straight(s, srgb::decode);
+    blend_row(d, s, mix);
+    through_straight(d, srgb::encode);
+}
+
+/// Applies a transfer curve to the straight colours of a premultiplied row.
+#[inline(always)]
+fn through_straight(row: &mut Row, curve: impl Fn(f32) -> f32) {
+    for channel in &mut row.rgb {
+        for (v, &a) in channel.iter_mut().zip(&row.a) {
+            *v = curve(least(*v * reciprocal(a), 1.0)) * a;
+        }
+    }
+}

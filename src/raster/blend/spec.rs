@@ -1,0 +1,158 @@
+//! The blend functions as the specification writes them: straight colours in [0, 1], one function a mode.
+//! Floor 1. The reference that reads like W3C Compositing and Blending Level 1, sec. 9; `rows` is the fast twin.
+
+use super::BlendMode;
+
+/// One mode's B(cb, cs): of a component, or of a whole colour.
+#[derive(Clone, Copy)]
+pub enum Function {
+    /// Each component on its own (sec. 9.1).
+    Separable(fn(f32, f32) -> f32),
+    /// All three components together (sec. 9.2).
+    NonSeparable(fn([f32; 3], [f32; 3]) -> [f32; 3]),
+    /// Not a mixing formula but a sum of premultiplied values, clamped at 1 (sec. 7, `lighter`).
+    Sum,
+}
+
+/// The function of a mode; backdrop first, as in the specification.
+pub fn function(mode: BlendMode) -> Function {
+    use Function::{NonSeparable, Separable, Sum};
+    match mode {
+        BlendMode::Normal => Separable(normal),
+        BlendMode::Multiply => Separable(multiply),
+        BlendMode::Screen => Separable(screen),
+        BlendMode::Overlay => Separable(overlay),
+        BlendMode::Darken => Separable(darken),
+        BlendMode::Lighten => Separable(lighten),
+        BlendMode::ColorDodge => Separable(color_dodge),
+        BlendMode::ColorBurn => Separable(color_burn),
+        BlendMode::HardLight => Separable(hard_light),
+        BlendMode::SoftLight => Separable(soft_light),
+        BlendMode::Difference => Separable(difference),
+        BlendMode::Exclusion => Separable(exclusion),
+        BlendMode::Hue => NonSeparable(hue),
+        BlendMode::Saturation => NonSeparable(saturation),
+        BlendMode::Color => NonSeparable(color),
+        BlendMode::Luminosity => NonSeparable(luminosity),
+        BlendMode::Plus => Sum,
+    }
+}
+
+/// Composites one premultiplied pixel over another (sec. 5.8): the backdrop's share, the source's share outside the
+/// backdrop, and B where both are.
+///
+/// Total: every component is brought into `[0, 1]` first, colours to at most their alpha, NaN to 0.
+pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
+    let (backdrop, source) = (sane(backdrop), sane(source));
+    let (ab, as_) = (backdrop[3], source[3]);
+    let straight = |p: [f32; 4]| [0, 1, 2].map(|c| if p[3] > 0.0 { p[c] / p[3] } else { 0.0 });
+    let (cb, cs) = (straight(backdrop), straight(source));
+    let mixed = match function(mode) {
+        Function::Separable(b) => [0, 1, 2].map(|c| b(cb[c], cs[c])),
+        Function::NonSeparable(b) => b(cb, cs),
+        Function::Sum => return [0, 1, 2, 3].map(|c| (backdrop[c] + source[c]).min(1.0)),
+    };
+    let [r, g, b] = [0, 1, 2].map(|c| as_ * (1.0 - ab) * cs[c] + as_ * ab * mixed[c] + (1.0 - as_) * ab * cb[c]);
+    [r, g, b, as_ + ab - as_ * ab]
+}
+
+/// A premultiplied pixel brought into range: alpha in `[0, 1]`, colours in `[0, alpha]`, NaN 0.
+#[inline(always)]
+pub fn sane(p: [f32; 4]) -> [f32; 4] {
+    let a = p[3].max(0.0).min(1.0);
+    [p[0].max(0.0).min(a), p[1].max(0.0).min(a), p[2].max(0.0).min(a), a]
+}
+
+pub fn normal(_cb: f32, cs: f32) -> f32 {
+    cs
+}
+pub fn multiply(cb: f32, cs: f32) -> f32 {
+    cb * cs
+}
+pub fn screen(cb: f32, cs: f32) -> f32 {
+    cb + cs - cb * cs
+}
+pub fn overlay(cb: f32, cs: f32) -> f32 {
+    hard_light(cs, cb)
+}
+pub fn darken(cb: f32, cs: f32) -> f32 {
+    cb.min(cs)
+}
+pub fn lighten(cb: f32, cs: f32) -> f32 {
+    cb.max(cs)
+}
+pub fn color_dodge(cb: f32, cs: f32) -> f32 {
+    if cb == 0.0 {
+        0.0
+    } else if cs == 1.0 {
+        1.0
+    } else {
+        (cb / (1.0 - cs)).min(1.0)
+    }
+}
+pub fn color_burn(cb: f32, cs: f32) -> f32 {
+    if cb == 1.0 {
+        1.0
+    } else if cs == 0.0 {
+        0.0
+    } else {
+        1.0 - ((1.0 - cb) / cs).min(1.0)
+    }
+}
+pub fn hard_light(cb: f32, cs: f32) -> f32 {
+    if cs <= 0.5 { multiply(cb, 2.0 * cs) } else { screen(cb, 2.0 * cs - 1.0) }
+}
+pub fn soft_light(cb: f32, cs: f32) -> f32 {
+    let d = if cb <= 0.25 { ((16.0 * cb - 12.0) * cb + 4.0) * cb } else { cb.sqrt() };
+    if cs <= 0.5 { cb - (1.0 - 2.0 * cs) * cb * (1.0 - cb) } else { cb + (2.0 * cs - 1.0) * (d - cb) }
+}
+pub fn difference(cb: f32, cs: f32) -> f32 {
+    (cb - cs).abs()
+}
+pub fn exclusion(cb: f32, cs: f32) -> f32 {
+    cb + cs - 2.0 * cb * cs
+}
+
+pub fn hue(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(set_sat(cs, sat(cb)), lum(cb))
+}
+pub fn saturation(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(set_sat(cb, sat(cs)), lum(cb))
+}
+pub fn color(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(cs, lum(cb))
+}
+pub fn luminosity(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(cb, lum(cs))
+}
+
+/// Luminosity, as the specification weighs it (not Rec. 709's).
+#[inline(always)]
+pub fn lum([r, g, b]: [f32; 3]) -> f32 {
+    0.3 * r + 0.59 * g + 0.11 * b
+}
+/// Brings a colour back into [0, 1] along the line to its grey.
+#[inline(always)]
+pub fn clip_color(c: [f32; 3]) -> [f32; 3] {
+    let l = lum(c);
+    let n = c[0].min(c[1]).min(c[2]);
+    let x = c[0].max(c[1]).max(c[2]);
+    let c = if n < 0.0 { c.map(|v| l + (v - l) * l / (l - n)) } else { c };
+    if x > 1.0 { c.map(|v| l + (v - l) * (1.0 - l) / (x - l)) } else { c }
+}
+#[inline(always)]
+pub fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
+    let d = l - lum(c);
+    clip_color(c.map(|v| v + d))
+}
+#[inline(always)]
+pub fn sat([r, g, b]: [f32; 3]) -> f32 {
+    r.max(g).max(b) - r.min(g).min(b)
+}
+/// The least component becomes 0, the greatest `s`, the middle one keeps its place between them.
+#[inline(always)]
+pub fn set_sat(c: [f32; 3], s: f32) -> [f32; 3] {
+    let n = c[0].min(c[1]).min(c[2]);
+    let range = sat(c);
+    if range > 0.0 { c.map(|v| (v - n) * s / range) } else { [0.0; 3] }
+}

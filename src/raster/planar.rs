@@ -1,0 +1,122 @@
+//! Pixels in flight while a picture is flattened: one tile, f32, premultiplied, each channel of a row on its own so
+//! that loops over a row need no shuffles.
+//! Floor 1. Stored pixels are `tile`; how they mix is `blend`.
+
+use super::blend::sane;
+use super::tile::{TILE, TILE_AREA, Tile, TileF32};
+use crate::math::srgb::quantise;
+
+/// One row of a tile, premultiplied, encoded. A KiB, so that a row and what meets it stay in the first-level cache.
+#[derive(Clone, Copy)]
+pub struct Row {
+    /// Red, green, blue, each in `[0, alpha]`.
+    pub rgb: [[f32; TILE]; 3],
+    /// Alpha, `[0, 1]`.
+    pub a: [f32; TILE],
+}
+
+impl Row {
+    pub const TRANSPARENT: Row = Row { rgb: [[0.0; TILE]; 3], a: [0.0; TILE] };
+}
+
+/// A tile of accumulated pixels.
+#[derive(Clone)]
+pub struct PlanarTile {
+    rows: Vec<Row>,
+}
+
+impl PlanarTile {
+    pub fn transparent() -> Self {
+        Self { rows: vec![Row::TRANSPARENT; TILE] }
+    }
+    /// Takes pixels in; what is out of range or NaN is brought into it.
+    pub fn from_pixels(pixels: &TileF32) -> Self {
+        let mut tile = Self::transparent();
+        for (row, pixels) in tile.rows.iter_mut().zip(pixels.chunks_exact(TILE)) {
+            for (x, &p) in pixels.iter().enumerate() {
+                let [r, g, b, a] = sane(p);
+                (row.rgb[0][x], row.rgb[1][x], row.rgb[2][x], row.a[x]) = (r, g, b, a);
+            }
+        }
+        tile
+    }
+    /// Writes every pixel out.
+    pub fn to_pixels(&self, pixels: &mut TileF32) {
+        for (row, pixels) in self.rows.iter().zip(pixels.chunks_exact_mut(TILE)) {
+            for (x, p) in pixels.iter_mut().enumerate() {
+                *p = row.pixel(x);
+            }
+        }
+    }
+    /// The `TILE` rows, the top one first.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+    pub fn rows_mut(&mut self) -> &mut [Row] {
+        &mut self.rows
+    }
+    /// Rounds to bytes; `None` where the tile is wholly transparent.
+    pub fn quantised(&self) -> Option<Tile> {
+        let mut bytes = vec![0u8; TILE_AREA * 4];
+        quantise_rows(&self.rows, &mut bytes);
+        if bytes.chunks_exact(4).all(|p| p[3] == 0) {
+            return None;
+        }
+        Tile::from_bytes(bytes)
+    }
+}
+
+impl Row {
+    /// One premultiplied pixel; `x < TILE`.
+    #[inline(always)]
+    pub fn pixel(&self, x: usize) -> [f32; 4] {
+        [self.rgb[0][x], self.rgb[1][x], self.rgb[2][x], self.a[x]]
+    }
+}
+
+crate::widest! {
+    /// Rounds rows to premultiplied bytes, `4 · TILE` a row.
+    fn quantise_rows(rows: &[Row], bytes: &mut [u8]) {
+        for (row, bytes) in rows.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
+            for (x, p) in bytes.chunks_exact_mut(4).enumerate().take(TILE) {
+                let [r, g, b, a] = row.pixel(x).map(|v| u32::from(quantise(v)));
+                p.copy_from_slice(&(r | g << 8 | b << 16 | a << 24).to_le_bytes());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_go_in_and_out_unchanged() {
+        let byte = |i: usize, c: usize| ((i * 7 + c * 31) % 256) as u8;
+        let pixels: Vec<[f32; 4]> = (0..TILE_AREA)
+            .map(|i| {
+                let a = byte(i, 3);
+                [0, 1, 2, 3].map(|c| f32::from(if c == 3 { a } else { byte(i, c).min(a) }) / 255.0)
+            })
+            .collect();
+        let pixels: Box<TileF32> = pixels.into_boxed_slice().try_into().unwrap();
+        let planar = PlanarTile::from_pixels(&pixels);
+        let tile = planar.quantised().unwrap();
+        for (i, p) in tile.bytes().chunks_exact(4).enumerate() {
+            assert_eq!(p[3], byte(i, 3));
+            assert_eq!(p[0], byte(i, 0).min(byte(i, 3)));
+        }
+        let mut back = super::super::tile::transparent_f32();
+        planar.to_pixels(&mut back);
+        assert_eq!(back[..], pixels[..]);
+    }
+    #[test]
+    fn nan_and_colours_beyond_their_alpha_do_not_get_in() {
+        let mut pixels = super::super::tile::transparent_f32();
+        pixels[0] = [f32::NAN, f32::INFINITY, -1.0, 0.5];
+        pixels[1] = [0.5, 0.5, 0.5, f32::NAN];
+        let planar = PlanarTile::from_pixels(&pixels);
+        assert_eq!(planar.rows()[0].pixel(0), [0.0, 0.5, 0.0, 0.5]);
+        assert_eq!(planar.rows()[0].pixel(1), [0.0; 4]);
+    }
+}
