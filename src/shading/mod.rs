@@ -1,7 +1,20 @@
 //! Floor 3: light. Materials lit by lights or environments, and radiance scaling, on the document's normals.
+//!
+//! [`scaling`] is the paper's one function σ; [`radiance`] applies it to what was painted beneath, [`material`] to each
+//! term of a lit material. [`features`] says which curvature drives it. Colours are linear light inside.
 
+pub mod environment;
+pub mod features;
+pub mod light;
 pub mod material;
 pub mod radiance;
+pub mod scaling;
+pub mod sphere;
 
-pub use material::Shading;
+pub use environment::{Environment, Projection};
+pub use features::{FeatureScale, Features};
+pub use light::{Light, LightKind};
+pub use material::{Model, Shading, Term};
 pub use radiance::RadianceScaling;
+pub use scaling::{Reference, Scaling};
+pub use sphere::LitSphere;

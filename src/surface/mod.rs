@@ -12,9 +12,11 @@ pub mod grow;
 pub mod links;
 pub mod maps;
 pub mod operator;
+pub mod scene;
 
 pub use anchor::{Anchor, Bend, Weights};
 pub use curvature::Curvature;
 pub use deformation::Deformation;
 pub use maps::{Maps, Surface, SurfaceError};
 pub use operator::Operator;
+pub use scene::Scene;

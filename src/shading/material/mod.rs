@@ -1,0 +1,150 @@
+//! A shading layer's material: which model, its terms, and the light it stands in (MATH 5).
+//! Floor 3. One file a model.
+
+use super::{
+    environment::Environment,
+    features::Features,
+    light::Light,
+    scaling::{Reference, Scaling},
+    sphere::LitSphere,
+};
+use crate::math::srgb::Color;
+
+/// How a material answers light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Model {
+    #[default]
+    Phong,
+    /// Phong in flat bands.
+    Toon,
+    /// (n·ℓ)^ζ: flatter than matt, like the moon.
+    SubLambertian,
+    /// Anisotropic Phong of Ashikhmin and Shirley (2000), under lights or an environment.
+    Ashikhmin,
+    /// Matt under an environment, in its own shade.
+    DiffuseEnvironment,
+    AmbientOcclusion,
+    /// A painted sphere, or a convex and a concave one.
+    LitSphere,
+    Mirror,
+    Refraction,
+}
+
+impl Model {
+    /// Every model with its name in documents.
+    pub const ALL: [(Model, &'static str); 9] = [
+        (Model::Phong, "phong"),
+        (Model::Toon, "toon"),
+        (Model::SubLambertian, "sub-lambertian"),
+        (Model::Ashikhmin, "ashikhmin"),
+        (Model::DiffuseEnvironment, "diffuse-environment"),
+        (Model::AmbientOcclusion, "ambient-occlusion"),
+        (Model::LitSphere, "lit-sphere"),
+        (Model::Mirror, "mirror"),
+        (Model::Refraction, "refraction"),
+    ];
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(m, _)| *m == self).map_or("phong", |(_, name)| name)
+    }
+    /// Lit by an environment alone: lights mean nothing to it.
+    pub fn needs_environment(self) -> bool {
+        matches!(self, Model::DiffuseEnvironment | Model::Mirror | Model::Refraction)
+    }
+}
+
+/// One term of a material: weight × colour × ρ × light, scaled by its own σ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    pub color: Color,
+    /// `≥ 0`; 0 leaves the term out.
+    pub weight: f32,
+    pub scaling: Scaling,
+}
+
+impl Term {
+    /// Not scaled.
+    pub const fn plain(color: Color, weight: f32) -> Self {
+        Self { color, weight, scaling: Scaling::NONE }
+    }
+    /// Contributes nothing.
+    pub const NONE: Term = Term::plain(Color::WHITE, 0.0);
+}
+
+/// The parameters of a shading layer.
+#[derive(Clone)]
+pub struct Shading {
+    pub model: Model,
+    pub lights: Vec<Light>,
+    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`].
+    pub ambient: Term,
+    /// The matt term.
+    pub diffuse: Term,
+    /// The glossy term; lit spheres, mirrors and refraction are this term too.
+    pub specular: Term,
+    /// η of the Phong highlight, `≥ 0`.
+    pub shininess: f32,
+    pub features: Features,
+    /// What counts as full reflectance where light comes from a picture (environment, lit sphere).
+    pub reference: Reference,
+    /// Tones of a toon term, `≥ 2`.
+    pub bands: u32,
+    /// ζ of the sub-Lambertian term, in `[0, 1]`.
+    pub exponent: f32,
+    /// Ashikhmin: exponents along the picture's x and y.
+    pub nu: f32,
+    pub nv: f32,
+    pub environment: Option<Environment>,
+    /// Lit sphere; where there is a concave one too, this one stands for convex features.
+    pub sphere: Option<LitSphere>,
+    pub sphere_concave: Option<LitSphere>,
+    /// Refractive index, `> 0`.
+    pub index: f32,
+}
+
+impl Shading {
+    /// The model with the material it has where nothing else is said; no environment, no sphere, one light where it needs one.
+    pub fn new(model: Model) -> Self {
+        let (ambient, diffuse, specular) = match model {
+            Model::Phong | Model::Toon | Model::SubLambertian | Model::Ashikhmin => (
+                Term::plain(Color::WHITE, 0.1),
+                Term::plain(Color { r: 0xc0, g: 0x80, b: 0x60, a: 255 }, 0.7),
+                Term::plain(Color::WHITE, 0.3),
+            ),
+            Model::DiffuseEnvironment => (Term::NONE, Term::plain(Color::WHITE, 1.0), Term::NONE),
+            Model::AmbientOcclusion => (Term::plain(Color::WHITE, 1.0), Term::NONE, Term::NONE),
+            Model::LitSphere | Model::Mirror | Model::Refraction => {
+                (Term::NONE, Term::NONE, Term::plain(Color::WHITE, 1.0))
+            }
+        };
+        Self {
+            model,
+            lights: vec![Light::default()],
+            ambient,
+            diffuse,
+            specular,
+            shininess: 40.0,
+            features: Features::default(),
+            reference: Reference::Auto,
+            bands: 4,
+            exponent: 0.5,
+            nu: 100.0,
+            nv: 100.0,
+            environment: None,
+            sphere: None,
+            sphere_concave: None,
+            index: 1.5,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_model_goes_by_its_own_name() {
+        for (model, name) in Model::ALL {
+            assert_eq!(model.name(), name);
+        }
+    }
+}

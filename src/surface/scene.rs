@@ -1,0 +1,25 @@
+//! What a mark or a light falls on: the canvas and, where there is one, the surface.
+//! Floor 2, below both `paint` and `shading`.
+
+use super::Surface;
+use crate::math::Size;
+use std::sync::Arc;
+
+/// The canvas that a layer sees. `surface`, where present, has the size of the canvas.
+#[derive(Clone)]
+pub struct Scene {
+    pub size: Size,
+    pub surface: Option<Arc<Surface>>,
+}
+
+impl Scene {
+    /// Both see the same canvas and the very same surface: what was rendered for one holds for the other.
+    pub fn is_same(&self, other: &Scene) -> bool {
+        let same_surface = match (&self.surface, &other.surface) {
+            (None, None) => true,
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        };
+        self.size == other.size && same_surface
+    }
+}
