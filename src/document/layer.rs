@@ -1,16 +1,30 @@
 //! A layer: how it meets what lies beneath, and what it holds.
 //! Floor 4.
 
-use super::{live::Live, mask::LayerMask};
+use super::{kept::Kept, live::Live, mask::LayerMask};
 use crate::math::srgb::Color;
 use crate::paint::{Gradient, PictureSource, PlacedImage, Placement, Stroke};
 use crate::raster::{BlendMode, Outside, TileGrid};
 use crate::shading::{RadianceScaling, Shading};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// One layer of a document.
+/// Which layer: the same through every edit of it, as long as the program runs. Not stored in files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LayerId(u64);
+
+impl LayerId {
+    /// One that no layer has had.
+    pub fn fresh() -> Self {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
+        Self(NEXT.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+/// One layer of a document. Made with [`Layer::new`]; a clone is the same layer in another version.
 #[derive(Clone)]
 pub struct Layer {
+    pub id: LayerId,
     pub name: String,
     pub visible: bool,
     /// `[0, 1]`.
@@ -25,11 +39,15 @@ pub struct Layer {
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
     pub content: Content,
+    /// What was worked out for this layer and still holds; of no meaning to a document's value.
+    pub kept: Kept,
 }
 
 impl Layer {
+    /// A visible, opaque, unmasked layer that blends normally, under a fresh id.
     pub fn new(name: impl Into<String>, content: Content) -> Self {
         Self {
+            id: LayerId::fresh(),
             name: name.into(),
             visible: true,
             opacity: 1.0,
@@ -40,6 +58,7 @@ impl Layer {
             mask: None,
             clip_to_surface: true,
             content,
+            kept: Kept::default(),
         }
     }
 }

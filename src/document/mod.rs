@@ -2,12 +2,13 @@
 //! of them, and what must be redrawn is what differs by pointer.
 
 pub mod flatten;
+pub mod kept;
 pub mod layer;
 pub mod live;
 pub mod mask;
 
 pub use flatten::flatten;
-pub use layer::{Content, Group, Layer, Lock, NormalLayer, PixelLayer, StrokeList};
+pub use layer::{Content, Group, Layer, LayerId, Lock, NormalLayer, PixelLayer, StrokeList};
 pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
 
