@@ -6,6 +6,7 @@ pub mod kept;
 pub mod layer;
 pub mod live;
 pub mod mask;
+pub mod source;
 
 pub use flatten::flatten;
 pub use layer::{Content, Group, Layer, LayerId, Lock, NormalLayer, PixelLayer, StrokeList};

@@ -1,8 +1,12 @@
 //! Floor 5: files. One module a format; each brings what it reads into the program's own conventions at the door.
 
+pub mod bitmap;
 pub mod budget;
+pub mod exr;
 pub mod files;
 pub mod json;
+pub mod maps;
+pub mod picture;
 
 pub use budget::Budget;
 pub use files::{Files, Folder, Given};

@@ -1,0 +1,106 @@
+//! Files of rows of numbers: PNG, JPEG, WebP, TIFF, BMP, TGA and Radiance HDR, decoded within a budget.
+//! Floor 5. Not here: what the numbers mean (`picture`, `maps`), EXR (`exr`).
+
+use super::Budget;
+use crate::{Error, Result, math::Size};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
+use std::{
+    io::Cursor,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::Path,
+};
+
+/// A decoded file, its colour profile and how it wants to be turned, both not yet applied.
+pub struct Bitmap {
+    pub image: DynamicImage,
+    pub icc: Option<Vec<u8>>,
+    pub orientation: Orientation,
+    pub format: &'static str,
+}
+
+const READABLE: &str = "PNG, JPEG, WebP, TIFF, BMP, TGA, HDR or EXR";
+
+/// The formats of this module; the flag says whether a file of a few bytes may hold any number of pixels.
+const FORMATS: [(ImageFormat, &str, bool); 7] = [
+    (ImageFormat::Png, "PNG", false),
+    (ImageFormat::Jpeg, "JPEG", false),
+    (ImageFormat::WebP, "WebP", true),
+    (ImageFormat::Tiff, "TIFF", false),
+    (ImageFormat::Bmp, "BMP", false),
+    (ImageFormat::Tga, "TGA", false),
+    (ImageFormat::Hdr, "HDR", false),
+];
+
+/// Decodes a file by what it begins with; TGA, which begins like nothing, by its name.
+pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
+    let (format, name, unbounded) = sniff(file, bytes)?;
+    if format == ImageFormat::Jpeg && !ends(bytes) {
+        return Err(Error::decode(file, "the JPEG data ends before its end marker; the file is cut short"));
+    }
+    let decoded = catch_unwind(AssertUnwindSafe(|| {
+        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+        reader.limits(limits(budget));
+        let mut decoder = reader.into_decoder().map_err(|e| failure(file, name, &e))?;
+        let (width, height) = decoder.dimensions();
+        let size = budget.size(file, width.into(), height.into())?;
+        if !unbounded {
+            plausible(file, size, decoder.total_bytes(), bytes.len())?;
+        }
+        let icc = decoder.icc_profile().ok().flatten();
+        let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+        let image = DynamicImage::from_decoder(decoder).map_err(|e| failure(file, name, &e))?;
+        Ok(Bitmap { image, icc, orientation, format: name })
+    }));
+    decoded.unwrap_or_else(|_| Err(Error::decode(file, format!("the {name} data is damaged"))))
+}
+
+fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)> {
+    if bytes.is_empty() {
+        return Err(Error::decode(file, "the file is empty"));
+    }
+    let is_tga = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("tga"));
+    let found = match image::guess_format(bytes) {
+        Ok(format) => format,
+        Err(_) if is_tga => ImageFormat::Tga,
+        Err(_) => return Err(Error::decode(file, format!("the file does not begin like a {READABLE} picture"))),
+    };
+    let row = FORMATS.iter().find(|(format, ..)| *format == found);
+    row.copied().ok_or_else(|| {
+        let kind = found.extensions_str().first().copied().unwrap_or("such").to_uppercase();
+        Error::unsupported(file, format!("{kind} pictures; save it as {READABLE}"))
+    })
+}
+
+fn limits(budget: &Budget) -> image::Limits {
+    let mut limits = image::Limits::no_limits();
+    limits.max_image_width = Some(budget.side_px);
+    limits.max_image_height = Some(budget.side_px);
+    // Four floats a pixel is the most that any of the formats decodes to.
+    limits.max_alloc = Some(budget.area_px.saturating_mul(16));
+    limits
+}
+
+/// Refuses headers that promise more than the bytes that follow could hold: DEFLATE reaches 1032 : 1, LZW about 2500 : 1.
+fn plausible(file: &Path, size: Size, decoded_bytes: u64, file_bytes: usize) -> Result<()> {
+    const GRANTED: u64 = 1 << 20;
+    if decoded_bytes > GRANTED && decoded_bytes / 4096 > file_bytes as u64 {
+        let reason = format!("the header promises {size} pixels, far more than {file_bytes} bytes can hold");
+        return Err(Error::decode(file, reason));
+    }
+    Ok(())
+}
+
+/// Whether a JPEG's last scan is followed by its end marker.
+fn ends(bytes: &[u8]) -> bool {
+    let last = |marker: u8| bytes.windows(2).rposition(|w| w == [0xff, marker]);
+    last(0xd9) > last(0xda)
+}
+
+fn failure(file: &Path, format: &str, error: &image::ImageError) -> Error {
+    use image::ImageError::{Limits, Unsupported};
+    match error {
+        Limits(e) => Error::too_large(file, format!("{e} (raise the limits with --max-side and --max-pixels)")),
+        Unsupported(e) => Error::unsupported(file, e),
+        e => Error::decode(file, format!("the {format} data is damaged or cut short ({e})")),
+    }
+}

@@ -1,0 +1,183 @@
+//! OpenEXR: every channel of every part, whatever the layers are called.
+//! Floor 5. Header and chunk table are walked and weighed against the budget before anything is decoded or allocated;
+//! a chunk is decoded by the `exr` crate. Not here: what a channel means (`picture`, `maps`).
+
+mod chunks;
+mod names;
+
+pub use names::{Pass, passes};
+
+use super::Budget;
+use crate::{Error, Result, math::Size, raster::Plane};
+use exr::meta::{BlockDescription, MetaData, attribute::SampleType, header::Header};
+use std::{
+    io::Cursor,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::Path,
+};
+
+/// One channel of one part.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// `part.channel` where the part's name is needed to tell channels apart, else the channel's own name.
+    pub name: String,
+    /// Half, float or unsigned integer.
+    pub kind: &'static str,
+    part: usize,
+    index: usize,
+}
+
+/// An EXR whose header has been read and found within the budget; no pixel decoded yet.
+pub struct ExrFile<'a> {
+    file: &'a Path,
+    bytes: &'a [u8],
+    meta: MetaData,
+    chunks: Vec<chunks::Chunk>,
+    channels: Vec<Channel>,
+    passes: Vec<Pass>,
+    size: Size,
+}
+
+impl<'a> ExrFile<'a> {
+    pub fn is_exr(bytes: &[u8]) -> bool {
+        bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01])
+    }
+    /// Reads the header and the chunk table.
+    ///
+    /// Fails on deep or subsampled channels, compressions the decoder lacks, windows beyond the budget, and files that end
+    /// before their last chunk.
+    pub fn open(file: &'a Path, bytes: &'a [u8], budget: &Budget) -> Result<Self> {
+        let mut cursor = Cursor::new(bytes);
+        let meta = guarded(file, "header", || MetaData::read_from_buffered(&mut cursor, false))?;
+        let size = window(file, &meta, budget)?;
+        for header in &meta.headers {
+            check_part(file, header, budget)?;
+        }
+        guarded(file, "header", || MetaData::validate(&meta.headers, false))?;
+        let chunks = chunks::walk(file, bytes, cursor.position() as usize, &meta)?;
+        let channels = names::channels(&meta);
+        let passes = passes(&channels);
+        Ok(Self { file, bytes, meta, chunks, channels, passes, size })
+    }
+    /// The display window's size: every plane has it.
+    pub fn size(&self) -> Size {
+        self.size
+    }
+    pub fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+    /// The channels grouped by layer.
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
+    }
+    /// What the pixels are compressed with, for people.
+    pub fn compression(&self) -> String {
+        self.meta.headers.first().map_or_else(String::new, |h| h.compression.to_string())
+    }
+    /// The first part's `worldToCamera` attribute, as stored: row by row, for row vectors.
+    pub fn world_to_camera(&self) -> Option<[f32; 16]> {
+        self.meta.headers.iter().find_map(|h| h.own_attributes.world_to_camera)
+    }
+    /// The horizontal field of view in degrees, where the header tells.
+    pub fn fov_degrees(&self) -> Option<f32> {
+        let told = self.meta.headers.iter().find_map(|h| h.own_attributes.horizontal_field_of_view);
+        told.filter(|fov| *fov > 0.0 && *fov < 180.0)
+    }
+    /// Decodes some channels (indices into [`Self::channels`]) over the display window; NaN where the data window leaves it
+    /// bare. Unsigned integers become floats.
+    pub fn read(&self, wanted: &[usize]) -> Result<Vec<Plane<f32>>> {
+        let mut planes = vec![Plane::filled(self.size, f32::NAN); wanted.len()];
+        let targets: Vec<&Channel> = wanted.iter().filter_map(|&w| self.channels.get(w)).collect();
+        let needed: Vec<&chunks::Chunk> =
+            self.chunks.iter().filter(|c| targets.iter().any(|t| t.part == c.part)).collect();
+        chunks::decode(self.file, self.bytes, &self.meta, &needed, |block| {
+            let Some(header) = self.meta.headers.get(block.index.layer) else { return };
+            for (target, plane) in targets.iter().zip(&mut planes) {
+                if target.part == block.index.layer {
+                    copy_block(header, block, target.index, plane);
+                }
+            }
+        })?;
+        Ok(planes)
+    }
+}
+
+/// The display window, which all parts share, or the first data window where they have none to share.
+fn window(file: &Path, meta: &MetaData, budget: &Budget) -> Result<Size> {
+    let first = meta.headers.first().ok_or_else(|| Error::decode(file, "the EXR has no parts"))?;
+    let display = first.shared_attributes.display_window;
+    if meta.headers.iter().any(|h| h.shared_attributes.display_window.size != display.size) {
+        return Err(Error::unsupported(file, "EXR parts whose display windows differ"));
+    }
+    budget.size(file, display.size.x() as u64, display.size.y() as u64)
+}
+
+fn check_part(file: &Path, header: &Header, budget: &Budget) -> Result<()> {
+    if header.deep {
+        return Err(Error::unsupported(file, "deep EXR data; flatten it first"));
+    }
+    if header.channels.list.iter().any(|c| c.sampling.x() != 1 || c.sampling.y() != 1) {
+        return Err(Error::unsupported(file, "EXR channels stored at a lower resolution (subsampling)"));
+    }
+    let data = budget.size(file, header.layer_size.x() as u64, header.layer_size.y() as u64)?;
+    // What the widest picture within the budget weighs: four floats a pixel; a G-buffer has more but smaller channels.
+    let bytes = data.area() as u64 * header.channels.bytes_per_pixel as u64;
+    if bytes > budget.area_px.saturating_mul(16) {
+        let reason = format!("{data} pixels of {} channels (raise it with --max-pixels)", header.channels.list.len());
+        return Err(Error::too_large(file, reason));
+    }
+    if let BlockDescription::Tiles(tiles) = header.blocks {
+        let (w, h) = (tiles.tile_size.x() as u64, tiles.tile_size.y() as u64);
+        // Tiles larger than the picture are legal but have no use beyond the next power of two.
+        let most = |side: u32| u64::from(side.next_power_of_two()).max(1024);
+        if w == 0 || h == 0 || w > most(data.width) || h > most(data.height) {
+            return Err(Error::decode(file, format!("the EXR claims tiles of {w} × {h} pixels")));
+        }
+    }
+    Ok(())
+}
+
+/// Copies one channel of a decoded block into its place in the display window.
+fn copy_block(header: &Header, block: &exr::block::UncompressedBlock, channel: usize, plane: &mut Plane<f32>) {
+    let display = header.shared_attributes.display_window.position;
+    let data = header.own_attributes.layer_position;
+    let shift = |data: i32, display: i32, at: usize| i64::from(data) - i64::from(display) + at as i64;
+    let left = shift(data.x(), display.x(), block.index.pixel_position.x());
+    let top = shift(data.y(), display.y(), block.index.pixel_position.y());
+    let (width, height) = (block.index.pixel_size.x(), block.index.pixel_size.y());
+    let Some(kind) = header.channels.list.get(channel).map(|c| c.sample_type) else { return };
+    // Rows follow each other; within a row the channels do.
+    let row_bytes = header.channels.bytes_per_pixel * width;
+    let before: usize = header.channels.list[..channel].iter().map(|c| c.sample_type.bytes_per_sample() * width).sum();
+    for row in 0..height {
+        let y = top + row as i64;
+        let start = row * row_bytes + before;
+        let samples = block.data.get(start..start + kind.bytes_per_sample() * width);
+        let (Some(samples), true) = (samples, (0..plane.height() as i64).contains(&y)) else { continue };
+        let first = (-left).max(0).min(width as i64) as usize;
+        let count = (plane.width() as i64 - left).max(0).min(width as i64) as usize;
+        let target = plane.row_mut(y as usize);
+        for column in first..count {
+            target[(left + column as i64) as usize] = sample(kind, samples, column);
+        }
+    }
+}
+
+fn sample(kind: SampleType, samples: &[u8], at: usize) -> f32 {
+    let word = |i: usize| samples.as_chunks::<4>().0[i];
+    match kind {
+        SampleType::F16 => exr::prelude::f16::from_ne_bytes(samples.as_chunks::<2>().0[at]).to_f32(),
+        SampleType::F32 => f32::from_ne_bytes(word(at)),
+        SampleType::U32 => u32::from_ne_bytes(word(at)) as f32,
+    }
+}
+
+/// Runs a step of the decoder; its errors and its panics become sentences.
+fn guarded<T>(file: &Path, what: &str, step: impl FnOnce() -> exr::error::Result<T>) -> Result<T> {
+    match catch_unwind(AssertUnwindSafe(step)) {
+        Ok(Ok(value)) => Ok(value),
+        Ok(Err(exr::error::Error::NotSupported(reason))) => Err(Error::unsupported(file, format!("EXR: {reason}"))),
+        Ok(Err(error)) => Err(Error::decode(file, format!("the EXR {what} is damaged or cut short ({error})"))),
+        Err(_) => Err(Error::decode(file, format!("the EXR {what} is damaged"))),
+    }
+}

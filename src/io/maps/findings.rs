@@ -1,0 +1,70 @@
+//! What the importer found of each choice, and how sure it is.
+//! Floor 5. Plain data: `info` prints it, an import dialog shows it.
+
+use crate::document::source::{DepthConvention, NormalConvention};
+
+/// How a choice was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum How {
+    /// The document says so.
+    Given,
+    /// The numbers tell.
+    Found,
+    /// Nothing tells; the commonest choice.
+    Assumed,
+}
+
+impl How {
+    pub fn name(self) -> &'static str {
+        match self {
+            How::Given => "given",
+            How::Found => "found",
+            How::Assumed => "assumed",
+        }
+    }
+}
+
+/// One choice: `normal.flip_y` is `true`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    pub field: &'static str,
+    pub value: String,
+    /// 0 a guess … 1 certain.
+    pub confidence: f32,
+    pub how: How,
+}
+
+/// Everything found while maps were read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Findings {
+    pub choices: Vec<Choice>,
+    /// Sentences for people: what was derived, filled, clipped or looks odd.
+    pub notes: Vec<String>,
+    /// The whole convention by which the normals were read: give it to read them so again.
+    pub normal: Option<NormalConvention>,
+    /// The same for depth.
+    pub depth: Option<DepthConvention>,
+    /// Planar depth (in the file's unit) at z = 0 and z = 1, so that anchors keep their meaning when maps are replaced.
+    pub depth_range: Option<(f32, f32)>,
+}
+
+impl Findings {
+    pub fn note(&mut self, sentence: impl Into<String>) {
+        self.notes.push(sentence.into());
+    }
+    pub fn given(&mut self, field: &'static str, value: impl ToString) {
+        self.choices.push(Choice { field, value: value.to_string(), confidence: 1.0, how: How::Given });
+    }
+    pub fn found(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
+        let confidence = confidence.max(0.0).min(1.0);
+        self.choices.push(Choice { field, value: value.to_string(), confidence, how: How::Found });
+    }
+    pub fn assumed(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
+        let confidence = confidence.max(0.0).min(1.0);
+        self.choices.push(Choice { field, value: value.to_string(), confidence, how: How::Assumed });
+    }
+    /// The choice made for a field.
+    pub fn choice(&self, field: &str) -> Option<&Choice> {
+        self.choices.iter().find(|c| c.field == field)
+    }
+}
