@@ -3,6 +3,12 @@
 //! Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md).
 //! Not here: reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
 
+pub mod first_order;
+pub mod reflection;
+pub mod second_order;
+
+use crate::math::{Mat2, Vec2};
+
 /// Which surface flow an image follows, and how strongly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Operator {
@@ -16,4 +22,88 @@ pub enum Operator {
     Normal { alpha: f32, beta: f32, detail: f32 },
     /// By the reflected view direction on an angular map (beyond the paper). `alpha` in canvas lengths.
     Reflection { alpha: f32, detail: f32 },
+}
+
+/// What the maps hold at one pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Reading {
+    /// z, 0 near … 1 far.
+    pub depth: f32,
+    /// n̄, image axes (y down).
+    pub nbar: Vec2,
+    pub nz: f32,
+}
+
+/// How the maps change at one pixel, per px; differenced within one piece of surface.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Slopes {
+    /// ∇z.
+    pub depth: Vec2,
+    /// ∂n̄/∂q.
+    pub nbar: Mat2,
+    /// ∇n_z.
+    pub nz: Vec2,
+}
+
+impl Operator {
+    /// It moves nothing on any surface: γ = 0 or α = 0.
+    pub fn is_identity(self) -> bool {
+        match self {
+            Operator::None => true,
+            Operator::Depth { gamma } => gamma == 0.0,
+            Operator::Normal { alpha, .. } | Operator::Reflection { alpha, .. } => alpha == 0.0,
+        }
+    }
+    /// μ: how strongly curvature scales the magnitude (SF fig. 10); 0 for operators without it.
+    pub fn detail(self) -> f32 {
+        match self {
+            Operator::None | Operator::Depth { .. } => 0.0,
+            Operator::Normal { detail, .. } | Operator::Reflection { detail, .. } => detail,
+        }
+    }
+    /// offsetᵢ(q) of MATH 2, without detail enhancement: how far one anchor moves a point, canvas px.
+    ///
+    /// * `from_anchor`: q − qᵢ, px.
+    /// * `here`, `anchor`: the maps at q and at qᵢ.
+    /// * `unit_px`: *L*, the longer side of the canvas, px.
+    pub fn offset(self, from_anchor: Vec2, here: Reading, anchor: Reading, unit_px: f32) -> Vec2 {
+        match self {
+            Operator::None => Vec2::ZERO,
+            Operator::Depth { gamma } => first_order::offset(from_anchor, here.depth - anchor.depth, gamma),
+            Operator::Normal { alpha, beta, .. } => {
+                unit_px * second_order::offset(here.nbar - anchor.nbar, alpha, beta)
+            }
+            Operator::Reflection { alpha, .. } => {
+                let r = |at: Reading| reflection::mirrored(at.nbar, at.nz);
+                unit_px * reflection::offset(r(here), r(anchor), alpha)
+            }
+        }
+    }
+    /// ∂/∂q of [`Operator::offset`], a plain ratio.
+    pub fn offset_jacobian(
+        self,
+        from_anchor: Vec2,
+        here: Reading,
+        slopes: Slopes,
+        anchor: Reading,
+        unit_px: f32,
+    ) -> Mat2 {
+        match self {
+            Operator::None => Mat2::ZERO,
+            Operator::Depth { gamma } => {
+                first_order::offset_jacobian(from_anchor, here.depth - anchor.depth, slopes.depth, gamma)
+            }
+            Operator::Normal { alpha, beta, .. } => {
+                second_order::offset_jacobian(here.nbar - anchor.nbar, slopes.nbar, alpha, beta) * unit_px
+            }
+            Operator::Reflection { alpha, .. } => {
+                reflection::mirrored_jacobian(here.nbar, here.nz, slopes.nbar, slopes.nz) * (alpha * unit_px)
+            }
+        }
+    }
+}
+
+/// a bᵀ.
+pub(in crate::surface) fn outer(a: Vec2, b: Vec2) -> Mat2 {
+    Mat2::from_cols(a * b.x, a * b.y)
 }

@@ -1,0 +1,183 @@
+//! D on surfaces whose normals and depth are formulas.
+
+use super::*;
+use crate::math::{Vec3, vec3};
+use crate::raster::Plane;
+use crate::surface::Maps;
+use proptest::prelude::*;
+
+const SIZE: Size = Size::new(160, 120);
+
+/// A surface from its height over a point, its slope (∂h/∂x, ∂h/∂y; image axes) and whether it is there at all.
+fn surface(height: impl Fn(Vec2) -> Option<(f32, Vec2)> + Sync) -> Surface {
+    let at = |x: usize, y: usize| height(vec2(x as f32 + 0.5, y as f32 + 0.5));
+    let normals = Plane::from_fn(SIZE, |x, y| {
+        at(x, y).map_or(Vec3::ZERO, |(_, slope)| vec3(-slope.x, slope.y, 1.0).normalize_or_zero())
+    });
+    let depth = Plane::from_fn(SIZE, |x, y| at(x, y).map_or(1.0, |(h, _)| 1.0 - h / 80.0));
+    let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).is_some() { 255 } else { 0 });
+    Surface::new(Maps { normals, depth, coverage }).unwrap()
+}
+
+/// A ball of radius 70 px seen up to 0.9 of its rim.
+fn sphere() -> Surface {
+    surface(|q| {
+        let d = q - vec2(80.0, 60.0);
+        let h = (70.0f32.powi(2) - d.length_squared()).sqrt();
+        (d.length() < 55.0).then(|| (h, -d / h))
+    })
+}
+
+/// A bowl-shaped hill over the whole canvas.
+fn paraboloid() -> Surface {
+    surface(|q| {
+        let d = q - vec2(90.0, 50.0);
+        Some((80.0 - d.length_squared() / 250.0, -d / 125.0))
+    })
+}
+
+const OPERATORS: [Operator; 5] = [
+    Operator::Depth { gamma: 1.5 },
+    Operator::Normal { alpha: 0.8, beta: 0.0, detail: 0.0 },
+    Operator::Normal { alpha: 0.5, beta: 2.0, detail: 0.0 },
+    Operator::Normal { alpha: -0.4, beta: 1.0, detail: 0.0 },
+    Operator::Reflection { alpha: 0.7, detail: 0.0 },
+];
+
+/// One anchor, three with one of them dragged, and the gradient's two.
+fn bends(operator: Operator) -> [Bend; 4] {
+    let dragged = Anchor { at: vec2(100.5, 80.5), source: vec2(90.0, 85.0) };
+    let three = vec![Anchor::fixed(vec2(60.5, 40.5)), dragged, Anchor::fixed(vec2(45.0, 70.0))];
+    let bend = |anchors: &[Anchor], weights| Bend { operator, anchors: anchors.to_vec(), weights };
+    [
+        bend(&three[1..2], Weights::default()),
+        bend(&three, Weights::default()),
+        bend(&three, Weights::Shepard { power: 3.0 }),
+        bend(&three[..2], Weights::Segment),
+    ]
+}
+
+#[test]
+fn an_anchor_shows_its_source_point() {
+    for surface in [sphere(), paraboloid()] {
+        for bend in OPERATORS.into_iter().flat_map(bends) {
+            let deformation = Deformation::new(Some(&surface), SIZE, &bend);
+            for anchor in bend.anchors.iter().filter(|a| a.at.fract() == Vec2::splat(0.5)) {
+                let d = deformation.at(anchor.at.x as i32, anchor.at.y as i32);
+                assert!((d - anchor.source).length() < 1e-4, "{bend:?}: {d}");
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_hold_what_the_reference_says_inside_the_maps_and_beyond() {
+    let rect = Rect::new(-7, -3, 171, 125);
+    let mut filled = DeformedRect::default();
+    for surface in [Some(sphere()), Some(paraboloid()), None] {
+        for bend in OPERATORS.into_iter().chain([Operator::None]).flat_map(bends) {
+            let deformation = Deformation::new(surface.as_ref(), SIZE, &bend);
+            deformation.fill(rect, &mut filled);
+            for (i, (&x, &y)) in filled.x.iter().zip(&filled.y).enumerate() {
+                let (px, py) = (rect.x0 + (i % rect.width()) as i32, rect.y0 + (i / rect.width()) as i32);
+                let reference = deformation.at(px, py);
+                assert!((vec2(x, y) - reference).length() < 1e-4, "{bend:?} at {px}, {py}: {x}, {y} ≠ {reference}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_jacobian_is_the_derivative_of_d() {
+    for surface in [sphere(), paraboloid()] {
+        for bend in OPERATORS.into_iter().flat_map(bends) {
+            let deformation = Deformation::new(Some(&surface), SIZE, &bend);
+            for (x, y) in [(70, 50), (80, 90), (110, 45), (52, 61), (99, 70)] {
+                let d = |dx, dy| deformation.at(x + dx, y + dy);
+                let differenced = Mat2::from_cols((d(1, 0) - d(-1, 0)) * 0.5, (d(0, 1) - d(0, -1)) * 0.5);
+                let jacobian = deformation.jacobian(x, y);
+                let error = jacobian - differenced;
+                let size = 1.0 + jacobian.x_axis.length() + jacobian.y_axis.length();
+                let largest = error.x_axis.length().max(error.y_axis.length()) / size;
+                assert!(largest < 4e-3, "{bend:?} at {x}, {y}: {jacobian} ≠ {differenced}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_jacobian_does_not_look_across_the_mask_edge() {
+    let surface = sphere();
+    let bend = &bends(OPERATORS[1])[0];
+    let deformation = Deformation::new(Some(&surface), SIZE, bend);
+    // The last covered pixel of a row: beyond it stands the identity, 100 px away.
+    let y = 60;
+    let x = (80..SIZE.width as i32).rfind(|&x| surface.coverage(x as usize, y as usize) > 0).unwrap();
+    let (edge, inside) = (deformation.jacobian(x, y), deformation.jacobian(x - 3, y));
+    assert!((deformation.at(x + 1, y) - deformation.at(x, y)).length() > 20.0, "there is a jump to avoid");
+    assert!((edge - inside).abs_diff_eq(Mat2::ZERO, 0.3), "{edge} ≠ {inside}");
+}
+
+#[test]
+fn a_ball_reflects_the_whole_image_and_a_plane_none_of_it() {
+    // n̄ = q/70 on the ball: with β = 0 and the anchor at its middle D is a scaling.
+    let (ball, alpha) = (sphere(), 0.5);
+    let operator = Operator::Normal { alpha, beta: 0.0, detail: 0.0 };
+    let center = vec2(80.5, 60.5);
+    let bend = Bend { operator, anchors: vec![Anchor::fixed(center)], weights: Weights::default() };
+    let d = Deformation::new(Some(&ball), SIZE, &bend).at(110, 60);
+    // f_n(u) d = α u d (eq. 14 at β = 0), u = |d|, L = 160.
+    let u = 30.0 / 70.0;
+    assert!((d.x - (110.5 + 160.0 * alpha * u * u)).abs() < 0.01, "{d}");
+
+    let plane = surface(|q| Some((q.x * 0.3, vec2(0.3, 0.0))));
+    let d = Deformation::new(Some(&plane), SIZE, &bend).at(110, 60);
+    assert!((d - vec2(110.5, 60.5)).length() < 1e-3, "{d}");
+}
+
+#[test]
+fn outside_the_surface_dragged_content_still_moves() {
+    let surface = sphere();
+    let bend = &bends(OPERATORS[0])[0];
+    let d = Deformation::new(Some(&surface), SIZE, bend).at(2, 2);
+    assert_eq!(d, vec2(2.5, 2.5) + (vec2(90.0, 85.0) - vec2(100.5, 80.5)));
+}
+
+#[test]
+fn identity_is_known_without_looking_at_pixels() {
+    let surface = sphere();
+    let still = Bend { operator: OPERATORS[0], anchors: vec![Anchor::fixed(vec2(9.0, 9.0))], ..Bend::default() };
+    assert!(!Deformation::new(Some(&surface), SIZE, &still).is_identity());
+    assert!(Deformation::new(None, SIZE, &still).is_identity());
+    let flat = Bend { operator: Operator::Depth { gamma: 0.0 }, ..still.clone() };
+    assert!(Deformation::new(Some(&surface), SIZE, &flat).is_identity());
+    assert!(!Deformation::new(None, SIZE, &bends(Operator::None)[0]).is_identity());
+}
+
+proptest! {
+    #[test]
+    fn d_is_finite_whatever_the_parameters(
+        alpha in prop::num::f32::ANY,
+        beta in prop::num::f32::ANY,
+        power in prop::num::f32::ANY,
+        x in prop::num::f32::ANY,
+        y in prop::num::f32::ANY,
+    ) {
+        let surface = sphere();
+        let anchors = vec![Anchor { at: vec2(x, 50.5), source: vec2(3.0, y) }, Anchor::fixed(vec2(80.5, 60.5))];
+        for operator in [
+            Operator::Depth { gamma: beta },
+            Operator::Normal { alpha, beta, detail: beta },
+            Operator::Reflection { alpha, detail: alpha },
+        ] {
+            for weights in [Weights::Shepard { power: 2.0 }, Weights::Shepard { power }, Weights::Segment] {
+                let bend = Bend { operator, anchors: anchors.clone(), weights };
+                let deformation = Deformation::new(Some(&surface), SIZE, &bend);
+                let mut filled = DeformedRect::default();
+                deformation.fill(Rect::new(60, 50, 90, 52), &mut filled);
+                prop_assert!(filled.x.iter().chain(&filled.y).all(|v| v.is_finite()), "{bend:?}");
+                prop_assert!(deformation.at(80, 60).is_finite() && deformation.jacobian(80, 60).is_finite());
+            }
+        }
+    }
+}
