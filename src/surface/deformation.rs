@@ -134,12 +134,6 @@ impl<'a> Deformation<'a> {
         let surface = self.surface.filter(|s| s.coverage_plane().get(x, y).is_some_and(|c| c > 0))?;
         Some((surface, x as usize, y as usize))
     }
-    /// [`Deformation::at`] for every pixel of a rectangle within the canvas.
-    pub fn fill(&self, rect: Rect, out: &mut DeformedRect) {
-        let pixels = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
-        (out.x, out.y) = pixels.map(|(x, y)| self.at(x, y).into()).unzip();
-        out.rect = Some(rect);
-    }
 }
 
 /// The operator with parameters that are finite and not absurd.
