@@ -1,10 +1,97 @@
 //! Flattening: the layers of a document to one picture, tile by tile, in f32, quantised once.
-//! Floor 4.
+//! Floor 4. Tiles are independent of each other, so they are composed in parallel and the result is the same bytes whatever
+//! the threads.
 
-use super::Document;
-use crate::raster::TileGrid;
+use super::compose::{Composer, Flow};
+use super::{Content, Document, Layer, LayerId, Prepared, Progress};
+use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
+use rayon::prelude::*;
+use std::sync::Arc;
 
-/// Flattens the whole document.
-pub fn flatten(document: &Document) -> TileGrid {
-    TileGrid::for_rect(document.size.rect())
+/// Flattens the whole document; `None` if cancelled.
+pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
+    let prepared = Prepared::new(document, progress)?;
+    prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
+
+/// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around it.
+/// It sees the surface that it sees in its place. `None` if cancelled or if there is no such layer.
+pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> Option<TileGrid> {
+    let layers = alone(&document.layers, id)?;
+    flatten(&Document { layers, ..document.clone() }, progress)
+}
+
+/// The layers with all but one hidden; `None` if it is not among them.
+fn alone(layers: &[Arc<Layer>], id: LayerId) -> Option<Vec<Arc<Layer>>> {
+    let mut found = false;
+    let shown = layers.iter().map(|layer| {
+        let mut next = Layer::clone(layer);
+        next.clip_below = false;
+        if layer.id == id {
+            (next.visible, found) = (true, true);
+            return Arc::new(next);
+        }
+        if let Content::Group(group) = &mut next.content
+            && let Some(inner) = alone(&group.layers, id)
+        {
+            group.layers = inner;
+            group.pass_through = true;
+            (next.visible, next.opacity, next.mask, found) = (true, 1.0, None, true);
+            return Arc::new(next);
+        }
+        if !matches!(layer.content, Content::Normals(_)) {
+            next.visible = false;
+        }
+        Arc::new(next)
+    });
+    let shown = shown.collect();
+    found.then_some(shown)
+}
+
+impl Prepared {
+    /// Every tile of the canvas, row by row.
+    pub fn all_tiles(&self) -> Vec<TileAt> {
+        TileAt::covering(self.size.rect()).collect()
+    }
+    /// Composes one tile; `None` where it is transparent.
+    pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
+        let mut pixels = PlanarTile::transparent();
+        // Nothing is measured, so composing runs to its end.
+        let _ = Composer { prepared: self, at, measured: None }.stack(&self.stack, &mut pixels);
+        pixels.quantised().map(Arc::new)
+    }
+    /// A picture with some of its tiles composed anew; `None` if cancelled.
+    pub fn flatten_tiles(&self, old: &TileGrid, tiles: &[TileAt], progress: &Progress) -> Option<TileGrid> {
+        let composed = in_parallel(tiles, progress, |at| self.flatten_tile(at))?;
+        let mut grid = old.clone();
+        grid.reserve(self.size.rect());
+        tiles.iter().zip(composed).for_each(|(&at, tile)| grid.set(at, tile));
+        Some(grid)
+    }
+    /// The greatest luminance beneath an adjustment, over the whole surface: its Y*; `None` if cancelled.
+    pub(super) fn brightest_beneath(&self, adjustment: usize, progress: &Progress) -> Option<f32> {
+        let of_tile = |at| {
+            let composer = Composer { prepared: self, at, measured: Some(adjustment) };
+            match composer.stack(&self.stack, &mut PlanarTile::transparent()) {
+                Flow::Break(brightest) => brightest,
+                Flow::Continue(()) => 0.0,
+            }
+        };
+        let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
+        Some(tiles.into_iter().fold(0.0, f32::max))
+    }
+}
+
+/// One result a tile, in the order of the tiles; `None` if cancelled.
+fn in_parallel<T: Send>(tiles: &[TileAt], progress: &Progress, work: impl Fn(TileAt) -> T + Sync) -> Option<Vec<T>> {
+    progress.add_total(tiles.len() as u64);
+    let each = |&at: &TileAt| {
+        let result = (!progress.is_cancelled()).then(|| work(at))?;
+        progress.step();
+        Some(result)
+    };
+    tiles.par_iter().map(each).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,10 @@
 //! A layer's mask: a picture of coverage, or one derived from the surface.
 //! Floor 4.
 
-use crate::raster::Plane;
+use super::{Content, prepare::Node};
+use crate::paint::Scene;
+use crate::raster::{Coverage, Plane, TileAt};
+use crate::surface::{Curvature, Surface};
 use std::sync::Arc;
 
 /// What a layer's coverage is multiplied by.
@@ -22,4 +25,100 @@ pub enum MaskKind {
     Curvature { scale: f32, blur: f32, from: f32, to: f32 },
     /// z, 0 at `from`, 1 at `to`.
     Depth { from: f32, to: f32 },
+}
+
+/// How much of a node arrives at each pixel of a tile: its opacity, its mask, and the surface where it is clipped to it.
+pub(super) fn coverage(node: &Node, at: TileAt) -> Coverage {
+    let coverage = Coverage::uniform(node.layer.opacity);
+    let coverage = match clip(node) {
+        None => coverage,
+        Some(surface) => match cover_of_tile(surface, at) {
+            Cover::None => return Coverage::uniform(0.0),
+            Cover::Whole => coverage,
+            Cover::Part => {
+                let plane = surface.coverage_plane();
+                coverage.times(pixels(at, |x, y| plane.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0)))
+            }
+        },
+    };
+    match &node.layer.mask {
+        Some(mask) => mask.multiply(coverage, &node.scene, node.curvature.as_deref(), at),
+        None => coverage,
+    }
+}
+
+/// The surface does not cut the node in this tile.
+pub(super) fn is_whole_on_surface(node: &Node, at: TileAt) -> bool {
+    clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), Cover::Whole))
+}
+
+/// The surface that a node is clipped to, if any. A group's layers clip themselves: a second time would thin their rims.
+/// An adjustment changes what is painted already.
+fn clip(node: &Node) -> Option<&Surface> {
+    let paints = !matches!(node.layer.content, Content::Group(_) | Content::RadianceScaling(_));
+    node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)
+}
+
+/// How far a surface covers a tile.
+enum Cover {
+    None,
+    Part,
+    Whole,
+}
+
+fn cover_of_tile(surface: &Surface, at: TileAt) -> Cover {
+    let plane = surface.coverage_plane();
+    let inside = at.rect().intersect(surface.size().rect());
+    let columns = inside.x0 as usize..inside.x1 as usize;
+    let rows = || (inside.y0..inside.y1).map(|y| &plane.row(y as usize)[columns.clone()]);
+    if rows().all(|row| row.iter().all(|&c| c == 0)) {
+        Cover::None
+    } else if rows().all(|row| row.iter().all(|&c| c == 255)) {
+        Cover::Whole
+    } else {
+        Cover::Part
+    }
+}
+
+/// A function of canvas pixels as one of a tile's.
+fn pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) -> f32 {
+    let rect = at.rect();
+    move |x, y| value(rect.x0 + x as i32, rect.y0 + y as i32)
+}
+
+impl LayerMask {
+    /// Multiplies a coverage by the mask. One derived from a surface changes nothing where there is none.
+    fn multiply(&self, coverage: Coverage, scene: &Scene, curvature: Option<&Curvature>, at: TileAt) -> Coverage {
+        let way = |v: f32| if self.invert { 1.0 - v } else { v };
+        if let MaskKind::File { coverage: plane, .. } = &self.kind {
+            return coverage.times(pixels(at, |x, y| way(plane.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0))));
+        }
+        let Some(surface) = scene.surface.as_deref() else { return coverage };
+        let on_map = |value: &dyn Fn(usize, usize) -> f32| {
+            let inside = surface.size().rect();
+            let value = |x: i32, y: i32| if inside.contains(x, y) { way(value(x as usize, y as usize)) } else { 0.0 };
+            coverage.clone().times(pixels(at, value))
+        };
+        match (&self.kind, curvature) {
+            (&MaskKind::Fresnel { f0, power }, _) => on_map(&|x, y| fresnel(surface.normal(x, y).z, f0, power)),
+            (&MaskKind::Depth { from, to }, _) => on_map(&|x, y| ramp(surface.depth(x, y), from, to)),
+            (&MaskKind::Curvature { scale, from, to, .. }, Some(curvature)) => {
+                on_map(&|x, y| ramp(curvature.kappa(x, y, scale), from, to))
+            }
+            _ => coverage,
+        }
+    }
+}
+
+/// Schlick's approximation f0 + (1 − f0)(1 − n_z)^power, `n_z` clamped to `[0, 1]` (SF fig. 12c).
+fn fresnel(nz: f32, f0: f32, power: f32) -> f32 {
+    f0 + (1.0 - f0) * (1.0 - nz.max(0.0).min(1.0)).powf(power)
+}
+
+/// 0 at `from`, 1 at `to`, clamped; a step where they are the same.
+fn ramp(v: f32, from: f32, to: f32) -> f32 {
+    if from == to {
+        return if v >= to { 1.0 } else { 0.0 };
+    }
+    ((v - from) / (to - from)).max(0.0).min(1.0)
 }

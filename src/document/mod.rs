@@ -1,17 +1,23 @@
 //! Floor 4: the document is a value. Cheap to clone, never changed while shared: an edit is a new document, undo a list
 //! of them, and what must be redrawn is what differs by pointer.
 
+mod compose;
+mod content;
 pub mod flatten;
 pub mod kept;
 pub mod layer;
 pub mod live;
 pub mod mask;
+mod prepare;
+pub mod progress;
 pub mod source;
 
-pub use flatten::flatten;
+pub use flatten::{flatten, flatten_layer};
 pub use layer::{Content, Group, Layer, LayerId, Lock, NormalLayer, PixelLayer, StrokeList};
 pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
+pub use prepare::Prepared;
+pub use progress::Progress;
 
 use crate::{math::Size, paint::Scene, surface::Surface};
 use std::sync::Arc;
@@ -31,6 +37,10 @@ impl Document {
     /// The canvas as the bottom layer sees it.
     pub fn scene(&self) -> Scene {
         Scene { size: self.size, surface: self.surface.clone() }
+    }
+    /// A layer by its name, groups opened, the topmost of several.
+    pub fn layer_named(&self, name: &str) -> Option<&Arc<Layer>> {
+        self.walk().into_iter().rev().map(|(_, layer)| layer).find(|layer| layer.name == name)
     }
     /// Every layer, groups opened, bottom first, with its path such as `layers[2].layers[0]`.
     pub fn walk(&self) -> Vec<(String, &Arc<Layer>)> {

@@ -107,6 +107,10 @@ impl Coverage {
     pub fn mask_only(&self) -> Self {
         Self { opacity: 1.0, mask: self.mask.clone() }
     }
+    /// Without the mask: the opacity alone.
+    pub fn opacity_only(&self) -> Self {
+        Self { opacity: self.opacity, mask: None }
+    }
     /// Nothing arrives anywhere.
     pub fn is_none(&self) -> bool {
         self.opacity <= 0.0 || self.mask.as_ref().is_some_and(|mask| mask.iter().all(|&m| m <= 0.0))

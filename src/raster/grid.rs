@@ -49,6 +49,13 @@ impl TileGrid {
         let extent = TileExtent { col0: a.col, row0: a.row, cols: b.col - a.col + 1, rows: b.row - a.row + 1 };
         Self { extent, tiles: Arc::new(vec![None; (extent.cols * extent.rows) as usize]) }
     }
+    /// Makes room for the tiles of a pixel rectangle, so that writing them does not grow the grid one by one.
+    pub fn reserve(&mut self, rect: Rect) {
+        let extent = TileAt::covering(rect).fold(self.extent, TileExtent::with);
+        if extent != self.extent {
+            self.grow(extent);
+        }
+    }
     pub fn tile(&self, at: TileAt) -> Option<&Arc<Tile>> {
         self.tiles[self.extent.index(at)?].as_ref()
     }

@@ -1,0 +1,34 @@
+//! How far a long piece of work has come, and whether it is still wanted.
+//! Floor 4. Floors above show it; nothing here draws or waits.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Counters shared between those who work and those who watch. Steps have no unit; mostly they are tiles.
+#[derive(Default)]
+pub struct Progress {
+    done: AtomicU64,
+    total: AtomicU64,
+    cancelled: AtomicBool,
+}
+
+impl Progress {
+    /// Announces more steps.
+    pub fn add_total(&self, steps: u64) {
+        self.total.fetch_add(steps, Ordering::Relaxed);
+    }
+    /// One step is done.
+    pub fn step(&self) {
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+    /// Steps done and steps announced so far.
+    pub fn read(&self) -> (u64, u64) {
+        (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
+    }
+    /// The result is no longer wanted: the work ends soon, without one.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
