@@ -1,24 +1,43 @@
 //! Reading a texture at a point.
-//! Floor 1.
+//! Floor 1. Here: the reference that reads like its definition. Rows at a time, fast: `rows`.
 
-use super::texture::{Outside, Texture};
+mod rows;
+
+pub use rows::bilinear_row;
+
+use super::texture::{Level, Outside, Texture};
 use crate::math::Vec2;
+
+/// Positions beyond this, in texels, are pulled in: an index must fit an i32.
+const FARTHEST: f32 = 1e9;
 
 /// One bilinear tap: the premultiplied colour, in `[0, 1]`, at `p` in texels (texel (i, j) has its centre at (i+½, j+½)).
 pub fn bilinear(texture: &Texture, p: Vec2, outside: Outside) -> [f32; 4] {
-    let level = &texture.levels()[0];
+    bilinear_in(&texture.levels()[0], p, outside).map(|v| v / 255.0)
+}
+
+/// A bilinear tap in one level, at `p` in that level's texels; `[0, 255]`.
+fn bilinear_in(level: &Level, p: Vec2, outside: Outside) -> [f32; 4] {
     let (w, h) = (level.size.width as i32, level.size.height as i32);
-    let (p, floor) = (p - 0.5, (p - 0.5).floor());
+    let p = p.clamp(Vec2::splat(-FARTHEST), Vec2::splat(FARTHEST)) - 0.5;
+    let floor = p.floor();
     let t = p - floor;
     let (i, j) = (floor.x as i32, floor.y as i32);
     let texel = |i, j| match (outside.index(i, w), outside.index(j, h)) {
-        (Some(i), Some(j)) => level.texels[(j * w + i) as usize].map(f32::from),
-        _ => [0.0; 4],
+        (Some(i), Some(j)) => level.texels[(j * w + i) as usize],
+        _ => [0; 4],
     };
-    let (a, b, c, d) = (texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1));
+    mix([texel(i, j), texel(i + 1, j)], [texel(i, j + 1), texel(i + 1, j + 1)], t.x, t.y)
+}
+
+/// Four texels mixed: `top` and `bottom` pairs, `tx` of the way right, `ty` of the way down.
+#[inline(always)]
+fn mix(top: [[u8; 4]; 2], bottom: [[u8; 4]; 2], tx: f32, ty: f32) -> [f32; 4] {
+    let [a, b] = top.map(|t| t.map(f32::from));
+    let [c, d] = bottom.map(|t| t.map(f32::from));
     std::array::from_fn(|k| {
-        let top = a[k] + (b[k] - a[k]) * t.x;
-        let bottom = c[k] + (d[k] - c[k]) * t.x;
-        (top + (bottom - top) * t.y) / 255.0
+        let left = a[k] + (c[k] - a[k]) * ty;
+        let right = b[k] + (d[k] - b[k]) * ty;
+        left + (right - left) * tx
     })
 }

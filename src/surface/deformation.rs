@@ -5,8 +5,9 @@
 mod fill;
 
 use super::operator::{Operator, Reading, Slopes, outer};
-use super::{Anchor, Bend, Surface, Weights, links};
+use super::{Anchor, Bend, Curvature, Surface, Weights, links};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
+use std::sync::Arc;
 
 /// A map from canvas points to image-plane points, ready to be evaluated.
 ///
@@ -19,6 +20,8 @@ pub struct Deformation<'a> {
     operator: Operator,
     weights: Weights,
     pins: Vec<Pin>,
+    /// Where the operator asks for detail.
+    curvature: Option<Arc<Curvature>>,
 }
 
 /// An anchor and what the maps hold there.
@@ -38,6 +41,10 @@ pub struct DeformedRect {
 
 /// Positions beyond this are pulled in, so that no product of distances leaves f32.
 const FARTHEST_PX: f32 = 1e7;
+/// Detail enhancement reads the curvature at this scale *s*: features a few pixels wide count in full.
+pub const DETAIL_SCALE_PX: f32 = 4.0;
+/// Blur of the normals before that, so that the steps of 8-bit maps are not taken for detail.
+pub const DETAIL_BLUR_PX: f32 = 1.0;
 /// Magnitudes beyond this are pulled in, for the same reason.
 const MAX_ALPHA: f32 = 1e5;
 
@@ -63,13 +70,10 @@ impl<'a> Deformation<'a> {
                 Pin { anchor, reading }
             })
             .collect();
-        Self {
-            surface,
-            unit_px: size.longer_side(),
-            operator: finite(bend.operator),
-            weights: sane(bend.weights),
-            pins,
-        }
+        let operator = finite(bend.operator);
+        let curvature = surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
+        let weights = sane(bend.weights);
+        Self { surface, unit_px: size.longer_side(), operator, weights, pins, curvature }
     }
     /// D(q) = q for every q: nothing is moved anywhere.
     pub fn is_identity(&self) -> bool {
@@ -122,12 +126,22 @@ impl<'a> Deformation<'a> {
     /// offset_i(q), 0 outside the surface.
     fn offset(&self, pin: &Pin, q: Vec2, x: i32, y: i32) -> Vec2 {
         let Some((surface, x, y)) = self.on_surface(x, y) else { return Vec2::ZERO };
-        self.operator.offset(q - pin.anchor.at, reading(surface, x, y), pin.reading, self.unit_px)
+        let offset = self.operator.offset(q - pin.anchor.at, reading(surface, x, y), pin.reading, self.unit_px);
+        self.detail_gain(x, y) * offset
     }
     fn offset_jacobian(&self, pin: &Pin, q: Vec2, x: i32, y: i32) -> Mat2 {
         let Some((surface, x, y)) = self.on_surface(x, y) else { return Mat2::ZERO };
-        let here = reading(surface, x, y);
-        self.operator.offset_jacobian(q - pin.anchor.at, here, slopes(surface, x, y), pin.reading, self.unit_px)
+        let (from_anchor, here) = (q - pin.anchor.at, reading(surface, x, y));
+        let offset = self.operator.offset(from_anchor, here, pin.reading, self.unit_px);
+        let jacobian =
+            self.operator.offset_jacobian(from_anchor, here, slopes(surface, x, y), pin.reading, self.unit_px);
+        let near = Neighbours::linked(surface, x, y);
+        jacobian * self.detail_gain(x, y) + outer(offset, near.slope(|x, y| self.detail_gain(x, y)))
+    }
+    /// 1 + μ κ(q): how much curvature scales the magnitude α (SF sec. 6, fig. 10).
+    #[inline(always)]
+    fn detail_gain(&self, x: usize, y: usize) -> f32 {
+        self.curvature.as_ref().map_or(1.0, |c| 1.0 + self.operator.detail() * c.kappa(x, y, DETAIL_SCALE_PX))
     }
     /// The surface and the pixel on it, if there is any surface at the pixel.
     fn on_surface(&self, x: i32, y: i32) -> Option<(&'a Surface, usize, usize)> {
@@ -162,20 +176,40 @@ fn reading(surface: &Surface, x: usize, y: usize) -> Reading {
     Reading { depth: surface.depth(x, y), nbar: surface.nbar(x, y), nz: surface.normal(x, y).z }
 }
 
-/// How the maps change at a pixel: central differences where both neighbours continue the surface, one-sided where one
-/// does, 0 where none does.
+/// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel itself
+/// in place of one that does not.
+struct Neighbours {
+    /// Left and right, up and down.
+    pairs: [[(usize, usize); 2]; 2],
+    /// One over the distance of each pair; 1 where both are the pixel itself.
+    per_px: [f32; 2],
+}
+
+impl Neighbours {
+    fn linked(surface: &Surface, x: usize, y: usize) -> Self {
+        let bits = surface.links_plane().at(x, y);
+        let side = |bit: u8| usize::from(bits & bit != 0);
+        let (left, right) = (x - side(links::LEFT), x + side(links::RIGHT));
+        let (up, down) = (y - side(links::UP), y + side(links::DOWN));
+        let per_px = [(right - left).max(1), (down - up).max(1)].map(|d| 1.0 / d as f32);
+        Self { pairs: [[(left, y), (right, y)], [(x, up), (x, down)]], per_px }
+    }
+    /// ∇ of a map, per px.
+    fn slope(&self, map: impl Fn(usize, usize) -> f32) -> Vec2 {
+        let along = |[a, b]: [(usize, usize); 2], per_px: f32| (map(b.0, b.1) - map(a.0, a.1)) * per_px;
+        vec2(along(self.pairs[0], self.per_px[0]), along(self.pairs[1], self.per_px[1]))
+    }
+}
+
+/// How the maps change at a pixel, within its piece of surface.
 fn slopes(surface: &Surface, x: usize, y: usize) -> Slopes {
-    let bits = surface.links_plane().at(x, y);
-    let side = |bit: u8, step: usize| if bits & bit != 0 { step } else { 0 };
-    let (left, right) = (x - side(links::LEFT, 1), x + side(links::RIGHT, 1));
-    let (up, down) = (y - side(links::UP, 1), y + side(links::DOWN, 1));
-    let across = (reading(surface, left, y), reading(surface, right, y), 1.0 / (right - left).max(1) as f32);
-    let along = (reading(surface, x, up), reading(surface, x, down), 1.0 / (down - up).max(1) as f32);
-    let slope = |value: fn(&Reading) -> f32| {
-        vec2((value(&across.1) - value(&across.0)) * across.2, (value(&along.1) - value(&along.0)) * along.2)
-    };
-    let nbar = |(a, b, per_px): (Reading, Reading, f32)| (b.nbar - a.nbar) * per_px;
-    Slopes { depth: slope(|r| r.depth), nbar: Mat2::from_cols(nbar(across), nbar(along)), nz: slope(|r| r.nz) }
+    let near = Neighbours::linked(surface, x, y);
+    let nbar = [near.slope(|x, y| surface.nbar(x, y).x), near.slope(|x, y| surface.nbar(x, y).y)];
+    Slopes {
+        depth: near.slope(|x, y| surface.depth(x, y)),
+        nbar: Mat2::from_cols(nbar[0], nbar[1]).transpose(),
+        nz: near.slope(|x, y| surface.normal(x, y).z),
+    }
 }
 
 #[cfg(test)]

@@ -16,6 +16,13 @@ pub(super) fn fill(deformation: &Deformation, rect: Rect, out_x: &mut [f32], out
     if width == 0 {
         return;
     }
+    if deformation.is_identity() {
+        for (i, (x, y)) in out_x.iter_mut().zip(out_y).enumerate() {
+            *x = (rect.x0 + (i % width) as i32) as f32 + 0.5;
+            *y = (rect.y0 + (i / width) as i32) as f32 + 0.5;
+        }
+        return;
+    }
     let map = deformation.surface.map_or(Rect::EMPTY, |s| s.size().rect());
     let plan = Plan::new(deformation);
     let mut scratch = Box::new(Scratch::default());
@@ -152,6 +159,10 @@ impl<'d> Plan<'d> {
         gain[..n].fill(0.0);
         if let (Some(span), Some(surface)) = (maps, surface) {
             coverage_gain(span.of(surface.coverage_plane()), &mut gain[..n]);
+            if self.deformation.curvature.is_some() {
+                let pixels = (span.x..).zip(&mut gain[..n]);
+                pixels.for_each(|(x, gain)| *gain *= self.deformation.detail_gain(x, span.y));
+            }
             let [nbar_x, nbar_y, nz] = surface.normal_planes().map(|p| span.of(p));
             match self.kernel {
                 Kernel::Still => {}

@@ -36,12 +36,14 @@ fn paraboloid() -> Surface {
     })
 }
 
-const OPERATORS: [Operator; 5] = [
+const OPERATORS: [Operator; 7] = [
     Operator::Depth { gamma: 1.5 },
     Operator::Normal { alpha: 0.8, beta: 0.0, detail: 0.0 },
     Operator::Normal { alpha: 0.5, beta: 2.0, detail: 0.0 },
     Operator::Normal { alpha: -0.4, beta: 1.0, detail: 0.0 },
     Operator::Reflection { alpha: 0.7, detail: 0.0 },
+    Operator::Normal { alpha: 0.4, beta: 1.0, detail: 1.5 },
+    Operator::Reflection { alpha: 0.3, detail: 0.5 },
 ];
 
 /// One anchor, three with one of them dragged, and the gradient's two.
@@ -133,6 +135,20 @@ fn a_ball_reflects_the_whole_image_and_a_plane_none_of_it() {
     let plane = surface(|q| Some((q.x * 0.3, vec2(0.3, 0.0))));
     let d = Deformation::new(Some(&plane), SIZE, &bend).at(110, 60);
     assert!((d - vec2(110.5, 60.5)).length() < 1e-3, "{d}");
+}
+
+#[test]
+fn detail_bends_more_where_the_surface_is_convex() {
+    let surface = sphere();
+    let bend = |detail| Bend {
+        operator: Operator::Normal { alpha: 0.5, beta: 1.0, detail },
+        anchors: vec![Anchor::fixed(vec2(80.5, 60.5))],
+        weights: Weights::default(),
+    };
+    let offset = |detail| Deformation::new(Some(&surface), SIZE, &bend(detail)).at(90, 70) - vec2(90.5, 70.5);
+    let kappa = surface.curvature(DETAIL_BLUR_PX).kappa(90, 70, DETAIL_SCALE_PX);
+    assert!(kappa > 0.1, "a ball is convex: {kappa}");
+    assert!((offset(2.0) - offset(0.0) * (1.0 + 2.0 * kappa)).length() < 1e-3);
 }
 
 #[test]
