@@ -1,0 +1,152 @@
+//! The house stands: arrows between modules point down only, neighbours do not import each other, and the lower floors
+//! touch neither files nor clocks nor threads. Reads the sources, so that the table below cannot be forgotten.
+
+use std::{fs, path::Path};
+
+/// `docs/ARCHITECTURE.md` shows the same table.
+const FLOORS: [(&str, u32); 12] = [
+    ("error", 0),
+    ("math", 0),
+    ("raster", 1),
+    ("surface", 2),
+    ("paint", 3),
+    ("shading", 3),
+    ("document", 4),
+    ("tools", 5),
+    ("io", 5),
+    ("session", 6),
+    ("app", 7),
+    ("cli", 7),
+];
+
+/// What floors 0–4 may not name. Rayon is allowed there: it is handed threads, it does not make its own.
+const OUTSIDE_WORLD: [&str; 7] =
+    ["std::fs", "std::net", "std::env", "std::process", "std::thread", "std::time", "std::io"];
+
+fn floor(module: &str) -> Option<u32> {
+    FLOORS.iter().find(|(name, _)| *name == module).map(|(_, floor)| *floor)
+}
+
+/// Every source file below `src` with its text, comments taken out.
+fn sources() -> Vec<(String, String)> {
+    fn visit(folder: &Path, out: &mut Vec<(String, String)>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                visit(&path, out);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                let code: String = text
+                    .lines()
+                    .filter(|l| !l.trim_start().starts_with("//"))
+                    .fold(String::new(), |code, line| code + line.split(" // ").next().unwrap_or("") + "\n");
+                let name = path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap().to_string_lossy().into_owned();
+                out.push((name, code));
+            }
+        }
+    }
+    let mut out = Vec::new();
+    visit(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut out);
+    out
+}
+
+/// The module of the top level that a file belongs to: `src/io/json/text.rs` belongs to `io`.
+fn module_of(file: &str) -> &str {
+    file.split('/').nth(1).unwrap().trim_end_matches(".rs")
+}
+
+/// The modules that code names as `crate::x`, alone or in braces, in `use` lines and in paths.
+fn named_modules(code: &str) -> Vec<&str> {
+    let mut named = Vec::new();
+    for (at, _) in code.match_indices("crate::") {
+        let rest = &code[at + "crate::".len()..];
+        match rest.strip_prefix('{') {
+            Some(list) => named.extend(first_words(list)),
+            None => named.push(word(rest)),
+        }
+    }
+    // What is re-exported at the top (types, macros) stands on floor 0.
+    named.retain(|name| name.starts_with(|c: char| c.is_lowercase()) && *name != "widest");
+    named
+}
+
+/// The first word of each item of a brace list.
+fn first_words(list: &str) -> Vec<&str> {
+    let (mut words, mut depth, mut start) = (Vec::new(), 0, 0);
+    for (i, c) in list.char_indices() {
+        match c {
+            '{' => depth += 1,
+            ',' | '}' if depth == 0 => {
+                words.push(word(list[start..i].trim_start()));
+                start = i + 1;
+                if c == '}' {
+                    break;
+                }
+            }
+            '}' => depth -= 1,
+            _ => {}
+        }
+    }
+    words
+}
+
+fn word(text: &str) -> &str {
+    text.split(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or("")
+}
+
+#[test]
+fn arrows_between_floors_point_down_only() {
+    let mut wrong = Vec::new();
+    for (file, code) in sources() {
+        let here = module_of(&file);
+        if ["lib", "main"].contains(&here) {
+            continue;
+        }
+        let Some(at) = floor(here) else {
+            wrong.push(format!("{file}: the module {here} stands on no floor"));
+            continue;
+        };
+        for named in named_modules(&code).into_iter().filter(|named| *named != here) {
+            match floor(named) {
+                Some(below) if below < at => {}
+                Some(other) => wrong.push(format!("{file}: {here} (floor {at}) names {named} (floor {other})")),
+                None => wrong.push(format!("{file}: names {named}, which stands on no floor")),
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_chain_of_supers_climbs_out_of_its_module() {
+    for (file, code) in sources() {
+        // src/io/json/text.rs is three deep: a third `super` would name the crate's root. Inside `mod tests` one more is fine.
+        let mut depth = file.split('/').count() - 1;
+        if file.ends_with("/mod.rs") {
+            depth -= 1;
+        }
+        assert!(!code.contains(&"super::".repeat(depth + 1)), "{file} climbs to the root by super");
+        let own = code.split("#[cfg(test)]").next().unwrap_or("");
+        assert!(!own.contains(&"super::".repeat(depth)), "{file} climbs to the root by super");
+    }
+}
+
+#[test]
+fn the_lower_floors_touch_neither_files_nor_clocks_nor_threads() {
+    for (file, code) in sources() {
+        if floor(module_of(&file)).is_none_or(|floor| floor > 4) {
+            continue;
+        }
+        for word in OUTSIDE_WORLD {
+            // An error may wrap what the operating system said.
+            let wrapped = file == "src/error.rs" && word == "std::io";
+            assert!(wrapped || !code.contains(word), "{file} names {word}");
+        }
+    }
+}
+
+#[test]
+fn imports_are_found_however_they_are_written() {
+    let code = "use crate::math::Size;\nuse crate::{Error, io::{Files, json}, paint};\nfn f() { crate::cli::run() }";
+    assert_eq!(named_modules(code), ["math", "io", "paint", "cli"]);
+}
