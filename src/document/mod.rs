@@ -18,6 +18,7 @@ pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
 pub use prepare::Prepared;
 pub use progress::Progress;
+pub use source::SurfaceSource;
 
 use crate::{math::Size, paint::Scene, surface::Surface};
 use std::sync::Arc;
@@ -27,12 +28,14 @@ use std::sync::Arc;
 pub struct Document {
     pub size: Size,
     pub surface: Option<Arc<Surface>>,
+    /// Which maps the surface was made from; absent where there is none, or it came from no file.
+    pub surface_source: Option<Arc<SurfaceSource>>,
     pub layers: Vec<Arc<Layer>>,
 }
 
 impl Document {
     pub fn empty(size: Size) -> Self {
-        Self { size, surface: None, layers: Vec::new() }
+        Self { size, surface: None, surface_source: None, layers: Vec::new() }
     }
     /// The canvas as the bottom layer sees it.
     pub fn scene(&self) -> Scene {

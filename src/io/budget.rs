@@ -11,6 +11,8 @@ pub struct Budget {
     pub side_px: u32,
     /// Pixels of a picture.
     pub area_px: u64,
+    /// Pixels of all pictures of one document together.
+    pub document_px: u64,
     /// Bytes of any one file.
     pub file_bytes: u64,
     /// Bytes of a JSON text.
@@ -32,10 +34,12 @@ impl Default for Budget {
         Self {
             side_px: 32_768,
             area_px: 268_435_456,
+            document_px: 1 << 30,
             file_bytes: 2 << 30,
             json_bytes: 16 << 20,
             json_values: 4_000_000,
-            json_depth: 64,
+            // 32 groups take two levels each; what stands in the innermost takes the rest.
+            json_depth: 80,
             layers: 2_000,
             group_depth: 32,
             anchors: 10_000,

@@ -7,6 +7,7 @@ pub mod files;
 pub mod json;
 pub mod maps;
 pub mod picture;
+pub mod recipe;
 
 pub use budget::Budget;
 pub use files::{Files, Folder, Given};

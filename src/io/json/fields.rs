@@ -75,6 +75,11 @@ impl<'a> Node<'a> {
             let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
             return Err(self.refused(format!("has {} items; it must have {wanted}", items.len())));
         }
+        let quick = items.iter().map(|item| item.as_f64().map(|v| v as f32).filter(|v| range.contains(v)));
+        if let Some(values) = quick.collect() {
+            return Ok(values);
+        }
+        // Only a refusal needs the path of each number.
         self.list(most)?.iter().map(|item| item.number(range.clone())).collect()
     }
     pub fn number(&self, range: RangeInclusive<f32>) -> Result<f32> {

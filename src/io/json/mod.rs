@@ -1,8 +1,11 @@
-//! JSON as documents use it: text checked before it is parsed, values read by fields that know their own path.
+//! JSON as documents use it: text checked before it is parsed, values read by fields that know their own path, objects
+//! written without their defaults.
 //! Floor 5. What the fields mean is `recipe`'s.
 
 pub mod fields;
+pub mod object;
 pub mod text;
 
 pub use fields::{Fields, Node};
+pub use object::Object;
 pub use text::parse;

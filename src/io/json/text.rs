@@ -134,7 +134,7 @@ mod tests {
     }
     #[test]
     fn deep_and_crowded_texts_are_refused_before_they_are_parsed() {
-        assert!(said(&"[".repeat(1_000_000)).contains("nested deeper than 64"));
+        assert!(said(&"[".repeat(1_000_000)).contains("nested deeper than 80"));
         let crowded = format!("[{}0]", "0,".repeat(5_000_000));
         assert!(said(&crowded).contains("values"), "{}", said(&crowded));
         assert!(said(&" ".repeat(17 << 20)).contains("bytes"));

@@ -1,0 +1,262 @@
+//! What is bent as a whole: placed images and gradients; and the parts they share with others: operator, anchors,
+//! placement, source. Read and written.
+//! Floor 5.
+
+use super::Reader;
+use super::names::{FILTERS, OUTSIDES};
+use crate::Result;
+use crate::document::NormalLayer;
+use crate::io::json::{Fields, Node, Object, object};
+use crate::math::{Size, Vec2, srgb::Color, vec2};
+use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
+use crate::raster::Outside;
+use crate::surface::{Anchor, Bend, Operator, Weights};
+use serde_json::Value;
+
+/// Stops of a ramp.
+const MOST_STOPS: usize = 1_000;
+/// Turns either way, degrees.
+pub const TURNS: std::ops::RangeInclusive<f32> = -36_000.0..=36_000.0;
+
+impl Reader<'_> {
+    pub fn image(&mut self, fields: &mut Fields) -> Result<PlacedImage> {
+        let source = self.picture_source(&fields.required("source")?)?;
+        let placement = self.placement(fields)?;
+        Ok(PlacedImage {
+            source,
+            placement,
+            outside: fields.one_of("outside", &OUTSIDES, Outside::Mirror)?,
+            bend: self.bend(fields, placement.center)?,
+            filter: fields.one_of("filter", &FILTERS, Filter::Antialias)?,
+        })
+    }
+    pub fn normals(&mut self, fields: &mut Fields) -> Result<NormalLayer> {
+        Ok(NormalLayer {
+            source: self.picture_source(&fields.required("source")?)?,
+            placement: self.placement(fields)?,
+            outside: fields.one_of("outside", &OUTSIDES, Outside::Repeat)?,
+            strength: fields.number("strength", 1.0, 0.0..=100.0)?,
+        })
+    }
+    /// From the middle of the left side to the middle of the right one, black to white, unless told otherwise.
+    pub fn gradient(&mut self, fields: &mut Fields) -> Result<Gradient> {
+        let (w, h) = (self.size.width as f32, self.size.height as f32);
+        let black_to_white = || vec![Stop { t: 0.0, color: Color::BLACK }, Stop { t: 1.0, color: Color::WHITE }];
+        Ok(Gradient {
+            from: fields.point("from", vec2(0.0, h / 2.0))?,
+            to: fields.point("to", vec2(w, h / 2.0))?,
+            stops: fields.get("stops").map_or_else(|| Ok(black_to_white()), |node| stops(&node))?,
+            operator: operator(fields)?.unwrap_or_default(),
+            filter: fields.one_of("filter", &FILTERS, Filter::Antialias)?,
+        })
+    }
+    /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`; an empty list pins nothing.
+    fn bend(&self, fields: &mut Fields, center: Vec2) -> Result<Bend> {
+        let operator = operator(fields)?.unwrap_or_default();
+        let anchors = match fields.get("anchors") {
+            Some(node) => node.list(self.source.budget.anchors)?.iter().map(anchor).collect::<Result<_>>()?,
+            None => default_anchors(operator, center),
+        };
+        let weights = fields.get("weights").map_or(Ok(Weights::default()), |node| weights(&node))?;
+        Ok(Bend { operator, anchors, weights })
+    }
+    pub fn placement(&self, fields: &mut Fields) -> Result<Placement> {
+        let covering = Placement::covering(self.size);
+        let Some(node) = fields.get("placement") else { return Ok(covering) };
+        let mut fields = node.fields()?;
+        let placement = Placement {
+            center: fields.point("center", covering.center)?,
+            scale: fields.number("scale", covering.scale, 1e-4..=1e4)?,
+            rotation: fields.number("rotation", covering.rotation, TURNS)?,
+        };
+        fields.finish()?;
+        Ok(placement)
+    }
+    pub fn picture_source(&mut self, node: &Node) -> Result<PictureSource> {
+        let mut fields = node.fields()?;
+        let file = fields.required("file")?;
+        let plain = Adjust::default();
+        let adjust = Adjust {
+            blur: fields.number("blur", plain.blur, 0.0..=4096.0)?,
+            exposure: fields.number("exposure", plain.exposure, -32.0..=32.0)?,
+            hue: fields.number("hue", plain.hue, TURNS)?,
+            saturation: fields.number("saturation", plain.saturation, 0.0..=100.0)?,
+            brightness: fields.number("brightness", plain.brightness, 0.0..=100.0)?,
+            contrast: fields.number("contrast", plain.contrast, 0.0..=100.0)?,
+        };
+        fields.finish()?;
+        self.pictures.source(self.source, &file, adjust)
+    }
+}
+
+/// Where an image is pinned unless told: at its centre, once it bends at all.
+pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
+    match operator {
+        Operator::None => Vec::new(),
+        _ => vec![Anchor::fixed(center)],
+    }
+}
+
+#[derive(Clone, Copy)]
+enum OperatorKind {
+    None,
+    Depth,
+    Normal,
+    Reflection,
+}
+
+const OPERATORS: [(OperatorKind, &str); 4] = [
+    (OperatorKind::None, "none"),
+    (OperatorKind::Depth, "depth"),
+    (OperatorKind::Normal, "normal"),
+    (OperatorKind::Reflection, "reflection"),
+];
+
+/// The field `operator`, where it is there.
+pub fn operator(fields: &mut Fields) -> Result<Option<Operator>> {
+    let Some(node) = fields.get("operator") else { return Ok(None) };
+    let mut fields = node.fields()?;
+    let operator = match fields.one_of("kind", &OPERATORS, OperatorKind::None)? {
+        OperatorKind::None => Operator::None,
+        // e^20 is half a thousand million: a stronger bend only loses digits.
+        OperatorKind::Depth => Operator::Depth { gamma: fields.number("gamma", 1.0, 0.0..=20.0)? },
+        OperatorKind::Normal => Operator::Normal {
+            alpha: fields.number("alpha", 0.5, -100.0..=100.0)?,
+            beta: fields.number("beta", 1.5, 0.0..=50.0)?,
+            detail: fields.number("detail", 0.0, 0.0..=100.0)?,
+        },
+        OperatorKind::Reflection => Operator::Reflection {
+            alpha: fields.number("alpha", 0.5, -100.0..=100.0)?,
+            detail: fields.number("detail", 0.0, 0.0..=100.0)?,
+        },
+    };
+    fields.finish()?;
+    Ok(Some(operator))
+}
+
+fn anchor(node: &Node) -> Result<Anchor> {
+    let mut fields = node.fields()?;
+    let at = fields.required("at")?.point()?;
+    let source = fields.point("source", at)?;
+    fields.finish()?;
+    Ok(Anchor { at, source })
+}
+
+fn weights(node: &Node) -> Result<Weights> {
+    let mut fields = node.fields()?;
+    let power = fields.number("power", 2.0, 0.1..=16.0)?;
+    fields.finish()?;
+    Ok(Weights::Shepard { power })
+}
+
+fn stops(node: &Node) -> Result<Vec<Stop>> {
+    let items = node.list(MOST_STOPS)?;
+    if items.is_empty() {
+        return Err(node.refused("is empty; a gradient needs at least one stop"));
+    }
+    let mut stops: Vec<Stop> = Vec::with_capacity(items.len());
+    for item in &items {
+        let [t, color] = &item.list(2)?[..] else { return Err(item.refused("must be [t, colour]")) };
+        let stop = Stop { t: t.number(0.0..=1.0)?, color: color.color()? };
+        if stops.last().is_some_and(|before| before.t > stop.t) {
+            return Err(t.refused("is less than the stop before it; stops go from 0 to 1"));
+        }
+        stops.push(stop);
+    }
+    Ok(stops)
+}
+
+pub fn write_image(out: &mut Object, image: &PlacedImage, canvas: Size) {
+    out.set("source", write_source(&image.source));
+    out.object("placement", write_placement(&image.placement, canvas));
+    out.word("outside", &OUTSIDES, image.outside, Outside::Mirror);
+    write_bend(out, &image.bend, image.placement.center);
+    out.word("filter", &FILTERS, image.filter, Filter::Antialias);
+}
+
+pub fn write_normals(out: &mut Object, normals: &NormalLayer, canvas: Size) {
+    out.set("source", write_source(&normals.source));
+    out.object("placement", write_placement(&normals.placement, canvas));
+    out.word("outside", &OUTSIDES, normals.outside, Outside::Repeat);
+    out.number("strength", normals.strength, 1.0);
+}
+
+pub fn write_gradient(out: &mut Object, gradient: &Gradient) {
+    out.set("from", object::point(gradient.from));
+    out.set("to", object::point(gradient.to));
+    let stop = |s: &Stop| Value::Array(vec![object::number(s.t), object::color(s.color)]);
+    out.set("stops", gradient.stops.iter().map(stop).collect());
+    out.object("operator", write_operator(gradient.operator));
+    out.word("filter", &FILTERS, gradient.filter, Filter::Antialias);
+}
+
+fn write_bend(out: &mut Object, bend: &Bend, center: Vec2) {
+    out.object("operator", write_operator(bend.operator));
+    if bend.anchors != default_anchors(bend.operator, center) {
+        out.set("anchors", bend.anchors.iter().map(write_anchor).collect());
+    }
+    if let Weights::Shepard { power } = bend.weights {
+        let mut weights = Object::default();
+        weights.number("power", power, 2.0);
+        out.object("weights", weights);
+    }
+}
+
+fn write_anchor(anchor: &Anchor) -> Value {
+    let mut out = Object::default();
+    out.set("at", object::point(anchor.at));
+    if anchor.source != anchor.at {
+        out.set("source", object::point(anchor.source));
+    }
+    out.done()
+}
+
+/// Empty for the operator that does nothing.
+pub fn write_operator(operator: Operator) -> Object {
+    let mut out = Object::default();
+    match operator {
+        Operator::None => {}
+        Operator::Depth { gamma } => {
+            out.set("kind", "depth".into());
+            out.number("gamma", gamma, 1.0);
+        }
+        Operator::Normal { alpha, beta, detail } => {
+            out.set("kind", "normal".into());
+            out.number("alpha", alpha, 0.5);
+            out.number("beta", beta, 1.5);
+            out.number("detail", detail, 0.0);
+        }
+        Operator::Reflection { alpha, detail } => {
+            out.set("kind", "reflection".into());
+            out.number("alpha", alpha, 0.5);
+            out.number("detail", detail, 0.0);
+        }
+    }
+    out
+}
+
+/// Empty for the placement that covers the canvas.
+fn write_placement(placement: &Placement, canvas: Size) -> Object {
+    let covering = Placement::covering(canvas);
+    let mut out = Object::default();
+    if placement.center != covering.center {
+        out.set("center", object::point(placement.center));
+    }
+    out.number("scale", placement.scale, covering.scale);
+    out.number("rotation", placement.rotation, covering.rotation);
+    out
+}
+
+fn write_source(source: &PictureSource) -> Value {
+    let plain = Adjust::default();
+    let Adjust { blur, exposure, hue, saturation, brightness, contrast } = source.adjust;
+    let mut out = Object::default();
+    out.set("file", source.file.as_str().into());
+    out.number("blur", blur, plain.blur);
+    out.number("exposure", exposure, plain.exposure);
+    out.number("hue", hue, plain.hue);
+    out.number("saturation", saturation, plain.saturation);
+    out.number("brightness", brightness, plain.brightness);
+    out.number("contrast", contrast, plain.contrast);
+    out.done()
+}

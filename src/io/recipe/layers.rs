@@ -1,0 +1,156 @@
+//! Layers: what each has whatever its kind, and the kinds that need no more than a line; read and written.
+//! Floor 5.
+
+use super::Reader;
+use super::names::{BLEND_SPACES, LOCKS, name_of};
+use super::{images, masks, shading, strokes};
+use crate::document::{Content, Group, Layer, Live, Lock, PixelLayer};
+use crate::io::json::{Fields, Node, Object, object};
+use crate::math::Size;
+use crate::math::srgb::Color;
+use crate::raster::{BlendMode, TileGrid};
+use crate::{Error, Result};
+use serde_json::Value;
+use std::sync::Arc;
+
+/// The kinds of layers, as the document calls them.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Fill,
+    Pixels,
+    Image,
+    Gradient,
+    Strokes,
+    Shading,
+    RadianceScaling,
+    Normals,
+    Group,
+}
+
+const KINDS: [(Kind, &str); 9] = [
+    (Kind::Fill, "fill"),
+    (Kind::Pixels, "pixels"),
+    (Kind::Image, "image"),
+    (Kind::Gradient, "gradient"),
+    (Kind::Strokes, "strokes"),
+    (Kind::Shading, "shading"),
+    (Kind::RadianceScaling, "radiance-scaling"),
+    (Kind::Normals, "normals"),
+    (Kind::Group, "group"),
+];
+
+impl Reader<'_> {
+    /// A list of layers, bottom first; `depth` is how many groups stand around it.
+    pub fn layers(&mut self, node: &Node, depth: usize) -> Result<Vec<Arc<Layer>>> {
+        let items = node.list(self.layers_left)?;
+        self.layers_left -= items.len();
+        items.iter().map(|item| self.layer(item, depth).map(Arc::new)).collect()
+    }
+    fn layer(&mut self, node: &Node, depth: usize) -> Result<Layer> {
+        let mut fields = node.fields()?;
+        let kind = fields.required("kind")?.one_of(&KINDS)?;
+        let name = fields.get("name").map_or(Ok(""), |name| name.text())?.to_owned();
+        let visible = fields.boolean("visible", true)?;
+        let opacity = fields.number("opacity", 1.0, 0.0..=1.0)?;
+        let blend = fields.one_of("blend", &BlendMode::ALL, BlendMode::Normal)?;
+        let blend_linear = fields.one_of("blend_space", &BLEND_SPACES, false)?;
+        let clip_below = fields.boolean("clip_below", false)?;
+        let lock = fields.one_of("lock", &LOCKS, Lock::None)?;
+        let clip_to_surface = fields.boolean("clip_to_surface", true)?;
+        let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
+        let content = self.content(kind, &mut fields, depth)?;
+        fields.finish()?;
+        let layer = Layer::new(name, content);
+        Ok(Layer { visible, opacity, blend, blend_linear, clip_below, lock, mask, clip_to_surface, ..layer })
+    }
+    fn content(&mut self, kind: Kind, fields: &mut Fields, depth: usize) -> Result<Content> {
+        Ok(match kind {
+            Kind::Fill => Content::Fill(fields.color("color", Color::BLACK)?),
+            Kind::Pixels => Content::Pixels(self.pixels(fields)?),
+            Kind::Image => Content::Image(Live::new(self.image(fields)?)),
+            Kind::Gradient => Content::Gradient(Live::new(self.gradient(fields)?)),
+            Kind::Strokes => Content::Strokes(Live::new(self.strokes(fields)?)),
+            Kind::Normals => Content::Normals(self.normals(fields)?),
+            Kind::Group => Content::Group(self.group(fields, depth)?),
+            Kind::Shading => Content::Shading(Live::new(self.shading(fields)?)),
+            Kind::RadianceScaling => Content::RadianceScaling(shading::radiance_scaling(fields)?),
+        })
+    }
+    fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
+        let mut offset = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
+        let (x, y) = (offset("x")? as i32, offset("y")? as i32);
+        let Some(node) = fields.get("file") else {
+            return Ok(PixelLayer { file: String::new(), x, y, tiles: TileGrid::default() });
+        };
+        let (file, tiles) = self.pictures.tiles(self.source, &node, x, y)?;
+        Ok(PixelLayer { file, x, y, tiles })
+    }
+    fn group(&mut self, fields: &mut Fields, depth: usize) -> Result<Group> {
+        let deepest = self.source.budget.group_depth;
+        if depth >= deepest {
+            let reason = format!("{} is nested in more than {deepest} groups", fields.node().path());
+            return Err(Error::too_large(self.source.file, reason));
+        }
+        let pass_through = fields.boolean("pass_through", false)?;
+        let layers = fields.get("layers").map_or(Ok(Vec::new()), |node| self.layers(&node, depth + 1))?;
+        Ok(Group { layers, pass_through })
+    }
+}
+
+/// Layers back to JSON; `canvas` tells which placements are the default.
+pub fn write(layers: &[Arc<Layer>], canvas: Size) -> Value {
+    layers.iter().map(|layer| write_layer(layer, canvas)).collect()
+}
+
+fn write_layer(layer: &Layer, canvas: Size) -> Value {
+    let mut out = Object::default();
+    out.text("name", &layer.name, "");
+    out.set("kind", name_of(&KINDS, kind_of(&layer.content)).into());
+    out.flag("visible", layer.visible, true);
+    out.number("opacity", layer.opacity, 1.0);
+    out.word("blend", &BlendMode::ALL, layer.blend, BlendMode::Normal);
+    out.word("blend_space", &BLEND_SPACES, layer.blend_linear, false);
+    out.flag("clip_below", layer.clip_below, false);
+    out.word("lock", &LOCKS, layer.lock, Lock::None);
+    out.flag("clip_to_surface", layer.clip_to_surface, true);
+    if let Some(mask) = &layer.mask {
+        out.set("mask", masks::write(mask));
+    }
+    write_content(&mut out, &layer.content, canvas);
+    out.done()
+}
+
+fn write_content(out: &mut Object, content: &Content, canvas: Size) {
+    match content {
+        Content::Fill(color) => out.set("color", object::color(*color)),
+        Content::Pixels(pixels) => {
+            out.text("file", &pixels.file, "");
+            out.number("x", pixels.x as f32, 0.0);
+            out.number("y", pixels.y as f32, 0.0);
+        }
+        Content::Image(live) => images::write_image(out, live.params(), canvas),
+        Content::Gradient(live) => images::write_gradient(out, live.params()),
+        Content::Strokes(live) => strokes::write(out, live.params()),
+        Content::Shading(live) => shading::write(out, live.params()),
+        Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
+        Content::Normals(normals) => images::write_normals(out, normals, canvas),
+        Content::Group(group) => {
+            out.flag("pass_through", group.pass_through, false);
+            out.set("layers", write(&group.layers, canvas));
+        }
+    }
+}
+
+fn kind_of(content: &Content) -> Kind {
+    match content {
+        Content::Fill(_) => Kind::Fill,
+        Content::Pixels(_) => Kind::Pixels,
+        Content::Image(_) => Kind::Image,
+        Content::Gradient(_) => Kind::Gradient,
+        Content::Strokes(_) => Kind::Strokes,
+        Content::Shading(_) => Kind::Shading,
+        Content::RadianceScaling(_) => Kind::RadianceScaling,
+        Content::Normals(_) => Kind::Normals,
+        Content::Group(_) => Kind::Group,
+    }
+}

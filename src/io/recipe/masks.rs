@@ -1,0 +1,88 @@
+//! Layer masks: a picture of coverage, or one derived from the surface; read and written.
+//! Floor 5.
+
+use super::Reader;
+use crate::Result;
+use crate::document::{LayerMask, MaskKind};
+use crate::io::json::{Fields, Node, Object};
+use serde_json::Value;
+
+#[derive(Clone, Copy)]
+enum Derived {
+    Fresnel,
+    Curvature,
+    Depth,
+}
+
+const DERIVED: [(Derived, &str); 3] =
+    [(Derived::Fresnel, "fresnel"), (Derived::Curvature, "curvature"), (Derived::Depth, "depth")];
+
+impl Reader<'_> {
+    pub fn mask(&mut self, node: &Node) -> Result<LayerMask> {
+        let mut fields = node.fields()?;
+        let invert = fields.boolean("invert", false)?;
+        let kind = match fields.get("kind") {
+            Some(kind) => derived(kind.one_of(&DERIVED)?, &mut fields)?,
+            None => {
+                let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, self.size)?;
+                MaskKind::File { file, coverage }
+            }
+        };
+        fields.finish()?;
+        Ok(LayerMask { kind, invert })
+    }
+}
+
+fn derived(kind: Derived, fields: &mut Fields) -> Result<MaskKind> {
+    Ok(match kind {
+        Derived::Fresnel => MaskKind::Fresnel {
+            f0: fields.number("f0", 0.04, 0.0..=1.0)?,
+            power: fields.number("power", 5.0, 0.0..=64.0)?,
+        },
+        Derived::Curvature => {
+            let (scale, blur) = (fields.number("scale", 4.0, 0.0..=1000.0)?, fields.number("blur", 0.0, 0.0..=256.0)?);
+            let (from, to) = ramp(fields, -1.0, 1.0)?;
+            MaskKind::Curvature { scale, blur, from, to }
+        }
+        Derived::Depth => {
+            let (from, to) = ramp(fields, 0.0, 1.0)?;
+            MaskKind::Depth { from, to }
+        }
+    })
+}
+
+/// Where the mask is 0 and where it is 1; the two may stand either way round, but apart.
+fn ramp(fields: &mut Fields, from: f32, to: f32) -> Result<(f32, f32)> {
+    let range = from.min(to)..=from.max(to);
+    let (from, to) = (fields.number("from", from, range.clone())?, fields.number("to", to, range)?);
+    if from == to {
+        return Err(fields.node().refused("“from” and “to” are the same"));
+    }
+    Ok((from, to))
+}
+
+pub fn write(mask: &LayerMask) -> Value {
+    let mut out = Object::default();
+    match &mask.kind {
+        MaskKind::File { file, .. } => out.set("file", file.as_str().into()),
+        MaskKind::Fresnel { f0, power } => {
+            out.set("kind", "fresnel".into());
+            out.number("f0", *f0, 0.04);
+            out.number("power", *power, 5.0);
+        }
+        MaskKind::Curvature { scale, blur, from, to } => {
+            out.set("kind", "curvature".into());
+            out.number("scale", *scale, 4.0);
+            out.number("blur", *blur, 0.0);
+            out.number("from", *from, -1.0);
+            out.number("to", *to, 1.0);
+        }
+        MaskKind::Depth { from, to } => {
+            out.set("kind", "depth".into());
+            out.number("from", *from, 0.0);
+            out.number("to", *to, 1.0);
+        }
+    }
+    out.flag("invert", mask.invert, false);
+    out.done()
+}

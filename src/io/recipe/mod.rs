@@ -1,0 +1,156 @@
+//! Recipes: a document as JSON that names files beside it.
+//! Floor 5. The schema is `docs/RECIPES.md`; a project's zip holds the same JSON and is read through the same [`Files`].
+//!
+//! | file | reads and writes |
+//! |---|---|
+//! | `mod` | the document itself: format, version, canvas |
+//! | `surface` | normal map, depth map, mask and their conventions |
+//! | `layers` | what every layer has, and fills, pixels and groups |
+//! | `images` | placed images, gradients, normal layers: operator, anchors, placement |
+//! | `strokes` | strokes, brushes, presets |
+//! | `shading` | shading layers, radiance scaling |
+//! | `masks` | layer masks |
+//! | `pictures` | the files that layers name, each decoded once |
+
+mod images;
+mod layers;
+mod masks;
+mod names;
+mod pictures;
+mod shading;
+mod strokes;
+pub mod surface;
+
+pub use strokes::preset_names;
+
+use super::json::{self, Fields, Node, Object};
+use super::{Budget, Files, Folder, files, maps};
+use crate::document::{Document, SurfaceSource};
+use crate::math::Size;
+use crate::surface::{Surface, SurfaceError};
+use crate::{Error, Result};
+use pictures::Pictures;
+use serde_json::{Value, json};
+use std::{path::Path, sync::Arc};
+
+/// The newest schema this program reads, and the one it writes.
+pub const VERSION: i64 = 1;
+
+/// What a document is read from.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// The recipe, for messages.
+    pub file: &'a Path,
+    /// What it may name.
+    pub files: &'a dyn Files,
+    pub budget: &'a Budget,
+    /// Another object to put the painting on, in place of the document's own.
+    pub onto: Option<Onto<'a>>,
+}
+
+/// A surface that is not the document's own, and where its maps are.
+#[derive(Clone, Copy)]
+pub struct Onto<'a> {
+    pub surface: &'a SurfaceSource,
+    pub files: &'a dyn Files,
+}
+
+/// Loads a recipe; the files it names lie in its own folder or below.
+pub fn load(file: &Path, budget: &Budget) -> Result<Document> {
+    load_onto(file, budget, None)
+}
+
+/// Loads a recipe and puts it on another object; its canvas stays, the maps are fitted to it.
+pub fn load_onto(file: &Path, budget: &Budget, onto: Option<Onto>) -> Result<Document> {
+    let text = files::read_file(file, budget.json_bytes)?;
+    read(&text, Source { file, files: &Folder::beside(file), budget, onto })
+}
+
+/// Reads a document from its JSON.
+pub fn read(text: &[u8], source: Source) -> Result<Document> {
+    let value = json::parse(source.file, text, source.budget)?;
+    let mut root = Node::root(source.file, &value).fields()?;
+    check_version(&mut root)?;
+    let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
+    let own = root.get("surface").map(|node| Ok::<_, Error>((surface::read(&node)?, node))).transpose()?;
+    let layers = root.get("layers");
+    root.finish()?;
+
+    let (size, surface) = shape(canvas, own.as_ref(), source)?;
+    let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
+    let mut reader = Reader { source, size, layers_left: source.budget.layers, pictures: Pictures::default() };
+    let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
+    Ok(Document { size, surface, surface_source, layers })
+}
+
+fn check_version(root: &mut Fields) -> Result<()> {
+    root.one_of("format", &[((), "rilievo")], ())?;
+    let Some(version) = root.get("version") else { return Ok(()) };
+    let number = version.integer(1..=i64::MAX)?;
+    if number > VERSION {
+        let reason = format!("is {number}; this program reads up to {VERSION}, a newer one is needed");
+        return Err(version.refused(reason));
+    }
+    Ok(())
+}
+
+fn canvas(node: &Node, source: Source) -> Result<Size> {
+    let mut fields = node.fields()?;
+    let mut side = |name| fields.required(name)?.integer(1..=i64::from(u32::MAX));
+    let (width, height) = (side("width")?, side("height")?);
+    fields.finish()?;
+    source.budget.size(source.file, width as u64, height as u64)
+}
+
+/// The canvas's size, where nothing is said that of the document's own maps; and the surface fitted to it.
+fn shape(
+    canvas: Option<Size>,
+    own: Option<&(SurfaceSource, Node)>,
+    source: Source,
+) -> Result<(Size, Option<Arc<Surface>>)> {
+    // Another object keeps the document's canvas, so its own maps are read only where they tell the size.
+    let own = match own {
+        Some((own, node)) if canvas.is_none() || source.onto.is_none() => {
+            let import = maps::import(own, source.files, source.budget).map_err(|e| node.led_to(e))?;
+            Some((import.surface, node))
+        }
+        _ => None,
+    };
+    let other = source.onto.map(|o| maps::import(o.surface, o.files, source.budget)).transpose()?;
+    let no_surface = "is missing, and there is no normal or depth map to take the size from";
+    let size = canvas
+        .or(own.as_ref().map(|(map, _)| map.size()))
+        .or(other.as_ref().map(|import| import.surface.size()))
+        .ok_or_else(|| Error::invalid(source.file, "canvas", no_surface))?;
+    let surface = match (other, own) {
+        (Some(other), _) => Some(fitted(other.surface, size).map_err(|e| Error::unsupported(source.file, e))?),
+        (None, Some((own, node))) => Some(fitted(own, size).map_err(|e| node.refused(e))?),
+        (None, None) => None,
+    };
+    Ok((size, surface))
+}
+
+fn fitted(map: Surface, canvas: Size) -> std::result::Result<Arc<Surface>, SurfaceError> {
+    Ok(Arc::new(if map.size() == canvas { map } else { map.fitted(canvas)? }))
+}
+
+/// Reads layers: what is known once the canvas is.
+struct Reader<'a> {
+    source: Source<'a>,
+    size: Size,
+    /// How many more layers the budget allows.
+    layers_left: usize,
+    pictures: Pictures,
+}
+
+/// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project puts its pixels
+/// beside it under the same names.
+pub fn write(document: &Document) -> Value {
+    let mut out = Object::default();
+    out.set("format", "rilievo".into());
+    out.set("version", VERSION.into());
+    out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
+    out.said("surface", document.surface_source.as_deref(), surface::write);
+    out.set("layers", layers::write(&document.layers, document.size));
+    out.done()
+}

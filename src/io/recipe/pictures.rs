@@ -1,0 +1,107 @@
+//! The files that layers name: each is read and decoded once, however many layers use it.
+//! Floor 5. Decoding is `io::picture`'s.
+
+use super::Source;
+use crate::io::json::Node;
+use crate::io::{files, picture};
+use crate::math::Size;
+use crate::paint::{Adjust, PictureSource};
+use crate::raster::picture::Texels;
+use crate::raster::{Picture, Plane, Texture, TileGrid};
+use crate::{Error, Result};
+use std::{collections::HashMap, sync::Arc};
+
+/// What has been decoded in one load, by name.
+#[derive(Default)]
+pub struct Pictures {
+    pictures: HashMap<String, Picture>,
+    /// With each set of adjustments in use, so that layers share the adjusted texture as well.
+    sources: HashMap<String, Vec<PictureSource>>,
+    coverages: HashMap<String, Arc<Plane<u8>>>,
+    tiles: HashMap<(String, i32, i32), TileGrid>,
+    used_px: u64,
+}
+
+impl Pictures {
+    /// The picture that a field names, with its adjustments.
+    pub fn source(&mut self, source: Source, name: &Node, adjust: Adjust) -> Result<PictureSource> {
+        let picture = self.picture(source, name)?;
+        let name = name.text()?;
+        let known = self.sources.entry(name.to_owned()).or_default();
+        if let Some(same) = known.iter().find(|s| s.adjust == adjust) {
+            return Ok(same.clone());
+        }
+        known.push(PictureSource::new(name.to_owned(), picture, adjust));
+        Ok(known[known.len() - 1].clone())
+    }
+    /// The picture that a field names, as it is.
+    pub fn picture(&mut self, source: Source, name: &Node) -> Result<Picture> {
+        if let Some(known) = self.pictures.get(name.text()?) {
+            return Ok(known.clone());
+        }
+        let bytes = bytes(source, name)?;
+        let path = source.files.path(name.text()?);
+        let picture = picture::decode(&path, &bytes, source.budget).map_err(|e| name.led_to(e))?;
+        self.spend(source, picture.size)?;
+        self.pictures.insert(name.text()?.to_owned(), picture.clone());
+        Ok(picture)
+    }
+    /// Counts what a document holds: many pictures, each within its own ceiling, would fill the memory together.
+    fn spend(&mut self, source: Source, size: Size) -> Result<()> {
+        self.used_px += size.area() as u64;
+        if self.used_px > source.budget.document_px {
+            let reason = format!("its pictures hold more than {} pixels together", source.budget.document_px);
+            return Err(Error::too_large(source.file, reason));
+        }
+        Ok(())
+    }
+    /// The pixels that a field names, cut into tiles at an offset on the canvas.
+    pub fn tiles(&mut self, source: Source, name: &Node, x: i32, y: i32) -> Result<(String, TileGrid)> {
+        let key = (name.text()?.to_owned(), x, y);
+        if !self.tiles.contains_key(&key) {
+            let picture = self.picture(source, name)?;
+            self.spend(source, picture.size)?;
+            self.tiles.insert(key.clone(), cut(&picture, x, y));
+        }
+        let tiles = self.tiles.get(&key).cloned().unwrap_or_default();
+        Ok((key.0, tiles))
+    }
+    /// The mask that a field names; it has the canvas's size.
+    pub fn coverage(&mut self, source: Source, name: &Node, canvas: Size) -> Result<(String, Arc<Plane<u8>>)> {
+        let file = name.text()?.to_owned();
+        if let Some(known) = self.coverages.get(&file) {
+            return Ok((file, known.clone()));
+        }
+        let bytes = bytes(source, name)?;
+        let plane = picture::decode_coverage(&source.files.path(&file), &bytes, source.budget);
+        let plane = Arc::new(plane.map_err(|e| name.led_to(e))?);
+        if plane.size() != canvas {
+            return Err(name.refused(format!("“{file}” has {} pixels, the canvas {canvas}", plane.size())));
+        }
+        self.coverages.insert(file.clone(), plane.clone());
+        Ok((file, plane))
+    }
+}
+
+/// The bytes of a file that a field names. A name that leaves the document's folder is refused before anything is opened.
+fn bytes(source: Source, name: &Node) -> Result<Vec<u8>> {
+    let text = name.text()?;
+    if let Some(reason) = files::refusal(text) {
+        return Err(name.refused(format!("“{text}” is refused: {reason}")));
+    }
+    source.files.read(text, source.budget).map_err(|e| name.led_to(e))
+}
+
+/// A paint layer's tiles; light beyond white is clipped, as a texture clips it.
+fn cut(picture: &Picture, x: i32, y: i32) -> TileGrid {
+    let (w, h) = (picture.size.width as usize, picture.size.height as usize);
+    match &picture.texels {
+        Texels::Srgb8(texels) => TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y),
+        Texels::Linear(_) => {
+            let texture = Texture::new(picture);
+            let mut straight = vec![0; w * h * 4];
+            crate::raster::grid::unpremultiply(texture.levels()[0].texels.as_flattened(), &mut straight);
+            TileGrid::from_straight_rgba(&straight, w, h, x, y)
+        }
+    }
+}

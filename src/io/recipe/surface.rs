@@ -1,0 +1,192 @@
+//! The surface: which maps, and what their numbers mean; read and written.
+//! Floor 5. What is found where nothing is said is `io::maps`' work.
+
+use crate::Result;
+use crate::document::source::{
+    DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, NormalSpace,
+    SurfaceSource,
+};
+use crate::io::files;
+use crate::io::json::{Fields, Node, Object, object};
+use serde_json::{Value, json};
+
+/// Stored values that mean "no surface".
+const MOST_BACKGROUNDS: usize = 64;
+
+/// Reads the object `surface`.
+pub fn read(node: &Node) -> Result<SurfaceSource> {
+    let mut fields = node.fields()?;
+    let source = SurfaceSource {
+        normal: fields.get("normal").map(|node| normal(&node)).transpose()?,
+        depth: fields.get("depth").map(|node| depth(&node)).transpose()?,
+        mask: fields.get("mask").map(|node| mask(&node)).transpose()?,
+    };
+    fields.finish()?;
+    if source.normal.is_none() && source.depth.is_none() {
+        return Err(node.refused("names neither a normal map nor a depth map"));
+    }
+    Ok(source)
+}
+
+fn normal(node: &Node) -> Result<MapSource<NormalConvention>> {
+    let mut fields = node.fields()?;
+    let map = MapSource {
+        file: file(&mut fields)?,
+        channel: channel(&mut fields)?,
+        convention: fields.get("convention").map_or(Ok(NormalConvention::default()), |c| normal_convention(&c))?,
+    };
+    fields.finish()?;
+    Ok(map)
+}
+
+/// A word, or an object that says each choice it does not leave to be found.
+pub fn normal_convention(node: &Node) -> Result<NormalConvention> {
+    if node.value().is_string() {
+        let words = NormalConvention::WORDS.map(|word| (word, word));
+        return Ok(NormalConvention::from_word(node.one_of(&words)?).unwrap_or_default());
+    }
+    let mut fields = node.fields()?;
+    let mut flag = |name| fields.get(name).map(|node| node.boolean()).transpose();
+    let convention = NormalConvention {
+        srgb: flag("srgb")?,
+        flip_x: flag("flip_x")?,
+        flip_y: flag("flip_y")?,
+        flip_z: flag("flip_z")?,
+        snap_flat: flag("snap_flat")?,
+        smooth_steps: flag("smooth_steps")?,
+        encoding: fields.get("encoding").map(|node| node.one_of(NormalEncoding::ALL)).transpose()?,
+        channels: fields.get("channels").map(|node| channels(&node)).transpose()?,
+        space: fields.get("space").map(|node| node.one_of(NormalSpace::ALL)).transpose()?,
+        world_to_camera: fields.get("world_to_camera").map(|node| rotation(&node)).transpose()?,
+    };
+    fields.finish()?;
+    Ok(convention)
+}
+
+fn channels(node: &Node) -> Result<[u8; 3]> {
+    let letters = node.text()?;
+    let read = NormalConvention::channels_from_letters(letters);
+    read.ok_or_else(|| node.refused(format!("is “{letters}”; it must be three different letters of rgba")))
+}
+
+/// The upper left 3 × 3 of a matrix of three or four rows. Its translation moves no normal.
+fn rotation(node: &Node) -> Result<[[f32; 3]; 3]> {
+    let rows = node.list(4)?;
+    if rows.len() < 3 {
+        return Err(node.refused(format!("has {} rows; it must have 3 or 4", rows.len())));
+    }
+    let mut rotation = [[0.0; 3]; 3];
+    for (row, into) in rows.iter().zip(&mut rotation) {
+        into.copy_from_slice(&row.numbers(rows.len(), rows.len(), -1e6..=1e6)?[..3]);
+    }
+    Ok(rotation)
+}
+
+fn depth(node: &Node) -> Result<MapSource<DepthConvention>> {
+    let mut fields = node.fields()?;
+    let file = file(&mut fields)?;
+    let channel = channel(&mut fields)?;
+    let plain = DepthConvention::default();
+    let convention = DepthConvention {
+        near: fields.one_of("near", Near::ALL, plain.near)?,
+        encoding: fields.get("encoding").map(|node| node.one_of(DepthEncoding::ALL)).transpose()?,
+        fov_degrees: fields.get("fov").map(|node| node.number(1.0..=179.0)).transpose()?,
+        background: match fields.get("background") {
+            Some(node) => node.numbers(0, MOST_BACKGROUNDS, f32::MIN..=f32::MAX)?,
+            None => plain.background,
+        },
+        range_px: fields.get("range_px").map(|node| node.number(1e-3..=1e6)).transpose()?,
+        smooth_steps: fields.get("smooth_steps").map(|node| node.boolean()).transpose()?,
+    };
+    fields.finish()?;
+    Ok(MapSource { file, channel, convention })
+}
+
+fn mask(node: &Node) -> Result<MaskSource> {
+    let mut fields = node.fields()?;
+    let mask = match fields.get("from") {
+        Some(from) => from.one_of(&[((), "flat")]).map(|()| MaskSource::Flat)?,
+        None => MaskSource::File {
+            file: file(&mut fields)?,
+            channel: channel(&mut fields)?,
+            invert: fields.boolean("invert", false)?,
+        },
+    };
+    fields.finish()?;
+    Ok(mask)
+}
+
+fn file(fields: &mut Fields) -> Result<String> {
+    let node = fields.required("file")?;
+    let name = node.text()?;
+    match files::refusal(name) {
+        Some(reason) => Err(node.refused(format!("“{name}” is refused: {reason}"))),
+        None => Ok(name.to_owned()),
+    }
+}
+
+fn channel(fields: &mut Fields) -> Result<Option<String>> {
+    fields.get("channel").map(|node| node.text().map(str::to_owned)).transpose()
+}
+
+/// The object `surface` back to JSON.
+pub fn write(source: &SurfaceSource) -> Value {
+    let mut out = Object::default();
+    if let Some(normal) = &source.normal {
+        let mut map = start(&normal.file, normal.channel.as_deref());
+        match normal.convention.word() {
+            Some(word) => map.text("convention", word, "auto"),
+            None => map.set("convention", write_normal_convention(&normal.convention)),
+        }
+        out.object("normal", map);
+    }
+    if let Some(depth) = &source.depth {
+        let mut map = start(&depth.file, depth.channel.as_deref());
+        write_depth_convention(&mut map, &depth.convention);
+        out.object("depth", map);
+    }
+    match &source.mask {
+        None => {}
+        Some(MaskSource::Flat) => out.set("mask", json!({ "from": "flat" })),
+        Some(MaskSource::File { file, channel, invert }) => {
+            let mut map = start(file, channel.as_deref());
+            map.flag("invert", *invert, false);
+            out.object("mask", map);
+        }
+    }
+    out.done()
+}
+
+fn start(file: &str, channel: Option<&str>) -> Object {
+    let mut out = Object::default();
+    out.set("file", file.into());
+    out.said("channel", channel, Value::from);
+    out
+}
+
+pub fn write_normal_convention(convention: &NormalConvention) -> Value {
+    let c = convention;
+    let mut out = Object::default();
+    out.said("encoding", c.encoding, |e| e.name().into());
+    out.said("channels", c.channels, |c| NormalConvention::letters(c).into());
+    for (name, flag) in [("srgb", c.srgb), ("flip_x", c.flip_x), ("flip_y", c.flip_y), ("flip_z", c.flip_z)] {
+        out.said(name, flag, Value::from);
+    }
+    out.said("space", c.space, |s| s.name().into());
+    let row = |row: [f32; 3]| row.into_iter().map(object::number).collect::<Value>();
+    out.said("world_to_camera", c.world_to_camera, |rows| rows.into_iter().map(row).collect());
+    out.said("snap_flat", c.snap_flat, Value::from);
+    out.said("smooth_steps", c.smooth_steps, Value::from);
+    out.done()
+}
+
+fn write_depth_convention(out: &mut Object, convention: &DepthConvention) {
+    out.word("near", Near::ALL, convention.near, Near::Auto);
+    out.said("encoding", convention.encoding, |e| e.name().into());
+    out.said("fov", convention.fov_degrees, object::number);
+    if !convention.background.is_empty() {
+        out.set("background", convention.background.iter().copied().map(object::number).collect());
+    }
+    out.said("range_px", convention.range_px, object::number);
+    out.said("smooth_steps", convention.smooth_steps, Value::from);
+}

@@ -1,0 +1,419 @@
+//! Recipes: every kind of layer read with its defaults, refused with the path of what is wrong, and written back.
+
+use rilievo::document::{Content, Document, MaskKind};
+use rilievo::io::recipe::{self, Source};
+use rilievo::io::{Budget, Files};
+use rilievo::math::{Size, srgb::Color, vec2};
+use rilievo::paint::{Filter, Tip};
+use rilievo::raster::{BlendMode, Outside};
+use rilievo::surface::{Anchor, Operator, Weights};
+use rilievo::{Error, Result};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Files in memory, as a project's zip will hold them; counts how often one is read.
+#[derive(Default)]
+struct InMemory {
+    files: HashMap<&'static str, Vec<u8>>,
+    reads: AtomicUsize,
+}
+
+impl Files for InMemory {
+    fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
+        self.reads.fetch_add(1, Ordering::Relaxed);
+        let missing = || Error::io(name, std::io::Error::from(std::io::ErrorKind::NotFound));
+        self.files.get(name).cloned().ok_or_else(missing)
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        name.into()
+    }
+}
+
+/// A PNG of one colour.
+fn png(width: u32, height: u32, rgba: [u8; 4]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let picture = image::RgbaImage::from_pixel(width, height, image::Rgba(rgba));
+    picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+fn files() -> InMemory {
+    let files =
+        [("p.png", png(10, 6, [9, 8, 7, 255])), ("m.png", png(32, 16, [255; 4])), ("broken.png", vec![1, 2, 3])];
+    InMemory { files: files.into(), ..InMemory::default() }
+}
+
+fn read_with(files: &InMemory, recipe: &Value, budget: &Budget) -> Result<Document> {
+    let text = recipe.to_string();
+    recipe::read(text.as_bytes(), Source { file: Path::new("r.json"), files, budget, onto: None })
+}
+
+fn read(recipe: &Value) -> Result<Document> {
+    read_with(&files(), recipe, &Budget::default())
+}
+
+fn with_layers(layers: Value) -> Value {
+    json!({ "canvas": { "width": 32, "height": 16 }, "layers": layers })
+}
+
+fn only_layer(layer: Value) -> rilievo::document::Layer {
+    let document = read(&with_layers(json!([layer]))).unwrap_or_else(|e| panic!("{e}"));
+    (*document.layers[0]).clone()
+}
+
+/// The sentence that refuses a document.
+fn said(recipe: &Value) -> String {
+    read(recipe).err().unwrap_or_else(|| panic!("read without complaint: {recipe}")).to_string()
+}
+
+/// The sentence that refuses a document of one layer.
+fn said_of(layer: Value) -> String {
+    said(&with_layers(json!([layer])))
+}
+
+#[test]
+fn what_is_not_said_takes_its_default() {
+    let layer = only_layer(json!({ "kind": "fill" }));
+    assert!(layer.visible && layer.clip_to_surface && !layer.clip_below && !layer.blend_linear);
+    assert_eq!((layer.opacity, layer.blend, layer.name.as_str()), (1.0, BlendMode::Normal, ""));
+    assert!(matches!(layer.content, Content::Fill(Color::BLACK)));
+
+    let Content::Image(image) = only_layer(json!({ "kind": "image", "source": { "file": "p.png" } })).content else {
+        panic!("an image layer");
+    };
+    let image = image.params();
+    assert_eq!((image.outside, image.filter), (Outside::Mirror, Filter::Antialias));
+    assert_eq!((image.placement.center, image.placement.scale), (vec2(16.0, 8.0), 1.0));
+    assert_eq!((image.bend.operator, image.bend.anchors.len()), (Operator::None, 0));
+    assert_eq!(image.bend.weights, Weights::Shepard { power: 2.0 });
+
+    let Content::Gradient(gradient) = only_layer(json!({ "kind": "gradient" })).content else {
+        panic!("a gradient layer");
+    };
+    assert_eq!((gradient.params().from, gradient.params().to), (vec2(0.0, 8.0), vec2(32.0, 8.0)));
+    assert_eq!(gradient.params().stops.len(), 2);
+}
+
+#[test]
+fn an_operator_without_anchors_is_pinned_at_the_centre_of_the_placement() {
+    let anchors = |anchors: Value| {
+        let mut layer = json!({ "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "normal" },
+            "placement": { "center": [3, 4] } });
+        if !anchors.is_null() {
+            layer["anchors"] = anchors;
+        }
+        let Content::Image(image) = only_layer(layer).content else { panic!("an image layer") };
+        image.params().bend.anchors.clone()
+    };
+    assert_eq!(anchors(Value::Null), [Anchor::fixed(vec2(3.0, 4.0))]);
+    assert_eq!(anchors(json!([])), []);
+    let dragged = anchors(json!([{ "at": [1, 2], "source": [5, 6] }, { "at": [7, 8] }]));
+    assert_eq!(dragged, [Anchor { at: vec2(1.0, 2.0), source: vec2(5.0, 6.0) }, Anchor::fixed(vec2(7.0, 8.0))]);
+}
+
+#[test]
+fn strokes_read_their_samples_brush_and_preset() {
+    let Content::Strokes(strokes) = only_layer(json!({ "kind": "strokes", "strokes": [
+        { "color": "#ff0000", "samples": [[1, 2], [3, 4, 0.5], [5, 6, 0.25, 10, -20, 1.5]] },
+        { "brush": { "preset": "highlight-satin", "size": 33 } },
+        { "brush": { "tip": { "file": "p.png" }, "dynamics": { "size": { "pressure": 1 } } }, "operator": { "kind": "depth" } }
+    ] }))
+    .content
+    else {
+        panic!("a stroke layer");
+    };
+    let strokes = &strokes.params().strokes;
+    let samples = strokes[0].samples();
+    assert_eq!((samples[0].pressure, samples[1].pressure), (1.0, 0.5));
+    assert_eq!((samples[2].tilt, samples[2].time_secs), (vec2(10.0, -20.0), 1.5));
+    assert_eq!(strokes[0].brush().size, 80.0);
+    assert_eq!(strokes[1].brush().size, 33.0);
+    assert!(matches!(strokes[1].operator(), Operator::Normal { .. }), "the preset's own operator");
+    assert!(matches!(strokes[2].brush().tip, Tip::Picture(_)));
+    assert_eq!(strokes[2].brush().dynamics.size.pressure, 1.0);
+    assert_eq!(strokes[2].operator(), Operator::Depth { gamma: 1.0 });
+}
+
+#[test]
+fn masks_read_with_their_defaults() {
+    let mask = |mask: Value| only_layer(json!({ "kind": "fill", "mask": mask })).mask.unwrap();
+    assert!(matches!(mask(json!({ "file": "m.png" })).kind, MaskKind::File { .. }));
+    let fresnel = mask(json!({ "kind": "fresnel", "invert": true }));
+    assert!(fresnel.invert && matches!(fresnel.kind, MaskKind::Fresnel { f0: 0.04, power: 5.0 }));
+    let curvature = mask(json!({ "kind": "curvature" })).kind;
+    assert!(matches!(curvature, MaskKind::Curvature { scale: 4.0, blur: 0.0, from: -1.0, to: 1.0 }));
+    assert!(matches!(
+        mask(json!({ "kind": "depth", "from": 1, "to": 0.5 })).kind,
+        MaskKind::Depth { from: 1.0, to: 0.5 }
+    ));
+}
+
+/// One document with every kind of layer and every field away from its default.
+fn everything() -> Value {
+    let placement = json!({ "center": [10.5, 3], "scale": 0.75, "rotation": -30 });
+    let source = json!({ "file": "p.png", "blur": 2, "exposure": -1, "hue": 20, "saturation": 0.5, "brightness": 1.1,
+        "contrast": 0.9 });
+    let term = json!({ "color": "#102030", "weight": 0.4, "scaling": { "alpha": 0.3, "gamma": 2 } });
+    with_layers(json!([
+        { "name": "ground", "kind": "fill", "visible": false, "opacity": 0.3, "blend": "color-dodge", "blend_space": "linear",
+          "clip_below": true, "lock": "alpha", "clip_to_surface": false, "mask": { "file": "m.png", "invert": true },
+          "color": "#12345678" },
+        { "name": "paint", "kind": "pixels", "mask": { "kind": "fresnel", "f0": 0.1, "power": 3 }, "file": "p.png", "x": -3, "y": 4 },
+        { "name": "photo", "kind": "image", "mask": { "kind": "curvature", "scale": 2, "blur": 1, "from": 0.5, "to": -0.5 },
+          "source": source, "placement": placement, "outside": "none",
+          "operator": { "kind": "normal", "alpha": -0.25, "beta": 3, "detail": 0.1 },
+          "anchors": [{ "at": [1, 2], "source": [3.25, 4] }, { "at": [5, 6] }], "weights": { "power": 3 }, "filter": "bilinear" },
+        { "name": "unpinned", "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "reflection", "alpha": 1,
+          "detail": 0.5 }, "anchors": [] },
+        { "name": "ramp", "kind": "gradient", "mask": { "kind": "depth", "from": 0.25, "to": 0.75 }, "from": [1, 2], "to": [3, 4],
+          "stops": [[0, "#000000"], [0.3, "#ff000080"], [1, "#ffffff"]], "operator": { "kind": "depth", "gamma": 2.5 },
+          "filter": "bilinear" },
+        { "name": "marks", "kind": "strokes", "strokes": [
+          { "brush": { "size": 20, "hardness": 0.1, "opacity": 0.9, "flow": 0.8, "spacing": 0.2, "rotation": 15, "softness": 0.3,
+            "tip": { "file": "p.png" }, "dynamics": { "size": { "pressure": 0.5 }, "flow": { "pressure": 0 } } },
+            "operator": { "kind": "normal" }, "color": "#abcdef", "samples": [[1, 2], [3, 4, 0.5], [5, 6, 1, 10, -20, 1.5]] }] },
+        { "name": "lit", "kind": "shading", "model": "toon",
+          "lights": [{ "kind": "directional", "direction": [0, 0, 1], "color": "#ff0000", "intensity": 2 },
+                     { "kind": "point", "position": [1, 2, 30] }],
+          "ambient": term, "diffuse": term, "specular": { "weight": 0.5, "shininess": 10 },
+          "lambda": 0.5, "curvature_scale": 2, "blur": 1, "reference": 0.8,
+          "bands": 6, "exponent": 0.25, "nu": 10, "nv": 20,
+          "environment": { "file": "p.png", "projection": "angular", "rotation": 90, "exposure": 1 },
+          "sphere": { "file": "p.png" }, "sphere_concave": { "file": "p.png" }, "index": 1.33 },
+        { "name": "shape", "kind": "radiance-scaling", "alpha": 0.5, "gamma_convex": 3, "gamma_concave": 1, "lambda": -1,
+          "scales": [{ "curvature_scale": 2, "weight": 2 }, { "blur": 3 }], "light": [1, 0, 0], "reference": 0.5,
+          "keep_mean": true },
+        { "name": "grain", "kind": "normals", "source": { "file": "p.png" }, "placement": placement, "outside": "clamp",
+          "strength": 2 },
+        { "name": "set", "kind": "group", "pass_through": true, "layers": [{ "name": "inner", "kind": "fill", "color": "#000000" }] }
+    ]))
+}
+
+#[test]
+fn every_field_of_every_kind_is_written_as_it_was_read() {
+    let recipe = everything();
+    let written = recipe::write(&read(&recipe).unwrap_or_else(|e| panic!("{e}")));
+    for (read, written) in recipe["layers"].as_array().unwrap().iter().zip(written["layers"].as_array().unwrap()) {
+        assert_eq!(without_float_spelling(read), without_float_spelling(written), "{}", read["name"]);
+    }
+    assert_eq!(recipe["canvas"], written["canvas"]);
+}
+
+/// 2 and 2.0 are the same number.
+fn without_float_spelling(value: &Value) -> Value {
+    match value {
+        Value::Number(n) => json!(n.as_f64()),
+        Value::Array(items) => items.iter().map(without_float_spelling).collect(),
+        Value::Object(map) => map.iter().map(|(k, v)| (k.clone(), without_float_spelling(v))).collect(),
+        other => other.clone(),
+    }
+}
+
+#[test]
+fn what_is_default_is_not_written() {
+    let layers = json!([{ "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "depth" } },
+        { "kind": "shading" }, { "kind": "radiance-scaling" }]);
+    let written = recipe::write(&read(&with_layers(layers)).unwrap());
+    let expected = json!([{ "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "depth" } },
+        { "kind": "shading", "model": "phong" }, { "kind": "radiance-scaling" }]);
+    assert_eq!(written["layers"], expected);
+}
+
+#[test]
+fn the_same_file_is_read_once() {
+    let files = files();
+    let image = json!({ "kind": "image", "source": { "file": "p.png" } });
+    let pixels = json!({ "kind": "pixels", "file": "p.png", "x": 2 });
+    let document = read_with(&files, &with_layers(json!([image, image, pixels])), &Budget::default()).unwrap();
+    assert_eq!(files.reads.load(Ordering::Relaxed), 1);
+    let (Content::Image(a), Content::Image(b)) = (&document.layers[0].content, &document.layers[1].content) else {
+        panic!("image layers");
+    };
+    assert!(std::ptr::eq(a.params().source.texture(), b.params().source.texture()));
+}
+
+#[test]
+fn every_refusal_names_file_and_field() {
+    let operator =
+        |operator: Value| said_of(json!({ "kind": "image", "source": { "file": "p.png" }, "operator": operator }));
+    let cases = [
+        (operator(json!({ "kind": "depth", "gama": 1 })), "layers[0].operator.gama: is unknown; did you mean “gamma”?"),
+        (
+            operator(json!({ "kind": "depth", "gamma": -1 })),
+            "layers[0].operator.gamma: is -1; it must be between 0 and",
+        ),
+        (
+            operator(json!({ "kind": "twist" })),
+            "layers[0].operator.kind: is “twist”; it must be one of none, depth, normal",
+        ),
+        (operator(json!(3)), "layers[0].operator: is a number; it must be an object"),
+        (said_of(json!({ "kind": "fil" })), "layers[0].kind: is “fil”; it must be one of fill, pixels"),
+        (said_of(json!({})), "layers[0].kind: is missing"),
+        (said_of(json!({ "kind": "fill", "color": "red" })), "layers[0].color: is “red”; a colour reads #rrggbb"),
+        (said_of(json!({ "kind": "fill", "opacity": 1.5 })), "layers[0].opacity: is 1.5; it must be between 0 and 1"),
+        (said_of(json!({ "kind": "fill", "opacity": null })), "layers[0].opacity: is null; it must be a number"),
+        (said_of(json!({ "kind": "fill", "blend": "Multiply" })), "layers[0].blend: is “Multiply”"),
+        (said_of(json!({ "kind": "fill", "source": {} })), "layers[0].source: is unknown"),
+        (said_of(json!({ "kind": "image" })), "layers[0].source: is missing"),
+        (said_of(json!({ "kind": "image", "source": { "file": "gone.png" } })), "layers[0].source.file: gone.png: "),
+        (
+            said_of(json!({ "kind": "image", "source": { "file": "broken.png" } })),
+            "layers[0].source.file: broken.png: cannot be read",
+        ),
+        (
+            said_of(json!({ "kind": "image", "source": { "file": "../p.png" } })),
+            "layers[0].source.file: “../p.png” is refused",
+        ),
+        (said_of(json!({ "kind": "pixels", "file": "/p.png" })), "layers[0].file: “/p.png” is refused"),
+        (
+            said_of(json!({ "kind": "fill", "mask": { "file": "p.png" } })),
+            "layers[0].mask.file: “p.png” has 10 × 6 pixels",
+        ),
+        (said_of(json!({ "kind": "fill", "mask": { "kind": "depth", "from": 1 } })), "layers[0].mask: “from” and “to”"),
+        (said_of(json!({ "kind": "gradient", "stops": [] })), "layers[0].stops: is empty"),
+        (
+            said_of(json!({ "kind": "gradient", "stops": [[1, "#000000"], [0, "#000000"]] })),
+            "layers[0].stops[1][0]: is less",
+        ),
+        (said_of(json!({ "kind": "gradient", "from": [1] })), "layers[0].from: has 1 items; it must have 2"),
+        (said_of(json!({ "kind": "gradient", "from": [1, "2"] })), "layers[0].from[1]: is a text"),
+        (
+            said_of(json!({ "kind": "strokes", "strokes": [{ "brush": { "preset": "crayon" } }] })),
+            "layers[0].strokes[0].brush.preset: is “crayon”; the presets are soft-round",
+        ),
+        (
+            said_of(json!({ "kind": "strokes", "strokes": [{ "samples": [[1, 2, 3]] }] })),
+            "layers[0].strokes[0].samples[0]: has the pressure 3",
+        ),
+        (
+            said_of(json!({ "kind": "group", "layers": [{ "kind": "fill" }, { "kind": "?" }] })),
+            "layers[0].layers[1].kind: is “?”",
+        ),
+        (
+            said_of(json!({ "kind": "shading", "lights": [{ "direction": [0, 0, 0] }] })),
+            "layers[0].lights[0].direction: has no length",
+        ),
+        (said(&json!({ "layers": [] })), "canvas: is missing, and there is no normal or depth map"),
+        (said(&json!({ "canvas": { "width": 0, "height": 4 } })), "canvas.width: is 0"),
+        (said(&json!({ "canvas": { "width": 100000, "height": 4 } })), "100000 × 4 pixels; a side may have 32768"),
+        (said(&json!({ "format": "psd" })), "format: is “psd”; it must be one of rilievo"),
+        (said(&json!({ "version": 2, "shiny": true })), "version: is 2; this program reads up to 1"),
+        (said(&json!({ "layer": [] })), "layer: is unknown; did you mean “layers”?"),
+        (said(&json!([])), "the document: is a list; it must be an object"),
+        (said(&json!({ "surface": {} })), "surface: names neither a normal map nor a depth map"),
+    ];
+    for (said, wanted) in cases {
+        assert!(said.starts_with("r.json: ") && said.contains(wanted), "{said}\n  lacks {wanted}");
+    }
+}
+
+#[test]
+fn documents_beyond_the_budget_are_refused() {
+    let says = |budget: Budget, layers: Value, wanted: &str| {
+        let said = read_with(&files(), &with_layers(layers), &budget).err().expect(wanted).to_string();
+        assert!(said.contains("too large") && said.contains(wanted), "{said}");
+    };
+    let small = Budget { layers: 2, group_depth: 1, anchors: 1, samples: 1, document_px: 100, ..Budget::default() };
+    let fill = json!({ "kind": "fill" });
+    let image = |anchors: Value| json!({ "kind": "image", "source": { "file": "p.png" }, "anchors": anchors });
+    says(small, json!([fill, { "kind": "group", "layers": [fill] }]), "layers[1].layers has 1 items");
+    says(small, json!([{ "kind": "group", "layers": [{ "kind": "group" }] }]), "layers[0].layers[0] is nested");
+    says(small, json!([image(json!([{ "at": [1, 2] }, { "at": [1, 2] }]))]), "layers[0].anchors has 2 items");
+    says(small, json!([{ "kind": "strokes", "strokes": [{ "samples": [[1, 2], [1, 2]] }] }]), "samples has 2 items");
+    says(small, json!([{ "kind": "pixels", "file": "p.png" }]), "more than 100 pixels together");
+}
+
+#[test]
+fn thirty_two_groups_within_each_other_fit() {
+    let innermost = json!({ "kind": "image", "source": { "file": "p.png" }, "anchors": [{ "at": [1, 2] }] });
+    let nested = (0..32).fold(innermost, |inner, _| json!({ "kind": "group", "layers": [inner] }));
+    assert!(read(&with_layers(json!([nested]))).is_ok());
+}
+
+#[test]
+fn the_surface_is_written_as_it_was_read() {
+    let surface = json!({
+        "normal": { "file": "n.exr", "channel": "ViewLayer.Normal", "convention": { "encoding": "signed", "channels": "bgr",
+            "srgb": true, "flip_x": true, "flip_y": false, "flip_z": true, "space": "world",
+            "world_to_camera": [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]], "snap_flat": true, "smooth_steps": false } },
+        "depth": { "file": "z.exr", "channel": "ViewLayer.Depth.Z", "near": "high", "encoding": "ray-distance", "fov": 45.0,
+            "background": [0.0, 65504.0], "range_px": 100.0, "smooth_steps": true },
+        "mask": { "file": "m.png", "channel": "R", "invert": true }
+    });
+    let node = rilievo::io::json::Node::root(Path::new("r.json"), &surface);
+    let written = recipe::surface::write(&recipe::surface::read(&node).unwrap());
+    assert_eq!(without_float_spelling(&written), without_float_spelling(&surface));
+}
+
+#[test]
+fn a_canvas_keeps_its_size_whatever_the_layers() {
+    let document = read(&everything()).unwrap();
+    assert_eq!(document.size, Size::new(32, 16));
+    assert!(document.surface.is_none());
+}
+
+mod mutations {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Every value of a document, by its path.
+    fn pointers(value: &Value, at: &str, out: &mut Vec<String>) {
+        out.push(at.to_owned());
+        match value {
+            Value::Array(items) => items.iter().enumerate().for_each(|(i, v)| pointers(v, &format!("{at}/{i}"), out)),
+            Value::Object(map) => map.iter().for_each(|(k, v)| pointers(v, &format!("{at}/{k}"), out)),
+            _ => {}
+        }
+    }
+
+    fn odd_value() -> impl Strategy<Value = Value> {
+        prop_oneof![
+            Just(Value::Null),
+            Just(json!([])),
+            Just(json!({})),
+            Just(json!("")),
+            Just(json!("none")),
+            Just(json!(true)),
+            any::<i64>().prop_map(Value::from),
+            any::<f64>().prop_map(Value::from),
+            Just(json!(1e300)),
+            Just(json!([0, 0])),
+            Just(json!([[0, 0], [0, 0]])),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+        /// Whatever value stands wherever: a document or a sentence, and what is read is written and read again.
+        #[test]
+        fn a_value_out_of_place_is_read_or_refused(pick in any::<prop::sample::Index>(), value in odd_value()) {
+            let mut recipe = everything();
+            let mut all = Vec::new();
+            pointers(&recipe, "", &mut all);
+            *recipe.pointer_mut(&all[pick.index(all.len())]).unwrap() = value;
+            match read(&recipe) {
+                Ok(document) => {
+                    let written = recipe::write(&document);
+                    prop_assert_eq!(&recipe::write(&read(&written).unwrap()), &written);
+                }
+                Err(said) => prop_assert!(said.to_string().starts_with("r.json: ")),
+            }
+        }
+        #[test]
+        fn a_damaged_text_is_read_or_refused(
+            at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in any::<prop::sample::Index>()
+        ) {
+            let mut text = everything().to_string().into_bytes();
+            let i = at.index(text.len());
+            text[i] = byte;
+            for text in [&text[..], &text[..cut.index(text.len())]] {
+                let source = Source { file: Path::new("r.json"), files: &files(), budget: &Budget::default(), onto: None };
+                if let Err(said) = recipe::read(text, source) {
+                    prop_assert!(said.to_string().starts_with("r.json: "));
+                }
+            }
+        }
+    }
+}
