@@ -1,7 +1,7 @@
 //! Where curvature fades: no outline of false curvature may show where a surface ends.
 //! Floor 2.
 
-use super::tiles::{TileRect, Whole};
+use super::tiles::{TileRect, all_linked};
 use crate::surface::{Surface, links};
 
 /// Distance from the nearest break, in pixels, from which curvature counts in full.
@@ -10,13 +10,15 @@ pub(super) const FADE_PX: usize = 3;
 /// Whether the surface ends between the pixel and a neighbour: a depth jump or the mask's edge. The canvas's border is none.
 #[inline(always)]
 pub(super) fn is_break(surface: &Surface, x: usize, y: usize) -> bool {
-    let (w, h) = (surface.size().width as usize, surface.size().height as usize);
-    let border = |at: bool, bit: u8| if at { bit } else { 0 };
-    let beyond = border(x == 0, links::LEFT)
-        | border(x + 1 == w, links::RIGHT)
-        | border(y == 0, links::UP)
-        | border(y + 1 == h, links::DOWN);
-    surface.coverage(x, y) == 0 || (surface.links_plane().at(x, y) | beyond) != 15
+    let beyond = beyond(x, surface.size().width, links::LEFT, links::RIGHT)
+        | beyond(y, surface.size().height, links::UP, links::DOWN);
+    (surface.links_plane().at(x, y) | beyond) != 15
+}
+
+/// The links that lead beyond the canvas at coordinate `i` of `n`.
+fn beyond(i: usize, n: u32, back: u8, forth: u8) -> u8 {
+    let (first, last) = (i == 0, i + 1 == n as usize);
+    (if first { back } else { 0 }) | (if last { forth } else { 0 })
 }
 
 /// 0 at a break, rising smoothly to 1 at [`FADE_PX`] from it. `squared`: squared distance, px².
@@ -26,40 +28,70 @@ pub(super) fn fade_at(squared: u32) -> f32 {
 }
 
 /// Fills the tile's part of a band of rows.
-pub(super) fn fill(surface: &Surface, tile: TileRect, whole: Whole, band: &mut [f32]) {
-    let width = surface.size().width as usize;
-    let row_of = |y: usize| y * width + tile.x0..y * width + tile.x0 + tile.cols;
-    if whole == Whole::Yes {
-        (0..tile.rows).for_each(|y| band[row_of(y)].fill(1.0));
-        return;
-    }
+pub(super) fn fill(surface: &Surface, tile: TileRect, band: &mut [f32]) {
+    let (width, height) = (surface.size().width as usize, surface.size().height as usize);
     let fades: [f32; FADE_PX * FADE_PX + 1] = std::array::from_fn(|d| fade_at(d as u32));
     let top = tile.y0.saturating_sub(FADE_PX);
-    let bottom = (tile.y0 + tile.rows + FADE_PX).min(surface.size().height as usize);
-    let along: Vec<Vec<u8>> = (top..bottom).map(|y| along_row(surface, tile, y)).collect();
+    let rows = top..(tile.y0 + tile.rows + FADE_PX).min(height);
+    let along: Vec<Option<Vec<u8>>> = rows.clone().map(|y| along_row(surface, tile, y)).collect();
+    let mut squared = vec![0u8; tile.cols];
     for y in 0..tile.rows {
+        let out = &mut band[y * width + tile.x0..][..tile.cols];
         let here = tile.y0 + y;
-        let rows = here.saturating_sub(FADE_PX)..(here + FADE_PX + 1).min(bottom);
-        for (x, out) in band[row_of(y)].iter_mut().enumerate() {
-            let squared = rows.clone().map(|r| {
-                let (dx, dy) = (usize::from(along[r - top][x]), r.abs_diff(here));
-                dx * dx + dy * dy
-            });
-            *out = fades[squared.min().unwrap_or(0).min(FADE_PX * FADE_PX)];
+        let near = here.saturating_sub(FADE_PX)..(here + FADE_PX + 1).min(rows.end);
+        if near.clone().all(|r| along[r - top].is_none()) {
+            out.fill(1.0);
+            continue;
+        }
+        squared.fill((FADE_PX * FADE_PX) as u8);
+        for r in near {
+            if let Some(along) = &along[r - top] {
+                nearer(along, (r.abs_diff(here).pow(2)) as u8, &mut squared);
+            }
+        }
+        for (out, &d) in out.iter_mut().zip(&squared) {
+            *out = fades[usize::from(d)];
         }
     }
 }
 
-/// For each pixel of a tile's row the distance along the row to the nearest break, at most [`FADE_PX`].
-fn along_row(surface: &Surface, tile: TileRect, y: usize) -> Vec<u8> {
+crate::widest! {
+    /// Distances along a row from 0 at breaks, at most [`FADE_PX`]; `breaks` is [`FADE_PX`] longer at both ends.
+    fn spread(breaks: &[u8], distance: &mut [u8]) {
+        let n = distance.len();
+        distance.copy_from_slice(&breaks[FADE_PX..FADE_PX + n]);
+        for k in 1..FADE_PX {
+            let (back, forth) = (&breaks[FADE_PX - k..][..n], &breaks[FADE_PX + k..][..n]);
+            for i in 0..n {
+                distance[i] = distance[i].min(k as u8 + back[i].min(forth[i]));
+            }
+        }
+    }
+
+    /// Lowers squared distances to those through a row `dy_squared` away.
+    fn nearer(along: &[u8], dy_squared: u8, squared: &mut [u8]) {
+        for (s, &d) in squared.iter_mut().zip(along) {
+            *s = (*s).min(d * d + dy_squared);
+        }
+    }
+}
+
+/// For each pixel of a tile's row the distance along the row to the nearest break, at most [`FADE_PX`]; `None` where
+/// there is no break that near.
+fn along_row(surface: &Surface, tile: TileRect, y: usize) -> Option<Vec<u8>> {
     let from = tile.x0.saturating_sub(FADE_PX);
     let to = (tile.x0 + tile.cols + FADE_PX).min(surface.size().width as usize);
-    let mut distance: Vec<u8> = (from..to).map(|x| if is_break(surface, x, y) { 0 } else { FADE_PX as u8 }).collect();
-    for i in 1..distance.len() {
-        distance[i] = distance[i].min(distance[i - 1] + 1);
+    if all_linked(&surface.links_plane().row(y)[from..to]) {
+        return None;
     }
-    for i in (1..distance.len()).rev() {
-        distance[i - 1] = distance[i - 1].min(distance[i] + 1);
+    // Three pixels without a break stand at both ends, so that every pixel looks the same way.
+    let mut breaks = vec![FADE_PX as u8; tile.cols + 2 * FADE_PX];
+    let rim = beyond(y, surface.size().height, links::UP, links::DOWN);
+    for x in from..to {
+        let all = surface.links_plane().at(x, y) | rim | beyond(x, surface.size().width, links::LEFT, links::RIGHT);
+        breaks[x + FADE_PX - tile.x0] = if all == 15 { FADE_PX as u8 } else { 0 };
     }
-    distance[tile.x0 - from..tile.x0 - from + tile.cols].to_vec()
+    let mut distance = vec![0; tile.cols];
+    spread(&breaks, &mut distance);
+    Some(distance)
 }

@@ -86,26 +86,34 @@ pub(super) struct CurvatureCache {
 }
 
 impl CurvatureCache {
-    /// Several scales of one layer are weighed at once; more than these are computed again.
-    const KEPT: usize = 6;
+    /// Pixels of all curvatures kept, 16 bytes each: a few scales weighed at once, or two on a large canvas.
+    const KEPT_PX: usize = 16 << 20;
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(u32, Arc<Curvature>)>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
     /// Never computes under the lock: a thread that waits for its own pool's work would stand still.
-    fn get_or_compute(&self, blur_px: f32, compute: impl FnOnce() -> Curvature) -> Arc<Curvature> {
+    ///
+    /// `keep`: how many are held; `compute` is handed the planes of one that nobody holds any more.
+    fn get_or_compute(
+        &self,
+        blur_px: f32,
+        keep: usize,
+        compute: impl FnOnce(Option<Curvature>) -> Curvature,
+    ) -> Arc<Curvature> {
         let key = blur_px.to_bits();
         let find = |kept: &[(u32, Arc<Curvature>)]| kept.iter().find(|(k, _)| *k == key).map(|(_, c)| c.clone());
-        if let Some(found) = find(&self.lock()) {
-            return found;
-        }
-        let computed = Arc::new(compute());
+        let recycled = {
+            let mut kept = self.lock();
+            if let Some(found) = find(&kept) {
+                return found;
+            }
+            (kept.len() >= keep).then(|| kept.remove(0).1).and_then(Arc::into_inner)
+        };
+        let computed = Arc::new(compute(recycled));
         let mut kept = self.lock();
         if let Some(found) = find(&kept) {
             return found;
-        }
-        if kept.len() >= Self::KEPT {
-            kept.remove(0);
         }
         kept.push((key, computed.clone()));
         computed
@@ -120,7 +128,8 @@ impl Surface {
     pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
         // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.
         let blur_px = blur_px.max(0.0).min(0.5 * self.size().longer_side());
-        self.curvatures().get_or_compute(blur_px, || tiles::compute(self, blur_px))
+        let keep = (CurvatureCache::KEPT_PX / self.size().area().max(1)).clamp(2, 8);
+        self.curvatures().get_or_compute(blur_px, keep, |recycled| tiles::compute(self, blur_px, recycled))
     }
 }
 

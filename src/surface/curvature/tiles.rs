@@ -2,6 +2,7 @@
 //! Floor 2. The plain version that reads like the paper is `reference`.
 
 use super::{Curvature, fade, slope, tensor};
+use crate::math::Size;
 use crate::raster::Plane;
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
@@ -9,32 +10,35 @@ use rayon::prelude::*;
 /// Columns of a tile's scratch: the tile and one pixel around it for the differences.
 const STRIDE: usize = 256;
 const TILE_COLS: usize = STRIDE - 2;
-/// Rows of a band: enough that the rows blurred twice, for two bands, are few.
+/// Rows of a band: enough that the rows blurred twice, once for each of two bands, are few.
 const BAND_ROWS: usize = 64;
 /// Pixels summed side by side in registers.
 const LANES: usize = 32;
 
+/// Chunks of a row of scratch.
+const CHUNKS: usize = STRIDE / LANES;
+
 /// Computes H and its fade for every pixel. `blur_px`: standard deviation, finite, `≥ 0`.
-pub(super) fn compute(surface: &Surface, blur_px: f32) -> Curvature {
+///
+/// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160 fresh memory costs as much as the work.
+pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvature>) -> Curvature {
     let size = surface.size();
-    let width = size.width as usize;
     let taps = half_kernel(blur_px);
-    let mut planes: [Vec<f32>; 4] = std::array::from_fn(|_| vec![0.0; size.area()]);
-    let [hxx, hxy, hyy, fading] = &mut planes;
-    let band = BAND_ROWS * width;
-    let bands =
-        (hxx.par_chunks_mut(band), hxy.par_chunks_mut(band), hyy.par_chunks_mut(band), fading.par_chunks_mut(band));
-    bands.into_par_iter().enumerate().for_each_init(
+    let mut planes = match recycled {
+        Some(Curvature { hxx, hxy, hyy, fade }) => [hxx, hxy, hyy, fade].map(Plane::into_values),
+        None => std::array::from_fn(|_| vec![0.0; size.area()]),
+    };
+    let [hxx, hxy, hyy, fade] = planes.each_mut().map(|p| p.par_chunks_mut(BAND_ROWS * size.width as usize));
+    (hxx, hxy, hyy, fade).into_par_iter().enumerate().for_each_init(
         || Scratch::new(taps.len() - 1),
         |scratch, (i, (hxx, hxy, hyy, fading))| {
-            let y0 = i * BAND_ROWS;
-            let rows = fading.len() / width;
-            for x0 in (0..width).step_by(TILE_COLS) {
-                let tile = TileRect { x0, y0, cols: TILE_COLS.min(width - x0), rows };
-                let Some(whole) = tile.wholeness(surface.links_plane(), taps.len() + 1) else { continue };
-                let mut out = TileOut { width, x0, planes: [&mut *hxx, &mut *hxy, &mut *hyy] };
-                scratch.tensor_tile(surface, &taps, tile, whole, &mut out);
-                fade::fill(surface, tile, whole, &mut fading[..]);
+            for tile in TileRect::of_band(size, i * BAND_ROWS) {
+                if tile.is_empty(surface) {
+                    [&mut *hxx, hxy, hyy, fading].into_iter().for_each(|plane| tile.clear(plane, size));
+                } else {
+                    scratch.tensor_tile(surface, &taps, tile, [&mut *hxx, hxy, hyy]);
+                    fade::fill(surface, tile, fading);
+                }
             }
         },
     );
@@ -52,13 +56,6 @@ pub(super) fn half_kernel(sigma_px: f32) -> Vec<f32> {
     (0..=radius).map(|k| (weight(k) / sum) as f32).collect()
 }
 
-/// Whether some surface of a tile ends in or near it.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Whole {
-    Yes,
-    Broken,
-}
-
 /// The pixels of one tile.
 #[derive(Clone, Copy)]
 pub(super) struct TileRect {
@@ -69,41 +66,35 @@ pub(super) struct TileRect {
 }
 
 impl TileRect {
-    /// `None` where the tile holds no linked pixel; `Whole::Yes` where every pixel in it and `reach` around it has all links.
-    fn wholeness(&self, links: &Plane<u8>, reach: usize) -> Option<Whole> {
-        let columns = |reach: usize| self.x0.saturating_sub(reach)..(self.x0 + self.cols + reach).min(links.width());
-        let mut any = 0;
-        for y in self.y0..self.y0 + self.rows {
-            any |= links.row(y)[columns(0)].iter().fold(0, |a, &b| a | b);
-        }
-        if any == 0 {
-            return None;
-        }
-        let mut all = 15;
-        for y in self.y0.saturating_sub(reach)..(self.y0 + self.rows + reach).min(links.height()) {
-            all &= links.row(y)[columns(reach)].iter().fold(15, |a, &b| a & b);
-        }
-        Some(if all == 15 { Whole::Yes } else { Whole::Broken })
+    /// The tiles of the band of rows that starts at `y0`.
+    fn of_band(size: Size, y0: usize) -> impl Iterator<Item = TileRect> {
+        let (width, rows) = (size.width as usize, BAND_ROWS.min(size.height as usize - y0));
+        (0..width).step_by(TILE_COLS).map(move |x0| TileRect { x0, y0, cols: TILE_COLS.min(width - x0), rows })
+    }
+    /// No pixel of the tile is linked to another: there is nothing to difference.
+    fn is_empty(&self, surface: &Surface) -> bool {
+        (0..self.rows).all(|y| surface.links_plane().row(self.y0 + y)[self.columns()].iter().all(|&l| l == 0))
+    }
+    fn clear(&self, band: &mut [f32], size: Size) {
+        (0..self.rows).for_each(|y| band[y * size.width as usize..][self.columns()].fill(0.0));
+    }
+    pub fn columns(&self) -> std::ops::Range<usize> {
+        self.x0..self.x0 + self.cols
     }
 }
 
-/// Where a tile's tensor goes: a band's rows of `[h_xx, h_xy, h_yy]`.
-struct TileOut<'a> {
-    width: usize,
-    x0: usize,
-    planes: [&'a mut [f32]; 3],
-}
-
-/// What one thread reuses from tile to tile.
+/// What one thread reuses from tile to tile. Rows of it are `STRIDE` long and begin one pixel left of the tile.
 struct Scratch {
     /// One row of one channel with the kernel's reach at both sides.
     line: Vec<f32>,
-    /// 1 where a pixel of the row is linked to the next.
+    /// 1 where a pixel of the row is joined to the next; beyond the canvas, where values are 0, it does not matter: 1.
     joined: Vec<f32>,
     /// Blurred along rows: n̄_x, n̄_y, n_z with the kernel's reach above and below.
     across: [Vec<f32>; 3],
-    /// 1 where a pixel is linked to the one below; rows as `across`.
+    /// 1 where a pixel is joined to the one below; rows as `across`.
     down: Vec<f32>,
+    /// For each chunk of `down`, over how many rows up to and with this one all its pixels are joined downward.
+    joined_rows: Vec<[usize; CHUNKS]>,
     /// Slopes, one pixel around the tile.
     slopes: [Vec<f32>; 2],
 }
@@ -116,77 +107,89 @@ impl Scratch {
             joined: vec![0.0; STRIDE + 2 * reach],
             across: std::array::from_fn(|_| vec![0.0; (rows + 2 * reach) * STRIDE]),
             down: vec![0.0; (rows + 2 * reach) * STRIDE],
+            joined_rows: vec![[0; CHUNKS]; rows + 2 * reach],
             slopes: std::array::from_fn(|_| vec![0.0; rows * STRIDE]),
         }
     }
 
-    fn tensor_tile(&mut self, surface: &Surface, taps: &[f32], tile: TileRect, whole: Whole, out: &mut TileOut) {
+    fn tensor_tile(&mut self, surface: &Surface, taps: &[f32], tile: TileRect, mut out: [&mut [f32]; 3]) {
         let reach = taps.len() - 1;
         for row in 0..tile.rows + 2 + 2 * reach {
-            self.blur_row(surface, taps, tile, whole, row);
+            self.blur_row(surface, taps, tile, row);
         }
         let [sx, sy] = &mut self.slopes;
-        let columns = Columns { taps, across: &self.across, down: &self.down };
-        match whole {
-            Whole::Yes => slopes_whole(&columns, tile.rows + 2, sx, sy),
-            Whole::Broken => slopes_broken(&columns, tile.rows + 2, sx, sy),
+        for row in 0..tile.rows + 2 {
+            let at = row * STRIDE..(row + 1) * STRIDE;
+            // Taps step over the links of the rows from the topmost to the one above the lowest.
+            let joined_rows = self.joined_rows[(row + 2 * reach).saturating_sub(1)].map(|rows| rows >= 2 * reach);
+            let columns = Columns { taps, across: &self.across, down: &self.down, top: at.start, joined_rows };
+            blur_down_to_slopes(columns, &mut sx[at.clone()], &mut sy[at]);
         }
         for y in 0..tile.rows {
-            let from = y * out.width + out.x0;
-            let [hxx, hxy, hyy] = &mut out.planes;
-            difference_row(
-                DifferenceRow {
-                    sx: &sx[y * STRIDE..],
-                    sy: &sy[y * STRIDE..],
-                    links: &surface.links_plane().row(tile.y0 + y)[tile.x0..tile.x0 + tile.cols],
-                },
-                &mut hxx[from..from + tile.cols],
-                &mut hxy[from..from + tile.cols],
-                &mut hyy[from..from + tile.cols],
-            );
+            let links = &surface.links_plane().row(tile.y0 + y)[tile.columns()];
+            let from = y * surface.size().width as usize + tile.x0;
+            let [hxx, hxy, hyy] = out.each_mut().map(|plane| &mut plane[from..from + tile.cols]);
+            let slopes = [&sx[y * STRIDE..(y + 3) * STRIDE], &sy[y * STRIDE..(y + 3) * STRIDE]];
+            if all_linked(links) {
+                difference_joined_row(slopes, hxx, hxy, hyy);
+            } else {
+                difference_row(slopes, links, hxx, hxy, hyy);
+            }
         }
     }
 
     /// Blurs one row of the three channels along x; `row` counts from the top of `across`.
-    fn blur_row(&mut self, surface: &Surface, taps: &[f32], tile: TileRect, whole: Whole, row: usize) {
+    fn blur_row(&mut self, surface: &Surface, taps: &[f32], tile: TileRect, row: usize) {
         let reach = taps.len() - 1;
-        let y = (tile.y0 + row) as isize - 1 - reach as isize;
         let at = row * STRIDE..(row + 1) * STRIDE;
-        if y < 0 || y >= surface.size().height as isize {
+        let above = if row == 0 { [0; CHUNKS] } else { self.joined_rows[row - 1] };
+        let y = (tile.y0 + row).checked_sub(1 + reach).filter(|&y| y < surface.size().height as usize);
+        let Some(y) = y else {
             self.across.iter_mut().for_each(|c| c[at.clone()].fill(0.0));
-            self.down[at].fill(0.0);
+            self.down[at].fill(1.0);
+            self.joined_rows[row] = above.map(|rows| rows + 1);
             return;
-        }
-        let y = y as usize;
+        };
+        let links = surface.links_plane().row(y);
         let first = tile.x0 as isize - 1 - reach as isize;
-        if whole == Whole::Broken {
-            let links = surface.links_plane().row(y);
-            copy_row(links, first, &mut self.joined, |l| f32::from(u8::from(l & links::RIGHT != 0)));
-            copy_row(links, first + reach as isize, &mut self.down[at.clone()], |l| {
-                f32::from(u8::from(l & links::DOWN != 0))
-            });
+        let reached = first.max(0) as usize..(tile.x0 + tile.cols + 1 + reach).min(links.len());
+        let mut joined_chunks = [true; CHUNKS];
+        let mut joined_down = [true; CHUNKS];
+        if all_linked(&links[reached]) {
+            self.down[at.clone()].fill(1.0);
+        } else {
+            let last_row = y + 1 == surface.size().height as usize;
+            let bit = |l: u8, bit: u8| f32::from(u8::from(l & bit != 0));
+            copy_row(links, first, 1.0, &mut self.joined, |l| bit(l, links::RIGHT));
+            let down = |l: u8| if last_row { 1.0 } else { bit(l, links::DOWN) };
+            copy_row(links, first + reach as isize, 1.0, &mut self.down[at.clone()], down);
+            joined_chunks = std::array::from_fn(|i| all_set(&self.joined[i * LANES..(i + 1) * LANES + 2 * reach]));
+            joined_down = std::array::from_fn(|i| all_set(lanes(&self.down, at.start + i * LANES)));
         }
+        self.joined_rows[row] = std::array::from_fn(|i| if joined_down[i] { above[i] + 1 } else { 0 });
         for (plane, across) in surface.normal_planes().into_iter().zip(&mut self.across) {
-            copy_row(plane.row(y), first, &mut self.line, |v| v);
-            match whole {
-                Whole::Yes => blur_line_whole(&self.line, taps, &mut across[at.clone()]),
-                Whole::Broken => blur_line_broken(&self.line, &self.joined, taps, &mut across[at.clone()]),
-            }
+            let reaching = STRIDE + 2 * reach;
+            let inside = usize::try_from(first).ok().and_then(|first| plane.row(y).get(first..first + reaching));
+            let line = inside.unwrap_or_else(|| {
+                copy_row(plane.row(y), first, 0.0, &mut self.line, |v| v);
+                &self.line
+            });
+            blur_line(line, &self.joined, joined_chunks, taps, &mut across[at.clone()]);
         }
     }
 }
 
-/// Copies `row[first..]` into `out`, 0 beyond the row's ends.
-fn copy_row<T: Copy>(row: &[T], first: isize, out: &mut [f32], value: impl Fn(T) -> f32) {
+/// Copies `row[first..]` into `out`; what lies beyond the row's ends is `beyond`.
+fn copy_row<T: Copy>(row: &[T], first: isize, beyond: f32, out: &mut [f32], value: impl Fn(T) -> f32) {
     let from = first.clamp(0, row.len() as isize);
     let to = (first + out.len() as isize).clamp(from, row.len() as isize);
     let before = ((from - first) as usize).min(out.len());
-    out[..before].fill(0.0);
+    out[..before].fill(beyond);
     let held = (to - from) as usize;
     for (o, &v) in out[before..before + held].iter_mut().zip(&row[from as usize..to as usize]) {
         *o = value(v);
     }
-    out[before + held..].fill(0.0);
+    out[before + held..].fill(beyond);
 }
 
 /// The `LANES` values that start at `i`.
@@ -195,129 +198,137 @@ fn lanes(values: &[f32], i: usize) -> &[f32; LANES] {
     values[i..i + LANES].try_into().expect("a slice of LANES values")
 }
 
-crate::widest! {
-    /// Σ_k w_k line[x ± k], every pixel linked.
-    fn blur_line_whole(line: &[f32], taps: &[f32], out: &mut [f32]) {
-        let reach = taps.len() - 1;
-        for (chunk, out) in out.chunks_exact_mut(LANES).enumerate() {
-            let center = chunk * LANES + reach;
-            let mut sum = lanes(line, center).map(|v| taps[0] * v);
-            for (k, &w) in taps.iter().enumerate().skip(1) {
-                let (a, b) = (lanes(line, center - k), lanes(line, center + k));
-                for i in 0..LANES {
-                    sum[i] += w * (a[i] + b[i]);
-                }
-            }
-            out.copy_from_slice(&sum);
+/// Σ_k w_k value(± k steps) for the `LANES` pixels from `center` on, all joined.
+#[inline(always)]
+fn sum_joined(values: &[f32], center: usize, step: usize, taps: &[f32]) -> [f32; LANES] {
+    let mut sum = *lanes(values, center);
+    for v in &mut sum {
+        *v *= taps[0];
+    }
+    for (k, &w) in taps.iter().enumerate().skip(1) {
+        let (a, b) = (lanes(values, center - k * step), lanes(values, center + k * step));
+        for l in 0..LANES {
+            sum[l] += w * (a[l] + b[l]);
         }
     }
-
-    /// As [`blur_line_whole`]; a weight dies at the first link that is broken on the way.
-    fn blur_line_broken(line: &[f32], joined: &[f32], taps: &[f32], out: &mut [f32]) {
-        let reach = taps.len() - 1;
-        for (chunk, out) in out.chunks_exact_mut(LANES).enumerate() {
-            let center = chunk * LANES + reach;
-            let mut sum = lanes(line, center).map(|v| taps[0] * v);
-            let (mut left, mut right) = ([1.0f32; LANES], [1.0f32; LANES]);
-            for (k, &w) in taps.iter().enumerate().skip(1) {
-                let (a, b) = (lanes(line, center - k), lanes(line, center + k));
-                let (to_a, to_b) = (lanes(joined, center - k), lanes(joined, center + k - 1));
-                for i in 0..LANES {
-                    left[i] *= to_a[i];
-                    right[i] *= to_b[i];
-                    sum[i] += w * (left[i] * a[i] + right[i] * b[i]);
-                }
-            }
-            out.copy_from_slice(&sum);
-        }
-    }
-
-    /// Blurs down the columns and takes the slopes, every pixel linked.
-    fn slopes_whole(columns: &Columns, rows: usize, sx: &mut [f32], sy: &mut [f32]) {
-        let reach = columns.taps.len() - 1;
-        for i in (0..rows * STRIDE).step_by(LANES) {
-            let center = i + reach * STRIDE;
-            let sum = std::array::from_fn(|c| {
-                let across = &columns.across[c];
-                let mut sum = lanes(across, center).map(|v| columns.taps[0] * v);
-                for (k, &w) in columns.taps.iter().enumerate().skip(1) {
-                    let (a, b) = (lanes(across, center - k * STRIDE), lanes(across, center + k * STRIDE));
-                    for l in 0..LANES {
-                        sum[l] += w * (a[l] + b[l]);
-                    }
-                }
-                sum
-            });
-            store_slopes(&sum, &mut sx[i..i + LANES], &mut sy[i..i + LANES]);
-        }
-    }
-
-    /// As [`slopes_whole`]; a weight dies at the first link that is broken on the way.
-    fn slopes_broken(columns: &Columns, rows: usize, sx: &mut [f32], sy: &mut [f32]) {
-        let reach = columns.taps.len() - 1;
-        for i in (0..rows * STRIDE).step_by(LANES) {
-            let center = i + reach * STRIDE;
-            let mut sum: [[f32; LANES]; 3] =
-                std::array::from_fn(|c| lanes(&columns.across[c], center).map(|v| columns.taps[0] * v));
-            let (mut up, mut down) = ([1.0f32; LANES], [1.0f32; LANES]);
-            for (k, &w) in columns.taps.iter().enumerate().skip(1) {
-                let (a, b) = (center - k * STRIDE, center + k * STRIDE);
-                let (to_a, to_b) = (lanes(columns.down, a), lanes(columns.down, b - STRIDE));
-                for l in 0..LANES {
-                    up[l] *= to_a[l];
-                    down[l] *= to_b[l];
-                }
-                for (sum, across) in sum.iter_mut().zip(columns.across) {
-                    let (a, b) = (lanes(across, a), lanes(across, b));
-                    for l in 0..LANES {
-                        sum[l] += w * (up[l] * a[l] + down[l] * b[l]);
-                    }
-                }
-            }
-            store_slopes(&sum, &mut sx[i..i + LANES], &mut sy[i..i + LANES]);
-        }
-    }
-
-    /// H of one row of the tile from the slopes around it.
-    fn difference_row(row: DifferenceRow, hxx: &mut [f32], hxy: &mut [f32], hyy: &mut [f32]) {
-        let DifferenceRow { sx, sy, links } = row;
-        let n = links.len();
-        let (sx, sy) = (&sx[..2 * STRIDE + n + 2], &sy[..2 * STRIDE + n + 2]);
-        let (hxx, hxy, hyy) = (&mut hxx[..n], &mut hxy[..n], &mut hyy[..n]);
-        for i in 0..n {
-            let linked = |bit: u8| f32::from(u8::from(links[i] & bit != 0));
-            let (left, right) = (linked(links::LEFT), linked(links::RIGHT));
-            let (up, down) = (linked(links::UP), linked(links::DOWN));
-            let (across, along) = (1.0 / (left + right).max(1.0), 1.0 / (up + down).max(1.0));
-            let c = STRIDE + 1 + i;
-            let dx = |s: &[f32]| across * (left * (s[c] - s[c - 1]) + right * (s[c + 1] - s[c]));
-            let dy = |s: &[f32]| along * (up * (s[c] - s[c - STRIDE]) + down * (s[c + STRIDE] - s[c]));
-            let h = tensor((dx(sx), dx(sy)), (dy(sx), dy(sy)));
-            hxx[i] = h[0];
-            hxy[i] = h[1];
-            hyy[i] = h[2];
-        }
-    }
+    sum
 }
 
-/// What the blur down the columns reads.
+/// As [`sum_joined`]; a weight dies at the first broken link on the way.
+#[inline(always)]
+fn sum_broken(values: &[f32], joined: &[f32], center: usize, step: usize, taps: &[f32]) -> [f32; LANES] {
+    let mut sum = *lanes(values, center);
+    for v in &mut sum {
+        *v *= taps[0];
+    }
+    let (mut back, mut forth) = ([1.0f32; LANES], [1.0f32; LANES]);
+    for (k, &w) in taps.iter().enumerate().skip(1) {
+        let (a, b) = (center - k * step, center + k * step);
+        let (to_a, to_b) = (lanes(joined, a), lanes(joined, b - step));
+        let (a, b) = (lanes(values, a), lanes(values, b));
+        for l in 0..LANES {
+            back[l] *= to_a[l];
+            forth[l] *= to_b[l];
+            sum[l] += w * (back[l] * a[l] + forth[l] * b[l]);
+        }
+    }
+    sum
+}
+
+/// What the blur down the columns of one row reads; `top` is where its topmost tap stands.
+#[derive(Clone, Copy)]
 struct Columns<'a> {
     taps: &'a [f32],
     across: &'a [Vec<f32>; 3],
     down: &'a [f32],
+    top: usize,
+    joined_rows: [bool; CHUNKS],
 }
 
-/// What the differences of one row read: slopes from the row above on, and the links of its pixels.
-#[derive(Clone, Copy)]
-struct DifferenceRow<'a> {
-    sx: &'a [f32],
-    sy: &'a [f32],
-    links: &'a [u8],
-}
-
-#[inline(always)]
-fn store_slopes(normal: &[[f32; LANES]; 3], sx: &mut [f32], sy: &mut [f32]) {
-    for l in 0..LANES {
-        (sx[l], sy[l]) = slope(normal[0][l], normal[1][l], normal[2][l]);
+crate::widest! {
+    /// Every pixel continues into its four neighbours.
+    pub(super) fn all_linked(links: &[u8]) -> bool {
+        links.iter().fold(15, |all, &l| all & l) == 15
     }
+
+    /// No joint is missing.
+    fn all_set(joined: &[f32]) -> bool {
+        joined.iter().fold(true, |all, &j| all & (j != 0.0))
+    }
+
+    /// Blurs a row; `line` and `joined` reach beyond it at both sides, `joined_chunks` says where nothing is broken.
+    fn blur_line(line: &[f32], joined: &[f32], joined_chunks: [bool; CHUNKS], taps: &[f32], out: &mut [f32]) {
+        let reach = taps.len() - 1;
+        for (chunk, out) in out.chunks_exact_mut(LANES).enumerate() {
+            let start = chunk * LANES;
+            let sum = if joined_chunks[chunk] {
+                sum_joined(line, start + reach, 1, taps)
+            } else {
+                sum_broken(line, joined, start + reach, 1, taps)
+            };
+            out.copy_from_slice(&sum);
+        }
+    }
+
+    /// Blurs one row down the columns and takes its slopes.
+    fn blur_down_to_slopes(columns: Columns, sx: &mut [f32], sy: &mut [f32]) {
+        let Columns { taps, across, down, top, joined_rows } = columns;
+        let reach = taps.len() - 1;
+        for (chunk, (sx, sy)) in sx.chunks_exact_mut(LANES).zip(sy.chunks_exact_mut(LANES)).enumerate() {
+            let center = top + reach * STRIDE + chunk * LANES;
+            let mut normal = [[0.0f32; LANES]; 3];
+            for (sum, across) in normal.iter_mut().zip(across) {
+                *sum = if joined_rows[chunk] {
+                    sum_joined(across, center, STRIDE, taps)
+                } else {
+                    sum_broken(across, down, center, STRIDE, taps)
+                };
+            }
+            for l in 0..LANES {
+                (sx[l], sy[l]) = slope(normal[0][l], normal[1][l], normal[2][l]);
+            }
+        }
+    }
+
+    /// H of one row from the slopes of it and of its neighbours, every pixel having all its links.
+    fn difference_joined_row(slopes: [&[f32]; 2], hxx: &mut [f32], hxy: &mut [f32], hyy: &mut [f32]) {
+        let n = hxx.len();
+        let (hxy, hyy) = (&mut hxy[..n], &mut hyy[..n]);
+        let [up, here, down] = rows(slopes, n);
+        for i in 0..n {
+            let half = |s: &[&[f32]; 2], i: usize, t: &[&[f32]; 2], j: usize| {
+                (0.5 * (t[0][j] - s[0][i]), 0.5 * (t[1][j] - s[1][i]))
+            };
+            [hxx[i], hxy[i], hyy[i]] = tensor(half(&here, i, &here, i + 2), half(&up, i + 1, &down, i + 1));
+        }
+    }
+
+    /// As [`difference_joined_row`]: central where both neighbours are linked, one-sided where one is.
+    fn difference_row(slopes: [&[f32]; 2], links: &[u8], hxx: &mut [f32], hxy: &mut [f32], hyy: &mut [f32]) {
+        let n = links.len();
+        let (hxx, hxy, hyy) = (&mut hxx[..n], &mut hxy[..n], &mut hyy[..n]);
+        let [above, here, below] = rows(slopes, n);
+        for i in 0..n {
+            let linked = |bit: u8| f32::from(u8::from(links[i] & bit != 0));
+            let (left, right) = (linked(links::LEFT), linked(links::RIGHT));
+            let (up, down) = (linked(links::UP), linked(links::DOWN));
+            // 1 over the number of links, where there are any.
+            let (across, along) = (1.0 - 0.5 * left * right, 1.0 - 0.5 * up * down);
+            let dx = |c: usize| {
+                let [a, b, e] = [here[c][i], here[c][i + 1], here[c][i + 2]];
+                across * (left * (b - a) + right * (e - b))
+            };
+            let dy = |c: usize| {
+                let [a, b, e] = [above[c][i + 1], here[c][i + 1], below[c][i + 1]];
+                along * (up * (b - a) + down * (e - b))
+            };
+            [hxx[i], hxy[i], hyy[i]] = tensor((dx(0), dx(1)), (dy(0), dy(1)));
+        }
+    }
+}
+
+/// The row above, the row itself and the row below of both slopes, each `n + 2` pixels from one left of the tile.
+#[inline(always)]
+fn rows(slopes: [&[f32]; 2], n: usize) -> [[&[f32]; 2]; 3] {
+    [0, STRIDE, 2 * STRIDE].map(|r| slopes.map(|s| &s[r..r + n + 2]))
 }
