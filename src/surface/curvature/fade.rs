@@ -16,6 +16,7 @@ pub(super) fn is_break(surface: &Surface, x: usize, y: usize) -> bool {
 }
 
 /// The links that lead beyond the canvas at coordinate `i` of `n`.
+#[inline(always)]
 fn beyond(i: usize, n: u32, back: u8, forth: u8) -> u8 {
     let (first, last) = (i == 0, i + 1 == n as usize);
     (if first { back } else { 0 }) | (if last { forth } else { 0 })
@@ -86,10 +87,8 @@ fn along_row(surface: &Surface, tile: TileRect, y: usize) -> Option<Vec<u8>> {
     }
     // Three pixels without a break stand at both ends, so that every pixel looks the same way.
     let mut breaks = vec![FADE_PX as u8; tile.cols + 2 * FADE_PX];
-    let rim = beyond(y, surface.size().height, links::UP, links::DOWN);
-    for x in from..to {
-        let all = surface.links_plane().at(x, y) | rim | beyond(x, surface.size().width, links::LEFT, links::RIGHT);
-        breaks[x + FADE_PX - tile.x0] = if all == 15 { FADE_PX as u8 } else { 0 };
+    for x in (from..to).filter(|&x| is_break(surface, x, y)) {
+        breaks[x + FADE_PX - tile.x0] = 0;
     }
     let mut distance = vec![0; tile.cols];
     spread(&breaks, &mut distance);
