@@ -1,5 +1,6 @@
 //! Floor 0: numbers without pictures. Vectors are `glam`'s; a position and a direction are both `Vec2`, told apart by name.
 
+pub mod fast;
 pub mod hash;
 pub mod rect;
 pub mod simd;

@@ -1,5 +1,9 @@
 //! Which features of the surface are enhanced: the scales of curvature, their weights and their direction (RS sec. 4).
-//! Floor 3. Curvature itself is the surface's.
+//! Floor 3. Curvature itself is the surface's; what κ then does is `scaling`.
+
+use crate::math::{Vec3, fast};
+use crate::surface::{Surface, curvature::Curvature};
+use std::sync::Arc;
 
 /// The mapping from the curvature tensor to κ.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,5 +34,144 @@ impl Default for FeatureScale {
 impl Default for Features {
     fn default() -> Self {
         Self { scales: vec![FeatureScale::default()], lambda: 0.0 }
+    }
+}
+
+impl Features {
+    /// The features of a surface. Its curvature is computed here unless the surface has kept it: ask before going parallel.
+    pub fn on(&self, surface: &Surface) -> FeatureMap {
+        let total: f32 = self.scales.iter().map(|s| s.weight).sum();
+        let part = |s: &FeatureScale| Part {
+            curvature: surface.curvature(s.blur_px),
+            curvature_scale_px: s.curvature_scale_px,
+            share: if total > 0.0 { s.weight / total } else { 0.0 },
+        };
+        FeatureMap { parts: self.scales.iter().map(part).collect(), lambda: self.lambda }
+    }
+}
+
+/// κ of every pixel of one surface, in `[−1, 1]`: convex > 0, 0 off the surface, at its edge and at depth jumps.
+pub struct FeatureMap {
+    parts: Vec<Part>,
+    lambda: f32,
+}
+
+struct Part {
+    curvature: Arc<Curvature>,
+    curvature_scale_px: f32,
+    /// Shares add up to 1.
+    share: f32,
+}
+
+impl FeatureMap {
+    /// κ(ℓ) of one pixel (MATH 4): the reference of the rows below. `light`: ℓ, camera space, any length.
+    pub fn at(&self, x: usize, y: usize, light: Vec3) -> f32 {
+        let kappa = |p: &Part| p.share * p.curvature.kappa_along(x, y, p.curvature_scale_px, self.lambda, light);
+        self.parts.iter().map(kappa).sum()
+    }
+    /// κ depends on the direction of the light.
+    pub fn is_directional(&self) -> bool {
+        self.lambda != 0.0
+    }
+    /// κ toward one direction, for the pixels of row `y` from column `x0` on, as many as `kappa` holds.
+    pub fn row_toward(&self, x0: usize, y: usize, light: Vec3, kappa: &mut [f32]) {
+        let l = light.normalize_or(Vec3::Z);
+        // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors, see `Curvature::kappa_along`.
+        let (along, across) = (self.lambda * (l.x * l.x - l.y * l.y), self.lambda * 4.0 * l.x * l.y);
+        let row = x0..x0 + kappa.len();
+        kappa.fill(0.0);
+        for p in &self.parts {
+            let s = p.curvature_scale_px;
+            let factors = [s * (1.0 + along), s * across, s * (1.0 - along)];
+            let c = &*p.curvature;
+            let planes = [&c.hxx, &c.hxy, &c.hyy, &c.fade].map(|plane| &plane.row(y)[row.clone()]);
+            add_toward(planes, factors, p.share, kappa);
+        }
+    }
+    /// κ toward each pixel's own direction: `light_x`, `light_y` are ℓ of unit length, as long as `kappa`.
+    pub fn row_along(&self, x0: usize, y: usize, [light_x, light_y]: [&[f32]; 2], kappa: &mut [f32]) {
+        if !self.is_directional() {
+            return self.row_toward(x0, y, Vec3::Z, kappa);
+        }
+        let row = x0..x0 + kappa.len();
+        kappa.fill(0.0);
+        for p in &self.parts {
+            let c = &*p.curvature;
+            let planes = [&c.hxx, &c.hxy, &c.hyy, &c.fade].map(|plane| &plane.row(y)[row.clone()]);
+            add_along(planes, [light_x, light_y], [p.curvature_scale_px, self.lambda, p.share], kappa);
+        }
+    }
+}
+
+crate::widest! {
+    /// Adds share · fade · tanh(f · h) to each pixel.
+    fn add_toward(planes: [&[f32]; 4], factors: [f32; 3], share: f32, kappa: &mut [f32]) {
+        let [hxx, hxy, hyy, fade] = planes;
+        let [fxx, fxy, fyy] = factors;
+        let pixels = hxx.iter().zip(hxy).zip(hyy).zip(fade).zip(kappa);
+        for ((((&hxx, &hxy), &hyy), &fade), kappa) in pixels {
+            *kappa += share * fade * fast::tanh(fxx * hxx + fxy * hxy + fyy * hyy);
+        }
+    }
+    /// As `add_toward`, with a direction for each pixel; `factors`: s, λ, share.
+    fn add_along(planes: [&[f32]; 4], light: [&[f32]; 2], factors: [f32; 3], kappa: &mut [f32]) {
+        let [hxx, hxy, hyy, fade] = planes;
+        let [s, lambda, share] = factors;
+        let pixels = hxx.iter().zip(hxy).zip(hyy).zip(fade).zip(light[0]).zip(light[1]).zip(kappa);
+        for ((((((&hxx, &hxy), &hyy), &fade), &lx), &ly), kappa) in pixels {
+            let aniso = (hxx - hyy) * (lx * lx - ly * ly) + 4.0 * hxy * lx * ly;
+            *kappa += share * fade * fast::tanh(s * (hxx + hyy + lambda * aniso));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, vec3};
+    use crate::raster::Plane;
+    use crate::surface::Maps;
+
+    /// An egg: convex everywhere, more across than along.
+    fn egg() -> Surface {
+        let size = Size::new(70, 40);
+        let normals = Plane::from_fn(size, |x, y| vec3((x as f32 - 35.0) / 90.0, (20.0 - y as f32) / 30.0, 1.0));
+        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) }).unwrap()
+    }
+    fn features(lambda: f32) -> Features {
+        let scale = |curvature_scale_px, blur_px, weight| FeatureScale { curvature_scale_px, blur_px, weight };
+        Features { scales: vec![scale(8.0, 0.0, 1.0), scale(20.0, 2.0, 3.0)], lambda }
+    }
+    #[test]
+    fn rows_hold_what_the_single_pixel_does() {
+        let (surface, light) = (egg(), vec3(0.5, -0.3, 0.7));
+        for lambda in [0.0, 1.0, -0.6] {
+            let map = features(lambda).on(&surface);
+            let (mut toward, mut along) = ([9.0; 33], [9.0; 33]);
+            map.row_toward(20, 11, light, &mut toward);
+            let l = light.normalize();
+            map.row_along(20, 11, [&[l.x; 33], &[l.y; 33]], &mut along);
+            for i in 0..33 {
+                let expected = map.at(20 + i, 11, light);
+                assert!((toward[i] - expected).abs() < 1e-5 && (along[i] - expected).abs() < 1e-5, "{lambda} {i}");
+            }
+        }
+    }
+    #[test]
+    fn the_weights_of_scales_are_a_mean() {
+        let surface = egg();
+        let one =
+            |i: usize| Features { scales: vec![features(0.0).scales[i]], lambda: 0.0 }.on(&surface).at(35, 20, Vec3::Z);
+        let both = features(0.0).on(&surface).at(35, 20, Vec3::Z);
+        assert!((both - (one(0) + 3.0 * one(1)) / 4.0).abs() < 1e-6);
+    }
+    #[test]
+    fn anisotropy_follows_the_light() {
+        let surface = egg();
+        let kappa = |lambda, light| features(lambda).on(&surface).at(35, 20, light);
+        let iso = kappa(0.0, Vec3::X);
+        assert!(kappa(1.0, Vec3::Y) > iso && kappa(1.0, Vec3::X) < iso, "it curves more along y");
+        assert_eq!(kappa(-1.0, Vec3::X), kappa(1.0, Vec3::Y));
+        assert_eq!(kappa(1.0, Vec3::Z), iso, "toward the viewer only the mean is left");
     }
 }
