@@ -3,8 +3,11 @@
 
 pub mod adjust;
 pub mod brush;
+mod dab;
 pub mod gradient;
 pub mod image;
+mod path;
+mod profile;
 mod ramp;
 pub mod scene;
 pub mod stroke;

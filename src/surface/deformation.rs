@@ -45,8 +45,6 @@ const FARTHEST_PX: f32 = 1e7;
 pub const DETAIL_SCALE_PX: f32 = 4.0;
 /// Blur of the normals before that, so that the steps of 8-bit maps are not taken for detail.
 pub const DETAIL_BLUR_PX: f32 = 1.0;
-/// Magnitudes beyond this are pulled in, for the same reason.
-const MAX_ALPHA: f32 = 1e5;
 
 impl<'a> Deformation<'a> {
     /// Reads the maps at the anchors.
@@ -70,7 +68,7 @@ impl<'a> Deformation<'a> {
                 Pin { anchor, reading }
             })
             .collect();
-        let operator = finite(bend.operator);
+        let operator = bend.operator.finite();
         let curvature = surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
         let weights = sane(bend.weights);
         Self { surface, unit_px: size.longer_side(), operator, weights, pins, curvature }
@@ -147,19 +145,6 @@ impl<'a> Deformation<'a> {
     fn on_surface(&self, x: i32, y: i32) -> Option<(&'a Surface, usize, usize)> {
         let surface = self.surface.filter(|s| s.coverage_plane().get(x, y).is_some_and(|c| c > 0))?;
         Some((surface, x as usize, y as usize))
-    }
-}
-
-/// The operator with parameters that are finite and not absurd.
-fn finite(operator: Operator) -> Operator {
-    let number = |v: f32| if v.is_finite() { v.clamp(-MAX_ALPHA, MAX_ALPHA) } else { 0.0 };
-    match operator {
-        Operator::None => Operator::None,
-        Operator::Depth { gamma } => Operator::Depth { gamma: number(gamma) },
-        Operator::Normal { alpha, beta, detail } => {
-            Operator::Normal { alpha: number(alpha), beta: number(beta), detail: number(detail) }
-        }
-        Operator::Reflection { alpha, detail } => Operator::Reflection { alpha: number(alpha), detail: number(detail) },
     }
 }
 

@@ -1,7 +1,7 @@
 //! The surface: normals, depth and coverage in the one convention of the program, whole and finite everywhere.
 //! Floor 2. Not here: files and their conventions (`io::maps`).
 
-use super::{curvature::CurvatureCache, grow, links};
+use super::{bounds::Bounds, curvature::CurvatureCache, grow, links};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 
@@ -38,6 +38,7 @@ pub struct Surface {
     links: Plane<u8>,
     depth_range_px: f32,
     curvatures: CurvatureCache,
+    bounds: Bounds,
 }
 
 impl Surface {
@@ -77,6 +78,7 @@ impl Surface {
             links,
             depth_range_px,
             curvatures: CurvatureCache::default(),
+            bounds: Bounds::default(),
         })
     }
     pub fn size(&self) -> Size {
@@ -119,6 +121,10 @@ impl Surface {
     /// Z: how many pixels deep the range 0 … 1 of depth is, estimated from how depth and normals agree.
     pub fn depth_range_px(&self) -> f32 {
         self.depth_range_px
+    }
+    /// Min–max pyramids of the maps, for `reach`.
+    pub(super) fn bounds(&self) -> &Bounds {
+        &self.bounds
     }
     pub(super) fn curvatures(&self) -> &CurvatureCache {
         &self.curvatures

@@ -5,6 +5,7 @@
 //! [`deformation`] evaluates them over tiles.
 
 pub mod anchor;
+mod bounds;
 pub mod curvature;
 pub mod deformation;
 pub mod fit;
@@ -12,6 +13,7 @@ pub mod grow;
 pub mod links;
 pub mod maps;
 pub mod operator;
+pub mod reach;
 pub mod scene;
 
 pub use anchor::{Anchor, Bend, Weights};
@@ -19,4 +21,5 @@ pub use curvature::Curvature;
 pub use deformation::Deformation;
 pub use maps::{Maps, Surface, SurfaceError};
 pub use operator::Operator;
+pub use reach::Reach;
 pub use scene::Scene;

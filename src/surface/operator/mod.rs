@@ -45,7 +45,24 @@ pub struct Slopes {
     pub nz: Vec2,
 }
 
+/// Magnitudes beyond this are pulled in, so that no product of distances leaves f32.
+const MAX_ALPHA: f32 = 1e5;
+
 impl Operator {
+    /// The operator with parameters that are finite and not absurd: what is not a number counts as 0.
+    pub fn finite(self) -> Self {
+        let number = |v: f32| if v.is_finite() { v.clamp(-MAX_ALPHA, MAX_ALPHA) } else { 0.0 };
+        match self {
+            Operator::None => Operator::None,
+            Operator::Depth { gamma } => Operator::Depth { gamma: number(gamma) },
+            Operator::Normal { alpha, beta, detail } => {
+                Operator::Normal { alpha: number(alpha), beta: number(beta), detail: number(detail) }
+            }
+            Operator::Reflection { alpha, detail } => {
+                Operator::Reflection { alpha: number(alpha), detail: number(detail) }
+            }
+        }
+    }
     /// It moves nothing on any surface: γ = 0 or α = 0.
     pub fn is_identity(self) -> bool {
         match self {

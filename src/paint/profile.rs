@@ -1,0 +1,119 @@
+//! The round tip: coverage as a function of the distance from the dab's centre, blurred in closed form.
+//! Floor 3. Pure functions.
+
+/// A radial profile, the radius of the undeformed footprint being 1.
+///
+/// Coverage is 1 up to the hardness and falls to 0 at the rim as a smoothstep. Softness blurs it with two kernels of
+/// half its extent each: one widens the smoothstep, the other is a box, which the integral below applies exactly. So the
+/// rim moves out to 1 + softness, the middle sinks as light spreads, and neither does so by jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundProfile {
+    /// Where the falloff ends, its length, and 1 / length.
+    end: f32,
+    length: f32,
+    per_length: f32,
+    /// Width of the box, squared.
+    blur_squared: f32,
+    /// The integral up to the centre, which [`RoundProfile::integral`] starts from.
+    start: f32,
+}
+
+impl RoundProfile {
+    /// Narrower falloffs and boxes than this are steps and points: their differences would drown in rounding.
+    const NARROW: f32 = 5e-4;
+
+    /// Hardness and softness in `[0, 1]`.
+    pub fn new(hardness: f32, softness: f32) -> Self {
+        let (middle, half) = (0.5 * (1.0 + hardness), 0.5 * (1.0 - hardness + softness));
+        let half = half.max(0.5 * Self::NARROW);
+        let (end, length) = (middle + half, 2.0 * half);
+        let (per_length, blur_squared) = (1.0 / length, softness * softness);
+        Self { end, length, per_length, blur_squared, start: smoothstep_integral(end * per_length) }
+    }
+    /// Beyond this distance coverage is 0 where no pixel's footprint widens it.
+    pub fn reach(&self) -> f32 {
+        self.end + 0.5 * self.blur_squared.sqrt()
+    }
+    /// Mean coverage at distance `r ≥ 0` over a pixel whose width along the radius has this square, both in radii.
+    ///
+    /// The box of the softness and the pixel's own add as variances do, so one mean serves both.
+    #[inline(always)]
+    pub fn mean(&self, r: f32, width_squared: f32) -> f32 {
+        let width = (self.blur_squared + width_squared).sqrt().max(Self::NARROW);
+        (self.integral(r + 0.5 * width) - self.integral(r - 0.5 * width)) / width
+    }
+    /// ∫ from 0 to x of the profile before the box; odd, since the profile continues evenly beyond the centre.
+    #[inline(always)]
+    fn integral(&self, x: f32) -> f32 {
+        let v = (self.end - x.abs()) * self.per_length;
+        (self.length * (self.start - smoothstep_integral(v))).copysign(x)
+    }
+}
+
+/// ∫ up to v of the smoothstep 3v² − 2v³, which is 0 below 0 and 1 above 1.
+#[inline(always)]
+fn smoothstep_integral(v: f32) -> f32 {
+    let s = v.max(0.0).min(1.0);
+    s * s * s * (1.0 - 0.5 * s) + (v - 1.0).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hard_tip_is_a_disc_and_its_rim_half_covers_a_pixel() {
+        let disc = RoundProfile::new(1.0, 0.0);
+        let pixel = 1.0 / 1600.0;
+        for (r, coverage) in [(0.0, 1.0), (0.9, 1.0), (1.0, 0.5), (1.00625, 0.25), (1.1, 0.0)] {
+            assert!((disc.mean(r, pixel) - coverage).abs() < 2e-3, "at {r}: {}", disc.mean(r, pixel));
+        }
+        assert!((disc.reach() - 1.0).abs() < 1e-3);
+    }
+    #[test]
+    fn coverage_is_whole_up_to_the_hardness_and_falls_as_a_smoothstep() {
+        let tip = RoundProfile::new(0.5, 0.0);
+        for (r, coverage) in [(0.0, 1.0), (0.49, 1.0), (0.625, 0.84375), (0.75, 0.5), (1.0, 0.0)] {
+            assert!((tip.mean(r, 0.0) - coverage).abs() < 1e-3, "at {r}: {}", tip.mean(r, 0.0));
+        }
+    }
+    #[test]
+    fn the_mean_equals_many_samples() {
+        for (hardness, softness) in [(0.0, 0.0), (0.3, 0.4), (1.0, 0.2), (0.0, 1.0)] {
+            let tip = RoundProfile::new(hardness, softness);
+            let inner = RoundProfile { blur_squared: 0.0, ..tip };
+            for (r, width) in [(0.0, 0.1f32), (0.4, 0.3), (0.9, 1.5), (1.3, 4.0)] {
+                let box_width = softness.hypot(width);
+                let n = 4000;
+                let sum: f64 = (0..n)
+                    .map(|i| r + box_width * ((i as f32 + 0.5) / n as f32 - 0.5))
+                    .map(|r| f64::from(inner.mean(r.abs(), 0.0)))
+                    .sum();
+                assert!((f64::from(tip.mean(r, width * width)) - sum / f64::from(n)).abs() < 1e-3);
+            }
+        }
+    }
+    #[test]
+    fn softness_changes_coverage_without_jumps() {
+        for hardness in [0.0, 0.5, 1.0] {
+            for r in [0.0, 0.5, 0.97, 1.2] {
+                let mut last = RoundProfile::new(hardness, 0.0).mean(r, 0.0025);
+                for i in 1..=200 {
+                    let next = RoundProfile::new(hardness, i as f32 / 200.0).mean(r, 0.0025);
+                    assert!((next - last).abs() < 0.04, "hardness {hardness}, r {r}, step {i}: {last} to {next}");
+                    last = next;
+                }
+            }
+        }
+    }
+    #[test]
+    fn a_profile_never_rises_outward_and_ends_at_its_reach() {
+        for (hardness, softness) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0)] {
+            let tip = RoundProfile::new(hardness, softness);
+            let values: Vec<f32> = (0..300).map(|i| tip.mean(i as f32 * tip.reach() / 250.0, 0.0)).collect();
+            assert!(values.windows(2).all(|v| v[1] <= v[0] + 1e-3), "{hardness} {softness}");
+            assert!(values[251..].iter().all(|v| v.abs() < 1e-3));
+            assert!(values.iter().all(|v| (-1e-3..=1.001).contains(v)));
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Strokes against a scalar twin that evaluates the definition pixel by pixel over the whole canvas.
+
+use super::*;
+use crate::math::{Size, vec2, vec3};
+use crate::paint::profile::RoundProfile;
+use crate::raster::{Plane, TileGrid};
+use crate::surface::{Anchor, Bend, Deformation, Maps, Surface, Weights, links};
+use proptest::prelude::*;
+
+const SIZE: Size = Size::new(150, 140);
+
+/// A ball on a canvas of its own, with depth and normals that agree.
+fn ball() -> Scene {
+    let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - SIZE.center()) / 62.0;
+    let height = |x: usize, y: usize| (1.0 - at(x, y).length_squared()).max(0.0).sqrt();
+    let normals = Plane::from_fn(SIZE, |x, y| vec3(at(x, y).x, -at(x, y).y, height(x, y).max(0.02)));
+    let depth = Plane::from_fn(SIZE, |x, y| 1.0 - height(x, y));
+    let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
+    let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
+    Scene { size: SIZE, surface: Some(Arc::new(surface)) }
+}
+fn flat() -> Scene {
+    Scene { size: SIZE, surface: None }
+}
+fn line(from: Vec2, to: Vec2) -> Vec<Sample> {
+    (0..=10).map(|i| Sample::at(from.lerp(to, i as f32 / 10.0))).collect()
+}
+fn render(strokes: &[Arc<Stroke>], scene: &Scene) -> TileGrid {
+    let mut grid = TileGrid::default();
+    for at in TileAt::covering(scene.size.rect()) {
+        grid.set(at, render_tile(strokes, scene, at).map(Arc::new));
+    }
+    grid
+}
+fn one(stroke: Stroke, scene: &Scene) -> TileGrid {
+    render(&[Arc::new(stroke)], scene)
+}
+fn white(brush: Brush, operator: Operator, samples: Vec<Sample>) -> Stroke {
+    Stroke::new(brush, operator, Color::WHITE, samples)
+}
+
+/// Coverage of a dab at a pixel: F(A⁻¹(D(q) − q_0)) averaged over the pixel's width toward the centre.
+fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
+    let bend = Bend { operator, anchors: vec![Anchor::fixed(dab.at)], weights: Weights::default() };
+    let d = Deformation::new(scene.surface.as_deref(), scene.size, &bend);
+    let from_center = d.at(x, y) - dab.at;
+    let toward = from_center.normalize_or_zero();
+    let linked = scene.surface.as_ref().map_or(0, |s| s.links_plane().at(x as usize, y as usize));
+    let difference = |before: u8, after: u8, dx: i32, dy: i32, flat: Vec2| {
+        let (l, r) = (i32::from(linked & before != 0), i32::from(linked & after != 0));
+        match l + r {
+            0 => flat,
+            n => (d.at(x + r * dx, y + r * dy) - d.at(x - l * dx, y - l * dy)) / n as f32,
+        }
+    };
+    let across = difference(links::LEFT, links::RIGHT, 1, 0, Vec2::X).dot(toward);
+    let along = difference(links::UP, links::DOWN, 0, 1, Vec2::Y).dot(toward);
+    let width_squared = (across * across + along * along) / (dab.radius * dab.radius);
+    dab.flow * RoundProfile::new(dab.hardness, dab.softness).mean(from_center.length() / dab.radius, width_squared)
+}
+fn reference(stroke: &Stroke, scene: &Scene) -> Plane<f32> {
+    let dabs = path::dabs(&stroke.brush, &stroke.samples);
+    Plane::from_fn(scene.size, |x, y| {
+        let through = dabs.iter().map(|dab| 1.0 - dab_at(dab, stroke.operator, scene, x as i32, y as i32));
+        stroke.brush.opacity * (1.0 - through.product::<f32>())
+    })
+}
+fn assert_matches(stroke: Stroke, scene: &Scene) {
+    let expected = reference(&stroke, scene);
+    let bounds = stroke.bounds(scene);
+    let grid = one(stroke, scene);
+    let mut touched = 0;
+    for y in 0..SIZE.height as i32 {
+        for x in 0..SIZE.width as i32 {
+            let (a, b) = (f32::from(grid.pixel(x, y)[3]), 255.0 * expected.at(x as usize, y as usize));
+            assert!((a - b).abs() <= 1.0, "({x}, {y}): {a}, by the definition {b}");
+            assert!(a == 0.0 || bounds.contains(x, y), "({x}, {y}) lies outside the bounds");
+            touched += i32::from(a > 0.0);
+        }
+    }
+    assert!(touched > 50, "the stroke shows: {touched} pixels");
+}
+
+#[test]
+fn a_bent_stroke_over_tile_borders_equals_its_definition_pixel_by_pixel() {
+    let operators = [
+        Operator::None,
+        Operator::Depth { gamma: 1.5 },
+        Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
+        Operator::Normal { alpha: -0.3, beta: 0.0, detail: 0.0 },
+        Operator::Reflection { alpha: 0.5, detail: 0.0 },
+    ];
+    for operator in operators {
+        let brush = Brush { size: 30.0, hardness: 0.3, flow: 0.4, opacity: 0.8, ..Brush::default() };
+        assert_matches(white(brush, operator, line(vec2(45.0, 50.0), vec2(95.0, 80.0))), &ball());
+    }
+}
+#[test]
+fn a_hard_flat_dab_covers_its_disc() {
+    for radius in [0.4f32, 1.0, 3.3, 20.0] {
+        let brush = Brush { size: 2.0 * radius, hardness: 1.0, ..Brush::default() };
+        let grid = one(white(brush, Operator::None, vec![Sample::at(vec2(64.3, 63.8))]), &flat());
+        let rgba = grid.to_straight_rgba(SIZE.rect());
+        let area: f32 = rgba.chunks_exact(4).map(|p| f32::from(p[3]) / 255.0).sum();
+        let disc = std::f32::consts::PI * radius * radius;
+        assert!((area / disc - 1.0).abs() < 0.2 / radius.max(1.0), "radius {radius}: {area} px for {disc}");
+    }
+}
+#[test]
+fn flow_adds_up_dab_by_dab_and_opacity_caps_the_whole() {
+    let center = vec2(64.5, 64.5);
+    let alpha = |flow: f32, opacity: f32, n: usize| {
+        // Dabs a hundredth of the diameter apart: as good as at one place.
+        let brush = Brush { size: 40.0, spacing: 0.0025, flow, opacity, hardness: 1.0, ..Brush::default() };
+        let to = center + vec2(0.1 * (n - 1) as f32, 0.0);
+        one(white(brush, Operator::None, vec![Sample::at(center), Sample::at(to)]), &flat()).pixel(64, 64)[3]
+    };
+    assert_eq!(alpha(0.3, 1.0, 1), 77);
+    assert_eq!(alpha(0.3, 1.0, 2), 130, "1 − 0.7²");
+    assert_eq!(alpha(0.3, 0.5, 2), 65);
+    assert_eq!(alpha(0.05, 1.0, 150), 255, "a faint flow reaches full coverage");
+    assert_eq!(alpha(0.9, 0.5, 30), 128);
+}
+#[test]
+fn strokes_lie_over_one_another_in_order() {
+    let dot = |color: &str| {
+        let brush = Brush { size: 20.0, opacity: 0.5, hardness: 1.0, ..Brush::default() };
+        Arc::new(Stroke::new(brush, Operator::None, Color::parse(color).unwrap(), vec![Sample::at(vec2(30.0, 30.0))]))
+    };
+    let grid = render(&[dot("#ff0000"), dot("#0000ff")], &flat());
+    assert_eq!(grid.pixel(30, 30), [64, 0, 128, 191]);
+}
+#[test]
+fn one_sample_leaves_one_dab_and_none_leaves_nothing() {
+    let brush = Brush { size: 20.0, flow: 0.5, hardness: 1.0, ..Brush::default() };
+    let grid = one(white(brush.clone(), Operator::None, vec![Sample::at(vec2(64.0, 64.0))]), &flat());
+    assert_eq!(grid.pixel(64, 64)[3], 128);
+    assert!(one(white(brush.clone(), Operator::None, vec![]), &flat()).iter().next().is_none());
+    let lost = vec![Sample::at(vec2(f32::NAN, 3.0)), Sample { pressure: f32::INFINITY, ..Sample::at(Vec2::ONE) }];
+    assert!(one(white(brush, Operator::None, lost), &flat()).iter().next().is_none());
+}
+#[test]
+fn samples_that_are_not_numbers_change_no_pixel() {
+    let operator = Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 };
+    let good = line(vec2(40.0, 40.0), vec2(100.0, 90.0));
+    let mut bad = good.clone();
+    bad.insert(5, Sample::at(vec2(f32::NAN, 50.0)));
+    bad.insert(2, Sample::at(vec2(1e30, f32::NEG_INFINITY)));
+    bad.push(Sample { pressure: f32::NAN, ..Sample::at(vec2(120.0, 90.0)) });
+    let (a, b) = [good, bad].map(|samples| one(white(Brush::default(), operator, samples), &ball())).into();
+    assert_eq!(a.to_straight_rgba(SIZE.rect()), b.to_straight_rgba(SIZE.rect()));
+}
+#[test]
+fn threads_do_not_change_a_byte() {
+    use rayon::prelude::*;
+    let operator = Operator::Depth { gamma: 2.0 };
+    let strokes = [Arc::new(white(Brush::default(), operator, line(vec2(30.0, 30.0), vec2(120.0, 100.0))))];
+    let scene = ball();
+    let alone = render(&strokes, &scene);
+    let fresh = [Arc::new(white(Brush::default(), operator, line(vec2(30.0, 30.0), vec2(120.0, 100.0))))];
+    let tiles: Vec<TileAt> = TileAt::covering(SIZE.rect()).collect();
+    let together: Vec<_> = tiles.par_iter().map(|&at| (at, render_tile(&fresh, &scene, at))).collect();
+    for (at, tile) in together {
+        assert_eq!(tile.as_ref().map(Tile::bytes), alone.tile(at).map(|t| t.bytes()));
+    }
+}
+#[test]
+fn another_surface_bends_the_same_stroke_anew() {
+    let stroke = Arc::new(white(
+        Brush { size: 30.0, ..Brush::default() },
+        Operator::Normal { alpha: 1.0, beta: 1.0, detail: 0.0 },
+        vec![Sample::at(vec2(60.0, 60.0))],
+    ));
+    let (on_ball, on_flat) = (render(std::slice::from_ref(&stroke), &ball()), render(&[stroke], &flat()));
+    assert_ne!(on_ball.to_straight_rgba(SIZE.rect()), on_flat.to_straight_rgba(SIZE.rect()));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn any_dab_on_a_ball_equals_its_definition(
+        x in 0.0f32..150.0, y in 0.0f32..140.0, size in 6.0f32..60.0, hardness in 0.0f32..1.0, softness in 0.0f32..1.0,
+        alpha in -1.0f32..1.0, beta in 0.0f32..3.0,
+    ) {
+        let brush = Brush { size, hardness, softness, ..Brush::default() };
+        let operator = Operator::Normal { alpha, beta, detail: 0.0 };
+        let stroke = white(brush, operator, vec![Sample::at(vec2(x, y))]);
+        let (expected, grid) = (reference(&stroke, &ball()), one(stroke, &ball()));
+        for y in 0..SIZE.height as usize {
+            for x in 0..SIZE.width as usize {
+                let a = f32::from(grid.pixel(x as i32, y as i32)[3]);
+                prop_assert!((a - 255.0 * expected.at(x, y)).abs() <= 1.0, "({x}, {y}): {a}");
+            }
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Min–max pyramids of the maps: what values a block of pixels holds, and how fast they change in it.
+//! Floor 2. What follows from them for an operator is `reach`.
+
+use super::operator::reflection;
+use super::{Surface, links};
+use crate::math::{Rect, Size, Vec2, vec2};
+use crate::raster::{Plane, TILE};
+use std::sync::OnceLock;
+
+/// Side of the smallest blocks, px.
+pub const BLOCK: usize = 8;
+/// Blocks along the side of a tile.
+pub const TILE_BLOCKS: usize = TILE / BLOCK;
+/// The level of the pyramid whose blocks are tiles.
+pub(super) const TILE_LEVEL: usize = TILE_BLOCKS.ilog2() as usize;
+
+/// The maps' pyramids, each built when an operator first asks for it.
+///
+/// Built by the thread that asks and by no other: a worker that waited for helpers here could be handed a tile that waits
+/// for the same pyramid.
+#[derive(Default)]
+pub struct Bounds {
+    cover: OnceLock<Pyramid<Cover>>,
+    depth: OnceLock<Pyramid<DepthSpan>>,
+    nbar: OnceLock<Pyramid<TurnSpan>>,
+    mirrored: OnceLock<Pyramid<TurnSpan>>,
+}
+
+/// Levels of blocks: 8 px, 16 px, … one block for all. At least up to tiles.
+pub(super) struct Pyramid<T> {
+    levels: Vec<Plane<T>>,
+}
+
+/// Values that two blocks have together.
+pub(super) trait Join: Copy {
+    fn join(self, other: Self) -> Self;
+}
+
+impl<T: Join> Pyramid<T> {
+    /// `leaf` is asked for every block of pixels, clipped to the map.
+    fn new(size: Size, mut leaf: impl FnMut(Rect) -> T) -> Self {
+        let blocks = level_size(size, 0);
+        let leaves = (0..blocks.height as i32)
+            .flat_map(|row| (0..blocks.width as i32).map(move |col| block_rect(size, 0, col, row)))
+            .map(&mut leaf)
+            .collect();
+        let mut levels: Vec<Plane<T>> = Plane::from_values(blocks, leaves).into_iter().collect();
+        while let Some(last) = levels.last()
+            && (levels.len() <= TILE_LEVEL || last.size().area() > 1)
+        {
+            levels.push(joined(last, level_size(size, levels.len())));
+        }
+        Self { levels }
+    }
+    pub(super) fn at(&self, block: Block) -> Option<T> {
+        self.levels.get(block.level)?.get(block.col, block.row)
+    }
+}
+
+fn joined<T: Join>(below: &Plane<T>, size: Size) -> Plane<T> {
+    let mut values = Vec::with_capacity(size.area());
+    for row in 0..size.height as usize {
+        for col in 0..size.width as usize {
+            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| (2 * col + i, 2 * row + j));
+            let there = four.iter().filter(|&&(i, j)| i < below.width() && j < below.height());
+            values.extend(there.map(|&(i, j)| below.at(i, j)).reduce(T::join));
+        }
+    }
+    Plane::from_values(size, values).unwrap_or_else(|| below.clone())
+}
+
+/// How many blocks a level has.
+pub(super) fn level_size(size: Size, level: usize) -> Size {
+    let side = (BLOCK << level) as u32;
+    Size::new(size.width.div_ceil(side), size.height.div_ceil(side))
+}
+
+/// The pixels of a block, clipped to the map.
+pub(super) fn block_rect(size: Size, level: usize, col: i32, row: i32) -> Rect {
+    let side = (BLOCK << level) as i32;
+    Rect::new(col * side, row * side, (col + 1) * side, (row + 1) * side).intersect(size.rect())
+}
+
+/// What of a block is surface.
+#[derive(Clone, Copy)]
+pub(super) struct Cover {
+    /// Some pixel is.
+    pub(super) some: bool,
+    /// Every pixel is.
+    pub(super) all: bool,
+}
+
+impl Join for Cover {
+    fn join(self, o: Self) -> Self {
+        Self { some: self.some || o.some, all: self.all && o.all }
+    }
+}
+
+/// z over a block and the pixels around it, and the longest ∇z in it.
+#[derive(Clone, Copy)]
+pub(super) struct DepthSpan {
+    pub(super) low: f32,
+    pub(super) high: f32,
+    pub(super) slope: f32,
+}
+
+impl Join for DepthSpan {
+    fn join(self, o: Self) -> Self {
+        Self { low: self.low.min(o.low), high: self.high.max(o.high), slope: self.slope.max(o.slope) }
+    }
+}
+
+/// n̄ or r̄ over a block and the pixels around it, and the largest norm of its derivative in it.
+#[derive(Clone, Copy)]
+pub(super) struct TurnSpan {
+    pub(super) low: Vec2,
+    pub(super) high: Vec2,
+    pub(super) slope: f32,
+}
+
+impl Join for TurnSpan {
+    fn join(self, o: Self) -> Self {
+        Self { low: self.low.min(o.low), high: self.high.max(o.high), slope: self.slope.max(o.slope) }
+    }
+}
+
+/// Visits the surface's pixels of a block and of the ring around it, whose values the block's differences read.
+fn covered_around(surface: &Surface, block: Rect, mut visit: impl FnMut(usize, usize)) {
+    let ring = block.grown(1).intersect(surface.size().rect());
+    for y in ring.y0 as usize..ring.y1 as usize {
+        let covered = surface.coverage_plane().row(y);
+        (ring.x0 as usize..ring.x1 as usize).filter(|&x| covered[x] > 0).for_each(|x| visit(x, y));
+    }
+}
+
+/// The longest derivative of a value over a block's surface: differences between linked neighbours, per px.
+fn longest_slope(surface: &Surface, block: Rect, value: impl Fn(usize, usize) -> Vec2) -> f32 {
+    let mut longest = 0.0f32;
+    for y in block.y0 as usize..block.y1 as usize {
+        for x in block.x0 as usize..block.x1 as usize {
+            let linked = surface.links_plane().at(x, y);
+            let back = |bit: u8| usize::from(linked & bit != 0);
+            let (l, r, u, d) = (back(links::LEFT), back(links::RIGHT), back(links::UP), back(links::DOWN));
+            let dx = (value(x + r, y) - value(x - l, y)) / (l + r).max(1) as f32;
+            let dy = (value(x, y + d) - value(x, y - u)) / (u + d).max(1) as f32;
+            longest = longest.max(dx.length_squared() + dy.length_squared());
+        }
+    }
+    longest.sqrt()
+}
+
+fn turn_span(surface: &Surface, block: Rect, value: impl Fn(usize, usize) -> Vec2) -> TurnSpan {
+    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    covered_around(surface, block, |x, y| {
+        let v = value(x, y);
+        (low, high) = (low.min(v), high.max(v));
+    });
+    TurnSpan { low, high, slope: longest_slope(surface, block, value) }
+}
+
+impl Bounds {
+    pub(super) fn cover(&self, surface: &Surface) -> &Pyramid<Cover> {
+        self.cover.get_or_init(|| {
+            Pyramid::new(surface.size(), |block| {
+                let mut cover = Cover { some: false, all: true };
+                for y in block.y0 as usize..block.y1 as usize {
+                    for &c in &surface.coverage_plane().row(y)[block.x0 as usize..block.x1 as usize] {
+                        cover = Cover { some: cover.some || c > 0, all: cover.all && c > 0 };
+                    }
+                }
+                cover
+            })
+        })
+    }
+    pub(super) fn depth(&self, surface: &Surface) -> &Pyramid<DepthSpan> {
+        self.depth.get_or_init(|| {
+            Pyramid::new(surface.size(), |block| {
+                let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+                covered_around(surface, block, |x, y| {
+                    let z = surface.depth(x, y);
+                    (low, high) = (low.min(z), high.max(z));
+                });
+                let slope = longest_slope(surface, block, |x, y| vec2(surface.depth(x, y), 0.0));
+                DepthSpan { low, high, slope }
+            })
+        })
+    }
+    pub(super) fn nbar(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
+        let build = || Pyramid::new(surface.size(), |block| turn_span(surface, block, |x, y| surface.nbar(x, y)));
+        self.nbar.get_or_init(build)
+    }
+    pub(super) fn mirrored(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
+        let value = |x, y| reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
+        let build = || Pyramid::new(surface.size(), |block| turn_span(surface, block, value));
+        self.mirrored.get_or_init(build)
+    }
+}
+
+/// A block of a level.
+#[derive(Clone, Copy)]
+pub(super) struct Block {
+    pub(super) level: usize,
+    pub(super) col: i32,
+    pub(super) row: i32,
+}
+
+impl Block {
+    /// The four blocks one level below.
+    pub(super) fn quarters(self) -> [Block; 4] {
+        let Block { level, col, row } = self;
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| Block { level: level - 1, col: 2 * col + i, row: 2 * row + j })
+    }
+}

@@ -1,0 +1,309 @@
+//! Bounded support: which blocks of the canvas one anchored operator can bring near its anchor, found by interval
+//! arithmetic on D_p, D_n and D_r over the maps' pyramids, without looking at pixels.
+//! Floor 2. It says what may be touched, never what is: pixels are `deformation`'s.
+
+use super::Surface;
+pub use super::bounds::{BLOCK, TILE_BLOCKS};
+use super::bounds::{Block, Cover, DepthSpan, Pyramid, TILE_LEVEL, TurnSpan, block_rect, level_size};
+use super::operator::{Operator, first_order, reflection, second_order};
+use crate::math::{Size, Vec2, vec2};
+use crate::raster::TileAt;
+
+/// Granted to every distance, for D is computed in f32: px.
+const ROUNDING_PX: f32 = 0.05;
+
+/// The part of a tile that may be touched: bit `c` of row `r` stands for the block of 8 × 8 px in column `c`.
+pub type TileBlocks = [u8; TILE_BLOCKS];
+
+/// How far around its anchor a footprint reaches, in the image plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Of the footprint itself, px.
+    pub radius_px: f32,
+    /// What the filter adds: this many pixels, each as long as D makes it there.
+    pub filter_px: f32,
+}
+
+/// The blocks in which one anchored operator brings the image plane within an extent of the anchor.
+///
+/// Conservative: no block is left out that holds a pixel q with |D(q) − q_0| within the extent.
+pub struct Reach<'s> {
+    size: Size,
+    at: Vec2,
+    extent: Extent,
+    cover: Option<&'s Pyramid<Cover>>,
+    flow: Flow<'s>,
+}
+
+/// The operator on the surface, its maps read at the anchor.
+enum Flow<'s> {
+    Still,
+    Depth { pyramid: &'s Pyramid<DepthSpan>, z: f32, gamma: f32 },
+    Turn { pyramid: &'s Pyramid<TurnSpan>, turn: Vec2, stretch: Stretch },
+}
+
+/// The offset of D_n or D_r as a function of the relative normal, canvas px: an odd radial map.
+#[derive(Clone, Copy)]
+struct Stretch {
+    /// α L.
+    alpha_px: f32,
+    /// `None` is linear: D_r.
+    beta: Option<f32>,
+    /// μ: curvature multiplies the offset by something in [1 − μ, 1 + μ].
+    detail: f32,
+}
+
+impl Stretch {
+    /// Factor of a relative normal of length u, without detail.
+    fn factor(self, u: f32) -> f32 {
+        self.beta.map_or(self.alpha_px, |beta| second_order::offset_factor(u, self.alpha_px, beta))
+    }
+    /// The range of one component of the offset, exact but for the detail: it grows with the component itself and, in
+    /// magnitude, with the other one, which `across` bounds in magnitude.
+    fn range(self, (low, high): (f32, f32), across: (f32, f32)) -> (f32, f32) {
+        let offset = |v: f32, across: f32| self.factor(v.hypot(across)) * v;
+        let (a, b) = if self.alpha_px >= 0.0 { (low, high) } else { (high, low) };
+        // `a` gives the least offset, the more so the farther out where that is negative; `b` the most.
+        let least = offset(a, if offset(a, across.1) < 0.0 { across.1 } else { across.0 });
+        let most = offset(b, if offset(b, across.1) > 0.0 { across.1 } else { across.0 });
+        let (d, e) = (1.0 - self.detail, 1.0 + self.detail);
+        ((least * d).min(least * e), (most * d).max(most * e))
+    }
+    /// The most by which the offset changes per change of the normal, up to a relative normal of length u; and, with
+    /// detail, per px by the change of curvature alone.
+    fn steepness(self, u: f32) -> (f32, f32) {
+        let slope = self.beta.map_or(0.0, |beta| second_order::offset_factor_slope(u, self.alpha_px, beta));
+        let factor = self.factor(u).abs();
+        // κ lies in (−1, 1): a difference to one neighbour is below 2 in each direction.
+        let by_curvature = factor * u * self.detail.abs() * 2.0 * std::f32::consts::SQRT_2;
+        ((factor + u * slope.abs()) * (1.0 + self.detail.abs()), by_curvature)
+    }
+}
+
+impl<'s> Reach<'s> {
+    /// `at` is q_0; `surface`, where there is one, has the canvas's size.
+    pub fn new(surface: Option<&'s Surface>, size: Size, operator: Operator, at: Vec2, extent: Extent) -> Self {
+        let operator = operator.finite();
+        let flow = surface.filter(|_| !operator.is_identity()).map_or(Flow::Still, |s| Flow::new(s, operator, at));
+        let cover = surface.map(|s| s.bounds().cover(s));
+        Self { size, at, extent, cover, flow }
+    }
+    /// Visits every tile of the canvas that may be touched.
+    pub fn for_each_tile(&self, mut visit: impl FnMut(TileAt)) {
+        let mut level = TILE_LEVEL;
+        while level_size(self.size, level).area() > 1 {
+            level += 1;
+        }
+        self.descend(Block { level, col: 0, row: 0 }, TILE_LEVEL, &mut |b| visit(TileAt::new(b.col, b.row)));
+    }
+    /// The blocks of a tile that may be touched.
+    pub fn blocks(&self, at: TileAt) -> TileBlocks {
+        let mut blocks = TileBlocks::default();
+        self.descend(Block { level: TILE_LEVEL, col: at.col, row: at.row }, 0, &mut |b| {
+            let within = |i: i32| i.rem_euclid(TILE_BLOCKS as i32) as usize;
+            blocks[within(b.row)] |= 1 << within(b.col);
+        });
+        blocks
+    }
+    fn descend(&self, block: Block, to: usize, visit: &mut impl FnMut(Block)) {
+        if !self.touches(block) {
+            return;
+        }
+        if block.level == to {
+            return visit(block);
+        }
+        block.quarters().into_iter().for_each(|b| self.descend(b, to, visit));
+    }
+    /// Written so that a value that is not a number touches: leaving out is what must be proven.
+    fn touches(&self, block: Block) -> bool {
+        let rect = block_rect(self.size, block.level, block.col, block.row);
+        if rect.is_empty() {
+            return false;
+        }
+        let low = vec2(rect.x0 as f32, rect.y0 as f32) + 0.5 - self.at;
+        let high = vec2(rect.x1 as f32, rect.y1 as f32) - 0.5 - self.at;
+        let within = |distance: f32, pixel: f32| {
+            let limit = self.extent.radius_px + self.extent.filter_px * pixel + ROUNDING_PX + 1e-5 * distance;
+            let is_beyond = distance > limit;
+            !is_beyond
+        };
+        let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(Cover { some: false, all: false });
+        let flat = distance_to_box(low, high);
+        if !cover.all && within(flat, 1.0) {
+            return true;
+        }
+        if !cover.some {
+            return false;
+        }
+        match &self.flow {
+            Flow::Still => within(flat, 1.0),
+            Flow::Depth { pyramid, z, gamma } => {
+                let Some(span) = pyramid.at(block) else { return true };
+                let scale = |u| 1.0 + first_order::scale_factor(u, *gamma);
+                let (near, far) = (span.low - z, span.high - z);
+                let farthest = low.abs().max(high.abs()).length() + 1.0;
+                let steepest = first_order::scale_factor_slope(far, *gamma) * span.slope;
+                within(scale(near) * flat, scale(far) + farthest * steepest)
+            }
+            Flow::Turn { pyramid, turn, stretch } => {
+                let Some(span) = pyramid.at(block) else { return true };
+                let (a, b) = (span.low - *turn, span.high - *turn);
+                let across_x = (interval_distance(a.x, b.x), a.x.abs().max(b.x.abs()));
+                let across_y = (interval_distance(a.y, b.y), a.y.abs().max(b.y.abs()));
+                let (x0, x1) = stretch.range((a.x, b.x), across_y);
+                let (y0, y1) = stretch.range((a.y, b.y), across_x);
+                let (steepness, by_curvature) = stretch.steepness(across_x.1.hypot(across_y.1));
+                let pixel = 1.0 + steepness * span.slope + by_curvature;
+                within(distance_to_box(low + vec2(x0, y0), high + vec2(x1, y1)), pixel)
+            }
+        }
+    }
+}
+
+impl<'s> Flow<'s> {
+    fn new(surface: &'s Surface, operator: Operator, at: Vec2) -> Self {
+        let (x, y) = surface.pixel_of(at);
+        let (nbar, nz) = (surface.nbar(x, y), surface.normal(x, y).z);
+        let unit_px = surface.size().longer_side();
+        match operator {
+            Operator::None => Flow::Still,
+            Operator::Depth { gamma } => {
+                Flow::Depth { pyramid: surface.bounds().depth(surface), z: surface.depth(x, y), gamma }
+            }
+            Operator::Normal { alpha, beta, detail } => {
+                let stretch = Stretch { alpha_px: alpha * unit_px, beta: Some(beta), detail };
+                Flow::Turn { pyramid: surface.bounds().nbar(surface), turn: nbar, stretch }
+            }
+            Operator::Reflection { alpha, detail } => {
+                let stretch = Stretch { alpha_px: alpha * unit_px, beta: None, detail };
+                let turn = reflection::mirrored(nbar, nz);
+                Flow::Turn { pyramid: surface.bounds().mirrored(surface), turn, stretch }
+            }
+        }
+    }
+}
+
+/// From 0 to the nearest value of an interval.
+fn interval_distance(low: f32, high: f32) -> f32 {
+    low.max(-high).max(0.0)
+}
+
+/// From the origin to the nearest point of a box.
+fn distance_to_box(low: Vec2, high: Vec2) -> f32 {
+    interval_distance(low.x, high.x).hypot(interval_distance(low.y, high.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Rect, Vec3, hash, vec3};
+    use crate::raster::Plane;
+    use crate::surface::{Anchor, Bend, Deformation, Maps, Weights, links};
+    use proptest::prelude::*;
+
+    const SIZE: Size = Size::new(150, 130);
+
+    /// Waves with a random slope and length, a random disc cut out, and a step in depth.
+    fn surface(seed: u32) -> Surface {
+        let random = |i| hash::unit(seed, i, 0);
+        let (fx, fy, tilt) = (0.02 + 0.2 * random(0), 0.02 + 0.2 * random(1), 0.2 + 2.0 * random(2));
+        let hole = vec2(150.0 * random(3), 130.0 * random(4));
+        let normals = Plane::from_fn(SIZE, |x, y| {
+            let (x, y) = (x as f32, y as f32);
+            vec3(tilt * (fx * x + 0.01 * y).sin(), tilt * (fy * y).cos(), 1.0).normalize_or(Vec3::Z)
+        });
+        let depth = Plane::from_fn(SIZE, |x, y| {
+            let wave = 0.3 + 0.2 * (fx * x as f32).cos() * (fy * y as f32).sin();
+            if x as f32 > 150.0 * random(5) { wave + 0.4 } else { wave }
+        });
+        let coverage = Plane::from_fn(SIZE, |x, y| {
+            if vec2(x as f32, y as f32).distance(hole) < 20.0 + 30.0 * random(6) { 0u8 } else { 255 }
+        });
+        Surface::new(Maps { normals, depth, coverage }).unwrap()
+    }
+    fn operator() -> impl Strategy<Value = Operator> {
+        prop_oneof![
+            Just(Operator::None),
+            (0.0f32..4.0).prop_map(|gamma| Operator::Depth { gamma }),
+            (-2.0f32..2.0, 0.0f32..5.0).prop_map(|(alpha, beta)| Operator::Normal { alpha, beta, detail: 0.0 }),
+            (-1.0f32..1.0).prop_map(|alpha| Operator::Normal { alpha, beta: 1.0, detail: 1.5 }),
+            (-2.0f32..2.0).prop_map(|alpha| Operator::Reflection { alpha, detail: 0.0 }),
+        ]
+    }
+    /// |∂(|D − q_0|)/∂q| by differences between linked neighbours, as the marks take it.
+    fn pixel_length(surface: &Surface, d: &Deformation, at: Vec2, x: i32, y: i32) -> f32 {
+        let linked = surface.links_plane().at(x as usize, y as usize);
+        let along = (d.at(x, y) - at).normalize_or_zero();
+        let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: f32| {
+            let (l, r) = (i32::from(linked & before != 0), i32::from(linked & after != 0));
+            match l + r {
+                0 => flat,
+                n => (d.at(x + r * dx, y + r * dy) - d.at(x - l * dx, y - l * dy)).dot(along) / n as f32,
+            }
+        };
+        slope(links::LEFT, links::RIGHT, 1, 0, along.x).hypot(slope(links::UP, links::DOWN, 0, 1, along.y))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(60))]
+        #[test]
+        fn no_pixel_that_is_reached_is_ever_left_out(
+            seed: u32, operator in operator(), x in -20.0f32..170.0, y in -20.0f32..150.0, radius_px in 1.0f32..40.0,
+        ) {
+            let surface = surface(seed);
+            let at = vec2(x, y);
+            let extent = Extent { radius_px, filter_px: 0.5 };
+            let reach = Reach::new(Some(&surface), SIZE, operator, at, extent);
+            let mut tiles = Vec::new();
+            reach.for_each_tile(|tile| tiles.push(tile));
+            let bend = Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() };
+            let d = Deformation::new(Some(&surface), SIZE, &bend);
+            for tile in TileAt::covering(SIZE.rect()) {
+                let blocks = reach.blocks(tile);
+                let Rect { x0, y0, x1, y1 } = tile.rect().intersect(SIZE.rect());
+                for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
+                    let bit = blocks[(y - y0) as usize / 8] >> ((x - x0) / 8) & 1;
+                    if bit == 0 || !tiles.contains(&tile) {
+                        let (distance, pixel) = (d.at(x, y).distance(at), pixel_length(&surface, &d, at, x, y));
+                        prop_assert!(distance >= radius_px + 0.5 * pixel, "({x}, {y}): {distance}, a pixel is {pixel}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_flat_dab_reaches_little_more_than_its_disc() {
+        let extent = Extent { radius_px: 100.0, filter_px: 0.5 };
+        let reach = Reach::new(None, Size::new(1000, 700), Operator::None, vec2(500.0, 350.0), extent);
+        let mut blocks = 0;
+        reach.for_each_tile(|tile| blocks += reach.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
+        let disc = std::f32::consts::PI * 100.0 * 100.0 / 64.0;
+        assert!((blocks as f32) > disc && (blocks as f32) < 1.2 * disc, "{blocks} blocks for {disc}");
+    }
+    #[test]
+    fn a_small_highlight_on_a_large_sphere_touches_few_blocks() {
+        let size = Size::new(1024, 1024);
+        let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - 512.0) / 500.0;
+        let normals = Plane::from_fn(size, |x, y| {
+            let p = at(x, y);
+            vec3(p.x, -p.y, (1.0 - p.length_squared()).max(0.0).sqrt())
+        });
+        let coverage = Plane::from_fn(size, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
+        let surface = Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
+        let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
+        let extent = Extent { radius_px: 40.0, filter_px: 0.5 };
+        let reach = Reach::new(Some(&surface), size, operator, vec2(600.0, 450.0), extent);
+        let mut blocks = 0;
+        reach.for_each_tile(|tile| blocks += reach.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
+        assert!(blocks > 20 && blocks < 130, "{blocks} of 16384 blocks");
+    }
+    #[test]
+    fn figures_that_are_not_numbers_reach_everything_rather_than_nothing() {
+        let extent = Extent { radius_px: f32::NAN, filter_px: 0.5 };
+        let reach = Reach::new(None, Size::new(200, 100), Operator::None, vec2(f32::NAN, 3.0), extent);
+        let mut tiles = 0;
+        reach.for_each_tile(|_| tiles += 1);
+        assert_eq!(tiles, 8);
+    }
+}
