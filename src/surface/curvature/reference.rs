@@ -1,7 +1,8 @@
 //! The curvature tensor pixel by pixel, as MATH 4 writes it: what the fast version is tested against.
 
-use super::{fade, slope, tensor, tiles::half_kernel};
+use super::{fade, slope, tensor};
 use crate::math::Vec3;
+use crate::raster::blur::half_kernel;
 use crate::surface::{Surface, links};
 
 /// The neighbour of a pixel in a direction, if it continues its surface.

@@ -3,7 +3,7 @@
 
 use super::{Curvature, fade, slope, tensor};
 use crate::math::Size;
-use crate::raster::Plane;
+use crate::raster::{Plane, blur::half_kernel};
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
 
@@ -44,16 +44,6 @@ pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvatur
     );
     let [hxx, hxy, hyy, fade] = planes.map(|v| Plane::from_values(size, v).expect("one value per pixel"));
     Curvature { hxx, hxy, hyy, fade }
-}
-
-/// The weights of a Gaussian at distances 0, 1, …; with their mirror image they add up to 1.
-///
-/// Cut at four standard deviations (6e-5 of the weight lies beyond).
-pub(super) fn half_kernel(sigma_px: f32) -> Vec<f32> {
-    let radius = (4.0 * sigma_px).ceil() as usize;
-    let weight = |k: usize| if k == 0 { 1.0 } else { (-0.5 * (k as f64 / f64::from(sigma_px)).powi(2)).exp() };
-    let sum: f64 = 1.0 + 2.0 * (1..=radius).map(weight).sum::<f64>();
-    (0..=radius).map(|k| (weight(k) / sum) as f32).collect()
 }
 
 /// The pixels of one tile.

@@ -1,0 +1,323 @@
+//! Gaussian blur of any width: exact taps for narrow ones, a recursive filter whose cost does not grow for wide ones.
+//! Floor 1. Not here: the blur of normals along a surface, which stops at depth jumps (`surface::curvature`).
+
+use super::Plane;
+use crate::math::Size;
+use rayon::prelude::*;
+
+/// What the filter finds beyond the picture.
+#[derive(Clone, Copy, PartialEq)]
+enum Beyond {
+    /// The border's value, on and on.
+    Border,
+    /// 0: sums lose weight, which a mask gives back.
+    Nothing,
+}
+
+/// Blurs a map; beyond its border the border's value stands. `sigma_px`: standard deviation; not above 0 changes nothing.
+pub fn gaussian(plane: &Plane<f32>, sigma_px: f32) -> Plane<f32> {
+    let (pixels, _) = plane.values().as_chunks::<1>();
+    let blurred = gaussian_pixels(plane.size(), pixels, sigma_px);
+    Plane::from_values(plane.size(), blurred.into_flattened()).expect("one value per pixel")
+}
+
+/// Blurs the values under a mask without mixing in what is outside: Σ w·m·v / Σ w·m, and 0 where the mask is far away.
+///
+/// `mask`: weights in `[0, 1]`, of the map's size (what they do not share counts as outside).
+pub fn gaussian_masked(plane: &Plane<f32>, mask: &Plane<f32>, sigma_px: f32) -> Plane<f32> {
+    let weighted: Vec<[f32; 2]> = (0..plane.size().area())
+        .map(|i| {
+            let m = if mask.size() == plane.size() { mask.values()[i] } else { 0.0 };
+            [m * plane.values()[i], m]
+        })
+        .collect();
+    let blurred = blurred(plane.size(), &weighted, sigma_px, Beyond::Nothing);
+    // Below a thousandth of the weight only the filter's own error would be divided.
+    let values = blurred.iter().map(|&[v, m]| if m > 1e-3 { v / m } else { 0.0 }).collect();
+    Plane::from_values(plane.size(), values).expect("one value per pixel")
+}
+
+/// Blurs pixels of `N` values each (RGBA: premultiplied), row by row; beyond the border the border's pixel stands.
+///
+/// Returns the pixels unchanged where `sigma_px` is not above 0 or `pixels` are not one per pixel of `size`.
+pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32) -> Vec<[f32; N]> {
+    blurred(size, pixels, sigma_px, Beyond::Border)
+}
+
+fn blurred<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32, beyond: Beyond) -> Vec<[f32; N]> {
+    if sigma_px.is_nan() || sigma_px <= 0.0 || pixels.len() != size.area() || N == 0 {
+        return pixels.to_vec();
+    }
+    let filter = Filter::new(sigma_px.min(4.0 * size.longer_side().max(1.0)));
+    let (w, h) = (size.width as usize, size.height as usize);
+    // Each pass blurs down the columns and lays the result on its side.
+    let sideways = down_columns(pixels, w, h, &filter, beyond);
+    down_columns(&sideways, h, w, &filter, beyond)
+}
+
+/// Floats filtered side by side: a cache line, two AVX registers.
+const LANES: usize = 16;
+
+/// A strip of columns: rows of `LANES` floats.
+type Strip = Vec<[f32; LANES]>;
+
+/// Blurs the columns of `width · height` pixels; the result is transposed, `height · width`.
+fn down_columns<const N: usize>(
+    pixels: &[[f32; N]],
+    width: usize,
+    height: usize,
+    filter: &Filter,
+    beyond: Beyond,
+) -> Vec<[f32; N]> {
+    let mut out = vec![[0.0; N]; pixels.len()];
+    let across = (LANES / N).max(1);
+    let strips = out.par_chunks_mut(across * height).enumerate();
+    strips.for_each_init(
+        || (Strip::new(), Strip::new()),
+        |(strip, result), (i, out)| {
+            let columns = i * across..(i * across + across).min(width);
+            for lanes in (0..N * columns.len()).step_by(LANES) {
+                let lanes = lanes..(lanes + LANES).min(N * columns.len());
+                strip.clear();
+                strip.extend(pixels.chunks_exact(width).map(|row| {
+                    let mut line = [0.0; LANES];
+                    let floats = &row[columns.clone()].as_flattened()[lanes.clone()];
+                    line[..floats.len()].copy_from_slice(floats);
+                    line
+                }));
+                filter.apply(strip, beyond, result);
+                for (lane, float) in lanes.enumerate() {
+                    let column = &mut out[float / N * height..][..height];
+                    for (pixel, line) in column.iter_mut().zip(result.iter()) {
+                        pixel[float % N] = line[lane];
+                    }
+                }
+            }
+        },
+    );
+    out
+}
+
+/// A one-dimensional Gaussian.
+enum Filter {
+    /// Weights at distances 0, 1, …
+    Taps(Vec<f32>),
+    /// Two damped oscillations; see [`Pole`].
+    Poles([Pole; 2]),
+}
+
+/// One term of Deriche's fourth-order approximation of a Gaussian (INRIA report 1893, 1993): Re(a pⁿ) at distance n, a and p complex.
+///
+/// Run as first-order recursions, each term keeps its accuracy in f32 however wide the Gaussian is.
+#[derive(Clone, Copy)]
+struct Pole {
+    a: (f32, f32),
+    p: (f32, f32),
+    /// State after endless ones: 1 / (1 − p).
+    rest: (f32, f32),
+}
+
+impl Filter {
+    /// Where the taps become dearer than the recursion.
+    const WIDEST_TAPS_PX: f32 = 4.0;
+
+    fn new(sigma_px: f32) -> Self {
+        if sigma_px <= Self::WIDEST_TAPS_PX { Self::Taps(half_kernel(sigma_px)) } else { Self::poles(sigma_px) }
+    }
+    fn poles(sigma_px: f32) -> Self {
+        // (1.68 cos(0.6318 t) + 3.735 sin(0.6318 t)) e^(−1.783 t) − (0.6803 cos(1.997 t) + 0.2598 sin(1.997 t)) e^(−1.723 t)
+        let terms = [((1.68, -3.735), (1.783, 0.6318)), ((-0.6803, 0.2598), (1.723, 1.997))];
+        let poles = terms.map(|((re, im), (decay, frequency))| {
+            let s = f64::from(sigma_px);
+            let (sin, cos) = (frequency / s).sin_cos();
+            let p = ((-decay / s).exp() * cos, (-decay / s).exp() * sin);
+            let norm = (1.0 - p.0).powi(2) + p.1 * p.1;
+            let rest = ((1.0 - p.0) / norm, p.1 / norm);
+            // Σ over both sides of Re(a pⁿ): Re(a (2 rest − 1)).
+            let weight = re * (2.0 * rest.0 - 1.0) - im * 2.0 * rest.1;
+            ((re, im), p, rest, weight)
+        });
+        let sum: f64 = poles.iter().map(|&(.., weight)| weight).sum();
+        let narrow = |(re, im): (f64, f64)| (re as f32, im as f32);
+        Self::Poles(poles.map(|((re, im), p, rest, _)| Pole {
+            a: narrow((re / sum, im / sum)),
+            p: narrow(p),
+            rest: narrow(rest),
+        }))
+    }
+    /// Filters every lane of a strip; `out` gets as many rows.
+    fn apply(&self, strip: &[[f32; LANES]], beyond: Beyond, out: &mut Strip) {
+        out.clear();
+        out.resize(strip.len(), [0.0; LANES]);
+        match self {
+            Filter::Taps(taps) => apply_taps(strip, taps, beyond, out),
+            Filter::Poles(poles) => apply_poles(strip, poles, beyond, out),
+        }
+    }
+}
+
+/// The weights of a Gaussian at distances 0, 1, … up to four standard deviations (6e-5 of the weight lies beyond); with
+/// their mirror image they add up to 1. `sigma_px ≥ 0`; 0 gives the single weight 1.
+pub fn half_kernel(sigma_px: f32) -> Vec<f32> {
+    let radius = (4.0 * sigma_px).ceil() as usize;
+    let weight = |k: usize| if k == 0 { 1.0 } else { (-0.5 * (k as f64 / f64::from(sigma_px)).powi(2)).exp() };
+    let sum: f64 = 1.0 + 2.0 * (1..=radius).map(weight).sum::<f64>();
+    (0..=radius).map(|k| (weight(k) / sum) as f32).collect()
+}
+
+crate::widest! {
+    /// Σ_k w_k (strip[y − k] + strip[y + k]).
+    fn apply_taps(strip: &[[f32; LANES]], taps: &[f32], beyond: Beyond, out: &mut [[f32; LANES]]) {
+        let n = strip.len();
+        let nothing = [0.0; LANES];
+        for y in 0..n {
+            let mut sum = strip[y];
+            for v in &mut sum {
+                *v *= taps[0];
+            }
+            for (k, &w) in taps.iter().enumerate().skip(1) {
+                let clip = |inside: bool, at: usize| if inside || beyond == Beyond::Border { &strip[at] } else { &nothing };
+                let (a, b) = (clip(y >= k, y.saturating_sub(k)), clip(y + k < n, (y + k).min(n - 1)));
+                for l in 0..LANES {
+                    sum[l] += w * (a[l] + b[l]);
+                }
+            }
+            out[y] = sum;
+        }
+    }
+
+    /// Σ_n Re(a pⁿ) over both sides, as one recursion down and one up.
+    fn apply_poles(strip: &[[f32; LANES]], poles: &[Pole; 2], beyond: Beyond, out: &mut [[f32; LANES]]) {
+        let (Some(first), Some(last)) = (strip.first(), strip.last()) else { return };
+        let mut down = poles.map(|p| State::resting(p, first, beyond));
+        for (line, out) in strip.iter().zip(out.iter_mut()) {
+            for (state, pole) in down.iter_mut().zip(poles) {
+                // s ← x + p s
+                state.advance(pole);
+                state.add(line);
+                state.add_to(pole, out);
+            }
+        }
+        let mut up = poles.map(|p| State::resting(p, last, beyond));
+        for (line, out) in strip.iter().zip(out.iter_mut()).rev() {
+            for (state, pole) in up.iter_mut().zip(poles) {
+                // s ← p s, then the pixel itself for those above: distance 0 was counted on the way down.
+                state.advance(pole);
+                state.add_to(pole, out);
+                state.add(line);
+            }
+        }
+    }
+}
+
+/// The complex state of one recursion, lane by lane.
+struct State {
+    re: [f32; LANES],
+    im: [f32; LANES],
+}
+
+impl State {
+    /// As if `line` had stood there forever, or nothing.
+    #[inline(always)]
+    fn resting(pole: Pole, line: &[f32; LANES], beyond: Beyond) -> Self {
+        let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
+        if beyond == Beyond::Border {
+            for l in 0..LANES {
+                re[l] = pole.rest.0 * line[l];
+                im[l] = pole.rest.1 * line[l];
+            }
+        }
+        Self { re, im }
+    }
+    #[inline(always)]
+    fn add(&mut self, line: &[f32; LANES]) {
+        for (re, v) in self.re.iter_mut().zip(line) {
+            *re += v;
+        }
+    }
+    #[inline(always)]
+    fn advance(&mut self, pole: &Pole) {
+        for l in 0..LANES {
+            let (re, im) = (self.re[l], self.im[l]);
+            self.re[l] = pole.p.0 * re - pole.p.1 * im;
+            self.im[l] = pole.p.0 * im + pole.p.1 * re;
+        }
+    }
+    #[inline(always)]
+    fn add_to(&self, pole: &Pole, out: &mut [f32; LANES]) {
+        for ((out, re), im) in out.iter_mut().zip(&self.re).zip(&self.im) {
+            *out += pole.a.0 * re - pole.a.1 * im;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn impulse(size: Size) -> Plane<f32> {
+        let mut plane = Plane::filled(size, 0.0);
+        plane.set(size.width as usize / 2, size.height as usize / 2, 1.0);
+        plane
+    }
+    #[test]
+    fn a_point_spreads_to_a_gaussian_of_either_kind() {
+        for (side, sigma) in [(41, 0.7f32), (41, 3.9), (101, 4.1), (301, 25.0)] {
+            let blurred = gaussian(&impulse(Size::new(side, side)), sigma);
+            let peak = 1.0 / (2.0 * std::f32::consts::PI * sigma * sigma);
+            let c = side as usize / 2;
+            for d in 0..(3.0 * sigma) as usize {
+                let expected = peak * (-0.5 * (d as f32 / sigma).powi(2)).exp();
+                let tolerance = if sigma < 1.0 { 0.03 } else { 2e-3 };
+                for found in [blurred.at(c + d, c), blurred.at(c - d, c), blurred.at(c, c + d), blurred.at(c, c - d)] {
+                    assert!((found - expected).abs() < tolerance * peak, "σ {sigma}, {d}: {found}, {expected}");
+                }
+            }
+        }
+    }
+    #[test]
+    fn a_step_blurs_to_the_normal_distribution_within_a_byte_step() {
+        // Odd σ, so that half and one and a half deviations from the border of two pixels lie on pixel centres.
+        for sigma in [3usize, 5, 9, 61] {
+            let step = Plane::from_fn(Size::new(600, 3), |x, _| if x < 300 { 0.0 } else { 1.0 });
+            let blurred = gaussian(&step, sigma as f32);
+            // Φ(½) and Φ(1½).
+            for (beyond, expected) in [(sigma / 2, 0.691_462), (sigma * 3 / 2, 0.933_193)] {
+                let found = blurred.at(300 + beyond, 1);
+                assert!((found - expected).abs() < 2e-3, "σ {sigma}: {found}, {expected}");
+            }
+        }
+    }
+    #[test]
+    fn what_is_even_stays_even_up_to_the_border() {
+        for sigma in [0.0, 1.5, 7.0, 900.0] {
+            let even = vec![[0.25f32, 0.5, 0.75, 1.0]; 37 * 23];
+            for pixel in gaussian_pixels(Size::new(37, 23), &even, sigma) {
+                for (v, e) in pixel.iter().zip(even[0]) {
+                    assert!((v - e).abs() < 1e-4, "σ {sigma}: {v}");
+                }
+            }
+        }
+    }
+    #[test]
+    fn interleaved_pixels_blur_as_their_planes_do() {
+        let size = Size::new(53, 19);
+        let value = |i: usize, c: u32| crate::math::hash::unit(9, i as u32, c);
+        let pixels: Vec<[f32; 3]> = (0..size.area()).map(|i| [value(i, 0), value(i, 1), value(i, 2)]).collect();
+        for sigma in [1.1, 6.0] {
+            let together = gaussian_pixels(size, &pixels, sigma);
+            let alone = gaussian(&Plane::from_values(size, pixels.iter().map(|p| p[2]).collect()).unwrap(), sigma);
+            assert!(together.iter().zip(alone.values()).all(|(p, &v)| p[2] == v), "σ {sigma}");
+        }
+    }
+    #[test]
+    fn nothing_outside_the_mask_comes_in() {
+        let size = Size::new(80, 40);
+        let mask = Plane::from_fn(size, |x, _| if x < 40 { 1.0 } else { 0.0 });
+        let plane = Plane::from_fn(size, |x, _| if x < 40 { 0.5 } else { 1e6 });
+        for sigma in [2.0, 9.0] {
+            let blurred = gaussian_masked(&plane, &mask, sigma);
+            assert!((0..42).all(|x| (blurred.at(x, 20) - 0.5).abs() < 1e-3), "σ {sigma}");
+        }
+    }
+}
