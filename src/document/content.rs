@@ -47,7 +47,8 @@ pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> Painted {
         Content::Strokes(live) => {
             Painted::of_tile(live.tile(scene, at, || stroke::render_tile(&live.params().strokes, scene, at)))
         }
-        Content::Image(_) | Content::Shading(_) => Painted::Nothing,
+        Content::Image(live) => Painted::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
+        Content::Shading(_) => Painted::Nothing,
         Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_) => Painted::Nothing,
     }
 }

@@ -4,6 +4,7 @@
 use super::Budget;
 use crate::{Error, Result};
 use std::{
+    cell::RefCell,
     collections::HashMap,
     fs,
     io::Read,
@@ -103,6 +104,32 @@ impl Files for Given {
     }
     fn path(&self, name: &str) -> PathBuf {
         self.paths.get(name).cloned().unwrap_or_else(|| name.into())
+    }
+}
+
+/// Files that remember which of them were read, so that none of them is written over.
+pub struct Noted<F> {
+    files: F,
+    read: RefCell<Vec<PathBuf>>,
+}
+
+impl<F: Files> Noted<F> {
+    pub fn new(files: F) -> Self {
+        Self { files, read: RefCell::default() }
+    }
+    /// The paths that were asked for, in that order.
+    pub fn read_paths(&self) -> Vec<PathBuf> {
+        self.read.borrow().clone()
+    }
+}
+
+impl<F: Files> Files for Noted<F> {
+    fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
+        self.read.borrow_mut().push(self.path(name));
+        self.files.read(name, budget)
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        self.files.path(name)
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod bitmap;
 pub mod budget;
+pub mod export;
 pub mod exr;
 pub mod files;
 pub mod json;

@@ -1,0 +1,121 @@
+//! `rilievo render`: a document to a picture.
+//! Floor 7.
+
+use super::{Limits, progress};
+use crate::document::source::{MapSource, MaskSource};
+use crate::document::{Document, SurfaceSource, flatten, flatten_layer};
+use crate::io::export::{Options, Target};
+use crate::io::files::{Noted, read_file};
+use crate::io::recipe::{self, Onto, Source};
+use crate::io::{Folder, Given};
+use crate::math::srgb::Color;
+use crate::raster::TileGrid;
+use crate::{Error, Result};
+use clap::ArgGroup;
+use std::path::{Path, PathBuf};
+
+/// Render a recipe to a picture
+#[derive(clap::Args)]
+#[command(group(ArgGroup::new("maps").args(["normal", "depth"]).multiple(true)))]
+pub struct RenderArgs {
+    /// The recipe: a JSON file; the files it names lie beside it
+    #[arg(value_name = "DOC")]
+    document: PathBuf,
+    /// Where the picture goes: .png, .exr, .jpg or .webp
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Put the painting on another object: its normal map
+    #[arg(long, value_name = "FILE")]
+    normal: Option<PathBuf>,
+    /// Put the painting on another object: its depth map
+    #[arg(long, value_name = "FILE")]
+    depth: Option<PathBuf>,
+    /// The other object's mask
+    #[arg(long, value_name = "FILE", requires = "maps")]
+    mask: Option<PathBuf>,
+    /// Size of the picture relative to the canvas
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = scale)]
+    scale: f32,
+    /// Only the layer of this name
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
+    /// What shows where the picture is transparent, as #rrggbb
+    #[arg(long, value_name = "COLOUR", value_parser = color)]
+    background: Option<Color>,
+    /// Quality of a JPEG, 1 to 100
+    #[arg(long, value_name = "N", default_value_t = Options::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
+    quality: u8,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+fn scale(text: &str) -> std::result::Result<f32, String> {
+    let factor = text.parse().ok().filter(|f| (0.001..=100.0).contains(f));
+    factor.ok_or_else(|| "a factor is a number between 0.001 and 100".to_owned())
+}
+
+fn color(text: &str) -> std::result::Result<Color, String> {
+    Color::parse(text).ok_or_else(|| "a colour reads #rrggbb or #rrggbbaa".to_owned())
+}
+
+pub fn run(args: &RenderArgs) -> Result<()> {
+    args.limits.install(|| {
+        let (document, inputs) = load(args)?;
+        let target = Target::new(&args.output, &inputs)?;
+        let document = scaled(args, document)?;
+        let pixels = progress::shown(|progress| match &args.layer {
+            None => Ok(flatten(&document, progress)),
+            Some(name) => Ok(flatten_layer(&document, named(args, &document, name)?, progress)),
+        })?;
+        // Nothing here cancels, so there always is a picture.
+        let pixels: TileGrid = pixels.unwrap_or_default();
+        target.write(&pixels, document.size, &Options { background: args.background, quality: args.quality })
+    })
+}
+
+/// The document and every file it was made from.
+fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
+    let budget = args.limits.budget();
+    let files = Noted::new(Folder::beside(&args.document));
+    let mut given = Given::default();
+    let surface = other_object(args, &mut given);
+    let given = Noted::new(given);
+    let onto = surface.as_ref().map(|surface| Onto { surface, files: &given });
+    let text = read_file(&args.document, budget.json_bytes)?;
+    let document = recipe::read(&text, Source { file: &args.document, files: &files, budget: &budget, onto })?;
+    let mut inputs = vec![args.document.clone()];
+    inputs.extend(files.read_paths());
+    inputs.extend(given.read_paths());
+    Ok((document, inputs))
+}
+
+/// The object that the command line names, if it names one.
+fn other_object(args: &RenderArgs, given: &mut Given) -> Option<SurfaceSource> {
+    let mut name = |path: &Option<PathBuf>| path.as_deref().map(|path: &Path| given.add(path));
+    let (normal, depth, mask) = (name(&args.normal), name(&args.depth), name(&args.mask));
+    (normal.is_some() || depth.is_some()).then(|| SurfaceSource {
+        normal: normal.map(|file| MapSource { file, ..MapSource::default() }),
+        depth: depth.map(|file| MapSource { file, ..MapSource::default() }),
+        mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
+    })
+}
+
+fn scaled(args: &RenderArgs, document: Document) -> Result<Document> {
+    if args.scale == 1.0 {
+        return Ok(document);
+    }
+    let size = document.size.scaled(args.scale);
+    args.limits.budget().size(&args.document, size.width.into(), size.height.into())?;
+    Err(Error::unsupported(&args.document, "--scale is not there yet"))
+}
+
+fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {
+    document.layer_named(name).map(|layer| layer.id).ok_or_else(|| {
+        let names: Vec<_> = document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
+        Error::invalid(
+            &args.document,
+            "--layer",
+            format!("no layer is called “{name}”; there are {}", names.join(", ")),
+        )
+    })
+}

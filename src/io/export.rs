@@ -1,0 +1,276 @@
+//! Pictures out: PNG, JPEG, WebP and EXR, each written whole or not at all.
+//! Floor 5. Not here: what the picture shows (`document::flatten`).
+
+use crate::math::{Size, srgb, srgb::Color};
+use crate::raster::TileGrid;
+use crate::{Error, Result};
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A kind of file that a picture can be written to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits, straight alpha, marked as sRGB.
+    Png,
+    /// 8 bits, opaque.
+    Jpeg,
+    /// Lossless.
+    WebP,
+    /// Linear light, half floats, premultiplied.
+    Exr,
+}
+
+impl Format {
+    /// Every format by the extensions of its files.
+    pub const ALL: [(Format, &'static str); 5] = [
+        (Format::Png, "png"),
+        (Format::Exr, "exr"),
+        (Format::Jpeg, "jpg"),
+        (Format::Jpeg, "jpeg"),
+        (Format::WebP, "webp"),
+    ];
+
+    /// The format that a file's name asks for.
+    pub fn of(file: &Path) -> Result<Format> {
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let found = Self::ALL.iter().find(|(_, known)| *known == extension);
+        found.map(|(format, _)| *format).ok_or_else(|| {
+            let known: Vec<_> = Self::ALL.iter().map(|(_, known)| format!(".{known}")).collect();
+            Error::unsupported(file, format!("a picture is written to a file that ends in {}", known.join(", ")))
+        })
+    }
+}
+
+/// How a picture is written.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// What shows through where the picture is transparent; nothing by default.
+    pub background: Option<Color>,
+    /// Of a JPEG, 1 … 100.
+    pub quality: u8,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { background: None, quality: 92 }
+    }
+}
+
+/// A place to write to, checked before the work that fills it begins.
+pub struct Target {
+    /// As the user named it, for messages.
+    named: PathBuf,
+    /// With links resolved: the file a link leads to is replaced, not the link.
+    file: PathBuf,
+    format: Format,
+}
+
+impl Target {
+    /// Fails where the name asks for no known format, names a folder, lies in a folder that does not exist, or is one of
+    /// the files that are being read.
+    pub fn new(named: &Path, inputs: &[PathBuf]) -> Result<Self> {
+        let format = Format::of(named)?;
+        let file = fs::canonicalize(named).unwrap_or_else(|_| named.into());
+        if file.exists() && !file.is_file() {
+            return Err(Error::unsupported(named, "it is not a regular file, so it cannot be replaced"));
+        }
+        let folder = folder_of(&file);
+        if !folder.is_dir() {
+            return Err(Error::io(named, std::io::Error::other(format!("there is no folder {}", folder.display()))));
+        }
+        if inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == file)) {
+            return Err(Error::unsupported(named, "it is read by this very command; write to another file"));
+        }
+        Ok(Self { named: named.into(), file, format })
+    }
+    /// Encodes and writes the part of a flattened picture that the canvas shows.
+    pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &Options) -> Result<()> {
+        self.replace(&encode(&self.named, self.format, pixels, canvas, options)?)
+    }
+    /// Writes a temporary file beside the target and renames it: the target is the old file or the new one, never half of it.
+    pub fn replace(&self, bytes: &[u8]) -> Result<()> {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let part = folder_of(&self.file).join(format!(".rilievo-{}-{number}.part", std::process::id()));
+        let write = || -> std::io::Result<()> {
+            let mut file = fs::OpenOptions::new().write(true).create_new(true).open(&part)?;
+            file.write_all(bytes)?;
+            if let Ok(old) = fs::metadata(&self.file) {
+                fs::set_permissions(&part, old.permissions())?;
+            }
+            file.sync_all()?;
+            fs::rename(&part, &self.file)
+        };
+        write().map_err(|error| {
+            // What was begun is taken away; if even that fails, the first failure is the one to tell.
+            let _ = fs::remove_file(&part);
+            Error::io(&self.named, error)
+        })
+    }
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The bytes of a picture file; `file` is for messages.
+pub fn encode(file: &Path, format: Format, pixels: &TileGrid, canvas: Size, options: &Options) -> Result<Vec<u8>> {
+    let mut rgba = pixels.to_straight_rgba(canvas.rect());
+    if let Some(background) = options.background {
+        lay_on(&mut rgba, background);
+    }
+    match format {
+        Format::Png => png(&rgba, canvas).map_err(|e| Error::unsupported(file, e)),
+        Format::Jpeg => jpeg(file, &rgba, canvas, options.quality),
+        Format::WebP => webp(file, &rgba, canvas),
+        Format::Exr => exr(&rgba, canvas).map_err(|e| Error::unsupported(file, e)),
+    }
+}
+
+/// Straight pixels over a colour, as a normal layer above a fill would show.
+fn lay_on(rgba: &mut [u8], background: Color) {
+    let under = background.premultiplied();
+    for pixel in rgba.chunks_exact_mut(4) {
+        let a = f32::from(pixel[3]) / 255.0;
+        if pixel[3] == 255 {
+            continue;
+        }
+        let alpha = a + under[3] * (1.0 - a);
+        for (c, below) in pixel.iter_mut().zip(under).take(3) {
+            let premultiplied = f32::from(*c) / 255.0 * a + below * (1.0 - a);
+            *c = if alpha > 0.0 { srgb::quantise(premultiplied / alpha) } else { 0 };
+        }
+        pixel[3] = srgb::quantise(alpha);
+    }
+}
+
+fn png(rgba: &[u8], size: Size) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgba)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
+    if rgba.chunks_exact(4).any(|pixel| pixel[3] != 255) {
+        let reason = "the picture is transparent in places, which a JPEG cannot be; give a background (--background)";
+        return Err(Error::unsupported(file, reason));
+    }
+    if size.width.max(size.height) > u16::MAX.into() {
+        return Err(Error::unsupported(file, format!("a JPEG has at most 65535 pixels a side, not {size}")));
+    }
+    let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    let mut bytes = Cursor::new(Vec::new());
+    let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
+    let encoded = encoder.encode(&rgb, size.width, size.height, image::ExtendedColorType::Rgb8);
+    encoded.map_err(|e| Error::unsupported(file, e))?;
+    Ok(bytes.into_inner())
+}
+
+fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
+    if size.width.max(size.height) > 16_384 {
+        return Err(Error::unsupported(file, format!("a WebP has at most 16384 pixels a side, not {size}")));
+    }
+    let mut bytes = Cursor::new(Vec::new());
+    let encoder = image::codecs::webp::WebPEncoder::new_lossless(&mut bytes);
+    let encoded = encoder.encode(rgba, size.width, size.height, image::ExtendedColorType::Rgba8);
+    encoded.map_err(|e| Error::unsupported(file, e))?;
+    Ok(bytes.into_inner())
+}
+
+fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
+    use exr::prelude::*;
+    let width = size.width as usize;
+    let channels = SpecificChannels::rgba(|at: Vec2<usize>| {
+        let i = (at.y() * width + at.x()) * 4;
+        let a = f32::from(rgba[i + 3]) / 255.0;
+        let light = |c: u8| f16::from_f32(srgb::decode_u8(c) * a);
+        (light(rgba[i]), light(rgba[i + 1]), light(rgba[i + 2]), f16::from_f32(a))
+    });
+    // Lines in order: the bytes do not depend on which thread is done first.
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let layer = Layer::new((width, size.height as usize), LayerAttributes::default(), encoding, channels);
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Budget, picture};
+
+    fn checker() -> (TileGrid, Size) {
+        let size = Size::new(70, 3);
+        let rgba: Vec<u8> =
+            (0..size.area()).flat_map(|i| [(i * 7) as u8, (i * 3) as u8, 200, [255, 0][i % 2]]).collect();
+        (TileGrid::from_straight_rgba(&rgba, 70, 3, 0, 0), size)
+    }
+    fn encoded(format: Format, options: Options) -> Result<Vec<u8>> {
+        let (grid, size) = checker();
+        encode(Path::new("out"), format, &grid, size, &options)
+    }
+    #[test]
+    fn lossless_formats_read_back_as_they_were() {
+        let (grid, size) = checker();
+        let straight = grid.to_straight_rgba(size.rect());
+        for format in [Format::Png, Format::WebP] {
+            let bytes = encoded(format, Options::default()).unwrap();
+            let read = image::load_from_memory(&bytes).unwrap().to_rgba8();
+            assert_eq!(read.as_raw(), &straight, "{format:?}");
+        }
+    }
+    #[test]
+    fn an_exr_holds_linear_light() {
+        let (grid, size) = checker();
+        let bytes = encoded(Format::Exr, Options::default()).unwrap();
+        let read = picture::decode(Path::new("out.exr"), &bytes, &Budget::default()).unwrap();
+        let straight = grid.to_straight_rgba(size.rect());
+        for (i, pixel) in straight.chunks_exact(4).enumerate().filter(|(_, p)| p[3] == 255) {
+            let light = read.linear_at(i % 70, i / 70);
+            assert!((light[0] - srgb::decode_u8(pixel[0])).abs() < 1e-3);
+        }
+    }
+    #[test]
+    fn a_jpeg_of_a_transparent_picture_wants_a_background() {
+        let said = encoded(Format::Jpeg, Options::default()).unwrap_err().to_string();
+        assert!(said.contains("--background"), "{said}");
+        let white = Options { background: Some(Color::WHITE), ..Options::default() };
+        assert!(encoded(Format::Jpeg, white).is_ok());
+    }
+    #[test]
+    fn a_background_shows_through_by_as_much_as_is_missing() {
+        let mut rgba = [200, 100, 0, 128, 1, 2, 3, 0, 9, 9, 9, 255];
+        lay_on(&mut rgba, Color::WHITE);
+        // 200 · 128/255 + 255 · 127/255 = 227.4
+        assert_eq!(rgba, [227, 177, 127, 255, 255, 255, 255, 255, 9, 9, 9, 255]);
+    }
+    #[test]
+    fn a_target_is_replaced_whole_and_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.png");
+        fs::write(&file, "old").unwrap();
+        Target::new(&file, &[]).unwrap().replace(b"new").unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+    #[test]
+    fn a_file_that_is_read_is_never_a_target() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.png");
+        fs::write(&file, "input").unwrap();
+        let roundabout = folder.path().join("../").join(folder.path().file_name().unwrap()).join("a.png");
+        let said = Target::new(&roundabout, &[file]).err().unwrap().to_string();
+        assert!(said.contains("read by this very command"), "{said}");
+        assert!(Target::new(folder.path().join("no/a.png").as_path(), &[]).is_err());
+        assert!(Format::of(Path::new("a.gif")).unwrap_err().to_string().contains(".png, .exr, .jpg"));
+    }
+}

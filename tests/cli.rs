@@ -1,0 +1,212 @@
+//! The program as its users meet it: the real binary, its pictures, its exit codes and its sentences.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A folder with a recipe and the files it names.
+struct Desk(TempDir);
+
+impl Desk {
+    fn with(recipe: &str) -> Self {
+        let desk = Desk(tempfile::tempdir().unwrap());
+        fs::write(desk.path("r.json"), recipe).unwrap();
+        let photo = image::RgbaImage::from_fn(100, 70, |x, y| {
+            image::Rgba([(x * 2) as u8, (y * 3) as u8, ((x * y) % 256) as u8, if x < 10 { 0 } else { 255 }])
+        });
+        photo.save(desk.path("photo.png")).unwrap();
+        desk
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+    /// `rilievo render r.json -o OUT …`
+    fn render(&self, out: &str, more: &[&str]) -> Output {
+        let mut command = rilievo(&["render"]);
+        command.arg(self.path("r.json")).arg("-o").arg(self.path(out)).args(more);
+        command.output().unwrap()
+    }
+    fn rendered(&self, out: &str, more: &[&str]) -> image::DynamicImage {
+        let output = self.render(out, more);
+        assert!(output.status.success(), "{}", said(&output));
+        image::open(self.path(out)).unwrap()
+    }
+}
+
+fn rilievo(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
+    command.args(args);
+    command
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Exit code 1 and one sentence with all of these words.
+fn refused(output: &Output, words: &[&str]) {
+    let said = said(output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.starts_with("rilievo: ") && said.trim_end().lines().count() == 1, "{said}");
+    for word in words {
+        assert!(said.contains(word), "{said}\n  lacks {word}");
+    }
+}
+
+const PHOTO: &str = r#"{ "canvas": { "width": 100, "height": 70 },
+    "layers": [{ "name": "photo", "kind": "image", "source": { "file": "photo.png" }, "filter": "bilinear" }] }"#;
+
+const MANY: &str = r##"{ "canvas": { "width": 300, "height": 200 }, "layers": [
+    { "kind": "fill", "color": "#336699" },
+    { "name": "ramp", "kind": "gradient", "blend": "overlay", "from": [20, 30], "to": [250, 190],
+      "stops": [[0, "#ff000040"], [0.5, "#00ff00"], [1, "#0000ff"]] },
+    { "kind": "group", "opacity": 0.7, "layers": [
+      { "kind": "image", "source": { "file": "photo.png" }, "blend": "multiply", "placement": { "scale": 0.6, "rotation": 20 } },
+      { "kind": "strokes", "strokes": [{ "color": "#ffffff", "samples": [[20, 20], [280, 180]] }] }] }] }"##;
+
+#[test]
+fn an_image_of_the_canvas_size_read_by_one_tap_is_the_file() {
+    let desk = Desk::with(PHOTO);
+    let (picture, photo) = (desk.rendered("out.png", &[]).to_rgba8(), image::open(desk.path("photo.png")).unwrap());
+    for (a, b) in picture.pixels().zip(photo.to_rgba8().pixels()) {
+        assert!(a == b || (a[3] == 0 && b[3] == 0), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn the_same_bytes_come_out_every_time_and_with_any_number_of_threads() {
+    let desk = Desk::with(MANY);
+    for format in ["png", "exr"] {
+        let name = |i: usize| format!("{i}.{format}");
+        for (i, threads) in ["1", "1", "2", "3"].iter().enumerate() {
+            assert!(desk.render(&name(i), &["--threads", threads]).status.success());
+        }
+        let by_environment = rilievo(&["render"])
+            .arg(desk.path("r.json"))
+            .arg("-o")
+            .arg(desk.path(&name(4)))
+            .env("RAYON_NUM_THREADS", "1")
+            .output()
+            .unwrap();
+        assert!(by_environment.status.success());
+        let bytes: Vec<_> = (0..5).map(|i| fs::read(desk.path(&name(i))).unwrap()).collect();
+        assert!(bytes.iter().all(|b| *b == bytes[0]), "{format}");
+    }
+}
+
+#[test]
+fn every_format_shows_the_same_picture() {
+    let desk = Desk::with(MANY);
+    let png = desk.rendered("a.png", &[]).to_rgb8();
+    assert_eq!(desk.rendered("a.webp", &[]).to_rgb8(), png);
+    let jpeg = desk.rendered("a.jpg", &["--quality", "100", "--background", "#ffffff"]).to_rgb8();
+    let difference: u64 = jpeg.iter().zip(png.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    assert!(difference / (png.len() as u64) < 3, "{difference}");
+    assert!(desk.render("a.exr", &[]).status.success());
+}
+
+#[test]
+fn one_layer_alone_stands_on_nothing_or_on_a_background() {
+    let desk = Desk::with(PHOTO);
+    assert_eq!(desk.rendered("a.png", &["--layer", "photo"]).to_rgba8().get_pixel(3, 3)[3], 0);
+    let on_red = desk.rendered("b.png", &["--background", "#ff0000"]).to_rgba8();
+    assert_eq!(on_red.get_pixel(3, 3).0, [255, 0, 0, 255]);
+    refused(&desk.render("c.png", &["--layer", "foto"]), &["--layer", "no layer is called “foto”", "“photo”"]);
+}
+
+#[test]
+fn what_is_refused_is_named_and_nothing_is_written() {
+    let cases = [
+        (r#"{ "canvas": "#, "c.png", vec!["r.json", "line 1 column"]),
+        (r#"{ "layers": [], "canvas": { "width": 1 } }"#, "c.png", vec!["r.json", "canvas.height: is missing"]),
+        (PHOTO, "c.gif", vec!["c.gif", ".png, .exr, .jpg"]),
+        (PHOTO, "no/c.png", vec!["no/c.png", "no folder"]),
+        (PHOTO, "photo.png", vec!["photo.png", "read by this very command"]),
+        (PHOTO, "c.jpg", vec!["c.jpg", "--background"]),
+    ];
+    for (recipe, out, words) in cases {
+        let desk = Desk::with(recipe);
+        let before = fs::read(desk.path("photo.png")).unwrap();
+        refused(&desk.render(out, &[]), &words);
+        assert_eq!(fs::read(desk.path("photo.png")).unwrap(), before);
+        assert_eq!(fs::read_dir(desk.0.path()).unwrap().count(), 2, "nothing is left behind");
+    }
+}
+
+#[test]
+fn a_recipe_reads_nothing_outside_its_folder() {
+    let desk = Desk::with(PHOTO);
+    let inner = desk.path("inner");
+    fs::create_dir(&inner).unwrap();
+    let absolute = desk.path("photo.png").display().to_string();
+    for name in ["../photo.png", absolute.as_str(), "C:/photo.png", "..\\\\photo.png", "link.png"] {
+        fs::write(inner.join("r.json"), PHOTO.replace("photo.png", name)).unwrap();
+        #[cfg(unix)]
+        let _ = std::os::unix::fs::symlink("../photo.png", inner.join("link.png"));
+        let output = rilievo(&["render"]).arg(inner.join("r.json")).arg("-o").arg(desk.path("c.png")).output().unwrap();
+        refused(&output, &["layers[0].source.file"]);
+        assert!(!desk.path("c.png").exists());
+    }
+}
+
+#[test]
+fn hostile_files_are_refused_without_a_panic() {
+    let desk = Desk::with(PHOTO);
+    let png = fs::read(desk.path("photo.png")).unwrap();
+    let mut promising = png.clone();
+    promising[16..24].copy_from_slice(&[0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60]);
+    for bytes in [&png[..png.len() / 2], &promising, b"", b"\x89PNG\r\n\x1a\n", b"GIF89a"] {
+        fs::write(desk.path("photo.png"), bytes).unwrap();
+        refused(&desk.render("c.png", &[]), &["layers[0].source.file", "photo.png"]);
+    }
+    fs::remove_file(desk.path("photo.png")).unwrap();
+    refused(&desk.render("c.png", &[]), &["photo.png", "No such file"]);
+    fs::create_dir(desk.path("photo.png")).unwrap();
+    refused(&desk.render("c.png", &[]), &["photo.png", "is a folder"]);
+}
+
+#[test]
+fn a_ceiling_may_be_lowered_and_raised() {
+    let desk = Desk::with(PHOTO);
+    refused(&desk.render("c.png", &["--max-side", "99"]), &["too large", "--max-side"]);
+    refused(&desk.render("c.png", &["--max-pixels", "6999"]), &["too large", "--max-pixels"]);
+    assert!(desk.render("c.png", &["--max-side", "100", "--max-pixels", "7000"]).status.success());
+}
+
+#[test]
+fn a_misuse_of_the_command_line_has_its_own_exit_code() {
+    for args in [
+        &["render"][..],
+        &["paint"],
+        &["render", "a", "-o", "b", "--quality", "0"],
+        &["render", "a", "-o", "b", "--mask", "m"],
+    ] {
+        assert_eq!(rilievo(args).output().unwrap().status.code(), Some(2), "{args:?}");
+    }
+    for args in [&[][..], &["--help"], &["--version"], &["render", "--help"]] {
+        assert_eq!(rilievo(args).output().unwrap().status.code(), Some(0), "{args:?}");
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let mut child = rilievo(&[]).stdout(std::process::Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    assert!(child.wait().unwrap().success());
+}
+
+#[cfg(unix)]
+#[test]
+fn paths_need_not_be_utf8() {
+    use std::os::unix::ffi::OsStrExt;
+    let desk = Desk::with(PHOTO);
+    let odd = desk.path("").join(std::ffi::OsStr::from_bytes(b"caf\xe9"));
+    fs::create_dir(&odd).unwrap();
+    for name in ["r.json", "photo.png"] {
+        fs::copy(desk.path(name), odd.join(name)).unwrap();
+    }
+    let output = rilievo(&["render"]).arg(odd.join("r.json")).arg("-o").arg(odd.join("out.png")).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(Path::new(&odd.join("out.png")).exists());
+}
