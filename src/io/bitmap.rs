@@ -16,6 +16,8 @@ pub struct Bitmap {
     pub icc: Option<Vec<u8>>,
     pub orientation: Orientation,
     pub format: &'static str,
+    /// What was amiss but could be helped, as a sentence.
+    pub warning: Option<&'static str>,
 }
 
 const READABLE: &str = "PNG, JPEG, WebP, TIFF, BMP, TGA, HDR or EXR";
@@ -33,7 +35,25 @@ const FORMATS: [(ImageFormat, &str, bool); 7] = [
 
 /// Decodes a file by what it begins with; TGA, which begins like nothing, by its name.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
-    let (format, name, unbounded) = sniff(file, bytes)?;
+    let found = sniff(file, bytes)?;
+    let result = decode_as(file, bytes, budget, found);
+    let end = [0, 0, 0, 0, b'I', b'E', b'N', b'D', 0xae, 0x42, 0x60, 0x82];
+    if result.is_err() && found.0 == ImageFormat::Png && !bytes.ends_with(&end) {
+        // A PNG whose pixels are all there may have lost just its end marker; pixels cut short fail again.
+        let whole = [bytes, &end].concat();
+        if let Ok(bitmap) = decode_as(file, &whole, budget, found) {
+            return Ok(Bitmap { warning: Some("the PNG has no end marker; all its pixels are there"), ..bitmap });
+        }
+    }
+    result
+}
+
+fn decode_as(
+    file: &Path,
+    bytes: &[u8],
+    budget: &Budget,
+    (format, name, unbounded): (ImageFormat, &'static str, bool),
+) -> Result<Bitmap> {
     if format == ImageFormat::Jpeg && !ends(bytes) {
         return Err(Error::decode(file, "the JPEG data ends before its end marker; the file is cut short"));
     }
@@ -49,7 +69,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
         let icc = decoder.icc_profile().ok().flatten();
         let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
         let image = DynamicImage::from_decoder(decoder).map_err(|e| failure(file, name, &e))?;
-        Ok(Bitmap { image, icc, orientation, format: name })
+        Ok(Bitmap { image, icc, orientation, format: name, warning: None })
     }));
     decoded.unwrap_or_else(|_| Err(Error::decode(file, format!("the {name} data is damaged"))))
 }
@@ -73,8 +93,6 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
 
 fn limits(budget: &Budget) -> image::Limits {
     let mut limits = image::Limits::no_limits();
-    limits.max_image_width = Some(budget.side_px);
-    limits.max_image_height = Some(budget.side_px);
     // Four floats a pixel is the most that any of the formats decodes to.
     limits.max_alloc = Some(budget.area_px.saturating_mul(16));
     limits

@@ -1,0 +1,95 @@
+//! What stands where there is no surface: the value that fills a map's outside, and the values renderers write there.
+//! Floor 5.
+
+use super::stored::Stored;
+use crate::math::{Size, Vec3};
+use crate::raster::Plane;
+use std::collections::HashMap;
+
+/// The one texel that fills the outside: outside the mask where there is one, else along the border. `None` where no texel
+/// stands on a third of it.
+pub fn constant(stored: &Stored, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
+    let size = stored.size;
+    let outside: Vec<usize> = match coverage {
+        Some(c) => (0..size.area()).filter(|&i| c.values()[i] == 0).collect(),
+        None => border(size),
+    };
+    let mut counts: HashMap<[u32; 4], usize> = HashMap::new();
+    for &i in &outside {
+        // Adding 0 makes −0 and 0 one key.
+        *counts.entry(stored.texel(i).map(|v| (v + 0.0).to_bits())).or_default() += 1;
+    }
+    let (texel, count) = counts.into_iter().max_by_key(|&(texel, count)| (count, texel))?;
+    (count * 3 >= outside.len() && count > 1).then(|| texel.map(f32::from_bits))
+}
+
+/// Indices of the outermost pixels.
+fn border(size: Size) -> Vec<usize> {
+    let (w, h) = (size.width as usize, size.height as usize);
+    if w < 3 || h < 3 {
+        return (0..w * h).collect();
+    }
+    let rows = (0..w).chain((h - 1) * w..h * w);
+    rows.chain((1..h - 1).flat_map(|y| [y * w, y * w + w - 1])).collect()
+}
+
+/// Whether two texels are the same but for what a lossy file does to them.
+pub fn same(a: [f32; 4], b: [f32; 4], lossy: bool) -> bool {
+    let tolerance = if lossy { 0.024 } else { 0.0 };
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance || (a.is_nan() && b.is_nan()))
+}
+
+/// Pixels joined to the border through pixels that `is` accepts (four neighbours).
+pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
+    let (w, h) = (size.width as usize, size.height as usize);
+    let mut found = Plane::filled(size, false);
+    let mut queue: Vec<usize> = border(size).into_iter().filter(|&i| is(i)).collect();
+    queue.iter().for_each(|&i| found.values_mut()[i] = true);
+    while let Some(i) = queue.pop() {
+        let (x, y) = (i % w, i / w);
+        let mut visit = |j: usize| {
+            if !found.values()[j] && is(j) {
+                found.values_mut()[j] = true;
+                queue.push(j);
+            }
+        };
+        if x > 0 {
+            visit(i - 1);
+        }
+        if x + 1 < w {
+            visit(i + 1);
+        }
+        if y > 0 {
+            visit(i - w);
+        }
+        if y + 1 < h {
+            visit(i + w);
+        }
+    }
+    found
+}
+
+/// Whether a decoded vector can be no normal: not finite, next to nothing, or far too long (black or white read as biased).
+pub fn is_degenerate(n: Vec3) -> bool {
+    !n.is_finite() || n.length() < 0.15
+}
+
+/// Where the surface is by the normals alone: not where they are degenerate, nor where the border's constant decodes to no
+/// unit vector.
+///
+/// Within a pixel of a zero-length background, lengths below 1 are coverage (averaged with nothing) where `unit` says that
+/// normals have length 1 elsewhere.
+pub fn coverage_of_normals(vectors: &Plane<Vec3>, outside: impl Fn(usize) -> bool + Sync, unit: bool) -> Plane<u8> {
+    let size = vectors.size();
+    let w = size.width as usize;
+    let bare = Plane::from_fn(size, |x, y| is_degenerate(vectors.at(x, y)) || outside(y * w + x));
+    Plane::from_fn(size, |x, y| {
+        if bare.at(x, y) {
+            return 0;
+        }
+        let (x, y) = (x as i32, y as i32);
+        let rim = (-1..=1).any(|dy| (-1..=1).any(|dx| bare.get(x + dx, y + dy).unwrap_or(false)));
+        let length = vectors.at(x as usize, y as usize).length();
+        if unit && rim && length < 0.97 { (length * 255.0).round().max(1.0) as u8 } else { 255 }
+    })
+}

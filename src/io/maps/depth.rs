@@ -1,0 +1,237 @@
+//! Depth as renderers, sensors and painters store it: its background, its polarity, its encoding, its range.
+//! Floor 5.
+
+use super::{background, findings::Findings, samples, stored::Stored};
+use crate::document::source::{DepthConvention, DepthEncoding, Near};
+use crate::math::Vec3;
+use crate::raster::Plane;
+use crate::{Error, Result};
+
+/// Values beyond this are background whatever the scene's unit: renderers write 1e10.
+const FAR_AWAY: f32 = 1e9;
+/// Numbers that sensors and half floats write where they saw nothing.
+const USUAL: [f32; 3] = [0.0, -1.0, 65504.0];
+
+/// Depth as stored, without its background, and what that told.
+pub struct Raw {
+    /// NaN where there is no surface.
+    pub values: Plane<f32>,
+    /// A background value was found that cannot be depth.
+    pub has_background: bool,
+    /// Nearer is higher, where that is certain.
+    pub near_high: Option<bool>,
+    /// What speaks for nearer being higher, −1 … 1.
+    pub near_high_leaning: f32,
+}
+
+/// Finds the background and what it says of the polarity.
+pub fn read(
+    stored: &Stored,
+    told: &DepthConvention,
+    coverage: Option<&Plane<u8>>,
+    findings: &mut Findings,
+) -> Result<Raw> {
+    if stored.colours() >= 3 && !stored.is_grey(if stored.lossy { 0.05 } else { 0.004 }) {
+        let reason = "the picture is coloured; depth is one grey channel (name one with “channel”)";
+        return Err(Error::decode(&stored.file, reason));
+    }
+    let plane = &stored.channels[0];
+    let covered = |i: usize| coverage.is_none_or(|c| c.values()[i] > 0);
+    let edge = background::constant(stored, coverage).map(|t| t[0]);
+    let mut values = plane.map(|v| if v.is_finite() && v.abs() < FAR_AWAY { v } else { f32::NAN });
+    let stray = |v: f32| told.background.iter().any(|b| (v - b).abs() <= 1e-6 * b.abs().max(1.0));
+    values.values_mut().iter_mut().filter(|v| stray(**v)).for_each(|v| *v = f32::NAN);
+    let mut sentinels = Vec::new();
+    while let Some(sentinel) = sentinels.len().lt(&3).then(|| find_sentinel(&values, covered)).flatten() {
+        values.values_mut().iter_mut().filter(|v| **v == sentinel).for_each(|v| *v = f32::NAN);
+        sentinels.push(sentinel);
+    }
+    if stored.lossy {
+        drop_bled(&mut values, covered);
+    }
+    let (low, high) = range(&values, covered).ok_or_else(|| {
+        Error::decode(&stored.file, "there is no surface at all: every pixel of the depth map is background")
+    })?;
+    for s in &sentinels {
+        findings.note(format!("{s} is no depth but background"));
+    }
+    let infinite = plane.values().iter().any(|v| *v >= FAR_AWAY);
+    let outliers = sentinels.iter().filter(|s| s.abs() > 1000.0 * (high - low).max(1e-6));
+    let (above, below) = (infinite || outliers.clone().any(|s| *s > high), outliers.clone().any(|s| *s < low));
+    // The farthest value marks the background of metric depth; of camera z, which is negative, the lowest.
+    let near_high = match (above, below || high < 0.0) {
+        (true, false) => Some(false),
+        (false, true) => Some(true),
+        _ => None,
+    };
+    let leaning = match edge.filter(|e| !sentinels.contains(e) && high > low) {
+        Some(e) if e >= high => -0.5,
+        Some(e) if e <= low => 0.5,
+        // Numbers beyond 1 are a scene's own unit, which grows away from the camera.
+        _ if stored.step.is_none() && high > 1.0 => -0.3,
+        _ => 0.0,
+    };
+    let has_background = !sentinels.is_empty()
+        || values.values().iter().zip(plane.values()).any(|(v, p)| v.is_nan() && !p.is_nan())
+        || plane.values().iter().any(|v| v.is_nan());
+    Ok(Raw { values, has_background, near_high, near_high_leaning: leaning })
+}
+
+/// A number at the end of the range that many pixels hold exactly and a gap sets apart from all others.
+///
+/// The usual "nothing" numbers need a gap of a quarter of the others' range, any other number of four times it.
+fn find_sentinel(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option<f32> {
+    let (low, high) = range(values, &covered)?;
+    let inside = || values.values().iter().enumerate().filter(|(i, v)| covered(*i) && !v.is_nan()).map(|(_, v)| *v);
+    let total = inside().count();
+    let next_above = inside().filter(|v| *v > low).fold(f32::INFINITY, f32::min);
+    let next_below = inside().filter(|v| *v < high).fold(f32::NEG_INFINITY, f32::max);
+    let is_sentinel = |end: f32, next: f32, other: f32| {
+        let (gap, rest) = ((next - end).abs(), (other - next).abs());
+        let held = inside().filter(|v| *v == end).count();
+        let floor = 1e-3 * next.abs();
+        let needed = if USUAL.contains(&end) { (0.25 * rest).max(floor) } else { (4.0 * rest).max(1000.0 * floor) };
+        gap.is_finite() && held >= 4 && held * 1000 >= total && gap > needed
+    };
+    if is_sentinel(low, next_above, high) {
+        return Some(low);
+    }
+    is_sentinel(high, next_below, low).then_some(high)
+}
+
+/// Takes out what a lossy compression mixed of surface and background: pixels near the rim beyond the range of those
+/// further in.
+fn drop_bled(values: &mut Plane<f32>, covered: impl Fn(usize) -> bool) {
+    // Blocks of 4 × 4 reach three pixels.
+    const REACH: i32 = 3;
+    let (w, size) = (values.width(), values.size());
+    let here = |v: &Plane<f32>, x: i32, y: i32| {
+        v.get(x, y).is_none_or(|z| z.is_finite() && covered(y as usize * w + x as usize))
+    };
+    let mut inner = vec![false; size.area()];
+    for (i, is_inner) in inner.iter_mut().enumerate() {
+        let (x, y) = ((i % w) as i32, (i / w) as i32);
+        let ring = [(-REACH, 0), (REACH, 0), (0, -REACH), (0, REACH), (-2, -2), (2, -2), (-2, 2), (2, 2), (0, 0)];
+        *is_inner = ring.iter().all(|(dx, dy)| here(values, x + dx, y + dy));
+    }
+    let Some((low, high)) = range(values, |i| inner[i]) else { return };
+    let slack = 0.02 * (high - low);
+    for (v, _) in values.values_mut().iter_mut().zip(&inner).filter(|(_, inner)| !**inner) {
+        if *v < low - slack || *v > high + slack {
+            *v = f32::NAN;
+        }
+    }
+}
+
+fn range(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option<(f32, f32)> {
+    let inside = values.values().iter().enumerate().filter(|(i, v)| covered(*i) && !v.is_nan());
+    inside.fold(None, |r: Option<(f32, f32)>, (_, &v)| Some(r.map_or((v, v), |(a, b)| (a.min(v), b.max(v)))))
+}
+
+/// What is fixed or leans before normals are asked: the convention's words, then the encoding's nature.
+pub fn near_told(told: &DepthConvention, raw: &Raw) -> Option<bool> {
+    match (told.near, told.encoding) {
+        (Near::Low, _) => Some(false),
+        (Near::High, _) => Some(true),
+        (Near::Auto, Some(DepthEncoding::Inverse | DepthEncoding::Disparity)) => Some(true),
+        _ => raw.near_high,
+    }
+}
+
+/// Turns stored numbers into planar depth that grows away from the viewer, in any unit; NaN stays.
+pub fn planar(
+    stored: &Stored,
+    values: &Plane<f32>,
+    told: &DepthConvention,
+    near_high: bool,
+    encoding: DepthEncoding,
+) -> Plane<f32> {
+    let size = values.size();
+    let fov = told.fov_degrees.or(stored.fov_degrees);
+    let focal_px = fov.map(|f| size.width as f32 * 0.5 / (f.to_radians() * 0.5).tan());
+    let centre = size.center();
+    Plane::from_fn(size, |x, y| {
+        let v = values.at(x, y);
+        match encoding {
+            DepthEncoding::Inverse if v.abs() < 1e-12 => f32::NAN,
+            // 1/z falls with distance; where low was said to be near, the numbers are negative camera z inverted.
+            DepthEncoding::Inverse => {
+                if near_high {
+                    1.0 / v
+                } else {
+                    -1.0 / v
+                }
+            }
+            _ if near_high && encoding != DepthEncoding::RayDistance => -v,
+            DepthEncoding::RayDistance => focal_px.map_or(v.abs(), |f| {
+                let (u, w) = ((x as f32 + 0.5 - centre.x) / f, (y as f32 + 0.5 - centre.y) / f);
+                v.abs() / (1.0 + u * u + w * w).sqrt()
+            }),
+            _ => v,
+        }
+    })
+}
+
+/// Whether 1/v goes with the normals clearly better than v itself: the correlation of slope lengths.
+pub fn looks_inverse(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<bool>) -> bool {
+    let w = values.width();
+    let at = samples::spread(inside);
+    let positive = at.iter().all(|&i| values.values()[i] > 1e-6 || values.values()[i].is_nan());
+    let agreement = |of: &dyn Fn(f32, f32) -> f32| {
+        let pairs = at.iter().filter_map(|&i| {
+            let n = normals.values()[i];
+            let step = samples::slope(values, i % w, i / w, 1)?;
+            (n.z > 0.4)
+                .then(|| (f64::from(n.truncate().length() / n.z), f64::from(of(values.values()[i], step.length()))))
+        });
+        let (ab, aa, bb, count) =
+            pairs.fold((0.0, 1e-30, 1e-30, 0), |(ab, aa, bb, n), (a, b)| (ab + a * b, aa + a * a, bb + b * b, n + 1));
+        if count < 200 { 0.0 } else { ab / (aa * bb).sqrt() }
+    };
+    positive && agreement(&|v, step| step / (v * v)) > agreement(&|_, step| step) + 0.02
+}
+
+/// Depth in `[0, 1]` and the planar depths at its ends.
+pub struct Normalised {
+    pub depth: Plane<f32>,
+    pub near: f32,
+    pub far: f32,
+}
+
+/// Normalises planar depth over the surface, near 0, far 1. Only where stray pixels would flatten the rest (the range from
+/// the 0.1th to the 99.9th percentile is under half of the full one) that range is taken and said so.
+///
+/// * `inside`: pixels with a depth of their own. Partly covered ones that hold the background's value join the range where
+///   that value carries on from the surface's (a map whose far end is the background's), and get no depth.
+pub fn normalise(
+    planar: &Plane<f32>,
+    inside: &Plane<bool>,
+    coverage: &Plane<u8>,
+    findings: &mut Findings,
+) -> Option<Normalised> {
+    let pairs = planar.values().iter().zip(inside.values());
+    let mut held: Vec<f32> = pairs.filter(|(v, i)| **i && v.is_finite()).map(|(v, _)| *v).collect();
+    held.sort_unstable_by(f32::total_cmp);
+    let (mut near, mut far) = (*held.first()?, *held.last()?);
+    let percentile = |p: f64| held[((held.len() - 1) as f64 * p).round() as usize];
+    let (low, high) = (percentile(0.001), percentile(0.999));
+    if high - low < 0.5 * (far - near) && high > low {
+        findings.note(format!("depth was clipped to {low} … {high}: a few stray pixels reach {near} … {far}"));
+        (near, far) = (low, high);
+    } else {
+        let slack = 0.02 * (far - near);
+        let (from, to) = (near - slack, far + slack);
+        let rim = planar.values().iter().zip(coverage.values()).filter(|(v, c)| **c > 0 && **v >= from && **v <= to);
+        (near, far) = rim.fold((near, far), |(a, b), (v, _)| (a.min(*v), b.max(*v)));
+    }
+    let span = far - near;
+    if span <= 0.0 {
+        findings.note("depth is the same everywhere; D_p will bend nothing");
+    }
+    let scale = if span > 0.0 { 1.0 / span } else { 0.0 };
+    let depth = Plane::from_fn(planar.size(), |x, y| {
+        let v = planar.at(x, y);
+        if inside.at(x, y) && v.is_finite() { ((v - near) * scale).max(0.0).min(1.0) } else { f32::NAN }
+    });
+    Some(Normalised { depth, near, far })
+}

@@ -1,0 +1,179 @@
+//! How stored numbers become the components of normals: chosen by which reading makes them of length 1.
+//! Floor 5. Not here: which way the axes point (`orientation`).
+
+use super::{findings::Findings, stored::Stored};
+use crate::document::source::{NormalConvention, NormalEncoding};
+use crate::math::{Vec3, srgb, vec3};
+use crate::{Error, Result};
+
+/// A way to read a texel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    pub encoding: NormalEncoding,
+    /// The numbers went through the sRGB curve.
+    pub srgb: bool,
+    /// The two channels of `two-channel` are signed numbers.
+    signed_pair: bool,
+}
+
+impl Reading {
+    /// The vector of a texel, in the file's own order of channels, of any length.
+    pub fn vector(&self, texel: [f32; 4]) -> Vec3 {
+        let v = if self.srgb { texel.map(srgb::decode) } else { texel };
+        let biased = |v: f32| 2.0 * v - 1.0;
+        match self.encoding {
+            NormalEncoding::Unsigned => vec3(biased(v[0]), biased(v[1]), biased(v[2])),
+            NormalEncoding::Signed => vec3(v[0], v[1], v[2]),
+            NormalEncoding::FullZ => vec3(biased(v[0]), biased(v[1]), v[2]),
+            NormalEncoding::TwoChannel if self.signed_pair => rebuilt(v[0], v[1]),
+            NormalEncoding::TwoChannel => rebuilt(biased(v[0]), biased(v[1])),
+            NormalEncoding::Dxt5nm => rebuilt(biased(v[3]), biased(v[1])),
+        }
+    }
+}
+
+/// z = √(1 − x² − y²); 0 where rounding pushed x and y beyond the unit circle.
+fn rebuilt(x: f32, y: f32) -> Vec3 {
+    vec3(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
+}
+
+/// Chooses the reading that suits the sampled texels; what the convention fixes is kept.
+pub fn choose(stored: &Stored, samples: &[usize], told: &NormalConvention, findings: &mut Findings) -> Result<Reading> {
+    let texels: Vec<[f32; 4]> = samples.iter().map(|&i| stored.texel(i)).collect();
+    let shape = Shape::of(stored, &texels);
+    refuse_grey(stored, told, &shape)?;
+    let signed_pair = shape.least < -0.02;
+    let encodings: Vec<NormalEncoding> = match told.encoding {
+        Some(encoding) => vec![encoding],
+        None => plausible(stored, &shape),
+    };
+    let curves = match told.srgb {
+        Some(srgb) => vec![srgb],
+        // Only numbers that were a picture's can have gone through its curve.
+        None if shape.least >= -0.02 && shape.most <= 1.02 => vec![false, true],
+        None => vec![false],
+    };
+    let mut scored: Vec<(f32, Reading)> = Vec::new();
+    for &encoding in &encodings {
+        for &srgb in &curves {
+            let reading = Reading { encoding, srgb, signed_pair };
+            // Rebuilt normals always have length 1; the curve shows in how often x and y leave the unit circle: it does not.
+            let rebuilt = matches!(encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
+            if rebuilt && srgb && told.srgb.is_none() {
+                continue;
+            }
+            scored.push((length_error(&reading, &texels), reading));
+        }
+    }
+    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(&(error, reading)) = scored.first() else {
+        return Err(Error::decode(&stored.file, "no encoding of normals fits these numbers"));
+    };
+    // A rival counts only where it reads the numbers otherwise.
+    let rival = scored.iter().skip(1).map(|s| s.0).next();
+    let confidence = rival.map_or(0.95, |r| 1.0 - error / r.max(1e-6));
+    report(told, &reading, confidence, error, findings);
+    Ok(reading)
+}
+
+fn report(told: &NormalConvention, reading: &Reading, confidence: f32, error: f32, findings: &mut Findings) {
+    match told.encoding {
+        Some(encoding) => findings.given("normal.encoding", encoding.name()),
+        None => findings.found("normal.encoding", reading.encoding.name(), confidence),
+    }
+    match told.srgb {
+        Some(srgb) => findings.given("normal.srgb", srgb),
+        None => findings.found("normal.srgb", reading.srgb, confidence),
+    }
+    if reading.srgb && told.srgb.is_none() {
+        findings.note("the normals went through the sRGB curve by mistake; it was undone");
+    }
+    if error > 0.1 {
+        findings
+            .note(format!("the normals are not of length 1 (off by {error:.2} on average); they were renormalised"));
+    }
+}
+
+/// Facts about the sampled texels that narrow the choice.
+struct Shape {
+    least: f32,
+    most: f32,
+    /// Largest minus smallest number of each channel.
+    spread: [f32; 4],
+    /// Share of alpha values strictly between clear and opaque.
+    grey_alpha: f32,
+    grey: bool,
+}
+
+impl Shape {
+    fn of(stored: &Stored, texels: &[[f32; 4]]) -> Self {
+        let fold = |c: usize, start: f32, pick: fn(f32, f32) -> f32| texels.iter().map(|t| t[c]).fold(start, pick);
+        let low: [f32; 4] = std::array::from_fn(|c| fold(c, f32::INFINITY, f32::min));
+        let high: [f32; 4] = std::array::from_fn(|c| fold(c, f32::NEG_INFINITY, f32::max));
+        let channels = stored.colours().clamp(1, 3);
+        let between = texels.iter().filter(|t| t[3] > 0.02 && t[3] < 0.98).count();
+        Self {
+            least: low[..channels].iter().copied().fold(f32::INFINITY, f32::min),
+            most: high[..channels].iter().copied().fold(f32::NEG_INFINITY, f32::max),
+            spread: std::array::from_fn(|c| high[c] - low[c]),
+            grey_alpha: if stored.channels.len() == 4 { between as f32 / texels.len().max(1) as f32 } else { 0.0 },
+            grey: stored.colours() == 1
+                || (stored.colours() == 3 && stored.is_grey(if stored.lossy { 0.02 } else { 0.0 })),
+        }
+    }
+    /// x in alpha, y in green, nothing in red and blue (or green repeated in them).
+    fn is_dxt5nm(&self) -> bool {
+        let still = |c: usize| self.spread[c] < 0.01;
+        self.grey_alpha > 0.5 && self.spread[3] > 0.1 && ((still(0) && still(2)) || self.grey)
+    }
+}
+
+fn plausible(stored: &Stored, shape: &Shape) -> Vec<NormalEncoding> {
+    use NormalEncoding::{Dxt5nm, FullZ, Signed, TwoChannel, Unsigned};
+    if stored.channels.len() == 2 {
+        return vec![TwoChannel];
+    }
+    if shape.is_dxt5nm() {
+        return vec![Dxt5nm];
+    }
+    if shape.least < -0.05 {
+        return vec![Signed];
+    }
+    // Blue that never changes while red and green do carries nothing, unless it is a flat map's 1.
+    let blue_is_empty = shape.spread[2] < 0.008 && shape.spread[0].max(shape.spread[1]) > 0.05;
+    if blue_is_empty {
+        return vec![TwoChannel];
+    }
+    match stored.step {
+        Some(_) => vec![Unsigned, FullZ],
+        None => vec![Unsigned, Signed, FullZ],
+    }
+}
+
+fn refuse_grey(stored: &Stored, told: &NormalConvention, shape: &Shape) -> Result<()> {
+    let told_pair = matches!(told.encoding, Some(NormalEncoding::Dxt5nm));
+    // A picture of one value is a flat map, or nothing.
+    let varies = shape.spread[..3].iter().any(|&s| s > 0.02);
+    if stored.colours() == 1 || (shape.grey && varies && !told_pair && !shape.is_dxt5nm()) {
+        let reason = "the picture is grey; a normal map has at least two different channels (is it the depth map?)";
+        return Err(Error::decode(&stored.file, reason));
+    }
+    Ok(())
+}
+
+/// Mean of | |n| − 1 |, each capped at 1 so that a few wild pixels do not decide.
+fn length_error(reading: &Reading, texels: &[[f32; 4]]) -> f32 {
+    let errors = texels.iter().map(|&t| (reading.vector(t).length() - 1.0).abs()).filter(|e| e.is_finite());
+    let (sum, count) = errors.fold((0.0f64, 0u32), |(s, n), e| (s + f64::from(e.min(1.0)), n + 1));
+    if count == 0 { 1.0 } else { (sum / f64::from(count)) as f32 }
+}
+
+/// Whether a file's alpha is no coverage but the x of normals (DXT5nm).
+pub fn holds_x_in_alpha(stored: &Stored) -> bool {
+    if stored.channels.len() != 4 || stored.step.is_none() {
+        return false;
+    }
+    let step = (stored.size.area() / 20_000).max(1);
+    let texels: Vec<[f32; 4]> = (0..stored.size.area()).step_by(step).map(|i| stored.texel(i)).collect();
+    Shape::of(stored, &texels).is_dxt5nm()
+}

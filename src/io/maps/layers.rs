@@ -1,0 +1,142 @@
+//! Which layer of an EXR holds the normals, the depth or the coverage: by the names that renderers give them.
+//! Floor 5.
+
+use super::stored::Role;
+use crate::io::exr::{ExrFile, Pass};
+use crate::{Error, Result};
+use std::path::Path;
+
+/// The channels to read.
+pub struct Choice {
+    pub channels: Vec<usize>,
+    pub alpha: Option<usize>,
+    /// The layer's name.
+    pub name: String,
+}
+
+/// Chooses by the name given, else by what layers are usually called.
+pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: Role) -> Result<Choice> {
+    let alpha = coverage(exr);
+    let (channels, name) = match (told, role) {
+        (Some(told), _) => named(exr, told, role).ok_or_else(|| missing(file, exr, told))?,
+        (None, Role::Normals) => best(exr, normal_rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?,
+        (None, Role::Depth) => best(exr, depth_rank, depth_channels).ok_or_else(|| none(file, exr, "depth"))?,
+        (None, Role::Mask) => match alpha {
+            Some(a) => (vec![a], exr.channels()[a].name.clone()),
+            None => best(exr, |p| Some(p.channels.len()), vec_of_first).ok_or_else(|| none(file, exr, "a mask"))?,
+        },
+    };
+    let alpha = alpha.filter(|a| role != Role::Mask && !channels.contains(a));
+    Ok(Choice { channels, alpha, name })
+}
+
+/// The layers that fit a role, best first: a window lists them for the user to pick.
+pub fn fitting(exr: &ExrFile, role: Role) -> Vec<String> {
+    let rank = |p: &Pass| match role {
+        Role::Normals => normal_rank(p).filter(|_| vector_channels(p).is_some()),
+        Role::Depth => depth_rank(p).filter(|_| depth_channels(p).is_some()),
+        Role::Mask => p.letters("a").map(|_| 0),
+    };
+    let mut found: Vec<(usize, String)> =
+        exr.passes().iter().filter_map(|p| Some((rank(p)?, p.name.clone()))).collect();
+    found.sort();
+    found.into_iter().map(|(_, name)| name).collect()
+}
+
+fn best(
+    exr: &ExrFile,
+    rank: impl Fn(&Pass) -> Option<usize>,
+    channels: impl Fn(&Pass) -> Option<Vec<usize>>,
+) -> Option<(Vec<usize>, String)> {
+    let fitting = exr.passes().iter().filter_map(|p| Some((rank(p)?, channels(p)?, p)));
+    fitting.min_by_key(|(rank, ..)| *rank).map(|(_, channels, pass)| (channels, pass.name.clone()))
+}
+
+fn vec_of_first(pass: &Pass) -> Option<Vec<usize>> {
+    Some(vec![*pass.channels.first()?])
+}
+
+/// x, y and z; red, green and blue; or x and y alone.
+fn vector_channels(pass: &Pass) -> Option<Vec<usize>> {
+    ["xyz", "rgb", "xy", "rg"].iter().find_map(|letters| pass.letters(letters))
+}
+
+/// Depth's one channel. A layer with x and y is a vector, whose z is not depth.
+fn depth_channels(pass: &Pass) -> Option<Vec<usize>> {
+    if pass.letters("xy").is_some() {
+        return None;
+    }
+    ["z", "v", "t", "r", "y", "x", "w"]
+        .iter()
+        .find_map(|letter| pass.letters(letter))
+        .or_else(|| vec_of_first(pass).filter(|_| pass.letters("a").is_none()))
+}
+
+/// How likely a layer holds normals by its name, 0 surest.
+fn normal_rank(pass: &Pass) -> Option<usize> {
+    let key = pass.key();
+    match key.as_str() {
+        "n" | "normal" | "normals" | "nn" | "shnormal" | "shadingnormal" => Some(0),
+        "nworld" | "ncam" | "ncamera" | "vraynormals" | "worldnormal" | "worldnormals" => Some(1),
+        k if k.contains("normal") || k.contains("nrm") => Some(2),
+        k if ["position", "p", "pworld", "vector", "uv", "combined", "beauty", "albedo", "motion"].contains(&k) => None,
+        k if k.contains("crypto") || k.contains("diff") || k.contains("gloss") => None,
+        "" => Some(4),
+        _ => Some(3 + 2 * usize::from(pass.letters("xyz").is_none())),
+    }
+}
+
+/// How likely a layer holds depth by its name, 0 surest. A bare `Z` is depth by EXR's own convention, a bare `Y` luminance.
+fn depth_rank(pass: &Pass) -> Option<usize> {
+    let key = pass.key();
+    match key.as_str() {
+        "" if pass.letters("z").is_some() => Some(0),
+        "depth" | "z" | "zdepth" | "vrayzdepth" => Some(1),
+        k if k.contains("depth") => Some(2),
+        "distance" | "linearz" | "disparity" => Some(3),
+        "" if pass.letters("v").or(pass.letters("t")).is_some() => Some(4),
+        "mist" => Some(5),
+        "" if pass.letters("y").or(pass.letters("r")).is_some() => Some(6),
+        k if k.contains("id") || k == "alpha" || k == "a" || k.contains("normal") || k == "n" => None,
+        _ if pass.channels.len() == 1 || pass.letters("t").is_some() => Some(7),
+        _ => None,
+    }
+}
+
+/// The alpha that covers the whole picture: beside the layers, or the combined picture's.
+fn coverage(exr: &ExrFile) -> Option<usize> {
+    let alphas: Vec<(String, usize)> =
+        exr.passes().iter().filter_map(|p| Some((p.key(), *p.letters("a")?.first()?))).collect();
+    let known = ["", "alpha", "a", "rgba", "combined", "beauty", "mask"];
+    let found = known.iter().find_map(|k| alphas.iter().find(|(key, _)| key == k));
+    found.or(alphas.first().filter(|_| alphas.len() == 1)).map(|(_, channel)| *channel)
+}
+
+/// A layer or a channel by name, letter case aside.
+fn named(exr: &ExrFile, told: &str, role: Role) -> Option<(Vec<usize>, String)> {
+    if let Some(channel) = exr.channels().iter().position(|c| c.name.eq_ignore_ascii_case(told))
+        && role != Role::Normals
+    {
+        return Some((vec![channel], told.into()));
+    }
+    let pass = exr.passes().iter().find(|p| p.name.eq_ignore_ascii_case(told))?;
+    let channels = match role {
+        Role::Normals => vector_channels(pass),
+        Role::Depth => depth_channels(pass).or_else(|| pass.letters("z")),
+        Role::Mask => pass.letters("a").or_else(|| vec_of_first(pass)),
+    };
+    Some((channels?, pass.name.clone()))
+}
+
+fn listing(exr: &ExrFile) -> String {
+    exr.channels().iter().map(|c| c.name.as_str()).collect::<Vec<_>>().join(", ")
+}
+
+fn missing(file: &Path, exr: &ExrFile, told: &str) -> Error {
+    Error::invalid(file, "channel", format!("this EXR has no layer “{told}” that fits; it has {}", listing(exr)))
+}
+
+fn none(file: &Path, exr: &ExrFile, what: &str) -> Error {
+    let reason = format!("no layer of this EXR looks like {what}; name one with “channel” (it has {})", listing(exr));
+    Error::decode(file, reason)
+}

@@ -1,0 +1,248 @@
+//! Normals from whatever a file stores to camera space: reading, axes, space, rim.
+//! Floor 5.
+
+use super::background::{self, is_degenerate};
+use super::encoding::{self, Reading};
+use super::findings::Findings;
+use super::orientation::{self, Axes, Fixed};
+use super::{samples, steps, stored::Stored, world};
+use crate::Result;
+use crate::document::source::{NormalConvention, NormalEncoding, NormalSpace};
+use crate::math::{Mat3, Vec3};
+use crate::raster::Plane;
+
+/// Normals read as vectors, their axes still the file's.
+pub struct Raw {
+    /// Zero where there are none; any length.
+    pub vectors: Plane<Vec3>,
+    pub reading: Reading,
+    /// Coverage by the normals alone.
+    pub coverage: Plane<u8>,
+}
+
+/// Reads the numbers as vectors.
+///
+/// * `coverage`: the mask, where something tells one.
+/// * `without`: pixels that depth says are background.
+pub fn read(
+    stored: &Stored,
+    told: &NormalConvention,
+    coverage: Option<&Plane<u8>>,
+    without: impl Fn(usize) -> bool + Sync,
+    findings: &mut Findings,
+) -> Result<Raw> {
+    let size = stored.size;
+    let w = size.width as usize;
+    let edge = background::constant(stored, coverage);
+    let finite = |i: usize| stored.texel(i).iter().all(|v| v.is_finite());
+    let in_mask = |i: usize| coverage.is_none_or(|c| c.values()[i] > 127) && finite(i);
+    let likely = Plane::from_fn(size, |x, y| {
+        let i = y * w + x;
+        in_mask(i) && !without(i) && edge.is_none_or(|e| !background::same(stored.texel(i), e, stored.lossy))
+    });
+    let mut at = samples::spread(&likely);
+    // A map of one value, or of one pixel, is all there is to look at.
+    if at.len() < 4 {
+        at = (0..size.area()).filter(|&i| in_mask(i)).collect();
+    }
+    let (stored, smoothed) = smooth_if_asked(stored, told, &likely, findings);
+    let stored = smoothed.as_ref().unwrap_or(stored);
+    let reading = encoding::choose(stored, &at, told, findings)?;
+    let vectors = Plane::from_fn(size, |x, y| {
+        let n = reading.vector(stored.texel(y * w + x));
+        if n.is_finite() { n } else { Vec3::ZERO }
+    });
+    let strange = edge.filter(|&e| {
+        let n = reading.vector(e);
+        let rebuilt = matches!(reading.encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
+        is_degenerate(n) || (n.length() - 1.0).abs() > 0.3 || (rebuilt && n.truncate().length() > 1.2)
+    });
+    let outside = |i: usize| strange.is_some_and(|e| background::same(stored.texel(i), e, stored.lossy));
+    let interior = at.iter().map(|&i| (vectors.values()[i].length() - 1.0).abs()).sum::<f32>() / at.len().max(1) as f32;
+    let coverage = background::coverage_of_normals(&vectors, outside, interior < 0.05);
+    Ok(Raw { vectors, reading, coverage })
+}
+
+/// A copy of the file's numbers without the steps of 8 bits, where that is asked for.
+fn smooth_if_asked<'a>(
+    stored: &'a Stored,
+    told: &NormalConvention,
+    inside: &Plane<bool>,
+    findings: &mut Findings,
+) -> (&'a Stored, Option<Stored>) {
+    let (Some(true), Some(step)) = (told.smooth_steps, stored.step) else { return (stored, None) };
+    findings.note("the steps of the normals' numbers were smoothed, each within the half step it stands for");
+    let channels = stored.channels.iter().map(|c| steps::smooth(c, step, inside)).collect();
+    let copy = Stored { channels, alpha: None, file: stored.file.clone(), layer: stored.layer.clone(), ..*stored };
+    (stored, Some(copy))
+}
+
+/// Turns vectors into camera space; returns them unit (zero where there are none), and whether stored depth is nearer where
+/// it is higher.
+///
+/// * `depth`: as stored, NaN where there is none.
+pub fn orient(
+    raw: &Raw,
+    stored: &Stored,
+    told: &NormalConvention,
+    inside: &Plane<bool>,
+    depth: Option<&Plane<f32>>,
+    near: &Fixed,
+    findings: &mut Findings,
+) -> (Plane<Vec3>, bool) {
+    let unit = raw.vectors.map(|n| if is_degenerate(n) { Vec3::ZERO } else { n.normalize_or_zero() });
+    let at = samples::spread(inside);
+    let turn = space(&unit, stored, told, inside, &at, depth, near, findings);
+    let turned = turn.map_or_else(|| unit.clone(), |m| unit.map(|n| m * n));
+    // Turned normals are already the camera's: only what the user says flips them.
+    let fixed = Fixed {
+        order: told.channels.map(|c| order_of(c, raw.reading.encoding)).or(turn.map(|_| [0, 1, 2])),
+        flip: [0, 1, 2].map(|k| [told.flip_x, told.flip_y, told.flip_z][k].or(turn.map(|_| false))),
+        ..*near
+    };
+    let found = orientation::find(&turned, inside, depth, &fixed);
+    report(told, &found, &fixed, depth.is_some(), findings);
+    findings.normal = Some(NormalConvention {
+        encoding: Some(raw.reading.encoding),
+        channels: Some(channels_of(found.axes.order, raw.reading.encoding)),
+        srgb: Some(raw.reading.srgb),
+        flip_x: Some(found.axes.flip[0]),
+        flip_y: Some(found.axes.flip[1]),
+        flip_z: Some(found.axes.flip[2]),
+        space: Some(if turn.is_some() { NormalSpace::World } else { NormalSpace::Camera }),
+        world_to_camera: turn.map(world::to_rows),
+        snap_flat: told.snap_flat,
+        smooth_steps: told.smooth_steps,
+    });
+    let axes = found.axes;
+    (if axes == Axes::PLAIN { turned } else { turned.map(|n| axes.apply(n)) }, found.near_high)
+}
+
+/// Two-channel maps rebuild z themselves, so that no other order makes sense.
+fn order_of(channels: [u8; 3], encoding: NormalEncoding) -> [usize; 3] {
+    match encoding {
+        NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm => [0, 1, 2],
+        _ => channels.map(|c| usize::from(c).min(2)),
+    }
+}
+
+fn channels_of(order: [usize; 3], encoding: NormalEncoding) -> [u8; 3] {
+    if encoding == NormalEncoding::Dxt5nm { [3, 1, 2] } else { order.map(|c| c as u8) }
+}
+
+fn report(
+    told: &NormalConvention,
+    found: &orientation::Found,
+    fixed: &Fixed,
+    has_depth: bool,
+    findings: &mut Findings,
+) {
+    let letters = NormalConvention::letters(found.axes.order.map(|c| c as u8));
+    match told.channels {
+        Some(c) => findings.given("normal.channels", NormalConvention::letters(c)),
+        None => findings.found("normal.channels", letters, found.order_confidence),
+    }
+    let flips = [("normal.flip_x", told.flip_x), ("normal.flip_y", told.flip_y), ("normal.flip_z", told.flip_z)];
+    for (k, (field, given)) in flips.into_iter().enumerate() {
+        match (given, fixed.flip[k]) {
+            (Some(flip), _) => findings.given(field, flip),
+            (None, Some(flip)) => findings.assumed(field, flip, 0.9),
+            (None, None) if found.confidence[k] < 0.5 => {
+                findings.assumed(field, found.axes.flip[k], found.confidence[k])
+            }
+            (None, None) => findings.found(field, found.axes.flip[k], found.confidence[k]),
+        }
+    }
+    if has_depth {
+        let near = if found.near_high { "high" } else { "low" };
+        match fixed.near_high {
+            Some(_) => findings.found("depth.near", near, 0.99),
+            None => findings.found("depth.near", near, found.near_confidence),
+        }
+    }
+}
+
+/// The matrix from world to camera, where the normals are the world's.
+#[expect(clippy::too_many_arguments, reason = "everything that may tell the space")]
+fn space(
+    unit: &Plane<Vec3>,
+    stored: &Stored,
+    told: &NormalConvention,
+    inside: &Plane<bool>,
+    at: &[usize],
+    depth: Option<&Plane<f32>>,
+    near: &Fixed,
+    findings: &mut Findings,
+) -> Option<Mat3> {
+    if told.space == Some(NormalSpace::Camera) {
+        findings.given("normal.space", "camera");
+        return None;
+    }
+    if let Some(rows) = told.world_to_camera {
+        findings.given("normal.space", "world");
+        return world::orthonormal(world::from_rows(rows)).or_else(|| {
+            findings.note("normal.world_to_camera is no rotation; it was ignored");
+            None
+        });
+    }
+    let sampled: Vec<Vec3> = at.iter().map(|&i| unit.values()[i]).filter(|n| *n != Vec3::ZERO).collect();
+    let away = world::share_away(Mat3::IDENTITY, &sampled);
+    let toward = world::share_away(Mat3::from_diagonal(Vec3::NEG_ONE), &sampled);
+    let sided = orientation::one_sided(&sampled);
+    let named = stored.layer.to_lowercase().contains("world");
+    let wanted = told.space == Some(NormalSpace::World);
+    let attribute = stored.world_to_camera.and_then(world::from_attribute).and_then(|m| {
+        // Renderers disagree on where their camera's z points.
+        let looks_back = Mat3::from_diagonal(Vec3::new(1.0, 1.0, -1.0)) * m;
+        let pick = [m, looks_back]
+            .into_iter()
+            .min_by(|a, b| world::share_away(*a, &sampled).total_cmp(&world::share_away(*b, &sampled)))?;
+        Some((pick, world::share_away(pick, &sampled)))
+    });
+    if let Some((matrix, share)) = attribute
+        && (wanted || named || share + 0.01 < away.min(toward))
+    {
+        findings.found("normal.space", "world", if share < 0.02 { 0.98 } else { 0.6 });
+        findings.note("the normals were turned by the file's worldToCamera");
+        return Some(matrix);
+    }
+    let planar = depth.map(|d| if near.near_high == Some(true) { d.map(|v| -v) } else { d.clone() });
+    let aligned = planar.as_ref().and_then(|d| world::from_depth(unit, d, at));
+    let angle = |m: Mat3| ((m.col(0).x + m.col(1).y + m.col(2).z - 1.0) * 0.5).max(-1.0).min(1.0).acos().to_degrees();
+    let mixed = !sided.iter().any(|&s| s) && away.min(toward) > 0.01;
+    let turned = aligned.is_some_and(|a| a.free.fit > 0.9 && a.is_turned() && angle(a.free.matrix) > 3.0);
+    if !wanted && !named && !mixed && !turned {
+        findings.found("normal.space", "camera", if sided[2] { 0.95 } else { 0.6 });
+        return None;
+    }
+    let by_rim = world::from_rim(unit, inside);
+    let sound = |r: &world::Rotation| world::share_away(r.matrix, &sampled) < 0.1;
+    if let Some(found) = aligned.map(|a| a.free).filter(|r| r.fit > 0.8 && sound(r)) {
+        // Depth of unknown polarity leaves half a turn about the view axis open; the rim settles it.
+        let matrix = upright(found.matrix, by_rim.as_ref());
+        findings.found("normal.space", "world", (found.fit * 2.0 - 1.0).max(0.1));
+        findings.note(format!(
+            "the normals are the world's; the rotation to the camera ({:.0}°) was found from the depth map",
+            angle(matrix)
+        ));
+        return Some(matrix);
+    }
+    if let Some(found) = by_rim.filter(|r| r.fit > 0.7 && sound(r)) {
+        findings.found("normal.space", "world", 0.5 * found.fit);
+        findings.note("the normals are the world's; the rotation was found from the silhouette alone: a depth map or the camera's matrix would tell it better");
+        return Some(found.matrix);
+    }
+    findings.assumed("normal.space", "camera", 0.2);
+    findings.note(
+        "some normals point away from the viewer, as world-space normals do, but no rotation to the camera was found",
+    );
+    None
+}
+
+/// The matrix or its half turn about the view axis, whichever is nearer to what the silhouette tells.
+fn upright(matrix: Mat3, by_rim: Option<&world::Rotation>) -> Mat3 {
+    let Some(rim) = by_rim else { return matrix };
+    let likeness = |m: Mat3| (m.transpose() * rim.matrix).to_cols_array().iter().step_by(4).sum::<f32>();
+    let turned = Mat3::from_diagonal(Vec3::new(-1.0, -1.0, 1.0)) * matrix;
+    if likeness(turned) > likeness(matrix) { turned } else { matrix }
+}

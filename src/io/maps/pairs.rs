@@ -1,0 +1,93 @@
+//! Files that belong together by their names: `pot_n.png`, `pot_depth.exr`, `pot_mask.png`.
+//! Floor 5.
+
+use std::path::{Path, PathBuf};
+
+/// What a file's name says it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Part {
+    Normal,
+    Depth,
+    Mask,
+}
+
+const ENDINGS: [(&str, Part); 13] = [
+    ("normals", Part::Normal),
+    ("normal", Part::Normal),
+    ("nrm", Part::Normal),
+    ("nor", Part::Normal),
+    ("n", Part::Normal),
+    ("depth", Part::Depth),
+    ("zdepth", Part::Depth),
+    ("height", Part::Depth),
+    ("d", Part::Depth),
+    ("z", Part::Depth),
+    ("mask", Part::Mask),
+    ("coverage", Part::Mask),
+    ("alpha", Part::Mask),
+];
+
+/// Files of one object.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Set {
+    /// The name without its ending.
+    pub name: String,
+    pub normal: Option<PathBuf>,
+    pub depth: Option<PathBuf>,
+    pub mask: Option<PathBuf>,
+}
+
+/// The object's name and the part, by the ending after the last `_`, `-` or `.`; a bare `normal.png` has an empty name.
+pub fn part_of(file: &Path) -> Option<(String, Part)> {
+    let stem = file.file_stem()?.to_string_lossy().to_lowercase();
+    let (name, end) = stem.rsplit_once(['_', '-', '.']).unwrap_or(("", &stem));
+    // Single letters mean something only after a name.
+    let known = ENDINGS.iter().find(|(ending, _)| *ending == end && (ending.len() > 1 || !name.is_empty()));
+    known.map(|(_, part)| (name.into(), *part))
+}
+
+/// Groups files of the same folder and name; files that say nothing are left out, and so are sets of one file.
+pub fn sets(files: &[PathBuf]) -> Vec<Set> {
+    let mut found: Vec<(PathBuf, Set)> = Vec::new();
+    for file in files {
+        let Some((name, part)) = part_of(file) else { continue };
+        let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();
+        let at = found.iter().position(|(f, s)| *f == folder && s.name == name).unwrap_or_else(|| {
+            found.push((folder.clone(), Set { name: name.clone(), ..Set::default() }));
+            found.len() - 1
+        });
+        let set = &mut found[at].1;
+        let place = match part {
+            Part::Normal => &mut set.normal,
+            Part::Depth => &mut set.depth,
+            Part::Mask => &mut set.mask,
+        };
+        place.get_or_insert_with(|| file.clone());
+    }
+    let several = |s: &Set| [&s.normal, &s.depth, &s.mask].into_iter().flatten().count() > 1;
+    found.into_iter().map(|(_, set)| set).filter(several).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_tell_the_part_and_the_rest_the_object() {
+        let part = |name: &str| part_of(Path::new(name));
+        assert_eq!(part("maps/Pot_N.png"), Some(("pot".into(), Part::Normal)));
+        assert_eq!(part("pot-depth.exr"), Some(("pot".into(), Part::Depth)));
+        assert_eq!(part("normal.png"), Some((String::new(), Part::Normal)));
+        assert_eq!(part("d.png"), None);
+        assert_eq!(part("sand.png"), None);
+    }
+    #[test]
+    fn files_of_one_object_and_folder_make_a_set() {
+        let files: Vec<PathBuf> =
+            ["a/pot_nrm.png", "a/pot_z.exr", "b/pot_mask.png", "a/photo.jpg"].map(Into::into).into();
+        let found = sets(&files);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].depth.as_deref(), Some(Path::new("a/pot_z.exr")));
+        assert_eq!(found[0].mask, None);
+    }
+}

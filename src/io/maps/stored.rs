@@ -1,0 +1,145 @@
+//! Maps as their files store them: numbers per channel, nothing interpreted but which layer of an EXR is meant.
+//! Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
+
+use super::layers;
+use crate::io::{Budget, bitmap, exr::ExrFile};
+use crate::math::Size;
+use crate::raster::Plane;
+use crate::{Error, Result};
+use image::DynamicImage;
+use std::path::{Path, PathBuf};
+
+/// What a file holds of one map.
+pub struct Stored {
+    pub file: PathBuf,
+    pub size: Size,
+    /// One to four channels: red, green, blue, alpha of a picture; x, y, z of an EXR layer. `[0, 1]` in integer files.
+    pub channels: Vec<Plane<f32>>,
+    /// Coverage told by the file itself, `[0, 1]`; absent where it is 1 everywhere.
+    pub alpha: Option<Plane<f32>>,
+    /// The step between two neighbouring numbers of an integer file: 1/255 or 1/65535.
+    pub step: Option<f32>,
+    /// JPEG, or EXR's B44: equal pixels may differ a little, and the background bleeds into the rim.
+    pub lossy: bool,
+    /// The EXR layer, for messages; empty otherwise.
+    pub layer: String,
+    pub world_to_camera: Option<[f32; 16]>,
+    pub fov_degrees: Option<f32>,
+    /// What was amiss with the file but could be helped.
+    pub warning: Option<&'static str>,
+}
+
+/// Which map a file is read for: it decides which EXR layer is looked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Role {
+    Normals,
+    Depth,
+    Mask,
+}
+
+/// Reads one map; `channel` names an EXR layer or channel, or one of `r g b a` of a picture.
+pub fn load(file: &Path, bytes: &[u8], channel: Option<&str>, role: Role, budget: &Budget) -> Result<Stored> {
+    if ExrFile::is_exr(bytes) {
+        load_exr(file, bytes, channel, role, budget)
+    } else {
+        load_bitmap(file, bytes, channel, budget)
+    }
+}
+
+fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: Role, budget: &Budget) -> Result<Stored> {
+    let exr = ExrFile::open(file, bytes, budget)?;
+    let choice = layers::choose(file, &exr, channel, role)?;
+    let wanted: Vec<usize> = choice.channels.iter().chain(&choice.alpha).copied().collect();
+    let mut channels = exr.read(&wanted)?;
+    let alpha = if choice.alpha.is_some() { channels.pop() } else { None };
+    // Beyond the data window there is nothing: transparent, and not a number in every other channel.
+    let alpha = alpha.map(|a| a.map(|v| if v.is_finite() { v.max(0.0).min(1.0) } else { 0.0 }));
+    Ok(Stored {
+        file: file.into(),
+        size: exr.size(),
+        channels,
+        alpha: alpha.filter(|a| a.values().iter().any(|&v| v < 1.0)),
+        step: None,
+        lossy: exr.compression().starts_with("b44"),
+        layer: choice.name,
+        world_to_camera: exr.world_to_camera(),
+        fov_degrees: exr.fov_degrees(),
+        warning: None,
+    })
+}
+
+fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget) -> Result<Stored> {
+    let bitmap = bitmap::decode(file, bytes, budget)?;
+    let image = bitmap.image;
+    let size = Size::new(image.width(), image.height());
+    let step = match image.color().bytes_per_pixel() / image.color().channel_count() {
+        1 => Some(1.0 / 255.0),
+        2 => Some(1.0 / 65535.0),
+        _ => None,
+    };
+    let (colours, has_alpha) = (if image.color().has_color() { 3 } else { 1 }, image.color().has_alpha());
+    let planes = planes(image, size, colours, has_alpha);
+    let mut stored = Stored {
+        file: file.into(),
+        size,
+        channels: planes,
+        alpha: None,
+        step,
+        lossy: bitmap.format == "JPEG",
+        layer: String::new(),
+        world_to_camera: None,
+        fov_degrees: None,
+        warning: bitmap.warning,
+    };
+    if let Some(name) = channel {
+        let at = match name.to_ascii_lowercase().as_str() {
+            "r" | "y" | "l" => Some(0),
+            "g" => Some(1),
+            "b" => Some(2),
+            "a" => Some(colours),
+            _ => None,
+        };
+        let plane = at.and_then(|i| stored.channels.get(i).cloned());
+        let reason = format!("this picture has no channel “{name}”; its channels are called r, g, b and a");
+        stored.channels = vec![plane.ok_or_else(|| Error::invalid(file, "channel", reason))?];
+    } else if has_alpha {
+        stored.alpha = stored.channels.last().filter(|a| a.values().iter().any(|&v| v < 1.0)).cloned();
+    }
+    Ok(stored)
+}
+
+/// The channels of a picture as planes, grey as one, alpha last where there is one.
+fn planes(image: DynamicImage, size: Size, colours: usize, has_alpha: bool) -> Vec<Plane<f32>> {
+    let (texels, per_pixel): (Vec<f32>, usize) = match (colours, has_alpha) {
+        (1, false) => (image.to_luma32f().into_raw(), 1),
+        (1, true) => (image.to_luma_alpha32f().into_raw(), 2),
+        (_, false) => (image.into_rgb32f().into_raw(), 3),
+        _ => (image.into_rgba32f().into_raw(), 4),
+    };
+    let at = |c: usize| Plane::from_fn(size, |x, y| texels[(y * size.width as usize + x) * per_pixel + c]);
+    (0..per_pixel).map(at).collect()
+}
+
+impl Stored {
+    /// The first three channels at a pixel, 0 where there are fewer; the fourth is alpha or a fourth channel.
+    pub fn texel(&self, i: usize) -> [f32; 4] {
+        std::array::from_fn(|c| self.channels.get(c).map_or(0.0, |p| p.values()[i]))
+    }
+    /// The number of the file's colour channels, alpha not counted.
+    pub fn colours(&self) -> usize {
+        match self.channels.len() {
+            2 if self.step.is_some() => 1,
+            4 => 3,
+            n => n,
+        }
+    }
+    /// Whether all colour channels are equal at every pixel, as in a grey picture stored as RGB.
+    pub fn is_grey(&self, tolerance: f32) -> bool {
+        let first = &self.channels[0];
+        let others = self.channels.iter().take(self.colours()).skip(1);
+        others.into_iter().all(|p| {
+            let far = p.values().iter().zip(first.values()).filter(|(a, b)| (*a - *b).abs() > tolerance);
+            far.count() * 1000 <= p.values().len()
+        })
+    }
+}

@@ -1,0 +1,134 @@
+//! Depth from normals: the height field whose slopes are nearest to those the normals tell (a Poisson equation over the
+//! mask), solved by conjugate gradients with a multigrid preconditioner.
+//! Floor 2. The reverse is `differentiate`. What the normals cannot tell stays untold: how far apart two pieces of surface
+//! are across an occluding contour.
+
+mod multigrid;
+
+use crate::math::{Vec3, vec2};
+use crate::raster::Plane;
+use multigrid::Grid;
+
+/// Depth made from normals.
+pub struct Integrated {
+    /// 0 near … 1 far; NaN where there is no surface.
+    pub depth: Plane<f32>,
+    /// How many pixels deep the range 0 … 1 is.
+    pub range_px: f32,
+}
+
+/// Integrates unit normals (camera space, y up) over the pixels where `inside` holds; `None` where there are none.
+///
+/// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is exact on circles, and
+/// w = ((n_z,i + n_z,j)/2)² trusts what faces the viewer. Pieces that do not touch are each centred on the same depth.
+pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<Integrated> {
+    let size = normals.size();
+    let (w, h) = (size.width as usize, size.height as usize);
+    // Slopes beyond 20 px a px are noise at the rim.
+    const STEEPEST: f32 = 0.05;
+    let edge = |a: (usize, usize), b: (usize, usize), axis: usize| {
+        if b.0 >= w || b.1 >= h || !inside.at(a.0, a.1) || !inside.at(b.0, b.1) {
+            return (0.0, 0.0);
+        }
+        let (na, nb) = (normals.at(a.0, a.1), normals.at(b.0, b.1));
+        let along = vec2(na.x + nb.x, -na.y - nb.y)[axis];
+        let facing = (na.z + nb.z) * 0.5;
+        let weight = facing.max(STEEPEST).powi(2);
+        (weight, along * 0.5 / facing.max(STEEPEST))
+    };
+    let right = Plane::from_fn(size, |x, y| edge((x, y), (x + 1, y), 0));
+    let down = Plane::from_fn(size, |x, y| edge((x, y), (x, y + 1), 1));
+    // The right-hand side of the normal equations: what flows out of each pixel.
+    let source = Plane::from_fn(size, |x, y| {
+        let mut b = 0.0;
+        let flow = |(weight, slope): (f32, f32)| weight * slope;
+        b -= flow(right.at(x, y)) + flow(down.at(x, y));
+        if x > 0 {
+            b += flow(right.at(x - 1, y));
+        }
+        if y > 0 {
+            b += flow(down.at(x, y - 1));
+        }
+        b
+    });
+    let grid =
+        Grid::new(w, h, right.values().iter().map(|e| e.0).collect(), down.values().iter().map(|e| e.0).collect());
+    let mut heights = multigrid::solve(grid, source.values());
+    centre_pieces(&mut heights, inside);
+    let held = || heights.iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
+    let (near, far) =
+        held().fold(None, |r: Option<(f32, f32)>, z| Some(r.map_or((z, z), |(a, b)| (a.min(z), b.max(z)))))?;
+    let range_px = if far > near { far - near } else { 1.0 };
+    let depth =
+        Plane::from_fn(size, |x, y| if inside.at(x, y) { (heights[y * w + x] - near) / range_px } else { f32::NAN });
+    Some(Integrated { depth, range_px })
+}
+
+/// Gives every connected piece the mean 0: the equations leave each a constant of its own.
+fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
+    let (w, n) = (inside.width(), heights.len());
+    let mut seen: Vec<bool> = inside.values().iter().map(|i| !i).collect();
+    for start in 0..n {
+        if seen[start] {
+            continue;
+        }
+        seen[start] = true;
+        let mut piece = vec![start];
+        let mut next = 0;
+        while next < piece.len() {
+            let i = piece[next];
+            next += 1;
+            let x = i % w;
+            let near =
+                [(x > 0, i.wrapping_sub(1)), (x + 1 < w, i + 1), (i >= w, i.wrapping_sub(w)), (i + w < n, i + w)];
+            for (there, j) in near {
+                if there && !seen[j] {
+                    seen[j] = true;
+                    piece.push(j);
+                }
+            }
+        }
+        let mean = piece.iter().map(|&i| f64::from(heights[i])).sum::<f64>() / piece.len() as f64;
+        piece.iter().for_each(|&i| heights[i] -= mean as f32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, vec3};
+
+    #[test]
+    fn a_sphere_gets_its_depth_back() {
+        let (size, r) = (Size::new(201, 181), 80.0f32);
+        let truth = |x: usize, y: usize| {
+            let (dx, dy) = (x as f32 - 100.0, 90.0 - y as f32);
+            let rest = r * r - dx * dx - dy * dy;
+            (rest > 0.0).then(|| vec3(dx, dy, rest.sqrt()) / r)
+        };
+        let normals = Plane::from_fn(size, |x, y| truth(x, y).unwrap_or(Vec3::ZERO));
+        let inside = Plane::from_fn(size, |x, y| truth(x, y).is_some());
+        let found = depth_from_normals(&normals, &inside).unwrap();
+        assert!((found.range_px - r).abs() < 0.06 * r, "{} px deep", found.range_px);
+        for y in 0..181 {
+            for x in 0..201 {
+                if let Some(n) = truth(x, y).filter(|n| n.z > 0.2) {
+                    let z = (1.0 - n.z) * r;
+                    let error = (found.depth.at(x, y) * found.range_px - z).abs();
+                    assert!(error < 0.03 * r, "{error} px off at {x}, {y}");
+                }
+            }
+        }
+    }
+    #[test]
+    fn flat_normals_and_holes_give_flat_finite_depth() {
+        let size = Size::new(40, 30);
+        let inside = Plane::from_fn(size, |x, y| (x / 7 + y / 5) % 2 == 0);
+        let found = depth_from_normals(&Plane::filled(size, Vec3::Z), &inside).unwrap();
+        for (z, i) in found.depth.values().iter().zip(inside.values()) {
+            assert_eq!(z.is_nan(), !i);
+            assert!(!i || z.abs() < 1e-5);
+        }
+        assert!(depth_from_normals(&Plane::filled(size, Vec3::Z), &Plane::filled(size, false)).is_none());
+    }
+}
