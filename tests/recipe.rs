@@ -185,7 +185,7 @@ fn everything() -> Value {
         { "name": "shape", "kind": "radiance-scaling", "alpha": 0.5, "gamma_convex": 3, "gamma_concave": 1, "lambda": -1,
           "scales": [{ "curvature_scale": 2, "weight": 2 }, { "blur": 3 }], "light": [1, 0, 0], "reference": 0.5,
           "keep_mean": true },
-        { "name": "grain", "kind": "normals", "source": { "file": "p.png" }, "placement": placement, "outside": "clamp",
+        { "name": "grain", "kind": "normals", "source": { "file": "p.png" }, "convention": "directx", "placement": placement, "outside": "clamp",
           "strength": 2 },
         { "name": "set", "kind": "group", "pass_through": true, "layers": [{ "name": "inner", "kind": "fill", "color": "#000000" }] }
     ]))

@@ -1,7 +1,7 @@
 //! A layer: how it meets what lies beneath, and what it holds.
 //! Floor 4.
 
-use super::{kept::Kept, live::Live, mask::LayerMask};
+use super::{kept::Kept, live::Live, mask::LayerMask, source::NormalConvention};
 use crate::math::srgb::Color;
 use crate::paint::{Gradient, PictureSource, PlacedImage, Placement, Stroke};
 use crate::raster::{BlendMode, Outside, TileGrid};
@@ -107,6 +107,8 @@ pub struct StrokeList {
 #[derive(Clone)]
 pub struct NormalLayer {
     pub source: PictureSource,
+    /// What the map's numbers mean; found where nothing is said.
+    pub convention: NormalConvention,
     pub placement: Placement,
     pub outside: Outside,
     /// `≥ 0`; 1 is the map as it is.

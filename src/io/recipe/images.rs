@@ -4,8 +4,9 @@
 
 use super::Reader;
 use super::names::{FILTERS, OUTSIDES};
+use super::surface::{normal_convention, write_normal_convention};
 use crate::Result;
-use crate::document::NormalLayer;
+use crate::document::{NormalLayer, source::NormalConvention};
 use crate::io::json::{Fields, Node, Object, object};
 use crate::math::{Size, Vec2, srgb::Color, vec2};
 use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
@@ -33,6 +34,7 @@ impl Reader<'_> {
     pub fn normals(&mut self, fields: &mut Fields) -> Result<NormalLayer> {
         Ok(NormalLayer {
             source: self.picture_source(&fields.required("source")?)?,
+            convention: fields.get("convention").map_or(Ok(NormalConvention::default()), |c| normal_convention(&c))?,
             placement: self.placement(fields)?,
             outside: fields.one_of("outside", &OUTSIDES, Outside::Repeat)?,
             strength: fields.number("strength", 1.0, 0.0..=100.0)?,
@@ -176,6 +178,7 @@ pub fn write_image(out: &mut Object, image: &PlacedImage, canvas: Size) {
 
 pub fn write_normals(out: &mut Object, normals: &NormalLayer, canvas: Size) {
     out.set("source", write_source(&normals.source));
+    write_normal_convention(out, &normals.convention);
     out.object("placement", write_placement(&normals.placement, canvas));
     out.word("outside", &OUTSIDES, normals.outside, Outside::Repeat);
     out.number("strength", normals.strength, 1.0);

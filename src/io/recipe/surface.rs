@@ -134,10 +134,7 @@ pub fn write(source: &SurfaceSource) -> Value {
     let mut out = Object::default();
     if let Some(normal) = &source.normal {
         let mut map = start(&normal.file, normal.channel.as_deref());
-        match normal.convention.word() {
-            Some(word) => map.text("convention", word, "auto"),
-            None => map.set("convention", write_normal_convention(&normal.convention)),
-        }
+        write_normal_convention(&mut map, &normal.convention);
         out.object("normal", map);
     }
     if let Some(depth) = &source.depth {
@@ -164,8 +161,11 @@ fn start(file: &str, channel: Option<&str>) -> Object {
     out
 }
 
-pub fn write_normal_convention(convention: &NormalConvention) -> Value {
-    let c = convention;
+/// The field `convention`: the word that stands for it, or each choice that was made.
+pub fn write_normal_convention(into: &mut Object, c: &NormalConvention) {
+    if let Some(word) = c.word() {
+        return into.text("convention", word, "auto");
+    }
     let mut out = Object::default();
     out.said("encoding", c.encoding, |e| e.name().into());
     out.said("channels", c.channels, |c| NormalConvention::letters(c).into());
@@ -177,7 +177,7 @@ pub fn write_normal_convention(convention: &NormalConvention) -> Value {
     out.said("world_to_camera", c.world_to_camera, |rows| rows.into_iter().map(row).collect());
     out.said("snap_flat", c.snap_flat, Value::from);
     out.said("smooth_steps", c.smooth_steps, Value::from);
-    out.done()
+    into.object("convention", out);
 }
 
 fn write_depth_convention(out: &mut Object, convention: &DepthConvention) {
