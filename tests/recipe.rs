@@ -354,6 +354,41 @@ fn a_canvas_keeps_its_size_whatever_the_layers() {
     assert!(document.surface.is_none());
 }
 
+/// What the pages show must work, but for the maps, which are another test's.
+#[test]
+fn every_recipe_in_the_documentation_reads() {
+    struct AnyPicture;
+    impl Files for AnyPicture {
+        fn read(&self, _: &str, _: &Budget) -> Result<Vec<u8>> {
+            Ok(png(4, 4, [255; 4]))
+        }
+        fn path(&self, name: &str) -> PathBuf {
+            name.into()
+        }
+    }
+    let mut read = 0;
+    for page in ["README.md", "docs/RECIPES.md"] {
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page)).unwrap();
+        for block in text.split("```json\n").skip(1).map(|rest| rest.split("```").next().unwrap()) {
+            let mut recipe: Value = serde_json::from_str(block).unwrap_or_else(|e| panic!("{page}: {e}"));
+            recipe.as_object_mut().unwrap().remove("surface");
+            recipe["canvas"] = json!({ "width": 8, "height": 8 });
+            let source = Source { file: Path::new(page), files: &AnyPicture, budget: &Budget::default(), onto: None };
+            recipe::read(recipe.to_string().as_bytes(), source).unwrap_or_else(|e| panic!("{e}"));
+            read += 1;
+        }
+    }
+    assert!(read >= 2);
+}
+
+#[test]
+fn every_brush_preset_is_listed_in_the_documentation() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/RECIPES.md")).unwrap();
+    for name in recipe::preset_names() {
+        assert!(page.contains(&format!("`{name}`")), "{name}");
+    }
+}
+
 mod mutations {
     use super::*;
     use proptest::prelude::*;
