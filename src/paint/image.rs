@@ -52,8 +52,11 @@ impl PictureSource {
         Self { file, picture, adjust, texture: Arc::default() }
     }
     /// The adjusted texture.
+    ///
+    /// Made by the thread that first asks, without helpers: a worker waiting for helpers here could be handed a tile that
+    /// waits for this very texture.
     pub fn texture(&self) -> &Texture {
-        self.texture.get_or_init(|| Texture::new(&self.picture))
+        self.texture.get_or_init(|| Texture::new(&self.adjust.apply(&self.picture)))
     }
 }
 

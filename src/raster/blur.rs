@@ -71,30 +71,34 @@ fn down_columns<const N: usize>(
 ) -> Vec<[f32; N]> {
     let mut out = vec![[0.0; N]; pixels.len()];
     let across = (LANES / N).max(1);
-    let strips = out.par_chunks_mut(across * height).enumerate();
-    strips.for_each_init(
-        || (Strip::new(), Strip::new()),
-        |(strip, result), (i, out)| {
-            let columns = i * across..(i * across + across).min(width);
-            for lanes in (0..N * columns.len()).step_by(LANES) {
-                let lanes = lanes..(lanes + LANES).min(N * columns.len());
-                strip.clear();
-                strip.extend(pixels.chunks_exact(width).map(|row| {
-                    let mut line = [0.0; LANES];
-                    let floats = &row[columns.clone()].as_flattened()[lanes.clone()];
-                    line[..floats.len()].copy_from_slice(floats);
-                    line
-                }));
-                filter.apply(strip, beyond, result);
-                for (lane, float) in lanes.enumerate() {
-                    let column = &mut out[float / N * height..][..height];
-                    for (pixel, line) in column.iter_mut().zip(result.iter()) {
-                        pixel[float % N] = line[lane];
-                    }
+    let blur_strip = |(strip, result): &mut (Strip, Strip), (i, out): (usize, &mut [[f32; N]])| {
+        let columns = i * across..(i * across + across).min(width);
+        for lanes in (0..N * columns.len()).step_by(LANES) {
+            let lanes = lanes..(lanes + LANES).min(N * columns.len());
+            strip.clear();
+            strip.extend(pixels.chunks_exact(width).map(|row| {
+                let mut line = [0.0; LANES];
+                let floats = &row[columns.clone()].as_flattened()[lanes.clone()];
+                line[..floats.len()].copy_from_slice(floats);
+                line
+            }));
+            filter.apply(strip, beyond, result);
+            for (lane, float) in lanes.enumerate() {
+                let column = &mut out[float / N * height..][..height];
+                for (pixel, line) in column.iter_mut().zip(result.iter()) {
+                    pixel[float % N] = line[lane];
                 }
             }
-        },
-    );
+        }
+    };
+    // A worker that waited for helpers could be handed a tile that waits for this very blur: it works alone.
+    if rayon::current_thread_index().is_some() {
+        let mut buffers = (Strip::new(), Strip::new());
+        out.chunks_mut(across * height).enumerate().for_each(|strip| blur_strip(&mut buffers, strip));
+    } else {
+        let strips = out.par_chunks_mut(across * height).enumerate();
+        strips.for_each_init(|| (Strip::new(), Strip::new()), blur_strip);
+    }
     out
 }
 
