@@ -65,7 +65,9 @@ pub fn decode_u8(encoded: u8) -> f32 {
 #[inline(always)]
 pub fn quantise(value: f32) -> u8 {
     // `max` first: NaN.max(0) is 0.
-    (value.max(0.0).min(1.0) * 255.0 + 0.5) as u8
+    let scaled = value.max(0.0).min(1.0) * 255.0 + 0.5;
+    // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorised: 4 ns a pixel instead of 0.5.
+    unsafe { scaled.to_int_unchecked::<i32>() as u8 }
 }
 
 /// Rec. 709 luminance of a linear colour.

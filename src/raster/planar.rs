@@ -78,12 +78,21 @@ crate::widest! {
     /// Rounds rows to premultiplied bytes, `4 · TILE` a row.
     fn quantise_rows(rows: &[Row], bytes: &mut [u8]) {
         for (row, bytes) in rows.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
-            for (x, p) in bytes.chunks_exact_mut(4).enumerate().take(TILE) {
-                let [r, g, b, a] = row.pixel(x).map(|v| u32::from(quantise(v)));
-                p.copy_from_slice(&(r | g << 8 | b << 16 | a << 24).to_le_bytes());
+            let Row { rgb: [r, g, b], a } = row;
+            let mut packed = [0u32; TILE];
+            for x in 0..TILE {
+                packed[x] = byte(r[x]) | byte(g[x]) << 8 | byte(b[x]) << 16 | byte(a[x]) << 24;
+            }
+            for (bytes, packed) in bytes.chunks_exact_mut(4).zip(packed) {
+                bytes.copy_from_slice(&packed.to_le_bytes());
             }
         }
     }
+}
+
+#[inline(always)]
+fn byte(value: f32) -> u32 {
+    u32::from(quantise(value))
 }
 
 #[cfg(test)]

@@ -59,12 +59,7 @@ impl Tile {
         if rgba.len() != TILE_AREA * 4 {
             return None;
         }
-        let mut opaque = true;
-        for p in rgba.chunks_exact_mut(4) {
-            let a = p[3];
-            opaque &= a == 255;
-            p[..3].iter_mut().for_each(|c| *c = (*c).min(a));
-        }
+        let opaque = lower_to_alpha(&mut rgba);
         let size = tiny_skia::IntSize::from_wh(TILE as u32, TILE as u32)?;
         Some(Tile { pixmap: Pixmap::from_vec(rgba, size)?, opaque })
     }
@@ -91,6 +86,20 @@ impl Tile {
 }
 
 crate::widest! {
+    /// Lowers colours to their alpha; whether every alpha is 255.
+    fn lower_to_alpha(rgba: &mut [u8]) -> bool {
+        let mut least = [u8::MAX; 32];
+        // Eight pixels at a time, which become one shuffle and one minimum.
+        for pixels in rgba.as_chunks_mut::<32>().0 {
+            let alpha: [u8; 32] = std::array::from_fn(|i| pixels[i | 3]);
+            for i in 0..32 {
+                pixels[i] = pixels[i].min(alpha[i]);
+                least[i] = least[i].min(alpha[i]);
+            }
+        }
+        least == [u8::MAX; 32]
+    }
+
     /// Rounds premultiplied f32 pixels to bytes; `bytes` holds four for each pixel.
     pub fn quantise_pixels(pixels: &[[f32; 4]], bytes: &mut [u8]) {
         for (p, b) in pixels.iter().zip(bytes.chunks_exact_mut(4)) {

@@ -131,10 +131,10 @@ fn blend_row(d: &mut Row, s: &Row, mix: Mix) {
         BlendMode::SoftLight => separable(d, s, mix, soft_light),
         BlendMode::Difference => separable(d, s, mix, |s, d, as_, ab| (s * ab - d * as_).abs()),
         BlendMode::Exclusion => separable(d, s, mix, |s, d, as_, ab| s * ab + d * as_ - 2.0 * s * d),
-        BlendMode::Hue => non_separable(d, s, mix, |cb, cs| set_lum(set_sat(cs, sat(cb)), spec::lum(cb))),
-        BlendMode::Saturation => non_separable(d, s, mix, |cb, cs| set_lum(set_sat(cb, sat(cs)), spec::lum(cb))),
-        BlendMode::Color => non_separable(d, s, mix, |cb, cs| set_lum(cs, spec::lum(cb))),
-        BlendMode::Luminosity => non_separable(d, s, mix, |cb, cs| set_lum(cb, spec::lum(cs))),
+        BlendMode::Hue => non_separable(d, s, mix, hue),
+        BlendMode::Saturation => non_separable(d, s, mix, saturation),
+        BlendMode::Color => non_separable(d, s, mix, color),
+        BlendMode::Luminosity => non_separable(d, s, mix, luminosity),
         BlendMode::Plus => plus(d, s, mix),
     }
 }
@@ -198,10 +198,10 @@ fn least(a: f32, b: f32) -> f32 {
 fn greatest(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
-/// 1/a, 0 at 0.
+/// 1/a for `a ≥ 0`; finite at 0, where what it multiplies is 0, too. Without a branch, which would keep loops scalar.
 #[inline(always)]
 fn reciprocal(a: f32) -> f32 {
-    if a > 0.0 { 1.0 / a } else { 0.0 }
+    1.0 / greatest(a, f32::MIN_POSITIVE)
 }
 
 #[inline(always)]
@@ -231,26 +231,45 @@ fn soft_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
     d * as_ + if tilt <= 0.0 { tilt * d * (1.0 - cb) } else { tilt * ab * (curve - cb) }
 }
 
+// Named, because a closure of this size is called rather than inlined, and its loop stays scalar (15 times slower).
 #[inline(always)]
-fn sat([r, g, b]: [f32; 3]) -> f32 {
-    greatest(greatest(r, g), b) - least(least(r, g), b)
+fn hue(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(set_sat(cs, sat(cb)), spec::lum(cb))
 }
 #[inline(always)]
-fn set_sat(c: [f32; 3], s: f32) -> [f32; 3] {
-    let n = least(least(c[0], c[1]), c[2]);
-    let k = s * reciprocal(sat(c));
-    c.map(|v| (v - n) * k)
+fn saturation(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(set_sat(cb, sat(cs)), spec::lum(cb))
+}
+#[inline(always)]
+fn color(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(cs, spec::lum(cb))
+}
+#[inline(always)]
+fn luminosity(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
+    set_lum(cb, spec::lum(cs))
+}
+#[inline(always)]
+fn sat([r, g, b]: [f32; 3]) -> f32 {
+    // Not `greatest` and `least`: their comparisons would be merged into branches, and the loop stay scalar.
+    r.max(g).max(b) - r.min(g).min(b)
+}
+#[inline(always)]
+fn set_sat([r, g, b]: [f32; 3], s: f32) -> [f32; 3] {
+    let n = r.min(g).min(b);
+    let k = s * reciprocal(sat([r, g, b]));
+    [(r - n) * k, (g - n) * k, (b - n) * k]
 }
 #[inline(always)]
 fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
     let shift = l - spec::lum(c);
-    let c = c.map(|v| v + shift);
-    let n = least(least(c[0], c[1]), c[2]);
-    let x = greatest(greatest(c[0], c[1]), c[2]);
+    let [r, g, b] = [c[0] + shift, c[1] + shift, c[2] + shift];
+    let (n, x) = (least(least(r, g), b), greatest(greatest(r, g), b));
+    // ClipColor: first up to 0, then down to 1, both along the line to the grey, so their factors multiply.
     let up = if n < 0.0 { l * reciprocal(l - n) } else { 1.0 };
-    let c = c.map(|v| l + (v - l) * up);
+    let x = l + (x - l) * up;
     let down = if x > 1.0 { (1.0 - l) * reciprocal(x - l) } else { 1.0 };
-    c.map(|v| l + (v - l) * down)
+    let k = up * down;
+    [l + (r - l) * k, l + (g - l) * k, l + (b - l) * k]
 }
 
 /// Decodes both, blends linear light, encodes again.
