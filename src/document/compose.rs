@@ -8,15 +8,15 @@ use super::{Content, mask};
 use crate::raster::{BlendMode, Coverage, Mix, Paint, PlanarTile, TileAt};
 use std::ops::ControlFlow;
 
-/// Composing ends early, with the brightest luminance beneath it, at an adjustment that is being measured.
-pub(super) type Flow<T = ()> = ControlFlow<f32, T>;
+/// Composing ends early, with what lies beneath, at an adjustment that is sought.
+pub(super) type Flow<T = ()> = ControlFlow<PlanarTile, T>;
 
 /// Composes nodes of one tile.
 pub(super) struct Composer<'a> {
     pub prepared: &'a Prepared,
     pub at: TileAt,
-    /// The adjustment to be measured, if this is a measurement.
-    pub measured: Option<usize>,
+    /// The adjustment to end at, if this is to measure what lies beneath one.
+    pub sought: Option<usize>,
 }
 
 impl Composer<'_> {
@@ -26,14 +26,14 @@ impl Composer<'_> {
     }
     /// The topmost node that hides all beneath it, else the bottom one.
     pub fn first_seen(&self, nodes: &[Node]) -> usize {
-        // What is measured must be reached, so only layers beneath it may hide others.
-        let end = nodes.iter().position(|node| self.is_measured_in(node)).unwrap_or(nodes.len());
+        // What is sought must be reached, so only layers beneath it may hide others.
+        let end = nodes.iter().position(|node| self.is_sought_in(node)).unwrap_or(nodes.len());
         nodes[..end].iter().rposition(|node| self.hides_all_beneath(node)).unwrap_or(0)
     }
     /// Composes one layer, with those clipped to it, onto a tile. `atop`: it is itself clipped to what is there.
     fn node(&self, node: &Node, onto: &mut PlanarTile, atop: bool) -> Flow {
         let coverage = mask::coverage(node, self.at);
-        if coverage.is_none() && !self.is_measured_in(node) {
+        if coverage.is_none() && !self.is_sought_in(node) {
             return Flow::Continue(());
         }
         match &node.layer.content {
@@ -59,7 +59,7 @@ impl Composer<'_> {
         let mut own = PlanarTile::transparent();
         if let Some(paint) = painted.as_paint() {
             own.blend(Mix::default(), paint, &coverage.mask_only());
-        } else if !self.is_measured_in(node) {
+        } else if !self.is_sought_in(node) {
             return Flow::Continue(());
         }
         self.clipped(node, &mut own)?;
@@ -90,18 +90,22 @@ impl Composer<'_> {
     /// Changes what lies beneath; what is clipped to it is painted on the changed picture, within its mask.
     fn adjustment(&self, node: &Node, onto: &mut PlanarTile, coverage: &Coverage) -> Flow {
         let index = node.adjustments.start;
-        if self.measured == Some(index) {
-            return Flow::Break(content::brightest(onto, &node.scene, self.at));
+        if self.sought == Some(index) {
+            return Flow::Break(std::mem::replace(onto, PlanarTile::transparent()));
         }
-        let Some(&reference) = self.prepared.references.get(index) else { return Flow::Continue(()) };
+        let (Content::RadianceScaling(scaling), Some(&beneath)) =
+            (&node.layer.content, self.prepared.beneath.get(index))
+        else {
+            return Flow::Continue(());
+        };
         let mut after = onto.clone();
-        content::adjust(&node.layer.content, &node.scene, self.at, reference, &mut after);
+        scaling.apply_tile(&node.scene, self.at, beneath, &mut after);
         self.clipped(node, &mut after)?;
         onto.mix_toward(&after, coverage);
         Flow::Continue(())
     }
-    fn is_measured_in(&self, node: &Node) -> bool {
-        self.measured.is_some_and(|index| node.adjustments.contains(&index))
+    fn is_sought_in(&self, node: &Node) -> bool {
+        self.sought.is_some_and(|index| node.adjustments.contains(&index))
     }
     /// Nothing beneath this node can be seen in the tile.
     fn hides_all_beneath(&self, node: &Node) -> bool {

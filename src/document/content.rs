@@ -2,9 +2,9 @@
 //! Floor 4. The rendering itself is the marks' (`paint`, `shading`).
 
 use super::Content;
-use crate::math::srgb::{decode, luminance};
 use crate::paint::{Scene, stroke};
-use crate::raster::{Paint, PlanarTile, TILE, Tile, TileAt};
+use crate::raster::{Paint, PlanarTile, Tile, TileAt};
+use crate::surface::{Bend, Deformation};
 use std::sync::Arc;
 
 /// The pixels of a layer in one tile.
@@ -53,25 +53,23 @@ pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> Painted {
     }
 }
 
-/// Applies an adjustment to the composite beneath it. `reference`: Y*, the greatest luminance of that composite.
-pub(super) fn adjust(_content: &Content, _scene: &Scene, _at: TileAt, _reference: f32, _pixels: &mut PlanarTile) {}
-
-/// The greatest luminance (Rec. 709, linear light, straight colour) of a tile, over the surface where there is one.
-///
-/// Pixels less than half covered, by paint or by surface, do not count: their straight colours are mostly rounding.
-pub(super) fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt) -> f32 {
-    let rect = at.rect();
-    let on_surface = |x: usize, y: usize| {
-        let covers = |s: &Arc<crate::surface::Surface>| s.coverage_plane().get(rect.x0 + x as i32, rect.y0 + y as i32);
-        scene.surface.as_ref().is_none_or(|s| covers(s).is_some_and(|c| c >= 128))
-    };
-    let inside = rect.intersect(scene.size.rect());
-    let mut most = 0.0f32;
-    for (y, row) in pixels.rows().iter().enumerate().take(inside.height()) {
-        for x in (0..inside.width().min(TILE)).filter(|&x| row.a[x] >= 0.5 && on_surface(x, y)) {
-            let [r, g, b] = [0, 1, 2].map(|c| decode(row.rgb[c][x] / row.a[x]));
-            most = most.max(luminance(r, g, b));
+/// Computes now what many tiles would otherwise compute at the same time.
+pub(super) fn warm(content: &Content, scene: &Scene) {
+    let bend = |bend: &Bend| drop(Deformation::new(scene.surface.as_deref(), scene.size, bend));
+    match content {
+        Content::Image(live) => {
+            live.params().source.texture();
+            bend(&live.params().bend);
         }
+        Content::Gradient(live) => bend(&Bend { operator: live.params().operator, ..Bend::default() }),
+        Content::Strokes(live) => {
+            for stroke in &live.params().strokes {
+                bend(&Bend { operator: stroke.operator(), ..Bend::default() });
+            }
+        }
+        Content::RadianceScaling(scaling) => {
+            let _ = scene.surface.as_deref().map(|surface| scaling.features.on(surface));
+        }
+        Content::Fill(_) | Content::Pixels(_) | Content::Shading(_) | Content::Normals(_) | Content::Group(_) => {}
     }
-    most
 }

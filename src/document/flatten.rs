@@ -2,10 +2,10 @@
 //! Floor 4. Tiles are independent of each other, so they are composed in parallel and the result is the same bytes whatever
 //! the threads.
 
-use super::compose::{Composer, Flow};
+use super::compose::Composer;
+use super::prepare::in_parallel;
 use super::{Content, Document, Layer, LayerId, Prepared, Progress};
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Flattens the whole document; `None` if cancelled.
@@ -49,15 +49,11 @@ fn alone(layers: &[Arc<Layer>], id: LayerId) -> Option<Vec<Arc<Layer>>> {
 }
 
 impl Prepared {
-    /// Every tile of the canvas, row by row.
-    pub fn all_tiles(&self) -> Vec<TileAt> {
-        TileAt::covering(self.size.rect()).collect()
-    }
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         let mut pixels = PlanarTile::transparent();
-        // Nothing is measured, so composing runs to its end.
-        let _ = Composer { prepared: self, at, measured: None }.stack(&self.stack, &mut pixels);
+        // Nothing is sought, so composing runs to its end.
+        let _ = Composer { prepared: self, at, sought: None }.stack(&self.stack, &mut pixels);
         pixels.quantised().map(Arc::new)
     }
     /// A picture with some of its tiles composed anew; `None` if cancelled.
@@ -68,29 +64,6 @@ impl Prepared {
         tiles.iter().zip(composed).for_each(|(&at, tile)| grid.set(at, tile));
         Some(grid)
     }
-    /// The greatest luminance beneath an adjustment, over the whole surface: its Y*; `None` if cancelled.
-    pub(super) fn brightest_beneath(&self, adjustment: usize, progress: &Progress) -> Option<f32> {
-        let of_tile = |at| {
-            let composer = Composer { prepared: self, at, measured: Some(adjustment) };
-            match composer.stack(&self.stack, &mut PlanarTile::transparent()) {
-                Flow::Break(brightest) => brightest,
-                Flow::Continue(()) => 0.0,
-            }
-        };
-        let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
-        Some(tiles.into_iter().fold(0.0, f32::max))
-    }
-}
-
-/// One result a tile, in the order of the tiles; `None` if cancelled.
-fn in_parallel<T: Send>(tiles: &[TileAt], progress: &Progress, work: impl Fn(TileAt) -> T + Sync) -> Option<Vec<T>> {
-    progress.add_total(tiles.len() as u64);
-    let each = |&at: &TileAt| {
-        let result = (!progress.is_cancelled()).then(|| work(at))?;
-        progress.step();
-        Some(result)
-    };
-    tiles.par_iter().map(each).collect()
 }
 
 #[cfg(test)]

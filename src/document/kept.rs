@@ -2,47 +2,66 @@
 //! Floor 4. Rendered tiles are kept by `live`.
 
 use super::Layer;
-use crate::paint::Scene;
+use crate::shading::RadianceScaling;
+use crate::surface::Scene;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// A number that depends on the scene and on everything beneath a layer; shared by the layer's versions.
+/// What is measured beneath an adjustment; shared by the layer's versions.
 #[derive(Clone, Default)]
 pub struct Kept {
-    measured: Arc<Mutex<Option<Measured>>>,
+    /// The greatest luminance.
+    pub(super) brightest: Memo<()>,
+    /// The factor that restores the mean luminance, for given parameters.
+    pub(super) gain: Memo<RadianceScaling>,
 }
 
-struct Measured {
+/// A number that depends on the scene, on everything beneath a layer, and on a key.
+#[derive(Clone)]
+pub(super) struct Memo<K> {
+    last: Arc<Mutex<Option<Measured<K>>>>,
+}
+
+struct Measured<K> {
     scene: Scene,
     /// Weak, so that a measure keeps no layer alive and no two layers each other.
     beneath: Vec<Weak<Layer>>,
+    key: K,
     value: f32,
 }
 
-impl Kept {
-    /// The value for a scene and the very same layers beneath, measured anew if either is another; `None` if `measure` gives up.
+impl<K> Default for Memo<K> {
+    fn default() -> Self {
+        Self { last: Arc::default() }
+    }
+}
+
+impl<K: Clone + PartialEq> Memo<K> {
+    /// The value for a scene, the very same layers beneath and an equal key; measured anew if any is another.
+    /// `None` if `measure` gives up.
     ///
     /// Never measures under the lock: a thread that waits for its own pool's work would stand still.
-    pub fn measured(
+    pub fn get(
         &self,
         scene: &Scene,
         beneath: &[Arc<Layer>],
+        key: &K,
         measure: impl FnOnce() -> Option<f32>,
     ) -> Option<f32> {
-        let holds = |m: &Measured| {
+        let holds = |m: &Measured<K>| {
             let same_layers = m.beneath.len() == beneath.len()
                 && m.beneath.iter().zip(beneath).all(|(kept, now)| kept.as_ptr() == Arc::as_ptr(now));
-            m.scene.is_same(scene) && same_layers
+            same_layers && m.scene.is_same(scene) && m.key == *key
         };
         if let Some(value) = self.lock().as_ref().filter(|m| holds(m)).map(|m| m.value) {
             return Some(value);
         }
         let value = measure()?;
         let beneath = beneath.iter().map(Arc::downgrade).collect();
-        *self.lock() = Some(Measured { scene: scene.clone(), beneath, value });
+        *self.lock() = Some(Measured { scene: scene.clone(), beneath, key: key.clone(), value });
         Some(value)
     }
-    fn lock(&self) -> MutexGuard<'_, Option<Measured>> {
-        self.measured.lock().unwrap_or_else(PoisonError::into_inner)
+    fn lock(&self) -> MutexGuard<'_, Option<Measured<K>>> {
+        self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -57,11 +76,13 @@ mod tests {
         let scene = Scene { size: Size::new(8, 8), surface: None };
         let layer = |name| Arc::new(Layer::new(name, Content::Fill(Color::BLACK)));
         let (a, b) = (layer("a"), layer("b"));
-        let kept = Kept::default();
-        assert_eq!(kept.measured(&scene, &[a.clone(), b.clone()], || Some(1.0)), Some(1.0));
-        assert_eq!(kept.clone().measured(&scene, &[a.clone(), b.clone()], || unreachable!()), Some(1.0));
-        assert_eq!(kept.measured(&scene, std::slice::from_ref(&a), || Some(2.0)), Some(2.0));
+        let memo = Memo::default();
+        let both = [a.clone(), b.clone()];
+        assert_eq!(memo.get(&scene, &both, &7, || Some(1.0)), Some(1.0));
+        assert_eq!(memo.clone().get(&scene, &both, &7, || unreachable!()), Some(1.0));
+        assert_eq!(memo.get(&scene, &both, &8, || Some(2.0)), Some(2.0));
+        assert_eq!(memo.get(&scene, &both[..1], &8, || Some(3.0)), Some(3.0));
         let larger = Scene { size: Size::new(9, 8), surface: None };
-        assert_eq!(kept.measured(&larger, &[a], || None), None);
+        assert_eq!(memo.get(&larger, &both[..1], &8, || None), None);
     }
 }

@@ -8,6 +8,7 @@ pub mod kept;
 pub mod layer;
 pub mod live;
 pub mod mask;
+mod measure;
 mod prepare;
 pub mod progress;
 pub mod source;

@@ -1,11 +1,13 @@
 //! A document made ready to be flattened: which layers show, what each is clipped to, which surface each sees.
 //! Floor 4. Done once before the tiles; composing one tile is `compose`.
 
-use super::{Content, Document, Group, Layer, MaskKind, NormalLayer, Progress};
+use super::{Content, Document, Group, Layer, MaskKind, NormalLayer, Progress, content};
 use crate::math::Size;
 use crate::paint::Scene;
-use crate::shading::{RadianceScaling, Reference};
+use crate::raster::TileAt;
+use crate::shading::{RadianceScaling, radiance::Beneath};
 use crate::surface::Curvature;
+use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -14,8 +16,8 @@ pub struct Prepared {
     pub(super) size: Size,
     /// Bottom first.
     pub(super) stack: Vec<Node>,
-    /// Y* of each adjustment, in the order they apply.
-    pub(super) references: Vec<f32>,
+    /// What is known of the composite beneath each adjustment, in the order they apply.
+    pub(super) beneath: Vec<Beneath>,
 }
 
 /// A visible layer in its place.
@@ -34,11 +36,12 @@ pub(super) struct Node {
 }
 
 /// An adjustment and all it depends on.
-struct Adjustment {
-    layer: Arc<Layer>,
-    scene: Scene,
+pub(super) struct Adjustment {
+    pub layer: Arc<Layer>,
+    pub scaling: RadianceScaling,
+    pub scene: Scene,
     /// Every layer beneath it in its scope (a pass-through group belongs to the scope around it).
-    beneath: Vec<Arc<Layer>>,
+    pub beneath: Vec<Arc<Layer>>,
 }
 
 impl Prepared {
@@ -46,22 +49,33 @@ impl Prepared {
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
         let mut builder = Builder::default();
         let stack = builder.nodes(&document.layers, &mut document.scene(), &[]);
-        let mut prepared = Self { size: document.size, stack, references: Vec::new() };
+        let mut prepared = Self { size: document.size, stack, beneath: Vec::new() };
         for adjustment in builder.adjustments {
             // Each may depend on those beneath it, which are known by now.
-            let reference = prepared.reference(&adjustment, progress)?;
-            prepared.references.push(reference);
+            let beneath = prepared.measure(&adjustment, progress)?;
+            prepared.beneath.push(beneath);
         }
         Some(prepared)
     }
-    /// Y* of the next adjustment: its own figure, or the brightest luminance beneath it.
-    fn reference(&self, adjustment: &Adjustment, progress: &Progress) -> Option<f32> {
-        let Adjustment { layer, scene, beneath } = adjustment;
-        if let Content::RadianceScaling(RadianceScaling { reference: Reference::Value(value), .. }) = layer.content {
-            return Some(value);
-        }
-        layer.kept.measured(scene, beneath, || self.brightest_beneath(self.references.len(), progress))
+    /// Every tile of the canvas, row by row.
+    pub fn all_tiles(&self) -> Vec<TileAt> {
+        TileAt::covering(self.size.rect()).collect()
     }
+}
+
+/// One result a tile, in the order of the tiles; `None` if cancelled.
+pub(super) fn in_parallel<T: Send>(
+    tiles: &[TileAt],
+    progress: &Progress,
+    work: impl Fn(TileAt) -> T + Sync,
+) -> Option<Vec<T>> {
+    progress.add_total(tiles.len() as u64);
+    let each = |&at: &TileAt| {
+        let result = (!progress.is_cancelled()).then(|| work(at))?;
+        progress.step();
+        Some(result)
+    };
+    tiles.par_iter().map(each).collect()
 }
 
 #[derive(Default)]
@@ -116,9 +130,10 @@ impl Builder {
             Content::Group(group) => self.children(group, scene, beneath),
             _ => Vec::new(),
         };
-        if let Content::RadianceScaling(_) = &layer.content {
-            let (layer, beneath) = (layer.clone(), beneath.to_vec());
-            self.adjustments.push(Adjustment { layer, scene: seen.clone(), beneath });
+        content::warm(&layer.content, &seen);
+        if let Content::RadianceScaling(scaling) = &layer.content {
+            let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), beneath.to_vec());
+            self.adjustments.push(Adjustment { layer, scaling, scene: seen.clone(), beneath });
         }
         Node {
             curvature: curvature_of_mask(layer, &seen),

@@ -272,13 +272,19 @@ fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
     [l + (r - l) * k, l + (g - l) * k, l + (b - l) * k]
 }
 
-/// Decodes both, blends linear light, encodes again.
+/// Decodes both, blends linear light, encodes again; where there is no paint the backdrop stays to the last bit.
 #[inline(always)]
 fn in_linear_light(d: &mut Row, s: &mut Row, mix: Mix) {
-    through_straight(d, srgb::decode);
-    through_straight(s, srgb::decode);
+    let before = *d;
+    through_straight(d, srgb::decode_fast);
+    through_straight(s, srgb::decode_fast);
     blend_row(d, s, mix);
-    through_straight(d, srgb::encode);
+    through_straight(d, srgb::encode_fast);
+    for (d, before) in d.rgb.iter_mut().zip(&before.rgb) {
+        for x in 0..TILE {
+            d[x] = if s.a[x] > 0.0 { d[x] } else { before[x] };
+        }
+    }
 }
 
 /// Applies a transfer curve to the straight colours of a premultiplied row.

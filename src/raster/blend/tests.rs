@@ -131,8 +131,8 @@ fn separable_modes_and_plus_agree_with_tiny_skia_within_two_steps() {
 fn every_mode_leaves_the_backdrop_alone_where_nothing_is_painted() {
     let backdrop = [0.1, 0.4, 0.3, 0.6];
     for (mode, name) in BlendMode::ALL {
-        for atop in [false, true] {
-            let got = fast(Mix { mode, atop, linear: false }, backdrop, [0.0; 4]);
+        for (atop, linear) in [(false, false), (true, false), (false, true)] {
+            let got = fast(Mix { mode, atop, linear }, backdrop, [0.0; 4]);
             assert!(close(&got, &backdrop, 1e-6), "{name}: {got:?}");
         }
     }
@@ -153,7 +153,7 @@ fn atop_keeps_the_alpha_of_what_it_is_painted_on() {
 #[test]
 fn linear_light_mixes_black_and_white_to_the_grey_that_emits_half() {
     let got = fast(Mix { linear: true, ..Mix::default() }, [0.0, 0.0, 0.0, 1.0], [0.5; 4]);
-    assert!((got[0] - 0.735_357).abs() < 1e-4, "{got:?}");
+    assert!((got[0] - 0.735_357).abs() < 5e-4, "{got:?}");
     let encoded = fast(Mix::default(), [0.0, 0.0, 0.0, 1.0], [0.5; 4]);
     assert!((encoded[0] - 0.5).abs() < 1e-6, "{encoded:?}");
 }

@@ -1,0 +1,77 @@
+//! What an adjustment must know of the whole composite beneath it before one tile can be adjusted.
+//! Floor 4. Tiles are measured in parallel and added up in their order, so the figures do not depend on the threads.
+
+use super::Progress;
+use super::compose::{Composer, Flow};
+use super::prepare::{Adjustment, Prepared, in_parallel};
+use crate::math::srgb::{decode_fast, luminance};
+use crate::raster::{PlanarTile, TILE, TileAt};
+use crate::shading::radiance::{Beneath, Means};
+use crate::shading::{RadianceScaling, Reference};
+use crate::surface::{Scene, Surface};
+
+impl Prepared {
+    /// Measures what lies beneath the next adjustment, or finds it measured; `None` if cancelled.
+    pub(super) fn measure(&self, adjustment: &Adjustment, progress: &Progress) -> Option<Beneath> {
+        let Adjustment { layer, scaling, scene, beneath } = adjustment;
+        let brightest = match scaling.reference {
+            Reference::Value(value) => value,
+            Reference::Auto => {
+                layer.kept.brightest.get(scene, beneath, &(), || self.brightest_beneath(scene, progress))?
+            }
+        };
+        let gain = match scaling.keep_mean {
+            false => 1.0,
+            true => {
+                let measure = || self.gain(scaling, scene, brightest, progress);
+                layer.kept.gain.get(scene, beneath, scaling, measure)?
+            }
+        };
+        Some(Beneath { brightest, gain })
+    }
+    /// Y*: the greatest luminance beneath the next adjustment.
+    fn brightest_beneath(&self, scene: &Scene, progress: &Progress) -> Option<f32> {
+        let of_tile = |at| self.beneath_next(at).map_or(0.0, |pixels| brightest(&pixels, scene, at));
+        let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
+        Some(tiles.into_iter().fold(0.0, f32::max))
+    }
+    /// The factor that restores the mean luminance beneath the next adjustment.
+    fn gain(&self, scaling: &RadianceScaling, scene: &Scene, brightest: f32, progress: &Progress) -> Option<f32> {
+        let of_tile = |at| {
+            let measured = self.beneath_next(at).map(|pixels| scaling.means_tile(scene, at, brightest, &pixels));
+            measured.unwrap_or_default()
+        };
+        let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
+        Some(tiles.into_iter().fold(Means::default(), Means::plus).gain())
+    }
+    /// One tile of what lies beneath the next adjustment, in its own scope.
+    fn beneath_next(&self, at: TileAt) -> Option<PlanarTile> {
+        let composer = Composer { prepared: self, at, sought: Some(self.beneath.len()) };
+        match composer.stack(&self.stack, &mut PlanarTile::transparent()) {
+            Flow::Break(beneath) => Some(beneath),
+            Flow::Continue(()) => None,
+        }
+    }
+}
+
+/// The greatest luminance (Rec. 709, linear light, straight colour) of a tile, over the surface where there is one.
+///
+/// Pixels less than half covered, by paint or by surface, do not count: their straight colours are mostly rounding.
+fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt) -> f32 {
+    let rect = at.rect();
+    let inside = rect.intersect(scene.size.rect());
+    let covers = |surface: &Surface, x: usize, y: usize| {
+        surface.coverage_plane().get(rect.x0 + x as i32, rect.y0 + y as i32).is_some_and(|c| c >= 128)
+    };
+    let mut most = 0.0f32;
+    for (y, row) in pixels.rows().iter().enumerate().take(inside.height()) {
+        for x in 0..inside.width().min(TILE) {
+            let [r, g, b, a] = row.pixel(x);
+            if a >= 0.5 && scene.surface.as_deref().is_none_or(|surface| covers(surface, x, y)) {
+                let [r, g, b] = [r, g, b].map(|v| decode_fast((v / a).min(1.0)));
+                most = most.max(luminance(r, g, b));
+            }
+        }
+    }
+    most
+}
