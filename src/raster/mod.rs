@@ -4,6 +4,7 @@
 pub mod blend;
 pub mod blur;
 pub mod grid;
+pub mod line_integral;
 pub mod picture;
 pub mod planar;
 pub mod plane;

@@ -163,7 +163,7 @@ fn reading(surface: &Surface, x: usize, y: usize) -> Reading {
 
 /// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel itself
 /// in place of one that does not.
-struct Neighbours {
+pub(super) struct Neighbours {
     /// Left and right, up and down.
     pairs: [[(usize, usize); 2]; 2],
     /// One over the distance of each pair; 1 where both are the pixel itself.
@@ -171,7 +171,7 @@ struct Neighbours {
 }
 
 impl Neighbours {
-    fn linked(surface: &Surface, x: usize, y: usize) -> Self {
+    pub(super) fn linked(surface: &Surface, x: usize, y: usize) -> Self {
         let bits = surface.links_plane().at(x, y);
         let side = |bit: u8| usize::from(bits & bit != 0);
         let (left, right) = (x - side(links::LEFT), x + side(links::RIGHT));
@@ -180,7 +180,7 @@ impl Neighbours {
         Self { pairs: [[(left, y), (right, y)], [(x, up), (x, down)]], per_px }
     }
     /// ∇ of a map, per px.
-    fn slope(&self, map: impl Fn(usize, usize) -> f32) -> Vec2 {
+    pub(super) fn slope(&self, map: impl Fn(usize, usize) -> f32) -> Vec2 {
         let along = |[a, b]: [(usize, usize); 2], per_px: f32| (map(b.0, b.1) - map(a.0, a.1)) * per_px;
         vec2(along(self.pairs[0], self.per_px[0]), along(self.pairs[1], self.per_px[1]))
     }
