@@ -3,6 +3,7 @@
 //! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for a misuse of the command line.
 
 mod crash;
+mod info;
 pub mod limits;
 mod progress;
 mod render;
@@ -24,6 +25,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Info(info::InfoArgs),
     Render(render::RenderArgs),
 }
 
@@ -38,6 +40,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let done = crash::caught(|| match parsed.command {
+        Some(Command::Info(args)) => info::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         None => print(&Arguments::command().render_help().to_string()),
     });

@@ -5,6 +5,7 @@ pub mod budget;
 pub mod export;
 pub mod exr;
 pub mod files;
+pub mod inspect;
 pub mod json;
 pub mod maps;
 pub mod picture;

@@ -172,23 +172,36 @@ pub fn planar(
     })
 }
 
-/// Whether 1/v goes with the normals clearly better than v itself: the correlation of slope lengths.
+/// Whether stored numbers that are nearer where they are higher are 1/z.
+///
+/// The slope the normals tell, over the step of the stored number v, is the same everywhere where v is linear in depth. Of
+/// 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the farther it is): the exponent tells.
 pub fn looks_inverse(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<bool>) -> bool {
     let w = values.width();
     let at = samples::spread(inside);
-    let positive = at.iter().all(|&i| values.values()[i] > 1e-6 || values.values()[i].is_nan());
-    let agreement = |of: &dyn Fn(f32, f32) -> f32| {
-        let pairs = at.iter().filter_map(|&i| {
-            let n = normals.values()[i];
-            let step = samples::slope(values, i % w, i / w, 1)?;
-            (n.z > 0.4)
-                .then(|| (f64::from(n.truncate().length() / n.z), f64::from(of(values.values()[i], step.length()))))
-        });
-        let (ab, aa, bb, count) =
-            pairs.fold((0.0, 1e-30, 1e-30, 0), |(ab, aa, bb, n), (a, b)| (ab + a * b, aa + a * a, bb + b * b, n + 1));
-        if count < 200 { 0.0 } else { ab / (aa * bb).sqrt() }
-    };
-    positive && agreement(&|v, step| step / (v * v)) > agreement(&|_, step| step) + 0.02
+    if at.iter().any(|&i| values.values()[i] < 1e-9) {
+        return false;
+    }
+    let pairs: Vec<(f64, f64)> = at
+        .iter()
+        .filter_map(|&i| {
+            let (n, v) = (normals.values()[i], values.values()[i]);
+            let step = samples::slope(values, i % w, i / w, 1)?.length();
+            let slope = n.truncate().length() / n.z;
+            (n.z > 0.4 && slope > 0.1 && step > 0.0).then(|| (f64::from(v).ln(), f64::from(slope / step).ln()))
+        })
+        .collect();
+    let count = pairs.len() as f64;
+    let mean = |f: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(f).sum::<f64>() / count.max(1.0);
+    let (mx, my) = (mean(&|p| p.0), mean(&|p| p.1));
+    let (xx, xy, yy) =
+        (mean(&|p| (p.0 - mx).powi(2)), mean(&|p| (p.0 - mx) * (p.1 - my)), mean(&|p| (p.1 - my).powi(2)));
+    if count < 200.0 || xx < 1e-6 {
+        return false;
+    }
+    let exponent = xy / xx;
+    let error = ((yy - exponent * xy).max(0.0) / (xx * count)).sqrt();
+    exponent + 4.0 * error < -0.5
 }
 
 /// Depth in `[0, 1]` and the planar depths at its ends.

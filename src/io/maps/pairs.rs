@@ -37,13 +37,27 @@ pub struct Set {
     pub mask: Option<PathBuf>,
 }
 
-/// The object's name and the part, by the ending after the last `_`, `-` or `.`; a bare `normal.png` has an empty name.
+/// The object's name and the part: by the ending after the last `_`, `-` or `.`, else by a whole word such as `normal`
+/// anywhere (`normal_gl16.png`). A bare `normal.png` has an empty name.
 pub fn part_of(file: &Path) -> Option<(String, Part)> {
     let stem = file.file_stem()?.to_string_lossy().to_lowercase();
-    let (name, end) = stem.rsplit_once(['_', '-', '.']).unwrap_or(("", &stem));
+    let breaks = ['_', '-', '.', ' '];
+    let (name, end) = stem.rsplit_once(breaks).unwrap_or(("", &stem));
     // Single letters mean something only after a name.
     let known = ENDINGS.iter().find(|(ending, _)| *ending == end && (ending.len() > 1 || !name.is_empty()));
-    known.map(|(_, part)| (name.into(), *part))
+    if let Some((_, part)) = known {
+        return Some((name.into(), *part));
+    }
+    let words: Vec<&str> = stem.split(breaks).collect();
+    let plain = |word: &str| word.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
+    let found = words.iter().enumerate().find_map(|(i, word)| {
+        let ending = ENDINGS.iter().find(|(ending, _)| ending.len() > 2 && *ending == plain(word))?;
+        Some((i, ending.1))
+    });
+    found.map(|(at, part)| {
+        let rest: Vec<&str> = words.iter().enumerate().filter(|(i, _)| *i != at).map(|(_, w)| *w).collect();
+        (rest.join("_"), part)
+    })
 }
 
 /// Groups files of the same folder and name; files that say nothing are left out, and so are sets of one file.
@@ -78,6 +92,8 @@ mod tests {
         assert_eq!(part("maps/Pot_N.png"), Some(("pot".into(), Part::Normal)));
         assert_eq!(part("pot-depth.exr"), Some(("pot".into(), Part::Depth)));
         assert_eq!(part("normal.png"), Some((String::new(), Part::Normal)));
+        assert_eq!(part("normal_gl16.png"), Some(("gl16".into(), Part::Normal)));
+        assert_eq!(part("depth16.png"), Some((String::new(), Part::Depth)));
         assert_eq!(part("d.png"), None);
         assert_eq!(part("sand.png"), None);
     }

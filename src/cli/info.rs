@@ -1,0 +1,285 @@
+//! `rilievo info`: what files are, which belong together, and by which conventions they were understood.
+//! Floor 7.
+//!
+//! With `--json`, one object (stable: fields may be added, never renamed):
+//!
+//! ```json
+//! { "format": "rilievo-info", "version": 1,
+//!   "files": [ { "file": "pot_n.png", "format": "PNG", "width": 512, "height": 512, "bits": 8, "channels": ["r", "g", "b"],
+//!                "role": "normal", "notes": [] },
+//!              { "file": "g.exr", "format": "EXR", …, "compression": "zip block compression",
+//!                "layers": [ { "name": "N", "channels": [ { "name": "N.X", "kind": "half" }, … ] } ] },
+//!              { "file": "broken.png", "error": "broken.png: cannot be read: …" } ],
+//!   "surfaces": [ { "name": "pot", "files": ["pot_n.png", "pot_d.png"], "width": 512, "height": 512, "covered": 0.61,
+//!                   "depth_range_px": 220.5, "depth_at_0_and_1": [1.0, 2.3],
+//!                   "found": { "normal.flip_y": { "value": "true", "confidence": 0.99, "how": "found" }, … },
+//!                   "surface": { "normal": { "file": "pot_n.png", "convention": { … } }, … },
+//!                   "notes": [ "…" ] } ] }
+//! ```
+//!
+//! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface` can be
+//! pasted into a recipe: it spells what was found.
+
+use super::{Limits, print};
+use crate::document::source::{MapSource, MaskSource, SurfaceSource};
+use crate::io::inspect::{Description, describe};
+use crate::io::maps::{self, Findings, Import, pairs};
+use crate::io::{Files, Given, recipe};
+use crate::{Error, Result};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// Say what picture files are and how they would be understood as normal and depth maps
+#[derive(clap::Args)]
+pub struct InfoArgs {
+    /// Normal maps, depth maps, masks, EXR files, pictures
+    #[arg(required = true, value_name = "FILES")]
+    files: Vec<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+/// Describes every file that can be read; then fails with the sentence of the first that cannot.
+pub fn run(args: &InfoArgs) -> Result<()> {
+    args.limits.install(|| {
+        let budget = args.limits.budget();
+        let mut report = Report::default();
+        let mut given = Given::default();
+        for path in &args.files {
+            let name = given.add(path);
+            let described = given.read(&name, &budget).and_then(|bytes| describe(path, &bytes, &budget));
+            report.files.push(File { name, path: path.clone(), described });
+        }
+        for source in report.sources() {
+            let import = maps::import(&source.source, &given, &budget);
+            report.surfaces.push(Surface { source, import });
+        }
+        print(&if args.json { report.json() } else { report.text() })?;
+        report.first_error().map_or(Ok(()), Err)
+    })
+}
+
+#[derive(Default)]
+struct Report {
+    files: Vec<File>,
+    surfaces: Vec<Surface>,
+}
+
+struct File {
+    name: String,
+    path: PathBuf,
+    described: Result<Description>,
+}
+
+/// Maps that make a surface.
+struct Source {
+    name: String,
+    files: Vec<String>,
+    source: SurfaceSource,
+}
+
+struct Surface {
+    source: Source,
+    import: Result<Import>,
+}
+
+impl File {
+    /// What the file is for, by its name, then by what it holds.
+    fn role(&self) -> &'static str {
+        let Ok(d) = &self.described else { return "unreadable" };
+        if !d.layers.is_empty() {
+            return match (d.normals.is_empty(), d.depths.is_empty()) {
+                (false, false) => "layers",
+                (false, true) => "normal",
+                (true, false) => "depth",
+                (true, true) => "picture",
+            };
+        }
+        match pairs::part_of(&self.path).map(|(_, part)| part) {
+            Some(pairs::Part::Normal) => "normal",
+            Some(pairs::Part::Depth) => "depth",
+            Some(pairs::Part::Mask) => "mask",
+            None if d.looks_like_normals => "normal",
+            None => "picture",
+        }
+    }
+}
+
+impl Report {
+    /// The surfaces these files make: sets by name, then what is left by itself.
+    fn sources(&self) -> Vec<Source> {
+        let readable: Vec<&File> = self.files.iter().filter(|f| f.described.is_ok()).collect();
+        let paths: Vec<PathBuf> = readable.iter().map(|f| f.path.clone()).collect();
+        let name_of = |path: &PathBuf| readable.iter().find(|f| f.path == *path).map(|f| f.name.clone());
+        let sets = pairs::sets(&paths);
+        let mut out: Vec<Source> = Vec::new();
+        for set in &sets {
+            let [normal, depth, mask] = [&set.normal, &set.depth, &set.mask].map(|p| p.as_ref().and_then(&name_of));
+            if normal.is_some() || depth.is_some() {
+                out.push(Source::new(&set.name, normal, depth, mask));
+            }
+        }
+        // One normal map, one depth map and nothing else of their kind belong together whatever they are called.
+        let only = |role: &str| {
+            let mut left =
+                readable.iter().filter(|f| f.role() == role && !out.iter().any(|s| s.files.contains(&f.name)));
+            left.next().filter(|_| left.next().is_none()).map(|f| f.name.clone())
+        };
+        if let (Some(normal), Some(depth)) = (only("normal"), only("depth")) {
+            let mask = only("mask");
+            out.push(Source::new("", Some(normal), Some(depth), mask));
+        }
+        for file in readable {
+            let used = out.iter().any(|s| s.files.contains(&file.name));
+            let (own, name) = (|| Some(file.name.clone()), file.path.file_stem().unwrap_or_default().to_string_lossy());
+            match file.role() {
+                _ if used => {}
+                "layers" => out.push(Source::new(&name, own(), own(), None)),
+                "normal" => out.push(Source::new(&name, own(), None, None)),
+                "depth" => out.push(Source::new(&name, None, own(), None)),
+                _ => {}
+            }
+        }
+        out
+    }
+    fn first_error(self) -> Option<Error> {
+        let files = self.files.into_iter().filter_map(|f| f.described.err());
+        files.chain(self.surfaces.into_iter().filter_map(|s| s.import.err())).next()
+    }
+    fn json(&self) -> String {
+        let value = json!({
+            "format": "rilievo-info",
+            "version": 1,
+            "files": self.files.iter().map(File::json).collect::<Vec<_>>(),
+            "surfaces": self.surfaces.iter().map(Surface::json).collect::<Vec<_>>(),
+        });
+        format!("{value:#}\n")
+    }
+    fn text(&self) -> String {
+        let files: String = self.files.iter().map(File::text).collect();
+        let surfaces: String = self.surfaces.iter().map(Surface::text).collect();
+        files + &surfaces
+    }
+}
+
+impl Source {
+    fn new(name: &str, normal: Option<String>, depth: Option<String>, mask: Option<String>) -> Self {
+        let mut files: Vec<String> = [&normal, &depth, &mask].into_iter().flatten().cloned().collect();
+        files.dedup();
+        fn map<C: Default>(file: String) -> MapSource<C> {
+            MapSource { file, ..MapSource::default() }
+        }
+        let source = SurfaceSource {
+            normal: normal.map(map),
+            depth: depth.map(map),
+            mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
+        };
+        Self { name: name.into(), files, source }
+    }
+    /// The source with everything that was found spelled out.
+    fn spelled(&self, findings: &Findings) -> SurfaceSource {
+        let mut source = self.source.clone();
+        if let (Some(map), Some(convention)) = (&mut source.normal, &findings.normal) {
+            map.convention = convention.clone();
+        }
+        if let (Some(map), Some(convention)) = (&mut source.depth, &findings.depth) {
+            map.convention = convention.clone();
+        }
+        source
+    }
+}
+
+impl File {
+    fn json(&self) -> Value {
+        let d = match &self.described {
+            Ok(d) => d,
+            Err(e) => return json!({ "file": self.name, "error": e.to_string() }),
+        };
+        let mut out = json!({
+            "file": self.name, "format": d.format, "width": d.size.width, "height": d.size.height, "bits": d.bits,
+            "channels": d.channels, "role": self.role(), "notes": d.warning.iter().collect::<Vec<_>>(),
+        });
+        if let Some(compression) = &d.compression {
+            let channel = |(name, kind): &(String, &str)| json!({ "name": name, "kind": kind });
+            let layers = d
+                .layers
+                .iter()
+                .map(|l| json!({ "name": l.name, "channels": l.channels.iter().map(channel).collect::<Vec<_>>() }));
+            out["compression"] = json!(compression);
+            out["layers"] = layers.collect();
+            out["fits_normals"] = json!(d.normals);
+            out["fits_depth"] = json!(d.depths);
+        }
+        out
+    }
+    fn text(&self) -> String {
+        let d = match &self.described {
+            Ok(d) => d,
+            Err(e) => return format!("{e}\n"),
+        };
+        let kind = match d.compression.as_deref() {
+            Some(compression) => compression.to_owned(),
+            None => format!("{} bits, {}", d.bits, d.channels.concat()),
+        };
+        let mut out = format!("{}: {}, {} pixels, {kind}; {}\n", self.name, d.format, d.size, self.role());
+        for layer in &d.layers {
+            let channels = layer.channels.iter().map(|(name, kind)| format!("{name} ({kind})")).collect::<Vec<_>>();
+            let name = if layer.name.is_empty() { "no layer" } else { &layer.name };
+            out += &format!("  {name}: {}\n", channels.join(", "));
+        }
+        d.warning.iter().for_each(|w| out += &format!("  {w}\n"));
+        out
+    }
+}
+
+impl Surface {
+    fn covered(import: &Import) -> f64 {
+        let coverage = import.surface.coverage_plane().values();
+        coverage.iter().map(|c| f64::from(*c)).sum::<f64>() / 255.0 / coverage.len().max(1) as f64
+    }
+    fn json(&self) -> Value {
+        let mut out = json!({ "name": self.source.name, "files": self.source.files });
+        let import = match &self.import {
+            Ok(import) => import,
+            Err(e) => {
+                out["error"] = json!(e.to_string());
+                return out;
+            }
+        };
+        let (size, findings) = (import.surface.size(), &import.findings);
+        let found = findings.choices.iter().map(|c| {
+            let confidence = (f64::from(c.confidence) * 1000.0).round() / 1000.0;
+            (c.field.to_owned(), json!({ "value": c.value, "confidence": confidence, "how": c.how.name() }))
+        });
+        out["width"] = json!(size.width);
+        out["height"] = json!(size.height);
+        out["covered"] = json!((Self::covered(import) * 1e4).round() / 1e4);
+        out["depth_range_px"] = json!(import.surface.depth_range_px());
+        out["depth_at_0_and_1"] = json!(findings.depth_range.map(|(near, far)| [near, far]));
+        out["found"] = Value::Object(found.collect());
+        out["surface"] = recipe::surface::write(&self.source.spelled(findings));
+        out["notes"] = json!(findings.notes);
+        out
+    }
+    fn text(&self) -> String {
+        let name = if self.source.name.is_empty() { "surface" } else { &self.source.name };
+        let import = match &self.import {
+            Ok(import) => import,
+            Err(e) => return format!("\n{name}: {e}\n"),
+        };
+        let mut out = format!(
+            "\n{name}: a surface of {} pixels, {:.0} % covered, from {}\n",
+            import.surface.size(),
+            Self::covered(import) * 100.0,
+            self.source.files.join(" and ")
+        );
+        for c in &import.findings.choices {
+            out += &format!("  {:<18} {:<14} {} ({:.0} %)\n", c.field, c.value, c.how.name(), c.confidence * 100.0);
+        }
+        import.findings.notes.iter().for_each(|note| out += &format!("  {note}\n"));
+        out
+    }
+}
