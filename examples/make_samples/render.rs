@@ -234,19 +234,54 @@ fn is_smooth(hits: &[Option<Hit>], w: usize, h: usize, i: usize, jump: f64) -> b
     })
 }
 
+/// Coverage from every sub-sample; depth and normal from the piece of surface that holds most of them. A mean over
+/// pieces would leave a pixel between the near and the far one, and a bent picture would show it as a fringe.
 fn sub_sampled(scene: &Scene, x: usize, y: usize) -> Pixel {
     let offset = |i: usize| (i as f64 + 0.5) / SUB as f64;
     let spots = (0..SUB * SUB).map(|i| (x as f64 + offset(i % SUB), y as f64 + offset(i / SUB)));
-    let hits: Vec<Hit> = spots.filter_map(|(u, v)| scene.hit(u, v)).collect();
-    if hits.is_empty() {
+    let hits: Vec<Option<Hit>> = spots.map(|(u, v)| scene.hit(u, v)).collect();
+    let covered = hits.iter().flatten().count();
+    let piece = largest_piece(&hits, 2.0 * scene.view.half_width / (scene.view.width * SUB) as f64);
+    if piece.is_empty() {
         return EMPTY;
     }
-    let count = hits.len() as f64;
     Pixel {
-        coverage: count / (SUB * SUB) as f64,
-        z: hits.iter().map(|hit| hit.z).sum::<f64>() / count,
-        normal: facing(hits.iter().map(|hit| hit.normal).sum()),
+        coverage: covered as f64 / (SUB * SUB) as f64,
+        z: piece.iter().map(|hit| hit.z).sum::<f64>() / piece.len() as f64,
+        normal: facing(piece.iter().map(|hit| hit.normal).sum()),
     }
+}
+
+/// The hits of the piece that holds most sub-samples, the nearer of two equals; `step` lies between sub-samples.
+fn largest_piece(hits: &[Option<Hit>], step: f64) -> Vec<Hit> {
+    let mut piece_of: Vec<usize> = (0..hits.len()).collect();
+    let mut join = |i: usize, j: usize| {
+        if let (Some(a), Some(b)) = (hits[i], hits[j]) {
+            let (from, to) = (piece_of[j], piece_of[i]);
+            if is_one_piece(a, b, step) {
+                piece_of.iter_mut().filter(|piece| **piece == from).for_each(|piece| *piece = to);
+            }
+        }
+    };
+    for i in 0..hits.len() {
+        if i % SUB + 1 < SUB {
+            join(i, i + 1);
+        }
+        if i + SUB < hits.len() {
+            join(i, i + SUB);
+        }
+    }
+    let pieces = (0..hits.len()).map(|piece| -> Vec<Hit> {
+        hits.iter().zip(&piece_of).filter(|(_, p)| **p == piece).filter_map(|(hit, _)| *hit).collect()
+    });
+    let nearest = |piece: &[Hit]| piece.iter().map(|hit| hit.z).fold(f64::NEG_INFINITY, f64::max);
+    pieces.max_by(|a, b| a.len().cmp(&b.len()).then(nearest(a).total_cmp(&nearest(b)))).unwrap_or_default()
+}
+
+/// Whether one slope may lead from one hit to the other. Where a near piece ends it is steep, but the far one is not.
+fn is_one_piece(a: Hit, b: Hit, step: f64) -> bool {
+    let slope = |hit: Hit| hit.normal.truncate().length() / hit.normal.z;
+    (a.z - b.z).abs() < (2.0 * slope(a).min(slope(b)) + 4.0) * step
 }
 
 /// Normalises depth over the surface and grows the surface's values outward.
