@@ -1,0 +1,80 @@
+//! The gallery: every sample recipe renders to a picture, and `docs/GALLERY.md` shows every one of them.
+
+use rilievo::document::{Progress, flatten};
+use rilievo::io::{Budget, recipe};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a picture of the gallery may weigh.
+const MOST_BYTES: u64 = 150 * 1024;
+
+fn in_package(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+fn gallery() -> String {
+    fs::read_to_string(in_package("docs/GALLERY.md")).unwrap()
+}
+
+/// The files of a folder with this extension.
+fn files(folder: &str, is_wanted: impl Fn(&str) -> bool) -> Vec<PathBuf> {
+    let entries = fs::read_dir(in_package(folder)).unwrap().map(|entry| entry.unwrap().path());
+    let wanted = |path: &PathBuf| path.extension().is_some_and(|e| is_wanted(&e.to_string_lossy()));
+    let mut files: Vec<PathBuf> = entries.filter(wanted).collect();
+    files.sort();
+    files
+}
+
+fn recipes() -> Vec<PathBuf> {
+    let recipes = files("sample_normals", |extension| extension == "json");
+    assert!(recipes.len() >= 20, "only {} recipes", recipes.len());
+    recipes
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap().to_string_lossy().into_owned()
+}
+
+#[test]
+fn every_recipe_renders_to_a_picture_of_many_colours() {
+    for path in recipes() {
+        let document = recipe::load(&path, &Budget::default()).unwrap_or_else(|e| panic!("{e}"));
+        let picture = flatten(&document, &Progress::default()).unwrap();
+        let rgba = picture.to_straight_rgba(document.size.rect());
+        let colors: BTreeSet<[u8; 3]> =
+            rgba.as_chunks::<4>().0.iter().filter(|p| p[3] == 255).map(|p| [p[0] / 8, p[1] / 8, p[2] / 8]).collect();
+        // The cel painting has four colours and paper; the antialiased steps between them add more.
+        assert!(colors.len() >= 16, "{} shows only {} colours", name(&path), colors.len());
+    }
+}
+
+#[test]
+fn the_gallery_gives_the_command_for_every_recipe() {
+    let gallery = gallery();
+    for path in recipes() {
+        let command = format!("rilievo render sample_normals/{}", name(&path));
+        assert!(gallery.contains(&command), "docs/GALLERY.md has no “{command}”");
+    }
+}
+
+#[test]
+fn every_picture_of_the_gallery_is_shown_and_light() {
+    let gallery = gallery();
+    let pictures = files("docs/gallery", |extension| ["jpg", "png"].contains(&extension));
+    for path in &pictures {
+        assert!(gallery.contains(&format!("gallery/{}", name(path))), "docs/GALLERY.md does not show {}", name(path));
+        let bytes = fs::metadata(path).unwrap().len();
+        assert!(bytes <= MOST_BYTES, "{} has {bytes} bytes", name(path));
+    }
+}
+
+#[test]
+fn every_picture_that_the_gallery_shows_exists() {
+    let gallery = gallery();
+    let shown: Vec<&str> = gallery.split("](gallery/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(shown.len() >= 20, "only {} pictures are shown", shown.len());
+    for picture in shown {
+        assert!(in_package("docs/gallery").join(picture).is_file(), "docs/gallery/{picture} is missing");
+    }
+}
