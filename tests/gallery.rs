@@ -60,10 +60,15 @@ fn the_gallery_gives_the_command_for_every_recipe() {
 
 #[test]
 fn every_picture_of_the_gallery_is_shown_and_light() {
-    let gallery = gallery();
+    let shown = gallery() + &fs::read_to_string(in_package("README.md")).unwrap();
     let pictures = files("docs/gallery", |extension| ["jpg", "png"].contains(&extension));
     for path in &pictures {
-        assert!(gallery.contains(&format!("gallery/{}", name(path))), "docs/GALLERY.md does not show {}", name(path));
+        assert!(
+            shown.contains(&format!("](gallery/{0})", name(path)))
+                || shown.contains(&format!("](docs/gallery/{0})", name(path))),
+            "neither docs/GALLERY.md nor README.md shows {}",
+            name(path)
+        );
         let bytes = fs::metadata(path).unwrap().len();
         assert!(bytes <= MOST_BYTES, "{} has {bytes} bytes", name(path));
     }
