@@ -9,7 +9,7 @@ use crate::raster::TileAt;
 use crate::raster::tile::{TILE, TILE_AREA};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::reach::{BLOCK, Extent, Reach, TileBlocks};
-use crate::surface::{Anchor, Bend, Operator, Surface, Weights, links};
+use crate::surface::{Operator, Surface, links};
 
 /// One dab on the canvas it is painted on.
 pub struct PlacedDab<'s> {
@@ -33,9 +33,7 @@ impl<'s> PlacedDab<'s> {
     /// `extent`: of the tip's footprint.
     pub fn new(dab: Dab, operator: Operator, scene: &'s Scene, extent: Extent) -> Self {
         let surface = scene.surface.as_deref();
-        // The brush's one anchor has weight 1 everywhere.
-        let bend = Bend { operator, anchors: vec![Anchor::fixed(dab.at)], weights: Weights::default() };
-        let d = Deformation::new(surface, scene.size, &bend);
+        let d = Deformation::of_dab(surface, scene.size, operator, dab.at);
         let bent = surface.filter(|_| !d.is_identity()).map(|s| (s, d));
         let reach = Reach::new(surface, scene.size, operator, dab.at, extent);
         Self { dab, scene, bent, reach }

@@ -47,25 +47,30 @@ pub const DETAIL_SCALE_PX: f32 = 4.0;
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors.
+    /// Reads the maps at the anchors; one that stands off the surface reads the background: facing the viewer, farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
     /// * `size`: the canvas; its longer side is *L*.
     ///
     /// Anchors that are not finite are dropped, and parameters that are not finite count as 0: D is finite everywhere.
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
+        Self::pinned(surface, size, bend, at_anchor)
+    }
+    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest of it, so that a
+    /// stroke goes on over the silhouette.
+    pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
+        let bend = Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() };
+        Self::pinned(surface, size, &bend, nearest_reading)
+    }
+    fn pinned(surface: Option<&'a Surface>, size: Size, bend: &Bend, read: impl Fn(&Surface, Vec2) -> Reading) -> Self {
+        let near = |p: Vec2| p.clamp(Vec2::splat(-FARTHEST_PX), Vec2::splat(FARTHEST_PX));
         let pins = bend
             .anchors
             .iter()
             .filter(|a| a.at.is_finite() && a.source.is_finite())
             .map(|a| {
-                let near = |p: Vec2| p.clamp(Vec2::splat(-FARTHEST_PX), Vec2::splat(FARTHEST_PX));
                 let anchor = Anchor { at: near(a.at), source: near(a.source) };
-                let reading = surface.map_or(Reading::default(), |s| {
-                    let (x, y) = s.pixel_of(anchor.at);
-                    reading(s, x, y)
-                });
-                Pin { anchor, reading }
+                Pin { anchor, reading: surface.map_or(Reading::default(), |s| read(s, anchor.at)) }
             })
             .collect();
         let operator = bend.operator.finite();
@@ -155,6 +160,21 @@ fn sane(weights: Weights) -> Weights {
         Weights::Shepard { .. } => Weights::default(),
         Weights::Segment => Weights::Segment,
     }
+}
+
+/// What the maps hold at the pixel of an anchor.
+fn at_anchor(surface: &Surface, at: Vec2) -> Reading {
+    let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
+    match surface.coverage_plane().get(x, y) {
+        Some(coverage) if coverage > 0 => reading(surface, x as usize, y as usize),
+        _ => Reading::BACKGROUND,
+    }
+}
+
+/// What the maps hold at the piece of surface nearest to a point: they are grown outward.
+fn nearest_reading(surface: &Surface, at: Vec2) -> Reading {
+    let (x, y) = surface.pixel_of(at);
+    reading(surface, x, y)
 }
 
 fn reading(surface: &Surface, x: usize, y: usize) -> Reading {

@@ -198,7 +198,7 @@ mod tests {
     use super::*;
     use crate::math::{Rect, Vec3, hash, vec3};
     use crate::raster::Plane;
-    use crate::surface::{Anchor, Bend, Deformation, Maps, Weights, links};
+    use crate::surface::{Deformation, Maps, links};
     use proptest::prelude::*;
 
     const SIZE: Size = Size::new(150, 130);
@@ -256,8 +256,7 @@ mod tests {
             let reach = Reach::new(Some(&surface), SIZE, operator, at, extent);
             let mut tiles = Vec::new();
             reach.for_each_tile(|tile| tiles.push(tile));
-            let bend = Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() };
-            let d = Deformation::new(Some(&surface), SIZE, &bend);
+            let d = Deformation::of_dab(Some(&surface), SIZE, operator, at);
             for tile in TileAt::covering(SIZE.rect()) {
                 let blocks = reach.blocks(tile);
                 let Rect { x0, y0, x1, y1 } = tile.rect().intersect(SIZE.rect());

@@ -4,7 +4,7 @@ use super::*;
 use crate::math::{Size, vec2, vec3};
 use crate::paint::profile::RoundProfile;
 use crate::raster::{Plane, TileGrid};
-use crate::surface::{Anchor, Bend, Deformation, Maps, Surface, Weights, links};
+use crate::surface::{Deformation, Maps, Surface, links};
 use proptest::prelude::*;
 
 const SIZE: Size = Size::new(150, 140);
@@ -41,8 +41,7 @@ fn white(brush: Brush, operator: Operator, samples: Vec<Sample>) -> Stroke {
 
 /// Coverage of a dab at a pixel: F(A⁻¹(D(q) − q_0)) averaged over the pixel's width toward the centre.
 fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
-    let bend = Bend { operator, anchors: vec![Anchor::fixed(dab.at)], weights: Weights::default() };
-    let d = Deformation::new(scene.surface.as_deref(), scene.size, &bend);
+    let d = Deformation::of_dab(scene.surface.as_deref(), scene.size, operator, dab.at);
     let from_center = d.at(x, y) - dab.at;
     let toward = from_center.normalize_or_zero();
     let linked = scene.surface.as_ref().map_or(0, |s| s.links_plane().at(x as usize, y as usize));

@@ -160,6 +160,21 @@ fn outside_the_surface_dragged_content_still_moves() {
 }
 
 #[test]
+fn an_anchor_off_the_surface_reads_the_background_and_a_dab_the_nearest_rim() {
+    let surface = sphere();
+    let operator = Operator::Normal { alpha: 1.0, beta: 0.0, detail: 0.0 };
+    let off = vec2(3.0, 60.0);
+    let nbar = surface.nbar(100, 60);
+    let bend = Bend { operator, anchors: vec![Anchor::fixed(off)], ..Bend::default() };
+    // f_n is linear: the offset is L |d| d of the relative normal d, here n̄ itself.
+    let d = Deformation::new(Some(&surface), SIZE, &bend).at(100, 60) - vec2(100.5, 60.5);
+    assert!((d - 160.0 * nbar.length() * nbar).length() < 1e-2, "{d}");
+    let rim = nbar - surface.nbar(3, 60);
+    let d = Deformation::of_dab(Some(&surface), SIZE, operator, off).at(100, 60) - vec2(100.5, 60.5);
+    assert!((d - 160.0 * rim.length() * rim).length() < 1e-2, "{d}");
+}
+
+#[test]
 fn identity_is_known_without_looking_at_pixels() {
     let surface = sphere();
     let still = Bend { operator: OPERATORS[0], anchors: vec![Anchor::fixed(vec2(9.0, 9.0))], ..Bend::default() };

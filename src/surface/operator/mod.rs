@@ -34,6 +34,11 @@ pub struct Reading {
     pub nz: f32,
 }
 
+impl Reading {
+    /// Where there is no surface: as an empty map is painted, flat and farthest.
+    pub const BACKGROUND: Reading = Reading { depth: 1.0, nbar: Vec2::ZERO, nz: 1.0 };
+}
+
 /// How the maps change at one pixel, per px; differenced within one piece of surface.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Slopes {
