@@ -3,10 +3,12 @@
 
 use super::{
     adjust::Adjust,
+    patches::Patches,
     scene::{Filter, Scene},
 };
-use crate::math::{Affine2, Rect, Size, Vec2};
-use crate::raster::{Outside, Picture, TILE, Texture, Tile, TileAt, sampler, tile::TILE_AREA};
+use crate::math::{Affine2, Size, Vec2};
+use crate::raster::sampler::{Antialias, Bilinear};
+use crate::raster::{Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
 use crate::surface::{Bend, Deformation, deformation::DeformedRect};
 use std::sync::{Arc, OnceLock};
 
@@ -77,29 +79,33 @@ impl PlacedImage {
         if area.is_empty() {
             return None;
         }
-        let texture = self.source.texture();
-        let positions = self.texel_positions(scene, area);
-        let mut bytes = vec![0u8; TILE_AREA * 4];
-        for (row, y) in (area.y0..area.y1).enumerate() {
-            let to = ((y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
-            let from = row * area.width()..(row + 1) * area.width();
-            let out = &mut bytes[to..to + area.width() * 4];
-            sampler::bilinear_row(texture, &positions.x[from.clone()], &positions.y[from], self.outside, out);
-        }
-        if bytes.chunks_exact(4).all(|p| p[3] == 0) {
-            return None;
-        }
-        Tile::from_bytes(bytes)
-    }
-    /// P⁻¹(D(q)) at every pixel centre of a rectangle, in texels.
-    fn texel_positions(&self, scene: &Scene, rect: Rect) -> DeformedRect {
-        let mut positions = DeformedRect::default();
-        Deformation::new(scene.surface.as_deref(), scene.size, &self.bend).fill(rect, &mut positions);
+        let mut pixels = vec![[0u8; 4]; TILE_AREA];
         let texels_from_canvas = self.placement.texels_from_canvas(scene.size, self.source.texture().size());
+        let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
+        let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;
+        // One more pixel on every side, where differences are taken.
+        let margin = if self.filter == Filter::Bilinear || is_exact { 0 } else { 1 };
+        let mut positions = DeformedRect::default();
+        deformation.fill(area.grown(margin), &mut positions);
         if texels_from_canvas != Affine2::IDENTITY {
             transform(texels_from_canvas, &mut positions.x, &mut positions.y);
         }
-        positions
+        let (width, texture) = (area.width(), self.source.texture());
+        let (mut patches, mut bilinear, mut antialias) =
+            (Patches::default(), Bilinear::default(), Antialias::default());
+        for (row, y) in (area.y0..area.y1).enumerate() {
+            let to = (y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize;
+            let out = &mut pixels[to..to + width];
+            if margin == 0 {
+                let from = row * width..(row + 1) * width;
+                let (x, y) = (&positions.x[from.clone()], &positions.y[from]);
+                bilinear.row(texture, x, y, self.outside, out);
+            } else {
+                let row = patches.row(scene, area, y, &positions, texels_from_canvas);
+                antialias.row(texture, row, self.outside, out);
+            }
+        }
+        Tile::from_pixels(pixels.into_flattened())
     }
 }
 
@@ -117,9 +123,10 @@ crate::widest! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{hash, vec2};
-    use crate::raster::{TileGrid, picture::Texels};
-    use crate::surface::Anchor;
+    use crate::math::{hash, vec2, vec3};
+    use crate::raster::{Plane, TileGrid, picture::Texels, sampler};
+    use crate::surface::operator::second_order;
+    use crate::surface::{Anchor, Maps, Operator, Surface};
     use std::sync::Arc;
 
     /// Every tile of the layer, as straight bytes of the canvas.
@@ -192,5 +199,76 @@ mod tests {
         // The picture's right end must be seen at the top of the canvas.
         let texel = placement.texels_from_canvas(size, size).transform_point2(vec2(100.0, 10.0));
         assert!((texel - vec2(190.0, 100.0)).length() < 1e-3, "{texel}");
+    }
+
+    /// The document's surface from its n̄ (image axes) and depth at a pixel's column and row.
+    fn scene(size: Size, nbar: impl Fn(Vec2) -> Vec2 + Sync, depth: impl Fn(usize) -> f32 + Sync) -> Scene {
+        let maps = Maps {
+            normals: Plane::from_fn(size, |x, y| {
+                let n = nbar(vec2(x as f32 + 0.5, y as f32 + 0.5));
+                vec3(n.x, -n.y, (1.0 - n.length_squared()).sqrt())
+            }),
+            depth: Plane::from_fn(size, |x, _| depth(x)),
+            coverage: Plane::filled(size, 255),
+        };
+        Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
+    }
+
+    #[test]
+    fn antialiasing_removes_three_quarters_of_the_error_against_64_samples_a_pixel() {
+        let size = Size::new(96, 96);
+        let nbar = |q: Vec2| vec2((q.x / 13.0).sin() * (q.y / 17.0).cos(), (q.y / 11.0).sin()) * 0.35;
+        let scene = scene(size, nbar, |_| 0.5);
+        // A checkerboard of 3 × 3 texels, two texels a pixel.
+        let check = |i: usize| if (i % 192 / 3 + i / 192 / 3).is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
+        let picture = Picture::srgb8(Size::new(192, 192), (0..192 * 192).map(check).collect()).unwrap();
+        let (alpha, beta, center) = (0.5, 1.0, vec2(48.5, 48.5));
+        let mut image = placed(picture, size);
+        image.outside = Outside::Mirror;
+        image.bend.operator = Operator::Normal { alpha, beta, detail: 0.0 };
+        image.bend.anchors = vec![Anchor::fixed(center)];
+
+        let map = image.placement.texels_from_canvas(size, Size::new(192, 192));
+        let sample = |q: Vec2| {
+            let offset = 96.0 * second_order::offset(nbar(q) - nbar(center), alpha, beta);
+            sampler::bilinear(image.source.texture(), map.transform_point2(q + offset), image.outside)[0] * 255.0
+        };
+        let supersampled = |x: usize, y: usize| {
+            let at = |k: usize| (k as f32 + 0.5) / 8.0;
+            let sum: f32 = (0..64).map(|k| sample(vec2(x as f32 + at(k % 8), y as f32 + at(k / 8)))).sum();
+            sum / 64.0
+        };
+        let pixels: Vec<(usize, usize)> = (2..94).flat_map(|y| (2..94).map(move |x| (x, y))).collect();
+        let reference: Vec<f32> = pixels.iter().map(|&(x, y)| supersampled(x, y)).collect();
+        let error = |filter| {
+            let bytes = rendered(&PlacedImage { filter, ..image.clone() }, &scene);
+            let squares =
+                pixels.iter().zip(&reference).map(|(&(x, y), r)| (f32::from(bytes[(y * 96 + x) * 4]) - r).powi(2));
+            (squares.sum::<f32>() / pixels.len() as f32).sqrt()
+        };
+        let (filtered, unfiltered) = (error(Filter::Antialias), error(Filter::Bilinear));
+        assert!(filtered < 0.25 * unfiltered, "{filtered} of {unfiltered}");
+    }
+    #[test]
+    fn nothing_bleeds_across_a_silhouette() {
+        // Two plates, the right one far behind and turned: on each D is a translation, so that no pixel needs filtering.
+        let size = Size::new(64, 64);
+        let plates = scene(
+            size,
+            |q| if q.x < 32.0 { Vec2::ZERO } else { vec2(0.5, 0.0) },
+            |x| if x < 32 { 0.0 } else { 1.0 - 0.577 * (64 - x) as f32 / 64.0 * 0.1 },
+        );
+        let mut image = placed(noise(size), size);
+        image.outside = Outside::Mirror;
+        image.bend.operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
+        image.bend.anchors = vec![Anchor::fixed(vec2(10.5, 30.5))];
+        let bilinear = rendered(&image, &plates);
+        image.filter = Filter::Antialias;
+        let antialias = rendered(&image, &plates);
+        assert!(
+            bilinear[(30 * 64 + 40) * 4..][..3]
+                != rendered(&placed(noise(size), size), &plates)[(30 * 64 + 40) * 4..][..3]
+        );
+        assert!(antialias == bilinear, "a pixel at the jump was blurred over both plates");
     }
 }

@@ -6,6 +6,7 @@ pub mod brush;
 mod dab;
 pub mod gradient;
 pub mod image;
+mod patches;
 mod path;
 mod profile;
 mod ramp;

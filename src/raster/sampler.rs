@@ -1,9 +1,13 @@
 //! Reading a texture at a point.
-//! Floor 1. Here: the reference that reads like its definition. Rows at a time, fast: `rows`.
+//! Floor 1. Here: the reference that reads like its definition. Rows at a time, fast:
+//! `rows`, `antialias`.
 
+mod antialias;
 mod rows;
+mod taps;
 
-pub use rows::bilinear_row;
+pub use antialias::{Antialias, PatchRow};
+pub use rows::Bilinear;
 
 use super::texture::{Level, Outside, Texture};
 use crate::math::Vec2;

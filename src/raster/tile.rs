@@ -67,10 +67,12 @@ impl Tile {
     pub fn quantised(pixels: &TileF32) -> Option<Tile> {
         let mut bytes = vec![0u8; TILE_AREA * 4];
         quantise_pixels(pixels, &mut bytes);
-        if bytes.chunks_exact(4).all(|p| p[3] == 0) {
-            return None;
-        }
-        Tile::from_bytes(bytes)
+        Tile::from_pixels(bytes)
+    }
+    /// As [`Tile::from_bytes`]; `None` where it is wholly transparent.
+    pub fn from_pixels(rgba: Vec<u8>) -> Option<Tile> {
+        let is_transparent = rgba.chunks_exact(4).all(|p| p[3] == 0);
+        if is_transparent { None } else { Tile::from_bytes(rgba) }
     }
     /// Every alpha is 255.
     pub fn is_opaque(&self) -> bool {
