@@ -115,6 +115,55 @@ fn one_layer_alone_stands_on_nothing_or_on_a_background() {
     refused(&desk.render("c.png", &["--layer", "foto"]), &["--layer", "no layer is called “foto”", "“photo”"]);
 }
 
+/// The normal map of a sphere that touches the four sides, transparent around it.
+fn save_sphere(path: &Path, side: u32) {
+    let half = side as f32 / 2.0;
+    let sphere = image::RgbaImage::from_fn(side, side, |x, y| {
+        let (nx, ny) = ((x as f32 + 0.5) / half - 1.0, 1.0 - (y as f32 + 0.5) / half);
+        let r2 = nx * nx + ny * ny;
+        let byte = |n: f32| ((n + 1.0) * 127.5).round() as u8;
+        let alpha = if r2 < 1.0 { 255 } else { 0 };
+        image::Rgba([byte(nx), byte(ny), byte((1.0 - r2).max(0.0).sqrt()), alpha])
+    });
+    sphere.save(path).unwrap();
+}
+
+const ON_A_SPHERE: &str = r##"{ "surface": { "normal": { "file": "sphere.png" } }, "layers": [
+    { "kind": "fill", "color": "#808080" },
+    { "kind": "image", "source": { "file": "photo.png" }, "operator": { "kind": "normal", "alpha": 0.8 } }] }"##;
+
+#[test]
+fn the_canvas_takes_the_size_of_the_map_and_paint_stays_on_the_surface() {
+    let desk = Desk::with(ON_A_SPHERE);
+    save_sphere(&desk.path("sphere.png"), 48);
+    let picture = desk.rendered("a.png", &[]).to_rgba8();
+    assert_eq!(picture.dimensions(), (48, 48));
+    assert_eq!((picture.get_pixel(0, 0)[3], picture.get_pixel(24, 24)[3]), (0, 255));
+    let flat = Desk::with(&ON_A_SPHERE.replace("normal\", \"alpha\": 0.8", "none\""));
+    save_sphere(&flat.path("sphere.png"), 48);
+    assert_ne!(flat.rendered("a.png", &[]).to_rgba8(), picture, "the operator bends");
+}
+
+#[test]
+fn a_painting_goes_onto_another_object_fitted_to_its_canvas() {
+    let recipe = ON_A_SPHERE.replacen('{', r#"{ "canvas": { "width": 64, "height": 40 },"#, 1);
+    let desk = Desk::with(&recipe);
+    fs::create_dir(desk.path("elsewhere")).unwrap();
+    let other = desk.path("elsewhere/other.png");
+    save_sphere(&other, 20);
+    // The recipe's own map is not even there.
+    refused(&desk.render("a.png", &[]), &["surface", "sphere.png"]);
+    let picture = desk.rendered("a.png", &["--normal", other.to_str().unwrap()]).to_rgba8();
+    assert_eq!(picture.dimensions(), (64, 40));
+    let alpha = |x, y| picture.get_pixel(x, y)[3];
+    // 40 px high and centred, the sphere spans 12 … 52.
+    assert_eq!((alpha(8, 20), alpha(15, 20), alpha(48, 20), alpha(55, 20)), (0, 255, 255, 0));
+    refused(
+        &desk.render("elsewhere/other.png", &["--normal", other.to_str().unwrap()]),
+        &["read by this very command"],
+    );
+}
+
 #[test]
 fn what_is_refused_is_named_and_nothing_is_written() {
     let cases = [

@@ -17,7 +17,7 @@ pub struct Budget {
     pub file_bytes: u64,
     /// Bytes of a JSON text.
     pub json_bytes: u64,
-    /// Values of a JSON text; each takes some eighty bytes once parsed.
+    /// Values of a JSON text, an object counting as eight; each takes some eighty bytes once parsed.
     pub json_values: usize,
     /// Nesting of a JSON text.
     pub json_depth: usize,
