@@ -1,12 +1,24 @@
 //! Powers, logarithms and tanh for inner loops: polynomials of bounded error that the compiler vectorises.
 //! Floor 0. The references are std's; the bounds below are tests. sRGB's approximations stand with the curve (`srgb`).
 
+/// The larger of two numbers; `b` where `a` is NaN. One instruction, where `f32::max` needs three.
+#[inline(always)]
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers; `b` where `a` is NaN.
+#[inline(always)]
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
 /// 2^x, relative error below 4e-6; exactly 1 at 0. `x` is clamped to ±126, NaN becomes 2^-126.
 #[inline(always)]
 pub fn exp2(x: f32) -> f32 {
     // Adding 1.5 · 2²³ leaves the nearest whole number in the low bits: rounding without SSE 4.1.
     const ROUND: f32 = 12_582_912.0;
-    let x = x.max(-126.0).min(126.0);
+    let x = min(max(x, -126.0), 126.0);
     let rounded = x + ROUND;
     let f = x - (rounded - ROUND);
     let two_to_f = 1.0 + f * (0.693_124_2 + f * (0.240_241 + f * (0.055_906_37 + f * 0.009_582_819)));
@@ -26,7 +38,7 @@ pub fn exp(x: f32) -> f32 {
 pub fn log2(x: f32) -> f32 {
     // √½: mantissas then lie around 1, from √½ to √2.
     const HALF_ROOT: i32 = 0x3f35_04f3;
-    let x = x.max(f32::MIN_POSITIVE);
+    let x = max(x, f32::MIN_POSITIVE);
     let bits = x.to_bits() as i32;
     let exponent = (bits - HALF_ROOT) >> 23;
     let f = f32::from_bits((bits - (exponent << 23)) as u32) - 1.0;
@@ -41,11 +53,15 @@ pub fn pow(x: f32, p: f32) -> f32 {
     if x > 0.0 { y } else { 0.0 }
 }
 
-/// tanh x, absolute error below 4e-6; exactly 0 at 0 and odd.
+/// tanh x, absolute error below 1.5e-4; exactly 0 at 0 and odd. NaN becomes −tanh 5.
+///
+/// A quotient of polynomials up to 5, constant beyond.
 #[inline(always)]
 pub fn tanh(x: f32) -> f32 {
-    let t = exp2(x.abs() * (-2.0 * std::f32::consts::LOG2_E));
-    ((1.0 - t) / (1.0 + t)).copysign(x)
+    let x = min(max(x, -5.0), 5.0);
+    let y = x * x;
+    let above = x * (0.999_810_3 + y * (0.101_724_85 + y * 6.549_923e-4));
+    above / (1.0 + y * (0.434_506_06 + y * 0.012_639_681))
 }
 
 #[cfg(test)]
@@ -84,8 +100,9 @@ mod tests {
     #[test]
     fn tanh_keeps_its_bound_and_its_sign() {
         for x in steps(-12.0, 12.0) {
-            assert!((tanh(x) - x.tanh()).abs() < 4e-6, "{x}");
+            assert!((tanh(x) - x.tanh()).abs() < 1.5e-4, "{x}");
+            assert_eq!(tanh(-x), -tanh(x));
         }
-        assert_eq!((tanh(0.0), tanh(1e9), tanh(-1e9)), (0.0, 1.0, -1.0));
+        assert!(tanh(0.0) == 0.0 && tanh(1e9) <= 1.0 && tanh(f32::NAN).is_finite());
     }
 }

@@ -25,6 +25,15 @@ pub fn decode_fast(v: f32) -> f32 {
     if v <= 0.04045 { v * (1.0 / 12.92) } else { power }
 }
 
+/// Luminance in linear light of an encoded colour in `[0, 1]`: error below 3e-4 + 0.4 % of it, for weighing light
+/// rather than for showing it.
+#[inline(always)]
+pub fn luminance_fast(r: f32, g: f32, b: f32) -> f32 {
+    // Through 0 and without the foot: close enough, and one expression for all values.
+    let decode = |v: f32| v * (0.051_504_187 + v * (0.436_915_07 + v * (0.752_211_9 - v * 0.244_300_74)));
+    luminance(decode(r), decode(g), decode(b))
+}
+
 /// [`encode`] for `[0, 1]` by square roots: error below 0.06/255.
 #[inline(always)]
 pub fn encode_fast(linear: f32) -> f32 {
@@ -144,6 +153,14 @@ mod tests {
             let v = i as f32 / 100_000.0;
             assert!((decode_fast(v) - decode(v)).abs() <= 4e-4 * decode(v), "{v}");
             assert!((encode_fast(v) - encode(v)).abs() < 0.06 / 255.0, "{v}");
+        }
+    }
+    #[test]
+    fn the_fast_luminance_is_close_enough_to_weigh_light() {
+        for i in 0..=1000 {
+            let v = i as f32 / 1000.0;
+            let exact = luminance(decode(v), decode(v * v), decode(1.0 - v));
+            assert!((luminance_fast(v, v * v, 1.0 - v) - exact).abs() < 3e-4 + 4e-3 * exact, "{v}");
         }
     }
     #[test]

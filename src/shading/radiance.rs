@@ -1,13 +1,16 @@
 //! The radiance-scaling layer: enhances whatever was painted beneath it in its group (RS eq. 3, MATH 5).
 //! Floor 3. Not here: finding what lies beneath (`document::flatten`).
 
+mod row;
+
 use super::{
-    features::{FeatureMap, Features},
+    features::Features,
     scaling::{Reference, Scaling},
 };
-use crate::math::{Vec3, fast, srgb, vec3};
+use crate::math::{Vec3, srgb, vec3};
 use crate::raster::{PlanarTile, TILE, TileAt, planar::Row};
 use crate::surface::Scene;
+use row::RowScaler;
 
 /// The parameters of a radiance-scaling layer, an adjustment of what lies beneath it in its group.
 ///
@@ -72,9 +75,17 @@ impl RadianceScaling {
             return;
         }
         let y_star = self.reference.resolve(beneath.brightest);
-        self.for_rows(scene, at, |y, x, kappa| {
-            if let Some(row) = pixels.rows_mut().get_mut(y) {
-                scale_row(row, x, kappa, &self.scaling, 1.0 / y_star, gain);
+        let rows = pixels.rows_mut();
+        let mut scaler = RowScaler::new(self.scaling, y_star);
+        self.for_rows(scene, at, |y, kappa, coverage| {
+            let Some(row) = rows.get_mut(y) else { return };
+            if gain != 1.0 {
+                // Off the surface nothing is gained.
+                let mut gains = [1.0; TILE];
+                gains.iter_mut().zip(coverage).for_each(|(g, &c)| *g += (gain - 1.0) * f32::from(c) / 255.0);
+                scaler.apply_with_gains(row, kappa, &gains);
+            } else {
+                scaler.apply(row, kappa);
             }
         });
     }
@@ -82,32 +93,31 @@ impl RadianceScaling {
     pub fn means_tile(&self, scene: &Scene, at: TileAt, brightest: f32, pixels: &PlanarTile) -> Means {
         let y_star = self.reference.resolve(brightest);
         let mut means = Means::default();
-        let Some(surface) = scene.surface.as_deref() else { return means };
-        let rect = at.rect();
-        self.for_rows(scene, at, |y, x, kappa| {
+        self.for_rows(scene, at, |y, kappa, coverage| {
             let Some(row) = pixels.rows().get(y) else { return };
-            let coverage = &surface.coverage_plane().row(rect.y0 as usize + y)[rect.x0 as usize..];
-            for ((x, &kappa), &coverage) in x.zip(kappa).zip(coverage) {
-                let luminance = f64::from(luminance(row, x));
-                let weight = f64::from(row.a[x]) * f64::from(coverage);
-                means.before += weight * luminance;
-                means.after +=
-                    weight * luminance * f64::from(self.scaling.sigma_fast(kappa, luminance as f32 / y_star));
+            for (x, (&kappa, &coverage)) in kappa.iter().zip(coverage).enumerate() {
+                let luminance = luminance(row, x);
+                let light = f64::from(row.a[x]) * f64::from(coverage) * f64::from(luminance);
+                means.before += light;
+                means.after += light * f64::from(self.scaling.sigma_fast(kappa, luminance / y_star));
             }
         });
         means
     }
-    /// Calls with each row of the tile that meets the surface, the columns of it, and κ there.
-    fn for_rows(&self, scene: &Scene, at: TileAt, mut with: impl FnMut(usize, std::ops::Range<usize>, &[f32])) {
+    /// Calls with each row of the tile that meets the surface, κ along it (0 off the surface) and the surface's coverage.
+    fn for_rows(&self, scene: &Scene, at: TileAt, mut with: impl FnMut(usize, &[f32; TILE], &[u8])) {
         let Some(surface) = scene.surface.as_deref() else { return };
-        let (rect, inside) = (at.rect(), at.rect().intersect(surface.size().rect()));
-        let features: FeatureMap = self.features.on(surface);
+        // The lattice of tiles begins at the canvas's corner, so a tile meets it from its own left and top side on.
+        let inside = at.rect().intersect(surface.size().rect());
+        let columns = inside.x0 as usize..inside.x1 as usize;
+        let features = self.features.on(surface);
         let mut kappa = [0.0; TILE];
-        for y in inside.y0..inside.y1 {
-            let kappa = &mut kappa[..inside.width()];
-            features.row_toward(inside.x0 as usize, y as usize, self.light, kappa);
-            let x0 = (inside.x0 - rect.x0) as usize;
-            with((y - rect.y0) as usize, x0..x0 + inside.width(), kappa);
+        for (row, y) in (inside.y0 as usize..inside.y1 as usize).enumerate() {
+            let coverage = &surface.coverage_plane().row(y)[columns.clone()];
+            if coverage.iter().any(|&c| c > 0) {
+                features.row_toward(columns.start, y, self.light, &mut kappa[..columns.len()]);
+                with(row, &kappa, coverage);
+            }
         }
     }
 }
@@ -120,39 +130,6 @@ fn luminance(row: &Row, x: usize) -> f32 {
     }
     let [r, g, b] = [r, g, b].map(|v| srgb::decode_fast((v / a).min(1.0)));
     srgb::luminance(r, g, b)
-}
-
-/// Multiplies the light of a row's pixels by gain · σ(κ, Y / Y*).
-fn scale_row(row: &mut Row, x: std::ops::Range<usize>, kappa: &[f32], scaling: &Scaling, per_y_star: f32, gain: f32) {
-    if gain == 1.0 && kappa.iter().all(|&k| k == 0.0) {
-        return;
-    }
-    let [r, g, b] = &mut row.rgb;
-    if let (Some(a), Some(r), Some(g), Some(b)) =
-        (row.a.get(x.clone()), r.get_mut(x.clone()), g.get_mut(x.clone()), b.get_mut(x))
-    {
-        scale_pixels([r, g, b], a, kappa, *scaling, [per_y_star, gain]);
-    }
-}
-
-crate::widest! {
-    /// Channels of one row; `factors`: 1 / Y*, gain.
-    fn scale_pixels(rgb: [&mut [f32]; 3], a: &[f32], kappa: &[f32], scaling: Scaling, factors: [f32; 2]) {
-        let [r, g, b] = rgb;
-        let [per_y_star, gain] = factors;
-        let pixels = r.iter_mut().zip(g).zip(b).zip(a).zip(kappa);
-        for ((((r, g), b), &a), &kappa) in pixels {
-            let per_a = 1.0 / a.max(f32::MIN_POSITIVE);
-            let straight = [*r * per_a, *g * per_a, *b * per_a];
-            let light = straight.map(srgb::decode_fast);
-            let delta = srgb::luminance(light[0], light[1], light[2]) * per_y_star;
-            let factor = gain * scaling.sigma_fast(kappa, delta);
-            let root = fast::exp2(fast::log2(factor) * (5.0 / 12.0));
-            *r = srgb::scale_encoded(straight[0], factor, root).min(1.0) * a;
-            *g = srgb::scale_encoded(straight[1], factor, root).min(1.0) * a;
-            *b = srgb::scale_encoded(straight[2], factor, root).min(1.0) * a;
-        }
-    }
 }
 
 #[cfg(test)]

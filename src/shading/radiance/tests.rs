@@ -25,9 +25,10 @@ const BENEATH: Beneath = Beneath { brightest: 0.8, gain: 1.0 };
 #[test]
 fn every_pixel_is_scaled_as_the_equation_says() {
     let scene = scene();
-    let layer = RadianceScaling { light: vec3(1.0, 0.2, 0.4), ..RadianceScaling::default() };
-    for lambda in [0.0, 1.0] {
-        let layer = RadianceScaling { features: Features { lambda, ..Features::default() }, ..layer.clone() };
+    for (lambda, gamma) in [(0.0, 1.0), (1.0, 2.0), (-0.5, 5.0)] {
+        let (scaling, features) = (Scaling::new(0.2, gamma), Features { lambda, ..Features::default() });
+        let light = vec3(1.0, 0.2, 0.4);
+        let layer = RadianceScaling { scaling, features, light, ..RadianceScaling::default() };
         let features = layer.features.on(scene.surface.as_ref().unwrap());
         for color in [[0.8, 0.5, 0.2], [0.03, 0.01, 0.05], [1.0, 1.0, 1.0], [0.0, 0.3, 0.0]] {
             let mut tile = flat(color[0], color[1], color[2], 0.5);
@@ -39,7 +40,11 @@ fn every_pixel_is_scaled_as_the_equation_says() {
                 let found = tile.rows()[7].pixel(x);
                 for c in 0..3 {
                     let expected = srgb::encode(light[c] * sigma).min(1.0) * 0.5;
-                    assert!((found[c] - expected).abs() < 0.2 / 255.0, "{x} {c}: {} not {expected}", found[c]);
+                    assert!(
+                        (found[c] - expected).abs() < 0.1 * gamma.max(2.0) / 255.0,
+                        "γ {gamma} {x} {c}: {} not {expected}",
+                        found[c]
+                    );
                 }
                 assert_eq!(found[3], 0.5, "alpha stays");
             }
