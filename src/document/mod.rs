@@ -3,7 +3,9 @@
 
 mod compose;
 mod content;
+pub mod edit;
 pub mod flatten;
+pub mod history;
 pub mod kept;
 pub mod layer;
 pub mod live;
@@ -13,7 +15,9 @@ mod prepare;
 pub mod progress;
 pub mod source;
 
+pub use edit::Place;
 pub use flatten::{flatten, flatten_layer};
+pub use history::History;
 pub use layer::{Content, Group, Layer, LayerId, Lock, NormalLayer, PixelLayer, StrokeList};
 pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
