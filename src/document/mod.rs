@@ -3,6 +3,7 @@
 
 mod compose;
 mod content;
+pub mod diff;
 pub mod edit;
 pub mod flatten;
 pub mod history;
@@ -15,6 +16,7 @@ mod prepare;
 pub mod progress;
 pub mod source;
 
+pub use diff::diff;
 pub use edit::Place;
 pub use flatten::{flatten, flatten_layer};
 pub use history::History;

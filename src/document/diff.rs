@@ -1,0 +1,216 @@
+//! What must be redrawn between two versions of a document: the tiles in which they may differ, found by comparing pointers
+//! and parameters, never pixels.
+//! Floor 4. Conservative: a tile that is not named is the same; a tile that is named may be.
+
+use super::mask::{LayerMask, MaskKind};
+use super::{Content, Document, Layer, LayerId};
+use crate::math::Rect;
+use crate::paint::{Scene, Stroke};
+use crate::raster::TileAt;
+use crate::shading::Reference;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// The tiles of the canvas in which `new` may look different from `old`.
+pub fn diff(old: &Document, new: &Document) -> BTreeSet<TileAt> {
+    if !old.scene().is_same(&new.scene()) {
+        return TileAt::covering(new.size.rect()).collect();
+    }
+    let mut diff =
+        Diff { old: surroundings(old), new: surroundings(new), scene: new.scene(), changed: BTreeSet::new() };
+    diff.stack(&old.layers, &new.layers, false);
+    diff.changed
+}
+
+/// What a layer's looks depend on beside itself and its backdrop.
+#[derive(Default, PartialEq)]
+struct Surroundings {
+    /// What it is clipped to, if it is clipped.
+    base: Option<LayerId>,
+    /// A visible layer is clipped to it.
+    is_base: bool,
+    /// The normal layers it sees. Compared only; both documents, which hold them, live meanwhile.
+    normals: Vec<*const Layer>,
+}
+
+fn surroundings(document: &Document) -> BTreeMap<LayerId, Surroundings> {
+    let mut all = BTreeMap::new();
+    survey(&document.layers, &mut Vec::new(), &mut all);
+    all
+}
+
+fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTreeMap<LayerId, Surroundings>) {
+    let (mut base, mut base_shows) = (None, false);
+    for layer in layers {
+        if let Content::Normals(_) = layer.content {
+            if layer.visible {
+                normals.push(Arc::as_ptr(layer));
+            }
+            continue;
+        }
+        let mut here = Surroundings { normals: normals.clone(), ..Surroundings::default() };
+        if layer.clip_below {
+            here.base = base;
+            if let Some(base) = base.and_then(|id| all.get_mut(&id)).filter(|_| layer.visible) {
+                base.is_base = true;
+            }
+        } else {
+            (base, base_shows) = (Some(layer.id), layer.visible);
+        }
+        if let Content::Group(group) = &layer.content {
+            match group.pass_through && layer.visible && base_shows {
+                true => survey(&group.layers, normals, all),
+                false => survey(&group.layers, &mut normals.clone(), all),
+            }
+        }
+        all.insert(layer.id, here);
+    }
+}
+
+struct Diff {
+    old: BTreeMap<LayerId, Surroundings>,
+    new: BTreeMap<LayerId, Surroundings>,
+    scene: Scene,
+    changed: BTreeSet<TileAt>,
+}
+
+impl Diff {
+    /// Compares two versions of a list of layers; whether anything changed in it, or had `beneath` it.
+    fn stack(&mut self, old: &[Arc<Layer>], new: &[Arc<Layer>], beneath: bool) -> bool {
+        let mut changed = beneath;
+        let kept = |among: &[Arc<Layer>]| {
+            let ids: BTreeSet<LayerId> = among.iter().map(|layer| layer.id).collect();
+            move |layer: &&Arc<Layer>| ids.contains(&layer.id)
+        };
+        let (in_old, in_new) = (kept(old), kept(new));
+        for removed in old.iter().filter(|layer| !in_new(layer)) {
+            changed |= self.whole(removed);
+        }
+        let ranks: BTreeMap<LayerId, (usize, &Arc<Layer>)> =
+            old.iter().filter(in_new).enumerate().map(|(rank, layer)| (layer.id, (rank, layer))).collect();
+        let mut rank = 0;
+        for layer in new {
+            match ranks.get(&layer.id).filter(|_| in_old(&layer)) {
+                None => changed |= self.whole(layer),
+                // Of two layers that changed their order, one at least changed its rank.
+                Some(&(before, old)) => {
+                    changed |= if before == rank { self.layer(old, layer, changed) } else { self.both(old, layer) };
+                    rank += 1;
+                }
+            }
+        }
+        changed
+    }
+    /// Compares two versions of a layer in its place; `beneath`: something beneath it in its scope changed.
+    fn layer(&mut self, old: &Arc<Layer>, new: &Arc<Layer>, beneath: bool) -> bool {
+        if !old.visible && !new.visible {
+            return false;
+        }
+        if self.old.get(&old.id) != self.new.get(&new.id) || !looks_alike(old, new) {
+            return self.both(old, new);
+        }
+        match (&old.content, &new.content) {
+            (Content::RadianceScaling(a), Content::RadianceScaling(b)) => {
+                let measures = b.keep_mean || b.reference == Reference::Auto;
+                (a != b || (beneath && measures)) && self.both(old, new)
+            }
+            _ if Arc::ptr_eq(old, new) && !matches!(new.content, Content::Group(_)) => false,
+            (Content::Fill(a), Content::Fill(b)) => a != b && self.both(old, new),
+            (Content::Pixels(a), Content::Pixels(b)) => self.tiles(a.tiles.changed_tiles(&b.tiles)),
+            (Content::Image(a), Content::Image(b)) => !a.ptr_eq(b) && self.both(old, new),
+            (Content::Gradient(a), Content::Gradient(b)) => !a.ptr_eq(b) && self.both(old, new),
+            (Content::Shading(a), Content::Shading(b)) => !a.ptr_eq(b) && self.both(old, new),
+            (Content::Strokes(a), Content::Strokes(b)) => {
+                !a.ptr_eq(b) && self.strokes(new.id, &a.params().strokes, &b.params().strokes)
+            }
+            // Children of an isolated group have a scope of their own.
+            (Content::Group(a), Content::Group(b)) if a.pass_through == b.pass_through => {
+                self.stack(&a.layers, &b.layers, beneath && b.pass_through)
+            }
+            _ => self.both(old, new),
+        }
+    }
+    /// Strokes are painted in order, so those between a common beginning and a common end may change what they touch.
+    fn strokes(&mut self, layer: LayerId, old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> bool {
+        let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
+        let start = old.iter().zip(new).take_while(same).count();
+        let (old, new) = (&old[start..], &new[start..]);
+        let end = old.iter().rev().zip(new.iter().rev()).take_while(same).count();
+        let differing = old[..old.len() - end].iter().chain(&new[..new.len() - end]);
+        let bounds: Vec<Rect> = differing.map(|stroke| self.stroke_bounds(layer, stroke)).collect();
+        bounds.into_iter().fold(false, |changed, rect| self.rect(rect) | changed)
+    }
+    fn stroke_bounds(&self, layer: LayerId, stroke: &Stroke) -> Rect {
+        let sees_normals =
+            [&self.old, &self.new].iter().any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()));
+        // Bounds hold for one surface; normal layers put another in its place.
+        if sees_normals { self.scene.size.rect() } else { stroke.bounds(&self.scene) }
+    }
+    fn both(&mut self, old: &Layer, new: &Layer) -> bool {
+        self.whole(old) | self.whole(new)
+    }
+    /// Names every tile that a layer can touch; whether there is any.
+    fn whole(&mut self, layer: &Layer) -> bool {
+        if !layer.visible {
+            return false;
+        }
+        match &layer.content {
+            Content::Pixels(pixels) => {
+                let tiles = pixels.tiles.iter().map(|(at, _)| at).collect();
+                self.tiles(tiles)
+            }
+            Content::Strokes(live) => self.strokes(layer.id, &live.params().strokes, &[]),
+            Content::Group(group) => group.layers.iter().fold(false, |changed, layer| self.whole(layer) | changed),
+            // What sees them has other surroundings.
+            Content::Normals(_) => false,
+            Content::Fill(_)
+            | Content::Image(_)
+            | Content::Gradient(_)
+            | Content::Shading(_)
+            | Content::RadianceScaling(_) => self.rect(self.scene.size.rect()),
+        }
+    }
+    fn rect(&mut self, rect: Rect) -> bool {
+        let tiles = TileAt::covering(rect.intersect(self.scene.size.rect())).collect();
+        self.tiles(tiles)
+    }
+    fn tiles(&mut self, tiles: Vec<TileAt>) -> bool {
+        let canvas = self.scene.size.rect();
+        let on_canvas = |at: &TileAt| !at.rect().intersect(canvas).is_empty();
+        let tiles: Vec<TileAt> = tiles.into_iter().filter(on_canvas).collect();
+        self.changed.extend(&tiles);
+        !tiles.is_empty()
+    }
+}
+
+/// All but the content, the name and the lock is equal.
+fn looks_alike(a: &Layer, b: &Layer) -> bool {
+    a.visible == b.visible
+        && a.opacity == b.opacity
+        && a.blend == b.blend
+        && a.blend_linear == b.blend_linear
+        && a.clip_below == b.clip_below
+        && a.clip_to_surface == b.clip_to_surface
+        && match (&a.mask, &b.mask) {
+            (None, None) => true,
+            (Some(a), Some(b)) => is_same_mask(a, b),
+            _ => false,
+        }
+}
+
+fn is_same_mask(a: &LayerMask, b: &LayerMask) -> bool {
+    use MaskKind::{Curvature, Depth, File, Fresnel};
+    let same_kind = match (&a.kind, &b.kind) {
+        (File { coverage: a, .. }, File { coverage: b, .. }) => Arc::ptr_eq(a, b),
+        (Fresnel { f0, power }, Fresnel { f0: f, power: p }) => (f0, power) == (f, p),
+        (Curvature { scale, blur, from, to }, Curvature { scale: s, blur: b, from: f, to: t }) => {
+            (scale, blur, from, to) == (s, b, f, t)
+        }
+        (Depth { from, to }, Depth { from: f, to: t }) => (from, to) == (f, t),
+        _ => false,
+    };
+    same_kind && a.invert == b.invert
+}
+
+#[cfg(test)]
+mod tests;
