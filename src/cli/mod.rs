@@ -7,6 +7,7 @@ mod info;
 pub mod limits;
 mod progress;
 mod render;
+mod view;
 
 pub use limits::Limits;
 
@@ -27,6 +28,7 @@ struct Arguments {
 enum Command {
     Info(info::InfoArgs),
     Render(render::RenderArgs),
+    View(view::ViewArgs),
 }
 
 /// Runs the program on its arguments. Exit code 0; 1 with a sentence on standard error; 2 for a misuse.
@@ -42,6 +44,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let done = crash::caught(|| match parsed.command {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::View(args)) => view::run(&args),
         None => print(&Arguments::command().render_help().to_string()),
     });
     match done {

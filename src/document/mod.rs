@@ -15,6 +15,7 @@ mod measure;
 mod prepare;
 pub mod progress;
 pub mod source;
+pub mod view;
 
 pub use diff::diff;
 pub use edit::Place;

@@ -1,0 +1,193 @@
+//! `rilievo view`: the maps of a document, or of loose files, as pictures.
+//! Floor 7. What the pictures show is `document::view`'s.
+
+use super::Limits;
+use crate::document::source::{MapSource, MaskSource};
+use crate::document::view::{self, View, ViewOptions};
+use crate::document::{Document, Layer, SurfaceSource};
+use crate::io::export::{Options, Target};
+use crate::io::files::{Noted, read_file};
+use crate::io::maps::{self, pairs};
+use crate::io::recipe::{self, Source};
+use crate::io::{Budget, Folder, Given};
+use crate::raster::{Picture, TileGrid, picture::Texels};
+use crate::{Error, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Show maps, curvature, weights and flows as pictures
+#[derive(clap::Args)]
+pub struct ViewArgs {
+    /// A recipe, or normal, depth and mask maps told apart by their names (pot_n.png, pot_depth.exr, pot_mask.png)
+    #[arg(value_name = "FILES", required_unless_present_any = ["normal", "depth"])]
+    files: Vec<PathBuf>,
+    /// What to show; “sheet” is all of it side by side
+    #[arg(long, value_name = "VIEW", default_value = "sheet", value_parser = shown())]
+    show: Show,
+    /// Where the picture goes; a folder gets one picture for every view
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// The layer whose anchors or operator are shown; else the topmost that has any
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
+    /// The normal map, whatever its name
+    #[arg(long, value_name = "FILE")]
+    normal: Option<PathBuf>,
+    /// The depth map, whatever its name
+    #[arg(long, value_name = "FILE")]
+    depth: Option<PathBuf>,
+    /// The mask, whatever its name
+    #[arg(long, value_name = "FILE")]
+    mask: Option<PathBuf>,
+    /// Curvature scale in pixels: how soon curvature is shown as strong
+    #[arg(long, value_name = "PX", default_value_t = ViewOptions::default().curvature_scale_px, value_parser = not_negative)]
+    curvature_scale: f32,
+    /// Blur of normals and flows, standard deviation in pixels
+    #[arg(long, value_name = "PX", default_value_t = ViewOptions::default().blur_px, value_parser = not_negative)]
+    blur: f32,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+/// One view, or all of them on a sheet.
+#[derive(Clone, Copy)]
+enum Show {
+    One(View),
+    Sheet,
+}
+
+fn shown() -> impl TypedValueParser<Value = Show> {
+    let names = View::ALL.iter().map(|(_, name)| PossibleValue::new(*name)).chain([PossibleValue::new("sheet")]);
+    PossibleValuesParser::new(names).map(|name| View::from_name(&name).map_or(Show::Sheet, Show::One))
+}
+
+fn not_negative(text: &str) -> std::result::Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|v: &f32| v.is_finite() && *v >= 0.0)
+        .ok_or_else(|| "it must be a number, 0 or more".into())
+}
+
+/// Draws what was asked for.
+pub fn run(args: &ViewArgs) -> Result<()> {
+    args.limits.install(|| {
+        let (document, inputs) = opened(args)?;
+        let layer = args.layer.as_deref().map(|name| named(args, &document, name)).transpose()?;
+        let options = ViewOptions { curvature_scale_px: args.curvature_scale, blur_px: args.blur };
+        let draw = |view: View| {
+            view::draw(&document, layer, view, &options)
+                .map_err(|why| Error::invalid(named_file(args), format!("--show {}", view.name()), why))
+        };
+        if args.output.is_dir() {
+            for view in view::available(&document, layer) {
+                let target = Target::new(&args.output.join(view.name()).with_extension("png"), &inputs)?;
+                write(&target, &draw(view)?)?;
+            }
+            return Ok(());
+        }
+        let target = Target::new(&args.output, &inputs)?;
+        match args.show {
+            Show::One(view) => write(&target, &draw(view)?),
+            Show::Sheet => {
+                let views = view::available(&document, layer).into_iter().map(draw).collect::<Result<Vec<_>>>()?;
+                let nothing = || Error::invalid(named_file(args), "--show", "there is nothing to show");
+                write(&target, &view::sheet(&views).ok_or_else(nothing)?)
+            }
+        }
+    })
+}
+
+/// The file that a sentence about the whole command names.
+fn named_file(args: &ViewArgs) -> &Path {
+    args.files.first().or(args.normal.as_ref()).or(args.depth.as_ref()).unwrap_or(&args.output)
+}
+
+fn write(target: &Target, picture: &Picture) -> Result<()> {
+    let Texels::Srgb8(texels) = &picture.texels else { return Ok(()) };
+    let (width, height) = (picture.size.width as usize, picture.size.height as usize);
+    let grid = TileGrid::from_straight_rgba(texels.as_flattened(), width, height, 0, 0);
+    target.write(&grid, picture.size, &Options::default())
+}
+
+/// The document, and every file that was read for it.
+fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
+    let budget = args.limits.budget();
+    let loose = args.normal.is_some() || args.depth.is_some() || args.mask.is_some();
+    match args.files.as_slice() {
+        [recipe] if !loose && recipe.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) => {
+            let files = Noted::new(Folder::beside(recipe));
+            let text = read_file(recipe, budget.json_bytes)?;
+            let document = recipe::read(&text, Source { file: recipe, files: &files, budget: &budget, onto: None })?;
+            Ok((document, [vec![recipe.clone()], files.read_paths()].concat()))
+        }
+        _ => of_maps(args, &budget),
+    }
+}
+
+/// A document of nothing but a surface.
+fn of_maps(args: &ViewArgs, budget: &Budget) -> Result<(Document, Vec<PathBuf>)> {
+    let mut files = Given::default();
+    let sources = sources(args, &mut files)?;
+    let files = Noted::new(files);
+    let mut imports = sources.iter().map(|source| maps::import(source, &files, budget));
+    // The first way to read them counts, and its sentence where none succeeds.
+    let first = imports.next().unwrap_or_else(|| Err(Error::invalid(named_file(args), "FILES", "no map is named")));
+    let import = first.or_else(|refused| imports.find_map(Result::ok).ok_or(refused))?;
+    let surface = Arc::new(import.surface);
+    Ok((Document { surface: Some(surface.clone()), ..Document::empty(surface.size()) }, files.read_paths()))
+}
+
+/// Which file is which, in the order in which readings are tried.
+fn sources(args: &ViewArgs, files: &mut Given) -> Result<Vec<SurfaceSource>> {
+    let mut parts = [args.normal.clone(), args.depth.clone(), args.mask.clone()];
+    if let ([layers], [None, None, _]) = (args.files.as_slice(), &parts)
+        && layers.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"))
+    {
+        // One EXR may hold normals, depth, or both.
+        let ways = [[true, true], [true, false], [false, true]];
+        let mask = parts[2].take();
+        return Ok(ways
+            .map(|way| {
+                let part = |held: bool| held.then(|| layers.clone());
+                source([part(way[0]), part(way[1]), mask.clone()], files)
+            })
+            .into());
+    }
+    for file in &args.files {
+        let part = match pairs::part_of(file).map(|(_, part)| part) {
+            Some(pairs::Part::Depth) => 1,
+            Some(pairs::Part::Mask) => 2,
+            Some(pairs::Part::Normal) => 0,
+            // A picture alone is taken for normals: that is what there is most of.
+            None if args.files.len() == 1 => 0,
+            None => {
+                let reason = "its name does not say what it is; use --normal, --depth or --mask";
+                return Err(Error::invalid(file, "FILES", reason));
+            }
+        };
+        if let Some(other) = parts[part].replace(file.clone()) {
+            let reason = format!("it is the same kind of map as {}; view one surface at a time", other.display());
+            return Err(Error::invalid(file, "FILES", reason));
+        }
+    }
+    Ok(vec![source(parts, files)])
+}
+
+fn source(parts: [Option<PathBuf>; 3], files: &mut Given) -> SurfaceSource {
+    let [normal, depth, mask] = parts.map(|part| part.map(|path| files.add(&path)));
+    SurfaceSource {
+        normal: normal.map(|file| MapSource { file, ..MapSource::default() }),
+        depth: depth.map(|file| MapSource { file, ..MapSource::default() }),
+        mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
+    }
+}
+
+fn named<'a>(args: &ViewArgs, document: &'a Document, name: &str) -> Result<&'a Layer> {
+    document.layer_named(name).map(|layer| &**layer).ok_or_else(|| {
+        let names: Vec<_> = document.walk().iter().map(|(_, layer)| format!("“{}”", layer.name)).collect();
+        let known =
+            if names.is_empty() { "there are no layers".into() } else { format!("there are {}", names.join(", ")) };
+        Error::invalid(named_file(args), "--layer", format!("no layer is called “{name}”; {known}"))
+    })
+}

@@ -1,0 +1,124 @@
+//! Views of flows: hue is the direction in which a picture is squeezed most, saturation how much, and the lines run along
+//! the direction of least change (SF fig. 2, 3).
+//! Floor 4.
+
+use super::{ViewOptions, painted};
+use crate::math::{Size, Vec2, Vec3, vec2, vec3};
+use crate::raster::line_integral::{Lines, smeared_noise};
+use crate::raster::{Picture, Plane};
+use crate::surface::{Bend, Flow, Surface, links};
+
+/// What is shown of one pixel.
+#[derive(Clone, Copy, Default)]
+struct Mark {
+    /// Unit or zero; image axes.
+    line: Vec2,
+    /// Unit or zero; image axes.
+    hue_of: Vec2,
+    /// `≥ 0`, in any unit: shown against those of the whole picture.
+    magnitude: f32,
+}
+
+pub(super) fn of_depth(surface: &Surface, options: &ViewOptions) -> Picture {
+    of_flow(Flow::of_depth(surface), Some(surface), options)
+}
+
+pub(super) fn of_normals(surface: &Surface, options: &ViewOptions) -> Picture {
+    of_flow(Flow::of_normals(surface), Some(surface), options)
+}
+
+pub(super) fn of_operator(surface: Option<&Surface>, size: Size, bend: &Bend, options: &ViewOptions) -> Picture {
+    of_flow(Flow::of_deformation(surface, size, bend), surface, options)
+}
+
+fn of_flow(flow: Flow, surface: Option<&Surface>, options: &ViewOptions) -> Picture {
+    let flow = flow.smoothed(surface.map(Surface::coverage_plane), options.blur_px);
+    let marks = Plane::from_fn(flow.size(), |x, y| {
+        let direction = flow.at(x, y).eigen().direction;
+        Mark { line: direction.perp(), hue_of: direction, magnitude: flow.magnitude(x, y) }
+    });
+    shown(&marks, surface)
+}
+
+/// Lines along u, the direction that curves most; hue u, saturation |k_u − k_v|.
+pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
+    let curvature = surface.curvature(options.blur_px);
+    let marks = Plane::from_fn(surface.size(), |x, y| {
+        let (ku, kv, u) = curvature.principal(x, y);
+        // The direction in which the surface turns most, whichever way: of a groove that is across it, where k_v < 0.
+        let u = if ku.abs() >= kv.abs() { u } else { u.perp() };
+        let u = vec2(u.x, -u.y);
+        Mark { line: u, hue_of: u, magnitude: curvature.fade.at(x, y) * (ku.abs() - kv.abs()).abs() }
+    });
+    shown(&marks, Some(surface))
+}
+
+fn shown(marks: &Plane<Mark>, surface: Option<&Surface>) -> Picture {
+    let covered = |x: usize, y: usize| surface.is_none_or(|s| s.coverage(x, y) > 0);
+    let lines = marks.map(|mark| mark.line);
+    let grey = smeared_noise(&lines, Lines::for_size(marks.size()), |from, to| {
+        surface.is_none_or(|s| passes(s.links_plane(), from, to))
+    });
+    let full = strong(marks, covered);
+    painted(marks.size(), surface, |x, y| {
+        let mark = marks.at(x, y);
+        let saturation = 1.0 - (-1.5 * mark.magnitude / full).exp();
+        let light = 0.25 + 0.75 * grey.at(x, y);
+        (Vec3::ONE.lerp(hue(mark.hue_of), saturation) * light).to_array()
+    })
+}
+
+/// A line may go from a pixel to the next, along both sides where they touch at a corner, without leaving the surface.
+fn passes(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
+    let linked = |(x, y): (usize, usize), bit: u8| plane.at(x, y) & bit != 0;
+    let across = if to.0 > from.0 { links::RIGHT } else { links::LEFT };
+    let along = if to.1 > from.1 { links::DOWN } else { links::UP };
+    match (to.0 != from.0, to.1 != from.1) {
+        (false, false) => true,
+        (true, false) => linked(from, across),
+        (false, true) => linked(from, along),
+        (true, true) => {
+            linked(from, across) && linked((to.0, from.1), along)
+                || linked(from, along) && linked((from.0, to.1), across)
+        }
+    }
+}
+
+/// The magnitude that four fifths of the covered pixels stay below; at least what is all but nothing.
+fn strong(marks: &Plane<Mark>, covered: impl Fn(usize, usize) -> bool) -> f32 {
+    // A spread sample tells as much as every pixel.
+    let step = (marks.size().area() / 100_000).max(1);
+    let mut sample: Vec<f32> = (0..marks.size().area())
+        .step_by(step)
+        .filter(|i| covered(i % marks.width(), i / marks.width()))
+        .map(|i| marks.values()[i].magnitude)
+        .collect();
+    if sample.is_empty() {
+        return 1.0;
+    }
+    let at = sample.len() * 4 / 5;
+    sample.select_nth_unstable_by(at, f32::total_cmp).1.max(1e-4)
+}
+
+/// The colour of a direction; opposite directions have the same. Horizontal is red, and hues run counter-clockwise as seen.
+fn hue(direction: Vec2) -> Vec3 {
+    let turn = (-direction.y).atan2(direction.x) / std::f32::consts::PI;
+    let channel = |offset: f32| {
+        let t = (turn + offset).rem_euclid(1.0) * 6.0;
+        ((t - 3.0).abs() - 1.0).clamp(0.0, 1.0)
+    };
+    vec3(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opposite_directions_have_one_colour_and_crossing_ones_opposite_colours() {
+        let d = vec2(0.8, 0.6);
+        assert!((hue(d) - hue(-d)).length() < 1e-5);
+        assert!((hue(d) + hue(d.perp()) - Vec3::ONE).length() < 1e-4);
+        assert_eq!(hue(Vec2::X), vec3(1.0, 0.0, 0.0));
+    }
+}

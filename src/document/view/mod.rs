@@ -1,0 +1,149 @@
+//! Views: the maps of a document, and what is derived from them, as pictures to look at.
+//! Floor 4. Not here: the maps and flows themselves (`surface`), files (`io`), the command (`cli::view`).
+
+mod flows;
+mod maps;
+mod sheet;
+mod weights;
+
+pub use sheet::sheet;
+
+use super::{Content, Document, Layer};
+use crate::math::{Size, srgb::quantise};
+use crate::raster::{Picture, Plane};
+use crate::surface::{Bend, Surface};
+
+/// What a view shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum View {
+    /// R = x right, G = y up, B = z to the viewer; ½ is 0.
+    Normals,
+    /// Black near, white far.
+    Depth,
+    /// White where the surface is.
+    Mask,
+    /// Convex blue, concave red, flat yellow.
+    Curvature,
+    /// Convex light, concave dark.
+    CurvatureGrey,
+    /// Lines along the direction that curves most.
+    Directions,
+    /// A layer's anchors and how they share the surface (SF fig. 9).
+    Weights,
+    /// T_p: how a texture on the surface is squeezed (SF fig. 2).
+    FlowDepth,
+    /// T_n: how a reflection is squeezed (SF fig. 2).
+    FlowNormals,
+    /// ∂D/∂q: how a layer's operator squeezes its image (SF fig. 3c).
+    FlowOperator,
+    /// The surface and a ball beside it under one light: if they agree, the maps are read the right way round.
+    Lit,
+}
+
+impl View {
+    /// Every view with its name.
+    pub const ALL: &'static [(View, &'static str)] = &[
+        (View::Normals, "normals"),
+        (View::Depth, "depth"),
+        (View::Mask, "mask"),
+        (View::Curvature, "curvature"),
+        (View::CurvatureGrey, "curvature-grey"),
+        (View::Directions, "directions"),
+        (View::Weights, "weights"),
+        (View::FlowDepth, "flow-depth"),
+        (View::FlowNormals, "flow-normals"),
+        (View::FlowOperator, "flow-operator"),
+        (View::Lit, "lit"),
+    ];
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(view, _)| *view == self).map_or("", |(_, name)| name)
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, n)| *n == name).map(|(view, _)| *view)
+    }
+    /// It shows a layer's anchors or operator, and so needs one that has them.
+    pub fn is_of_layer(self) -> bool {
+        matches!(self, View::Weights | View::FlowOperator)
+    }
+}
+
+/// How curvature and flows are shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewOptions {
+    /// *s* of κ, px.
+    pub curvature_scale_px: f32,
+    /// Standard deviation of the blur of normals and flows, px. One pixel quiets the noise of 8-bit maps.
+    pub blur_px: f32,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self { curvature_scale_px: 4.0, blur_px: 1.0 }
+    }
+}
+
+/// Why there is nothing to show.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unseen {
+    #[error("the document has no surface to show")]
+    NoSurface,
+    #[error("the document has no layer with anchors")]
+    NoAnchoredLayer,
+    #[error("the layer “{0}” has no anchors; image and gradient layers have them")]
+    NoAnchors(String),
+}
+
+/// Draws a view. `layer`: whose anchors or operator; where absent, the topmost layer that has them.
+pub fn draw(document: &Document, layer: Option<&Layer>, view: View, options: &ViewOptions) -> Result<Picture, Unseen> {
+    let surface = || document.surface.as_deref().ok_or(Unseen::NoSurface);
+    Ok(match view {
+        View::Normals => maps::normals(surface()?),
+        View::Depth => maps::depth(surface()?),
+        View::Mask => maps::mask(surface()?),
+        View::Curvature => maps::curvature(surface()?, options),
+        View::CurvatureGrey => maps::curvature_grey(surface()?, options),
+        View::Lit => maps::lit(surface()?),
+        View::Directions => flows::directions(surface()?, options),
+        View::FlowDepth => flows::of_depth(surface()?, options),
+        View::FlowNormals => flows::of_normals(surface()?, options),
+        View::FlowOperator => {
+            flows::of_operator(document.surface.as_deref(), document.size, &bend(document, layer)?, options)
+        }
+        View::Weights => weights::weights(document.surface.as_deref(), document.size, &bend(document, layer)?),
+    })
+}
+
+/// The views that a document has something to show in.
+pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<View> {
+    let can = |view: View| match view {
+        View::Weights => bend(document, layer).is_ok(),
+        View::FlowOperator => bend(document, layer).is_ok(),
+        _ => document.surface.is_some(),
+    };
+    View::ALL.iter().map(|(view, _)| *view).filter(|&view| can(view)).collect()
+}
+
+/// A layer's operator, anchors and weights.
+fn bend(document: &Document, layer: Option<&Layer>) -> Result<Bend, Unseen> {
+    let of = |layer: &Layer| match &layer.content {
+        Content::Image(image) => Some(image.params().bend.clone()).filter(|bend| !bend.anchors.is_empty()),
+        Content::Gradient(gradient) => Some(gradient.params().bend()),
+        _ => None,
+    };
+    match layer {
+        Some(layer) => of(layer).ok_or_else(|| Unseen::NoAnchors(layer.name.clone())),
+        None => document.walk().into_iter().rev().find_map(|(_, layer)| of(layer)).ok_or(Unseen::NoAnchoredLayer),
+    }
+}
+
+/// A picture from a colour per pixel, encoded, each in `[0, 1]`; transparent where the surface does not cover.
+fn painted(size: Size, coverage: Option<&Surface>, color: impl Fn(usize, usize) -> [f32; 3] + Sync) -> Picture {
+    let texels = Plane::from_fn(size, |x, y| {
+        let [r, g, b] = color(x, y).map(quantise);
+        [r, g, b, coverage.map_or(255, |s| s.coverage(x, y))]
+    });
+    Picture::srgb8(size, texels.into_values()).expect("a canvas has pixels, and each got its colour")
+}
+
+#[cfg(test)]
+mod tests;
