@@ -181,3 +181,92 @@ fn guarded<T>(file: &Path, what: &str, step: impl FnOnce() -> exr::error::Result
         Err(_) => Err(Error::decode(file, format!("the EXR {what} is damaged"))),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ::exr::prelude::*;
+
+    const W: usize = 21;
+    const H: usize = 13;
+
+    fn plane(scale: f32) -> FlatSamples {
+        FlatSamples::F32((0..W * H).map(|i| i as f32 * scale).collect())
+    }
+    fn layer(
+        name: &str,
+        channels: &[(&str, f32)],
+        encoding: Encoding,
+        at: (i32, i32),
+    ) -> Layer<AnyChannels<FlatSamples>> {
+        let list = channels.iter().map(|(name, scale)| AnyChannel::new(*name, plane(*scale))).collect();
+        let attributes = LayerAttributes::named(name).with_position(Vec2(at.0, at.1));
+        Layer::new((W, H), attributes, encoding, AnyChannels::sort(list))
+    }
+    fn bytes(layers: Vec<Layer<AnyChannels<FlatSamples>>>, display: (usize, usize)) -> Vec<u8> {
+        let mut attributes = ImageAttributes::with_size(Vec2(display.0, display.1));
+        attributes.pixel_aspect = 1.0;
+        let mut out = Cursor::new(Vec::new());
+        Image::from_layers(attributes, layers.into_iter().collect::<SmallVec<_>>())
+            .write()
+            .to_buffered(&mut out)
+            .unwrap();
+        out.into_inner()
+    }
+    fn encodings() -> Vec<Encoding> {
+        let lines = |line_order| Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order };
+        let tiles = Encoding {
+            compression: Compression::PIZ,
+            blocks: Blocks::Tiles(Vec2(8, 8)),
+            line_order: LineOrder::Increasing,
+        };
+        vec![lines(LineOrder::Increasing), lines(LineOrder::Decreasing), tiles, Encoding::UNCOMPRESSED]
+    }
+    #[test]
+    fn rows_tiles_and_reversed_lines_give_the_same_plane() {
+        for encoding in encodings() {
+            let file = bytes(vec![layer("main", &[("N.X", 1.0), ("Z", 2.0)], encoding, (0, 0))], (W, H));
+            let exr = ExrFile::open(Path::new("a.exr"), &file, &Budget::default()).unwrap();
+            let z = exr.channels().iter().position(|c| c.name == "Z").unwrap();
+            let planes = exr.read(&[z]).unwrap();
+            let expected: Vec<f32> = (0..W * H).map(|i| i as f32 * 2.0).collect();
+            assert_eq!(planes[0].values(), expected, "{encoding:?}");
+        }
+    }
+    #[test]
+    fn the_data_window_stands_where_it_says_in_the_display_window() {
+        for encoding in encodings() {
+            let file = bytes(vec![layer("main", &[("Z", 1.0)], encoding, (5, -3))], (24, 16));
+            let exr = ExrFile::open(Path::new("a.exr"), &file, &Budget::default()).unwrap();
+            let plane = &exr.read(&[0]).unwrap()[0];
+            assert_eq!(plane.size(), Size::new(24, 16));
+            assert!(plane.at(4, 0).is_nan() && plane.at(5, 10).is_nan());
+            assert_eq!(plane.at(5, 0), (3 * W) as f32);
+            assert_eq!(plane.at(23, 9), (12 * W + 18) as f32);
+        }
+    }
+    #[test]
+    fn parts_are_layers_and_names_split_at_the_last_dot() {
+        let parts = vec![
+            layer("normal", &[("N.X", 1.0), ("N.Y", 2.0), ("N.Z", 3.0)], Encoding::UNCOMPRESSED, (0, 0)),
+            layer("depth", &[("Z", 4.0)], Encoding::UNCOMPRESSED, (0, 0)),
+            layer("my.view", &[("deep id", 5.0), ("a.b.red", 6.0)], Encoding::UNCOMPRESSED, (0, 0)),
+        ];
+        let file = bytes(parts, (W, H));
+        let exr = ExrFile::open(Path::new("a.exr"), &file, &Budget::default()).unwrap();
+        let names: Vec<&str> = exr.passes().iter().map(|p| p.name.as_str()).collect();
+        assert_eq!(names, ["N", "depth", "a.b", "my.view.deep id"]);
+        assert!(exr.passes()[0].letters("xyz").is_some());
+        let depth = exr.passes()[1].letters("z").unwrap();
+        assert_eq!(exr.read(&depth).unwrap()[0].at(1, 0), 4.0);
+    }
+    #[test]
+    fn a_file_cut_anywhere_is_refused() {
+        let file = bytes(vec![layer("main", &[("Z", 1.0)], Encoding::UNCOMPRESSED, (0, 0))], (W, H));
+        for length in (8..file.len()).step_by(7) {
+            let said =
+                ExrFile::open(Path::new("a.exr"), &file[..length], &Budget::default()).err().unwrap().to_string();
+            assert!(said.starts_with("a.exr: cannot be read"), "{said}");
+        }
+    }
+}
