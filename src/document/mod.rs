@@ -14,6 +14,7 @@ pub mod mask;
 mod measure;
 mod prepare;
 pub mod progress;
+pub mod scale;
 pub mod source;
 pub mod view;
 

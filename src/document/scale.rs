@@ -1,0 +1,183 @@
+//! A document at another resolution: for a quick preview, or a larger print of what is live.
+//! Floor 4. Live layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
+
+use super::kept::Kept;
+use super::{Content, Document, Group, Layer, Live, MaskKind, PixelLayer, StrokeList};
+use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
+use crate::paint::{Brush, Sample, Stroke};
+use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
+use crate::shading::{Features, LightKind};
+use crate::surface::{Anchor, SurfaceError};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+impl Document {
+    /// The same picture on a canvas `factor` times as large, its sides rounded. Layers keep their ids.
+    ///
+    /// `factor`: finite and `> 0`, else the document comes back as it is. Whether there is room for the result is the
+    /// caller's to check. Fails where nothing is left of a surface thinner than the new pixels.
+    pub fn scaled(&self, factor: f32) -> Result<Document, SurfaceError> {
+        let size = self.size.scaled(factor);
+        if !(factor.is_finite() && factor > 0.0) || size == self.size {
+            return Ok(self.clone());
+        }
+        let per_axis = vec2(size.width as f32 / self.size.width as f32, size.height as f32 / self.size.height as f32);
+        let scale = Scale { per_axis, length: factor, from: self.size, to: size };
+        let surface = self.surface.as_ref().map(|s| s.stretched(size).map(Arc::new)).transpose()?;
+        Ok(Document { size, surface, layers: scale.layers(&self.layers), ..self.clone() })
+    }
+}
+
+/// From one canvas to another.
+struct Scale {
+    /// Of coordinates; the two differ as far as rounding the canvas demands.
+    per_axis: Vec2,
+    /// Of lengths that have no direction.
+    length: f32,
+    from: Size,
+    to: Size,
+}
+
+impl Scale {
+    fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
+        layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()
+    }
+    fn layer(&self, layer: &Layer) -> Layer {
+        let mut next = Layer { content: self.content(&layer.content), kept: Kept::default(), ..layer.clone() };
+        match next.mask.as_mut().map(|mask| &mut mask.kind) {
+            Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
+            Some(MaskKind::Curvature { scale, blur, .. }) => {
+                (*scale, *blur) = (*scale * self.length, *blur * self.length)
+            }
+            Some(MaskKind::Fresnel { .. } | MaskKind::Depth { .. }) | None => {}
+        }
+        next
+    }
+    fn content(&self, content: &Content) -> Content {
+        match content {
+            Content::Fill(color) => Content::Fill(*color),
+            Content::Pixels(pixels) => Content::Pixels(self.pixels(pixels)),
+            Content::Image(live) => {
+                let mut image = live.params().clone();
+                image.placement.center *= self.per_axis;
+                for Anchor { at, source } in &mut image.bend.anchors {
+                    (*at, *source) = (*at * self.per_axis, *source * self.per_axis);
+                }
+                Content::Image(Live::new(image))
+            }
+            Content::Gradient(live) => {
+                let mut gradient = live.params().clone();
+                gradient.from *= self.per_axis;
+                gradient.to *= self.per_axis;
+                Content::Gradient(Live::new(gradient))
+            }
+            Content::Strokes(live) => {
+                let strokes = live.params().strokes.iter().map(|stroke| Arc::new(self.stroke(stroke))).collect();
+                Content::Strokes(Live::new(StrokeList { strokes }))
+            }
+            Content::Shading(live) => {
+                let mut shading = live.params().clone();
+                self.features(&mut shading.features);
+                for light in &mut shading.lights {
+                    if let LightKind::Point { position } = &mut light.kind {
+                        *position *= self.per_axis.extend(self.length);
+                    }
+                }
+                Content::Shading(Live::new(shading))
+            }
+            Content::RadianceScaling(scaling) => {
+                let mut scaling = scaling.clone();
+                self.features(&mut scaling.features);
+                Content::RadianceScaling(scaling)
+            }
+            Content::Normals(normals) => {
+                let mut normals = normals.clone();
+                normals.placement.center *= self.per_axis;
+                Content::Normals(normals)
+            }
+            Content::Group(group) => {
+                Content::Group(Group { layers: self.layers(&group.layers), pass_through: group.pass_through })
+            }
+        }
+    }
+    /// Curvature is per pixel, so the factor it is multiplied by is a length.
+    fn features(&self, features: &mut Features) {
+        for scale in &mut features.scales {
+            scale.curvature_scale_px *= self.length;
+            scale.blur_px *= self.length;
+        }
+    }
+    fn stroke(&self, stroke: &Stroke) -> Stroke {
+        let brush = Brush { size: stroke.brush().size * self.length, ..stroke.brush().clone() };
+        let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
+        Stroke::new(brush, stroke.operator(), stroke.color(), samples)
+    }
+    fn pixels(&self, pixels: &PixelLayer) -> PixelLayer {
+        let corner = vec2(pixels.x as f32, pixels.y as f32) * self.per_axis;
+        let (x, y) = (corner.x.round() as i32, corner.y.round() as i32);
+        PixelLayer { file: pixels.file.clone(), x, y, tiles: self.grid(&pixels.tiles) }
+    }
+    fn grid(&self, grid: &TileGrid) -> TileGrid {
+        let Rect { x0, y0, x1, y1 } = grid.bounds();
+        let side = |v: i32, s: f32| f64::from(v) * f64::from(s);
+        let bounds = Rect::new(
+            side(x0, self.per_axis.x).floor() as i32,
+            side(y0, self.per_axis.y).floor() as i32,
+            side(x1, self.per_axis.x).ceil() as i32,
+            side(y1, self.per_axis.y).ceil() as i32,
+        );
+        let tiles: Vec<TileAt> = TileAt::covering(bounds).collect();
+        let resampled: Vec<Option<Tile>> = tiles.par_iter().map(|&at| self.tile(grid, at)).collect();
+        let mut next = TileGrid::for_rect(bounds);
+        tiles.into_iter().zip(resampled).for_each(|(at, tile)| next.set(at, tile.map(Arc::new)));
+        next
+    }
+    /// One tile of a grid resampled: premultiplied values as they are stored, averaged.
+    fn tile(&self, grid: &TileGrid, at: TileAt) -> Option<Tile> {
+        let rect = at.rect();
+        let columns: Vec<_> = (rect.x0..rect.x1).map(|x| covered(x, self.per_axis.x)).collect();
+        let mut bytes = Vec::with_capacity(TILE * TILE * 4);
+        for y in rect.y0..rect.y1 {
+            let row = covered(y, self.per_axis.y);
+            for column in &columns {
+                let mut sum = [0.0; 4];
+                for &(y, wy) in &row {
+                    for &(x, wx) in column {
+                        let p = grid.pixel(x, y);
+                        (0..4).for_each(|c| sum[c] += wx * wy * f32::from(p[c]));
+                    }
+                }
+                bytes.extend(sum.map(|v| quantise(v / 255.0)));
+            }
+        }
+        bytes.chunks_exact(4).any(|p| p[3] > 0).then(|| Tile::from_bytes(bytes)).flatten()
+    }
+    /// A map of the canvas resampled; its border continues beyond it.
+    fn plane(&self, plane: &Plane<u8>) -> Plane<u8> {
+        if plane.size() != self.from {
+            return plane.clone();
+        }
+        let columns: Vec<_> = (0..self.to.width as i32).map(|x| covered(x, self.per_axis.x)).collect();
+        let rows: Vec<_> = (0..self.to.height as i32).map(|y| covered(y, self.per_axis.y)).collect();
+        Plane::from_fn(self.to, |x, y| {
+            let of_row = |&(py, wy): &(i32, f32)| {
+                columns[x].iter().map(|&(px, wx)| wx * wy * f32::from(plane.clamped(px, py))).sum::<f32>()
+            };
+            quantise(rows[y].iter().map(of_row).sum::<f32>() / 255.0)
+        })
+    }
+}
+
+/// The old pixels under a new one along one axis, and their weights, which add up to 1: the mean over what it covers, at
+/// least one old pixel wide, which is linear interpolation when scaling up.
+fn covered(i: i32, scale: f32) -> Vec<(i32, f32)> {
+    let center = (f64::from(i) + 0.5) / f64::from(scale);
+    let half = (0.5 / f64::from(scale)).max(0.5);
+    let (low, high) = (center - half, center + half);
+    let share = |p: i32| (high.min(f64::from(p) + 1.0) - low.max(f64::from(p))) / (2.0 * half);
+    let pixels = low.floor() as i32..high.ceil() as i32;
+    pixels.map(|p| (p, share(p) as f32)).filter(|&(_, weight)| weight > 1e-6).collect()
+}
+
+#[cfg(test)]
+mod tests;

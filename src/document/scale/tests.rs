@@ -1,0 +1,119 @@
+//! A document at another size must look like its picture at that size.
+
+use super::*;
+use crate::document::{LayerMask, Progress, flatten};
+use crate::math::{srgb::Color, vec3};
+use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
+use crate::raster::{BlendMode, Outside, Picture};
+use crate::shading::RadianceScaling;
+use crate::surface::{Bend, Maps, Operator, Surface, Weights};
+
+const SIZE: Size = Size::new(240, 160);
+
+fn dome() -> Arc<Surface> {
+    let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - vec2(120.0, 80.0)) / 75.0;
+    let z = |x: usize, y: usize| (1.0 - at(x, y).length_squared()).max(0.0).sqrt();
+    let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
+    let normals = Plane::from_fn(SIZE, |x, y| vec3(at(x, y).x, -at(x, y).y, z(x, y).max(0.01)));
+    let depth = Plane::from_fn(SIZE, |x, y| 1.0 - z(x, y));
+    Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
+}
+fn waves(size: Size) -> Vec<[u8; 4]> {
+    let wave = |i: u32, j: u32| (128.0 + 100.0 * (i as f32 * 0.06).sin() * (j as f32 * 0.05).cos()) as u8;
+    (0..size.height).flat_map(|y| (0..size.width).map(move |x| [wave(x, y), wave(y, x), 90, 255])).collect()
+}
+fn with(mut layer: Layer, change: impl FnOnce(&mut Layer)) -> Arc<Layer> {
+    change(&mut layer);
+    Arc::new(layer)
+}
+/// A document of every kind of layer that a resolution could trouble.
+fn document() -> Document {
+    let tiles = TileGrid::from_straight_rgba(waves(SIZE).as_flattened(), 240, 160, -20, 10);
+    let pixels = Content::Pixels(PixelLayer { file: "p.png".into(), x: -20, y: 10, tiles });
+    let anchor = Anchor { at: vec2(100.0, 70.0), source: vec2(90.0, 80.0) };
+    let operator = Operator::Normal { alpha: 0.2, beta: 0.5, detail: 0.0 };
+    let image = PlacedImage {
+        source: PictureSource::new("w".into(), Picture::srgb8(SIZE, waves(SIZE)).unwrap(), Adjust::default()),
+        placement: Placement { center: vec2(110.0, 90.0), scale: 1.5, rotation: 20.0 },
+        outside: Outside::Mirror,
+        bend: Bend { operator, anchors: vec![anchor], weights: Weights::default() },
+        filter: Filter::Bilinear,
+    };
+    let stops = vec![Stop { t: 0.0, color: Color::BLACK }, Stop { t: 1.0, color: Color::WHITE }];
+    let gradient =
+        Gradient { from: vec2(50.0, 30.0), to: vec2(180.0, 120.0), stops, operator, filter: Filter::Antialias };
+    let samples = [40.0, 120.0, 190.0].map(|x| Sample::at(vec2(x, 60.0 + 0.2 * x))).to_vec();
+    let brush = Brush { size: 50.0, ..Brush::default() };
+    let stroke = Stroke::new(brush, operator, Color { r: 255, g: 240, b: 200, a: 255 }, samples);
+    let coverage = Arc::new(Plane::from_fn(SIZE, |x, _| x as u8));
+    let layers = vec![
+        with(Layer::new("pixels", pixels), |l| l.clip_to_surface = false),
+        with(Layer::new("image", Content::Image(Live::new(image))), |l| l.opacity = 0.8),
+        with(Layer::new("gradient", Content::Gradient(Live::new(gradient))), |l| {
+            l.blend = BlendMode::SoftLight;
+            l.mask = Some(LayerMask { kind: MaskKind::File { file: "m.png".into(), coverage }, invert: false });
+        }),
+        with(
+            Layer::new("strokes", Content::Strokes(Live::new(StrokeList { strokes: vec![Arc::new(stroke)] }))),
+            |_| {},
+        ),
+        with(Layer::new("scaling", Content::RadianceScaling(RadianceScaling::default())), |_| {}),
+    ];
+    let group = with(Layer::new("group", Content::Group(Group { layers, pass_through: false })), |_| {});
+    Document { surface: Some(dome()), layers: vec![group], ..Document::empty(SIZE) }
+}
+/// Mean and largest difference of two pictures of the canvas, in steps of a byte.
+fn difference(a: &TileGrid, b: &TileGrid, size: Size) -> (f64, u8) {
+    let (a, b) = (a.to_straight_rgba(size.rect()), b.to_straight_rgba(size.rect()));
+    let steps: Vec<u8> = a.iter().zip(&b).map(|(a, b)| a.abs_diff(*b)).collect();
+    (steps.iter().map(|&s| f64::from(s)).sum::<f64>() / steps.len() as f64, steps.into_iter().max().unwrap_or(0))
+}
+fn picture(document: &Document) -> TileGrid {
+    flatten(document, &Progress::default()).unwrap()
+}
+fn reduced(grid: &TileGrid, factor: f32) -> TileGrid {
+    let to = SIZE.scaled(factor);
+    Scale { per_axis: Vec2::splat(factor), length: factor, from: SIZE, to }.grid(grid)
+}
+
+#[test]
+fn a_preview_at_half_size_looks_like_the_full_picture_reduced() {
+    let full = document();
+    let half = full.scaled(0.5).unwrap();
+    assert_eq!(half.size, Size::new(120, 80));
+    let (mean, _) = difference(&picture(&half), &reduced(&picture(&full), 0.5), half.size);
+    assert!(mean < 1.5, "mean difference {mean}");
+    // The measure can fail: without scaling the lengths it is far larger.
+    let wrong = Document { layers: full.layers.clone(), ..half.clone() };
+    let (wrong, _) = difference(&picture(&wrong), &reduced(&picture(&full), 0.5), half.size);
+    assert!(wrong > 5.0 * mean, "{wrong} is not far from {mean}");
+}
+#[test]
+fn twice_as_large_and_reduced_again_is_the_picture() {
+    let full = document();
+    let double = full.scaled(2.0).unwrap();
+    let (mean, _) = difference(&reduced(&picture(&double), 0.5), &picture(&full), SIZE);
+    assert!(mean < 1.5, "mean difference {mean}");
+}
+#[test]
+fn layers_keep_their_ids_and_a_factor_of_one_keeps_everything() {
+    let full = document();
+    let half = full.scaled(0.5).unwrap();
+    let ids = |d: &Document| d.walk().iter().map(|(_, layer)| layer.id).collect::<Vec<_>>();
+    assert_eq!(ids(&full), ids(&half));
+    for factor in [1.0, f32::NAN, 0.0, -1.0, f32::INFINITY] {
+        let same = full.scaled(factor).unwrap();
+        assert!(same.size == full.size && Arc::ptr_eq(&same.layers[0], &full.layers[0]), "{factor}");
+    }
+}
+#[test]
+fn weights_of_the_covered_pixels_add_up_to_one() {
+    for scale in [0.3, 0.5, 0.999, 1.0, 1.7, 4.0] {
+        for i in -5..50 {
+            let sum: f32 = covered(i, scale).iter().map(|&(_, weight)| weight).sum();
+            assert!((sum - 1.0).abs() < 1e-5, "{scale} {i}: {sum}");
+        }
+    }
+    assert_eq!(covered(3, 0.5), [(6, 0.5), (7, 0.5)]);
+    assert_eq!(covered(1, 2.0), [(0, 0.75), (1, 0.25)]);
+}
