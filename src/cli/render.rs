@@ -106,7 +106,7 @@ fn scaled(args: &RenderArgs, document: Document) -> Result<Document> {
     }
     let size = document.size.scaled(args.scale);
     args.limits.budget().size(&args.document, size.width.into(), size.height.into())?;
-    Err(Error::unsupported(&args.document, "--scale is not there yet"))
+    document.scaled(args.scale).map_err(|error| Error::invalid(&args.document, "--scale", error))
 }
 
 fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {
