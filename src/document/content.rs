@@ -48,7 +48,7 @@ pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> Painted {
             Painted::of_tile(live.tile(scene, at, || stroke::render_tile(&live.params().strokes, scene, at)))
         }
         Content::Image(live) => Painted::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
-        Content::Shading(_) => Painted::Nothing,
+        Content::Shading(live) => Painted::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
         Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_) => Painted::Nothing,
     }
 }
@@ -70,6 +70,7 @@ pub(super) fn warm(content: &Content, scene: &Scene) {
         Content::RadianceScaling(scaling) => {
             let _ = scene.surface.as_deref().map(|surface| scaling.features.on(surface));
         }
-        Content::Fill(_) | Content::Pixels(_) | Content::Shading(_) | Content::Normals(_) | Content::Group(_) => {}
+        Content::Shading(live) => live.params().warm(scene),
+        Content::Fill(_) | Content::Pixels(_) | Content::Normals(_) | Content::Group(_) => {}
     }
 }

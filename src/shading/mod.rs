@@ -5,6 +5,7 @@
 
 pub mod environment;
 pub mod features;
+pub mod ground;
 pub mod light;
 pub mod material;
 pub mod radiance;

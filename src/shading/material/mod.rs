@@ -1,5 +1,9 @@
 //! A shading layer's material: which model, its terms, and the light it stands in (MATH 5).
-//! Floor 3. One file a model.
+//! Floor 3. One file a model; `render` makes tiles of them.
+
+mod lobes;
+mod phong;
+mod render;
 
 use super::{
     environment::Environment,
@@ -66,6 +70,14 @@ impl Term {
     pub const fn plain(color: Color, weight: f32) -> Self {
         Self { color, weight, scaling: Scaling::NONE }
     }
+    /// Its σ is not 1 everywhere.
+    pub fn is_scaled(&self) -> bool {
+        !self.scaling.is_none()
+    }
+    /// Weight × colour in linear light.
+    pub fn linear(&self) -> [f32; 3] {
+        self.color.linear().map(|c| c * self.weight)
+    }
     /// Contributes nothing.
     pub const NONE: Term = Term::plain(Color::WHITE, 0.0);
 }
@@ -104,12 +116,13 @@ pub struct Shading {
 impl Shading {
     /// The model with the material it has where nothing else is said; no environment, no sphere, one light where it needs one.
     pub fn new(model: Model) -> Self {
+        let clay = Term::plain(Color { r: 0xc0, g: 0x80, b: 0x60, a: 255 }, 0.7);
+        let gloss = Term::plain(Color::WHITE, 0.3);
         let (ambient, diffuse, specular) = match model {
-            Model::Phong | Model::Toon | Model::SubLambertian | Model::Ashikhmin => (
-                Term::plain(Color::WHITE, 0.1),
-                Term::plain(Color { r: 0xc0, g: 0x80, b: 0x60, a: 255 }, 0.7),
-                Term::plain(Color::WHITE, 0.3),
-            ),
+            Model::Phong | Model::Toon => (Term::plain(Color::WHITE, 0.1), clay, gloss),
+            // These models have no ambient term of their own, the sub-Lambertian one no highlight either.
+            Model::SubLambertian => (Term::NONE, clay, Term::NONE),
+            Model::Ashikhmin => (Term::NONE, clay, gloss),
             Model::DiffuseEnvironment => (Term::NONE, Term::plain(Color::WHITE, 1.0), Term::NONE),
             Model::AmbientOcclusion => (Term::plain(Color::WHITE, 1.0), Term::NONE, Term::NONE),
             Model::LitSphere | Model::Mirror | Model::Refraction => {
@@ -138,13 +151,4 @@ impl Shading {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_model_goes_by_its_own_name() {
-        for (model, name) in Model::ALL {
-            assert_eq!(model.name(), name);
-        }
-    }
-}
+mod tests;
