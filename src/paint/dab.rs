@@ -1,12 +1,16 @@
 //! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch.
 //! Floor 3. Not here: where dabs stand (`path`), the tips (`profile`, `stamp`), how dabs add up to a stroke (`stroke`).
 
+use super::image::transform;
+use super::patches::Patches;
 use super::path::Dab;
 use super::profile::RoundProfile;
 use super::scene::Scene;
+use super::stamp::Stamp;
+use super::wash::Wash;
 use crate::math::{Rect, Vec2};
-use crate::raster::TileAt;
-use crate::raster::tile::{TILE, TILE_AREA};
+use crate::raster::sampler::Antialias;
+use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::reach::{BLOCK, Extent, Reach, TileBlocks};
 use crate::surface::{Operator, Surface, links};
@@ -15,8 +19,9 @@ use crate::surface::{Operator, Surface, links};
 pub struct PlacedDab<'s> {
     dab: Dab,
     scene: &'s Scene,
+    deformation: Deformation<'s>,
     /// `None` where D is the identity.
-    bent: Option<(&'s Surface, Deformation<'s>)>,
+    bent_over: Option<&'s Surface>,
     reach: Reach<'s>,
 }
 
@@ -29,30 +34,66 @@ pub fn round_extent(dab: &Dab) -> Extent {
     Extent { radius_px: dab.radius * profile.reach(), filter_px: ROUND_FILTER_PX }
 }
 
+/// Buffers of one dab, used again for the next.
+#[derive(Default)]
+pub struct DabScratch {
+    deformed: DeformedRect,
+    stamping: Stamping,
+}
+
+/// What reading a picture tip takes.
+#[derive(Default)]
+struct Stamping {
+    patches: Patches,
+    /// Made for the first stamp: round dabs do without.
+    antialias: Option<Box<Antialias>>,
+    row: Vec<[u8; 4]>,
+}
+
 impl<'s> PlacedDab<'s> {
     /// `extent`: of the tip's footprint.
     pub fn new(dab: Dab, operator: Operator, scene: &'s Scene, extent: Extent) -> Self {
         let surface = scene.surface.as_deref();
-        let d = Deformation::of_dab(surface, scene.size, operator, dab.at);
-        let bent = surface.filter(|_| !d.is_identity()).map(|s| (s, d));
+        let deformation = Deformation::of_dab(surface, scene.size, operator, dab.at);
+        let bent_over = surface.filter(|_| !deformation.is_identity());
         let reach = Reach::new(surface, scene.size, operator, dab.at, extent);
-        Self { dab, scene, bent, reach }
+        Self { dab, scene, deformation, bent_over, reach }
     }
     pub fn reach(&self) -> &Reach<'s> {
         &self.reach
     }
-    /// Adds a round tip's coverage to a tile, row by row: a ← a + f (1 − a), f = flow · F.
-    pub fn add_round(&self, at: TileAt, coverage: &mut [f32; TILE_AREA], scratch: &mut DeformedRect) {
+    /// Adds a round tip to a tile, row by row: a ← a + f (1 − a), f = flow · F.
+    pub fn add_round(&self, at: TileAt, wash: &mut Wash, scratch: &mut DabScratch) {
         let blocks = self.reach.blocks(at);
         let area = touched(&blocks, at).intersect(self.scene.size.rect());
         let tip = RoundTip::new(&self.dab);
-        let field = self.bent.as_ref().map(|(surface, d)| Field::over(surface, d, area, scratch));
+        let field = self.bent_over.map(|surface| {
+            self.deformation.fill(area.grown(1), &mut scratch.deformed);
+            Field { surface, rect: area.grown(1), d: &scratch.deformed }
+        });
         for span in spans(&blocks, at, area) {
-            let out = &mut coverage[span.start_in(at)..][..span.n];
+            let out = wash.coverage(span.start_in(at), span.n);
             match &field {
                 Some(field) => bent_row(field.around(span), &tip, out),
                 None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, out),
             }
+        }
+    }
+    /// Adds a picture tip to a tile: its mean over the patch of the image plane under each pixel.
+    pub fn add_stamp(&self, stamp: &Stamp, at: TileAt, wash: &mut Wash, scratch: &mut DabScratch) {
+        let blocks = self.reach.blocks(at);
+        let area = touched(&blocks, at).intersect(self.scene.size.rect());
+        let DabScratch { deformed, stamping: Stamping { patches, antialias, row } } = scratch;
+        let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
+        self.deformation.fill(area.grown(1), deformed);
+        transform(texels_from_canvas, &mut deformed.x, &mut deformed.y);
+        let antialias = antialias.get_or_insert_default();
+        row.resize(area.width(), [0; 4]);
+        for span in spans(&blocks, at, area) {
+            let patches = patches.row(self.scene, area, span.y, deformed, texels_from_canvas);
+            antialias.row(stamp.texture(), patches, Outside::None, row);
+            let from = (span.x - area.x0) as usize;
+            wash.stamp(span.start_in(at), &row[from..from + span.n], self.dab.flow);
         }
     }
 }
@@ -102,12 +143,7 @@ struct Field<'f> {
     d: &'f DeformedRect,
 }
 
-impl<'f> Field<'f> {
-    fn over(surface: &'f Surface, d: &Deformation, area: Rect, scratch: &'f mut DeformedRect) -> Self {
-        let rect = area.grown(1);
-        d.fill(rect, scratch);
-        Self { surface, rect, d: scratch }
-    }
+impl Field<'_> {
     fn around(&self, span: Span) -> Around<'_> {
         let start = |y: i32| (y - self.rect.y0) as usize * self.rect.width() + (span.x - 1 - self.rect.x0) as usize;
         let row = |y: i32| {
@@ -143,14 +179,37 @@ impl RoundTip {
         let profile = RoundProfile::new(dab.hardness, dab.softness);
         Self { at: dab.at, per_radius: 1.0 / dab.radius, profile, flow: dab.flow }
     }
-    /// Adds the coverage of one pixel, `distance` px of the image plane from the centre and `width` px wide toward it.
+    /// Adds the coverage of one pixel.
+    ///
+    /// * `distance_squared`: from the centre to D(q), image-plane px².
+    /// * `width_squared`: of the pixel along that line, px²; what is not a number adds nothing.
     #[inline(always)]
-    fn add(&self, coverage: &mut f32, distance: f32, width_squared: f32) {
+    fn add(&self, coverage: &mut f32, distance_squared: f32, width_squared: f32) {
         let per_radius = self.per_radius;
-        let f = self.flow * self.profile.mean(distance * per_radius, width_squared * per_radius * per_radius);
-        // `max` first turns NaN into nothing.
-        *coverage += f.max(0.0).min(1.0) * (1.0 - *coverage);
+        let r = distance_squared.sqrt() * per_radius;
+        let f = self.flow * self.profile.mean(r, width_squared * per_radius * per_radius);
+        // Comparisons turn NaN into nothing, and rounding must not leave the range.
+        let f = if f > 0.0 { f } else { 0.0 };
+        let f = if f < 1.0 { f } else { 1.0 };
+        *coverage += f * (1.0 - *coverage);
     }
+    /// Adds a pixel at (x, y) from the centre in the image plane, J's columns `across` and `along`.
+    ///
+    /// Its width toward the centre is |Jᵀ p|, p the unit vector from the centre to it.
+    #[inline(always)]
+    fn add_bent(&self, coverage: &mut f32, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) {
+        // At the very centre there is no direction; the pixel beside it tells how wide this one is as well as any.
+        let distance_squared = x * x + y * y + 1e-12;
+        let (a, b) = (across.0 * x + across.1 * y, along.0 * x + along.1 * y);
+        self.add(coverage, distance_squared, (a * a + b * b) / distance_squared);
+    }
+}
+
+/// A pixel all of whose neighbours continue its surface.
+const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
+
+fn bent_row(d: Around, tip: &RoundTip, coverage: &mut [f32]) {
+    if d.linked.iter().all(|&bits| bits == INSIDE) { inside_row(d, tip, coverage) } else { rim_row(d, tip, coverage) }
 }
 
 crate::widest! {
@@ -159,49 +218,45 @@ crate::widest! {
         let dy = y - tip.at.y;
         for (i, a) in coverage.iter_mut().enumerate() {
             let dx = x + i as f32 - tip.at.x;
-            tip.add(a, (dx * dx + dy * dy).sqrt(), 1.0);
+            tip.add(a, dx * dx + dy * dy, 1.0);
         }
     }
-    /// The width of a pixel toward the centre is |Jᵀ p|, p the unit vector from the centre to D(q): J's columns are
-    /// differences between linked neighbours, and those of the identity where there are none.
-    fn bent_row(d: Around, tip: &RoundTip, coverage: &mut [f32]) {
+    /// Within one piece of surface: J by central differences.
+    fn inside_row(d: Around, tip: &RoundTip, coverage: &mut [f32]) {
+        let n = coverage.len();
+        let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
+        let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
+        let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
+        for i in 0..n {
+            let from_center = (cx[i + 1] - tip.at.x, cy[i + 1] - tip.at.y);
+            let across = (0.5 * (cx[i + 2] - cx[i]), 0.5 * (cy[i + 2] - cy[i]));
+            let along = (0.5 * (bx[i + 1] - ax[i + 1]), 0.5 * (by[i + 1] - ay[i + 1]));
+            tip.add_bent(&mut coverage[i], from_center, across, along);
+        }
+    }
+    /// Along a silhouette, a depth jump or outside: J from linked neighbours only.
+    fn rim_row(d: Around, tip: &RoundTip, coverage: &mut [f32]) {
         let n = coverage.len();
         let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
         let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
         let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
         let linked = &d.linked[..n];
         for i in 0..n {
-            let (x, y) = (cx[i + 1] - tip.at.x, cy[i + 1] - tip.at.y);
-            let distance = (x * x + y * y).sqrt();
-            let per_distance = 1.0 / distance.max(1e-9);
-            let (px, py) = (x * per_distance, y * per_distance);
-            let toward = |qx: f32, qy: f32| (qx - cx[i + 1]) * px + (qy - cy[i + 1]) * py;
-            let bits = u32::from(linked[i]);
-            let across = slope(
-                bits & u32::from(links::LEFT) != 0,
-                bits & u32::from(links::RIGHT) != 0,
-                toward(cx[i], cy[i]),
-                toward(cx[i + 2], cy[i + 2]),
-                px,
-            );
-            let along = slope(
-                bits & u32::from(links::UP) != 0,
-                bits & u32::from(links::DOWN) != 0,
-                toward(ax[i + 1], ay[i + 1]),
-                toward(bx[i + 1], by[i + 1]),
-                py,
-            );
-            tip.add(&mut coverage[i], distance, across * across + along * along);
+            let (x, y) = (cx[i + 1], cy[i + 1]);
+            let has = |bit: u8| linked[i] & bit != 0;
+            let (l, r, u, d) = (has(links::LEFT), has(links::RIGHT), has(links::UP), has(links::DOWN));
+            let across = (slope(l, r, cx[i], x, cx[i + 2], 1.0), slope(l, r, cy[i], y, cy[i + 2], 0.0));
+            let along = (slope(u, d, ax[i + 1], x, bx[i + 1], 0.0), slope(u, d, ay[i + 1], y, by[i + 1], 1.0));
+            tip.add_bent(&mut coverage[i], (x - tip.at.x, y - tip.at.y), across, along);
         }
     }
 }
 
-/// The derivative from the steps to two neighbours, of which only linked ones count; `flat` without any.
+/// The derivative at `here` from those of its two neighbours that are linked; `flat`, the identity's, without any.
 #[inline(always)]
-fn slope(has_before: bool, has_after: bool, before: f32, after: f32, flat: f32) -> f32 {
-    let back = if has_before { -before } else { 0.0 };
-    let ahead = if has_after { after } else { 0.0 };
-    let sum = back + ahead;
-    let mean = if has_before & has_after { 0.5 * sum } else { sum };
+fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
+    let low = if has_before { before } else { here };
+    let high = if has_after { after } else { here };
+    let mean = if has_before & has_after { 0.5 * (high - low) } else { high - low };
     if has_before | has_after { mean } else { flat }
 }

@@ -5,6 +5,7 @@ use super::{
     adjust::Adjust,
     patches::Patches,
     scene::{Filter, Scene},
+    stamp::Stamps,
 };
 use crate::math::{Affine2, Size, Vec2};
 use crate::raster::sampler::{Antialias, Bilinear};
@@ -47,11 +48,16 @@ pub struct PictureSource {
     pub picture: Picture,
     pub adjust: Adjust,
     texture: Arc<OnceLock<Texture>>,
+    /// What was made of it as a brush's tip.
+    stamps: Arc<Stamps>,
 }
 
 impl PictureSource {
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
-        Self { file, picture, adjust, texture: Arc::default() }
+        Self { file, picture, adjust, texture: Arc::default(), stamps: Arc::default() }
+    }
+    pub(super) fn stamps(&self) -> &Stamps {
+        &self.stamps
     }
     /// The adjusted texture.
     ///
@@ -111,7 +117,7 @@ impl PlacedImage {
 
 crate::widest! {
     /// Moves every point by a linear map and a translation.
-    fn transform(map: Affine2, x: &mut [f32], y: &mut [f32]) {
+    pub(super) fn transform(map: Affine2, x: &mut [f32], y: &mut [f32]) {
         let ([xx, yx], [xy, yy], [x0, y0]) =
             (map.matrix2.x_axis.to_array(), map.matrix2.y_axis.to_array(), map.translation.to_array());
         for (x, y) in x.iter_mut().zip(y) {

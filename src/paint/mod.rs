@@ -11,7 +11,9 @@ mod path;
 mod profile;
 mod ramp;
 pub mod scene;
+mod stamp;
 pub mod stroke;
+mod wash;
 
 pub use adjust::Adjust;
 pub use brush::{Brush, Drive, Dynamics, Tip};

@@ -39,22 +39,26 @@ impl RoundProfile {
     /// The box of the softness and the pixel's own add as variances do, so one mean serves both.
     #[inline(always)]
     pub fn mean(&self, r: f32, width_squared: f32) -> f32 {
-        let width = (self.blur_squared + width_squared).sqrt().max(Self::NARROW);
-        (self.integral(r + 0.5 * width) - self.integral(r - 0.5 * width)) / width
+        let width = (self.blur_squared + width_squared).sqrt();
+        let width = if width > Self::NARROW { width } else { Self::NARROW };
+        let (inner, outer) = (r - 0.5 * width, r + 0.5 * width);
+        // The integral is odd, since the profile continues evenly beyond the centre.
+        (self.integral(outer) - self.integral(inner.abs()).copysign(inner)) / width
     }
-    /// ∫ from 0 to x of the profile before the box; odd, since the profile continues evenly beyond the centre.
+    /// ∫ from 0 to x ≥ 0 of the profile before the box.
     #[inline(always)]
     fn integral(&self, x: f32) -> f32 {
-        let v = (self.end - x.abs()) * self.per_length;
-        (self.length * (self.start - smoothstep_integral(v))).copysign(x)
+        self.length * (self.start - smoothstep_integral((self.end - x) * self.per_length))
     }
 }
 
 /// ∫ up to v of the smoothstep 3v² − 2v³, which is 0 below 0 and 1 above 1.
 #[inline(always)]
 fn smoothstep_integral(v: f32) -> f32 {
-    let s = v.max(0.0).min(1.0);
-    s * s * s * (1.0 - 0.5 * s) + (v - 1.0).max(0.0)
+    // Comparisons, not `max` and `min`, which take three instructions each to treat NaN.
+    let v = if v > 0.0 { v } else { 0.0 };
+    let s = if v < 1.0 { v } else { 1.0 };
+    s * s * s * (1.0 - 0.5 * s) + (v - s)
 }
 
 #[cfg(test)]

@@ -1,15 +1,15 @@
 //! The brush tool: a stroke is a list of dabs, each a footprint bent around its own centre (SF sec. 5.2, fig. 7).
 //! Floor 3. Not here: dabs from samples (`path`), one dab on a tile (`dab`).
 
-use super::brush::Brush;
-use super::dab::{PlacedDab, round_extent};
+use super::brush::{Brush, Tip};
+use super::dab::{DabScratch, PlacedDab, round_extent};
 use super::path::{self, Dab};
 use super::scene::Scene;
+use super::stamp::{Stamp, Stamps};
+use super::wash::Wash;
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::raster::tile::{TILE_AREA, TileF32, transparent_f32};
-use crate::raster::{Tile, TileAt};
+use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
-use crate::surface::deformation::DeformedRect;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -86,8 +86,34 @@ impl Stroke {
 /// A stroke's dabs, and which of them may touch which tile of a canvas.
 struct Laid {
     scene: Scene,
+    tip: LaidTip,
     dabs: Vec<Dab>,
     tiles: HashMap<TileAt, Vec<Range<u32>>>,
+}
+
+/// A brush's tip, made ready.
+enum LaidTip {
+    Round,
+    Stamp(Arc<Stamp>),
+}
+
+impl LaidTip {
+    fn of(brush: &Brush) -> Self {
+        match &brush.tip {
+            Tip::Round => Self::Round,
+            Tip::Picture(source) => Self::Stamp(Stamps::of(source, brush.softness.max(0.0).min(1.0))),
+        }
+    }
+    fn place<'s>(&self, dab: Dab, operator: Operator, scene: &'s Scene) -> PlacedDab<'s> {
+        let extent = match self {
+            Self::Round => round_extent(&dab),
+            Self::Stamp(stamp) => stamp.extent(&dab),
+        };
+        PlacedDab::new(dab, operator, scene, extent)
+    }
+    fn brings_colors(&self) -> bool {
+        matches!(self, Self::Stamp(stamp) if stamp.is_colored)
+    }
 }
 
 /// Dabs this near in the stroke's order share a run even if those between them miss the tile.
@@ -97,10 +123,11 @@ const MAX_RUNS: usize = 1024;
 
 impl Laid {
     fn new(stroke: &Stroke, scene: &Scene) -> Self {
+        let tip = LaidTip::of(&stroke.brush);
         let dabs = path::dabs(&stroke.brush, &stroke.samples);
         let mut tiles: HashMap<TileAt, Vec<Range<u32>>> = HashMap::new();
         for (i, dab) in (0..).zip(&dabs) {
-            stroke.placed(*dab, scene).reach().for_each_tile(|at| {
+            tip.place(*dab, stroke.operator, scene).reach().for_each_tile(|at| {
                 let runs = tiles.entry(at).or_default();
                 let is_full = runs.len() >= MAX_RUNS;
                 match runs.last_mut() {
@@ -109,7 +136,7 @@ impl Laid {
                 }
             });
         }
-        Self { scene: scene.clone(), dabs, tiles }
+        Self { scene: scene.clone(), tip, dabs, tiles }
     }
     /// The dabs that may touch a tile, in their order.
     fn on_tile(&self, at: TileAt) -> impl Iterator<Item = &Dab> {
@@ -119,25 +146,19 @@ impl Laid {
 }
 
 impl Stroke {
-    fn placed<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
-        PlacedDab::new(dab, self.operator, scene, round_extent(&dab))
-    }
     /// Paints the stroke over a tile in flight. Flow is per dab; opacity caps the whole.
-    fn paint(&self, scene: &Scene, at: TileAt, pixels: &mut TileF32, scratch: &mut Scratch) {
+    fn paint(&self, scene: &Scene, at: TileAt, pixels: &mut PlanarTile, scratch: &mut DabScratch) {
         let laid = self.laid(scene);
-        scratch.coverage.fill(0.0);
+        let mut wash = if laid.tip.brings_colors() { Wash::colors() } else { Wash::one_color() };
         for dab in laid.on_tile(at) {
-            self.placed(*dab, scene).add_round(at, &mut scratch.coverage, &mut scratch.deformed);
+            let placed = laid.tip.place(*dab, self.operator, scene);
+            match &laid.tip {
+                LaidTip::Round => placed.add_round(at, &mut wash, scratch),
+                LaidTip::Stamp(stamp) => placed.add_stamp(stamp, at, &mut wash, scratch),
+            }
         }
-        let opacity = self.brush.opacity.max(0.0).min(1.0);
-        compose(self.color.premultiplied().map(|c| c * opacity), &scratch.coverage, pixels);
+        wash.lay_over(pixels, self.color, self.brush.opacity.max(0.0).min(1.0));
     }
-}
-
-/// Buffers of a tile's strokes, used again and again.
-struct Scratch {
-    coverage: Box<[f32; TILE_AREA]>,
-    deformed: DeformedRect,
 }
 
 /// One tile of a stroke layer, the first stroke lowest. `None` where it is transparent.
@@ -146,22 +167,9 @@ struct Scratch {
 pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<Tile> {
     let mut here = strokes.iter().filter(|s| s.touches(scene, at)).peekable();
     here.peek()?;
-    let mut pixels = transparent_f32();
-    let mut scratch = Scratch { coverage: Box::new([0.0; TILE_AREA]), deformed: DeformedRect::default() };
+    let (mut pixels, mut scratch) = (PlanarTile::transparent(), DabScratch::default());
     here.for_each(|stroke| stroke.paint(scene, at, &mut pixels, &mut scratch));
-    Tile::quantised(&pixels)
-}
-
-crate::widest! {
-    /// Lays one premultiplied colour over pixels, as far as each is covered (source over).
-    fn compose(color: [f32; 4], coverage: &[f32; TILE_AREA], pixels: &mut TileF32) {
-        for (p, a) in pixels.iter_mut().zip(coverage) {
-            let rest = 1.0 - color[3] * a;
-            for c in 0..4 {
-                p[c] = color[c] * a + p[c] * rest;
-            }
-        }
-    }
+    pixels.quantised()
 }
 
 #[cfg(test)]

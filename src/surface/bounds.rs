@@ -124,38 +124,64 @@ impl Join for TurnSpan {
     }
 }
 
-/// Visits the surface's pixels of a block and of the ring around it, whose values the block's differences read.
-fn covered_around(surface: &Surface, block: Rect, mut visit: impl FnMut(usize, usize)) {
-    let ring = block.grown(1).intersect(surface.size().rect());
-    for y in ring.y0 as usize..ring.y1 as usize {
-        let covered = surface.coverage_plane().row(y);
-        (ring.x0 as usize..ring.x1 as usize).filter(|&x| covered[x] > 0).for_each(|x| visit(x, y));
-    }
+/// A value over a block's pixels and the ring around it, which the block's differences read.
+struct Ring {
+    block: Rect,
+    /// The ring and what is in it, clipped to the map.
+    rect: Rect,
+    values: [Vec2; RING * RING],
 }
 
-/// The longest derivative of a value over a block's surface: differences between linked neighbours, per px.
-fn longest_slope(surface: &Surface, block: Rect, value: impl Fn(usize, usize) -> Vec2) -> f32 {
-    let mut longest = 0.0f32;
-    for y in block.y0 as usize..block.y1 as usize {
-        for x in block.x0 as usize..block.x1 as usize {
-            let linked = surface.links_plane().at(x, y);
-            let back = |bit: u8| usize::from(linked & bit != 0);
-            let (l, r, u, d) = (back(links::LEFT), back(links::RIGHT), back(links::UP), back(links::DOWN));
-            let dx = (value(x + r, y) - value(x - l, y)) / (l + r).max(1) as f32;
-            let dy = (value(x, y + d) - value(x, y - u)) / (u + d).max(1) as f32;
-            longest = longest.max(dx.length_squared() + dy.length_squared());
+const RING: usize = BLOCK + 2;
+
+impl Ring {
+    fn around(surface: &Surface, block: Rect, value: impl Fn(usize, usize) -> Vec2) -> Self {
+        let rect = block.grown(1).intersect(surface.size().rect());
+        let mut values = [Vec2::ZERO; RING * RING];
+        for y in 0..rect.height() {
+            for x in 0..rect.width() {
+                values[y * RING + x] = value(rect.x0 as usize + x, rect.y0 as usize + y);
+            }
         }
+        Self { block, rect, values }
     }
-    longest.sqrt()
+    fn at(&self, x: usize, y: usize) -> Vec2 {
+        self.values[(y - self.rect.y0 as usize) * RING + x - self.rect.x0 as usize]
+    }
+    /// The range of the values over the surface.
+    fn range(&self, surface: &Surface) -> (Vec2, Vec2) {
+        let Rect { x0, y0, x1, y1 } = self.rect;
+        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for y in y0 as usize..y1 as usize {
+            let covered = surface.coverage_plane().row(y);
+            for x in (x0 as usize..x1 as usize).filter(|&x| covered[x] > 0) {
+                (low, high) = (low.min(self.at(x, y)), high.max(self.at(x, y)));
+            }
+        }
+        (low, high)
+    }
+    /// The longest derivative over the block's surface: differences between linked neighbours, per px.
+    fn longest_slope(&self, surface: &Surface) -> f32 {
+        let Rect { x0, y0, x1, y1 } = self.block;
+        let mut longest = 0.0f32;
+        for y in y0 as usize..y1 as usize {
+            for x in x0 as usize..x1 as usize {
+                let linked = surface.links_plane().at(x, y);
+                let step = |bit: u8| usize::from(linked & bit != 0);
+                let (l, r, u, d) = (step(links::LEFT), step(links::RIGHT), step(links::UP), step(links::DOWN));
+                let dx = (self.at(x + r, y) - self.at(x - l, y)) / (l + r).max(1) as f32;
+                let dy = (self.at(x, y + d) - self.at(x, y - u)) / (u + d).max(1) as f32;
+                longest = longest.max(dx.length_squared() + dy.length_squared());
+            }
+        }
+        longest.sqrt()
+    }
 }
 
 fn turn_span(surface: &Surface, block: Rect, value: impl Fn(usize, usize) -> Vec2) -> TurnSpan {
-    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-    covered_around(surface, block, |x, y| {
-        let v = value(x, y);
-        (low, high) = (low.min(v), high.max(v));
-    });
-    TurnSpan { low, high, slope: longest_slope(surface, block, value) }
+    let ring = Ring::around(surface, block, value);
+    let (low, high) = ring.range(surface);
+    TurnSpan { low, high, slope: ring.longest_slope(surface) }
 }
 
 impl Bounds {
@@ -175,13 +201,8 @@ impl Bounds {
     pub(super) fn depth(&self, surface: &Surface) -> &Pyramid<DepthSpan> {
         self.depth.get_or_init(|| {
             Pyramid::new(surface.size(), |block| {
-                let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-                covered_around(surface, block, |x, y| {
-                    let z = surface.depth(x, y);
-                    (low, high) = (low.min(z), high.max(z));
-                });
-                let slope = longest_slope(surface, block, |x, y| vec2(surface.depth(x, y), 0.0));
-                DepthSpan { low, high, slope }
+                let TurnSpan { low, high, slope } = turn_span(surface, block, |x, y| vec2(surface.depth(x, y), 0.0));
+                DepthSpan { low: low.x, high: high.x, slope }
             })
         })
     }

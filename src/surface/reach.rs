@@ -38,8 +38,17 @@ pub struct Reach<'s> {
 /// The operator on the surface, its maps read at the anchor.
 enum Flow<'s> {
     Still,
-    Depth { pyramid: &'s Pyramid<DepthSpan>, z: f32, gamma: f32 },
-    Turn { pyramid: &'s Pyramid<TurnSpan>, turn: Vec2, stretch: Stretch },
+    /// `rate`: e^γ − 1.
+    Depth {
+        pyramid: &'s Pyramid<DepthSpan>,
+        z: f32,
+        rate: f32,
+    },
+    Turn {
+        pyramid: &'s Pyramid<TurnSpan>,
+        turn: Vec2,
+        stretch: Stretch,
+    },
 }
 
 /// The offset of D_n or D_r as a function of the relative normal, canvas px: an odd radial map.
@@ -47,8 +56,8 @@ enum Flow<'s> {
 struct Stretch {
     /// α L.
     alpha_px: f32,
-    /// `None` is linear: D_r.
-    beta: Option<f32>,
+    /// e^−β; `None` is linear: D_r.
+    softness: Option<f32>,
     /// μ: curvature multiplies the offset by something in [1 − μ, 1 + μ].
     detail: f32,
 }
@@ -56,23 +65,26 @@ struct Stretch {
 impl Stretch {
     /// Factor of a relative normal of length u, without detail.
     fn factor(self, u: f32) -> f32 {
-        self.beta.map_or(self.alpha_px, |beta| second_order::offset_factor(u, self.alpha_px, beta))
+        let curved = |softness| second_order::offset_factor_of_softness(u, self.alpha_px, softness);
+        self.softness.map_or(self.alpha_px, curved)
     }
     /// The range of one component of the offset, exact but for the detail: it grows with the component itself and, in
     /// magnitude, with the other one, which `across` bounds in magnitude.
     fn range(self, (low, high): (f32, f32), across: (f32, f32)) -> (f32, f32) {
-        let offset = |v: f32, across: f32| self.factor(v.hypot(across)) * v;
+        let offset = |v: f32, across: f32| self.factor(vec2(v, across).length()) * v;
         let (a, b) = if self.alpha_px >= 0.0 { (low, high) } else { (high, low) };
         // `a` gives the least offset, the more so the farther out where that is negative; `b` the most.
-        let least = offset(a, if offset(a, across.1) < 0.0 { across.1 } else { across.0 });
-        let most = offset(b, if offset(b, across.1) > 0.0 { across.1 } else { across.0 });
+        let sign = self.alpha_px.signum();
+        let least = offset(a, if sign * a < 0.0 { across.1 } else { across.0 });
+        let most = offset(b, if sign * b > 0.0 { across.1 } else { across.0 });
         let (d, e) = (1.0 - self.detail, 1.0 + self.detail);
         ((least * d).min(least * e), (most * d).max(most * e))
     }
     /// The most by which the offset changes per change of the normal, up to a relative normal of length u; and, with
     /// detail, per px by the change of curvature alone.
     fn steepness(self, u: f32) -> (f32, f32) {
-        let slope = self.beta.map_or(0.0, |beta| second_order::offset_factor_slope(u, self.alpha_px, beta));
+        let curved = |softness| second_order::offset_factor_slope_of_softness(u, self.alpha_px, softness);
+        let slope = self.softness.map_or(0.0, curved);
         let factor = self.factor(u).abs();
         // κ lies in (−1, 1): a difference to one neighbour is below 2 in each direction.
         let by_curvature = factor * u * self.detail.abs() * 2.0 * std::f32::consts::SQRT_2;
@@ -106,55 +118,92 @@ impl<'s> Reach<'s> {
         blocks
     }
     fn descend(&self, block: Block, to: usize, visit: &mut impl FnMut(Block)) {
-        if !self.touches(block) {
+        match self.judge(block) {
+            Touch::Nowhere => {}
+            Touch::Perhaps if block.level > to => {
+                block.quarters().into_iter().for_each(|b| self.descend(b, to, visit));
+            }
+            _ => self.visit_all(block, to, visit),
+        }
+    }
+    fn visit_all(&self, block: Block, to: usize, visit: &mut impl FnMut(Block)) {
+        if block_rect(self.size, block.level, block.col, block.row).is_empty() {
             return;
         }
         if block.level == to {
             return visit(block);
         }
-        block.quarters().into_iter().for_each(|b| self.descend(b, to, visit));
+        block.quarters().into_iter().for_each(|b| self.visit_all(b, to, visit));
     }
-    /// Written so that a value that is not a number touches: leaving out is what must be proven.
-    fn touches(&self, block: Block) -> bool {
+    fn judge(&self, block: Block) -> Touch {
         let rect = block_rect(self.size, block.level, block.col, block.row);
         if rect.is_empty() {
-            return false;
+            return Touch::Nowhere;
         }
         let low = vec2(rect.x0 as f32, rect.y0 as f32) + 0.5 - self.at;
         let high = vec2(rect.x1 as f32, rect.y1 as f32) - 0.5 - self.at;
-        let within = |distance: f32, pixel: f32| {
-            let limit = self.extent.radius_px + self.extent.filter_px * pixel + ROUNDING_PX + 1e-5 * distance;
-            let is_beyond = distance > limit;
-            !is_beyond
-        };
+        let flat = Image { near: distance_to_box(low, high), far: low.abs().max(high.abs()).length(), pixel: 1.0 };
         let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(Cover { some: false, all: false });
-        let flat = distance_to_box(low, high);
-        if !cover.all && within(flat, 1.0) {
-            return true;
+        let outside = if cover.all { None } else { Some(flat) };
+        let inside = if cover.some { Some(self.flow.image(block, (low, high), flat)) } else { None };
+        let parts = [outside, inside].into_iter().flatten().map(|image| self.touch(image));
+        parts.reduce(|a, b| if a == b { a } else { Touch::Perhaps }).unwrap_or(Touch::Nowhere)
+    }
+    /// Written so that a value that is not a number may be touched: leaving out is what must be proven.
+    fn touch(&self, image: Image) -> Touch {
+        let limit = self.extent.radius_px + self.extent.filter_px * image.pixel + ROUNDING_PX;
+        if image.near > limit + 1e-5 * image.near {
+            Touch::Nowhere
+        } else if image.far < self.extent.radius_px {
+            Touch::Everywhere
+        } else {
+            Touch::Perhaps
         }
-        if !cover.some {
-            return false;
-        }
-        match &self.flow {
-            Flow::Still => within(flat, 1.0),
-            Flow::Depth { pyramid, z, gamma } => {
-                let Some(span) = pyramid.at(block) else { return true };
-                let scale = |u| 1.0 + first_order::scale_factor(u, *gamma);
-                let (near, far) = (span.low - z, span.high - z);
-                let farthest = low.abs().max(high.abs()).length() + 1.0;
-                let steepest = first_order::scale_factor_slope(far, *gamma) * span.slope;
-                within(scale(near) * flat, scale(far) + farthest * steepest)
+    }
+}
+
+/// Where a block's pixels may lie within the extent.
+#[derive(Clone, Copy, PartialEq)]
+enum Touch {
+    Nowhere,
+    Perhaps,
+    Everywhere,
+}
+
+/// What D makes of a block: between which distances from the anchor it lies, and how long a pixel is at the most, px.
+#[derive(Clone, Copy)]
+struct Image {
+    near: f32,
+    far: f32,
+    pixel: f32,
+}
+
+impl Flow<'_> {
+    /// The image of the surface's part of a block whose pixels lie between two corners relative to the anchor.
+    fn image(&self, block: Block, (low, high): (Vec2, Vec2), flat: Image) -> Image {
+        const ANYWHERE: Image = Image { near: 0.0, far: f32::INFINITY, pixel: f32::INFINITY };
+        match self {
+            Flow::Still => flat,
+            Flow::Depth { pyramid, z, rate } => {
+                let Some(span) = pyramid.at(block) else { return ANYWHERE };
+                let scale = |u| 1.0 + first_order::scale_factor_of_rate(u, *rate);
+                let (nearest, farthest) = (span.low - z, span.high - z);
+                // One px more: the differences' neighbours.
+                let steepest = first_order::scale_factor_slope_of_rate(farthest, *rate) * span.slope;
+                let pixel = scale(farthest) + (flat.far + 1.0) * steepest;
+                Image { near: scale(nearest) * flat.near, far: scale(farthest) * flat.far, pixel }
             }
             Flow::Turn { pyramid, turn, stretch } => {
-                let Some(span) = pyramid.at(block) else { return true };
+                let Some(span) = pyramid.at(block) else { return ANYWHERE };
                 let (a, b) = (span.low - *turn, span.high - *turn);
                 let across_x = (interval_distance(a.x, b.x), a.x.abs().max(b.x.abs()));
                 let across_y = (interval_distance(a.y, b.y), a.y.abs().max(b.y.abs()));
                 let (x0, x1) = stretch.range((a.x, b.x), across_y);
                 let (y0, y1) = stretch.range((a.y, b.y), across_x);
-                let (steepness, by_curvature) = stretch.steepness(across_x.1.hypot(across_y.1));
+                let (low, high) = (low + vec2(x0, y0), high + vec2(x1, y1));
+                let (steepness, by_curvature) = stretch.steepness(vec2(across_x.1, across_y.1).length());
                 let pixel = 1.0 + steepness * span.slope + by_curvature;
-                within(distance_to_box(low + vec2(x0, y0), high + vec2(x1, y1)), pixel)
+                Image { near: distance_to_box(low, high), far: low.abs().max(high.abs()).length(), pixel }
             }
         }
     }
@@ -167,15 +216,18 @@ impl<'s> Flow<'s> {
         let unit_px = surface.size().longer_side();
         match operator {
             Operator::None => Flow::Still,
-            Operator::Depth { gamma } => {
-                Flow::Depth { pyramid: surface.bounds().depth(surface), z: surface.depth(x, y), gamma }
-            }
+            Operator::Depth { gamma } => Flow::Depth {
+                pyramid: surface.bounds().depth(surface),
+                z: surface.depth(x, y),
+                rate: first_order::rate(gamma),
+            },
             Operator::Normal { alpha, beta, detail } => {
-                let stretch = Stretch { alpha_px: alpha * unit_px, beta: Some(beta), detail };
+                let stretch =
+                    Stretch { alpha_px: alpha * unit_px, softness: Some(second_order::softness(beta)), detail };
                 Flow::Turn { pyramid: surface.bounds().nbar(surface), turn: nbar, stretch }
             }
             Operator::Reflection { alpha, detail } => {
-                let stretch = Stretch { alpha_px: alpha * unit_px, beta: None, detail };
+                let stretch = Stretch { alpha_px: alpha * unit_px, softness: None, detail };
                 let turn = reflection::mirrored(nbar, nz);
                 Flow::Turn { pyramid: surface.bounds().mirrored(surface), turn, stretch }
             }
@@ -190,7 +242,7 @@ fn interval_distance(low: f32, high: f32) -> f32 {
 
 /// From the origin to the nearest point of a box.
 fn distance_to_box(low: Vec2, high: Vec2) -> f32 {
-    interval_distance(low.x, high.x).hypot(interval_distance(low.y, high.y))
+    vec2(interval_distance(low.x, high.x), interval_distance(low.y, high.y)).length()
 }
 
 #[cfg(test)]

@@ -36,7 +36,12 @@ pub fn scale_factor_of_rate(u: f32, rate: f32) -> f32 {
 
 /// d f_p / du: the derivative of [`scale_factor`], per unit of depth.
 pub fn scale_factor_slope(u: f32, gamma: f32) -> f32 {
-    let rate = rate(gamma);
+    scale_factor_slope_of_rate(u, rate(gamma))
+}
+
+/// [`scale_factor_slope`] with `rate` = e^γ − 1 at hand.
+#[inline(always)]
+pub fn scale_factor_slope_of_rate(u: f32, rate: f32) -> f32 {
     let denominator = 2.0 + (1.0 - u.max(-1.0).min(1.0)) * rate;
     2.0 * rate / denominator * ((rate + 2.0) / denominator)
 }

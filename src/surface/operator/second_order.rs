@@ -36,7 +36,12 @@ pub fn offset_factor_of_softness(u: f32, alpha: f32, softness: f32) -> f32 {
 
 /// d f_n / du: the derivative of [`offset_factor`].
 pub fn offset_factor_slope(u: f32, alpha: f32, beta: f32) -> f32 {
-    let softness = softness(beta);
+    offset_factor_slope_of_softness(u, alpha, softness(beta))
+}
+
+/// [`offset_factor_slope`] with `softness` = e^−β at hand.
+#[inline(always)]
+pub fn offset_factor_slope_of_softness(u: f32, alpha: f32, softness: f32) -> f32 {
     let denominator = softness + u * (1.0 - softness);
     alpha / denominator * (softness / denominator)
 }

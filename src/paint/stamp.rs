@@ -1,0 +1,175 @@
+//! Picture tips: a picture made ready to be stamped, its softness blurred in.
+//! Floor 3. Not here: where a stamp lands (`dab`), reading pictures under a deformation (`raster::sampler`).
+
+use super::image::PictureSource;
+use super::path::Dab;
+use crate::math::{Affine2, Size, Vec2};
+use crate::raster::texture::Level;
+use crate::raster::{Picture, Texture, blur};
+use crate::surface::reach::Extent;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A tip as it is sampled. Its picture covers the square of the dab's diameter; softness makes it larger.
+pub struct Stamp {
+    texture: Texture,
+    /// It brings its own colours; else only its alpha counts.
+    pub is_colored: bool,
+    /// Texels of `texture` along the radius of a dab.
+    texels_per_radius: f32,
+}
+
+/// The stamps made from one picture, by softness: a brush's strokes share theirs.
+#[derive(Default)]
+pub struct Stamps {
+    made: Mutex<Vec<(u32, Arc<Stamp>)>>,
+}
+
+/// Stamps kept for one picture: more softnesses than one brush has.
+const KEPT: usize = 8;
+
+impl Stamps {
+    /// The stamp of a picture with a softness in `[0, 1]`.
+    pub fn of(source: &PictureSource, softness: f32) -> Arc<Stamp> {
+        let lock = || source.stamps().made.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = softness.to_bits();
+        let find = |made: &[(u32, Arc<Stamp>)]| made.iter().find(|(k, _)| *k == key).map(|(_, s)| s.clone());
+        if let Some(stamp) = find(&lock()) {
+            return stamp;
+        }
+        // Unlocked: two threads may both make it, and make the same.
+        let stamp = Arc::new(Stamp::new(source.texture(), softness));
+        let mut made = lock();
+        if made.len() >= KEPT {
+            made.remove(0);
+        }
+        made.push((key, stamp.clone()));
+        stamp
+    }
+}
+
+/// Standard deviation of the blur at softness 1, in radii: that of the round tip's two kernels together.
+const SIGMA_RATIO: f32 = 0.35;
+/// A blur of this many texels is smooth when magnified; a wider one is made at a coarser level, at the same cost.
+const SIGMA_TEXELS: f32 = 8.0;
+
+impl Stamp {
+    fn new(tip: &Texture, softness: f32) -> Self {
+        let size = tip.size();
+        let is_colored = !is_grey(&tip.levels()[0]);
+        let mut sigma = SIGMA_RATIO * softness * 0.5 * size.longer_side();
+        let mut level = &tip.levels()[0];
+        for coarser in tip.levels().iter().skip(1) {
+            if sigma <= SIGMA_TEXELS {
+                break;
+            }
+            sigma *= coarser.size.longer_side() / level.size.longer_side();
+            level = coarser;
+        }
+        let texels_per_radius = 0.5 * level.size.longer_side();
+        Self { texture: Texture::new(&softened(level, is_colored, sigma)), is_colored, texels_per_radius }
+    }
+    pub fn texture(&self) -> &Texture {
+        &self.texture
+    }
+    /// A⁻¹ after the shift to the dab's centre: texels from canvas px. The footprint is turned counter-clockwise as seen.
+    pub fn texels_from_canvas(&self, dab: &Dab) -> Affine2 {
+        let texels_per_px = Vec2::splat(self.texels_per_radius / dab.radius);
+        // Counter-clockwise as seen is clockwise in y-down coordinates, so the inverse turns by +rotation.
+        Affine2::from_translation(self.texture.size().center())
+            * Affine2::from_scale_angle_translation(texels_per_px, dab.rotation_rad, Vec2::ZERO)
+            * Affine2::from_translation(-dab.at)
+    }
+    /// How far the picture's corners reach, and a texel beyond.
+    pub fn extent(&self, dab: &Dab) -> Extent {
+        let px_per_texel = dab.radius / self.texels_per_radius;
+        let corner = self.texture.size().center().length() + 1.0;
+        // Two pixels' lengths on either side, which one-sided differences may double: the grid of taps and their cells.
+        Extent { radius_px: corner * px_per_texel, filter_px: 4.0 }
+    }
+}
+
+/// Opaque and grey throughout: a picture of coverage.
+fn is_grey(level: &Level) -> bool {
+    level.texels.iter().all(|&[r, g, b, a]| r == g && g == b && a == 255)
+}
+
+/// The tip's picture with a transparent border as wide as its blur; coverage becomes alpha.
+fn softened(level: &Level, is_colored: bool, sigma: f32) -> Picture {
+    let margin = (3.0 * sigma).ceil() as u32;
+    let size = Size::new(level.size.width + 2 * margin, level.size.height + 2 * margin);
+    let mut texels = vec![[0.0f32; 4]; size.area()];
+    for (y, row) in level.texels.chunks_exact(level.size.width as usize).enumerate() {
+        let start = (y + margin as usize) * size.width as usize + margin as usize;
+        for (to, &[r, g, b, a]) in texels[start..].iter_mut().zip(row) {
+            // The texels of a texture are premultiplied; a grey one's alpha is its grey.
+            *to = if is_colored { [r, g, b, a] } else { [r; 4] }.map(f32::from);
+        }
+    }
+    let texels = blur::gaussian_pixels(size, &texels, sigma);
+    let straight = texels.into_iter().map(|[r, g, b, a]| {
+        let per_alpha = if a > 0.0 { 255.0 / a } else { 0.0 };
+        [r * per_alpha, g * per_alpha, b * per_alpha, a].map(|v| (v + 0.5) as u8)
+    });
+    Picture::srgb8(size, straight.collect()).unwrap_or_else(transparent)
+}
+
+/// What stands for a picture that cannot be: nothing is painted.
+fn transparent() -> Picture {
+    let texels: Arc<[[u8; 4]]> = Arc::new([[0; 4]]);
+    Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vec2;
+    use crate::paint::Adjust;
+
+    fn source(size: Size, texel: impl Fn(u32, u32) -> [u8; 4]) -> PictureSource {
+        let texels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y))).map(|(x, y)| texel(x, y));
+        PictureSource::new("tip.png".into(), Picture::srgb8(size, texels.collect()).unwrap(), Adjust::default())
+    }
+    fn dab(radius: f32, rotation_rad: f32) -> Dab {
+        Dab { at: vec2(50.0, 60.0), radius, rotation_rad, hardness: 1.0, softness: 0.0, flow: 1.0 }
+    }
+
+    #[test]
+    fn an_opaque_grey_picture_is_coverage_and_any_other_a_coloured_stamp() {
+        let grey = Stamps::of(&source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255]), 0.0);
+        assert!(!grey.is_colored);
+        assert_eq!(grey.texture().levels()[0].texels[3], [90; 4], "premultiplied white of alpha 90");
+        assert!(Stamps::of(&source(Size::new(8, 4), |_, _| [1, 2, 3, 255]), 0.0).is_colored);
+        assert!(Stamps::of(&source(Size::new(8, 4), |x, _| [9, 9, 9, x as u8]), 0.0).is_colored);
+    }
+    #[test]
+    fn the_longer_side_is_the_diameter_and_turns_counter_clockwise() {
+        let stamp = Stamps::of(&source(Size::new(40, 20), |_, _| [255; 4]), 0.0);
+        let upright = stamp.texels_from_canvas(&dab(10.0, 0.0));
+        assert!((upright.transform_point2(vec2(60.0, 60.0)) - vec2(40.0, 10.0)).length() < 1e-4);
+        // A quarter turn: the right end of the tip is seen at the top.
+        let turned = stamp.texels_from_canvas(&dab(10.0, std::f32::consts::FRAC_PI_2));
+        assert!((turned.transform_point2(vec2(50.0, 50.0)) - vec2(40.0, 10.0)).length() < 1e-4);
+    }
+    #[test]
+    fn softness_keeps_what_a_stamp_covers_and_costs_no_more_the_larger_the_tip() {
+        for side in [64, 1024] {
+            let source = source(Size::new(side, side), |_, _| [255; 4]);
+            let covered = |softness: f32| {
+                let stamp = Stamps::of(&source, softness);
+                let level = &stamp.texture().levels()[0];
+                assert!(level.size.longer_side() < 3.0 * side as f32);
+                let sum: f64 = level.texels.iter().map(|t| f64::from(t[3]) / 255.0).sum();
+                sum / f64::from(stamp.texels_per_radius).powi(2)
+            };
+            let hard = covered(0.0);
+            assert!((hard - 4.0).abs() < 1e-6, "a square of two radii");
+            assert!((covered(0.2) / hard - 1.0).abs() < 0.01);
+            assert!((covered(1.0) / hard - 1.0).abs() < 0.01);
+        }
+    }
+    #[test]
+    fn strokes_of_one_brush_share_their_stamp() {
+        let tip = source(Size::new(8, 8), |_, _| [255; 4]);
+        assert!(Arc::ptr_eq(&Stamps::of(&tip, 0.25), &Stamps::of(&tip.clone(), 0.25)));
+    }
+}
