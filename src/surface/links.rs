@@ -55,10 +55,13 @@ pub fn depth_range_px(
     *ratios.select_nth_unstable_by(mid, f32::total_cmp).1
 }
 
+/// Excess over the tolerance, as a ratio of it, from which a step is a jump by itself.
+const CERTAIN: f32 = 1.0;
+/// Excess from which a step is a jump where it touches one: the contour of an occluder fades where it comes near to what
+/// lies behind, and must not break into beads.
+const LIKELY: f32 = 0.2;
+
 /// Finds the links of every pixel.
-///
-/// Between two neighbours of a smooth surface the step in depth lies between the slopes that their normals tell (the
-/// mean value theorem); a step far outside is a jump. Half a slope and 1.5 px are granted for curvature and coarse depth.
 pub fn find(
     nbar_x: &Plane<f32>,
     nbar_y: &Plane<f32>,
@@ -67,30 +70,156 @@ pub fn find(
     coverage: &Plane<u8>,
     depth_range_px: f32,
 ) -> Plane<u8> {
-    let size = depth.size();
-    let joined = |nbar: &Plane<f32>, a: (usize, usize), b: (usize, usize)| {
-        if coverage.at(a.0, a.1) == 0 || coverage.at(b.0, b.1) == 0 {
-            return false;
-        }
-        let (sa, sb) = (slope(nbar.at(a.0, a.1), nz.at(a.0, a.1)), slope(nbar.at(b.0, b.1), nz.at(b.0, b.1)));
-        let step = (depth.at(b.0, b.1) - depth.at(a.0, a.1)) * depth_range_px;
-        let tolerance = 1.5 + 0.5 * sa.abs().max(sb.abs());
-        step > sa.min(sb) - tolerance && step < sa.max(sb) + tolerance
-    };
-    Plane::from_fn(size, |x, y| {
-        let mut bits = 0;
-        if x > 0 && joined(nbar_x, (x - 1, y), (x, y)) {
-            bits |= LEFT;
-        }
-        if x + 1 < size.width as usize && joined(nbar_x, (x, y), (x + 1, y)) {
-            bits |= RIGHT;
-        }
-        if y > 0 && joined(nbar_y, (x, y - 1), (x, y)) {
-            bits |= UP;
-        }
-        if y + 1 < size.height as usize && joined(nbar_y, (x, y), (x, y + 1)) {
-            bits |= DOWN;
-        }
-        bits
+    let maps = StepMaps { nbar: [nbar_x, nbar_y], nz, depth, coverage, depth_range_px };
+    let mut jumps = Plane::from_fn(depth.size(), |x, y| {
+        let ahead = |axis: usize| match maps.excess((x, y), axis) {
+            excess if excess > CERTAIN => JUMP,
+            excess if excess > LIKELY => LIKELY_JUMP,
+            _ => 0,
+        };
+        ahead(0) | ahead(1) << DOWNWARD
+    });
+    spread(&mut jumps);
+    Plane::from_fn(depth.size(), |x, y| {
+        // A step is held by its left or upper pixel.
+        let joined = |at: Option<(usize, usize)>, axis: usize| {
+            at.is_some_and(|at| {
+                maps.are_covered(at, axis) && jumps.at(at.0, at.1) >> (DOWNWARD * axis as u8) & JUMP == 0
+            })
+        };
+        let bit = |bit: u8, is: bool| if is { bit } else { 0 };
+        bit(LEFT, joined(x.checked_sub(1).map(|x| (x, y)), 0))
+            | bit(RIGHT, joined(Some((x, y)), 0))
+            | bit(UP, joined(y.checked_sub(1).map(|y| (x, y)), 1))
+            | bit(DOWN, joined(Some((x, y)), 1))
     })
+}
+
+/// Of the step from a pixel to the one at its right: it is a jump; it is one if it touches one.
+const JUMP: u8 = 1;
+const LIKELY_JUMP: u8 = 2;
+/// The same of the step to the pixel below, so many bits further.
+const DOWNWARD: u8 = 2;
+
+/// Makes jumps of the likely ones that are joined to one, over the eight neighbours of a pixel.
+fn spread(jumps: &mut Plane<u8>) {
+    const ANY_JUMP: u8 = JUMP | JUMP << DOWNWARD;
+    const ANY_LIKELY: u8 = LIKELY_JUMP | LIKELY_JUMP << DOWNWARD;
+    let width = jumps.width();
+    let mut ends: Vec<usize> = (0..jumps.values().len()).filter(|&i| jumps.values()[i] & ANY_JUMP != 0).collect();
+    while let Some(i) = ends.pop() {
+        let (x, y) = ((i % width) as i32, (i / width) as i32);
+        for (x, y) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))) {
+            let Some(bits) = jumps.get(x, y).filter(|bits| bits & ANY_LIKELY != 0) else { continue };
+            jumps.set(x as usize, y as usize, bits & !ANY_LIKELY | (bits & ANY_LIKELY) >> 1);
+            ends.push(y as usize * width + x as usize);
+        }
+    }
+}
+
+/// What a step from one pixel to the next is judged by.
+struct StepMaps<'a> {
+    nbar: [&'a Plane<f32>; 2],
+    nz: &'a Plane<f32>,
+    depth: &'a Plane<f32>,
+    coverage: &'a Plane<u8>,
+    depth_range_px: f32,
+}
+
+impl StepMaps<'_> {
+    /// The pixel after one, to the right (axis 0) or below (1).
+    fn after(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
+        let next = if axis == 0 { (x + 1, y) } else { (x, y + 1) };
+        (next.0 < self.depth.width() && next.1 < self.depth.height()).then_some(next)
+    }
+    fn before(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
+        if axis == 0 { Some((x.checked_sub(1)?, y)) } else { Some((x, y.checked_sub(1)?)) }
+    }
+    /// Both ends of the step after a pixel are on a surface.
+    fn are_covered(&self, at: (usize, usize), axis: usize) -> bool {
+        let covered = |(x, y): (usize, usize)| self.coverage.at(x, y) > 0;
+        covered(at) && self.after(at, axis).is_some_and(covered)
+    }
+    /// The step of depth after a pixel, px; `None` where one of its ends is no surface.
+    fn step(&self, at: (usize, usize), axis: usize) -> Option<f32> {
+        let next = self.after(at, axis).filter(|_| self.are_covered(at, axis))?;
+        Some((self.depth.at(next.0, next.1) - self.depth.at(at.0, at.1)) * self.depth_range_px)
+    }
+    fn slope(&self, (x, y): (usize, usize), axis: usize) -> f32 {
+        slope(self.nbar[axis].at(x, y), self.nz.at(x, y))
+    }
+    /// How far the step after a pixel is from that of a smooth surface, as a ratio of the tolerance; 0 where it is one.
+    ///
+    /// Between two neighbours of a smooth surface the step lies between the slopes that their normals tell (the mean value
+    /// theorem). Normals may carry detail that the depth lacks, so the depth must jump by its own measure as well: beyond
+    /// the steps before and after. Half a slope and 1.5 px are granted for curvature and coarse depth.
+    fn excess(&self, at: (usize, usize), axis: usize) -> f32 {
+        let (Some(step), Some(next)) = (self.step(at, axis), self.after(at, axis)) else { return 0.0 };
+        let (here, there) = (self.slope(at, axis), self.slope(next, axis));
+        let by_normals = beyond(step, here, there) / (1.5 + 0.5 * here.abs().max(there.abs()));
+        if by_normals <= LIKELY {
+            return 0.0;
+        }
+        let before = self.before(at, axis).and_then(|at| self.step(at, axis));
+        let after = self.step(next, axis);
+        let Some((before, after)) = before.or(after).zip(after.or(before)) else { return by_normals };
+        // The flatter side grants less: the other may be a jump itself.
+        by_normals.min(beyond(step, before, after) / (1.5 + 0.5 * before.abs().min(after.abs())))
+    }
+}
+
+/// How far a value lies outside of the range that two others span.
+fn beyond(value: f32, a: f32, b: f32) -> f32 {
+    (a.min(b) - value).max(value - a.max(b)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, Vec3, vec3};
+    use crate::surface::{Maps, Surface};
+
+    /// Maps of 60 × 40 pixels from a height in pixels and the normal that the map tells.
+    fn surface(height: impl Fn(f32, f32) -> f32 + Sync, normal: impl Fn(f32, f32) -> Vec3 + Sync) -> Surface {
+        let size = Size::new(60, 40);
+        let at = |x: usize, y: usize| (x as f32 + 0.5, y as f32 + 0.5);
+        let [low, high] = [f32::min, f32::max].map(|pick| {
+            let all = (0..40).flat_map(|y| (0..60).map(move |x| (x, y)));
+            all.map(|(x, y)| height(at(x, y).0, at(x, y).1)).reduce(pick).unwrap()
+        });
+        let depth = Plane::from_fn(size, |x, y| (high - height(at(x, y).0, at(x, y).1)) / (high - low));
+        let normals = Plane::from_fn(size, |x, y| normal(at(x, y).0, at(x, y).1));
+        Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
+    }
+    /// Rows of which the link from column 29 to column 30 is broken.
+    fn broken_rows(surface: &Surface) -> Vec<usize> {
+        (0..40).filter(|&y| surface.links_plane().at(29, y) & RIGHT == 0).collect()
+    }
+
+    #[test]
+    fn detail_of_the_normals_that_the_depth_lacks_breaks_nothing() {
+        let wavy = |x: f32, y: f32| vec3(0.9 * (x * 2.3).sin() - 0.5, 0.9 * (y * 1.9).cos(), 0.4);
+        let surface = surface(|x, _| 0.5 * x, wavy);
+        assert!((1..39).all(|y| (1..59).all(|x| surface.links_plane().at(x, y) == 15)));
+    }
+    #[test]
+    fn a_jump_breaks_links_across_it_and_none_along_it() {
+        let cliff = |x: f32, _: f32| 0.5 * x + if x < 30.0 { 0.0 } else { 20.0 };
+        let surface = surface(cliff, |_, _| vec3(-0.5, 0.0, 1.0));
+        assert_eq!(broken_rows(&surface).len(), 40);
+        assert_eq!(surface.links_plane().at(29, 20), LEFT | UP | DOWN);
+        assert_eq!(surface.links_plane().at(28, 20), 15);
+    }
+    #[test]
+    fn a_jump_that_shrinks_goes_on_until_it_ends() {
+        // From 12 px at the top to nothing at the bottom: below 1.75 px it is no jump by itself.
+        let torn = |x: f32, y: f32| 0.5 * x + if x < 30.0 { 0.0 } else { 12.0 * (1.0 - y / 40.0) };
+        let surface = surface(torn, |_, _| vec3(-0.5, 0.0, 1.0));
+        let rows = broken_rows(&surface);
+        assert_eq!(rows, (0..rows.len()).collect::<Vec<_>>(), "one piece, no beads");
+        assert!((36..40).contains(&rows.len()), "{}", rows.len());
+        // As small a jump that touches no larger one is taken for coarse depth.
+        let low = |x: f32, _: f32| 0.5 * x + if x < 30.0 { 0.0 } else { 1.0 };
+        assert!(broken_rows(&self::surface(low, |_, _| vec3(-0.5, 0.0, 1.0))).is_empty());
+    }
 }

@@ -47,6 +47,9 @@ fn lit_by(normal: Vec3) -> f32 {
     srgb::encode((0.04 + 0.55 * diffuse + 0.35 * glossy).min(1.0))
 }
 
+/// Behind a lit surface: between its light and its dark side, so that the outline of both is seen.
+const BACKDROP: f32 = 0.40;
+
 pub(super) fn lit(surface: &Surface) -> Picture {
     let size = surface.size();
     // In the lower right corner, small enough to leave the surface to be seen.
@@ -61,7 +64,7 @@ pub(super) fn lit(surface: &Surface) -> Picture {
         let covered = f32::from(surface.coverage(x, y)) / 255.0;
         let shade = match ball(x, y) {
             Some(normal) => lit_by(normal),
-            None => 0.22 + (lit_by(surface.normal(x, y)) - 0.22) * covered,
+            None => BACKDROP + (lit_by(surface.normal(x, y)) - BACKDROP) * covered,
         };
         [shade; 3]
     })

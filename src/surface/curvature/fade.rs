@@ -7,19 +7,21 @@ use crate::surface::{Surface, links};
 /// Distance from the nearest break, in pixels, from which curvature counts in full.
 pub(super) const FADE_PX: usize = 3;
 
-/// Whether the surface ends between the pixel and a neighbour: a depth jump or the mask's edge. The canvas's border is none.
+/// Whether the surface ends between the pixel and a neighbour: a depth jump or the mask's edge.
+///
+/// The canvas's border is none, and neither is a stray pixel that is linked to nothing: it would show as a dot.
 #[inline(always)]
 pub(super) fn is_break(surface: &Surface, x: usize, y: usize) -> bool {
-    let beyond = beyond(x, surface.size().width, links::LEFT, links::RIGHT)
-        | beyond(y, surface.size().height, links::UP, links::DOWN);
-    (surface.links_plane().at(x, y) | beyond) != 15
+    let links = surface.links_plane().at(x, y);
+    links != 15 && ends_beside(surface, links, x as i32, y as i32)
 }
 
-/// The links that lead beyond the canvas at coordinate `i` of `n`.
-#[inline(always)]
-fn beyond(i: usize, n: u32, back: u8, forth: u8) -> u8 {
-    let (first, last) = (i == 0, i + 1 == n as usize);
-    (if first { back } else { 0 }) | (if last { forth } else { 0 })
+fn ends_beside(surface: &Surface, links: u8, x: i32, y: i32) -> bool {
+    let stray =
+        |x: i32, y: i32| surface.links_plane().get(x, y) == Some(0) && surface.coverage_plane().get(x, y) > Some(0);
+    let on_canvas = |x: i32, y: i32| surface.size().rect().contains(x, y);
+    let beside = [(links::LEFT, x - 1, y), (links::RIGHT, x + 1, y), (links::UP, x, y - 1), (links::DOWN, x, y + 1)];
+    !stray(x, y) && beside.iter().any(|&(bit, x, y)| links & bit == 0 && on_canvas(x, y) && !stray(x, y))
 }
 
 /// 0 at a break, rising smoothly to 1 at [`FADE_PX`] from it. `squared`: squared distance, px².

@@ -176,3 +176,16 @@ fn the_same_curvature_is_computed_once() {
     assert!(Arc::ptr_eq(&surface.curvature(1.5), &surface.curvature(1.5)));
     assert!(!Arc::ptr_eq(&surface.curvature(1.5), &surface.curvature(1.6)));
 }
+#[test]
+fn a_stray_pixel_leaves_no_dot() {
+    let ball = sphere(201, 90.0);
+    let mut depth = ball.depth_plane().clone();
+    depth.set(120, 100, 1.0);
+    let normals = Plane::from_fn(ball.size(), |x, y| ball.normal(x, y));
+    let strayed = Surface::new(Maps { normals, depth, coverage: ball.coverage_plane().clone() }).unwrap();
+    let (clean, strayed) = (ball.curvature(0.0), strayed.curvature(0.0));
+    assert_eq!(strayed.kappa(120, 100, 4.0), 0.0);
+    for (x, y) in [(119, 100), (121, 100), (120, 99), (122, 101)] {
+        assert_near(strayed.kappa(x, y, 4.0), clean.kappa(x, y, 4.0), 2e-3);
+    }
+}
