@@ -54,7 +54,7 @@ fn scale(text: &str) -> std::result::Result<f32, String> {
     factor.ok_or_else(|| "a factor is a number between 0.001 and 100".to_owned())
 }
 
-fn color(text: &str) -> std::result::Result<Color, String> {
+pub(super) fn color(text: &str) -> std::result::Result<Color, String> {
     Color::parse(text).ok_or_else(|| "a colour reads #rrggbb or #rrggbbaa".to_owned())
 }
 

@@ -10,6 +10,7 @@ use crate::io::files::{Noted, read_file};
 use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, Source};
 use crate::io::{Budget, Folder, Given};
+use crate::math::srgb::Color;
 use crate::raster::{Picture, TileGrid, picture::Texels};
 use crate::{Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -46,6 +47,9 @@ pub struct ViewArgs {
     /// Blur of normals and flows, standard deviation in pixels
     #[arg(long, value_name = "PX", default_value_t = ViewOptions::default().blur_px, value_parser = not_negative)]
     blur: f32,
+    /// What shows off the surface, as #rrggbb; a JPEG needs it
+    #[arg(long, value_name = "COLOUR", value_parser = super::render::color)]
+    background: Option<Color>,
     #[command(flatten)]
     limits: Limits,
 }
@@ -79,6 +83,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
             view::draw(&document, layer, view, &options)
                 .map_err(|why| Error::invalid(named_file(args), format!("--show {}", view.name()), why))
         };
+        let write = |target: &Target, picture: &Picture| write(target, picture, args.background);
         if args.output.is_dir() {
             for view in view::available(&document, layer) {
                 let target = Target::new(&args.output.join(view.name()).with_extension("png"), &inputs)?;
@@ -103,11 +108,11 @@ fn named_file(args: &ViewArgs) -> &Path {
     args.files.first().or(args.normal.as_ref()).or(args.depth.as_ref()).unwrap_or(&args.output)
 }
 
-fn write(target: &Target, picture: &Picture) -> Result<()> {
+fn write(target: &Target, picture: &Picture, background: Option<Color>) -> Result<()> {
     let Texels::Srgb8(texels) = &picture.texels else { return Ok(()) };
     let (width, height) = (picture.size.width as usize, picture.size.height as usize);
     let grid = TileGrid::from_straight_rgba(texels.as_flattened(), width, height, 0, 0);
-    target.write(&grid, picture.size, &Options::default())
+    target.write(&grid, picture.size, &Options { background, ..Options::default() })
 }
 
 /// The document, and every file that was read for it.
