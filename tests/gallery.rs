@@ -40,6 +40,7 @@ fn name(path: &Path) -> String {
 fn every_recipe_renders_to_a_picture_of_many_colours() {
     for path in recipes() {
         let document = recipe::load(&path, &Budget::default()).unwrap_or_else(|e| panic!("{e}"));
+        let document = document.scaled(0.25).unwrap_or_else(|e| panic!("{}: {e}", name(&path)));
         let picture = flatten(&document, &Progress::default()).unwrap();
         let rgba = picture.to_straight_rgba(document.size.rect());
         let colors: BTreeSet<[u8; 3]> =
