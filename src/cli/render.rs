@@ -4,7 +4,7 @@
 use super::{Limits, progress};
 use crate::document::source::{MapSource, MaskSource};
 use crate::document::{Document, SurfaceSource, flatten, flatten_layer};
-use crate::io::export::{Options, Target};
+use crate::io::export::{Format, Options, Target};
 use crate::io::files::{Noted, read_file};
 use crate::io::recipe::{self, Onto, Source};
 use crate::io::{Folder, Given};
@@ -59,6 +59,8 @@ pub(super) fn color(text: &str) -> std::result::Result<Color, String> {
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
+    // A misspelt ending is told before the work, not after it.
+    Format::of(&args.output)?;
     args.limits.install(|| {
         let (document, inputs) = load(args)?;
         let target = Target::new(&args.output, &inputs)?;
