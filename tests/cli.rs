@@ -165,6 +165,21 @@ fn a_painting_goes_onto_another_object_fitted_to_its_canvas() {
 }
 
 #[test]
+fn a_scaled_picture_is_the_same_painting_at_another_size() {
+    let desk = Desk::with(ON_A_SPHERE);
+    save_sphere(&desk.path("sphere.png"), 128);
+    let (small, large) = (desk.rendered("a.png", &["--scale", "0.5"]), desk.rendered("b.png", &[]));
+    assert_eq!((small.width(), small.height()), (64, 64));
+    // Red runs smoothly over the photo: a picture that is off by one pixel differs by 8 and more.
+    let reduced = large.resize_exact(64, 64, image::imageops::FilterType::Triangle).to_rgba8();
+    let both = small.to_rgba8().pixels().zip(reduced.pixels()).map(|(a, b)| (*a, *b)).collect::<Vec<_>>();
+    let covered: Vec<_> = both.iter().filter(|(a, b)| a[3] == 255 && b[3] == 255).collect();
+    let difference: u64 = covered.iter().map(|(a, b)| u64::from(a[0].abs_diff(b[0]))).sum();
+    assert!(covered.len() > 2500 && difference < 3 * covered.len() as u64, "{difference} over {}", covered.len());
+    refused(&desk.render("c.png", &["--scale", "100", "--max-side", "5000"]), &["too large", "--max-side"]);
+}
+
+#[test]
 fn what_is_refused_is_named_and_nothing_is_written() {
     let cases = [
         (r#"{ "canvas": "#, "c.png", vec!["r.json", "line 1 column"]),
