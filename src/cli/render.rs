@@ -3,7 +3,7 @@
 
 use super::{Limits, progress};
 use crate::document::source::{MapSource, MaskSource};
-use crate::document::{Document, SurfaceSource, flatten, flatten_layer};
+use crate::document::{Content, Document, SurfaceSource, flatten, flatten_layer};
 use crate::io::export::{Format, Options, Target};
 use crate::io::files::{Noted, read_file};
 use crate::io::recipe::{self, Onto, Source};
@@ -63,6 +63,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     Format::of(&args.output)?;
     args.limits.install(|| {
         let (document, inputs) = load(args)?;
+        refuse_undrawn(args, &document)?;
         let target = Target::new(&args.output, &inputs)?;
         let document = scaled(args, document)?;
         let pixels = progress::shown(|progress| match &args.layer {
@@ -89,6 +90,22 @@ fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
     inputs.extend(files.read_paths());
     inputs.extend(given.read_paths());
     Ok((document, inputs))
+}
+
+/// Layers that documents hold but that are not drawn yet: better a sentence than a picture without them.
+fn refuse_undrawn(args: &RenderArgs, document: &Document) -> Result<()> {
+    for (path, layer) in document.walk() {
+        let what = match &layer.content {
+            Content::Shading(shading) if !shading.params().model.is_drawn() => shading.params().model.name(),
+            Content::Normals(_) => "normals",
+            _ => continue,
+        };
+        if layer.visible {
+            let reason = format!("{path}: a layer of “{what}” is read and kept, but not drawn yet (hide it to go on)");
+            return Err(Error::unsupported(&args.document, reason));
+        }
+    }
+    Ok(())
 }
 
 /// The object that the command line names, if it names one.

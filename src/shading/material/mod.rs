@@ -35,6 +35,10 @@ pub enum Model {
 }
 
 impl Model {
+    /// The model is drawn. The others are read and kept in documents, and paint nothing until they are.
+    pub fn is_drawn(self) -> bool {
+        matches!(self, Model::Phong | Model::SubLambertian)
+    }
     /// Every model with its name in documents.
     pub const ALL: [(Model, &'static str); 9] = [
         (Model::Phong, "phong"),

@@ -8,12 +8,13 @@ use crate::shading::ground::{Ground, Light3};
 use crate::surface::Scene;
 
 impl Shading {
-    /// One tile of the material on a scene, opaque wherever there is any surface; `None` where there is none.
+    /// One tile of the material on a scene, opaque wherever there is any surface; `None` where there is none, and for
+    /// a model that is not drawn yet ([`Model::is_drawn`]).
     ///
     /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the first and kept:
     /// [`Shading::warm`] does so ahead.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
-        let surface = scene.surface.as_deref()?;
+        let surface = scene.surface.as_deref().filter(|_| self.model.is_drawn())?;
         let inside = at.rect().intersect(surface.size().rect());
         let features = self.features.on(surface);
         let mut pixels = PlanarTile::transparent();
@@ -41,6 +42,7 @@ impl Shading {
         match self.model {
             Model::Phong => phong::shade(self, ground, None, light),
             Model::SubLambertian => phong::shade(self, ground, Some(self.exponent), light),
+            // Not drawn: `render_tile` asked.
             _ => {}
         }
     }
