@@ -4,9 +4,6 @@
 use super::taps::{Positions, Run, Taps};
 use crate::raster::{Outside, Texture};
 
-/// Pixels in flight: their taps stay in the first-level cache.
-const SPAN: usize = 256;
-
 /// Scratch for bilinear rows, kept from row to row.
 #[derive(Default)]
 pub struct Bilinear {
@@ -16,23 +13,14 @@ pub struct Bilinear {
 impl Bilinear {
     /// The picture's premultiplied bytes at each position (`x`, `y`; texels), rounded: one pixel of `out` each.
     pub fn row(&mut self, texture: &Texture, x: &[f32], y: &[f32], outside: Outside, out: &mut [[u8; 4]]) {
-        const ONE_EACH: [Run; SPAN] = one_each();
+        // Pixels in flight: their taps stay in the first-level cache.
+        const SPAN: usize = Run::ONE_EACH.len();
         for ((x, y), out) in x.chunks(SPAN).zip(y.chunks(SPAN)).zip(out.chunks_mut(SPAN)) {
             let at = Positions { level: &texture.levels()[0], x, y, outside };
             self.taps.find(at);
-            self.taps.means(at, &ONE_EACH[..out.len()], out);
+            self.taps.means(at, &Run::ONE_EACH[..out.len()], out);
         }
     }
-}
-
-const fn one_each() -> [Run; SPAN] {
-    let mut runs = [Run { pixel: 0, count: 1 }; SPAN];
-    let mut i = 0;
-    while i < SPAN {
-        runs[i].pixel = i as u16;
-        i += 1;
-    }
-    runs
 }
 
 #[cfg(test)]

@@ -105,6 +105,16 @@ pub struct Run {
 }
 
 impl Run {
+    /// One tap a pixel, in order.
+    pub const ONE_EACH: &[Run] = &{
+        let mut runs = [Run { pixel: 0, count: 1 }; 256];
+        let mut i = 0;
+        while i < runs.len() {
+            runs[i].pixel = i as u16;
+            i += 1;
+        }
+        runs
+    };
     #[inline(always)]
     fn share(self) -> f32 {
         SHARES[usize::from(self.count) % SHARES.len()]
