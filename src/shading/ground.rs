@@ -64,6 +64,10 @@ impl<'a> Ground<'a> {
         }
         kappa
     }
+    /// Which neighbours continue the surface, along the row: bits of [`crate::surface::links`].
+    pub fn links(&self) -> &[u8] {
+        &self.surface.links_plane().row(self.y)[self.x0..self.x0 + self.width]
+    }
     /// Coverage by the surface, `[0, 1]`, along the row.
     pub fn coverage(&self) -> &[u8] {
         &self.surface.coverage_plane().row(self.y)[self.x0..self.x0 + self.width]

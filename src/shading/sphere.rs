@@ -1,7 +1,10 @@
 //! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that tells the colour of every normal.
 //! Floor 3.
 
+use crate::math::{Size, Vec2, Vec3, srgb, vec2, vec3};
 use crate::raster::Picture;
+use rayon::prelude::*;
+use std::sync::{Arc, LazyLock, OnceLock};
 
 /// A picture whose inscribed disc is the sphere seen orthographically.
 #[derive(Clone)]
@@ -9,10 +12,138 @@ pub struct LitSphere {
     /// The name it goes by in the document.
     pub file: String,
     pub picture: Picture,
+    /// Shared by clones, made when first asked for.
+    light: Arc<OnceLock<SphereLight>>,
 }
 
 impl LitSphere {
     pub fn new(file: String, picture: Picture) -> Self {
-        Self { file, picture }
+        Self { file, picture, light: Arc::default() }
+    }
+    /// The sphere's light, ready to be looked up.
+    pub fn light(&self) -> &SphereLight {
+        self.light.get_or_init(|| SphereLight::new(&self.picture))
+    }
+    /// Grey clay under a window at the upper left: the sphere of a layer that names none.
+    pub fn clay() -> &'static LitSphere {
+        static CLAY: LazyLock<LitSphere> = LazyLock::new(|| LitSphere::new(String::new(), clay()));
+        &CLAY
+    }
+}
+
+/// Linear light of a sphere by its projected normal.
+pub struct SphereLight {
+    size: Size,
+    /// Beyond the disc stands the nearest colour inside, so that lookups at the rim never see the picture's ground.
+    texels: Vec<[f32; 3]>,
+    /// The greatest luminance on the disc.
+    brightest: f32,
+}
+
+impl SphereLight {
+    fn new(picture: &Picture) -> Self {
+        let (width, height) = (picture.size.width as usize, picture.size.height as usize);
+        // A worker that waited for helpers could be handed a tile that waits for this very sphere: it works alone.
+        let texel = |i: usize| nearest_inside(picture, i % width, i / width);
+        let texels: Vec<[f32; 3]> = match rayon::current_thread_index() {
+            Some(_) => (0..width * height).map(texel).collect(),
+            None => (0..width * height).into_par_iter().map(texel).collect(),
+        };
+        let brightest = texels.iter().map(|&[r, g, b]| srgb::luminance(r, g, b)).fold(0.0, f32::max);
+        Self { size: picture.size, texels, brightest }
+    }
+    /// The colour at ½ + ½ n̄ of the picture, bilinear, linear light (MATH 5). `nbar`: image axes (y down), length ≤ 1.
+    #[inline(always)]
+    pub fn at(&self, nbar: Vec2) -> [f32; 3] {
+        let (w, h) = (self.size.width as i32, self.size.height as i32);
+        let (x, y) = ((0.5 + 0.5 * nbar.x) * w as f32 - 0.5, (0.5 + 0.5 * nbar.y) * h as f32 - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let (across, along) = (x - left, y - top);
+        let texel = |i: i32, j: i32| {
+            let at = j.clamp(0, h - 1) as usize * w as usize + i.clamp(0, w - 1) as usize;
+            Vec3::from(self.texels.get(at).copied().unwrap_or_default())
+        };
+        let (i, j) = (left as i32, top as i32);
+        let above = texel(i, j).lerp(texel(i + 1, j), across);
+        let below = texel(i, j + 1).lerp(texel(i + 1, j + 1), across);
+        above.lerp(below, along).to_array()
+    }
+    /// The greatest luminance there is on the sphere.
+    pub fn brightest(&self) -> f32 {
+        self.brightest
+    }
+}
+
+/// The texel if it lies on the disc, else the one toward the centre that does.
+fn nearest_inside(picture: &Picture, x: usize, y: usize) -> [f32; 3] {
+    let (w, h) = (picture.size.width as f32, picture.size.height as f32);
+    // In units of the disc's radius, which may differ along x and y as the picture's sides do.
+    let at = vec2((x as f32 + 0.5) / w * 2.0 - 1.0, (y as f32 + 0.5) / h * 2.0 - 1.0);
+    // A texel's width from the rim the paint of the sphere ends for certain.
+    let most = 1.0 - 1.5 / w.min(h);
+    let inside = if at.length() > most { at * (most.max(0.0) / at.length()) } else { at };
+    let index = |v: f32, n: f32| (((v * 0.5 + 0.5) * n) as usize).min(n as usize - 1);
+    let [r, g, b, _] = picture.linear_at(index(inside.x, w), index(inside.y, h));
+    [r, g, b]
+}
+
+fn clay() -> Picture {
+    const SIDE: u32 = 256;
+    let (key, sky) = (vec3(-0.45, 0.6, 0.66).normalize_or(Vec3::Z), Vec3::Y);
+    let color = |x: u32, y: u32| {
+        let at = |i: u32| (i as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
+        let (u, v) = (at(x), -at(y));
+        let n = vec3(u, v, (1.0 - u * u - v * v).max(0.0).sqrt()).normalize_or(Vec3::Z);
+        let matt = 0.05 + 0.1 * (0.5 + 0.5 * n.dot(sky)) + 0.55 * n.dot(key).max(0.0);
+        let gloss = 0.25 * (key + Vec3::Z).normalize_or(Vec3::Z).dot(n).max(0.0).powf(40.0);
+        let byte = |tint: f32| srgb::quantise(srgb::encode(matt * tint + gloss));
+        [byte(1.0), byte(0.97), byte(0.93), 255]
+    };
+    let texels = (0..SIDE * SIDE).map(|i| color(i % SIDE, i / SIDE)).collect();
+    Picture::srgb8(Size::new(SIDE, SIDE), texels).expect("one colour for each of the pixels")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A disc whose red is x, whose green is y (down), on a blinding ground.
+    fn disc(side: u32) -> LitSphere {
+        let color = |i: u32| {
+            let at = |v: u32| (v as f32 + 0.5) / side as f32;
+            let (x, y) = (at(i % side), at(i / side));
+            match (x - 0.5).hypot(y - 0.5) < 0.5 {
+                true => [x, y, 0.0, 1.0],
+                false => [9000.0, 9000.0, 9000.0, 1.0],
+            }
+        };
+        let size = Size::new(side, side);
+        LitSphere::new("disc".into(), Picture::linear(size, (0..side * side).map(color).collect()).unwrap())
+    }
+    #[test]
+    fn a_normal_finds_its_place_on_the_disc() {
+        let sphere = disc(200);
+        for nbar in [vec2(0.0, 0.0), vec2(0.5, -0.3), vec2(-0.6, 0.7)] {
+            let [r, g, _] = sphere.light().at(nbar);
+            assert!((r - (0.5 + 0.5 * nbar.x)).abs() < 1e-4 && (g - (0.5 + 0.5 * nbar.y)).abs() < 1e-4, "{r} {g}");
+        }
+    }
+    #[test]
+    fn the_ground_around_the_sphere_is_never_seen() {
+        for side in [1, 2, 3, 17, 256] {
+            let sphere = disc(side);
+            for i in 0..360 {
+                let nbar = Vec2::from_angle((i as f32).to_radians());
+                let light = sphere.light().at(nbar);
+                assert!(light.iter().all(|v| *v <= 1.0), "{side} {i}: {light:?}");
+            }
+            assert!(sphere.light().brightest() <= 1.0);
+        }
+    }
+    #[test]
+    fn clay_is_brightest_at_the_upper_left() {
+        let light = LitSphere::clay().light();
+        let [lit, shaded] = [vec2(-0.4, -0.5), vec2(0.4, 0.5)].map(|nbar| light.at(nbar)[0]);
+        assert!(lit > 0.4 && shaded < 0.3 && light.brightest() < 1.0, "{lit} {shaded}");
     }
 }

@@ -20,6 +20,14 @@ pub fn add(light: &mut Light3, tint: [f32; 3], rho: &Pixels, scale: Option<(Scal
 }
 
 crate::widest! {
+    /// σ(κ, δ) ρ of each pixel.
+    pub fn scaled(rho: &Pixels, scaling: Scaling, kappa: &Pixels, delta: &Pixels) -> Pixels {
+        let mut scaled = [0.0; TILE];
+        for (x, scaled) in scaled.iter_mut().enumerate() {
+            *scaled = rho[x] * scaling.sigma_fast(kappa[x], delta[x]);
+        }
+        scaled
+    }
     fn add_plain(light: &mut Light3, tint: [f32; 3], rho: &Pixels) {
         for x in 0..TILE {
             for c in 0..3 {
@@ -34,6 +42,14 @@ crate::widest! {
             let scaled = rho[x] * scaling.sigma_fast(kappa[x], delta[x]);
             for c in 0..3 {
                 light[c][x] += tint[c] * scaled;
+            }
+        }
+    }
+    /// Adds light that each pixel has a colour of its own for: tint · σ · shown.
+    pub fn add_shown(light: &mut Light3, tint: [f32; 3], shown: &Light3, sigma: &Pixels) {
+        for c in 0..3 {
+            for x in 0..TILE {
+                light[c][x] += tint[c] * sigma[x] * shown[c][x];
             }
         }
     }

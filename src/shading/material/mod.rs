@@ -1,9 +1,12 @@
 //! A shading layer's material: which model, its terms, and the light it stands in (MATH 5).
 //! Floor 3. One file a model; `render` makes tiles of them.
 
+mod ashikhmin;
+mod lit_sphere;
 mod lobes;
 mod phong;
 mod render;
+mod toon;
 
 use super::{
     environment::Environment,
@@ -37,7 +40,7 @@ pub enum Model {
 impl Model {
     /// The model is drawn. The others are read and kept in documents, and paint nothing until they are.
     pub fn is_drawn(self) -> bool {
-        matches!(self, Model::Phong | Model::SubLambertian)
+        matches!(self, Model::Phong | Model::Toon | Model::SubLambertian | Model::Ashikhmin | Model::LitSphere)
     }
     /// Every model with its name in documents.
     pub const ALL: [(Model, &'static str); 9] = [
@@ -110,7 +113,7 @@ pub struct Shading {
     pub nu: f32,
     pub nv: f32,
     pub environment: Option<Environment>,
-    /// Lit sphere; where there is a concave one too, this one stands for convex features.
+    /// Lit sphere; where there is a concave one too, this one stands for convex features. None is grey clay.
     pub sphere: Option<LitSphere>,
     pub sphere_concave: Option<LitSphere>,
     /// Refractive index, `> 0`.

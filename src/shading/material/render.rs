@@ -1,7 +1,7 @@
 //! A tile of a shading layer: the model's light row by row, encoded and clipped at the end.
 //! Floor 3.
 
-use super::{Model, Shading, phong};
+use super::{Model, Shading, ashikhmin, lit_sphere, phong, toon};
 use crate::math::{fast, srgb};
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, planar::Row};
 use crate::shading::ground::{Ground, Light3};
@@ -17,18 +17,23 @@ impl Shading {
         let surface = scene.surface.as_deref().filter(|_| self.model.is_drawn())?;
         let inside = at.rect().intersect(surface.size().rect());
         let features = self.features.on(surface);
+        let ground = |y: i32| Ground::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
         let mut pixels = PlanarTile::transparent();
-        for (row, y) in pixels.rows_mut().iter_mut().zip(inside.y0..inside.y1) {
-            let ground = Ground::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
-            if ground.coverage().iter().all(|&c| c == 0) {
-                continue;
+        let rows = pixels.rows_mut().iter_mut().zip(inside.y0..inside.y1);
+        if self.model == Model::Toon {
+            let grounds: Vec<Ground> = (inside.y0..inside.y1).map(ground).collect();
+            let mut light = vec![[[0.0; TILE]; 3]; grounds.len()];
+            toon::shade_tile(self, &grounds, &mut light);
+            rows.zip(&grounds).zip(&light).for_each(|(((row, _), ground), light)| show(light, ground, row));
+            return pixels.quantised();
+        }
+        for (row, y) in rows {
+            let ground = ground(y);
+            if ground.coverage().iter().any(|&c| c > 0) {
+                let mut light = [[0.0; TILE]; 3];
+                self.shade(&ground, &mut light);
+                show(&light, &ground, row);
             }
-            for (alpha, &coverage) in row.a.iter_mut().zip(ground.coverage()) {
-                *alpha = if coverage > 0 { 1.0 } else { 0.0 };
-            }
-            let mut light = [[0.0; TILE]; 3];
-            self.shade(&ground, &mut light);
-            encode(&light, row);
         }
         pixels.quantised()
     }
@@ -37,15 +42,28 @@ impl Shading {
         if let Some(surface) = scene.surface.as_deref() {
             self.features.on(surface);
         }
+        if self.model == Model::LitSphere {
+            lit_sphere::warm(self);
+        }
     }
     fn shade(&self, ground: &Ground, light: &mut Light3) {
         match self.model {
             Model::Phong => phong::shade(self, ground, None, light),
             Model::SubLambertian => phong::shade(self, ground, Some(self.exponent), light),
+            Model::Ashikhmin => ashikhmin::shade(self, ground, light),
+            Model::LitSphere => lit_sphere::shade(self, ground, light),
             // Not drawn: `render_tile` asked.
             _ => {}
         }
     }
+}
+
+/// Linear light on a row, opaque where the surface covers any of a pixel.
+fn show(light: &Light3, ground: &Ground, row: &mut Row) {
+    for (alpha, &coverage) in row.a.iter_mut().zip(ground.coverage()) {
+        *alpha = if coverage > 0 { 1.0 } else { 0.0 };
+    }
+    encode(light, row);
 }
 
 crate::widest! {

@@ -120,6 +120,90 @@ fn the_sub_lambertian_term_is_a_power_of_the_matt_one() {
     let shading = Shading { model: Model::SubLambertian, exponent: 0.4, ..phong() };
     assert_shows(&shading, 1.0, |surface, x, y| phong_at(&shading, surface, x, y, 0.4));
 }
+/// Ashikhmin and Shirley (2000) at a pixel, in vectors.
+fn ashikhmin_at(shading: &Shading, surface: &Surface, x: usize, y: usize) -> Vec3 {
+    let (n, e) = (surface.normal(x, y), Vec3::Z);
+    let features = shading.features.on(surface);
+    let (rd, rs) = (Vec3::from(shading.diffuse.linear()), Vec3::from(shading.specular.linear()).min(Vec3::ONE));
+    let u = (Vec3::X - n.x * n).normalize();
+    let v = n.cross(u);
+    let mut sum = Vec3::ZERO;
+    for light in &shading.lights {
+        let l = direction_at(surface, light, x, y);
+        let h = (l + e).normalize();
+        let (n_l, n_h) = (n.dot(l).max(0.0), n.dot(h));
+        let lifted = |cosine: f32| 1.0 - (1.0 - cosine / 2.0).powi(5);
+        let matt = 28.0 / 23.0 * rd * (1.0 - rs) * lifted(n_l) * lifted(n.z) * n_l;
+        let exponent = (shading.nu * h.dot(u).powi(2) + shading.nv * h.dot(v).powi(2)) / (1.0 - n_h * n_h).max(1e-6);
+        let lobe = ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt() / 8.0 * n_h.max(0.0).powf(exponent);
+        let fresnel = rs + (1.0 - rs) * (1.0 - h.dot(e)).powi(5);
+        let glossy = lobe * n_l / (h.dot(e) * n_l.max(n.z)) * fresnel;
+        let kappa = features.at(x, y, l);
+        let scaled =
+            shading.diffuse.scaling.sigma(kappa, n_l) * matt + shading.specular.scaling.sigma(kappa, n_h) * glossy;
+        sum += scaled * Vec3::from(light.color.linear()) * light.intensity;
+    }
+    sum
+}
+
+#[test]
+fn ashikhmin_is_the_paper_s_two_lobes_each_scaled_by_its_own_reflectance() {
+    let shading = Shading {
+        model: Model::Ashikhmin,
+        ambient: Term::NONE,
+        specular: term(Color { r: 250, g: 200, b: 90, a: 255 }, 0.3, 0.9, 2.0),
+        nu: 12.0,
+        nv: 90.0,
+        ..phong()
+    };
+    assert_shows(&shading, 1.0, |surface, x, y| ashikhmin_at(&shading, surface, x, y));
+}
+#[test]
+fn a_highlight_stretches_along_the_direction_of_the_smaller_exponent() {
+    let light = vec3(0.0, 0.0, 1.0);
+    let seen = |nu: f32, nv: f32, h: Vec3| {
+        let h = h.normalize();
+        ashikhmin::glossy([h.x, h.y, h.z], h.z, light.z, 1.0, nu, nv)
+    };
+    let (beside, above) = (vec3(0.3, 0.0, 1.0), vec3(0.0, 0.3, 1.0));
+    assert!(seen(10.0, 500.0, beside) > 10.0 * seen(10.0, 500.0, above));
+    assert!((seen(50.0, 50.0, beside) - seen(50.0, 50.0, above)).abs() < 1e-5);
+}
+
+/// A sphere that shows red by x and green by y.
+fn painted_sphere(blue: f32) -> LitSphere {
+    let color = |i: u32| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, blue, 1.0];
+    LitSphere::new(
+        "s".into(),
+        crate::raster::Picture::linear(Size::new(64, 64), (0..4096).map(color).collect()).unwrap(),
+    )
+}
+
+#[test]
+fn two_lit_spheres_are_blended_by_curvature_and_scaled_by_their_luminance() {
+    let shading = Shading {
+        model: Model::LitSphere,
+        specular: term(Color::WHITE, 0.8, 0.4, 1.5),
+        sphere: Some(painted_sphere(0.9)),
+        sphere_concave: Some(painted_sphere(0.0)),
+        ..phong()
+    };
+    let [convex, concave] = [&shading.sphere, &shading.sphere_concave].map(|s| s.as_ref().unwrap().light());
+    let most = convex.brightest();
+    assert!(most > concave.brightest());
+    assert_shows(&shading, 1.0, |surface, x, y| {
+        let kappa = shading.features.on(surface).at(x, y, Vec3::Z);
+        let at = |sphere: &crate::shading::sphere::SphereLight| Vec3::from(sphere.at(surface.nbar(x, y)));
+        let shown = at(concave).lerp(at(convex), 0.5 + 0.5 * kappa);
+        let delta = srgb::luminance(shown.x, shown.y, shown.z) / most;
+        0.8 * shown * shading.specular.scaling.sigma(kappa, delta)
+    });
+}
+#[test]
+fn a_lit_sphere_that_names_no_picture_is_clay() {
+    let shading = Shading::new(Model::LitSphere);
+    assert_shows(&shading, 1.0, |surface, x, y| Vec3::from(LitSphere::clay().light().at(surface.nbar(x, y))));
+}
 #[test]
 fn without_a_surface_there_is_nothing_to_light() {
     let scene = Scene { size: SIZE, surface: None };

@@ -1,0 +1,120 @@
+//! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH 5).
+//! Floor 3. Its lobes for one pixel stand first and read like the paper; a row of them is computed by the same functions.
+//!
+//! Light is counted as everywhere here, without 1/π: ρ is π times the paper's reflectance, times n·ℓ. R_s is the colour ×
+//! weight of the `specular` term, R_d that of `diffuse`.
+
+use super::{Shading, lobes};
+use crate::math::fast;
+use crate::raster::TILE;
+use crate::shading::ground::{Ground, Light3, Pixels};
+
+/// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h.
+pub fn shade(shading: &Shading, ground: &Ground, light: &mut Light3) {
+    let (diffuse, specular) = (&shading.diffuse, &shading.specular);
+    let rs = specular.linear().map(|c| c.min(1.0));
+    let kept: [f32; 3] = std::array::from_fn(|c| diffuse.linear()[c] * (1.0 - rs[c]));
+    for lit in &shading.lights {
+        let lit = lit.on(ground);
+        let is_scaled = diffuse.is_scaled() || specular.is_scaled();
+        let kappa = if is_scaled { ground.kappa(lit.toward()) } else { [0.0; TILE] };
+        if diffuse.weight > 0.0 {
+            let (rho, delta) = matt_row(&ground.normal, &lit.direction);
+            lobes::add(light, lobes::tint(kept, lit.radiance), &rho, Some((diffuse.scaling, &kappa, &delta)));
+        }
+        if specular.weight > 0.0 {
+            let Glossy { rho, white, delta } = glossy_row(&ground.normal, &lit.direction, shading.nu, shading.nv);
+            let scaled = lobes::scaled(&rho, specular.scaling, &kappa, &delta);
+            // R_s + (1 − R_s) f = R_s (1 − f) + f: a coloured part and a white one.
+            let part = |share: &dyn Fn(f32) -> f32| std::array::from_fn(|x| scaled[x] * share(white[x]));
+            lobes::add(light, lobes::tint(rs, lit.radiance), &part(&|f| 1.0 - f), None);
+            lobes::add(light, lit.radiance, &part(&|f| f), None);
+        }
+    }
+}
+
+/// ρ_d / (R_d (1 − R_s)) = 28/23 (1 − (1 − n·ℓ/2)⁵) (1 − (1 − n·e/2)⁵) (n·ℓ)₊ (Ashikhmin and Shirley 2000, eq. 5).
+#[inline(always)]
+pub fn matt(n_l: f32, n_e: f32) -> f32 {
+    let lifted = |cosine: f32| 1.0 - power_5(1.0 - 0.5 * cosine);
+    let n_l = fast::max(n_l, 0.0);
+    28.0 / 23.0 * lifted(n_l) * lifted(fast::max(n_e, 0.0)) * n_l
+}
+
+/// ρ_s / F = √((ν_u + 1)(ν_v + 1)) / 8 · (n·h)^((ν_u (h·u)² + ν_v (h·v)²) / (1 − (n·h)²)) (n·ℓ)₊ / ((h·e) max(n·ℓ, n·e))
+/// (Ashikhmin and Shirley 2000, eq. 4).
+///
+/// * `h_uvn`: the half vector, unit, in the frame of the surface.
+#[inline(always)]
+pub fn glossy(h_uvn: [f32; 3], h_e: f32, n_l: f32, n_e: f32, nu: f32, nv: f32) -> f32 {
+    let [hu, hv, hn] = h_uvn;
+    let across = hu * hu + hv * hv;
+    // Where h is the normal itself every exponent gives 1.
+    let exponent = (nu * hu * hu + nv * hv * hv) / fast::max(across, 1e-12);
+    let lobe = fast::pow(fast::min(fast::max(hn, 0.0), 1.0), exponent);
+    let n_l = fast::max(n_l, 0.0);
+    let below = fast::max(h_e, 1e-3) * fast::max(fast::max(n_l, n_e), 1e-3);
+    (((nu + 1.0) * (nv + 1.0)).sqrt() * 0.125) * lobe * n_l / below
+}
+
+/// (1 − h·e)⁵: how white the mirrored light is (Schlick 1994; F = R_s + (1 − R_s) of it).
+#[inline(always)]
+pub fn whiteness(h_e: f32) -> f32 {
+    power_5(1.0 - fast::min(h_e, 1.0))
+}
+
+#[inline(always)]
+fn power_5(x: f32) -> f32 {
+    let x2 = x * x;
+    x2 * x2 * x
+}
+
+/// A unit vector in the frame of the surface: u runs along the picture's x, v along its y (up), then the normal.
+///
+/// u = (x − (x·n) n) / |…|, v = n × u; where the normal is ±x any u will do.
+#[inline(always)]
+pub fn in_frame(n: [f32; 3], w: [f32; 3]) -> [f32; 3] {
+    let dot = n[0] * w[0] + n[1] * w[1] + n[2] * w[2];
+    let per_length = 1.0 / fast::max(n[1] * n[1] + n[2] * n[2], 1e-12).sqrt();
+    // u·w = (w_x − n_x (n·w)) / |u|; v = (0, n_z, −n_y) / |u|.
+    [(w[0] - n[0] * dot) * per_length, (n[2] * w[1] - n[1] * w[2]) * per_length, dot]
+}
+
+/// The glossy term along a row.
+struct Glossy {
+    /// ρ_s / F.
+    rho: Pixels,
+    /// (1 − h·e)⁵.
+    white: Pixels,
+    /// n·h.
+    delta: Pixels,
+}
+
+crate::widest! {
+    /// ρ_d without its colours, and n·ℓ.
+    fn matt_row(normal: &[Pixels; 3], direction: &[Pixels; 3]) -> (Pixels, Pixels) {
+        let (mut rho, mut delta) = ([0.0; TILE], [0.0; TILE]);
+        for x in 0..TILE {
+            let n_l = normal[0][x] * direction[0][x] + normal[1][x] * direction[1][x] + normal[2][x] * direction[2][x];
+            rho[x] = matt(n_l, normal[2][x]);
+            delta[x] = fast::max(n_l, 0.0);
+        }
+        (rho, delta)
+    }
+    fn glossy_row(normal: &[Pixels; 3], direction: &[Pixels; 3], nu: f32, nv: f32) -> Glossy {
+        let mut row = Glossy { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
+        for x in 0..TILE {
+            let n = [normal[0][x], normal[1][x], normal[2][x]];
+            let l = [direction[0][x], direction[1][x], direction[2][x]];
+            // h = (ℓ + e) / |ℓ + e| with e = (0, 0, 1); |ℓ + e|² = 2 + 2 ℓ_z, and h·e = |ℓ + e| / 2.
+            let length = fast::max(2.0 + 2.0 * l[2], 1e-12).sqrt();
+            let half = [l[0] / length, l[1] / length, (l[2] + 1.0) / length];
+            let h_uvn = in_frame(n, half);
+            let n_l = n[0] * l[0] + n[1] * l[1] + n[2] * l[2];
+            row.rho[x] = glossy(h_uvn, 0.5 * length, n_l, n[2], nu, nv);
+            row.white[x] = whiteness(0.5 * length);
+            row.delta[x] = h_uvn[2];
+        }
+        row
+    }
+}

@@ -1,0 +1,62 @@
+//! Lit sphere: the colour that a painted sphere has where its normal is the same; or two spheres, one for convex and one
+//! for concave features, blended by κ (RS sec. 5.3.1, MATH 5).
+//! Floor 3.
+
+use super::{Shading, lobes};
+use crate::math::{srgb, vec2};
+use crate::raster::TILE;
+use crate::shading::LitSphere;
+use crate::shading::ground::{Ground, Light3, Pixels, Toward};
+use crate::shading::sphere::SphereLight;
+
+/// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest there is on the spheres.
+///
+/// Of two spheres the convex one counts (1 + κ) / 2, so that flat parts show half of each.
+pub fn shade(shading: &Shading, ground: &Ground, light: &mut Light3) {
+    let term = &shading.specular;
+    if term.weight <= 0.0 {
+        return;
+    }
+    let convex = convex(shading).light();
+    let concave = shading.sphere_concave.as_ref().map(LitSphere::light);
+    let needs_kappa = term.is_scaled() || concave.is_some();
+    // A painted sphere has no one direction of light, so κ is isotropic.
+    let kappa = if needs_kappa { ground.kappa(Toward::VIEWER) } else { [0.0; TILE] };
+    let shown = looked_up(ground, convex, concave, &kappa);
+    let brightest = concave.map_or(0.0, SphereLight::brightest).max(convex.brightest());
+    let delta = reflectances(&shown, 1.0 / shading.reference.resolve(brightest));
+    let sigma = lobes::scaled(&[1.0; TILE], term.scaling, &kappa, &delta);
+    lobes::add_shown(light, term.linear(), &shown, &sigma);
+}
+
+/// The sphere of convex features, or of all.
+fn convex(shading: &Shading) -> &LitSphere {
+    shading.sphere.as_ref().unwrap_or_else(|| LitSphere::clay())
+}
+
+/// Computes now what many tiles would otherwise wait for.
+pub fn warm(shading: &Shading) {
+    convex(shading).light();
+    let _ = shading.sphere_concave.as_ref().map(LitSphere::light);
+}
+
+fn looked_up(ground: &Ground, convex: &SphereLight, concave: Option<&SphereLight>, kappa: &Pixels) -> Light3 {
+    let mut shown = [[0.0; TILE]; 3];
+    let [nx, ny, _] = &ground.normal;
+    for x in 0..ground.width {
+        let nbar = vec2(nx[x], -ny[x]);
+        let mut color = convex.at(nbar);
+        if let Some(concave) = concave {
+            let share = 0.5 + 0.5 * kappa[x];
+            let other = concave.at(nbar);
+            color = std::array::from_fn(|c| other[c] + share * (color[c] - other[c]));
+        }
+        (shown[0][x], shown[1][x], shown[2][x]) = (color[0], color[1], color[2]);
+    }
+    shown
+}
+
+/// δ = luminance / Y*, clamped by σ itself.
+fn reflectances(shown: &Light3, per_reference: f32) -> Pixels {
+    std::array::from_fn(|x| srgb::luminance(shown[0][x], shown[1][x], shown[2][x]) * per_reference)
+}
