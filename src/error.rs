@@ -23,6 +23,9 @@ pub enum Error {
     /// Larger than the budget allows; the sentence says which figure and how to raise it.
     #[error("{}: too large: {reason}", file.display())]
     TooLarge { file: PathBuf, reason: String },
+    /// What is there is not what was expected, and would be lost; the sentence says what to expect instead.
+    #[error("{}: not replaced: {reason}", file.display())]
+    Changed { file: PathBuf, reason: String },
     /// What a field of a document led to: a picture it names cannot be read.
     #[error("{}: {field}: {error}", file.display())]
     At { file: PathBuf, field: String, error: Box<Error> },

@@ -17,22 +17,32 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around it.
 /// It sees the surface that it sees in its place. `None` if cancelled or if there is no such layer.
 pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> Option<TileGrid> {
-    let layers = alone(&document.layers, id)?;
+    flatten_layers(document, &[id], progress)
+}
+
+/// As [`flatten_layer`], for some layers of one list composed with each other. A layer stays clipped where what it is
+/// clipped to is among them.
+pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
+    let layers = alone(&document.layers, ids)?;
     flatten(&Document { layers, ..document.clone() }, progress)
 }
 
-/// The layers with all but one hidden; `None` if it is not among them.
-fn alone(layers: &[Arc<Layer>], id: LayerId) -> Option<Vec<Arc<Layer>>> {
-    let mut found = false;
+/// The layers with all but some hidden; `None` if none of those is among them.
+fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
+    let (mut found, mut base_is_shown) = (false, false);
     let shown = layers.iter().map(|layer| {
         let mut next = Layer::clone(layer);
-        next.clip_below = false;
-        if layer.id == id {
+        let is_chosen = ids.contains(&layer.id);
+        next.clip_below &= is_chosen && base_is_shown;
+        if !layer.clip_below && !matches!(layer.content, Content::Normals(_)) {
+            base_is_shown = is_chosen;
+        }
+        if is_chosen {
             (next.visible, found) = (true, true);
             return Arc::new(next);
         }
         if let Content::Group(group) = &mut next.content
-            && let Some(inner) = alone(&group.layers, id)
+            && let Some(inner) = alone(&group.layers, ids)
         {
             group.layers = inner;
             group.pass_through = true;

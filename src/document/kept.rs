@@ -2,40 +2,56 @@
 //! Floor 4. Rendered tiles are kept by `live`.
 
 use super::Layer;
+use crate::math::Size;
+use crate::raster::Asset;
 use crate::shading::RadianceScaling;
 use crate::surface::Scene;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// What is measured beneath an adjustment; shared by the layer's versions.
+/// What is known of a layer; shared by its versions.
 #[derive(Clone, Default)]
 pub struct Kept {
+    /// The look of the layer alone, as a project stores it.
+    pub look: Memo<(), Encoded>,
+    /// The pixels of a paint layer, as a project stores them.
+    pub pixels: Memo<(), Encoded>,
     /// The greatest luminance.
     pub(super) brightest: Memo<()>,
     /// The factor that restores the mean luminance, for given parameters.
     pub(super) gain: Memo<RadianceScaling>,
 }
 
-/// A number that depends on the scene, on everything beneath a layer, and on a key.
-#[derive(Clone)]
-pub(super) struct Memo<K> {
-    last: Arc<Mutex<Option<Measured<K>>>>,
+/// A layer's pixels as a file holds them, and where they lie.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Encoded {
+    pub file: Asset,
+    pub size: Size,
+    /// Canvas pixel of the upper left corner.
+    pub x: i32,
+    pub y: i32,
 }
 
-struct Measured<K> {
+/// A value that depends on the scene, on some layers (most often all beneath a layer), and on a key.
+#[derive(Clone)]
+pub struct Memo<K, V = f32> {
+    last: Arc<Mutex<Option<Measured<K, V>>>>,
+}
+
+struct Measured<K, V> {
     scene: Scene,
     /// Weak, so that a measure keeps no layer alive and no two layers each other.
     beneath: Vec<Weak<Layer>>,
     key: K,
-    value: f32,
+    value: V,
 }
 
-impl<K> Default for Memo<K> {
+impl<K, V> Default for Memo<K, V> {
     fn default() -> Self {
         Self { last: Arc::default() }
     }
 }
 
-impl<K: Clone + PartialEq> Memo<K> {
+impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
     /// The value for a scene, the very same layers beneath and an equal key; measured anew if any is another.
     /// `None` if `measure` gives up.
     ///
@@ -45,22 +61,22 @@ impl<K: Clone + PartialEq> Memo<K> {
         scene: &Scene,
         beneath: &[Arc<Layer>],
         key: &K,
-        measure: impl FnOnce() -> Option<f32>,
-    ) -> Option<f32> {
-        let holds = |m: &Measured<K>| {
+        measure: impl FnOnce() -> Option<V>,
+    ) -> Option<V> {
+        let holds = |m: &Measured<K, V>| {
             let same_layers = m.beneath.len() == beneath.len()
                 && m.beneath.iter().zip(beneath).all(|(kept, now)| kept.as_ptr() == Arc::as_ptr(now));
             same_layers && m.scene.is_same(scene) && m.key == *key
         };
-        if let Some(value) = self.lock().as_ref().filter(|m| holds(m)).map(|m| m.value) {
+        if let Some(value) = self.lock().as_ref().filter(|m| holds(m)).map(|m| m.value.clone()) {
             return Some(value);
         }
         let value = measure()?;
         let beneath = beneath.iter().map(Arc::downgrade).collect();
-        *self.lock() = Some(Measured { scene: scene.clone(), beneath, key: key.clone(), value });
+        *self.lock() = Some(Measured { scene: scene.clone(), beneath, key: key.clone(), value: value.clone() });
         Some(value)
     }
-    fn lock(&self) -> MutexGuard<'_, Option<Measured<K>>> {
+    fn lock(&self) -> MutexGuard<'_, Option<Measured<K, V>>> {
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

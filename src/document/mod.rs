@@ -20,7 +20,7 @@ pub mod view;
 
 pub use diff::diff;
 pub use edit::Place;
-pub use flatten::{flatten, flatten_layer};
+pub use flatten::{flatten, flatten_layer, flatten_layers};
 pub use history::History;
 pub use layer::{Content, Group, Layer, LayerId, Lock, NormalLayer, PixelLayer, StrokeList};
 pub use live::Live;
@@ -29,8 +29,8 @@ pub use prepare::Prepared;
 pub use progress::Progress;
 pub use source::SurfaceSource;
 
-use crate::{math::Size, paint::Scene, surface::Surface};
-use std::sync::Arc;
+use crate::{math::Size, paint::Scene, raster::Asset, surface::Surface};
+use std::{collections::BTreeMap, sync::Arc};
 
 /// A picture in the making: the canvas, the shape it is painted on, and the layers, bottom first.
 #[derive(Clone)]
@@ -39,12 +39,14 @@ pub struct Document {
     pub surface: Option<Arc<Surface>>,
     /// Which maps the surface was made from; absent where there is none, or it came from no file.
     pub surface_source: Option<Arc<SurfaceSource>>,
+    /// The files that `surface_source` names, by their names, where they are known.
+    pub surface_files: Arc<BTreeMap<String, Asset>>,
     pub layers: Vec<Arc<Layer>>,
 }
 
 impl Document {
     pub fn empty(size: Size) -> Self {
-        Self { size, surface: None, surface_source: None, layers: Vec::new() }
+        Self { size, surface: None, surface_source: None, surface_files: Arc::default(), layers: Vec::new() }
     }
     /// The canvas as the bottom layer sees it.
     pub fn scene(&self) -> Scene {

@@ -15,6 +15,10 @@ pub struct Budget {
     pub document_px: u64,
     /// Bytes of any one file.
     pub file_bytes: u64,
+    /// Bytes read from all entries of a zip together.
+    pub unpacked_bytes: u64,
+    /// Entries of a zip.
+    pub entries: usize,
     /// Bytes of a JSON text.
     pub json_bytes: u64,
     /// Values of a JSON text, an object counting as eight; each takes some eighty bytes once parsed.
@@ -36,6 +40,8 @@ impl Default for Budget {
             area_px: 268_435_456,
             document_px: 1 << 30,
             file_bytes: 2 << 30,
+            unpacked_bytes: 8 << 30,
+            entries: 4_096,
             json_bytes: 16 << 20,
             json_values: 4_000_000,
             // 32 groups take two levels each; what stands in the innermost takes the rest.

@@ -4,8 +4,10 @@
 
 mod chunks;
 mod names;
+mod write;
 
 pub use names::{Pass, passes};
+pub use write::{encode_channels, encode_light};
 
 use super::Budget;
 use crate::{Error, Result, math::Size, raster::Plane};

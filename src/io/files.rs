@@ -2,10 +2,11 @@
 //! Floor 5. Everything a document names is read through [`Files`]; nothing else opens a path that a file wrote.
 
 use super::Budget;
+use crate::raster::Asset;
 use crate::{Error, Result};
 use std::{
     cell::RefCell,
-    collections::HashMap,
+    collections::{BTreeMap, HashMap},
     fs,
     io::Read,
     path::{Path, PathBuf},
@@ -127,6 +128,36 @@ impl<F: Files> Files for Noted<F> {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         self.read.borrow_mut().push(self.path(name));
         self.files.read(name, budget)
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        self.files.path(name)
+    }
+}
+
+/// Files each of which is read once, and kept.
+pub struct Remembered<'a> {
+    files: &'a dyn Files,
+    read: RefCell<BTreeMap<String, Asset>>,
+}
+
+impl<'a> Remembered<'a> {
+    pub fn new(files: &'a dyn Files) -> Self {
+        Self { files, read: RefCell::default() }
+    }
+    /// What was read, by name.
+    pub fn assets(&self) -> BTreeMap<String, Asset> {
+        self.read.borrow().clone()
+    }
+}
+
+impl Files for Remembered<'_> {
+    fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
+        if let Some(known) = self.read.borrow().get(name) {
+            return Ok(known.bytes().to_vec());
+        }
+        let bytes = self.files.read(name, budget)?;
+        self.read.borrow_mut().insert(name.to_owned(), bytes.clone().into());
+        Ok(bytes)
     }
     fn path(&self, name: &str) -> PathBuf {
         self.files.path(name)

@@ -5,11 +5,17 @@ pub mod budget;
 pub mod export;
 pub mod exr;
 pub mod files;
+pub mod fs;
 pub mod inspect;
 pub mod json;
 pub mod maps;
+pub mod open;
 pub mod picture;
+pub mod project;
 pub mod recipe;
+pub mod save;
 
 pub use budget::Budget;
 pub use files::{Files, Folder, Given};
+pub use open::{Opened, open};
+pub use save::{Over, Saved, save};

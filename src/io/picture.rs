@@ -3,7 +3,9 @@
 
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};
-use crate::raster::{Picture, Plane};
+use crate::raster::grid::unpremultiply;
+use crate::raster::picture::Texels;
+use crate::raster::{Asset, Picture, Plane, Texture, TileGrid};
 use crate::{Error, Result};
 use image::DynamicImage;
 use moxcms::{ColorProfile, DataColorSpace, Layout, TransformOptions};
@@ -15,10 +17,14 @@ use std::path::Path;
 ///
 /// Integer files become sRGB bytes (through their ICC profile where it says something else), float files linear light.
 /// EXR gives its colour layer, straight alpha. Fails with a sentence on anything damaged, unknown or beyond `budget`.
+/// The picture keeps `bytes`, so that a project can store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
-    if ExrFile::is_exr(bytes) {
-        return decode_exr(file, bytes, budget);
-    }
+    let is_exr = ExrFile::is_exr(bytes);
+    let picture = if is_exr { decode_exr(file, bytes, budget) } else { decode_bitmap(file, bytes, budget) }?;
+    Ok(Picture { encoded: Some(Asset::from(bytes.to_vec())), ..picture })
+}
+
+fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let mut bitmap = bitmap::decode(file, bytes, budget)?;
     bitmap.image.apply_orientation(bitmap.orientation);
     let size = Size::new(bitmap.image.width(), bitmap.image.height());
@@ -32,6 +38,20 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
         }
     };
     picture.ok_or_else(|| Error::decode(file, "the picture has no pixels"))
+}
+
+/// A picture as the tiles of a paint layer, its corner at a canvas pixel; light beyond white is clipped, as a texture clips it.
+pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
+    let (w, h) = (picture.size.width as usize, picture.size.height as usize);
+    match &picture.texels {
+        Texels::Srgb8(texels) => TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y),
+        Texels::Linear(_) => {
+            let texture = Texture::new(picture);
+            let mut straight = vec![0; w * h * 4];
+            unpremultiply(texture.levels()[0].texels.as_flattened(), &mut straight);
+            TileGrid::from_straight_rgba(&straight, w, h, x, y)
+        }
+    }
 }
 
 /// Reads a mask: encoded luminance × alpha, 255 wholly covered. Colour profiles are ignored.
@@ -144,7 +164,6 @@ fn probe(layout: Layout) -> Vec<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raster::picture::Texels;
     use image::{ImageFormat, RgbaImage};
     use std::io::Cursor;
 

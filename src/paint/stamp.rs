@@ -116,7 +116,7 @@ fn softened(level: &Level, is_colored: bool, sigma: f32) -> Picture {
 /// What stands for a picture that cannot be: nothing is painted.
 fn transparent() -> Picture {
     let texels: Arc<[[u8; 4]]> = Arc::new([[0; 4]]);
-    Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels) }
+    Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels), encoded: None }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Floor 1: pixels that know nothing of the surface. Tiles and tile grids hold layers; planes and textures hold what
 //! is sampled and never edited; blend modes and samplers work on both.
 
+pub mod asset;
 pub mod blend;
 pub mod blur;
 pub mod grid;
@@ -12,6 +13,7 @@ pub mod sampler;
 pub mod texture;
 pub mod tile;
 
+pub use asset::Asset;
 pub use blend::{BlendMode, Coverage, Mix, Paint};
 pub use grid::TileGrid;
 pub use picture::Picture;

@@ -1,6 +1,7 @@
 //! A decoded picture: what a file held, before it becomes a texture, a tip or an environment.
 //! Floor 1. Reading files is `io::picture`'s work.
 
+use super::Asset;
 use crate::math::{Size, srgb};
 use std::sync::Arc;
 
@@ -9,6 +10,8 @@ use std::sync::Arc;
 pub struct Picture {
     pub size: Size,
     pub texels: Texels,
+    /// The file it was decoded from, so that a project keeps its very bytes; `None` for a picture made here.
+    pub encoded: Option<Asset>,
 }
 
 /// The two kinds of light a file can hold.
@@ -23,7 +26,7 @@ pub enum Texels {
 impl Picture {
     /// `None` unless there is one texel per pixel and at least one pixel.
     pub fn srgb8(size: Size, texels: Vec<[u8; 4]>) -> Option<Self> {
-        (size.area() > 0 && texels.len() == size.area()).then(|| Self { size, texels: Texels::Srgb8(texels.into()) })
+        (size.area() > 0 && texels.len() == size.area()).then(|| Self::made(size, Texels::Srgb8(texels.into())))
     }
     /// As [`Picture::srgb8`]; NaN and negative light become 0, infinite light the largest half float.
     pub fn linear(size: Size, mut texels: Vec<[f32; 4]>) -> Option<Self> {
@@ -34,7 +37,10 @@ impl Picture {
             }
             *a = a.max(0.0).min(1.0);
         }
-        (size.area() > 0 && texels.len() == size.area()).then(|| Self { size, texels: Texels::Linear(texels.into()) })
+        (size.area() > 0 && texels.len() == size.area()).then(|| Self::made(size, Texels::Linear(texels.into())))
+    }
+    fn made(size: Size, texels: Texels) -> Self {
+        Self { size, texels, encoded: None }
     }
     /// Linear light of one texel, straight alpha.
     pub fn linear_at(&self, x: usize, y: usize) -> [f32; 4] {

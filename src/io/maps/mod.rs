@@ -19,18 +19,22 @@ pub use findings::{Choice, Findings, How};
 pub use layers::fitting;
 pub use stored::Role;
 
+use super::files::Remembered;
 use super::{Budget, Files, picture};
 use crate::document::source::{DepthConvention, DepthEncoding, MapSource, MaskSource, NormalConvention, SurfaceSource};
 use crate::math::{Size, Vec3, srgb};
-use crate::raster::Plane;
+use crate::raster::{Asset, Plane};
 use crate::surface::{Maps, Surface, differentiate, integrate};
 use crate::{Error, Result};
+use std::collections::BTreeMap;
 use stored::Stored;
 
 /// A surface and how its maps were understood.
 pub struct Import {
     pub surface: Surface,
     pub findings: Findings,
+    /// What was read, by the names in the source: a project keeps these very bytes.
+    pub files: BTreeMap<String, Asset>,
 }
 
 /// Reads a document's maps.
@@ -38,6 +42,7 @@ pub struct Import {
 /// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there is no
 /// surface at all. Where one of normals and depth is missing it is derived from the other, with a note.
 pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<Import> {
+    let files = &Remembered::new(files);
     let mut findings = Findings::default();
     let normal = source.normal.as_ref().map(|m| load(m, Role::Normals, files, budget)).transpose()?;
     let depth = source.depth.as_ref().map(|m| load(m, Role::Depth, files, budget)).transpose()?;
@@ -57,7 +62,7 @@ pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Res
     let coverage = mask.map(|(_, m)| m).or_else(|| alpha(&maps, &told, &mut findings));
     let maps = understand(normal.as_ref(), depth.as_ref(), coverage, &told, &mut findings)?;
     let surface = Surface::new(maps).map_err(|e| Error::decode(file, e))?;
-    Ok(Import { surface, findings })
+    Ok(Import { surface, findings, files: files.assets() })
 }
 
 /// The conventions a document tells, the found ones where it is silent.

@@ -27,11 +27,12 @@ use super::json::{self, Fields, Node, Object};
 use super::{Budget, Files, Folder, files, maps};
 use crate::document::{Document, SurfaceSource};
 use crate::math::Size;
+use crate::raster::Asset;
 use crate::surface::{Surface, SurfaceError};
 use crate::{Error, Result};
 use pictures::Pictures;
 use serde_json::{Value, json};
-use std::{path::Path, sync::Arc};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 /// The newest schema this program reads, and the one it writes.
 pub const VERSION: i64 = 1;
@@ -68,19 +69,23 @@ pub fn load_onto(file: &Path, budget: &Budget, onto: Option<Onto>) -> Result<Doc
 
 /// Reads a document from its JSON.
 pub fn read(text: &[u8], source: Source) -> Result<Document> {
-    let value = json::parse(source.file, text, source.budget)?;
-    let mut root = Node::root(source.file, &value).fields()?;
+    read_value(&json::parse(source.file, text, source.budget)?, source)
+}
+
+/// Reads a document from JSON that is parsed already.
+pub fn read_value(value: &Value, source: Source) -> Result<Document> {
+    let mut root = Node::root(source.file, value).fields()?;
     check_version(&mut root)?;
     let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
     let own = root.get("surface").map(|node| Ok::<_, Error>((surface::read(&node)?, node))).transpose()?;
     let layers = root.get("layers");
     root.finish()?;
 
-    let (size, surface) = shape(canvas, own.as_ref(), source)?;
+    let Shape { size, surface, files } = shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
     let mut reader = Reader { source, size, layers_left: source.budget.layers, pictures: Pictures::default() };
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
-    Ok(Document { size, surface, surface_source, layers })
+    Ok(Document { size, surface, surface_source, surface_files: Arc::new(files), layers })
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {
@@ -102,32 +107,38 @@ fn canvas(node: &Node, source: Source) -> Result<Size> {
     source.budget.size(source.file, width as u64, height as u64)
 }
 
+struct Shape {
+    size: Size,
+    surface: Option<Arc<Surface>>,
+    /// The files of its maps.
+    files: BTreeMap<String, Asset>,
+}
+
 /// The canvas's size, where nothing is said that of the document's own maps; and the surface fitted to it.
-fn shape(
-    canvas: Option<Size>,
-    own: Option<&(SurfaceSource, Node)>,
-    source: Source,
-) -> Result<(Size, Option<Arc<Surface>>)> {
+fn shape(canvas: Option<Size>, own: Option<&(SurfaceSource, Node)>, source: Source) -> Result<Shape> {
     // Another object keeps the document's canvas, so its own maps are read only where they tell the size.
     let own = match own {
         Some((own, node)) if canvas.is_none() || source.onto.is_none() => {
             let import = maps::import(own, source.files, source.budget).map_err(|e| node.led_to(e))?;
-            Some((import.surface, node))
+            Some((import, node))
         }
         _ => None,
     };
     let other = source.onto.map(|o| maps::import(o.surface, o.files, source.budget)).transpose()?;
     let no_surface = "is missing, and there is no normal or depth map to take the size from";
     let size = canvas
-        .or(own.as_ref().map(|(map, _)| map.size()))
+        .or(own.as_ref().map(|(import, _)| import.surface.size()))
         .or(other.as_ref().map(|import| import.surface.size()))
         .ok_or_else(|| Error::invalid(source.file, "canvas", no_surface))?;
-    let surface = match (other, own) {
-        (Some(other), _) => Some(fitted(other.surface, size).map_err(|e| Error::unsupported(source.file, e))?),
-        (None, Some((own, node))) => Some(fitted(own, size).map_err(|e| node.refused(e))?),
-        (None, None) => None,
+    let (surface, files) = match (other, own) {
+        (Some(other), _) => {
+            let surface = fitted(other.surface, size).map_err(|e| Error::unsupported(source.file, e))?;
+            (Some(surface), other.files)
+        }
+        (None, Some((own, node))) => (Some(fitted(own.surface, size).map_err(|e| node.refused(e))?), own.files),
+        (None, None) => (None, BTreeMap::new()),
     };
-    Ok((size, surface))
+    Ok(Shape { size, surface, files })
 }
 
 fn fitted(map: Surface, canvas: Size) -> std::result::Result<Arc<Surface>, SurfaceError> {

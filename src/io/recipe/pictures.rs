@@ -6,8 +6,7 @@ use crate::io::json::Node;
 use crate::io::{files, picture};
 use crate::math::Size;
 use crate::paint::{Adjust, PictureSource};
-use crate::raster::picture::Texels;
-use crate::raster::{Picture, Plane, Texture, TileGrid};
+use crate::raster::{Picture, Plane, TileGrid};
 use crate::{Error, Result};
 use std::{collections::HashMap, sync::Arc};
 
@@ -61,7 +60,7 @@ impl Pictures {
         if !self.tiles.contains_key(&key) {
             let picture = self.picture(source, name)?;
             self.spend(source, picture.size)?;
-            self.tiles.insert(key.clone(), cut(&picture, x, y));
+            self.tiles.insert(key.clone(), picture::to_tiles(&picture, x, y));
         }
         let tiles = self.tiles.get(&key).cloned().unwrap_or_default();
         Ok((key.0, tiles))
@@ -90,18 +89,4 @@ fn bytes(source: Source, name: &Node) -> Result<Vec<u8>> {
         return Err(name.refused(format!("“{text}” is refused: {reason}")));
     }
     source.files.read(text, source.budget).map_err(|e| name.led_to(e))
-}
-
-/// A paint layer's tiles; light beyond white is clipped, as a texture clips it.
-fn cut(picture: &Picture, x: i32, y: i32) -> TileGrid {
-    let (w, h) = (picture.size.width as usize, picture.size.height as usize);
-    match &picture.texels {
-        Texels::Srgb8(texels) => TileGrid::from_straight_rgba(texels.as_flattened(), w, h, x, y),
-        Texels::Linear(_) => {
-            let texture = Texture::new(picture);
-            let mut straight = vec![0; w * h * 4];
-            crate::raster::grid::unpremultiply(texture.levels()[0].texels.as_flattened(), &mut straight);
-            TileGrid::from_straight_rgba(&straight, w, h, x, y)
-        }
-    }
 }

@@ -1,0 +1,310 @@
+//! A disk in memory for tests: it can fail at any operation, and lose power at any moment.
+//!
+//! Power cut, harsher than any real disk: bytes written since a file's last sync may be lost from any point on; of a
+//! folder's changes since its last sync any may be missing, each by itself.
+
+use super::{Found, Fs, Handle, Lock};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
+
+#[derive(Clone, Default)]
+struct Inode {
+    bytes: Vec<u8>,
+    /// How many of them are on the disk for certain.
+    synced: Vec<u8>,
+}
+
+/// A change of the folder: names and what they lead to afterwards.
+type Change = Vec<(PathBuf, Option<usize>)>;
+
+#[derive(Clone, Default)]
+pub struct State {
+    inodes: Vec<Inode>,
+    names: BTreeMap<PathBuf, usize>,
+    /// Names on the disk for certain, and the changes since.
+    synced_names: BTreeMap<PathBuf, usize>,
+    pending: Vec<Change>,
+    locked: BTreeSet<PathBuf>,
+    operations: usize,
+    /// Fails the operations of these numbers.
+    failing: Option<Failure>,
+    /// The state before every operation, if they are recorded.
+    history: Option<Vec<State>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Failure {
+    pub at: usize,
+    pub error: Trouble,
+    /// Every later operation fails too.
+    pub sticky: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trouble {
+    Code(i32),
+    /// Writes less than was asked for.
+    Short,
+}
+
+/// A disk that is shared by its clones.
+#[derive(Clone, Default)]
+pub struct Memory(Arc<Mutex<State>>);
+
+impl Memory {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap()
+    }
+    /// A disk that has these files for certain.
+    pub fn with(files: &[(&str, &[u8])]) -> Self {
+        let memory = Memory::default();
+        let mut state = memory.state();
+        for (name, bytes) in files {
+            state.inodes.push(Inode { bytes: bytes.to_vec(), synced: bytes.to_vec() });
+            let inode = state.inodes.len() - 1;
+            state.names.insert(name.into(), inode);
+            state.synced_names.insert(name.into(), inode);
+        }
+        drop(state);
+        memory
+    }
+    pub fn fail(&self, failure: Failure) {
+        self.state().failing = Some(failure);
+    }
+    pub fn heal(&self) {
+        self.state().failing = None;
+    }
+    pub fn operations(&self) -> usize {
+        self.state().operations
+    }
+    pub fn record(&self) {
+        self.state().history = Some(Vec::new());
+    }
+    /// The disk as it was before each operation since [`Memory::record`], and as it is.
+    pub fn moments(&self) -> Vec<State> {
+        let mut state = self.state();
+        let mut moments = state.history.take().unwrap_or_default();
+        moments.push(state.clone());
+        moments
+    }
+    pub fn file(&self, name: &str) -> Option<Vec<u8>> {
+        let state = self.state();
+        state.names.get(Path::new(name)).map(|inode| state.inodes[*inode].bytes.clone())
+    }
+    pub fn names(&self) -> Vec<String> {
+        self.state().names.keys().map(|name| name.display().to_string()).collect()
+    }
+    /// One more operation: it fails if it is its turn.
+    fn turn(&self) -> io::Result<Option<Trouble>> {
+        let mut state = self.state();
+        let number = state.operations;
+        state.operations += 1;
+        let before = State { history: None, ..state.clone() };
+        if let Some(history) = &mut state.history {
+            history.push(before);
+        }
+        match state.failing {
+            Some(f) if f.at == number || (f.sticky && number > f.at) => match f.error {
+                Trouble::Code(code) => Err(io::Error::from_raw_os_error(code)),
+                Trouble::Short => Ok(Some(Trouble::Short)),
+            },
+            _ => Ok(None),
+        }
+    }
+    fn handle(&self, inode: usize) -> Box<dyn Handle> {
+        Box::new(Open { memory: self.clone(), inode, at: 0 })
+    }
+    fn inode(&self, path: &Path) -> io::Result<usize> {
+        self.state().names.get(path).copied().ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+    fn change(&self, change: Change) {
+        let mut state = self.state();
+        apply(&mut state.names, &change);
+        state.pending.push(change);
+    }
+}
+
+fn apply(names: &mut BTreeMap<PathBuf, usize>, change: &Change) {
+    for (name, inode) in change {
+        match inode {
+            Some(inode) => drop(names.insert(name.clone(), *inode)),
+            None => drop(names.remove(name)),
+        }
+    }
+}
+
+impl State {
+    /// How many bits [`State::after_power_cut`] can make use of.
+    pub fn doubts(&self) -> usize {
+        self.pending.len() + self.inodes.iter().filter(|i| i.bytes != i.synced).count()
+    }
+    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder or one unsynced file; bits
+    /// beyond decide how much of such a file arrived.
+    pub fn after_power_cut(&self, luck: u64) -> Memory {
+        let mut names = self.synced_names.clone();
+        let mut bits = luck;
+        let mut next = || {
+            let bit = bits & 1 == 1;
+            bits >>= 1;
+            bit
+        };
+        for change in &self.pending {
+            if next() {
+                apply(&mut names, change);
+            }
+        }
+        let mut one = |inode: &Inode| {
+            if inode.bytes == inode.synced {
+                return inode.clone();
+            }
+            // All, what was synced, or some of what came after.
+            let (synced, all) = (inode.synced.len(), inode.bytes.len());
+            let bytes = match (next(), next()) {
+                (true, true) => inode.bytes.clone(),
+                (true, false) => inode.bytes[..synced + (all - synced) / 2].to_vec(),
+                (false, true) => [&inode.synced[..], &vec![0; all - synced]].concat(),
+                (false, false) => inode.synced.clone(),
+            };
+            Inode { synced: bytes.clone(), bytes }
+        };
+        let inodes = self.inodes.iter().map(&mut one).collect();
+        let state = State { inodes, synced_names: names.clone(), names, ..State::default() };
+        Memory(Arc::new(Mutex::new(state)))
+    }
+}
+
+struct Open {
+    memory: Memory,
+    inode: usize,
+    at: usize,
+}
+
+impl Read for Open {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let short = self.memory.turn()?.is_some();
+        let state = self.memory.state();
+        let rest = state.inodes[self.inode].bytes.get(self.at..).unwrap_or_default();
+        let n = rest.len().min(buffer.len()).min(if short { 1 } else { usize::MAX });
+        buffer[..n].copy_from_slice(&rest[..n]);
+        self.at += n;
+        Ok(n)
+    }
+}
+
+impl Write for Open {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let short = self.memory.turn()?.is_some();
+        let n = if short { bytes.len() / 2 } else { bytes.len() };
+        self.memory.state().inodes[self.inode].bytes.extend_from_slice(&bytes[..n]);
+        Ok(n)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Handle for Open {
+    fn sync(&mut self) -> io::Result<()> {
+        self.memory.turn()?;
+        let mut state = self.memory.state();
+        let inode = &mut state.inodes[self.inode];
+        inode.synced = inode.bytes.clone();
+        Ok(())
+    }
+}
+
+struct Held(Memory, PathBuf);
+
+impl Lock for Held {}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.0.state().locked.remove(&self.1);
+    }
+}
+
+impl Fs for Memory {
+    fn create_new(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+        self.turn()?;
+        if self.inode(path).is_ok() {
+            return Err(io::ErrorKind::AlreadyExists.into());
+        }
+        let inode = {
+            let mut state = self.state();
+            state.inodes.push(Inode::default());
+            state.inodes.len() - 1
+        };
+        self.change(vec![(path.into(), Some(inode))]);
+        Ok(self.handle(inode))
+    }
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+        self.turn()?;
+        Ok(self.handle(self.inode(path)?))
+    }
+    fn append(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+        self.open(path)
+    }
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.turn()?;
+        let inode = self.inode(from)?;
+        self.change(vec![(from.into(), None), (to.into(), Some(inode))]);
+        Ok(())
+    }
+    fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.turn()?;
+        if self.inode(to).is_ok() {
+            return Err(io::ErrorKind::AlreadyExists.into());
+        }
+        let inode = self.inode(from)?;
+        self.change(vec![(to.into(), Some(inode))]);
+        Ok(())
+    }
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        self.turn()?;
+        self.inode(path)?;
+        self.change(vec![(path.into(), None)]);
+        Ok(())
+    }
+    fn sync_dir(&self, folder: &Path) -> io::Result<()> {
+        self.turn()?;
+        let mut state = self.state();
+        let (synced, kept): (Vec<Change>, Vec<Change>) = std::mem::take(&mut state.pending)
+            .into_iter()
+            .partition(|c| c.iter().all(|(p, _)| p.parent() == Some(folder)));
+        synced.iter().for_each(|change| apply(&mut state.synced_names, change));
+        state.pending = kept;
+        Ok(())
+    }
+    fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
+        self.turn()?;
+        let is_folder = self.state().names.keys().any(|name| name.parent() == Some(path));
+        if is_folder || path == Path::new("/") {
+            return Ok(path.into());
+        }
+        self.inode(path).map(|_| path.into())
+    }
+    fn found(&self, path: &Path) -> io::Result<Option<Found>> {
+        self.turn()?;
+        let is_folder = self.state().names.keys().any(|name| name != path && name.starts_with(path));
+        Ok(if is_folder { Some(Found::Folder) } else { self.inode(path).ok().map(|_| Found::File) })
+    }
+    fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
+        self.turn()?;
+        Ok(self.state().names.keys().filter(|name| name.parent() == Some(folder)).cloned().collect())
+    }
+    fn create_folder(&self, _: &Path) -> io::Result<()> {
+        self.turn().map(drop)
+    }
+    fn copy_permissions(&self, _: &Path, _: &Path) -> io::Result<()> {
+        self.turn().map(drop)
+    }
+    fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn Lock>>> {
+        self.turn()?;
+        let is_free = self.state().locked.insert(path.into());
+        Ok(if is_free { Some(Box::new(Held(self.clone(), path.into()))) } else { None })
+    }
+    fn pause(&self, _: Duration) {}
+}

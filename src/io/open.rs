@@ -1,0 +1,82 @@
+//! The one door for documents: whatever a file is, told by its content, it becomes a document.
+//! Floor 5. Saving is `save`; the formats are modules of their own.
+
+use super::files::{Folder, read_file};
+use super::project::{self, Archive, Contents};
+use super::recipe::{self, Source};
+use super::save::Stamp;
+use super::{Budget, picture};
+use crate::Result;
+use crate::document::{Content, Document, Layer, PixelLayer};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A document and where it came from.
+pub struct Opened {
+    pub document: Document,
+    /// What is not as it was saved, or could not be carried over: a sentence each, to be shown.
+    pub notes: Vec<String>,
+    /// Nothing is lost. What is not whole must not be saved over its file unasked.
+    pub is_whole: bool,
+    pub kind: Kind,
+    /// What the file was when it was read, for [`super::save::Over::This`].
+    pub stamp: Stamp,
+}
+
+/// What a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// OpenRaster, ours or another program's; the only kind that a document is saved to.
+    Project,
+    Recipe,
+    Picture,
+}
+
+impl Kind {
+    /// What a file is by its first bytes; a picture where nothing else fits.
+    pub fn of(bytes: &[u8]) -> Self {
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+        match text.first() {
+            _ if Archive::is_zip(bytes) => Kind::Project,
+            Some(b'{') => Kind::Recipe,
+            _ => Kind::Picture,
+        }
+    }
+}
+
+/// Opens a project, a recipe (the files it names lie beside it), or a picture, which becomes a document of one paint layer.
+///
+/// A damaged project gives every layer that is intact; `notes` say what is not, and `is_whole` is false.
+pub fn open(file: &Path, budget: &Budget) -> Result<Opened> {
+    let bytes = read_file(file, budget.file_bytes)?;
+    let kind = Kind::of(&bytes);
+    let whole = |document| Contents { document, notes: Vec::new(), is_whole: true };
+    let Contents { document, notes, is_whole } = match kind {
+        Kind::Project => project::read(file, &bytes, budget)?,
+        Kind::Recipe => whole(recipe::read(&bytes, Source { file, files: &Folder::beside(file), budget, onto: None })?),
+        Kind::Picture => single(file, &bytes, budget)?,
+    };
+    Ok(Opened { document, notes, is_whole, kind, stamp: Stamp::of(&bytes) })
+}
+
+/// A picture as a document of its size.
+fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
+    let picture = picture::decode(file, bytes, budget)?;
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    let tiles = picture::to_tiles(&picture, 0, 0);
+    let layer = Layer::new(name, Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
+    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(picture.size) };
+    Ok(Contents { document, notes: Vec::new(), is_whole: true })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_file_is_shows_in_its_first_bytes() {
+        assert_eq!(Kind::of(b"PK\x03\x04rest"), Kind::Project);
+        assert_eq!(Kind::of(b"\xef\xbb\xbf \n{\"format\""), Kind::Recipe);
+        assert_eq!(Kind::of(b"\x89PNG"), Kind::Picture);
+    }
+}

@@ -1,0 +1,252 @@
+//! The files that a document is made from, under names within the project; each is stored once, as its own bytes.
+//! Floor 5. A picture that came from no file is encoded without loss.
+
+use super::pixels;
+use crate::Result;
+use crate::document::kept::Encoded;
+use crate::document::source::{
+    DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
+};
+use crate::document::{Content, Document, Group, Layer, LayerId, Live, MaskKind, StrokeList};
+use crate::io::exr;
+use crate::paint::{PictureSource, Stroke, Tip};
+use crate::raster::picture::Texels;
+use crate::raster::{Asset, Picture};
+use crate::surface::Surface;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Where the files stand in the zip; not below `data/`, where every entry belongs to a layer of `stack.xml`.
+const FOLDER: &str = "rilievo/files/";
+const PIXELS: &str = "rilievo/pixels/";
+
+/// The files of a document in the order they are first named.
+#[derive(Default)]
+pub struct Assets {
+    files: Vec<(String, Asset)>,
+    /// In lower case: names differ in more than capitals.
+    taken: BTreeSet<String>,
+    /// Pictures without a file, by where their texels lie in memory.
+    made: BTreeMap<usize, Asset>,
+}
+
+/// The pixels of paint layers, and the names under which they are stored already.
+pub struct Painted<'a> {
+    pub pixels: &'a BTreeMap<LayerId, Encoded>,
+    /// Files of `data/` that hold all of a layer's pixels.
+    pub shared: &'a BTreeMap<LayerId, String>,
+}
+
+impl Assets {
+    pub fn files(&self) -> &[(String, Asset)] {
+        &self.files
+    }
+    /// The document with every file under its name in the project.
+    pub fn rename(&mut self, file: &Path, document: &Document, painted: &Painted) -> Result<Document> {
+        let source = document.surface.as_deref().map(|surface| self.surface(file, surface, document)).transpose()?;
+        let layers = self.layers(file, &document.layers, painted)?;
+        Ok(Document { surface_source: source.map(Arc::new), layers, ..document.clone() })
+    }
+    fn layers(&mut self, file: &Path, layers: &[Arc<Layer>], painted: &Painted) -> Result<Vec<Arc<Layer>>> {
+        layers.iter().map(|layer| self.layer(file, layer, painted).map(Arc::new)).collect()
+    }
+    fn layer(&mut self, file: &Path, layer: &Layer, painted: &Painted) -> Result<Layer> {
+        let mut next = layer.clone();
+        if let Some(MaskKind::File { file: name, coverage }) = next.mask.as_mut().map(|mask| &mut mask.kind) {
+            *name = self.add(&with_ending(name, "mask", "png"), pixels::encode_coverage(file, coverage)?);
+        }
+        match &mut next.content {
+            Content::Pixels(paint) => {
+                let Some(encoded) = painted.pixels.get(&layer.id) else { return Ok(next) };
+                (paint.x, paint.y) = (encoded.x, encoded.y);
+                paint.file = match painted.shared.get(&layer.id) {
+                    Some(shared) => shared.clone(),
+                    None => self.add_in(PIXELS, &with_ending(&layer.name, "paint", "png"), encoded.file.clone()),
+                };
+            }
+            Content::Image(live) => {
+                let mut image = live.params().clone();
+                self.source(file, &mut image.source)?;
+                next.content = Content::Image(Live::new(image));
+            }
+            Content::Normals(normals) => self.source(file, &mut normals.source)?,
+            Content::Strokes(live) => {
+                let strokes = live.params().strokes.iter().map(|stroke| self.stroke(file, stroke));
+                let strokes = strokes.collect::<Result<_>>()?;
+                next.content = Content::Strokes(Live::new(StrokeList { strokes }));
+            }
+            Content::Shading(live) => {
+                let mut shading = live.params().clone();
+                if let Some(environment) = &mut shading.environment {
+                    environment.file = self.picture(file, &environment.file, &environment.picture)?;
+                }
+                for sphere in [&mut shading.sphere, &mut shading.sphere_concave].into_iter().flatten() {
+                    sphere.file = self.picture(file, &sphere.file, &sphere.picture)?;
+                }
+                next.content = Content::Shading(Live::new(shading));
+            }
+            Content::Group(Group { layers, .. }) => *layers = self.layers(file, layers, painted)?,
+            Content::Fill(_) | Content::Gradient(_) | Content::RadianceScaling(_) => {}
+        }
+        Ok(next)
+    }
+    fn stroke(&mut self, file: &Path, stroke: &Arc<Stroke>) -> Result<Arc<Stroke>> {
+        let mut brush = stroke.brush().clone();
+        let Tip::Picture(source) = &mut brush.tip else { return Ok(stroke.clone()) };
+        self.source(file, source)?;
+        Ok(Arc::new(Stroke::new(brush, stroke.operator(), stroke.color(), stroke.samples().to_vec())))
+    }
+    fn source(&mut self, file: &Path, source: &mut PictureSource) -> Result<()> {
+        source.file = self.picture(file, &source.file, &source.picture)?;
+        Ok(())
+    }
+    /// The maps as their own files; where any of their bytes is not known, the surface as it is.
+    fn surface(&mut self, file: &Path, surface: &Surface, document: &Document) -> Result<SurfaceSource> {
+        let known = document.surface_source.as_deref();
+        let known = known.filter(|source| files_of(source).all(|name| document.surface_files.contains_key(name)));
+        let Some(source) = known else { return self.made_surface(file, surface) };
+        let mut source = source.clone();
+        for name in files_of_mut(&mut source) {
+            if let Some(asset) = document.surface_files.get(name.as_str()) {
+                *name = self.add(name, asset.clone());
+            }
+        }
+        Ok(source)
+    }
+    /// A surface that came from no file: normals and depth of 32 bits, and its coverage.
+    fn made_surface(&mut self, file: &Path, surface: &Surface) -> Result<SurfaceSource> {
+        let size = surface.size();
+        let pixels = || (0..size.height as usize).flat_map(|y| (0..size.width as usize).map(move |x| (x, y)));
+        let normal = |c: usize| pixels().map(|(x, y)| surface.normal(x, y)[c]).collect();
+        let depth = pixels().map(|(x, y)| surface.depth(x, y)).collect();
+        let channels = vec![("N.X", normal(0)), ("N.Y", normal(1)), ("N.Z", normal(2)), ("Z", depth)];
+        let maps = self.add("surface.exr", exr::encode_channels(file, size, channels)?.into());
+        let mask = self.add("surface-mask.png", pixels::encode_coverage(file, surface.coverage_plane())?);
+        let opengl = NormalConvention::from_word("opengl").unwrap_or_default();
+        let depth = DepthConvention {
+            near: Near::Low,
+            encoding: Some(DepthEncoding::Planar),
+            range_px: Some(surface.depth_range_px()),
+            ..DepthConvention::default()
+        };
+        Ok(SurfaceSource {
+            normal: Some(MapSource {
+                file: maps.clone(),
+                channel: Some("N".into()),
+                convention: NormalConvention { encoding: Some(NormalEncoding::Signed), ..opengl },
+            }),
+            depth: Some(MapSource { file: maps, channel: Some("Z".into()), convention: depth }),
+            mask: Some(MaskSource::File { file: mask, channel: None, invert: false }),
+        })
+    }
+    fn picture(&mut self, file: &Path, name: &str, picture: &Picture) -> Result<String> {
+        if let Some(asset) = &picture.encoded {
+            return Ok(self.add(name, asset.clone()));
+        }
+        let (key, ending) = match &picture.texels {
+            Texels::Srgb8(texels) => (texels.as_ptr() as usize, "png"),
+            Texels::Linear(texels) => (texels.as_ptr() as usize, "exr"),
+        };
+        let asset = match self.made.get(&key) {
+            Some(known) => known.clone(),
+            None => encode(file, picture)?,
+        };
+        self.made.insert(key, asset.clone());
+        Ok(self.add(&with_ending(name, "picture", ending), asset))
+    }
+    fn add(&mut self, name: &str, asset: Asset) -> String {
+        self.add_in(FOLDER, name, asset)
+    }
+    /// The entry that holds these bytes: one that is there already, or a new one called as the file was.
+    fn add_in(&mut self, folder: &str, name: &str, asset: Asset) -> String {
+        let known = self.files.iter().find(|(known, held)| known.starts_with(folder) && *held == asset);
+        if let Some((known, _)) = known {
+            return known.clone();
+        }
+        let plain = plain_name(name);
+        let (stem, ending) =
+            plain.rsplit_once('.').map_or((plain.as_str(), String::new()), |(s, e)| (s, format!(".{e}")));
+        let numbered = |n: usize| if n == 1 { plain.clone() } else { format!("{stem}-{n}{ending}") };
+        let mut n = 1;
+        while !self.taken.insert(format!("{folder}{}", numbered(n)).to_lowercase()) {
+            n += 1;
+        }
+        let entry = format!("{folder}{}", numbered(n));
+        self.files.push((entry.clone(), asset));
+        entry
+    }
+}
+
+/// The names of a surface's files.
+fn files_of(source: &SurfaceSource) -> impl Iterator<Item = &str> {
+    let normal = source.normal.as_ref().map(|map| map.file.as_str());
+    let depth = source.depth.as_ref().map(|map| map.file.as_str());
+    let mask = match &source.mask {
+        Some(MaskSource::File { file, .. }) => Some(file.as_str()),
+        Some(MaskSource::Flat) | None => None,
+    };
+    [normal, depth, mask].into_iter().flatten()
+}
+
+fn files_of_mut(source: &mut SurfaceSource) -> impl Iterator<Item = &mut String> {
+    let normal = source.normal.as_mut().map(|map| &mut map.file);
+    let depth = source.depth.as_mut().map(|map| &mut map.file);
+    let mask = match &mut source.mask {
+        Some(MaskSource::File { file, .. }) => Some(file),
+        Some(MaskSource::Flat) | None => None,
+    };
+    [normal, depth, mask].into_iter().flatten()
+}
+
+/// Without loss: bytes as PNG, light as EXR of 32 bits.
+fn encode(file: &Path, picture: &Picture) -> Result<Asset> {
+    match &picture.texels {
+        Texels::Srgb8(texels) => pixels::encode_texels(file, texels, picture.size),
+        Texels::Linear(texels) => exr::encode_light(file, picture.size, texels).map(Asset::from),
+    }
+}
+
+/// The last part of a name, of letters, digits, dots and hyphens; never empty, never hidden, not too long.
+fn plain_name(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let plain = |c: char| if c.is_alphanumeric() || ".-_".contains(c) { c } else { '-' };
+    let plain: String = last.trim_start_matches('.').chars().map(plain).collect();
+    let long = plain.chars().count();
+    let plain: String = plain.chars().skip(long.saturating_sub(80)).collect();
+    if plain.trim_matches(['.', '-']).is_empty() { "file".into() } else { plain.trim_start_matches('.').to_owned() }
+}
+
+/// A name that ends as the file does.
+fn with_ending(name: &str, otherwise: &str, ending: &str) -> String {
+    let last = plain_name(if name.is_empty() { otherwise } else { name });
+    let stem = last.strip_suffix(&format!(".{ending}")).unwrap_or(&last);
+    format!("{stem}.{ending}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_stored_once_and_others_of_its_name_beside_it() {
+        let mut assets = Assets::default();
+        let (a, b): (Asset, Asset) = (vec![1].into(), vec![2].into());
+        assert_eq!(assets.add("/home/me/Wood.png", a.clone()), "rilievo/files/Wood.png");
+        assert_eq!(assets.add("other/wood.png", b), "rilievo/files/wood-2.png");
+        assert_eq!(assets.add("x.png", vec![1].into()), "rilievo/files/Wood.png", "the same bytes");
+        assert_eq!(assets.files().len(), 2);
+    }
+    #[test]
+    fn names_are_plain_and_stay_as_they_are_the_next_time() {
+        let long = "x".repeat(300) + ".png";
+        for name in ["a b?.png", "..", ".hidden", "", "C:\\a\\b.exr", "é.png", "a/", &long] {
+            let plain = plain_name(name);
+            assert!(crate::io::files::refusal(&plain).is_none(), "{name} became {plain}");
+            assert_eq!(plain_name(&plain), plain);
+        }
+        assert_eq!(with_ending("a.png", "x", "png"), "a.png");
+        assert_eq!(with_ending("photo.jpg", "x", "png"), "photo.jpg.png");
+        assert_eq!(with_ending("", "x", "png"), "x.png");
+    }
+}

@@ -1,0 +1,155 @@
+//! OpenRaster files that other programs wrote, and ours that they changed: every picture becomes a paint layer, and what
+//! is still as we wrote it becomes live again.
+//! Floor 5.
+
+use super::MERGED;
+use super::manifest::Manifest;
+use super::open::Reading;
+use super::repair::{layer_mut, name_of};
+use super::stack::{self, Element, ElementShows, Stack};
+use crate::document::{Content, Document, Group, Layer, PixelLayer};
+use crate::io::picture;
+use crate::math::Size;
+use crate::raster::TileGrid;
+use crate::{Error, Result};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A document of what any program sees.
+pub fn document(reading: &mut Reading, stack: Stack) -> Result<Document> {
+    let mut reader = Foreign { reading, used_px: 0, live: None };
+    let layers = reader.layers(stack.layers)?;
+    Ok(Document { layers, ..Document::empty(stack.size) })
+}
+
+/// A document that another program saved but left our entries in: its layers are those of `stack.xml`, and those whose
+/// pictures it left alone are as we saved them.
+pub fn restored(reading: &mut Reading, text: &[u8], value: &Value, manifest: &Manifest) -> Result<Document> {
+    let stack = stack::read(reading.file, text, reading.budget)?;
+    reading.note("the layers were changed by another program");
+    // The surface alone: the layers are taken one by one.
+    let mut base = value.clone();
+    base["layers"] = json!([]);
+    base["canvas"] = json!({ "width": stack.size.width, "height": stack.size.height });
+    let base = reading.read_value(&base).or_else(|error| {
+        reading.lost(format!("the surface is lost: {error}"));
+        Ok::<_, Error>(Document::empty(stack.size))
+    })?;
+    let canvas = json!({ "width": stack.size.width, "height": stack.size.height });
+    let mut reader = Foreign { reading, used_px: 0, live: Some(Saved { value: value.clone(), canvas, manifest }) };
+    let layers = reader.layers(stack.layers)?;
+    Ok(Document { layers, size: stack.size, ..base })
+}
+
+/// Nothing tells the layers any more: each picture that can be read becomes one, else the merged picture.
+pub fn leftovers(reading: &mut Reading, error: Error) -> Result<Document> {
+    let names: Vec<String> = reading.archive.names().into_iter().map(str::to_owned).collect();
+    let is_layer = |name: &&String| name.starts_with("data/") && name.to_lowercase().ends_with(".png");
+    let mut layers = Vec::new();
+    let mut size: Option<Size> = None;
+    let only_merged = MERGED.to_owned();
+    for name in names.iter().filter(is_layer).chain([&only_merged]) {
+        // The merged picture shows all the others.
+        if *name == MERGED && !layers.is_empty() {
+            break;
+        }
+        let Ok(bytes) = reading.archive.bytes(name, reading.budget.file_bytes) else { continue };
+        let Ok(picture) = picture::decode(Path::new(name), &bytes, reading.budget) else { continue };
+        let grown = |s: Size| Size::new(s.width.max(picture.size.width), s.height.max(picture.size.height));
+        size = Some(size.map_or(picture.size, grown));
+        let tiles = picture::to_tiles(&picture, 0, 0);
+        let content = Content::Pixels(PixelLayer { file: name.clone(), x: 0, y: 0, tiles });
+        layers.push(Arc::new(Layer { clip_to_surface: false, ..Layer::new(name.as_str(), content) }));
+        if layers.len() >= reading.budget.layers {
+            break;
+        }
+    }
+    let Some(size) = size else { return Err(error) };
+    reading.lost(format!("{error}; {} of its pictures could be read, their order and places are lost", layers.len()));
+    Ok(Document { layers, ..Document::empty(size) })
+}
+
+/// What we saved, for layers that are still as they were.
+struct Saved<'a> {
+    value: Value,
+    canvas: Value,
+    manifest: &'a Manifest,
+}
+
+struct Foreign<'a, 'b> {
+    reading: &'a mut Reading<'b>,
+    used_px: u64,
+    live: Option<Saved<'a>>,
+}
+
+impl Foreign<'_, '_> {
+    fn layers(&mut self, elements: Vec<Element>) -> Result<Vec<Arc<Layer>>> {
+        elements.into_iter().map(|element| self.layer(element).map(Arc::new)).collect()
+    }
+    fn layer(&mut self, element: Element) -> Result<Layer> {
+        let Element { mut layer, shows, kind, unknown_op } = element;
+        if let Some(op) = unknown_op {
+            self.reading.note(format!("“{}” is blended by “{op}” elsewhere; here it is blended normally", layer.name));
+        }
+        match shows {
+            ElementShows::Stack { isolated, layers } => {
+                let layers = self.layers(layers)?;
+                layer.content = Content::Group(Group { layers, pass_through: !isolated });
+            }
+            ElementShows::Picture { src, x, y } => {
+                if let Some(live) = self.live(&src, x, y) {
+                    let Layer { name, visible, opacity, blend, .. } = layer;
+                    return Ok(Layer { name, visible, opacity, blend, clip_below: false, ..live });
+                }
+                if !kind.is_empty() {
+                    self.reading.note(became_pixels(&layer.name, &kind));
+                }
+                layer.content = Content::Pixels(self.picture(&layer.name, src, x, y)?);
+            }
+        }
+        Ok(layer)
+    }
+    /// The layer as we saved it, if its picture is still the same and where it was.
+    fn live(&mut self, src: &str, x: i32, y: i32) -> Option<Layer> {
+        let saved = self.live.as_mut()?;
+        let shown = saved.manifest.pictures.iter().find(|shown| shown.name == src)?;
+        let bytes = self.reading.archive.bytes(src, self.reading.budget.file_bytes).ok()?;
+        ((shown.x, shown.y) == (x, y) && crc32fast::hash(&bytes) == shown.crc).then_some(())?;
+        let layer = layer_mut(&mut saved.value, &shown.layer)?.clone();
+        let alone = json!({ "format": "rilievo", "canvas": saved.canvas, "layers": [layer] });
+        match self.reading.read_value(&alone) {
+            Ok(document) => document.layers.into_iter().next().map(Arc::unwrap_or_clone),
+            Err(error) => {
+                self.reading.lost(format!("“{}” became pixels: {error}", name_of(&layer)));
+                None
+            }
+        }
+    }
+    fn picture(&mut self, name: &str, src: String, x: i32, y: i32) -> Result<PixelLayer> {
+        let path = self.reading.archive_path(&src);
+        let read = self.reading.archive.bytes(&src, self.reading.budget.file_bytes);
+        let decoded = read.and_then(|bytes| picture::decode(&path, &bytes, self.reading.budget));
+        let decoded = match decoded {
+            Ok(decoded) => decoded,
+            Err(Error::TooLarge { file, reason }) => return Err(Error::TooLarge { file, reason }),
+            Err(error) => {
+                self.reading.lost(format!("“{name}” is lost: {error}"));
+                return Ok(PixelLayer { file: String::new(), x, y, tiles: TileGrid::default() });
+            }
+        };
+        self.used_px += decoded.size.area() as u64;
+        if self.used_px > self.reading.budget.document_px {
+            let reason = format!("its layers hold more than {} pixels together", self.reading.budget.document_px);
+            return Err(Error::too_large(self.reading.file, reason));
+        }
+        Ok(PixelLayer { tiles: picture::to_tiles(&decoded, x, y), file: src, x, y })
+    }
+}
+
+fn became_pixels(name: &str, kind: &str) -> String {
+    match kind {
+        "composed" => format!("“{name}” is pixels: it shows several layers composed by Rilievo"),
+        kind => format!("“{name}” became pixels: another program saved the file without its {kind} settings"),
+    }
+}

@@ -1,0 +1,118 @@
+//! The pictures of a plan, each rendered and encoded once: a layer that has not changed since is taken as it was.
+//! Floor 5. Encoding is `pixels`', composing `document::flatten`'s.
+
+use super::pixels;
+use super::plan::{Item, Shows};
+use crate::Result;
+use crate::document::kept::Encoded;
+use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layer, flatten_layers};
+use crate::raster::{BlendMode, TileGrid};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Work that may be cancelled, or fail.
+pub type Cancellable<T> = Result<Option<T>>;
+
+/// The picture of each item that shows one, in the order [`pictures_of`] lists them; `None` if cancelled.
+pub fn render(file: &Path, document: &Document, items: &[Item], progress: &Progress) -> Cancellable<Vec<Encoded>> {
+    let shown = pictures_of(items);
+    progress.add_total(shown.len() as u64);
+    let one = |item: &&Item| {
+        let encoded = match &item.shows {
+            Shows::Layer(layer) => look(file, document, layer, progress)?,
+            Shows::Composed { document, layers } => flatten_layers(document, layers, progress)
+                .map(|tiles| pixels::encode(file, &tiles, None))
+                .transpose()?,
+            Shows::Nothing(_) | Shows::Stack { .. } => Some(pixels::encode(file, &TileGrid::default(), None)?),
+        };
+        progress.step();
+        Ok(encoded)
+    };
+    let all: Result<Vec<Option<Encoded>>> = shown.par_iter().map(one).collect();
+    Ok(all?.into_iter().collect())
+}
+
+/// Every item that is a picture, bottom first, stacks opened.
+pub fn pictures_of(items: &[Item]) -> Vec<&Item> {
+    fn visit<'a>(items: &'a [Item], out: &mut Vec<&'a Item>) {
+        for item in items {
+            match &item.shows {
+                Shows::Stack { items, .. } => visit(items, out),
+                _ => out.push(item),
+            }
+        }
+    }
+    let mut out = Vec::new();
+    visit(items, &mut out);
+    out
+}
+
+/// The look of a layer alone: wholly opaque, its mask and the surface's edge in its pixels.
+fn look(file: &Path, document: &Document, layer: &Arc<Layer>, progress: &Progress) -> Cancellable<Encoded> {
+    if let Some(tiles) = bare(document, layer) {
+        return pixels_of(file, document, layer, tiles).map(Some);
+    }
+    let render = || {
+        let plain = document.with_layer(layer.id, |layer| {
+            (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
+        });
+        let tiles = plain.and_then(|plain| flatten_layer(&plain, layer.id, progress));
+        tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
+    };
+    let mut failed = None;
+    let look = layer.kept.look.get(&document.scene(), &seen_by(document, layer), &(), || {
+        render().unwrap_or_else(|error| {
+            failed = Some(error);
+            None
+        })
+    });
+    failed.map_or(Ok(look), Err)
+}
+
+/// A paint layer's pixels, where nothing hides any of them from other programs.
+fn bare<'a>(document: &Document, layer: &'a Layer) -> Option<&'a TileGrid> {
+    let is_cut = layer.mask.is_some() || (document.surface.is_some() && layer.clip_to_surface);
+    match &layer.content {
+        Content::Pixels(pixels) if !is_cut => Some(&pixels.tiles),
+        _ => None,
+    }
+}
+
+/// What a layer's look depends on beside the scene: itself, and any normals that may stand beneath it.
+fn seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
+    let normals = document.walk().into_iter().map(|(_, layer)| layer);
+    let normals = normals.filter(|layer| matches!(layer.content, Content::Normals(_)));
+    std::iter::once(layer).chain(normals).cloned().collect()
+}
+
+/// Takes pictures that were read with a document for the looks of its layers, so that saving it copies them.
+pub fn remember(document: &Document, looks: &BTreeMap<LayerId, Encoded>) {
+    for (_, layer) in document.walk() {
+        if let Some(encoded) = looks.get(&layer.id) {
+            let (scene, seen) = (document.scene(), seen_by(document, layer));
+            layer.kept.look.get(&scene, &seen, &(), || Some(encoded.clone()));
+        }
+    }
+}
+
+/// All pixels of each paint layer, also those that a mask or the surface's edge hides.
+pub fn paint(file: &Path, document: &Document) -> Result<BTreeMap<LayerId, Encoded>> {
+    let layers: Vec<&Arc<Layer>> = document.walk().into_iter().map(|(_, layer)| layer).collect();
+    let one = |layer: &&Arc<Layer>| {
+        let Content::Pixels(pixels) = &layer.content else { return Ok(None) };
+        Ok(Some((layer.id, pixels_of(file, document, layer, &pixels.tiles)?)))
+    };
+    let all: Result<Vec<_>> = layers.par_iter().map(one).collect();
+    Ok(all?.into_iter().flatten().collect())
+}
+
+fn pixels_of(file: &Path, document: &Document, layer: &Arc<Layer>, tiles: &TileGrid) -> Result<Encoded> {
+    let mut failed = None;
+    let known = layer.kept.pixels.get(&document.scene(), std::slice::from_ref(layer), &(), || {
+        pixels::encode(file, tiles, None).map_err(|error| failed = Some(error)).ok()
+    });
+    // Without a failure there is a value.
+    failed.map_or_else(|| known.map_or_else(|| pixels::encode(file, tiles, None), Ok), Err)
+}

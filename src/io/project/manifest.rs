@@ -1,0 +1,90 @@
+//! Which picture of `data/` shows which layer, with checksums: so that a change by another program is seen.
+//! Floor 5.
+
+use crate::document::kept::Encoded;
+use crate::document::{Document, LayerId};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Another version of the program may render a layer otherwise.
+const PROGRAM: &str = env!("CARGO_PKG_VERSION");
+
+/// What a project says of its own entries.
+#[derive(Debug, PartialEq)]
+pub struct Manifest {
+    /// The version that wrote the file.
+    pub program: String,
+    /// CRC-32 of `stack.xml`.
+    pub stack: u32,
+    pub pictures: Vec<Shown>,
+}
+
+/// A picture of one layer alone.
+#[derive(Debug, PartialEq)]
+pub struct Shown {
+    /// The layer's path in the document, such as `layers[2].layers[0]`.
+    pub layer: String,
+    pub name: String,
+    /// CRC-32 of the PNG.
+    pub crc: u32,
+    pub x: i32,
+    pub y: i32,
+}
+
+impl Manifest {
+    pub fn new(document: &Document, stack: &str, shown: &BTreeMap<LayerId, &(String, Encoded)>) -> Self {
+        let pictures = document.walk().into_iter().filter_map(|(path, layer)| {
+            let (name, look) = shown.get(&layer.id)?;
+            let crc = crc32fast::hash(look.file.bytes());
+            Some(Shown { layer: path, name: name.clone(), crc, x: look.x, y: look.y })
+        });
+        Self { program: PROGRAM.into(), stack: crc32fast::hash(stack.as_bytes()), pictures: pictures.collect() }
+    }
+    pub fn is_of_this_program(&self) -> bool {
+        self.program == PROGRAM
+    }
+    pub fn write(&self) -> Value {
+        let picture = |p: &Shown| json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
+        json!({
+            "format": "rilievo-project",
+            "version": 1,
+            "program": self.program,
+            "stack_crc32": self.stack,
+            "pictures": self.pictures.iter().map(picture).collect::<Vec<_>>(),
+        })
+    }
+    /// `None` for anything that this program would not have written.
+    pub fn read(value: &Value) -> Option<Self> {
+        let crc = |value: &Value| value.as_u64().and_then(|v| u32::try_from(v).ok());
+        let offset = |value: &Value| value.as_i64().and_then(|v| i32::try_from(v).ok());
+        let text = |value: &Value| value.as_str().map(str::to_owned);
+        let picture = |p: &Value| {
+            Some(Shown {
+                layer: text(&p["layer"])?,
+                name: text(&p["picture"])?,
+                crc: crc(&p["crc32"])?,
+                x: offset(&p["x"])?,
+                y: offset(&p["y"])?,
+            })
+        };
+        (value["format"] == "rilievo-project").then_some(())?;
+        Some(Self {
+            program: text(&value["program"])?,
+            stack: crc(&value["stack_crc32"])?,
+            pictures: value["pictures"].as_array()?.iter().map(picture).collect::<Option<_>>()?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_manifest_reads_back() {
+        let shown = Shown { layer: "layers[0]".into(), name: "data/000.png".into(), crc: u32::MAX, x: -4, y: 5 };
+        let manifest = Manifest { program: "1".into(), stack: 7, pictures: vec![shown] };
+        assert_eq!(Manifest::read(&manifest.write()), Some(manifest));
+        assert_eq!(Manifest::read(&json!({ "format": "rilievo-project", "pictures": 3 })), None);
+    }
+}

@@ -1,0 +1,149 @@
+//! A project read: as it was saved, as far as it is intact, or as another program left it.
+//! Floor 5.
+
+use super::look::remember;
+use super::manifest::{Manifest, Shown};
+use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, repair, stack};
+use crate::document::kept::Encoded;
+use crate::document::{Document, LayerId};
+use crate::io::recipe::{self, Source};
+use crate::io::{Budget, json};
+use crate::math::Size;
+use crate::raster::Asset;
+use crate::{Error, Result};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What a project gave.
+pub struct Contents {
+    pub document: Document,
+    /// What is not as it was saved, a sentence each, for the artist.
+    pub notes: Vec<String>,
+    /// Nothing is lost. A document that is not whole must not be saved over its file unasked.
+    pub is_whole: bool,
+}
+
+/// Reads a project of ours, or any OpenRaster file. Fails only where nothing can be given back.
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
+    let archive = Archive::open(file, bytes, budget)?;
+    let mut reading = Reading { file, archive: &archive, budget, notes: Vec::new(), is_whole: true };
+    if archive.is_damaged() {
+        reading.lost("the file's table of contents is damaged; its entries were found without it");
+    }
+    let document = reading.document()?;
+    Ok(Contents { document, notes: reading.notes, is_whole: reading.is_whole })
+}
+
+/// A project being read, and what there is to say of it.
+pub struct Reading<'a> {
+    pub file: &'a Path,
+    pub archive: &'a Archive<'a>,
+    pub budget: &'a Budget,
+    pub notes: Vec<String>,
+    pub is_whole: bool,
+}
+
+impl Reading<'_> {
+    /// Tells what is not as it was, though nothing is lost.
+    pub fn note(&mut self, sentence: impl Into<String>) {
+        self.notes.push(sentence.into());
+    }
+    /// Tells what is lost.
+    pub fn lost(&mut self, sentence: impl Into<String>) {
+        self.is_whole = false;
+        self.notes.push(sentence.into());
+    }
+    fn document(&mut self) -> Result<Document> {
+        let manifest = self.manifest();
+        let stack = self.archive.has(STACK).then(|| self.archive.bytes(STACK, self.budget.json_bytes));
+        let parsed = match self.archive.has(DOCUMENT) {
+            false => None,
+            true => match self.value(DOCUMENT) {
+                Ok(value) => Some(value),
+                Err(error) => {
+                    self.lost(format!("{error}; what is left are the layers' pictures"));
+                    None
+                }
+            },
+        };
+        let Some(value) = parsed else { return self.pictures_only(stack) };
+        let stack_crc = stack.as_ref().and_then(|text| text.as_ref().ok()).map(|text| crc32fast::hash(text));
+        match (&manifest, stack) {
+            (Some(manifest), Some(Ok(text))) if stack_crc != Some(manifest.stack) => {
+                let restored = foreign::restored(self, &text, &value, manifest);
+                restored.or_else(|error| {
+                    self.lost(format!("{error}; the layers are as Rilievo saved them"));
+                    self.own(value, Some(manifest))
+                })
+            }
+            _ => self.own(value, manifest.as_ref()),
+        }
+    }
+    fn value(&self, name: &str) -> Result<Value> {
+        let text = self.archive.bytes(name, self.budget.json_bytes)?;
+        json::parse(&self.archive_path(name), &text, self.budget)
+    }
+    pub fn archive_path(&self, name: &str) -> std::path::PathBuf {
+        use crate::io::Files;
+        self.archive.path(name)
+    }
+    fn manifest(&mut self) -> Option<Manifest> {
+        if !self.archive.has(MANIFEST) {
+            if self.archive.has(DOCUMENT) {
+                self.note("the list of the layers' pictures is missing; changes by other programs cannot be told");
+            }
+            return None;
+        }
+        let read = self.value(MANIFEST).ok().as_ref().and_then(Manifest::read);
+        if read.is_none() {
+            self.note("the list of the layers' pictures is damaged; changes by other programs cannot be told");
+        }
+        read
+    }
+    /// The document as it was saved, with what another program changed and without what is damaged.
+    fn own(&mut self, mut value: Value, manifest: Option<&Manifest>) -> Result<Document> {
+        let intact = manifest.map(|manifest| repair::check_pictures(self, &mut value, manifest)).unwrap_or_default();
+        let document = match self.read_value(&value) {
+            Ok(document) => document,
+            Err(error) => {
+                // A newer version, or a field out of range, is no damage that leaving something out would mend.
+                if !repair::leave_out_damaged(self, &mut value, manifest) {
+                    return Err(error);
+                }
+                self.read_value(&value)?
+            }
+        };
+        let of_this_program = manifest.is_some_and(Manifest::is_of_this_program);
+        if of_this_program {
+            remember(&document, &looks(&document, intact));
+        }
+        Ok(document)
+    }
+    pub fn read_value(&self, value: &Value) -> Result<Document> {
+        let path = self.archive_path(DOCUMENT);
+        recipe::read_value(value, Source { file: &path, files: self.archive, budget: self.budget, onto: None })
+    }
+    /// Without a document: what any program sees.
+    fn pictures_only(&mut self, stack: Option<Result<Vec<u8>>>) -> Result<Document> {
+        let layers = match stack {
+            Some(Ok(text)) => stack::read(self.file, &text, self.budget),
+            Some(Err(error)) => Err(error),
+            None => Err(Error::decode(self.file, "it is no OpenRaster file: there is no stack.xml in it")),
+        };
+        match layers {
+            Ok(layers) => foreign::document(self, layers),
+            Err(error) => foreign::leftovers(self, error),
+        }
+    }
+}
+
+/// The pictures by the layers they show.
+fn looks(document: &Document, intact: Vec<(Shown, Asset, Size)>) -> BTreeMap<LayerId, Encoded> {
+    let mut by_path: BTreeMap<String, Encoded> = intact
+        .into_iter()
+        .map(|(shown, file, size)| (shown.layer, Encoded { file, size, x: shown.x, y: shown.y }))
+        .collect();
+    let walk = document.walk().into_iter();
+    walk.filter_map(|(path, layer)| Some((layer.id, by_path.remove(&path)?))).collect()
+}

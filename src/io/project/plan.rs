@@ -1,0 +1,243 @@
+//! What other programs see of a document: nested stacks of pictures, in the words of OpenRaster.
+//! Floor 5. Pure: which pictures there are, not their pixels (`look`) nor their XML (`stack`).
+//!
+//! OpenRaster has no masks, no clipping, no adjustments, and not every way to blend. What it cannot say is composed here:
+//!
+//! * a mask, and clipping to the surface, go into the layer's own picture;
+//! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden beside it;
+//! * so does an isolated group with a mask;
+//! * a layer that changes or reads what lies beneath in a way that cannot be said (radiance scaling, exclusion, blending in
+//!   linear light, a pass-through group with a mask or opacity) is composed with all that lies beneath it in its scope.
+
+use crate::document::{Content, Document, Group, Layer, LayerId, Lock};
+use crate::raster::BlendMode;
+use std::sync::Arc;
+
+/// A picture or a stack of them, and how it meets what lies beneath.
+pub struct Item {
+    pub name: String,
+    pub visible: bool,
+    pub opacity: f32,
+    pub blend: BlendMode,
+    pub locked: bool,
+    pub shows: Shows,
+}
+
+pub enum Shows {
+    /// Nothing: the layer has no pixels of its own.
+    Nothing(Arc<Layer>),
+    /// A layer alone, wholly opaque, its mask in its pixels.
+    Layer(Arc<Layer>),
+    /// Some layers composed on transparency, in a document where the first's own opacity and blend mode are taken away.
+    Composed { document: Document, layers: Vec<LayerId> },
+    /// Bottom first.
+    Stack { isolated: bool, items: Vec<Item> },
+}
+
+/// The items of a document, bottom first.
+pub fn plan(document: &Document) -> Vec<Item> {
+    Planner { document }.scope(&document.layers)
+}
+
+struct Planner<'a> {
+    document: &'a Document,
+}
+
+impl Planner<'_> {
+    /// Layers that are composed with each other.
+    fn scope(&self, layers: &[Arc<Layer>]) -> Vec<Item> {
+        let runs = runs(layers);
+        let last = runs.iter().rposition(|run| reads_beneath(run));
+        let mut items = Vec::new();
+        if let Some(last) = last {
+            items.extend(self.composed_with_beneath(&runs[..=last]));
+        }
+        let above = last.map_or(0, |last| last + 1);
+        items.extend(runs[above..].iter().flat_map(|run| self.run(run)));
+        items
+    }
+    /// A layer that reads what lies beneath it, and all that lies beneath it, as one picture.
+    fn composed_with_beneath(&self, runs: &[&[Arc<Layer>]]) -> [Item; 2] {
+        let parts = runs.iter().flat_map(|run| self.run(run)).collect();
+        let top = runs.last().and_then(|run| run.first());
+        let name = top.map_or(String::new(), |layer| layer.name.clone());
+        let visible = runs.iter().filter(|run| run.first().is_some_and(|base| base.visible));
+        let layers = visible.flat_map(|run| run.iter()).filter(|l| l.visible).map(|layer| layer.id).collect();
+        [hidden_parts(&name, parts), picture(name, Shows::Composed { document: self.document.clone(), layers })]
+    }
+    /// A layer and those clipped to it.
+    fn run(&self, run: &[Arc<Layer>]) -> Vec<Item> {
+        let Some((base, rest)) = run.split_first() else { return Vec::new() };
+        let is_base = !base.clip_below && !matches!(base.content, Content::Normals(_));
+        let clipped = rest.iter().any(|layer| layer.clip_below && layer.visible);
+        if is_base && base.visible && clipped {
+            return vec![self.clipping_stack(base, run)];
+        }
+        let mut items: Vec<Item> = run.iter().map(|layer| self.single(layer)).collect();
+        for (item, layer) in items.iter_mut().zip(run) {
+            // Clipped to what is not there, a layer paints nothing.
+            item.visible &= !layer.clip_below;
+        }
+        items
+    }
+    fn clipping_stack(&self, base: &Arc<Layer>, run: &[Arc<Layer>]) -> Item {
+        let parts = run.iter().map(|layer| self.single(layer)).collect();
+        let layers = run.iter().filter(|layer| layer.visible).map(|layer| layer.id).collect();
+        let composed = Shows::Composed { document: self.plain(base.id), layers };
+        let items = vec![hidden_parts(&base.name, parts), picture(base.name.clone(), composed)];
+        Item { shows: Shows::Stack { isolated: true, items }, ..item(base) }
+    }
+    /// The document with one layer as it is before it meets what lies beneath.
+    fn plain(&self, id: LayerId) -> Document {
+        let plain = self.document.with_layer(id, |layer| {
+            (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
+        });
+        plain.unwrap_or_else(|| self.document.clone())
+    }
+    fn single(&self, layer: &Arc<Layer>) -> Item {
+        let shows = match &layer.content {
+            Content::RadianceScaling(_) | Content::Normals(_) => Shows::Nothing(layer.clone()),
+            Content::Group(group) => return self.group(layer, group),
+            _ => Shows::Layer(layer.clone()),
+        };
+        Item { shows, ..item(layer) }
+    }
+    fn group(&self, layer: &Arc<Layer>, group: &Group) -> Item {
+        let parts = self.scope(&group.layers);
+        if group.pass_through {
+            let shows = Shows::Stack { isolated: false, items: parts };
+            return Item { opacity: 1.0, blend: BlendMode::Normal, shows, ..item(layer) };
+        }
+        let items = match &layer.mask {
+            None => parts,
+            Some(_) => {
+                let composed = Shows::Composed { document: self.plain(layer.id), layers: vec![layer.id] };
+                vec![hidden_parts(&layer.name, parts), picture(layer.name.clone(), composed)]
+            }
+        };
+        Item { shows: Shows::Stack { isolated: true, items }, ..item(layer) }
+    }
+}
+
+/// Layers cut before each that is a base: not clipped, and not normals, which stand in nobody's way.
+fn runs(layers: &[Arc<Layer>]) -> Vec<&[Arc<Layer>]> {
+    let begins = |layer: &Arc<Layer>| !layer.clip_below && !matches!(layer.content, Content::Normals(_));
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for i in 1..=layers.len() {
+        if i == layers.len() || begins(&layers[i]) {
+            runs.push(&layers[start..i]);
+            start = i;
+        }
+    }
+    runs
+}
+
+/// A visible run that cannot be shown without composing it with what lies beneath.
+fn reads_beneath(run: &[Arc<Layer>]) -> bool {
+    let Some((base, rest)) = run.split_first() else { return false };
+    if !base.visible || base.clip_below {
+        return false;
+    }
+    let clips = rest.iter().any(|layer| layer.clip_below && layer.visible);
+    match &base.content {
+        Content::RadianceScaling(_) => true,
+        Content::Normals(_) => false,
+        Content::Group(group) if group.pass_through && !clips => {
+            base.opacity < 1.0 || base.mask.is_some() || self::runs(&group.layers).iter().any(|run| reads_beneath(run))
+        }
+        _ => base.blend_linear || base.blend == BlendMode::Exclusion,
+    }
+}
+
+fn item(layer: &Layer) -> Item {
+    Item {
+        name: layer.name.clone(),
+        visible: layer.visible,
+        opacity: layer.opacity,
+        blend: layer.blend,
+        locked: layer.lock == Lock::All,
+        shows: Shows::Stack { isolated: true, items: Vec::new() },
+    }
+}
+
+fn picture(name: String, shows: Shows) -> Item {
+    Item { name, visible: true, opacity: 1.0, blend: BlendMode::Normal, locked: false, shows }
+}
+
+/// The layers that a composed picture shows, kept out of sight.
+fn hidden_parts(name: &str, items: Vec<Item>) -> Item {
+    let shows = Shows::Stack { isolated: true, items };
+    Item { visible: false, ..picture(format!("{name} (parts)"), shows) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::MaskKind;
+    use crate::math::{Size, srgb::Color};
+    use crate::shading::RadianceScaling;
+
+    fn fill(name: &str) -> Layer {
+        Layer::new(name, Content::Fill(Color::BLACK))
+    }
+    fn group(name: &str, pass_through: bool, layers: Vec<Layer>) -> Layer {
+        let layers = layers.into_iter().map(Arc::new).collect();
+        Layer::new(name, Content::Group(Group { layers, pass_through }))
+    }
+    fn planned(layers: Vec<Layer>) -> String {
+        let layers = layers.into_iter().map(Arc::new).collect();
+        let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
+        text(&plan(&document))
+    }
+    /// Names; hidden ones in lower case brackets, composed ones with a star, stacks with what they hold.
+    fn text(items: &[Item]) -> String {
+        let one = |item: &Item| {
+            let what = match &item.shows {
+                Shows::Nothing(_) => "0".into(),
+                Shows::Layer(_) => String::new(),
+                Shows::Composed { layers, .. } => format!("*{}", layers.len()),
+                Shows::Stack { isolated, items } => {
+                    format!("{}[{}]", if *isolated { "" } else { "through" }, text(items))
+                }
+            };
+            format!("{}{}{what}", if item.visible { "" } else { "-" }, item.name.replace(" (parts)", "~"))
+        };
+        items.iter().map(one).collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn plain_layers_and_groups_are_shown_as_they_are() {
+        let layers = vec![fill("a"), group("g", false, vec![fill("b")]), group("p", true, vec![fill("c")])];
+        assert_eq!(planned(layers), "a g[b] pthrough[c]");
+    }
+    #[test]
+    fn clipped_layers_are_composed_and_kept_hidden_beside() {
+        let clipped = Layer { clip_below: true, ..fill("c") };
+        assert_eq!(planned(vec![fill("a"), fill("b"), clipped.clone()]), "a b[-b~[b c] b*2]");
+        let hidden = Layer { visible: false, ..fill("b") };
+        assert_eq!(planned(vec![hidden, clipped.clone()]), "-b -c", "clipped to what is hidden");
+        assert_eq!(planned(vec![clipped]), "-c", "clipped to nothing");
+    }
+    #[test]
+    fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {
+        let adjustment = || Layer::new("r", Content::RadianceScaling(RadianceScaling::default()));
+        assert_eq!(planned(vec![fill("a"), adjustment(), fill("b")]), "-r~[a r0] r*2 b");
+        assert_eq!(
+            planned(vec![fill("a"), group("g", false, vec![fill("b"), adjustment()])]),
+            "a g[-r~[b r0] r*2]",
+            "an isolated group is a scope of its own"
+        );
+        let through = group("g", true, vec![adjustment()]);
+        assert_eq!(planned(vec![fill("a"), through]), "-g~[a gthrough[-r~[r0] r*1]] g*2");
+    }
+    #[test]
+    fn what_openraster_cannot_blend_is_composed() {
+        let exclusion = Layer { blend: BlendMode::Exclusion, ..fill("e") };
+        assert_eq!(planned(vec![fill("a"), exclusion.clone()]), "-e~[a e] e*2");
+        assert_eq!(planned(vec![fill("a"), Layer { visible: false, ..exclusion }]), "a -e");
+        let mask = crate::document::LayerMask { kind: MaskKind::Fresnel { f0: 0.1, power: 1.0 }, invert: false };
+        let masked = Layer { mask: Some(mask), ..group("g", false, vec![fill("b")]) };
+        assert_eq!(planned(vec![fill("a"), masked]), "a g[-g~[b] g*1]");
+    }
+}

@@ -1,0 +1,133 @@
+//! A project of which something is damaged or was changed elsewhere: every intact layer is kept, the others are named.
+//! Floor 5. Works on the document's JSON, before it is read.
+
+use super::manifest::{Manifest, Shown};
+use super::open::Reading;
+use crate::math::Size;
+use crate::raster::Asset;
+use serde_json::{Map, Value, json};
+
+/// Compares the layers' pictures with the manifest. A layer whose picture another program changed becomes that picture.
+/// The intact ones are given back.
+pub fn check_pictures(reading: &mut Reading, document: &mut Value, manifest: &Manifest) -> Vec<(Shown, Asset, Size)> {
+    let mut intact = Vec::new();
+    for shown in &manifest.pictures {
+        let Some(layer) = layer_mut(document, &shown.layer) else { continue };
+        let (name, is_paint) = (name_of(layer), layer["file"] == shown.name.as_str());
+        match reading.archive.bytes(&shown.name, reading.budget.file_bytes) {
+            Ok(bytes) if crc32fast::hash(&bytes) == shown.crc => {
+                let Some(size) = png_size(&bytes) else { continue };
+                let shown = Shown { layer: shown.layer.clone(), name: shown.name.clone(), ..*shown };
+                intact.push((shown, bytes.into(), size));
+            }
+            Ok(_) if layer["kind"] == "group" => {}
+            Ok(_) => {
+                let what = if is_paint { "its pixels are those" } else { "it became pixels" };
+                reading.note(format!("“{name}” was changed by another program: {what}"));
+                *layer = as_picture(layer, Some(shown));
+            }
+            // A paint layer's pixels are missed when the document is read.
+            Err(_) if is_paint => {}
+            Err(_) => reading.note(format!("the picture of “{name}” for other programs is lost; saving makes it anew")),
+        }
+    }
+    intact
+}
+
+/// Replaces every layer that cannot be read by its picture, or by an empty one, and leaves out maps that cannot be read;
+/// whether there was any.
+pub fn leave_out_damaged(reading: &mut Reading, document: &mut Value, manifest: Option<&Manifest>) -> bool {
+    let mut left_out = false;
+    if let Some(surface) = document.get("surface").cloned() {
+        let alone = json!({ "format": "rilievo", "version": document["version"], "surface": surface });
+        if let Err(error) = reading.read_value(&alone) {
+            reading.lost(format!("the surface is lost: {error}"));
+            if let Value::Object(fields) = &mut *document {
+                fields.shift_remove("surface");
+            }
+            left_out = true;
+        }
+    }
+    let canvas = document["canvas"].clone();
+    let mut paths = Vec::new();
+    list_layers(&document["layers"], "", &mut paths);
+    for path in paths {
+        let Some(layer) = layer_mut(document, &path) else { continue };
+        let Some(error) = trouble(reading, &canvas, layer) else { continue };
+        let name = name_of(layer);
+        let shown = manifest.and_then(|m| m.pictures.iter().find(|shown| shown.layer == path));
+        let pixels = shown.map(|shown| as_picture(layer, Some(shown)));
+        let pixels = pixels.filter(|pixels| pixels["file"] != layer["file"]);
+        let pixels = pixels.filter(|pixels| trouble(reading, &canvas, pixels).is_none());
+        match pixels {
+            Some(pixels) => {
+                reading.lost(format!("“{name}” became pixels: {error}"));
+                *layer = pixels;
+            }
+            None => {
+                reading.lost(format!("“{name}” is lost: {error}"));
+                *layer = as_picture(layer, None);
+            }
+        }
+        left_out = true;
+    }
+    left_out
+}
+
+/// Why a layer by itself cannot be read. A group is only what it is without its layers.
+fn trouble(reading: &Reading, canvas: &Value, layer: &Value) -> Option<crate::Error> {
+    let mut layer = layer.clone();
+    if layer["kind"] == "group"
+        && let Value::Object(fields) = &mut layer
+    {
+        fields.shift_remove("layers");
+    }
+    reading.read_value(&json!({ "format": "rilievo", "canvas": canvas, "layers": [layer] })).err()
+}
+
+/// A layer as its picture, or as nothing; how it meets what lies beneath stays.
+fn as_picture(layer: &Value, shown: Option<&Shown>) -> Value {
+    let mut out = Map::new();
+    for field in ["name", "kind", "visible", "opacity", "blend", "blend_space", "clip_below", "lock"] {
+        if let Some(value) = layer.get(field) {
+            out.insert(field.into(), value.clone());
+        }
+    }
+    out.insert("kind".into(), "pixels".into());
+    // The picture is cut to the surface already.
+    out.insert("clip_to_surface".into(), false.into());
+    if let Some(shown) = shown {
+        out.insert("file".into(), shown.name.as_str().into());
+        out.insert("x".into(), shown.x.into());
+        out.insert("y".into(), shown.y.into());
+    }
+    Value::Object(out)
+}
+
+/// The layer at a path such as `layers[2].layers[0]`.
+pub fn layer_mut<'a>(document: &'a mut Value, path: &str) -> Option<&'a mut Value> {
+    path.split('.').try_fold(document, |value, part| {
+        let index: usize = part.strip_prefix("layers[")?.strip_suffix(']')?.parse().ok()?;
+        value.get_mut("layers")?.get_mut(index)
+    })
+}
+
+fn list_layers(layers: &Value, prefix: &str, out: &mut Vec<String>) {
+    for (i, layer) in layers.as_array().into_iter().flatten().enumerate() {
+        let path = format!("{prefix}layers[{i}]");
+        if let Some(inner) = layer.get("layers") {
+            list_layers(inner, &format!("{path}."), out);
+        }
+        out.push(path);
+    }
+}
+
+pub fn name_of(layer: &Value) -> String {
+    layer["name"].as_str().unwrap_or_default().to_owned()
+}
+
+/// The size in a PNG's header.
+pub fn png_size(bytes: &[u8]) -> Option<Size> {
+    let side = |at: usize| Some(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+    Some(Size::new(side(16)?, side(20)?))
+}

@@ -1,0 +1,138 @@
+//! Documents for tests: every kind of layer, small.
+
+use crate::document::Document;
+use crate::io::recipe::{self, Source};
+use crate::io::{Budget, Files};
+use crate::{Error, Result};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Files in memory.
+#[derive(Default)]
+pub struct InMemory(pub BTreeMap<String, Vec<u8>>);
+
+impl Files for InMemory {
+    fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
+        let missing = || Error::io(name, std::io::Error::from(std::io::ErrorKind::NotFound));
+        self.0.get(name).cloned().ok_or_else(missing)
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        name.into()
+    }
+}
+
+/// A PNG of a function of its pixels.
+pub fn png(width: u32, height: u32, rgba: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let picture = image::RgbaImage::from_fn(width, height, |x, y| image::Rgba(rgba(x, y)));
+    picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+/// A dome: normals in blue-green-red, transparent around it.
+fn dome(side: u32) -> Vec<u8> {
+    png(side, side, |x, y| {
+        let unit = |v: u32| (v as f32 + 0.5) / side as f32 * 2.0 - 1.0;
+        let (nx, ny) = (unit(x) * 1.1, -unit(y) * 1.1);
+        let square = nx * nx + ny * ny;
+        if square > 1.0 {
+            return [128, 128, 255, 0];
+        }
+        let byte = |v: f32| (v * 127.5 + 127.5).round() as u8;
+        [byte(nx), byte(ny), byte((1.0 - square).sqrt()), 255]
+    })
+}
+
+pub fn files(side: u32) -> InMemory {
+    let noise = |x: u32, y: u32| (crate::math::hash::mix(x * 7919 + y) >> 8) as u8;
+    let files = [
+        ("maps/n.png", dome(side)),
+        ("m.png", png(side, side, |x, _| [(x * 255 / side) as u8, 0, 90, 255])),
+        ("photo.png", png(20, 13, |x, y| [noise(x, y), x as u8 * 9, y as u8 * 17, 200 + x as u8])),
+        ("paint.png", png(30, 25, |x, y| [noise(x, y), 40, 200, noise(y, x)])),
+        ("tip.png", png(9, 9, |x, y| [if (x + y) % 3 == 0 { 255 } else { 30 }; 4].map(|v| v.max(1)))),
+        ("sky.png", png(16, 8, |x, y| [x as u8 * 15, y as u8 * 30, 220, 255])),
+    ];
+    InMemory(files.map(|(name, bytes)| (name.to_owned(), bytes)).into())
+}
+
+pub fn read(json: &Value, files: &dyn Files) -> Document {
+    let text = json.to_string();
+    let budget = Budget::default();
+    let source = Source { file: Path::new("sample.json"), files, budget: &budget, onto: None };
+    recipe::read(text.as_bytes(), source).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Every kind of layer, with masks, clipping, groups of both sorts, and blend modes.
+pub fn everything_json(side: u32) -> Value {
+    json!({
+        "canvas": { "width": side, "height": side },
+        "surface": { "normal": { "file": "maps/n.png" } },
+        "layers": [
+            { "name": "ground", "kind": "fill", "color": "#304050", "clip_to_surface": false },
+            { "name": "paint \"&<é>", "kind": "pixels", "file": "paint.png", "x": -5, "y": 7, "opacity": 0.75, "lock": "alpha" },
+            { "name": "photo", "kind": "image", "source": { "file": "photo.png", "blur": 1.5 }, "blend": "multiply",
+              "operator": { "kind": "normal", "alpha": 0.4 }, "mask": { "file": "m.png" } },
+            { "name": "ramp", "kind": "gradient", "blend": "screen", "stops": [[0, "#ff000080"], [1, "#00ff00"]],
+              "operator": { "kind": "normal" } },
+            { "name": "above ramp", "kind": "gradient", "clip_below": true, "blend": "overlay", "opacity": 0.5 },
+            { "name": "lines", "kind": "strokes", "mask": { "kind": "fresnel", "invert": true }, "strokes": [
+                { "brush": { "preset": "soft-round", "size": 12 }, "color": "#ffcc00",
+                  "samples": [[4, 9, 0.5], [30, 33, 1], [50, 12, 0.25, 5, -4, 1.5]] },
+                { "brush": { "size": 9, "tip": { "file": "tip.png" } }, "samples": [[20, 40], [44, 41]] } ] },
+            { "name": "group", "kind": "group", "opacity": 0.5, "mask": { "kind": "depth" }, "layers": [
+                { "name": "lit", "kind": "shading", "model": "phong",
+                  "lights": [{ "kind": "directional", "direction": [0.3, 0.5, 0.8] }] },
+                { "name": "through", "kind": "group", "pass_through": true, "layers": [
+                    { "name": "dots", "kind": "pixels", "file": "paint.png", "x": 20, "y": 20, "blend": "exclusion" } ] } ] },
+            { "name": "relief", "kind": "radiance-scaling", "alpha": 0.3, "opacity": 0.6 },
+            { "name": "hidden", "kind": "fill", "visible": false, "color": "#ffffff40", "blend": "plus", "lock": "all" },
+            { "name": "last", "kind": "pixels", "file": "paint.png", "x": 10, "y": 3, "blend": "hard-light",
+              "clip_to_surface": false } ]
+    })
+}
+
+pub fn everything(side: u32) -> Document {
+    read(&everything_json(side), &files(side))
+}
+
+/// Panics unless two documents are the same in every parameter and every pixel.
+pub fn assert_same(a: &Document, b: &Document) {
+    use crate::document::{Content, MaskKind, Progress, flatten};
+    assert_eq!(a.size, b.size);
+    assert_eq!(parameters(a), parameters(b));
+    for ((path, x), (_, y)) in a.walk().iter().zip(b.walk()) {
+        if let (Content::Pixels(x), Content::Pixels(y)) = (&x.content, &y.content) {
+            let rect = x.tiles.bounds().union(y.tiles.bounds());
+            assert!(x.tiles.to_straight_rgba(rect) == y.tiles.to_straight_rgba(rect), "the pixels of {path}");
+        }
+        let masks = (x.mask.as_ref().map(|m| &m.kind), y.mask.as_ref().map(|m| &m.kind));
+        if let (Some(MaskKind::File { coverage: x, .. }), Some(MaskKind::File { coverage: y, .. })) = masks {
+            assert!(x.values() == y.values(), "the mask of {path}");
+        }
+    }
+    let rect = a.size.rect();
+    let picture = |document| flatten(document, &Progress::default()).unwrap().to_straight_rgba(rect);
+    assert!(picture(a) == picture(b), "the pictures differ");
+}
+
+/// The JSON without the files' names and the corners of their pictures, which saving chooses.
+fn parameters(document: &Document) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(fields) => {
+                if fields.get("kind").is_some_and(|kind| kind == "pixels") {
+                    ["file", "x", "y"].iter().for_each(|name| drop(fields.shift_remove(*name)));
+                }
+                fields.shift_remove("file");
+                fields.values_mut().for_each(strip);
+            }
+            Value::Array(items) => items.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    let mut value = recipe::write(document);
+    strip(&mut value);
+    value
+}

@@ -1,0 +1,294 @@
+//! Saving a document: all or nothing, read back and compared before it counts, the previous version kept.
+//! Floor 5. The bytes are `project`'s. Every step is here for a loss that somebody had (docs/PROJECTS.md).
+
+use super::fs::{Disk, Found, Fs, Handle};
+use super::project;
+use crate::document::{Document, Progress};
+use crate::{Error, Result};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+
+/// Bytes written or compared between two looks at whether the save is still wanted.
+const CHUNK: usize = 1 << 20;
+/// Programs that synchronise folders hold a file for some milliseconds; waited for, twice as long each time.
+const RENAME_TRIES: u32 = 6;
+const FIRST_PAUSE: Duration = Duration::from_millis(10);
+
+/// What a file held when it was last read or written here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stamp {
+    bytes: u64,
+    crc: u32,
+}
+
+impl Stamp {
+    pub fn of(bytes: &[u8]) -> Self {
+        Self { bytes: bytes.len() as u64, crc: crc32fast::hash(bytes) }
+    }
+}
+
+/// What a save may replace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// Nothing: there must be no file of that name yet.
+    Nothing,
+    /// The file as it was when it was opened or last saved; another program's change is not overwritten.
+    This(Stamp),
+    /// Whatever is there: the user said so.
+    Anything,
+}
+
+/// A document on the disk.
+#[derive(Clone, Copy, Debug)]
+pub struct Saved {
+    /// For the next save.
+    pub stamp: Stamp,
+}
+
+/// Saves a document as a project; `None` if cancelled, and then nothing has changed.
+///
+/// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits for it. Returns once the
+/// file and its folder are on the disk. The previous version is kept beside it as `name~`. Fails with [`Error::Changed`]
+/// where `over` does not allow what would be replaced; whatever fails, the old file is as it was.
+pub fn save(document: &Document, file: &Path, over: Over, progress: &Progress) -> Result<Option<Saved>> {
+    let encoded = in_own_threads(file, || project::write(file, document, progress))??;
+    let Some(bytes) = encoded else { return Ok(None) };
+    replace(&Disk, file, &bytes, over, progress)
+}
+
+/// Half the processors: the other half is for who paints meanwhile.
+fn in_own_threads<T: Send>(file: &Path, work: impl FnOnce() -> T + Send) -> Result<T> {
+    let threads = (rayon::current_num_threads() / 2).max(1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    Ok(pool.map_err(|e| Error::io(file, io::Error::other(e)))?.install(work))
+}
+
+/// Puts bytes in a file's place by the mechanism of docs/PROJECTS.md; `None` if cancelled.
+pub fn replace(fs: &dyn Fs, file: &Path, bytes: &[u8], over: Over, progress: &Progress) -> Result<Option<Saved>> {
+    let saving = Saving { fs, named: file, bytes, over, progress };
+    saving.run().map(|done| done.then(|| Saved { stamp: Stamp::of(bytes) }))
+}
+
+struct Saving<'a> {
+    fs: &'a dyn Fs,
+    /// As the user named it, for messages.
+    named: &'a Path,
+    bytes: &'a [u8],
+    over: Over,
+    progress: &'a Progress,
+}
+
+impl Saving<'_> {
+    /// Whether it was done, and not cancelled.
+    fn run(&self) -> Result<bool> {
+        let target = self.target()?;
+        self.check(&target)?;
+        let part = self.fresh_name(&target, "part");
+        let written = self.write_part(&part, &target);
+        match written {
+            Ok(true) => {}
+            // What was begun is taken away; if even that fails, the first failure is the one to tell.
+            Ok(false) => {
+                let _ = self.fs.remove(&part);
+                return Ok(false);
+            }
+            Err(error) => {
+                let _ = self.fs.remove(&part);
+                return Err(error);
+            }
+        }
+        let placed = self.place(&part, &target);
+        if let Err(error) = placed {
+            let _ = self.fs.remove(&part);
+            return Err(error);
+        }
+        self.flush_folder(&target)?;
+        Ok(true)
+    }
+    /// The file itself: where a link leads to, not the link.
+    fn target(&self) -> Result<PathBuf> {
+        let io = |e| self.failed("", e);
+        match self.fs.found(self.named).map_err(io)? {
+            Some(Found::File) | Some(Found::Link) => {
+                let target = self.fs.resolve(self.named);
+                let target = target.map_err(|e| self.failed("it is a link that leads nowhere", e))?;
+                match self.fs.found(&target).map_err(io)? {
+                    Some(Found::File) => Ok(target),
+                    _ => Err(Error::unsupported(self.named, "it is not a regular file, so it cannot be replaced")),
+                }
+            }
+            Some(Found::Folder) => Err(Error::unsupported(self.named, "it is a folder")),
+            Some(Found::Other) => {
+                Err(Error::unsupported(self.named, "it is not a regular file, so it cannot be replaced"))
+            }
+            None => {
+                let name = self.named.file_name().ok_or_else(|| Error::unsupported(self.named, "it has no name"))?;
+                let folder = self.fs.resolve(folder_of(self.named));
+                Ok(folder.map_err(|e| self.failed("its folder cannot be reached", e))?.join(name))
+            }
+        }
+    }
+    /// What stands there may be replaced.
+    fn check(&self, target: &Path) -> Result<()> {
+        let changed = |reason: &str| Err(Error::Changed { file: self.named.into(), reason: reason.into() });
+        let is_there = self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
+        match self.over {
+            Over::Nothing if is_there => changed("there is a file of this name already"),
+            // Gone is no change that could be overwritten.
+            Over::This(stamp) if is_there && self.stamp_of(target)? != stamp => {
+                changed("another program changed it since it was opened")
+            }
+            _ => Ok(()),
+        }
+    }
+    fn stamp_of(&self, target: &Path) -> Result<Stamp> {
+        let io = |e| self.failed("it cannot be compared with what was opened", e);
+        let (mut handle, mut buffer) = (self.fs.open(target).map_err(io)?, vec![0; CHUNK]);
+        let (mut hasher, mut bytes) = (crc32fast::Hasher::new(), 0);
+        loop {
+            let n = read_some(&mut *handle, &mut buffer).map_err(io)?;
+            if n == 0 {
+                return Ok(Stamp { bytes, crc: hasher.finalize() });
+            }
+            hasher.update(&buffer[..n]);
+            bytes += n as u64;
+        }
+    }
+    /// Writes the new file under another name and makes sure of it; whether it was not cancelled meanwhile.
+    fn write_part(&self, part: &Path, target: &Path) -> Result<bool> {
+        let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
+        self.progress.add_total(2 * chunks);
+        let failed = |e| self.failed("the drawing could not be written there; choose another place", e);
+        {
+            let mut handle = self.fs.create_new(part).map_err(failed)?;
+            for chunk in self.bytes.chunks(CHUNK) {
+                if self.progress.is_cancelled() {
+                    return Ok(false);
+                }
+                handle.write_all(chunk).map_err(failed)?;
+                self.progress.step();
+            }
+            if self.fs.found(target).map_err(failed)?.is_some() {
+                // A disk without permissions of its own must not keep anybody from saving.
+                let _ = self.fs.copy_permissions(target, part);
+            }
+            handle.sync().map_err(failed)?;
+        }
+        self.compare(part)
+    }
+    /// What was written is read back.
+    fn compare(&self, part: &Path) -> Result<bool> {
+        let failed = |e| self.failed("what was written could not be read back; choose another place", e);
+        let differs = || failed(io::Error::new(ErrorKind::InvalidData, "the disk gave back other bytes"));
+        let mut handle = self.fs.open(part).map_err(failed)?;
+        let mut buffer = vec![0; CHUNK];
+        let mut rest = self.bytes;
+        loop {
+            if self.progress.is_cancelled() {
+                return Ok(false);
+            }
+            let n = read_some(&mut *handle, &mut buffer).map_err(failed)?;
+            let Some((same, after)) = rest.split_at_checked(n) else { return Err(differs()) };
+            if same != &buffer[..n] {
+                return Err(differs());
+            }
+            if n == 0 {
+                return if rest.is_empty() { Ok(true) } else { Err(differs()) };
+            }
+            rest = after;
+            self.progress.step();
+        }
+    }
+    /// Keeps the old file as `name~` and puts the new one in its place.
+    fn place(&self, part: &Path, target: &Path) -> Result<()> {
+        self.check(target)?;
+        if self.fs.found(target).map_err(|e| self.failed("", e))?.is_some() {
+            self.keep(target).map_err(|e| self.failed("the previous version could not be kept beside it", e))?;
+        }
+        let mut pause = FIRST_PAUSE;
+        for last in (0..RENAME_TRIES).rev() {
+            match self.fs.rename(part, target) {
+                Ok(()) => return Ok(()),
+                Err(e) if last > 0 && matches!(e.kind(), ErrorKind::PermissionDenied | ErrorKind::ResourceBusy) => {
+                    self.fs.pause(pause);
+                    pause *= 2;
+                }
+                Err(e) => return Err(self.failed("the old file could not be replaced", e)),
+            }
+        }
+        Ok(())
+    }
+    /// The old file as `name~`: a second name where the disk knows such, else a copy. Never for a moment without one.
+    fn keep(&self, target: &Path) -> io::Result<()> {
+        let spare = self.fresh_name(target, "old");
+        if self.fs.link(target, &spare).is_err() {
+            let copied = self.copy(target, &spare);
+            if copied.is_err() {
+                let _ = self.fs.remove(&spare);
+            }
+            copied?;
+        }
+        let mut name = target.as_os_str().to_owned();
+        name.push("~");
+        let renamed = self.fs.rename(&spare, Path::new(&name));
+        if renamed.is_err() {
+            let _ = self.fs.remove(&spare);
+        }
+        renamed
+    }
+    fn copy(&self, from: &Path, to: &Path) -> io::Result<()> {
+        let (mut source, mut copy) = (self.fs.open(from)?, self.fs.create_new(to)?);
+        io::copy(&mut source, &mut copy)?;
+        copy.sync()
+    }
+    /// Without this a power cut brings the old file back.
+    fn flush_folder(&self, target: &Path) -> Result<()> {
+        match self.fs.sync_dir(folder_of(target)) {
+            // Some disks cannot; they have no later moment either.
+            Err(e) if !matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
+                Err(self.failed("the file was written, but whether it stays after a power cut is unknown", e))
+            }
+            _ => Ok(()),
+        }
+    }
+    /// A name beside the target that nobody has.
+    fn fresh_name(&self, target: &Path, ending: &str) -> PathBuf {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        loop {
+            let number = NEXT.fetch_add(1, Ordering::Relaxed);
+            let name = folder_of(target).join(format!(".rilievo-{}-{number}.{ending}", std::process::id()));
+            if !matches!(self.fs.found(&name), Ok(Some(_))) {
+                return name;
+            }
+        }
+    }
+    fn failed(&self, what: &str, error: io::Error) -> Error {
+        if what.is_empty() {
+            return Error::io(self.named, error);
+        }
+        Error::io(self.named, io::Error::new(error.kind(), format!("{what} ({error})")))
+    }
+}
+
+/// Reads until the buffer is full or the file ends.
+fn read_some(handle: &mut dyn Handle, buffer: &mut [u8]) -> io::Result<usize> {
+    let mut filled = 0;
+    while filled < buffer.len() {
+        match handle.read(&mut buffer[filled..]) {
+            Ok(0) => break,
+            Ok(n) => filled += n,
+            Err(e) if e.kind() == ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Ok(filled)
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+#[cfg(test)]
+mod tests;
