@@ -97,6 +97,10 @@ fn refuse_undrawn(args: &RenderArgs, document: &Document) -> Result<()> {
     for (path, layer) in document.walk() {
         let what = match &layer.content {
             Content::Shading(shading) if !shading.params().model.is_drawn() => shading.params().model.name(),
+            Content::Shading(shading) if layer.visible && shading.params().lacks_environment() => {
+                let reason = format!("is missing; “{}” shows nothing else", shading.params().model.name());
+                return Err(Error::invalid(&args.document, format!("{path}.environment"), reason));
+            }
             Content::Normals(_) => "normals",
             _ => continue,
         };

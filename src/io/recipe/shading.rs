@@ -52,13 +52,10 @@ impl Reader<'_> {
     fn environment(&mut self, node: &Node) -> Result<Environment> {
         let mut fields = node.fields()?;
         let file = fields.required("file")?;
-        let plain = Environment::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
-        let environment = Environment {
-            projection: fields.one_of("projection", &Projection::ALL, plain.projection)?,
-            rotation: fields.number("rotation", plain.rotation, TURNS)?,
-            exposure: fields.number("exposure", plain.exposure, -32.0..=32.0)?,
-            ..plain
-        };
+        let mut environment = Environment::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
+        environment.projection = fields.one_of("projection", &Projection::ALL, environment.projection)?;
+        environment.rotation = fields.number("rotation", environment.rotation, TURNS)?;
+        environment.exposure = fields.number("exposure", environment.exposure, -32.0..=32.0)?;
         fields.finish()?;
         Ok(environment)
     }

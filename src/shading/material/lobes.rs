@@ -19,6 +19,15 @@ pub fn add(light: &mut Light3, tint: [f32; 3], rho: &Pixels, scale: Option<(Scal
     }
 }
 
+/// Adds σ times light that was looked up, one colour a pixel.
+pub fn add_seen(light: &mut Light3, seen: &Light3, scale: Option<(Scaling, &Pixels, &Pixels)>) {
+    for (light, seen) in light.iter_mut().zip(seen) {
+        for (x, (light, &seen)) in light.iter_mut().zip(seen).enumerate() {
+            *light += scale.map_or(seen, |(scaling, kappa, delta)| seen * scaling.sigma_fast(kappa[x], delta[x]));
+        }
+    }
+}
+
 crate::widest! {
     /// σ(κ, δ) ρ of each pixel.
     pub fn scaled(rho: &Pixels, scaling: Scaling, kappa: &Pixels, delta: &Pixels) -> Pixels {

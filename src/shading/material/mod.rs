@@ -4,6 +4,7 @@
 mod ashikhmin;
 mod lit_sphere;
 mod lobes;
+mod mirror;
 mod phong;
 mod render;
 mod toon;
@@ -40,7 +41,7 @@ pub enum Model {
 impl Model {
     /// The model is drawn. The others are read and kept in documents, and paint nothing until they are.
     pub fn is_drawn(self) -> bool {
-        matches!(self, Model::Phong | Model::Toon | Model::SubLambertian | Model::Ashikhmin | Model::LitSphere)
+        !matches!(self, Model::DiffuseEnvironment | Model::AmbientOcclusion)
     }
     /// Every model with its name in documents.
     pub const ALL: [(Model, &'static str); 9] = [
@@ -121,6 +122,10 @@ pub struct Shading {
 }
 
 impl Shading {
+    /// Its model shows an environment, and there is none: it paints black.
+    pub fn lacks_environment(&self) -> bool {
+        self.model.needs_environment() && self.environment.is_none()
+    }
     /// The model with the material it has where nothing else is said; no environment, no sphere, one light where it needs one.
     pub fn new(model: Model) -> Self {
         let clay = Term::plain(Color { r: 0xc0, g: 0x80, b: 0x60, a: 255 }, 0.7);

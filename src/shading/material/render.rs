@@ -1,9 +1,10 @@
 //! A tile of a shading layer: the model's light row by row, encoded and clipped at the end.
 //! Floor 3.
 
-use super::{Model, Shading, ashikhmin, lit_sphere, phong, toon};
+use super::{Model, Shading, ashikhmin, lit_sphere, mirror, phong, toon};
 use crate::math::{fast, srgb};
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, planar::Row};
+use crate::shading::environment::Environment;
 use crate::shading::ground::{Ground, Light3};
 use crate::surface::Scene;
 
@@ -41,6 +42,7 @@ impl Shading {
     pub fn warm(&self, scene: &Scene) {
         if let Some(surface) = scene.surface.as_deref() {
             self.features.on(surface);
+            let _ = self.environment.as_ref().map(Environment::surroundings);
         }
         if self.model == Model::LitSphere {
             lit_sphere::warm(self);
@@ -52,6 +54,7 @@ impl Shading {
             Model::SubLambertian => phong::shade(self, ground, Some(self.exponent), light),
             Model::Ashikhmin => ashikhmin::shade(self, ground, light),
             Model::LitSphere => lit_sphere::shade(self, ground, light),
+            Model::Mirror | Model::Refraction => mirror::shade(self, ground, light),
             // Not drawn: `render_tile` asked.
             _ => {}
         }

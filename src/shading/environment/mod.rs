@@ -1,0 +1,158 @@
+//! An environment: the light that arrives from every direction, as a picture fixed to the camera.
+//! Floor 3. Here: its parameters, and the light seen by camera directions. How directions lie in a picture is
+//! `projection`, reading it over a footprint `map`, gathering it over a hemisphere `irradiance`.
+
+pub mod irradiance;
+pub mod map;
+pub mod projection;
+
+use crate::math::{Vec3, vec3};
+use crate::raster::{Picture, picture::Texels};
+use irradiance::Irradiance;
+use map::EnvironmentMap;
+pub use projection::Projection;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// A picture of the surroundings.
+#[derive(Clone)]
+pub struct Environment {
+    /// The name it goes by in the document.
+    pub file: String,
+    pub picture: Picture,
+    pub projection: Projection,
+    /// About the vertical axis, degrees: direction d is looked up at R_y(rotation) d.
+    pub rotation: f32,
+    /// Stops: light is multiplied by 2^exposure.
+    pub exposure: f32,
+    kept: Arc<Mutex<Option<Kept>>>,
+}
+
+/// What was prepared of a picture in a projection.
+struct Kept {
+    picture: Picture,
+    projection: Projection,
+    prepared: Arc<Prepared>,
+}
+
+/// A picture ready to be looked up. It knows neither rotation nor exposure, which may be dragged.
+struct Prepared {
+    map: EnvironmentMap,
+    irradiance: OnceLock<Irradiance>,
+}
+
+/// The light around the surface: what every look-up goes through. Directions are camera space (y up), light is linear,
+/// rotation and exposure are applied.
+#[derive(Clone)]
+pub struct Surroundings {
+    prepared: Arc<Prepared>,
+    turn: Turn,
+    gain: f32,
+}
+
+/// One of the directions that stand for a whole environment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parcel {
+    /// Toward the light, unit, camera space.
+    pub direction: Vec3,
+    /// Steradians; those of all parcels add up to 4π.
+    pub solid_angle: f32,
+    /// Mean linear light over that solid angle.
+    pub radiance: Vec3,
+}
+
+impl Environment {
+    pub fn new(file: String, picture: Picture) -> Self {
+        let projection = Projection::default();
+        Self { file, picture, projection, rotation: 0.0, exposure: 0.0, kept: Arc::default() }
+    }
+    /// The light, ready to be looked up. What is costly is kept and shared by copies of this environment, whatever their
+    /// rotation and exposure: ask before going parallel.
+    pub fn surroundings(&self) -> Surroundings {
+        let (sin, cos) = self.rotation.to_radians().sin_cos();
+        Surroundings { prepared: self.prepared(), turn: Turn { sin, cos }, gain: self.exposure.exp2() }
+    }
+    /// Never computes under the lock: a thread that waits for its own pool's work would stand still.
+    fn prepared(&self) -> Arc<Prepared> {
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let holds = |k: &Kept| k.projection == self.projection && is_same(&k.picture, &self.picture);
+        if let Some(kept) = lock().as_ref().filter(|k| holds(k)) {
+            return kept.prepared.clone();
+        }
+        let map = EnvironmentMap::new(self.picture.clone(), self.projection);
+        let prepared = Arc::new(Prepared { map, irradiance: OnceLock::new() });
+        let (picture, projection) = (self.picture.clone(), self.projection);
+        *lock() = Some(Kept { picture, projection, prepared: prepared.clone() });
+        prepared
+    }
+}
+
+fn is_same(a: &Picture, b: &Picture) -> bool {
+    match (&a.texels, &b.texels) {
+        (Texels::Srgb8(a), Texels::Srgb8(b)) => Arc::ptr_eq(a, b),
+        (Texels::Linear(a), Texels::Linear(b)) => Arc::ptr_eq(a, b),
+        _ => false,
+    }
+}
+
+impl Surroundings {
+    /// L_env(d): light from a unit direction, read as finely as the picture is.
+    pub fn along(&self, d: Vec3) -> Vec3 {
+        self.prepared.map.at(self.turn.apply(d)) * self.gain
+    }
+    /// The mean light over a cone of about `width_rad` across.
+    pub fn around(&self, d: Vec3, width_rad: f32) -> Vec3 {
+        self.prepared.map.around(self.turn.apply(d), width_rad) * self.gain
+    }
+    /// The mean light over the footprint of a pixel from which the direction changes by `dx` to the next in its row and by
+    /// `dy` to the next in its column.
+    pub fn over(&self, d: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
+        let turn = self.turn;
+        self.prepared.map.over(turn.apply(d), turn.apply(dx), turn.apply(dy)) * self.gain
+    }
+    /// L̄(n): the cosine-weighted mean of the light over the hemisphere around a unit normal (RS sec. 5.3.1).
+    pub fn matt(&self, n: Vec3) -> Vec3 {
+        self.irradiance().at(self.turn.apply(n)) * self.gain
+    }
+    /// max L_env: the greatest luminance of any texel.
+    pub fn brightest(&self) -> f32 {
+        self.prepared.map.brightest() * self.gain
+    }
+    /// max L̄.
+    pub fn brightest_matt(&self) -> f32 {
+        self.irradiance().brightest() * self.gain
+    }
+    /// `count` directions spread evenly over the sphere (a Fibonacci spiral), each with the light around it.
+    pub fn parcels(&self, count: usize) -> Vec<Parcel> {
+        let solid_angle = 4.0 * std::f32::consts::PI / count.max(1) as f32;
+        let parcel = |i: usize| {
+            let direction = projection::spread(i, count);
+            Parcel { direction, solid_angle, radiance: self.around(direction, solid_angle.sqrt()) }
+        };
+        (0..count).map(parcel).collect()
+    }
+    /// Kept; computed by the first that asks.
+    fn irradiance(&self) -> &Irradiance {
+        if let Some(found) = self.prepared.irradiance.get() {
+            return found;
+        }
+        let computed = Irradiance::of(&self.prepared.map);
+        self.prepared.irradiance.get_or_init(|| computed)
+    }
+}
+
+/// R_y(a) = [[c, 0, s], [0, 1, 0], [−s, 0, c]]: from camera space into the picture's own.
+#[derive(Clone, Copy)]
+struct Turn {
+    sin: f32,
+    cos: f32,
+}
+
+impl Turn {
+    #[inline(always)]
+    fn apply(self, d: Vec3) -> Vec3 {
+        vec3(self.cos * d.x + self.sin * d.z, d.y, self.cos * d.z - self.sin * d.x)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,153 @@
+//! Mirror and refraction: the environment seen along one ray (RS sec. 5.3.2, MATH 5).
+//! Floor 3. One interface and no second bounce: what the shape hides of the environment is not known.
+
+use super::{Model, Shading, lobes};
+use crate::math::{Vec3, srgb};
+use crate::raster::TILE;
+use crate::shading::ground::{Ground, Light3, Toward};
+use crate::surface::{Surface, links};
+
+/// The mirrored view r = 2(n·e)n − e, e = (0, 0, 1) (MATH 5).
+#[inline(always)]
+pub fn mirrored(n: Vec3) -> Vec3 {
+    2.0 * n.z * n - Vec3::Z
+}
+
+/// The refracted view: Snell's law for the view ray −e entering a matter of refractive index `index` > 0 (MATH 5).
+///
+/// Where it cannot enter (`index` < 1, seen from within the denser matter at too flat an angle) it is mirrored.
+#[inline(always)]
+pub fn refracted(n: Vec3, index: f32) -> Vec3 {
+    let eta = 1.0 / index;
+    let cos = n.z.max(0.0);
+    let under_root = 1.0 - eta * eta * (1.0 - cos * cos);
+    if under_root < 0.0 {
+        return mirrored(n);
+    }
+    (eta * cos - under_root.sqrt()) * n - eta * Vec3::Z
+}
+
+/// Adds L_env(r), scaled with δ = L_env(r) / max L_env, as the specular term.
+pub fn shade(shading: &Shading, ground: &Ground, light: &mut Light3) {
+    let (Some(environment), term) = (&shading.environment, &shading.specular) else { return };
+    let surroundings = environment.surroundings();
+    let ray = |n: Vec3| match shading.model {
+        Model::Refraction => refracted(n, shading.index),
+        _ => mirrored(n),
+    };
+    let per_brightest = 1.0 / shading.reference.resolve(surroundings.brightest());
+    let tint = Vec3::from(term.linear());
+    let mut seen: Light3 = [[0.0; TILE]; 3];
+    let [mut delta, mut toward_x, mut toward_y] = [[0.0; TILE]; 3];
+    for x in (0..ground.width).filter(|&x| ground.coverage()[x] > 0) {
+        let r = ray(ground.normal_at(x));
+        let (dx, dy) = changes(ground.surface, ground.x0 + x, ground.y, r, ray);
+        let radiance = surroundings.over(r, dx, dy);
+        (toward_x[x], toward_y[x]) = (r.x, r.y);
+        delta[x] = srgb::luminance(radiance.x, radiance.y, radiance.z) * per_brightest;
+        (seen[0][x], seen[1][x], seen[2][x]) = (radiance * tint).into();
+    }
+    if !term.is_scaled() {
+        return lobes::add_seen(light, &seen, None);
+    }
+    let kappa = ground.kappa(Toward::Each(&toward_x, &toward_y));
+    lobes::add_seen(light, &seen, Some((term.scaling, &kappa, &delta)));
+}
+
+/// How a ray changes from pixel to pixel along x and y; across a depth jump or the mask's edge it is not looked at.
+fn changes(surface: &Surface, x: usize, y: usize, r: Vec3, ray: impl Fn(Vec3) -> Vec3) -> (Vec3, Vec3) {
+    let joined = surface.links_plane().at(x, y);
+    let change = |back: u8, forth: u8, step: (usize, usize)| {
+        let before = (joined & back != 0).then(|| ray(surface.normal(x - step.0, y - step.1)));
+        let after = (joined & forth != 0).then(|| ray(surface.normal(x + step.0, y + step.1)));
+        match (before, after) {
+            (Some(a), Some(b)) => (b - a) * 0.5,
+            (Some(a), None) => r - a,
+            (None, Some(b)) => b - r,
+            (None, None) => Vec3::ZERO,
+        }
+    };
+    (change(links::LEFT, links::RIGHT, (1, 0)), change(links::UP, links::DOWN, (0, 1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, vec3};
+    use crate::raster::Picture;
+    use crate::shading::material::tests::{assert_shows, term};
+    use crate::shading::{Environment, Shading};
+
+    #[test]
+    fn mirrored_rays_leave_as_steeply_as_they_came() {
+        assert_eq!(mirrored(Vec3::Z), Vec3::Z);
+        // Half-way up: the sky's zenith.
+        let up = mirrored(vec3(0.0, 0.5f32.sqrt(), 0.5f32.sqrt()));
+        assert!((up - Vec3::Y).length() < 1e-6, "{up}");
+        let n = vec3(0.3, -0.5, 0.7).normalize();
+        assert!((mirrored(n).dot(n) - n.z).abs() < 1e-6);
+    }
+    #[test]
+    fn refracted_rays_obey_snell() {
+        assert_eq!(refracted(Vec3::Z, 1.5), Vec3::NEG_Z);
+        for (n, index) in [(vec3(0.3, -0.5, 0.7), 1.5), (vec3(-0.2, 0.1, 0.9), 0.8), (vec3(0.9, 0.0, 0.1), 2.4)] {
+            let n = n.normalize();
+            let r = refracted(n, index);
+            assert!((r.length() - 1.0).abs() < 1e-5);
+            // sin θ = index · sin θ′, both on the same plane, on the far side.
+            assert!((n.cross(r).length() * index - n.cross(Vec3::Z).length()).abs() < 1e-5);
+            assert!(n.cross(r).dot(n.cross(Vec3::NEG_Z)) >= 0.0 && r.dot(n) < 0.0);
+        }
+        let n = vec3(0.6, 0.0, 0.8);
+        assert!((refracted(n, 1.0) - Vec3::NEG_Z).length() < 1e-6, "nothing bends without another matter");
+        assert_eq!(refracted(n, 0.5), mirrored(n), "past the critical angle it is a mirror");
+        assert!(refracted(vec3(0.999, 0.0, -0.04), 1.5).is_finite());
+    }
+    /// Bright above, dim below, and red at the right.
+    fn surroundings() -> Environment {
+        let texel = |i: u32| {
+            let e = crate::shading::environment::projection::lat_long_direction(
+                ((i % 128) as f32 + 0.5) / 128.0,
+                ((i / 128) as f32 + 0.5) / 64.0,
+            );
+            [0.5 + 0.4 * e.y + 0.1 * e.x, 0.5 + 0.4 * e.y, 0.5 + 0.3 * e.y - 0.1 * e.z, 1.0]
+        };
+        let picture = Picture::linear(Size::new(128, 64), (0..128 * 64).map(texel).collect()).unwrap();
+        let mut environment = Environment::new("sky.hdr".into(), picture);
+        (environment.rotation, environment.exposure) = (30.0, -0.5);
+        environment
+    }
+    #[test]
+    fn what_is_seen_is_the_scaled_environment_along_the_ray() {
+        for model in [Model::Mirror, Model::Refraction] {
+            let shading = Shading {
+                environment: Some(surroundings()),
+                specular: term(crate::math::srgb::Color { r: 250, g: 230, b: 200, a: 255 }, 0.9, 0.4, 1.5),
+                features: crate::shading::Features { lambda: 0.6, ..Default::default() },
+                ..Shading::new(model)
+            };
+            assert_shows(&shading, 2.0, |surface, x, y| {
+                let n = surface.normal(x, y);
+                let r = if model == Model::Mirror { mirrored(n) } else { refracted(n, 1.5) };
+                let seen = surroundings().surroundings();
+                let radiance = seen.along(r);
+                let delta = srgb::luminance(radiance.x, radiance.y, radiance.z) / seen.brightest();
+                let sigma = shading.specular.scaling.sigma(shading.features.on(surface).at(x, y, r), delta);
+                Vec3::from(shading.specular.linear()) * radiance * sigma
+            });
+        }
+    }
+    #[test]
+    fn a_mirror_that_faces_up_shows_the_sky() {
+        let shading = Shading { environment: Some(surroundings()), ..Shading::new(Model::Mirror) };
+        let scene = crate::shading::material::tests::ball();
+        let column = |at| shading.render_tile(&scene, crate::raster::TileAt::new(0, at)).unwrap();
+        // The ball's middle is at (60, 66): row 30 faces up, row 100 down.
+        let (above, below) = (column(0).bytes()[(30 * TILE + 60) * 4 + 1], column(1).bytes()[(36 * TILE + 60) * 4 + 1]);
+        assert!(above > below + 40, "{above} {below}");
+    }
+    #[test]
+    fn without_an_environment_a_mirror_is_black() {
+        assert_shows(&Shading::new(Model::Mirror), 0.0, |_, _, _| Vec3::ZERO);
+    }
+}
