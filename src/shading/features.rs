@@ -78,49 +78,75 @@ impl FeatureMap {
         let l = light.normalize_or(Vec3::Z);
         // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors, see `Curvature::kappa_along`.
         let (along, across) = (self.lambda * (l.x * l.x - l.y * l.y), self.lambda * 4.0 * l.x * l.y);
-        let row = x0..x0 + kappa.len();
-        for (i, p) in self.parts.iter().enumerate() {
+        kappa.fill(0.0);
+        for p in &self.parts {
+            let tensor = p.row(x0, y, kappa.len());
             let s = p.curvature_scale_px;
-            let factors = [s * (1.0 + along), s * across, s * (1.0 - along)];
-            let c = &*p.curvature;
-            let planes = [&c.hxx, &c.hxy, &c.hyy, &c.fade].map(|plane| &plane.row(y)[row.clone()]);
-            add_toward(planes, factors, p.share, i == 0, kappa);
+            if self.is_directional() {
+                add_toward(tensor, [s * (1.0 + along), s * across, s * (1.0 - along)], p.share, kappa);
+            } else {
+                add_isotropic(tensor, s, p.share, kappa);
+            }
         }
     }
     /// κ toward each pixel's own direction: `light_x`, `light_y` are ℓ of unit length, as long as `kappa`.
-    pub fn row_along(&self, x0: usize, y: usize, [light_x, light_y]: [&[f32]; 2], kappa: &mut [f32]) {
+    pub fn row_along(&self, x0: usize, y: usize, light: [&[f32]; 2], kappa: &mut [f32]) {
         if !self.is_directional() {
             return self.row_toward(x0, y, Vec3::Z, kappa);
         }
-        let row = x0..x0 + kappa.len();
         kappa.fill(0.0);
         for p in &self.parts {
-            let c = &*p.curvature;
-            let planes = [&c.hxx, &c.hxy, &c.hyy, &c.fade].map(|plane| &plane.row(y)[row.clone()]);
-            add_along(planes, [light_x, light_y], [p.curvature_scale_px, self.lambda, p.share], kappa);
+            add_along(p.row(x0, y, kappa.len()), light, [p.curvature_scale_px, self.lambda, p.share], kappa);
         }
     }
 }
 
+/// The tensor along a part of a row.
+struct TensorRow<'a> {
+    hxx: &'a [f32],
+    hxy: &'a [f32],
+    hyy: &'a [f32],
+    /// 255 is 1.
+    fade: &'a [u8],
+}
+
+impl Part {
+    fn row(&self, x0: usize, y: usize, width: usize) -> TensorRow<'_> {
+        let Curvature { hxx, hxy, hyy, fade } = &*self.curvature;
+        let [hxx, hxy, hyy] = [hxx, hxy, hyy].map(|plane| &plane.row(y)[x0..x0 + width]);
+        TensorRow { hxx, hxy, hyy, fade: &fade.row(y)[x0..x0 + width] }
+    }
+}
+
+/// share · fade, from a byte.
+#[inline(always)]
+fn faded(share: f32, fade: u8) -> f32 {
+    share * (1.0 / 255.0) * (i32::from(fade) as f32)
+}
+
 crate::widest! {
-    /// Adds share · fade · tanh(f · h) to each pixel, or to 0 if this is the first summand.
-    fn add_toward(planes: [&[f32]; 4], factors: [f32; 3], share: f32, is_first: bool, kappa: &mut [f32]) {
-        let [hxx, hxy, hyy, fade] = planes;
+    /// Adds share · fade · tanh(s (h_xx + h_yy)) to each pixel.
+    fn add_isotropic(tensor: TensorRow, s: f32, share: f32, kappa: &mut [f32]) {
+        let pixels = tensor.hxx.iter().zip(tensor.hyy).zip(tensor.fade).zip(kappa);
+        for (((&hxx, &hyy), &fade), kappa) in pixels {
+            *kappa += faded(share, fade) * fast::tanh(s * (hxx + hyy));
+        }
+    }
+    /// Adds share · fade · tanh(f · h) to each pixel.
+    fn add_toward(tensor: TensorRow, factors: [f32; 3], share: f32, kappa: &mut [f32]) {
         let [fxx, fxy, fyy] = factors;
-        let pixels = hxx.iter().zip(hxy).zip(hyy).zip(fade).zip(kappa);
+        let pixels = tensor.hxx.iter().zip(tensor.hxy).zip(tensor.hyy).zip(tensor.fade).zip(kappa);
         for ((((&hxx, &hxy), &hyy), &fade), kappa) in pixels {
-            let summand = share * fade * fast::tanh(fxx * hxx + fxy * hxy + fyy * hyy);
-            *kappa = if is_first { summand } else { *kappa + summand };
+            *kappa += faded(share, fade) * fast::tanh(fxx * hxx + fxy * hxy + fyy * hyy);
         }
     }
     /// As `add_toward`, with a direction for each pixel; `factors`: s, λ, share.
-    fn add_along(planes: [&[f32]; 4], light: [&[f32]; 2], factors: [f32; 3], kappa: &mut [f32]) {
-        let [hxx, hxy, hyy, fade] = planes;
+    fn add_along(tensor: TensorRow, light: [&[f32]; 2], factors: [f32; 3], kappa: &mut [f32]) {
         let [s, lambda, share] = factors;
-        let pixels = hxx.iter().zip(hxy).zip(hyy).zip(fade).zip(light[0]).zip(light[1]).zip(kappa);
-        for ((((((&hxx, &hxy), &hyy), &fade), &lx), &ly), kappa) in pixels {
+        let tensors = tensor.hxx.iter().zip(tensor.hxy).zip(tensor.hyy).zip(tensor.fade);
+        for (((((&hxx, &hxy), &hyy), &fade), (&lx, &ly)), kappa) in tensors.zip(light[0].iter().zip(light[1])).zip(kappa) {
             let aniso = (hxx - hyy) * (lx * lx - ly * ly) + 4.0 * hxy * lx * ly;
-            *kappa += share * fade * fast::tanh(s * (hxx + hyy + lambda * aniso));
+            *kappa += faded(share, fade) * fast::tanh(s * (hxx + hyy + lambda * aniso));
         }
     }
 }

@@ -48,7 +48,7 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
         // The direction in which the surface turns most, whichever way: of a groove that is across it, where k_v < 0.
         let u = if ku.abs() >= kv.abs() { u } else { u.perp() };
         let u = vec2(u.x, -u.y);
-        Mark { line: u, hue_of: u, magnitude: curvature.fade.at(x, y) * (ku.abs() - kv.abs()).abs() }
+        Mark { line: u, hue_of: u, magnitude: curvature.fade_at(x, y) * (ku.abs() - kv.abs()).abs() }
     });
     shown(&marks, Some(surface))
 }

@@ -47,30 +47,45 @@ impl RowScaler {
 
 crate::widest! {
     fn apply_gentle(with: &mut RowScaler, row: &mut Row, kappa: &Pixels) {
-        with.find_reflectances(row, srgb::luminance_fast);
-        with.find_gentle(kappa);
-        with.scale(row, srgb::scale_encoded_gently);
+        if is_opaque(row) {
+            with.gentle::<true>(row, kappa);
+        } else {
+            with.gentle::<false>(row, kappa);
+        }
     }
     fn apply_strong(with: &mut RowScaler, row: &mut Row, kappa: &Pixels, gains: &Pixels) {
         // A strong γ tells dark tones apart that a coarse luminance does not.
-        with.find_reflectances(row, |r, g, b| {
+        with.find_reflectances::<false>(row, |r, g, b| {
             srgb::luminance(srgb::decode_fast(r), srgb::decode_fast(g), srgb::decode_fast(b))
         });
         with.find_factors(kappa, gains);
         with.find_roots();
-        with.scale(row, srgb::scale_encoded);
+        with.scale::<false>(row, srgb::scale_encoded);
     }
+}
+
+/// Then dividing by alpha and multiplying by it again, a sixth of the work, changes no bit.
+#[inline(always)]
+fn is_opaque(row: &Row) -> bool {
+    row.a.iter().fold(true, |all, &a| all & (a == 1.0))
 }
 
 impl RowScaler {
     #[inline(always)]
-    fn find_reflectances(&mut self, row: &Row, luminance: impl Fn(f32, f32, f32) -> f32) {
+    fn gentle<const OPAQUE: bool>(&mut self, row: &mut Row, kappa: &Pixels) {
+        self.find_reflectances::<OPAQUE>(row, srgb::luminance_fast);
+        self.find_gentle(kappa);
+        self.scale::<OPAQUE>(row, srgb::scale_encoded_gently);
+    }
+    #[inline(always)]
+    fn find_reflectances<const OPAQUE: bool>(&mut self, row: &Row, luminance: impl Fn(f32, f32, f32) -> f32) {
         for x in 0..TILE {
             let (r, g, b) = (row.rgb[0][x], row.rgb[1][x], row.rgb[2][x]);
-            let per_a = 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE);
-            let luminance = luminance(r * per_a, g * per_a, b * per_a);
-            self.per_a[x] = per_a;
-            self.delta[x] = fast::min(luminance * self.per_y_star, 1.0);
+            let per_a = if OPAQUE { 1.0 } else { 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE) };
+            if !OPAQUE {
+                self.per_a[x] = per_a;
+            }
+            self.delta[x] = fast::min(luminance(r * per_a, g * per_a, b * per_a) * self.per_y_star, 1.0);
         }
     }
     #[inline(always)]
@@ -96,22 +111,30 @@ impl RowScaler {
         let Scaling { alpha, gamma_convex, gamma_concave } = self.scaling;
         let (convex, concave) = (0.5 * gamma_convex, 0.5 * gamma_concave);
         for x in 0..TILE {
-            let (kappa, delta) = (kappa[x], self.delta[x]);
+            let kappa = kappa[x];
             let t = small_tanh(kappa * if kappa > 0.0 { convex } else { concave });
-            let q = t * (delta - alpha) / (alpha + delta * (1.0 - 2.0 * alpha));
-            let u = small_root(q);
-            self.factors[x] = (1.0 + q) / (1.0 - q);
+            let delta = self.delta[x];
+            self.roots[x] = t * (delta - alpha) / (alpha + delta * (1.0 - 2.0 * alpha));
+        }
+        for x in 0..TILE {
+            let u = small_root(self.roots[x]);
             self.roots[x] = (1.0 + u) / (1.0 - u);
+        }
+        for x in 0..TILE {
+            // root^2.4 within 0.2 %: only values on the foot of the curve need it.
+            let root = self.roots[x];
+            self.factors[x] = 0.042_410_117 - 0.263_897_99 * root + (1.006_399 + root * 0.216_649_44) * (root * root);
         }
     }
     /// Straight, scaled, clipped, premultiplied again: the same steps for every tone, so that a picture's darks cost nothing
     /// more (with a branch a row for pictures without darks: 2.9 ns a pixel and 5.4 ns with them).
     #[inline(always)]
-    fn scale(&self, row: &mut Row, scale_encoded: impl Fn(f32, f32, f32) -> f32) {
+    fn scale<const OPAQUE: bool>(&self, row: &mut Row, scale_encoded: impl Fn(f32, f32, f32) -> f32) {
         for channel in &mut row.rgb {
             for x in 0..TILE {
-                let scaled = scale_encoded(channel[x] * self.per_a[x], self.factors[x], self.roots[x]);
-                channel[x] = fast::min(scaled, 1.0) * row.a[x];
+                let (a, per_a) = if OPAQUE { (1.0, 1.0) } else { (row.a[x], self.per_a[x]) };
+                let scaled = scale_encoded(channel[x] * per_a, self.factors[x], self.roots[x]);
+                channel[x] = fast::min(scaled, 1.0) * a;
             }
         }
     }
@@ -121,12 +144,12 @@ impl RowScaler {
 #[inline(always)]
 fn small_tanh(y: f32) -> f32 {
     let y2 = y * y;
-    y * (0.999_693_8 + y2 * (-0.328_892_3 + y2 * (0.115_414_5 + y2 * -0.024_654_55)))
+    y * ((0.999_693_8 - 0.328_892_3 * y2) + (y2 * y2) * (0.115_414_5 - 0.024_654_55 * y2))
 }
 
 /// tanh(5/12 artanh q) for |q| ≤ tanh 1.
 #[inline(always)]
 fn small_root(q: f32) -> f32 {
     let q2 = q * q;
-    q * (0.416_067_36 + q2 * (0.126_580_57 + q2 * (-1.213_732_6e-5 + q2 * 0.143_218_83)))
+    q * ((0.416_067_36 + 0.126_580_57 * q2) + (q2 * q2) * (0.143_218_83 * q2 - 1.213_732_6e-5))
 }

@@ -24,16 +24,16 @@ fn ends_beside(surface: &Surface, links: u8, x: i32, y: i32) -> bool {
     !stray(x, y) && beside.iter().any(|&(bit, x, y)| links & bit == 0 && on_canvas(x, y) && !stray(x, y))
 }
 
-/// 0 at a break, rising smoothly to 1 at [`FADE_PX`] from it. `squared`: squared distance, px².
-pub(super) fn fade_at(squared: u32) -> f32 {
+/// 0 at a break, rising smoothly to 255 at [`FADE_PX`] from it. `squared`: squared distance, px².
+pub(super) fn fade_at(squared: u32) -> u8 {
     let t = ((squared as f32).sqrt() / FADE_PX as f32).min(1.0);
-    t * t * (3.0 - 2.0 * t)
+    crate::math::srgb::quantise(t * t * (3.0 - 2.0 * t))
 }
 
 /// Fills the tile's part of a band of rows.
-pub(super) fn fill(surface: &Surface, tile: TileRect, band: &mut [f32]) {
+pub(super) fn fill(surface: &Surface, tile: TileRect, band: &mut [u8]) {
     let (width, height) = (surface.size().width as usize, surface.size().height as usize);
-    let fades: [f32; FADE_PX * FADE_PX + 1] = std::array::from_fn(|d| fade_at(d as u32));
+    let fades: [u8; FADE_PX * FADE_PX + 1] = std::array::from_fn(|d| fade_at(d as u32));
     let top = tile.y0.saturating_sub(FADE_PX);
     let rows = top..(tile.y0 + tile.rows + FADE_PX).min(height);
     let along: Vec<Option<Vec<u8>>> = rows.clone().map(|y| along_row(surface, tile, y)).collect();
@@ -43,7 +43,7 @@ pub(super) fn fill(surface: &Surface, tile: TileRect, band: &mut [f32]) {
         let here = tile.y0 + y;
         let near = here.saturating_sub(FADE_PX)..(here + FADE_PX + 1).min(rows.end);
         if near.clone().all(|r| along[r - top].is_none()) {
-            out.fill(1.0);
+            out.fill(255);
             continue;
         }
         squared.fill((FADE_PX * FADE_PX) as u8);

@@ -21,8 +21,8 @@ pub struct Curvature {
     pub hxx: Plane<f32>,
     pub hxy: Plane<f32>,
     pub hyy: Plane<f32>,
-    /// 0 at the mask's edge, at depth jumps and off the surface; 1 from three pixels on. Every κ is multiplied by it.
-    pub fade: Plane<f32>,
+    /// 0 at the mask's edge, at depth jumps and off the surface; 255, which is 1, from three pixels on. Every κ is multiplied by it.
+    pub fade: Plane<u8>,
 }
 
 /// The slope of the surface as seen: minus g of MATH 4, in image axes (y **down**).
@@ -49,7 +49,7 @@ impl Curvature {
     /// κ = tanh(s (k_u + k_v)), faded: in (−1, 1), convex > 0 (MATH 4). `scale_px`: *s*.
     #[inline(always)]
     pub fn kappa(&self, x: usize, y: usize, scale_px: f32) -> f32 {
-        self.fade.at(x, y) * (scale_px * (self.hxx.at(x, y) + self.hyy.at(x, y))).tanh()
+        self.fade_at(x, y) * (scale_px * (self.hxx.at(x, y) + self.hyy.at(x, y))).tanh()
     }
     /// κ(ℓ) = tanh(s [(H + λA) ℓ_u² + (H − λA) ℓ_v² + H ℓ_z²]), faded (MATH 4).
     ///
@@ -62,7 +62,7 @@ impl Curvature {
         let l = light.normalize_or(Vec3::Z);
         let [hxx, hxy, hyy] = self.tensor(x, y);
         let aniso = (hxx - hyy) * (l.x * l.x - l.y * l.y) + 4.0 * hxy * l.x * l.y;
-        self.fade.at(x, y) * (scale_px * (hxx + hyy + lambda * aniso)).tanh()
+        self.fade_at(x, y) * (scale_px * (hxx + hyy + lambda * aniso)).tanh()
     }
     /// Principal curvatures k_u ≥ k_v, per pixel, and the unit direction u (y up, sign arbitrary); v is u turned by 90°.
     pub fn principal(&self, x: usize, y: usize) -> (f32, f32, Vec2) {
@@ -71,6 +71,11 @@ impl Curvature {
         let radius = half.hypot(hxy);
         let angle = 0.5 * hxy.atan2(half);
         (mean + radius, mean - radius, vec2(angle.cos(), angle.sin()))
+    }
+    /// The fade of a pixel, in `[0, 1]`.
+    #[inline(always)]
+    pub fn fade_at(&self, x: usize, y: usize) -> f32 {
+        f32::from(self.fade.at(x, y)) * (1.0 / 255.0)
     }
     /// `[h_xx, h_xy, h_yy]` of a pixel.
     #[inline(always)]
@@ -86,7 +91,7 @@ pub(super) struct CurvatureCache {
 }
 
 impl CurvatureCache {
-    /// Pixels of all curvatures kept, 16 bytes each: a few scales weighed at once, or two on a large canvas.
+    /// Pixels of all curvatures kept, 13 bytes each: a few scales weighed at once, or two on a large canvas.
     const KEPT_PX: usize = 16 << 20;
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(u32, Arc<Curvature>)>> {

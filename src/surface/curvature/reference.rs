@@ -45,7 +45,7 @@ fn slope_at(surface: &Surface, at: (usize, usize), taps: &[f32]) -> (f32, f32) {
 }
 
 /// `[h_xx, h_xy, h_yy]` and the fade of a pixel.
-pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> ([f32; 3], f32) {
+pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> ([f32; 3], u8) {
     let taps = half_kernel(blur_px);
     // Central where both neighbours continue the surface, one-sided where one does, none where neither.
     let difference = |back: u8, forth: u8| {
@@ -58,7 +58,7 @@ pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> ([f32; 
     (h, fade_at(surface, x, y))
 }
 
-fn fade_at(surface: &Surface, x: usize, y: usize) -> f32 {
+fn fade_at(surface: &Surface, x: usize, y: usize) -> u8 {
     let (w, h) = (surface.size().width as usize, surface.size().height as usize);
     let squared = |i: usize, j: usize| (i.abs_diff(x).pow(2) + j.abs_diff(y).pow(2)) as u32;
     let near = |c: usize, n: usize| c.saturating_sub(fade::FADE_PX)..(c + fade::FADE_PX + 1).min(n);

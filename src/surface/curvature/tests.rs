@@ -142,10 +142,10 @@ fn no_outline_shows_where_a_ball_hides_a_wall() {
 #[test]
 fn the_fade_is_one_a_few_pixels_in_and_at_the_canvas_border() {
     let whole = from_height_slope(70, |_, _| (0.0, 0.0)).curvature(1.0);
-    assert!(whole.fade.values().iter().all(|&f| f == 1.0));
+    assert!(whole.fade.values().iter().all(|&f| f == 255));
     let ball = sphere(201, 90.0).curvature(0.0);
-    assert_eq!(ball.fade.at(9, 100), 0.0);
-    assert_eq!(ball.fade.at(15, 100), 1.0);
+    assert_eq!(ball.fade_at(9, 100), 0.0);
+    assert_eq!(ball.fade_at(15, 100), 1.0);
 }
 #[test]
 fn a_blur_removes_the_noise_of_eight_bits_and_keeps_the_shape() {

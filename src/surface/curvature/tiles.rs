@@ -17,6 +17,9 @@ const LANES: usize = 32;
 
 /// Chunks of a row of scratch.
 const CHUNKS: usize = STRIDE / LANES;
+/// From a row of what is blurred down the columns to the next: a power of two would put all rows of a chunk into a few sets
+/// of the first-level cache.
+const PITCH: usize = STRIDE + 16;
 
 /// Computes H and its fade for every pixel. `blur_px`: standard deviation, finite, `≥ 0`.
 ///
@@ -24,17 +27,19 @@ const CHUNKS: usize = STRIDE / LANES;
 pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvature>) -> Curvature {
     let size = surface.size();
     let taps = half_kernel(blur_px);
-    let mut planes = match recycled {
-        Some(Curvature { hxx, hxy, hyy, fade }) => [hxx, hxy, hyy, fade].map(Plane::into_values),
-        None => std::array::from_fn(|_| vec![0.0; size.area()]),
+    let (mut planes, mut fade) = match recycled {
+        Some(Curvature { hxx, hxy, hyy, fade }) => ([hxx, hxy, hyy].map(Plane::into_values), fade.into_values()),
+        None => (std::array::from_fn(|_| vec![0.0; size.area()]), vec![0; size.area()]),
     };
-    let [hxx, hxy, hyy, fade] = planes.each_mut().map(|p| p.par_chunks_mut(BAND_ROWS * size.width as usize));
-    (hxx, hxy, hyy, fade).into_par_iter().enumerate().for_each_init(
+    let band = BAND_ROWS * size.width as usize;
+    let [hxx, hxy, hyy] = planes.each_mut().map(|p| p.par_chunks_mut(band));
+    (hxx, hxy, hyy, fade.par_chunks_mut(band)).into_par_iter().enumerate().for_each_init(
         || Scratch::new(taps.len() - 1),
         |scratch, (i, (hxx, hxy, hyy, fading))| {
             for tile in TileRect::of_band(size, i * BAND_ROWS) {
                 if tile.is_empty(surface) {
-                    [&mut *hxx, hxy, hyy, fading].into_iter().for_each(|plane| tile.clear(plane, size));
+                    [&mut *hxx, hxy, hyy].into_iter().for_each(|plane| tile.clear(plane, size, 0.0));
+                    tile.clear(fading, size, 0);
                 } else {
                     scratch.tensor_tile(surface, &taps, tile, [&mut *hxx, hxy, hyy]);
                     fade::fill(surface, tile, fading);
@@ -42,8 +47,8 @@ pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvatur
             }
         },
     );
-    let [hxx, hxy, hyy, fade] = planes.map(|v| Plane::from_values(size, v).expect("one value per pixel"));
-    Curvature { hxx, hxy, hyy, fade }
+    let [hxx, hxy, hyy] = planes.map(|v| Plane::from_values(size, v).expect("one value per pixel"));
+    Curvature { hxx, hxy, hyy, fade: Plane::from_values(size, fade).expect("one value per pixel") }
 }
 
 /// The pixels of one tile.
@@ -65,21 +70,21 @@ impl TileRect {
     fn is_empty(&self, surface: &Surface) -> bool {
         (0..self.rows).all(|y| surface.links_plane().row(self.y0 + y)[self.columns()].iter().all(|&l| l == 0))
     }
-    fn clear(&self, band: &mut [f32], size: Size) {
-        (0..self.rows).for_each(|y| band[y * size.width as usize..][self.columns()].fill(0.0));
+    fn clear<T: Copy>(&self, band: &mut [T], size: Size, nothing: T) {
+        (0..self.rows).for_each(|y| band[y * size.width as usize..][self.columns()].fill(nothing));
     }
     pub fn columns(&self) -> std::ops::Range<usize> {
         self.x0..self.x0 + self.cols
     }
 }
 
-/// What one thread reuses from tile to tile. Rows of it are `STRIDE` long and begin one pixel left of the tile.
+/// What one thread reuses from tile to tile. Rows of it hold `STRIDE` pixels and begin one pixel left of the tile.
 struct Scratch {
     /// One row of one channel with the kernel's reach at both sides.
     line: Vec<f32>,
     /// 1 where a pixel of the row is joined to the next; beyond the canvas, where values are 0, it does not matter: 1.
     joined: Vec<f32>,
-    /// Blurred along rows: n̄_x, n̄_y, n_z with the kernel's reach above and below.
+    /// Blurred along rows: n̄_x, n̄_y, n_z with the kernel's reach above and below, a row every `PITCH`.
     across: [Vec<f32>; 3],
     /// 1 where a pixel is joined to the one below; rows as `across`.
     down: Vec<f32>,
@@ -95,8 +100,8 @@ impl Scratch {
         Self {
             line: vec![0.0; STRIDE + 2 * reach],
             joined: vec![0.0; STRIDE + 2 * reach],
-            across: std::array::from_fn(|_| vec![0.0; (rows + 2 * reach) * STRIDE]),
-            down: vec![0.0; (rows + 2 * reach) * STRIDE],
+            across: std::array::from_fn(|_| vec![0.0; (rows + 2 * reach) * PITCH]),
+            down: vec![0.0; (rows + 2 * reach) * PITCH],
             joined_rows: vec![[0; CHUNKS]; rows + 2 * reach],
             slopes: std::array::from_fn(|_| vec![0.0; rows * STRIDE]),
         }
@@ -108,12 +113,13 @@ impl Scratch {
             self.blur_row(surface, taps, tile, row);
         }
         let [sx, sy] = &mut self.slopes;
-        for row in 0..tile.rows + 2 {
-            let at = row * STRIDE..(row + 1) * STRIDE;
+        for chunk in 0..CHUNKS {
             // Taps step over the links of the rows from the topmost to the one above the lowest.
-            let joined_rows = self.joined_rows[(row + 2 * reach).saturating_sub(1)].map(|rows| rows >= 2 * reach);
-            let columns = Columns { taps, across: &self.across, down: &self.down, top: at.start, joined_rows };
-            blur_down_to_slopes(columns, &mut sx[at.clone()], &mut sy[at]);
+            let joined: Vec<bool> = (0..tile.rows + 2)
+                .map(|row| self.joined_rows[(row + 2 * reach).saturating_sub(1)][chunk] >= 2 * reach)
+                .collect();
+            let columns = Columns { taps, across: &self.across, down: &self.down, joined: &joined };
+            blur_down_to_slopes(columns, chunk * LANES, sx, sy);
         }
         for y in 0..tile.rows {
             let links = &surface.links_plane().row(tile.y0 + y)[tile.columns()];
@@ -131,7 +137,7 @@ impl Scratch {
     /// Blurs one row of the three channels along x; `row` counts from the top of `across`.
     fn blur_row(&mut self, surface: &Surface, taps: &[f32], tile: TileRect, row: usize) {
         let reach = taps.len() - 1;
-        let at = row * STRIDE..(row + 1) * STRIDE;
+        let at = row * PITCH..row * PITCH + STRIDE;
         let above = if row == 0 { [0; CHUNKS] } else { self.joined_rows[row - 1] };
         let y = (tile.y0 + row).checked_sub(1 + reach).filter(|&y| y < surface.size().height as usize);
         let Some(y) = y else {
@@ -225,14 +231,14 @@ fn sum_broken(values: &[f32], joined: &[f32], center: usize, step: usize, taps: 
     sum
 }
 
-/// What the blur down the columns of one row reads; `top` is where its topmost tap stands.
+/// What the blur down the columns of a chunk reads.
 #[derive(Clone, Copy)]
 struct Columns<'a> {
     taps: &'a [f32],
     across: &'a [Vec<f32>; 3],
     down: &'a [f32],
-    top: usize,
-    joined_rows: [bool; CHUNKS],
+    /// Of each row: no link is missing where its taps reach.
+    joined: &'a [bool],
 }
 
 crate::widest! {
@@ -260,20 +266,23 @@ crate::widest! {
         }
     }
 
-    /// Blurs one row down the columns and takes its slopes.
-    fn blur_down_to_slopes(columns: Columns, sx: &mut [f32], sy: &mut [f32]) {
-        let Columns { taps, across, down, top, joined_rows } = columns;
+    /// Blurs a chunk of all rows down the columns and takes their slopes. A chunk at a time, so that the rows that each
+    /// pixel's taps read are still in the first-level cache from the row above.
+    fn blur_down_to_slopes(columns: Columns, chunk: usize, sx: &mut [f32], sy: &mut [f32]) {
+        let Columns { taps, across, down, joined } = columns;
         let reach = taps.len() - 1;
-        for (chunk, (sx, sy)) in sx.chunks_exact_mut(LANES).zip(sy.chunks_exact_mut(LANES)).enumerate() {
-            let center = top + reach * STRIDE + chunk * LANES;
+        let slopes = sx.chunks_exact_mut(STRIDE).zip(sy.chunks_exact_mut(STRIDE));
+        for (row, ((sx, sy), &joined)) in slopes.zip(joined).enumerate() {
+            let center = (row + reach) * PITCH + chunk;
             let mut normal = [[0.0f32; LANES]; 3];
             for (sum, across) in normal.iter_mut().zip(across) {
-                *sum = if joined_rows[chunk] {
-                    sum_joined(across, center, STRIDE, taps)
+                *sum = if joined {
+                    sum_joined(across, center, PITCH, taps)
                 } else {
-                    sum_broken(across, down, center, STRIDE, taps)
+                    sum_broken(across, down, center, PITCH, taps)
                 };
             }
+            let (sx, sy) = (&mut sx[chunk..chunk + LANES], &mut sy[chunk..chunk + LANES]);
             for l in 0..LANES {
                 (sx[l], sy[l]) = slope(normal[0][l], normal[1][l], normal[2][l]);
             }
