@@ -4,9 +4,10 @@
 
 use divan::{Bencher, counter::ItemsCount};
 use rayon::prelude::*;
+use rilievo::document::{Content, Document, Layer, LayerId, Live, Prepared, Progress, diff};
 use rilievo::math::{Size, vec3};
-use rilievo::raster::{PlanarTile, Plane, TileAt, planar::Row};
-use rilievo::shading::{RadianceScaling, radiance::Beneath};
+use rilievo::raster::{PlanarTile, Plane, TileAt, TileGrid, planar::Row};
+use rilievo::shading::{Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::Beneath};
 use rilievo::surface::{Maps, Scene, Surface};
 use std::sync::Arc;
 
@@ -73,4 +74,121 @@ fn copy_of_the_same_pixels(bencher: Bencher, run: Run) {
     bencher.counter(area(run)).bench_local(|| {
         pool.install(|| to.par_iter_mut().zip(&from).for_each(|(t, f)| t.1.rows_mut().copy_from_slice(f.1.rows())));
     });
+}
+
+/// As flattening does it: each tile is in the cache already. Beside it, the copy that makes it so.
+#[divan::bench(args = RUNS)]
+fn radiance_scaling_of_tiles_in_the_cache(bencher: Bencher, run: Run) {
+    let scene = scene(run.0);
+    let layer = RadianceScaling::default();
+    let beneath = Beneath { brightest: 1.0, gain: 1.0 };
+    in_cache(bencher, run, |at, tile| layer.apply_tile(&scene, at, beneath, tile));
+}
+
+#[divan::bench(args = RUNS)]
+fn copy_of_tiles_in_the_cache(bencher: Bencher, run: Run) {
+    in_cache(bencher, run, |_, _| ());
+}
+
+/// One tile of the composite is copied for each of the canvas, then worked on.
+fn in_cache(bencher: Bencher, run: Run, work: impl Fn(TileAt, &mut PlanarTile) + Sync) {
+    let scene = scene(run.0);
+    let tiles = composite(&scene);
+    let template = &tiles[0].1;
+    let ats: Vec<TileAt> = tiles.iter().map(|(at, _)| *at).collect();
+    let pool = pool(run.1);
+    let each = |own: &mut PlanarTile, at: &TileAt| {
+        own.rows_mut().copy_from_slice(template.rows());
+        work(*at, own);
+        divan::black_box(own);
+    };
+    bencher
+        .counter(area(run))
+        .bench_local(|| pool.install(|| ats.par_iter().for_each_init(PlanarTile::transparent, each)));
+}
+
+/// One light, its two terms and the ambient one scaled.
+fn lit(model: Model) -> Shading {
+    let mut shading = Shading::new(model);
+    for term in [&mut shading.ambient, &mut shading.diffuse, &mut shading.specular] {
+        term.scaling = Scaling::new(0.2, 1.0);
+    }
+    shading
+}
+
+#[divan::bench(args = RUNS)]
+fn phong_with_one_light(bencher: Bencher, run: Run) {
+    material(bencher, run, Model::Phong);
+}
+
+#[divan::bench(args = [Model::Toon, Model::SubLambertian, Model::Ashikhmin, Model::LitSphere])]
+fn other_models(bencher: Bencher, model: Model) {
+    material(bencher, (SMALL, 1), model);
+}
+
+fn material(bencher: Bencher, run: Run, model: Model) {
+    let scene = scene(run.0);
+    let shading = lit(model);
+    shading.warm(&scene);
+    let ats: Vec<TileAt> = TileAt::covering(scene.size.rect()).collect();
+    let pool = pool(run.1);
+    bencher.counter(area(run)).bench_local(|| {
+        pool.install(|| ats.par_iter().for_each(|&at| drop(divan::black_box(shading.render_tile(&scene, at)))));
+    });
+}
+
+/// What is dragged.
+const DRAGS: [&str; 4] = ["gamma of the layer", "gamma of the layer, mean kept", "a light, Y* set", "a light, Y* auto"];
+
+/// The time between a drag's event and the new picture: the new document, what differs, and those tiles; on two threads.
+#[divan::bench(args = DRAGS)]
+fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
+    let pool = pool(2);
+    let mut document = lit_document(what);
+    let mut shown =
+        pool.install(|| rilievo::document::flatten(&document, &Progress::default())).expect("not cancelled");
+    let mut step = 0;
+    bencher.counter(area((SMALL, 2))).bench_local(|| {
+        step += 1;
+        let next = dragged(&document, what, (step % 7) as f32 / 7.0);
+        shown = pool.install(|| redrawn(&document, &next, &shown));
+        document = next;
+    });
+}
+
+fn redrawn(old: &Document, new: &Document, shown: &TileGrid) -> TileGrid {
+    let changed: Vec<TileAt> = diff(old, new).into_iter().collect();
+    let prepared = Prepared::new(new, &Progress::default()).expect("not cancelled");
+    prepared.flatten_tiles(shown, &changed, &Progress::default()).expect("not cancelled")
+}
+
+/// A lit surface with radiance scaling over it.
+fn lit_document(what: &str) -> Document {
+    let scene = scene(SMALL);
+    let reference = if what.ends_with("set") { Reference::Value(0.8) } else { Reference::Auto };
+    let scaling = RadianceScaling { reference, keep_mean: what.ends_with("kept"), ..RadianceScaling::default() };
+    let layers = [
+        Layer::new("lit", Content::Shading(Live::new(lit(Model::Phong)))),
+        Layer::new("relief", Content::RadianceScaling(scaling)),
+    ];
+    Document { surface: scene.surface, layers: layers.map(Arc::new).into(), ..Document::empty(scene.size) }
+}
+
+fn dragged(document: &Document, what: &str, t: f32) -> Document {
+    let id = |index: usize| -> LayerId { document.layers[index].id };
+    let edited = if what.starts_with("gamma") {
+        document.with_layer(id(1), |layer| {
+            if let Content::RadianceScaling(scaling) = &mut layer.content {
+                scaling.scaling = Scaling::new(0.2, 0.5 + t);
+            }
+        })
+    } else {
+        document.with_layer(id(0), |layer| {
+            let mut shading = lit(Model::Phong);
+            let kind = LightKind::Directional { direction: vec3(t - 0.5, 0.4, 0.7) };
+            shading.lights = vec![Light { kind, ..Light::default() }];
+            layer.content = Content::Shading(Live::new(shading));
+        })
+    };
+    edited.expect("the layer is there")
 }

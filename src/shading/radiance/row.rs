@@ -123,7 +123,7 @@ impl RowScaler {
         for x in 0..TILE {
             // root^2.4 within 0.2 %: only values on the foot of the curve need it.
             let root = self.roots[x];
-            self.factors[x] = 0.042_410_117 - 0.263_897_99 * root + (1.006_399 + root * 0.216_649_44) * (root * root);
+            self.factors[x] = 0.042_410_117 - 0.263_898 * root + (1.006_399 + root * 0.216_649_44) * (root * root);
         }
     }
     /// Straight, scaled, clipped, premultiplied again: the same steps for every tone, so that a picture's darks cost nothing
@@ -131,10 +131,10 @@ impl RowScaler {
     #[inline(always)]
     fn scale<const OPAQUE: bool>(&self, row: &mut Row, scale_encoded: impl Fn(f32, f32, f32) -> f32) {
         for channel in &mut row.rgb {
-            for x in 0..TILE {
+            for (x, v) in channel.iter_mut().enumerate() {
                 let (a, per_a) = if OPAQUE { (1.0, 1.0) } else { (row.a[x], self.per_a[x]) };
-                let scaled = scale_encoded(channel[x] * per_a, self.factors[x], self.roots[x]);
-                channel[x] = fast::min(scaled, 1.0) * a;
+                let scaled = scale_encoded(*v * per_a, self.factors[x], self.roots[x]);
+                *v = fast::min(scaled, 1.0) * a;
             }
         }
     }
