@@ -13,6 +13,7 @@ pub mod open;
 pub mod picture;
 pub mod project;
 pub mod recipe;
+pub mod recovery;
 pub mod save;
 
 pub use budget::Budget;

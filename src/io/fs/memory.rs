@@ -244,9 +244,6 @@ impl Fs for Memory {
         self.turn()?;
         Ok(self.handle(self.inode(path)?))
     }
-    fn append(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
-        self.open(path)
-    }
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.turn()?;
         let inode = self.inode(from)?;

@@ -15,8 +15,6 @@ pub trait Fs: Send + Sync {
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn Handle>>;
     /// A file for reading.
     fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>>;
-    /// A file for writing at its end.
-    fn append(&self, path: &Path) -> io::Result<Box<dyn Handle>>;
     /// Replaces what stands at `to`, all at once.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// A second name for the same file; fails where `to` exists.
@@ -75,9 +73,6 @@ impl Fs for Disk {
     }
     fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
         Ok(Box::new(File::open(path)?))
-    }
-    fn append(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
-        Ok(Box::new(OpenOptions::new().append(true).open(path)?))
     }
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         std::fs::rename(from, to)

@@ -11,7 +11,7 @@ use crate::document::{Content, Document, Group, Layer, LayerId, Live, MaskKind, 
 use crate::io::exr;
 use crate::paint::{PictureSource, Stroke, Tip};
 use crate::raster::picture::Texels;
-use crate::raster::{Asset, Picture};
+use crate::raster::{Asset, Picture, Plane};
 use crate::surface::Surface;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -27,8 +27,16 @@ pub struct Assets {
     files: Vec<(String, Asset)>,
     /// In lower case: names differ in more than capitals.
     taken: BTreeSet<String>,
-    /// Pictures without a file, by where their texels lie in memory.
-    made: BTreeMap<usize, Asset>,
+    made: Made,
+}
+
+/// Files made of what came from none, by where it lies in memory; kept, so that it is encoded once.
+#[derive(Default)]
+pub struct Made {
+    pictures: BTreeMap<usize, (Picture, Asset)>,
+    masks: BTreeMap<usize, (Arc<Plane<u8>>, Asset)>,
+    /// The maps and the mask of a surface.
+    surfaces: BTreeMap<usize, (Arc<Surface>, Asset, Asset)>,
 }
 
 /// The pixels of paint layers, and the names under which they are stored already.
@@ -39,12 +47,19 @@ pub struct Painted<'a> {
 }
 
 impl Assets {
+    /// With what was encoded for an earlier version of the document.
+    pub fn again(made: Made) -> Self {
+        Self { made, ..Self::default() }
+    }
+    pub fn into_made(self) -> Made {
+        self.made
+    }
     pub fn files(&self) -> &[(String, Asset)] {
         &self.files
     }
     /// The document with every file under its name in the project.
     pub fn rename(&mut self, file: &Path, document: &Document, painted: &Painted) -> Result<Document> {
-        let source = document.surface.as_deref().map(|surface| self.surface(file, surface, document)).transpose()?;
+        let source = document.surface.as_ref().map(|surface| self.surface(file, surface, document)).transpose()?;
         let layers = self.layers(file, &document.layers, painted)?;
         Ok(Document { surface_source: source.map(Arc::new), layers, ..document.clone() })
     }
@@ -54,7 +69,10 @@ impl Assets {
     fn layer(&mut self, file: &Path, layer: &Layer, painted: &Painted) -> Result<Layer> {
         let mut next = layer.clone();
         if let Some(MaskKind::File { file: name, coverage }) = next.mask.as_mut().map(|mask| &mut mask.kind) {
-            *name = self.add(&with_ending(name, "mask", "png"), pixels::encode_coverage(file, coverage)?);
+            *name = {
+                let mask = self.made.mask(file, coverage)?;
+                self.add(&with_ending(name, "mask", "png"), mask)
+            };
         }
         match &mut next.content {
             Content::Pixels(paint) => {
@@ -102,7 +120,7 @@ impl Assets {
         Ok(())
     }
     /// The maps as their own files; where any of their bytes is not known, the surface as it is.
-    fn surface(&mut self, file: &Path, surface: &Surface, document: &Document) -> Result<SurfaceSource> {
+    fn surface(&mut self, file: &Path, surface: &Arc<Surface>, document: &Document) -> Result<SurfaceSource> {
         let known = document.surface_source.as_deref();
         let known = known.filter(|source| files_of(source).all(|name| document.surface_files.contains_key(name)));
         let Some(source) = known else { return self.made_surface(file, surface) };
@@ -115,14 +133,9 @@ impl Assets {
         Ok(source)
     }
     /// A surface that came from no file: normals and depth of 32 bits, and its coverage.
-    fn made_surface(&mut self, file: &Path, surface: &Surface) -> Result<SurfaceSource> {
-        let size = surface.size();
-        let pixels = || (0..size.height as usize).flat_map(|y| (0..size.width as usize).map(move |x| (x, y)));
-        let normal = |c: usize| pixels().map(|(x, y)| surface.normal(x, y)[c]).collect();
-        let depth = pixels().map(|(x, y)| surface.depth(x, y)).collect();
-        let channels = vec![("N.X", normal(0)), ("N.Y", normal(1)), ("N.Z", normal(2)), ("Z", depth)];
-        let maps = self.add("surface.exr", exr::encode_channels(file, size, channels)?.into());
-        let mask = self.add("surface-mask.png", pixels::encode_coverage(file, surface.coverage_plane())?);
+    fn made_surface(&mut self, file: &Path, surface: &Arc<Surface>) -> Result<SurfaceSource> {
+        let (maps, mask) = self.made.surface(file, surface)?;
+        let (maps, mask) = (self.add("surface.exr", maps), self.add("surface-mask.png", mask));
         let opengl = NormalConvention::from_word("opengl").unwrap_or_default();
         let depth = DepthConvention {
             near: Near::Low,
@@ -144,15 +157,11 @@ impl Assets {
         if let Some(asset) = &picture.encoded {
             return Ok(self.add(name, asset.clone()));
         }
-        let (key, ending) = match &picture.texels {
-            Texels::Srgb8(texels) => (texels.as_ptr() as usize, "png"),
-            Texels::Linear(texels) => (texels.as_ptr() as usize, "exr"),
+        let ending = match &picture.texels {
+            Texels::Srgb8(_) => "png",
+            Texels::Linear(_) => "exr",
         };
-        let asset = match self.made.get(&key) {
-            Some(known) => known.clone(),
-            None => encode(file, picture)?,
-        };
-        self.made.insert(key, asset.clone());
+        let asset = self.made.picture(file, picture)?;
         Ok(self.add(&with_ending(name, "picture", ending), asset))
     }
     fn add(&mut self, name: &str, asset: Asset) -> String {
@@ -199,11 +208,47 @@ fn files_of_mut(source: &mut SurfaceSource) -> impl Iterator<Item = &mut String>
     [normal, depth, mask].into_iter().flatten()
 }
 
-/// Without loss: bytes as PNG, light as EXR of 32 bits.
-fn encode(file: &Path, picture: &Picture) -> Result<Asset> {
-    match &picture.texels {
-        Texels::Srgb8(texels) => pixels::encode_texels(file, texels, picture.size),
-        Texels::Linear(texels) => exr::encode_light(file, picture.size, texels).map(Asset::from),
+impl Made {
+    /// Without loss: bytes as PNG, light as EXR of 32 bits.
+    fn picture(&mut self, file: &Path, picture: &Picture) -> Result<Asset> {
+        let key = match &picture.texels {
+            Texels::Srgb8(texels) => texels.as_ptr() as usize,
+            Texels::Linear(texels) => texels.as_ptr() as usize,
+        };
+        if let Some((_, known)) = self.pictures.get(&key) {
+            return Ok(known.clone());
+        }
+        let asset = match &picture.texels {
+            Texels::Srgb8(texels) => pixels::encode_texels(file, texels, picture.size)?,
+            Texels::Linear(texels) => exr::encode_light(file, picture.size, texels)?.into(),
+        };
+        self.pictures.insert(key, (picture.clone(), asset.clone()));
+        Ok(asset)
+    }
+    fn mask(&mut self, file: &Path, coverage: &Arc<Plane<u8>>) -> Result<Asset> {
+        let key = Arc::as_ptr(coverage) as usize;
+        if let Some((_, known)) = self.masks.get(&key) {
+            return Ok(known.clone());
+        }
+        let asset = pixels::encode_coverage(file, coverage)?;
+        self.masks.insert(key, (coverage.clone(), asset.clone()));
+        Ok(asset)
+    }
+    /// Normals and depth of 32 bits, and the coverage.
+    fn surface(&mut self, file: &Path, surface: &Arc<Surface>) -> Result<(Asset, Asset)> {
+        let key = Arc::as_ptr(surface) as usize;
+        if let Some((_, maps, mask)) = self.surfaces.get(&key) {
+            return Ok((maps.clone(), mask.clone()));
+        }
+        let size = surface.size();
+        let pixels = || (0..size.height as usize).flat_map(|y| (0..size.width as usize).map(move |x| (x, y)));
+        let normal = |c: usize| pixels().map(|(x, y)| surface.normal(x, y)[c]).collect();
+        let depth = pixels().map(|(x, y)| surface.depth(x, y)).collect();
+        let channels = vec![("N.X", normal(0)), ("N.Y", normal(1)), ("N.Z", normal(2)), ("Z", depth)];
+        let maps: Asset = exr::encode_channels(file, size, channels)?.into();
+        let mask = pixels::encode_coverage(file, surface.coverage_plane())?;
+        self.surfaces.insert(key, (surface.clone(), maps.clone(), mask.clone()));
+        Ok((maps, mask))
     }
 }
 

@@ -12,13 +12,13 @@
 //! | `open`, `repair`, `foreign` | reading: our own, damaged, other programs' |
 
 mod archive;
-mod assets;
+pub(super) mod assets;
 mod foreign;
 mod look;
 mod manifest;
 mod open;
 mod packer;
-mod pixels;
+pub(super) mod pixels;
 mod plan;
 mod repair;
 #[cfg(test)]

@@ -148,7 +148,8 @@ pub fn write(out: &mut Object, list: &StrokeList) {
     out.set("strokes", list.strokes.iter().map(|stroke| write_stroke(stroke)).collect());
 }
 
-fn write_stroke(stroke: &Stroke) -> Value {
+/// One stroke, as it stands in a layer's `strokes`.
+pub fn write_stroke(stroke: &Stroke) -> Value {
     let mut out = Object::default();
     out.object("brush", write_brush(stroke.brush()));
     out.object("operator", write_operator(stroke.operator()));

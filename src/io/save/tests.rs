@@ -196,9 +196,6 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
         fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
             self.0.open(path)
         }
-        fn append(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
-            self.0.append(path)
-        }
         fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
             self.0.rename(from, to)
         }

@@ -1,0 +1,108 @@
+//! One drawing's recovery log on a disk: appended to after every edit, written anew when it has grown to twice its use.
+//! Floor 5. Called from one thread; the thread is `mod`'s.
+
+use super::log::{self, Kind};
+use super::state::{self, Known};
+use crate::document::Document;
+use crate::io::fs::{Fs, Handle};
+use crate::{Error, Result};
+use serde_json::{Value, json};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A log smaller than this is not worth writing anew.
+const LEAST_COMPACTED: u64 = 16 << 20;
+
+/// The log of a session.
+pub struct Journal {
+    fs: Arc<dyn Fs>,
+    /// `…/ID.log`
+    path: PathBuf,
+    head: Value,
+    known: Known,
+    /// Absent after a failure: what was half written makes all that would follow unreadable.
+    handle: Option<Box<dyn Handle>>,
+    bytes: u64,
+    /// Its length when it was last written anew.
+    fresh_bytes: u64,
+    unsynced: bool,
+    pub least_compacted: u64,
+}
+
+impl Journal {
+    /// Nothing is written before the first document.
+    pub fn new(fs: Arc<dyn Fs>, path: PathBuf, title: &str, file: Option<&Path>) -> Self {
+        let head = json!({ "format": "rilievo-recovery", "version": 1, "title": title, "file": file });
+        Self {
+            fs,
+            path,
+            head,
+            known: Known::default(),
+            handle: None,
+            bytes: 0,
+            fresh_bytes: 0,
+            unsynced: false,
+            least_compacted: LEAST_COMPACTED,
+        }
+    }
+    /// The drawing has another name now; it stands in the log from its next writing anew.
+    pub fn rename(&mut self, title: &str, file: Option<&Path>) {
+        (self.head["title"], self.head["file"]) = (json!(title), json!(file));
+        // So that it is not forgotten until then.
+        self.handle = None;
+    }
+    /// Appends a version of the document.
+    pub fn record(&mut self, document: &Document) -> Result<()> {
+        let has_grown = self.bytes > self.least_compacted.max(2 * self.fresh_bytes);
+        if has_grown || self.handle.is_none() {
+            return self.write_anew(document);
+        }
+        let mut out = Vec::new();
+        state::write(&self.path, document, &mut self.known, &mut out)?;
+        let Some(handle) = &mut self.handle else { return Ok(()) };
+        if let Err(e) = handle.write_all(&out) {
+            self.handle = None;
+            return Err(Error::io(&self.path, e));
+        }
+        self.bytes += out.len() as u64;
+        self.unsynced = true;
+        Ok(())
+    }
+    /// Makes sure that what was appended outlives a power cut.
+    pub fn sync(&mut self) -> Result<()> {
+        if !std::mem::take(&mut self.unsynced) {
+            return Ok(());
+        }
+        let Some(handle) = &mut self.handle else { return Ok(()) };
+        handle.sync().map_err(|e| {
+            // What the system dropped cannot be asked for again.
+            self.handle = None;
+            Error::io(&self.path, e)
+        })
+    }
+    /// Writes a log of this one document beside the old one, and puts it in its place.
+    fn write_anew(&mut self, document: &Document) -> Result<()> {
+        let failed = |e| Error::io(&self.path, e);
+        let mut known = Known::default();
+        let mut out = log::MAGIC.to_vec();
+        let is_short = log::push(&mut out, Kind::Head, &[self.head.to_string().as_bytes()]);
+        debug_assert!(is_short, "a head has a few hundred bytes");
+        state::write(&self.path, document, &mut known, &mut out)?;
+        let part = self.path.with_extension("new");
+        // Left by a session of this name that was cut off just here.
+        let _ = self.fs.remove(&part);
+        let mut handle = self.fs.create_new(&part).map_err(failed)?;
+        let written = handle.write_all(&out).and_then(|()| handle.sync());
+        let placed = written.and_then(|()| self.fs.rename(&part, &self.path));
+        if let Err(e) = placed {
+            let _ = self.fs.remove(&part);
+            return Err(failed(e));
+        }
+        let folder = self.path.parent().unwrap_or(Path::new("."));
+        self.fs.sync_dir(folder).map_err(failed)?;
+        (self.handle, self.known) = (Some(handle), known);
+        (self.bytes, self.fresh_bytes, self.unsynced) = (out.len() as u64, out.len() as u64, false);
+        Ok(())
+    }
+}

@@ -1,0 +1,183 @@
+//! Recovery: after every edit the drawing goes to a log beside the settings, so that neither a crash nor a power cut takes
+//! more than the last moments (docs/PROJECTS.md).
+//! Floor 5. Saving is `io::save`; the log is for accidents only, and is gone once the drawing is closed.
+//!
+//! | file | |
+//! |---|---|
+//! | `log` | records of bytes, and the longest run of them that holds |
+//! | `state` | a document as records |
+//! | `journal` | one drawing's log on a disk |
+//! | `sessions` | what accidents left, brought back |
+
+mod journal;
+mod log;
+mod sessions;
+mod state;
+#[cfg(test)]
+mod tests;
+
+pub use sessions::{Recovered, Session, sessions};
+
+use super::fs::{Fs, Lock};
+use crate::document::Document;
+use crate::{Error, Result};
+use journal::Journal;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// Appended edits wait no longer than this for being flushed; with the flush itself it stays below five seconds.
+const FLUSH_AFTER: Duration = Duration::from_secs(3);
+
+/// The recovery of one open drawing: a worker that writes what it is told, and a lock that says the session lives.
+///
+/// Dropped without [`Recovery::close`], it leaves the log, as a crash does.
+pub struct Recovery {
+    tasks: Option<Sender<Task>>,
+    worker: Option<JoinHandle<()>>,
+    trouble: Arc<Mutex<Option<String>>>,
+    fs: Arc<dyn Fs>,
+    path: PathBuf,
+    lock: Option<Box<dyn Lock>>,
+}
+
+enum Task {
+    Record(Document),
+    Rename(String, Option<PathBuf>),
+    Flush(Sender<()>),
+}
+
+impl Recovery {
+    /// Begins a session for a drawing, in a folder that [`folder`] names.
+    ///
+    /// * `file`: where it was opened from or saved to; `None` for an untitled one.
+    ///
+    /// Fails where the folder cannot be made or no lock can be had: then the drawing goes on without recovery.
+    pub fn start(
+        fs: Arc<dyn Fs>,
+        folder: &Path,
+        document: &Document,
+        title: &str,
+        file: Option<&Path>,
+    ) -> Result<Self> {
+        fs.create_folder(folder).map_err(|e| Error::io(folder, e))?;
+        let (path, lock) = fresh_session(&*fs, folder)?;
+        let journal = Journal::new(fs.clone(), path.clone(), title, file);
+        let (tasks, received) = channel();
+        let trouble = Arc::default();
+        let worker = std::thread::Builder::new().name("recovery".into());
+        let told = Arc::clone(&trouble);
+        let worker = worker.spawn(move || work(journal, &received, &told)).map_err(|e| Error::io(folder, e))?;
+        let recovery = Self { tasks: Some(tasks), worker: Some(worker), trouble, fs, path, lock: Some(lock) };
+        recovery.record(document);
+        Ok(recovery)
+    }
+    /// Writes a version of the drawing; called after every edit, undo and redo. Returns at once.
+    pub fn record(&self, document: &Document) {
+        self.send(Task::Record(document.clone()));
+    }
+    /// The drawing has been saved under a name.
+    pub fn renamed(&self, title: &str, file: Option<&Path>) {
+        self.send(Task::Rename(title.into(), file.map(Path::to_owned)));
+    }
+    /// Waits until all that was recorded is on the disk.
+    pub fn flush(&self) {
+        let (done, is_done) = channel();
+        self.send(Task::Flush(done));
+        // An error means that the worker is gone, and waits for nothing.
+        let _ = is_done.recv();
+    }
+    /// Why the last version could not be written, until one can.
+    pub fn trouble(&self) -> Option<String> {
+        self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+    /// Ends the session and deletes its log: the drawing is saved, or its user let it go.
+    pub fn close(mut self) -> Result<()> {
+        self.stop();
+        for ending in ["new", "log", "lock"] {
+            let path = self.path.with_extension(ending);
+            match self.fs.remove(&path) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(path, e)),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+    fn send(&self, task: Task) {
+        if let Some(tasks) = &self.tasks {
+            // A worker that is gone has told its trouble.
+            let _ = tasks.send(task);
+        }
+    }
+    /// The worker writes what it was told, and ends.
+    fn stop(&mut self) {
+        self.tasks = None;
+        if let Some(worker) = self.worker.take() {
+            let _ = worker.join();
+        }
+    }
+}
+
+impl Drop for Recovery {
+    fn drop(&mut self) {
+        self.stop();
+        self.lock = None;
+    }
+}
+
+/// Where sessions stand: `rilievo/recovery` in the user's folder for state; `None` where the system names none.
+pub fn folder() -> Option<PathBuf> {
+    use etcetera::BaseStrategy;
+    let base = etcetera::choose_base_strategy().ok()?;
+    let state = base.state_dir().unwrap_or_else(|| base.data_dir());
+    Some(state.join("rilievo").join("recovery"))
+}
+
+/// A name that no session has, and the lock that makes it ours. The name begins with the time, so that sessions sort.
+fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn Lock>)> {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
+    for attempt in 0..1000 {
+        let path = folder.join(format!("{now:016x}-{}-{attempt}.log", std::process::id()));
+        let is_free = fs.found(&path).map_err(|e| Error::io(&path, e))?.is_none();
+        if let Some(lock) = fs.lock(&path.with_extension("lock")).map_err(|e| Error::io(&path, e))?
+            && is_free
+        {
+            return Ok((path, lock));
+        }
+    }
+    Err(Error::io(folder, std::io::Error::other("no name for a recovery log is free")))
+}
+
+/// Writes versions as they come, and flushes them in time.
+fn work(mut journal: Journal, tasks: &Receiver<Task>, trouble: &Mutex<Option<String>>) {
+    let mut waiting_since: Option<Instant> = None;
+    let tell = |result: Result<()>| {
+        *trouble.lock().unwrap_or_else(PoisonError::into_inner) = result.err().map(|error| error.to_string());
+    };
+    loop {
+        let patience = waiting_since.map_or(Duration::MAX, |since| FLUSH_AFTER.saturating_sub(since.elapsed()));
+        match tasks.recv_timeout(patience) {
+            Ok(Task::Record(document)) => {
+                tell(journal.record(&document));
+                waiting_since.get_or_insert_with(Instant::now);
+            }
+            Ok(Task::Rename(title, file)) => journal.rename(&title, file.as_deref()),
+            Ok(Task::Flush(done)) => {
+                tell(journal.sync());
+                waiting_since = None;
+                drop(done);
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                tell(journal.sync());
+                waiting_since = None;
+            }
+            Err(RecvTimeoutError::Disconnected) => return tell(journal.sync()),
+        }
+        if waiting_since.is_some_and(|since| since.elapsed() >= FLUSH_AFTER) {
+            tell(journal.sync());
+            waiting_since = None;
+        }
+    }
+}

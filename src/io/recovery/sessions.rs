@@ -1,0 +1,91 @@
+//! The sessions that ended without being closed: what they left, and how it is brought back.
+//! Floor 5. Nothing here is deleted unasked, and nothing here can keep the program from starting.
+
+use super::state::Last;
+use crate::document::Document;
+use crate::io::Budget;
+use crate::io::fs::{Fs, Lock};
+use crate::{Error, Result};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A session that nobody holds any more. While this lives, no other window takes it.
+pub struct Session {
+    fs: Arc<dyn Fs>,
+    path: PathBuf,
+    /// What the drawing was called.
+    pub title: String,
+    /// Where it was last saved, if it was. The recovered drawing is untitled all the same.
+    pub file: Option<PathBuf>,
+    /// Bringing it back was begun once and not finished: only to be tried when the user asks for this very one.
+    pub has_failed: bool,
+    _lock: Box<dyn Lock>,
+}
+
+/// A drawing brought back. It has no name: saving asks for one.
+pub struct Recovered {
+    pub document: Document,
+    pub title: String,
+    /// Versions that the log told of, the first being the drawing as it was opened.
+    pub versions: usize,
+}
+
+/// The sessions below a folder that are not alive, oldest first. What cannot be read is left where it is.
+pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<Session> {
+    let paths = fs.list(folder).unwrap_or_default();
+    let logs = paths.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "log"));
+    logs.filter_map(|path| session(fs, path)).collect()
+}
+
+/// `None` while its own process, or another window, holds it.
+fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<Session> {
+    let lock = fs.lock(&path.with_extension("lock")).ok()??;
+    let has_failed = !matches!(fs.found(&path.with_extension("trying")), Ok(None));
+    // Only the beginning: a broken log may be long.
+    let mut start = Vec::new();
+    if let Ok(handle) = fs.open(&path) {
+        let _ = handle.take(1 << 16).read_to_end(&mut start);
+    }
+    let head = Last::of(&start).head.unwrap_or_default();
+    let title = head["title"].as_str().unwrap_or_default().chars().take(200).collect();
+    let file = head["file"].as_str().map(PathBuf::from);
+    Some(Session { fs: fs.clone(), path, title, file, has_failed, _lock: lock })
+}
+
+impl Session {
+    /// The last whole version in the log.
+    ///
+    /// Leaves a mark while it works: should it bring the program down, `has_failed` says so the next time.
+    pub fn recover(&mut self, budget: &Budget) -> Result<Recovered> {
+        let mark = self.path.with_extension("trying");
+        // Without the mark nothing would be lost but the warning.
+        let _ = self.fs.create_new(&mark).and_then(|mut mark| mark.sync());
+        self.has_failed = true;
+        let recovered = self.read(budget)?;
+        let _ = self.fs.remove(&mark);
+        self.has_failed = false;
+        Ok(recovered)
+    }
+    fn read(&self, budget: &Budget) -> Result<Recovered> {
+        let io = |e| Error::io(&self.path, e);
+        let mut log = Vec::new();
+        let handle = self.fs.open(&self.path).map_err(io)?;
+        handle.take(budget.unpacked_bytes).read_to_end(&mut log).map_err(io)?;
+        let last = Last::of(&log);
+        let document = last.document(&self.path, budget)?;
+        let document = document.ok_or_else(|| Error::decode(&self.path, "it holds no whole version of the drawing"))?;
+        Ok(Recovered { document, title: self.title.clone(), versions: last.states })
+    }
+    /// Deletes what the session left. Only when the user says so, or once the drawing is safe in a session of its own.
+    pub fn discard(self) -> Result<()> {
+        for ending in ["trying", "new", "log", "lock"] {
+            let path = self.path.with_extension(ending);
+            match self.fs.remove(&path) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(path, e)),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}

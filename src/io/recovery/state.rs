@@ -1,0 +1,246 @@
+//! A document as a recovery log holds it: small JSON after every edit, and what is large in it once, by keys.
+//! Floor 5. The schema is the recipe's; tiles, strokes and files stand in it as keys of blobs.
+
+use super::log::{self, Kind};
+use crate::document::{Content, Document, Layer, Live, PixelLayer, StrokeList};
+use crate::io::project::assets::{Assets, Made, Painted};
+use crate::io::project::pixels;
+use crate::io::recipe::{self, Source};
+use crate::io::{Budget, Files, picture};
+use crate::math::Size;
+use crate::paint::Stroke;
+use crate::raster::picture::Texels;
+use crate::raster::{Asset, TILE, Tile, TileAt, TileGrid};
+use crate::{Error, Result};
+use serde_json::{Map, Value, json};
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a log holds already, by where it lies in memory; kept alive, so that no other thing takes its place.
+#[derive(Default)]
+pub struct Known {
+    keys: HashMap<usize, (u64, Held)>,
+    next: u64,
+    made: Made,
+}
+
+#[derive(Clone)]
+enum Held {
+    Tile { _tile: Arc<Tile> },
+    Stroke { _stroke: Arc<Stroke> },
+    Asset { _asset: Asset },
+}
+
+/// Appends what a document needs and the log does not hold yet, then the document itself.
+pub fn write(file: &Path, document: &Document, known: &mut Known, out: &mut Vec<u8>) -> Result<()> {
+    let (pixels, shared) = (BTreeMap::new(), BTreeMap::new());
+    let mut assets = Assets::again(std::mem::take(&mut known.made));
+    let renamed = assets.rename(file, document, &Painted { pixels: &pixels, shared: &shared })?;
+    let bare = Document { layers: renamed.layers.iter().map(without_large_parts).collect(), ..renamed.clone() };
+    let mut writer = Writer { file, known, used: HashMap::new(), out };
+    let mut value = recipe::write(&bare);
+    writer.layers(&renamed.layers, &mut value)?;
+    let mut files = Map::new();
+    for (name, asset) in assets.files() {
+        let held = Held::Asset { _asset: asset.clone() };
+        let key = writer.key(asset.address(), held, || Ok(asset.bytes().to_vec()))?;
+        files.insert(name.clone(), key.into());
+    }
+    let used = std::mem::take(&mut writer.used);
+    let state = json!({ "document": value, "files": files }).to_string();
+    if !log::push(out, Kind::State, &[state.as_bytes()]) {
+        return Err(Error::too_large(file, "the document's description has more than 4 GiB"));
+    }
+    // What the document no longer holds may be freed; should it come back, it is written again.
+    (known.keys, known.made) = (used, assets.into_made());
+    Ok(())
+}
+
+/// A layer without what stands in blobs.
+fn without_large_parts(layer: &Arc<Layer>) -> Arc<Layer> {
+    let mut next = Layer::clone(layer);
+    match &mut next.content {
+        Content::Strokes(live) => *live = Live::new(StrokeList::default()),
+        Content::Pixels(pixels) => *pixels = PixelLayer { file: String::new(), ..pixels.clone() },
+        Content::Group(group) => group.layers = group.layers.iter().map(without_large_parts).collect(),
+        _ => {}
+    }
+    Arc::new(next)
+}
+
+struct Writer<'a> {
+    file: &'a Path,
+    known: &'a mut Known,
+    used: HashMap<usize, (u64, Held)>,
+    out: &'a mut Vec<u8>,
+}
+
+impl Writer<'_> {
+    /// Puts keys in the places of tiles and strokes; `value` holds `layers` as JSON.
+    fn layers(&mut self, layers: &[Arc<Layer>], value: &mut Value) -> Result<()> {
+        for (i, layer) in layers.iter().enumerate() {
+            let Some(value) = value.get_mut("layers").and_then(|layers| layers.get_mut(i)) else { continue };
+            match &layer.content {
+                Content::Group(group) => self.layers(&group.layers, value)?,
+                Content::Pixels(pixels) => value["tiles"] = self.tiles(&pixels.tiles)?,
+                Content::Strokes(live) => {
+                    let strokes = live.params().strokes.iter().map(|stroke| self.stroke(stroke));
+                    value["strokes"] = strokes.collect::<Result<Value>>()?;
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+    fn tiles(&mut self, tiles: &TileGrid) -> Result<Value> {
+        let file = self.file;
+        let one = |(at, tile): (TileAt, &Arc<Tile>)| {
+            let held = Held::Tile { _tile: tile.clone() };
+            let key = self.key(Arc::as_ptr(tile) as usize, held, || encode_tile(file, at, tile))?;
+            Ok(json!([at.col, at.row, key]))
+        };
+        tiles.iter().map(one).collect()
+    }
+    fn stroke(&mut self, stroke: &Arc<Stroke>) -> Result<Value> {
+        let held = Held::Stroke { _stroke: stroke.clone() };
+        let bytes = || Ok(recipe::write_stroke(stroke).to_string().into_bytes());
+        Ok(self.key(Arc::as_ptr(stroke) as usize, held, bytes)?.into())
+    }
+    /// The key of a thing in memory; its bytes are written where the log does not hold them.
+    fn key(&mut self, address: usize, held: Held, bytes: impl FnOnce() -> Result<Vec<u8>>) -> Result<u64> {
+        if let Some((key, _)) = self.used.get(&address) {
+            return Ok(*key);
+        }
+        let key = match self.known.keys.get(&address) {
+            Some((key, _)) => *key,
+            None => {
+                let key = self.known.next;
+                self.known.next += 1;
+                if !log::push(self.out, Kind::Blob, &[&key.to_le_bytes(), &bytes()?]) {
+                    return Err(Error::too_large(self.file, "a part of the drawing has more than 4 GiB"));
+                }
+                key
+            }
+        };
+        self.used.insert(address, (key, held));
+        Ok(key)
+    }
+}
+
+fn encode_tile(file: &Path, at: TileAt, tile: &Arc<Tile>) -> Result<Vec<u8>> {
+    let mut alone = TileGrid::default();
+    alone.set(at, Some(tile.clone()));
+    let straight = alone.to_straight_rgba(at.rect());
+    let size = Size::new(TILE as u32, TILE as u32);
+    Ok(pixels::encode_texels(file, straight.as_chunks().0, size)?.bytes().to_vec())
+}
+
+/// The last document in a log; `None` where there is none.
+pub struct Last<'a> {
+    pub head: Option<Value>,
+    /// How many edits the log tells of, the first being the document as it was opened.
+    pub states: usize,
+    state: Option<&'a [u8]>,
+    blobs: HashMap<u64, &'a [u8]>,
+}
+
+impl<'a> Last<'a> {
+    pub fn of(log: &'a [u8]) -> Self {
+        let mut last = Last { head: None, states: 0, state: None, blobs: HashMap::new() };
+        for (kind, payload) in log::records(log) {
+            match kind {
+                Kind::Head => last.head = serde_json::from_slice(payload).ok(),
+                Kind::State => (last.state, last.states) = (Some(payload), last.states + 1),
+                Kind::Blob => {
+                    if let Some((key, bytes)) = payload.split_first_chunk() {
+                        last.blobs.insert(u64::from_le_bytes(*key), bytes);
+                    }
+                }
+            }
+        }
+        last
+    }
+    /// The document; `None` where the log holds none.
+    pub fn document(&self, file: &Path, budget: &Budget) -> Result<Option<Document>> {
+        let Some(state) = self.state else { return Ok(None) };
+        let mut state = crate::io::json::parse(file, state, budget)?;
+        let mut tiles = Vec::new();
+        self.fill_in(file, &mut state["document"], "", &mut tiles)?;
+        let document = state["document"].take();
+        let blobs = Blobs { file, names: &state["files"], last: self };
+        let mut document = recipe::read_value(&document, Source { file, files: &blobs, budget, onto: None })?;
+        for (path, grid) in tiles {
+            let id = document.walk().into_iter().find(|(known, _)| *known == path).map(|(_, layer)| layer.id);
+            let put = |layer: &mut Layer| {
+                if let Content::Pixels(pixels) = &mut layer.content {
+                    pixels.tiles = grid;
+                }
+            };
+            document = id.and_then(|id| document.with_layer(id, put)).unwrap_or(document);
+        }
+        Ok(Some(document))
+    }
+    /// Puts strokes back in the places of their keys, and takes the tiles out, by the paths of their layers.
+    fn fill_in(&self, file: &Path, value: &mut Value, prefix: &str, out: &mut Vec<(String, TileGrid)>) -> Result<()> {
+        for (i, layer) in value["layers"].as_array_mut().into_iter().flatten().enumerate() {
+            let path = format!("{prefix}layers[{i}]");
+            if layer.get("layers").is_some() {
+                self.fill_in(file, layer, &format!("{path}."), out)?;
+            }
+            if let Some(keys) = layer.get_mut("strokes").and_then(Value::as_array_mut) {
+                for key in keys {
+                    *key = serde_json::from_slice(self.blob(file, key)?).map_err(|e| Error::decode(file, e))?;
+                }
+            }
+            let tiles = layer.as_object_mut().and_then(|layer| layer.shift_remove("tiles"));
+            if let Some(Value::Array(tiles)) = tiles {
+                out.push((path, self.grid(file, &tiles)?));
+            }
+        }
+        Ok(())
+    }
+    fn grid(&self, file: &Path, tiles: &[Value]) -> Result<TileGrid> {
+        let mut grid = TileGrid::default();
+        for tile in tiles {
+            let side = |i: usize| tile[i].as_i64().and_then(|n| i32::try_from(n).ok()).filter(|n| n.abs() < 1 << 14);
+            let (Some(col), Some(row)) = (side(0), side(1)) else {
+                return Err(Error::decode(file, "a tile of the drawing has no place"));
+            };
+            let at = TileAt::new(col, row);
+            let picture = picture::decode(file, self.blob(file, &tile[2])?, &Budget::default())?;
+            let is_tile = picture.size == Size::new(TILE as u32, TILE as u32);
+            if let Texels::Srgb8(texels) = &picture.texels
+                && is_tile
+            {
+                let one = TileGrid::from_straight_rgba(texels.as_flattened(), TILE, TILE, at.rect().x0, at.rect().y0);
+                grid.set(at, one.tile(at).cloned());
+            }
+        }
+        Ok(grid)
+    }
+    fn blob(&self, file: &Path, key: &Value) -> Result<&'a [u8]> {
+        let found = key.as_u64().and_then(|key| self.blobs.get(&key).copied());
+        found.ok_or_else(|| Error::decode(file, "a part of the drawing is missing"))
+    }
+}
+
+/// The files of a document by their names in its state.
+struct Blobs<'a> {
+    file: &'a Path,
+    names: &'a Value,
+    last: &'a Last<'a>,
+}
+
+impl Files for Blobs<'_> {
+    fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
+        let bytes = self.last.blob(&self.path(name), &self.names[name])?;
+        if bytes.len() as u64 > budget.file_bytes {
+            return Err(Error::too_large(self.path(name), format!("it has more than {} bytes", budget.file_bytes)));
+        }
+        Ok(bytes.to_vec())
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        self.file.join(name)
+    }
+}

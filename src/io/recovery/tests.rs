@@ -1,0 +1,283 @@
+use super::journal::Journal;
+use super::state::Last;
+use super::*;
+use crate::document::{Content, Layer, PixelLayer};
+use crate::io::Budget;
+use crate::io::fs::Disk;
+use crate::io::fs::memory::{Failure, Memory, Trouble};
+use crate::io::project::sample::{assert_same, everything};
+use crate::math::{Size, srgb::Color};
+use crate::raster::TileGrid;
+
+const LOG: &str = "/r/1.log";
+
+/// A small drawing after `strokes` dots were painted, each where another was.
+fn dotted(strokes: usize) -> Document {
+    let base = Document::empty(Size::new(130, 70));
+    let mut rgba = vec![0; 130 * 70 * 4];
+    for i in 0..strokes {
+        rgba[(i * 37 % (130 * 70)) * 4..][..4].copy_from_slice(&[i as u8, 200, 7, 255]);
+    }
+    let tiles = TileGrid::from_straight_rgba(&rgba, 130, 70, 0, 0);
+    let layer = Layer::new("dots", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
+    Document { layers: vec![Arc::new(layer)], ..base }
+}
+fn journal(fs: &Memory) -> Journal {
+    Journal::new(Arc::new(fs.clone()), LOG.into(), "dots", None)
+}
+fn read(log: &[u8]) -> (usize, Option<Document>) {
+    let last = Last::of(log);
+    (last.states, last.document(Path::new(LOG), &Budget::default()).unwrap())
+}
+fn disk() -> Arc<dyn Fs> {
+    Arc::new(Disk)
+}
+
+#[test]
+fn every_kind_of_layer_comes_back() {
+    let fs = Memory::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    let document = everything(64);
+    journal.record(&document).unwrap();
+    let (states, back) = read(&fs.file(LOG).unwrap());
+    assert_eq!(states, 1);
+    assert_same(&document, &back.unwrap());
+}
+#[test]
+fn an_edit_adds_what_it_changed_and_no_more() {
+    let fs = Memory::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    let document = everything(64);
+    journal.record(&document).unwrap();
+    let whole = fs.file(LOG).unwrap().len();
+    let id = document.layer_named("ground").unwrap().id;
+    let edited = document.with_layer(id, |layer| layer.content = Content::Fill(Color::WHITE)).unwrap();
+    journal.record(&edited).unwrap();
+    let log = fs.file(LOG).unwrap();
+    assert!((log.len() - whole) * 3 < whole, "{} of {whole}", log.len() - whole);
+    assert_same(&edited, &read(&log).1.unwrap());
+}
+#[test]
+fn a_log_cut_anywhere_loses_the_last_edit_at_most() {
+    let fs = Memory::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    let versions: Vec<Document> = (1..5).map(dotted).collect();
+    // How long the log was after each version.
+    let mut ends = Vec::new();
+    for version in &versions {
+        journal.record(version).unwrap();
+        ends.push(fs.file(LOG).unwrap().len());
+    }
+    let log = fs.file(LOG).unwrap();
+    for end in 0..=log.len() {
+        let whole = ends.iter().filter(|&&e| e <= end).count();
+        let (states, back) = read(&log[..end]);
+        assert_eq!(states, whole, "cut at {end}");
+        match whole {
+            0 => assert!(back.is_none()),
+            n if ends.contains(&end) => assert_same(&versions[n - 1], &back.unwrap()),
+            _ => assert!(back.is_some()),
+        }
+    }
+}
+#[test]
+fn a_log_with_any_bit_flipped_gives_a_version_that_was() {
+    let fs = Memory::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    let pictures: Vec<Vec<u8>> = (1..4)
+        .map(|i| {
+            journal.record(&dotted(i)).unwrap();
+            pixels_of(&dotted(i))
+        })
+        .collect();
+    let log = fs.file(LOG).unwrap();
+    let mut least = usize::MAX;
+    for bit in 0..log.len() * 8 {
+        let mut broken = log.clone();
+        broken[bit / 8] ^= 1 << (bit % 8);
+        let (states, back) = read(&broken);
+        least = least.min(states);
+        if let Some(back) = back {
+            assert!(pixels_of(&back) == pictures[states - 1], "bit {bit}");
+        }
+    }
+    assert_eq!(least, 0, "the first record's bits count");
+}
+fn pixels_of(document: &Document) -> Vec<u8> {
+    let Content::Pixels(pixels) = &document.layers[0].content else { panic!("pixels") };
+    pixels.tiles.to_straight_rgba(document.size.rect())
+}
+#[test]
+fn a_log_that_has_grown_is_written_anew() {
+    let fs = Memory::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    journal.least_compacted = 1000;
+    let mut longest = 0;
+    for i in 1..60 {
+        journal.record(&dotted(i)).unwrap();
+        longest = longest.max(fs.file(LOG).unwrap().len());
+    }
+    let (states, back) = read(&fs.file(LOG).unwrap());
+    assert!(states < 59 && longest < 60_000, "{states} versions, {longest} bytes");
+    assert!(pixels_of(&back.unwrap()) == pixels_of(&dotted(59)));
+    assert_eq!(fs.names(), [LOG, "/r/other"]);
+}
+/// Every operation of three records fails with every error, once and for ever: what was recorded before stays.
+#[test]
+fn a_failing_disk_costs_at_most_what_could_not_be_written() {
+    let run = |fs: &Memory| {
+        let mut journal = journal(fs);
+        journal.least_compacted = 2000;
+        (1..12).filter(|&i| journal.record(&dotted(i)).and_then(|()| journal.sync()).is_ok()).last()
+    };
+    let whole = Memory::with(&[("/r/other", b"")]);
+    assert_eq!(run(&whole), Some(11));
+    for at in 0..whole.operations() {
+        for error in [28, 5, 30, 13, 24].map(Trouble::Code).into_iter().chain([Trouble::Short]) {
+            for sticky in [false, true] {
+                let fs = Memory::with(&[("/r/other", b"")]);
+                fs.fail(Failure { at, error, sticky });
+                let last = run(&fs);
+                fs.heal();
+                let back = fs.file(LOG).and_then(|log| read(&log).1);
+                let what = format!("operation {at}, {error:?}, sticky {sticky}");
+                // The last one itself may have been the one that failed.
+                assert!(sticky || last >= Some(10), "{what}: it goes on after one failure");
+                if let Some(last) = last {
+                    let found = pixels_of(&back.unwrap_or_else(|| panic!("{what}: nothing is left")));
+                    assert!((last..12).any(|i| found == pixels_of(&dotted(i))), "{what}");
+                }
+            }
+        }
+    }
+}
+#[test]
+fn a_power_cut_takes_nothing_that_was_flushed() {
+    let fs = Memory::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    journal.record(&dotted(1)).unwrap();
+    journal.record(&dotted(2)).unwrap();
+    journal.sync().unwrap();
+    fs.record();
+    journal.record(&dotted(3)).unwrap();
+    for moment in fs.moments() {
+        for luck in 0..16 {
+            let (states, back) = read(&moment.after_power_cut(luck).file(LOG).unwrap());
+            assert!(states >= 2 && pixels_of(&back.unwrap()) == pixels_of(&dotted(states)));
+        }
+    }
+}
+#[test]
+fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = |i, title| Recovery::start(disk(), folder.path(), &dotted(i), title, None).unwrap();
+    let (first, second) = (start(1, "one"), start(2, "two"));
+    assert!(sessions(&disk(), folder.path()).is_empty(), "both live");
+    second.record(&dotted(5));
+    drop(first);
+    drop(second);
+    let mut left = sessions(&disk(), folder.path());
+    let titles: Vec<&str> = left.iter().map(|session| session.title.as_str()).collect();
+    assert_eq!(titles, ["one", "two"]);
+    assert!(sessions(&disk(), folder.path()).is_empty(), "another window holds them");
+    let recovered = left[1].recover(&Budget::default()).unwrap();
+    assert!(recovered.versions == 2 && pixels_of(&recovered.document) == pixels_of(&dotted(5)));
+    drop(left);
+    for session in sessions(&disk(), folder.path()) {
+        session.discard().unwrap();
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+#[test]
+fn a_closed_session_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let recovery = Recovery::start(disk(), folder.path(), &dotted(3), "one", Some(Path::new("/a.ora"))).unwrap();
+    recovery.flush();
+    assert_eq!(recovery.trouble(), None);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    recovery.close().unwrap();
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+#[test]
+fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in [("a.log", &b"garbage"[..]), ("b.log", b""), ("c.log", &[0xff; 5000])] {
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    let mut left = sessions(&disk(), folder.path());
+    assert_eq!(left.len(), 3);
+    assert!(left.iter_mut().all(|session| !session.has_failed && session.recover(&Budget::default()).is_err()));
+    drop(left);
+    let again = sessions(&disk(), folder.path());
+    assert!(again.iter().all(|session| session.has_failed), "they are opened by hand only");
+    assert!(folder.path().join("c.log").exists(), "nothing is deleted unasked");
+    assert!(sessions(&disk(), Path::new("/no/such/folder")).is_empty());
+}
+
+/// A process that paints until it is killed, with the strokes it told of.
+#[cfg(unix)]
+mod killed {
+    use super::*;
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+
+    const FOLDER: &str = "RILIEVO_TEST_PAINTS_IN";
+
+    /// Not a test by itself: the other one runs it in a process of its own.
+    #[test]
+    fn paints_until_killed() {
+        let Some(folder) = std::env::var_os(FOLDER) else { return };
+        let recovery = Recovery::start(disk(), Path::new(&folder), &dotted(0), "killed", None).unwrap();
+        for i in 1..2000 {
+            recovery.record(&dotted(i));
+            // A stroke is finished when its pixels are shown, which is after a frame or two.
+            std::thread::sleep(Duration::from_millis(30));
+            println!("\nstroke {i}");
+        }
+    }
+    /// Kills at a time that depends on `round`; how many strokes were told of, and how many came back.
+    pub fn kill_while_painting(round: u32) -> (usize, usize) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["io::recovery::tests::killed::paints_until_killed", "--exact", "--nocapture"])
+            .env(FOLDER, folder.path())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let wanted = 1 + (round as usize * 7) % 11;
+        let mut told = 0;
+        // Kept until the end: a child that finds nobody listening would end by itself.
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        for line in lines.by_ref() {
+            let line = line.unwrap();
+            told = line.strip_prefix("stroke ").and_then(|n| n.parse().ok()).unwrap_or(told);
+            if told >= wanted {
+                break;
+            }
+        }
+        std::thread::sleep(Duration::from_millis(u64::from(crate::math::hash::mix(round) % 40)));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        drop(lines);
+        let mut left = sessions(&disk(), folder.path());
+        let recovered = left[0].recover(&Budget::default()).unwrap();
+        let found = (0..2000).find(|&i| pixels_of(&recovered.document) == pixels_of(&dotted(i)));
+        (told, found.unwrap())
+    }
+    #[test]
+    fn no_stroke_is_lost_that_was_finished_before_the_kill() {
+        for round in 0..8 {
+            let (told, found) = kill_while_painting(round);
+            assert!(found >= told, "round {round}: {told} strokes were finished, {found} came back");
+        }
+    }
+    /// *Long*: see docs/PROJECTS.md.
+    #[test]
+    #[ignore = "ten minutes; run by name"]
+    fn long_no_stroke_is_lost_in_a_thousand_kills() {
+        for round in 0..1000 {
+            let (told, found) = kill_while_painting(round);
+            assert!(found >= told, "round {round}: {told} strokes were finished, {found} came back");
+        }
+    }
+}
