@@ -217,7 +217,8 @@ crate::widest! {
     fn flat_row(x: f32, y: f32, tip: &RoundTip, coverage: &mut [f32]) {
         let dy = y - tip.at.y;
         for (i, a) in coverage.iter_mut().enumerate() {
-            let dx = x + i as f32 - tip.at.x;
+            // Through i32: AVX2 converts no 64-bit integers.
+            let dx = x + i as i32 as f32 - tip.at.x;
             tip.add(a, dx * dx + dy * dy, 1.0);
         }
     }

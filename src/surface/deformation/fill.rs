@@ -279,7 +279,7 @@ fn one(span: Span, pin: &FastPin, kernel: impl Offset, out_x: &mut [f32], out_y:
     let n = out_x.len();
     let (a, b, gain, out_y) = (&span.a[..n], &span.b[..n], &span.gain[..n], &mut out_y[..n]);
     for k in 0..n {
-        let (x, y) = (span.x + k as f32, span.y);
+        let (x, y) = (span.x + k as i32 as f32, span.y);
         let (dx, dy) = kernel.offset(x - pin.x, y - pin.y, a[k], b[k], pin);
         out_x[k] = x + (gain[k] * dx + pin.move_x);
         out_y[k] = y + (gain[k] * dy + pin.move_y);
@@ -293,7 +293,7 @@ fn add(span: Span, pin: &FastPin, kernel: impl Offset, weight: &[f32], moved_x: 
     let (a, b, gain, weight) = (&span.a[..n], &span.b[..n], &span.gain[..n], &weight[..n]);
     let moved_y = &mut moved_y[..n];
     for k in 0..n {
-        let (x, y) = (span.x + k as f32, span.y);
+        let (x, y) = (span.x + k as i32 as f32, span.y);
         let (dx, dy) = kernel.offset(x - pin.x, y - pin.y, a[k], b[k], pin);
         moved_x[k] += weight[k] * (gain[k] * dx + pin.move_x);
         moved_y[k] += weight[k] * (gain[k] * dy + pin.move_y);
@@ -305,7 +305,7 @@ const AT_ANCHOR: f32 = 1e-12;
 
 #[inline(always)]
 fn distance_squared(span: Span, pin: &FastPin, k: usize) -> f32 {
-    let (dx, dy) = (span.x + k as f32 - pin.x, span.y - pin.y);
+    let (dx, dy) = (span.x + k as i32 as f32 - pin.x, span.y - pin.y);
     dx * dx + dy * dy
 }
 
@@ -368,7 +368,7 @@ crate::widest! {
             _ => (0.0, 0.0),
         };
         for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
-            let along = (span.x + k as f32 - first.x) * slope[0] + (span.y - first.y) * slope[1];
+            let along = (span.x + k as i32 as f32 - first.x) * slope[0] + (span.y - first.y) * slope[1];
             *w = offset + factor * along.max(0.0).min(1.0);
             *sum += *w;
         }
@@ -379,7 +379,7 @@ crate::widest! {
         let (moved_x, moved_y, weight_sum, out_y) = (&moved_x[..n], &moved_y[..n], &weight_sum[..n], &mut out_y[..n]);
         for k in 0..n {
             let share = if weight_sum[k] > 0.0 { 1.0 / weight_sum[k] } else { 0.0 };
-            out_x[k] = span.x + k as f32 + moved_x[k] * share;
+            out_x[k] = span.x + k as i32 as f32 + moved_x[k] * share;
             out_y[k] = span.y + moved_y[k] * share;
         }
     }
