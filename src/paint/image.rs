@@ -99,9 +99,14 @@ impl PlacedImage {
         let (width, texture) = (area.width(), self.source.texture());
         let (mut patches, mut bilinear, mut antialias) =
             (Patches::default(), Bilinear::default(), Antialias::default());
+        let first = |y: i32| (y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize;
+        if margin == 0 && width == TILE {
+            // The rows of a whole tile lie end to end: what the next one reads is asked for while this one is.
+            bilinear.row(texture, &positions.x, &positions.y, self.outside, &mut pixels[first(area.y0)..]);
+            return Tile::from_pixels(pixels.into_flattened());
+        }
         for (row, y) in (area.y0..area.y1).enumerate() {
-            let to = (y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize;
-            let out = &mut pixels[to..to + width];
+            let out = &mut pixels[first(y)..first(y) + width];
             if margin == 0 {
                 let from = row * width..(row + 1) * width;
                 let (x, y) = (&positions.x[from.clone()], &positions.y[from]);

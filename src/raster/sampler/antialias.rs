@@ -5,9 +5,17 @@
 //! fine detail) the two sides of a pixel often stretch differently, and a single ellipse then misses a third of the error
 //! (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each standing for a cell of about two texels of
 //! the mip level, which is the coarsest that the taps can still resolve.
+//!
+//! Eight neighbours whose patches are alike share a grid, and their taps are placed and read side by side; a pixel
+//! unlike its neighbours (a crease, a silhouette) has its own, one pixel after the other.
 
-use super::taps::{Positions, Run, Taps};
+mod grid;
+mod lattice;
+
+use super::taps::{GROUP, Group, Positions, Run, Taps};
 use crate::raster::{Outside, Texture};
+use grid::{Cells, Grid};
+use lattice::{LANES, Lattice};
 
 /// The piece of the image plane under each pixel of a row, in texels of level 0.
 #[derive(Clone, Copy)]
@@ -19,13 +27,6 @@ pub struct PatchRow<'a> {
     pub edges: [[&'a [f32]; 2]; 4],
 }
 
-/// Side of the cell that one tap stands for, in texels of level 0. A picture drawn pixel for pixel (1 texel) stays as it is.
-const FINE_CELL: f32 = 1.5;
-/// The same in the other levels, whose texels are means already: there a bilinear tap's variance s²/4 − 1/12 is that of a
-/// box of 1.7 texels.
-const COARSE_CELL: f32 = 2.0;
-/// Most taps a pixel may take, in all.
-const MAX_TAPS: u32 = 16;
 /// Pixels in flight.
 const SPAN: usize = 64;
 
@@ -40,17 +41,30 @@ impl<'a> PatchRow<'a> {
 pub struct Antialias {
     x: Vec<f32>,
     y: Vec<f32>,
+    cells: Cells,
+    /// Neighbours that share a grid.
+    groups: Vec<(Group, Grid)>,
+    /// Pixels that do not.
+    lone: Vec<(u16, Grid)>,
+    placed: Vec<Group>,
     runs: Vec<Run>,
     taps: Taps,
 }
 
-/// As many taps as a patch may have are written at once; the surplus is written over by the next.
-const LANES: usize = MAX_TAPS as usize;
-
 impl Default for Antialias {
     fn default() -> Self {
+        // As many taps as a patch may have are written at once; the surplus is written over by the next.
         let room = vec![0.0; SPAN * LANES + LANES];
-        Self { x: room.clone(), y: room, runs: Vec::with_capacity(SPAN), taps: Taps::default() }
+        Self {
+            x: room.clone(),
+            y: room,
+            cells: Cells::default(),
+            groups: Vec::with_capacity(SPAN / GROUP),
+            lone: Vec::with_capacity(SPAN),
+            placed: Vec::with_capacity(SPAN / GROUP),
+            runs: Vec::with_capacity(SPAN),
+            taps: Taps::default(),
+        }
     }
 }
 
@@ -63,116 +77,75 @@ impl Antialias {
         }
     }
     fn span(&mut self, texture: &Texture, patches: PatchRow, outside: Outside, out: &mut [[u8; 4]]) {
-        let n = out.len();
-        let mut grids = [Grid::ONE; SPAN];
-        let grids = &mut grids[..n];
-        choose_grids(patches, texture.levels().len() as u32 - 1, grids);
-        if grids.iter().all(|&grid| grid == Grid::ONE) {
-            // The common case of a picture that is not shrunk, three times as fast.
-            let (x, y) = (&mut self.x[..n], &mut self.y[..n]);
-            middles(patches, x, y);
-            let at = Positions { level: &texture.levels()[0], x, y, outside };
-            self.taps.find(at);
-            return self.taps.means(at, &Run::ONE_EACH[..n], out);
-        }
-        let levels = grids.iter().fold((u32::MAX, 0), |(a, b), g| (a.min(g.level), b.max(g.level)));
-        for index in levels.0..=levels.1 {
+        self.choose_grids(patches, out.len(), texture.levels().len() as u32 - 1);
+        let levels = self.groups.iter().map(|(_, grid)| grid.level).chain(self.lone.iter().map(|(_, grid)| grid.level));
+        let (first, last) = levels.fold((u32::MAX, 0), |(a, b), level| (a.min(level), b.max(level)));
+        for index in first..=last {
             let level = &texture.levels()[index as usize];
             let scale = [
                 level.size.width as f32 / texture.size().width as f32,
                 level.size.height as f32 / texture.size().height as f32,
             ];
+            self.placed.clear();
+            let len = place_groups(patches, &self.groups, index, scale, &mut self.x, &mut self.y, &mut self.placed);
+            if len > 0 {
+                let at = Positions { level, x: &self.x[..len], y: &self.y[..len], outside };
+                self.taps.find(at);
+                self.taps.group_means(at, &self.placed, out);
+            }
             self.runs.clear();
-            let len = place_taps(patches, grids, index, scale, &mut self.x, &mut self.y, &mut self.runs);
-            let at = Positions { level, x: &self.x[..len], y: &self.y[..len], outside };
-            self.taps.find(at);
-            self.taps.means(at, &self.runs, out);
+            let len = place_lone(patches, &self.lone, index, scale, &mut self.x, &mut self.y, &mut self.runs);
+            if len > 0 {
+                let at = Positions { level, x: &self.x[..len], y: &self.y[..len], outside };
+                self.taps.find(at);
+                self.taps.means(at, &self.runs, out);
+            }
         }
     }
-}
-
-/// How a patch is covered: so many taps across and along, in a mip level.
-#[derive(Clone, Copy, PartialEq, Debug)]
-struct Grid {
-    across: u32,
-    along: u32,
-    level: u32,
-}
-
-impl Grid {
-    const ONE: Grid = Grid { across: 1, along: 1, level: 0 };
-
-    /// For a patch that takes so many fine or coarse cells across and along in level 0.
-    #[inline(always)]
-    fn of_cells(fine: [u32; 2], coarse: [u32; 2], last_level: u32) -> Self {
-        let [across, along] = fine;
-        if across * along <= MAX_TAPS || last_level == 0 {
-            return Self { across, along, level: 0 }.capped();
+    /// Fills `groups` and `lone`: every pixel is in one of them.
+    fn choose_grids(&mut self, patches: PatchRow, n: usize, last_level: u32) {
+        self.cells.count(patches, n);
+        self.groups.clear();
+        self.lone.clear();
+        for first in (0..n).step_by(GROUP) {
+            let pixels = first..(first + GROUP).min(n);
+            let is_whole = pixels.len() == GROUP;
+            match is_whole.then(|| self.cells.shared_grid(first / GROUP, last_level)).flatten() {
+                Some(grid) => self.groups.push((Group { first: first as u16, taps: grid.taps() as u16 }, grid)),
+                None => self.lone.extend(pixels.map(|k| (k as u16, self.cells.grid(k, last_level)))),
+            }
         }
-        let mut grid = Self { across: coarse[0], along: coarse[1], level: 0 };
-        while grid.across * grid.along > MAX_TAPS && grid.level < last_level {
-            grid = Self { across: grid.across.div_ceil(2), along: grid.along.div_ceil(2), level: grid.level + 1 };
-        }
-        grid.capped()
     }
-    #[inline(always)]
-    fn taps(self) -> usize {
-        (self.across * self.along) as usize
-    }
-    #[inline(always)]
-    fn capped(self) -> Self {
-        let across = self.across.min(MAX_TAPS);
-        Self { across, along: self.along.min(MAX_TAPS / across), ..self }
-    }
-}
-
-/// Sides longer than this many cells are cut: the product of two must fit.
-const MAX_CELLS: f32 = 32768.0;
-
-/// How many cells of a size a side takes, at least 1.
-#[inline(always)]
-fn cells(side: f32, cell: f32) -> u32 {
-    // Adding 2²³ rounds to the nearest integer and leaves it in the low bits; half a cell less than that rounds up.
-    let nearest = (side * (1.0 / cell) + 0.4999).max(1.0).min(MAX_CELLS) + 8_388_608.0;
-    nearest.to_bits() - 8_388_608.0f32.to_bits()
 }
 
 crate::widest! {
-    /// The grid of every patch. A side is twice the longer of its two half-edges.
-    fn choose_grids(patches: PatchRow, last_level: u32, grids: &mut [Grid]) {
-        let n = grids.len().min(SPAN);
-        let mut fine = [[1u32; SPAN]; 2];
-        let mut coarse = [[1u32; SPAN]; 2];
-        for side in 0..2 {
-            let [[ax, ay], [bx, by]] = [patches.edges[2 * side], patches.edges[2 * side + 1]].map(|e| e.map(|v| &v[..n]));
-            for k in 0..n {
-                let (a, b) = (ax[k] * ax[k] + ay[k] * ay[k], bx[k] * bx[k] + by[k] * by[k]);
-                let length = 2.0 * a.max(b).sqrt();
-                fine[side][k] = cells(length, FINE_CELL);
-                coarse[side][k] = cells(length, COARSE_CELL);
-            }
-        }
-        for (k, grid) in grids.iter_mut().enumerate() {
-            *grid = Grid::of_cells([fine[0][k], fine[1][k]], [coarse[0][k], coarse[1][k]], last_level);
-        }
-    }
-    /// The mean position of every patch: where its single tap stands.
-    fn middles(patches: PatchRow, x: &mut [f32], y: &mut [f32]) {
-        let n = x.len();
-        let [left, right, up, down] = patches.edges;
-        for (axis, (center, out)) in [(patches.x, x), (patches.y, y)].into_iter().enumerate() {
-            let (center, out) = (&center[..n], &mut out[..n]);
-            let (left, right, up, down) = (&left[axis][..n], &right[axis][..n], &up[axis][..n], &down[axis][..n]);
-            for k in 0..n {
-                out[k] = center[k] + ((left[k] + right[k]) * 0.25 + (up[k] + down[k]) * 0.25);
-            }
-        }
-    }
-    /// Places the taps of the patches that read level `index`, whose texels are `scale` of level 0's, one patch after the
-    /// other; how many they are. `x`, `y` have room for all taps and [`LANES`] more.
-    fn place_taps(
+    /// Places the taps of the groups that read level `index`, whose texels are `scale` of level 0's: group after group,
+    /// tap after tap, the [`GROUP`] pixels side by side. How many they are.
+    fn place_groups(
         patches: PatchRow,
-        grids: &[Grid],
+        groups: &[(Group, Grid)],
+        index: u32,
+        scale: [f32; 2],
+        x: &mut [f32],
+        y: &mut [f32],
+        placed: &mut Vec<Group>,
+    ) -> usize {
+        let mut len = 0;
+        let [left, right, up, down] = patches.edges;
+        for (group, grid) in groups.iter().filter(|(_, grid)| grid.level == index) {
+            let (first, taps) = (usize::from(group.first), grid.taps());
+            let (lattice, room) = (lattice::of(*grid), len..len + GROUP * taps);
+            spread_group(lattice, patches.x, [left[0], right[0], up[0], down[0]], first, scale[0], &mut x[room.clone()]);
+            spread_group(lattice, patches.y, [left[1], right[1], up[1], down[1]], first, scale[1], &mut y[room]);
+            len += GROUP * taps;
+            placed.push(*group);
+        }
+        len
+    }
+    /// The same for lone pixels, one patch after the other. `x`, `y` have room for all taps and [`LANES`] more.
+    fn place_lone(
+        patches: PatchRow,
+        lone: &[(u16, Grid)],
         index: u32,
         scale: [f32; 2],
         x: &mut [f32],
@@ -180,29 +153,36 @@ crate::widest! {
         runs: &mut Vec<Run>,
     ) -> usize {
         let mut len = 0;
-        let n = grids.len();
         let [left, right, up, down] = patches.edges;
-        for (axis, out) in [x, y].into_iter().enumerate() {
-            let (center, scale) = (&[patches.x, patches.y][axis][..n], scale[axis]);
-            let (left, right, up, down) = (&left[axis][..n], &right[axis][..n], &up[axis][..n], &down[axis][..n]);
-            len = 0;
-            for (k, grid) in grids.iter().enumerate() {
-                let Some(out) = out.get_mut(len..).and_then(|out| out.first_chunk_mut()) else { break };
-                if grid.level == index {
-                    let count = grid.taps();
-                    let edges = [left[k], right[k], up[k], down[k]];
-                    spread(&LATTICES[grid.across as usize][grid.along as usize], center[k], edges, scale, count, out);
-                    len += count;
-                }
-            }
+        for &(pixel, grid) in lone.iter().filter(|(_, grid)| grid.level == index) {
+            let (k, taps) = (usize::from(pixel), grid.taps());
+            let lattice = lattice::of(grid);
+            let (edges_x, edges_y) = ([left[0][k], right[0][k], up[0][k], down[0][k]], [left[1][k], right[1][k], up[1][k], down[1][k]]);
+            spread(lattice, patches.x[k], edges_x, scale[0], taps, &mut x[len..]);
+            spread(lattice, patches.y[k], edges_y, scale[1], taps, &mut y[len..]);
+            len += taps;
+            runs.push(Run { pixel, count: taps as u16 });
         }
-        let of_level = grids.iter().enumerate().filter(|(_, grid)| grid.level == index);
-        runs.extend(of_level.map(|(k, grid)| Run { pixel: k as u16, count: grid.taps() as u16 }));
         len
     }
 }
 
-/// One coordinate of a patch's taps, eight at a time.
+/// One coordinate of the taps of a group whose patches begin at `first`, pixel beside pixel.
+#[inline(always)]
+fn spread_group(lattice: &Lattice, center: &[f32], edges: [&[f32]; 4], first: usize, scale: f32, out: &mut [f32]) {
+    let part = first..first + GROUP;
+    let center = &center[part.clone()];
+    let (left, right) = (&edges[0][part.clone()], &edges[1][part.clone()]);
+    let (up, down) = (&edges[2][part.clone()], &edges[3][part]);
+    let [a, b, c, d] = lattice;
+    for (out, tap) in out.as_chunks_mut::<GROUP>().0.iter_mut().zip(0..LANES) {
+        for k in 0..GROUP {
+            out[k] = (center[k] + (a[tap] * left[k] + b[tap] * right[k]) + (c[tap] * up[k] + d[tap] * down[k])) * scale;
+        }
+    }
+}
+
+/// One coordinate of a patch's taps, eight at a time; `out` has room for [`LANES`].
 #[inline(always)]
 fn spread(
     lattice: &Lattice,
@@ -210,9 +190,10 @@ fn spread(
     [left, right, up, down]: [f32; 4],
     scale: f32,
     count: usize,
-    out: &mut [f32; LANES],
+    out: &mut [f32],
 ) {
     let [a, b, c, d] = lattice;
+    let out = &mut out[..LANES];
     for from in [0, 8] {
         if from < count {
             for i in from..from + 8 {
@@ -222,59 +203,9 @@ fn spread(
     }
 }
 
-/// How far each tap of a grid goes along the left, right, upper and lower half-edge, 0 … 1; row by row.
-type Lattice = [[f32; LANES]; 4];
-
-/// The lattice of every grid, by taps across and along.
-static LATTICES: [[Lattice; LANES + 1]; LANES + 1] = {
-    let mut lattices = [[[[0.0; LANES]; 4]; LANES + 1]; LANES + 1];
-    let mut across = 1;
-    while across <= LANES {
-        let mut along = 1;
-        while across * along <= LANES {
-            let mut i = 0;
-            while i < across * along {
-                let (u, v) = (i % across, i / across);
-                let steps = [BEFORE[across][u], AFTER[across][u], BEFORE[along][v], AFTER[along][v]];
-                let mut side = 0;
-                while side < 4 {
-                    lattices[across][along][side][i] = steps[side];
-                    side += 1;
-                }
-                i += 1;
-            }
-            along += 1;
-        }
-        across += 1;
-    }
-    lattices
-};
-
-/// For a row of n taps, how far each goes along the half-edge before the middle, 0 … 1. A single tap stands at the middle of
-/// both half-edges, the mean of a patch whose two sides differ.
-const BEFORE: [[f32; LANES]; LANES + 1] = steps(-1.0);
-/// The same along the half-edge after the middle.
-const AFTER: [[f32; LANES]; LANES + 1] = steps(1.0);
-
-const fn steps(sign: f32) -> [[f32; LANES]; LANES + 1] {
-    let mut steps = [[0.0; LANES]; LANES + 1];
-    steps[1][0] = 0.25;
-    let mut n = 2;
-    while n <= LANES {
-        let mut i = 0;
-        while i < n {
-            // −1 at the first edge, 1 at the second.
-            let u = ((2 * i + 1) as f32 / n as f32 - 1.0) * sign;
-            steps[n][i] = if u > 0.0 { u } else { 0.0 };
-            i += 1;
-        }
-        n += 1;
-    }
-    steps
-}
-
 #[cfg(test)]
 mod tests {
+    use super::grid::{COARSE_CELL, FINE_CELL, MAX_TAPS, cells};
     use super::*;
     use crate::math::{Size, vec2};
     use crate::raster::{Picture, sampler};
@@ -310,7 +241,7 @@ mod tests {
         let texture = stripes(Size::new(64, 64), 8);
         for x in [7.3, 8.0, 8.4, 20.5] {
             let tap = sampler::bilinear(&texture, vec2(x, 30.0), Outside::Repeat);
-            assert!((f32::from(patch(&texture, [x, 30.0], 1.0, 0.2)[0]) - tap[0] * 255.0).abs() <= 0.501);
+            assert!((f32::from(patch(&texture, [x, 30.0], 1.0, 0.2)[0]) - tap[0] * 255.0).abs() <= 0.52);
         }
     }
     #[test]

@@ -1,21 +1,26 @@
 //! Bilinear taps by the hundred: the fast twin of `bilinear`.
-//! Floor 1. Two passes: positions to indices and fractions, several taps an instruction; then the texels, one tap at a time
-//! with its texels' channels side by side. LLVM does not vectorise the second on its own (three times slower), so it is
-//! written in AVX2 where the processor has it; both versions give the same bits.
+//! Floor 1. Two passes: positions to texels and weights, several taps an instruction; then the texels, one tap at a time with
+//! its texels' channels side by side, in AVX2 where the processor has it (`wide`): LLVM does not vectorise that on its own.
+//! Both versions give the same bits.
+
+#[cfg(target_arch = "x86_64")]
+mod wide;
 
 use super::super::texture::{Level, Outside};
-use super::{bilinear_in, mix};
+use super::bilinear_in;
 use crate::math::vec2;
 
-/// Marks a tap whose four texels do not lie together inside the picture.
-const SEAM: u32 = u32::MAX;
-
-/// Where taps read: index of the upper left texel ([`SEAM`] where there is none) and fractions of the way right and down.
+/// Where taps read. Scratch, kept from row to row.
 #[derive(Default)]
 pub struct Taps {
-    index: Vec<u32>,
-    tx: Vec<f32>,
-    ty: Vec<f32>,
+    /// Of the upper left texel; negative at a seam, where the four texels do not lie together inside the picture.
+    index: Vec<i32>,
+    /// Weights of the left texels (low half) and the right ones (high half), in [`ONE`]-ths.
+    across: Vec<u32>,
+    /// How far down between the upper and the lower pair, `[0, 1]`.
+    down: Vec<f32>,
+    /// The least and the largest index.
+    range: [i32; 2],
 }
 
 /// The positions of taps in one level, in its texels, and what lies beyond it.
@@ -27,76 +32,6 @@ pub struct Positions<'a> {
     pub outside: Outside,
 }
 
-impl Taps {
-    /// Finds the texels of every position.
-    pub fn find(&mut self, at: Positions) {
-        let n = at.x.len();
-        // Every value is written below: what is left from the last call does no harm.
-        if n != self.index.len() {
-            self.index.resize(n, 0);
-            self.tx.resize(n, 0.0);
-            self.ty.resize(n, 0.0);
-        }
-        find(at, &mut self.index, &mut self.tx, &mut self.ty);
-    }
-    /// Writes the rounded mean of the next `count` taps to each run's pixel, four bytes of `out`.
-    pub fn means(&self, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, asked on the line above.
-            return unsafe { wide::means(self, at, runs, out) };
-        }
-        self.means_portably(at, runs, out);
-    }
-    fn means_portably(&self, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
-        let mut taps = self.iter().enumerate();
-        for run in runs {
-            let mut sum = [0.0; 4];
-            for (k, tap) in taps.by_ref().take(usize::from(run.count)) {
-                let color = match tap.texels(at.level) {
-                    Some([top, bottom]) => mix(*top, *bottom, tap.tx, tap.ty),
-                    None => at.reference(k),
-                };
-                (0..4).for_each(|c| sum[c] += color[c]);
-            }
-            let share = run.share();
-            if let Some(out) = out.get_mut(usize::from(run.pixel)) {
-                *out = sum.map(|v| round(v * share));
-            }
-        }
-    }
-    #[inline(always)]
-    fn iter(&self) -> impl Iterator<Item = Tap> {
-        self.index.iter().zip(&self.tx).zip(&self.ty).map(|((&index, &tx), &ty)| Tap { index, tx, ty })
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Tap {
-    index: u32,
-    tx: f32,
-    ty: f32,
-}
-
-impl Tap {
-    /// The upper and the lower pair of texels of a tap; `None` at a seam.
-    #[inline(always)]
-    fn texels(self, level: &Level) -> Option<[&[[u8; 4]; 2]; 2]> {
-        let (first, width) = (self.index as usize, level.size.width as usize);
-        // One test for both rows: a seam's index lies beyond every texture.
-        let both = level.texels.get(first..first + width + 2)?;
-        Some([both.first_chunk()?, both.last_chunk()?])
-    }
-}
-
-impl Positions<'_> {
-    #[cold]
-    #[inline(never)]
-    fn reference(&self, tap: usize) -> [f32; 4] {
-        bilinear_in(self.level, vec2(self.x[tap], self.y[tap]), self.outside)
-    }
-}
-
 /// How many of the taps belong to a pixel: at most 31.
 #[derive(Clone, Copy, Default)]
 pub struct Run {
@@ -104,29 +39,140 @@ pub struct Run {
     pub count: u16,
 }
 
-impl Run {
-    /// One tap a pixel, in order.
-    pub const ONE_EACH: &[Run] = &{
-        let mut runs = [Run { pixel: 0, count: 1 }; 256];
-        let mut i = 0;
-        while i < runs.len() {
-            runs[i].pixel = i as u16;
-            i += 1;
+/// Pixels of a [`Group`].
+pub const GROUP: usize = 8;
+
+/// Neighbouring pixels with as many taps each: the first tap of all, then the second of all, …
+#[derive(Clone, Copy)]
+pub struct Group {
+    pub first: u16,
+    pub taps: u16,
+}
+
+impl Taps {
+    /// Finds the texels of every position.
+    pub fn find(&mut self, at: Positions) {
+        let n = at.x.len();
+        // Every value is written below: what is left from the last call does no harm.
+        if n != self.index.len() {
+            self.index.resize(n, 0);
+            self.across.resize(n, 0);
+            self.down.resize(n, 0.0);
         }
-        runs
-    };
+        self.range = find(at, &mut self.index, &mut self.across, &mut self.down);
+    }
+    /// Writes every tap's rounded colour to a pixel of its own.
+    pub fn singles(&self, at: Positions, out: &mut [[u8; 4]]) {
+        #[cfg(target_arch = "x86_64")]
+        if wide::reads(self, at) {
+            return wide::singles(self, at, out);
+        }
+        self.singles_portably(at, 0, out);
+    }
+    /// Writes the rounded mean of the next `count` taps to each run's pixel of `out`.
+    pub fn means(&self, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
+        #[cfg(target_arch = "x86_64")]
+        if wide::reads(self, at) {
+            return wide::means(self, at, runs, out);
+        }
+        self.means_portably(at, runs, out);
+    }
+    /// Writes the rounded means of the next taps to each group's pixels of `out`.
+    pub fn group_means(&self, at: Positions, groups: &[Group], out: &mut [[u8; 4]]) {
+        #[cfg(target_arch = "x86_64")]
+        if wide::reads(self, at) {
+            return wide::group_means(self, at, groups, out);
+        }
+        self.group_means_portably(at, groups, out);
+    }
+    fn group_means_portably(&self, at: Positions, groups: &[Group], out: &mut [[u8; 4]]) {
+        let mut first = 0;
+        for group in groups {
+            let taps = first..(first + GROUP * usize::from(group.taps)).min(self.index.len());
+            first = taps.end;
+            for (k, out) in out.iter_mut().skip(usize::from(group.first)).take(GROUP).enumerate() {
+                *out = self.group_mean(at, taps.clone(), k);
+            }
+        }
+    }
+    /// The mean of pixel `k` of a group.
+    fn group_mean(&self, at: Positions, taps: std::ops::Range<usize>, k: usize) -> [u8; 4] {
+        let mut sum = [0.0; 4];
+        let share = SHARES[taps.len() / GROUP % SHARES.len()];
+        for tap in taps.skip(k).step_by(GROUP) {
+            let color = self.color(at, tap);
+            (0..4).for_each(|c| sum[c] += color[c]);
+        }
+        sum.map(|v| round(v * share))
+    }
+    fn singles_portably(&self, at: Positions, from: usize, out: &mut [[u8; 4]]) {
+        for (tap, out) in (from..self.index.len()).zip(out) {
+            *out = self.color(at, tap).map(|v| round(v * (1.0 / ONE)));
+        }
+    }
+    fn means_portably(&self, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
+        let mut first = 0;
+        for run in runs {
+            let taps = first..(first + usize::from(run.count)).min(self.index.len());
+            first = taps.end;
+            if let Some(out) = out.get_mut(usize::from(run.pixel)) {
+                *out = self.mean(at, taps, run.share());
+            }
+        }
+    }
+    /// Even and odd taps are added up apart, as the wide version does.
+    fn mean(&self, at: Positions, taps: std::ops::Range<usize>, share: f32) -> [u8; 4] {
+        let mut sums = [[0.0; 4]; 2];
+        for (k, tap) in taps.enumerate() {
+            let color = self.color(at, tap);
+            (0..4).for_each(|c| sums[k % 2][c] += color[c]);
+        }
+        std::array::from_fn(|c| round((sums[0][c] + sums[1][c]) * share))
+    }
+    /// One tap, in `[0, 255 ONE]`.
+    #[inline(always)]
+    fn color(&self, at: Positions, tap: usize) -> [f32; 4] {
+        match self.texels(at.level, tap) {
+            Some([top, bottom]) => {
+                let (across, down) = (self.across[tap], self.down[tap]);
+                let [top, bottom] = [top, bottom].map(|pair| mix_pair(pair, across));
+                std::array::from_fn(|c| top[c] + (bottom[c] - top[c]) * down)
+            }
+            None => bilinear_in(at.level, vec2(at.x[tap], at.y[tap]), at.outside).map(|v| v * ONE),
+        }
+    }
+    /// The upper and the lower pair of texels of a tap; `None` at a seam.
+    #[inline(always)]
+    fn texels<'l>(&self, level: &'l Level, tap: usize) -> Option<[&'l [[u8; 4]; 2]; 2]> {
+        let first = usize::try_from(self.index[tap]).ok()?;
+        let both = level.texels.get(first..first + level.size.width as usize + 2)?;
+        Some([both.first_chunk()?, both.last_chunk()?])
+    }
+}
+
+/// What a weight of 1 is as an integer: two weighted bytes then fit 22 bits, which an f32 holds exactly.
+const ONE: f32 = 16384.0;
+
+/// Two texels side by side, mixed; `[0, 255 ONE]`.
+#[inline(always)]
+fn mix_pair([left, right]: &[[u8; 4]; 2], across: u32) -> [f32; 4] {
+    std::array::from_fn(|c| (u32::from(left[c]) * (across & 0xffff) + u32::from(right[c]) * (across >> 16)) as f32)
+}
+
+impl Run {
+    /// What makes a sum of `count` taps their mean, in bytes.
     #[inline(always)]
     fn share(self) -> f32 {
         SHARES[usize::from(self.count) % SHARES.len()]
     }
 }
 
-/// 1 / n: a division a pixel would cost as much as a tap.
+/// 1 / (n ONE): a division a pixel would cost as much as a tap.
 const SHARES: [f32; 32] = {
     let mut shares = [0.0; 32];
     let mut n = 1;
     while n < 32 {
-        shares[n] = 1.0 / n as f32;
+        shares[n] = 1.0 / (n as f32 * ONE);
         n += 1;
     }
     shares
@@ -138,89 +184,70 @@ fn round(value: f32) -> u8 {
     (value + 8_388_608.0).to_bits() as u8
 }
 
-#[cfg(target_arch = "x86_64")]
-mod wide {
-    use super::{Positions, Run, Tap, Taps};
-    use std::arch::x86_64::*;
-
-    /// `Taps::means_portably`, eight lanes at a time: the two texels of a row, four channels each.
-    #[target_feature(enable = "avx2")]
-    pub fn means(taps: &Taps, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
-        let mut taps = taps.iter().enumerate();
-        for run in runs {
-            let mut sum = _mm_setzero_ps();
-            for (k, tap) in taps.by_ref().take(usize::from(run.count)) {
-                let color = match tap.texels(at.level) {
-                    Some([top, bottom]) => blend(top, bottom, tap),
-                    None => color(at.reference(k)),
-                };
-                sum = _mm_add_ps(sum, color);
-            }
-            let whole = _mm_cvtps_epi32(_mm_mul_ps(sum, _mm_set1_ps(run.share())));
-            let bytes = _mm_packus_epi16(_mm_packs_epi32(whole, whole), whole);
-            if let Some(out) = out.get_mut(usize::from(run.pixel)) {
-                *out = _mm_cvtsi128_si32(bytes).to_le_bytes();
-            }
-        }
-    }
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn color([r, g, b, a]: [f32; 4]) -> __m128 {
-        _mm_setr_ps(r, g, b, a)
-    }
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn blend(top: &[[u8; 4]; 2], bottom: &[[u8; 4]; 2], at: Tap) -> __m128 {
-        let (top, bottom) = (pair(top), pair(bottom));
-        let both = _mm256_add_ps(top, _mm256_mul_ps(_mm256_sub_ps(bottom, top), _mm256_set1_ps(at.ty)));
-        let (left, right) = (_mm256_castps256_ps128(both), _mm256_extractf128_ps(both, 1));
-        _mm_add_ps(left, _mm_mul_ps(_mm_sub_ps(right, left), _mm_set1_ps(at.tx)))
-    }
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn pair(texels: &[[u8; 4]; 2]) -> __m256 {
-        // SAFETY: the eight bytes read are the two texels.
-        let bytes = unsafe { _mm_loadl_epi64(texels.as_ptr().cast()) };
-        _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(bytes))
-    }
-}
-
 crate::widest! {
-    fn find(at: Positions, index: &mut [u32], tx: &mut [f32], ty: &mut [f32]) {
+    /// Fills index, weights and fractions; the least and the largest index.
+    fn find(at: Positions, index: &mut [i32], across: &mut [u32], down: &mut [f32]) -> [i32; 2] {
         let (w, h) = (at.level.size.width as i32, at.level.size.height as i32);
         if w < 2 || h < 2 || w > MAX_SIDE || h > MAX_SIDE {
-            return index.fill(SEAM);
+            index.fill(-1);
+            return [-1; 2];
+        }
+        if all_within(at.x, w as f32) && all_within(at.y, h as f32) {
+            return find_folded(at, |c, n| pair(c - 0.5, n), index, across, down);
         }
         match at.outside {
-            Outside::None => find_folded(at, |c, _| c, index, tx, ty),
-            Outside::Clamp => find_folded(at, within, index, tx, ty),
-            Outside::Repeat => find_folded(at, repeated, index, tx, ty),
-            Outside::Mirror => find_folded(at, |c, n| within(mirrored(c, n), n), index, tx, ty),
+            Outside::None => find_folded(at, pair_or_seam, index, across, down),
+            Outside::Clamp => find_folded(at, |c, n| pair_or_seam(within(c, n), n), index, across, down),
+            Outside::Repeat => find_folded(at, |c, n| pair_or_seam(repeated(c, n), n), index, across, down),
+            Outside::Mirror => find_folded(at, |c, n| pair_or_seam(within(mirrored(c, n), n), n), index, across, down),
         }
     }
 }
 
-/// `fold` brings a position into a picture of a side, where there is anything.
+/// No position needs a texel from beyond its picture.
 #[inline(always)]
-fn find_folded(at: Positions, fold: impl Fn(f32, f32) -> f32, index: &mut [u32], tx: &mut [f32], ty: &mut [f32]) {
-    let (w, h) = (at.level.size.width as i32, at.level.size.height as i32);
-    let n = at.x.len();
-    let (x, y, index, tx, ty) = (&at.x[..n], &at.y[..n], &mut index[..n], &mut tx[..n], &mut ty[..n]);
-    for k in 0..n {
-        let (column, fraction_x) = first_of_pair(fold(x[k], w as f32) - 0.5, w as f32);
-        let (row, fraction_y) = first_of_pair(fold(y[k], h as f32) - 0.5, h as f32);
-        index[k] = if (row | column) < 0 { SEAM } else { row.wrapping_mul(w).wrapping_add(column) as u32 };
-        tx[k] = fraction_x;
-        ty[k] = fraction_y;
-    }
+fn all_within(positions: &[f32], n: f32) -> bool {
+    let (low, high) = (0.5, n - 0.5);
+    positions.iter().fold(0, |beyond, &c| beyond | u32::from(!(c >= low && c <= high))) == 0
 }
 
-/// The texel at or before a position `u` (in texel centres) and how far beyond it `u` lies; −1 outside `[0, n − 1]`.
+/// `pair` finds, for a position in a picture of a side, the first texel of the pair around it and how far beyond it lies.
 #[inline(always)]
-fn first_of_pair(u: f32, n: f32) -> (i32, f32) {
+fn find_folded(
+    at: Positions,
+    pair: impl Fn(f32, f32) -> (i32, f32),
+    index: &mut [i32],
+    across: &mut [u32],
+    down: &mut [f32],
+) -> [i32; 2] {
+    let (w, h) = (at.level.size.width as i32, at.level.size.height as i32);
+    let n = at.x.len();
+    let (x, y, index, across, down) = (&at.x[..n], &at.y[..n], &mut index[..n], &mut across[..n], &mut down[..n]);
+    let (mut least, mut most) = (i32::MAX, i32::MIN);
+    for k in 0..n {
+        let (column, right) = pair(x[k], w as f32);
+        let (row, below) = pair(y[k], h as f32);
+        let first = if (row | column) < 0 { -1 } else { row.wrapping_mul(w).wrapping_add(column) };
+        (least, most) = (least.min(first), most.max(first));
+        let right = integer(right * ONE) as u32;
+        (index[k], across[k], down[k]) = (first, (ONE as u32).wrapping_sub(right) | right << 16, below);
+    }
+    [least, most]
+}
+
+/// The texel at or before a position `u` (in texel centres, `[0, n − 1]`) and how far beyond it `u` lies.
+#[inline(always)]
+fn pair(u: f32, n: f32) -> (i32, f32) {
     let first = floor(u).min(n - 2.0);
-    let inside = u >= 0.0 && u <= n - 1.0;
-    (if inside { integer(first) } else { -1 }, u - first)
+    (integer(first), u - first)
+}
+
+/// The same for any position `c`; −1 where the pair is not in the picture.
+#[inline(always)]
+fn pair_or_seam(c: f32, n: f32) -> (i32, f32) {
+    let u = c - 0.5;
+    let (first, beyond) = pair(u, n);
+    (if u >= 0.0 && u <= n - 1.0 { first } else { -1 }, beyond)
 }
 
 /// Clamped so that both texels of the pair are the border's own.
@@ -281,7 +308,16 @@ mod tests {
             let (mut wide, mut portable) = ([[0; 4]; 100], [[0; 4]; 100]);
             taps.means(at, &runs, &mut wide);
             taps.means_portably(at, &runs, &mut portable);
-            assert_eq!(wide, portable, "{outside:?}");
+            assert_eq!(wide, portable, "means, {outside:?}");
+            let groups = [(0, 3), (16, 1), (8, 16), (40, 7)].map(|(first, taps)| Group { first, taps });
+            taps.group_means(at, &groups, &mut wide);
+            taps.group_means_portably(at, &groups, &mut portable);
+            assert_eq!(wide, portable, "groups, {outside:?}");
+            for n in [100, 3, 1, 66] {
+                taps.singles(at, &mut wide[..n]);
+                taps.singles_portably(at, 0, &mut portable[..n]);
+                assert_eq!(wide, portable, "singles, {outside:?}");
+            }
         }
     }
 }

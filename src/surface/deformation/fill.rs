@@ -2,13 +2,13 @@
 //! Floor 2. Operator kind and number of anchors are chosen once a row, outside the pixel loops.
 
 use super::{Deformation, Pin};
-use crate::math::Rect;
+use crate::math::{Rect, simd::prefetch};
 use crate::raster::Plane;
 use crate::surface::anchor::{Weights, segment_slope};
 use crate::surface::operator::{Operator, first_order, reflection, second_order};
 
-/// Pixels in flight: the scratch rows of a span (20 KiB) stay in the first-level cache.
-const SPAN: usize = 512;
+/// Pixels in flight: the scratch rows of a span (3.5 KiB) stay in the first-level cache.
+const SPAN: usize = 128;
 
 /// Fills `out_x`, `out_y` (one value per pixel of `rect`) with D.
 pub(super) fn fill(deformation: &Deformation, rect: Rect, out_x: &mut [f32], out_y: &mut [f32]) {
@@ -17,15 +17,16 @@ pub(super) fn fill(deformation: &Deformation, rect: Rect, out_x: &mut [f32], out
         return;
     }
     if deformation.is_identity() {
-        for (i, (x, y)) in out_x.iter_mut().zip(out_y).enumerate() {
-            *x = (rect.x0 + (i % width) as i32) as f32 + 0.5;
-            *y = (rect.y0 + (i / width) as i32) as f32 + 0.5;
+        let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
+        for (y, (row_x, row_y)) in (rect.y0..).zip(rows) {
+            row_x.iter_mut().zip(rect.x0..).for_each(|(out, x)| *out = x as f32 + 0.5);
+            row_y.fill(y as f32 + 0.5);
         }
         return;
     }
     let map = deformation.surface.map_or(Rect::EMPTY, |s| s.size().rect());
     let plan = Plan::new(deformation);
-    let mut scratch = Box::new(Scratch::default());
+    let mut scratch = Scratch::default();
     let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
     for (y, (row_x, row_y)) in (rect.y0..).zip(rows) {
         let mut x = rect.x0;
@@ -42,6 +43,9 @@ pub(super) fn fill(deformation: &Deformation, rect: Rect, out_x: &mut [f32], out
             let n = (end.min(rect.x1) - x).min(SPAN as i32) as usize;
             let at = (x - rect.x0) as usize;
             let maps = inside.then_some(MapSpan { x: x as usize, y: y as usize, n });
+            if inside && y + 1 < map.y1 {
+                plan.prefetch(MapSpan { x: x as usize, y: y as usize + 1, n });
+            }
             plan.span(
                 maps,
                 x as f32 + 0.5,
@@ -148,6 +152,18 @@ impl<'d> Plan<'d> {
             pins: deformation.pins.iter().map(pin).collect(),
             kernel,
             slope: segment_slope(&deformation.anchors()).to_array(),
+        }
+    }
+    /// Asks for what a span of the maps holds.
+    fn prefetch(&self, span: MapSpan) {
+        let Some(surface) = self.deformation.surface else { return };
+        prefetch(span.of(surface.coverage_plane()));
+        let [nbar_x, nbar_y, nz] = surface.normal_planes();
+        match self.kernel {
+            Kernel::Still => {}
+            Kernel::Depth(_) => prefetch(span.of(surface.depth_plane())),
+            Kernel::Normal(_) => [nbar_x, nbar_y].into_iter().for_each(|p| prefetch(span.of(p))),
+            Kernel::Mirror(_) => [nbar_x, nbar_y, nz].into_iter().for_each(|p| prefetch(span.of(p))),
         }
     }
     /// D over a span whose first pixel has its centre at (x, y); `maps` is `None` beyond the maps.

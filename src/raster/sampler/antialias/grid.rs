@@ -1,0 +1,136 @@
+//! How many taps a patch takes, and in which mip level.
+//! Floor 1.
+
+use super::{PatchRow, SPAN};
+use crate::math::fast::max;
+use crate::raster::sampler::taps::GROUP;
+
+/// Side of the cell that one tap stands for, in texels of level 0. A picture drawn pixel for pixel (1 texel) stays as it is.
+pub const FINE_CELL: f32 = 1.5;
+/// The same in the other levels, whose texels are means already: there a bilinear tap's variance s²/4 − 1/12 is that of a
+/// box of 1.7 texels.
+pub const COARSE_CELL: f32 = 2.0;
+/// Most taps a pixel may take, in all.
+pub const MAX_TAPS: u32 = 16;
+
+/// How a patch is covered: so many taps across and along, in a mip level.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Grid {
+    pub across: u32,
+    pub along: u32,
+    pub level: u32,
+}
+
+impl Grid {
+    /// For a patch that takes so many fine or coarse cells across and along in level 0.
+    #[inline(always)]
+    pub fn of_cells(fine: [u32; 2], coarse: [u32; 2], last_level: u32) -> Self {
+        let [across, along] = fine;
+        if across * along <= MAX_TAPS || last_level == 0 {
+            return Self { across, along, level: 0 }.capped();
+        }
+        let mut grid = Self { across: coarse[0], along: coarse[1], level: 0 };
+        while grid.across * grid.along > MAX_TAPS && grid.level < last_level {
+            grid = Self { across: grid.across.div_ceil(2), along: grid.along.div_ceil(2), level: grid.level + 1 };
+        }
+        grid.capped()
+    }
+    #[inline(always)]
+    pub fn taps(self) -> usize {
+        (self.across * self.along) as usize
+    }
+    #[inline(always)]
+    fn capped(self) -> Self {
+        let across = self.across.min(MAX_TAPS);
+        Self { across, along: self.along.min(MAX_TAPS / across), ..self }
+    }
+}
+
+/// Sides longer than this many cells are cut: the product of two must fit.
+const MAX_CELLS: f32 = 32768.0;
+
+/// How many cells of a size a side takes, at least 1.
+#[inline(always)]
+pub fn cells(side: f32, cell: f32) -> u32 {
+    // Adding 2²³ rounds to the nearest integer and leaves it in the low bits; half a cell less than that rounds up.
+    let nearest = (side * (1.0 / cell) + 0.4999).max(1.0).min(MAX_CELLS) + 8_388_608.0;
+    nearest.to_bits() - 8_388_608.0f32.to_bits()
+}
+
+/// How many cells the sides of every patch of a span take in level 0.
+#[derive(Clone)]
+pub struct Cells {
+    /// Across and along, in cells of [`FINE_CELL`].
+    fine: [[u32; SPAN]; 2],
+    /// In cells of [`COARSE_CELL`].
+    coarse: [[u32; SPAN]; 2],
+    /// The most cells of a group's patches: fine ones, coarse ones.
+    most: [[[u32; SPAN / GROUP]; 2]; 2],
+    /// How many fine cells the patches of a group take, one by one.
+    in_all: [u32; SPAN / GROUP],
+}
+
+impl Default for Cells {
+    fn default() -> Self {
+        let (ones, most) = ([[1; SPAN]; 2], [[[1; SPAN / GROUP]; 2]; 2]);
+        Self { fine: ones, coarse: ones, most, in_all: [0; SPAN / GROUP] }
+    }
+}
+
+impl Cells {
+    /// Of the first `n` patches of a row.
+    pub fn count(&mut self, patches: PatchRow, n: usize) {
+        let n = n.min(SPAN);
+        count_cells(patches, n, self);
+        look_at_groups(n / GROUP, self);
+    }
+    /// The grid of one patch.
+    pub fn grid(&self, k: usize, last_level: u32) -> Grid {
+        Grid::of_cells([self.fine[0][k], self.fine[1][k]], [self.coarse[0][k], self.coarse[1][k]], last_level)
+    }
+    /// The grid that holds the largest sides of a group's patches; `None` where it does not suit them all.
+    #[inline(always)]
+    pub fn shared_grid(&self, group: usize, last_level: u32) -> Option<Grid> {
+        let [fine, coarse] = [0, 1].map(|kind| [self.most[kind][0][group], self.most[kind][1][group]]);
+        let shared = Grid::of_cells(fine, coarse, last_level);
+        let alone = if fine[0] * fine[1] <= MAX_TAPS {
+            // All read level 0.
+            self.in_all[group] as usize
+        } else {
+            let mut grids = (GROUP * group..GROUP * (group + 1)).map(|k| self.grid(k, last_level));
+            grids.try_fold(0, |taps, grid| (grid.level == shared.level).then(|| taps + grid.taps()))?
+        };
+        // Half as many taps again cost less than pixels that take turns.
+        (2 * shared.taps() * GROUP <= 3 * alone).then_some(shared)
+    }
+}
+
+crate::widest! {
+    /// A side is twice the longer of its two half-edges.
+    fn count_cells(patches: PatchRow, n: usize, cells_of: &mut Cells) {
+        for side in 0..2 {
+            let ([ax, ay], [bx, by]) = (patches.edges[2 * side], patches.edges[2 * side + 1]);
+            let (ax, ay, bx, by) = (&ax[..n], &ay[..n], &bx[..n], &by[..n]);
+            let (fine, coarse) = (&mut cells_of.fine[side][..n], &mut cells_of.coarse[side][..n]);
+            for k in 0..n {
+                let (a, b) = (ax[k] * ax[k] + ay[k] * ay[k], bx[k] * bx[k] + by[k] * by[k]);
+                let length = 2.0 * max(a, b).sqrt();
+                fine[k] = cells(length, FINE_CELL);
+                coarse[k] = cells(length, COARSE_CELL);
+            }
+        }
+    }
+    fn look_at_groups(n: usize, cells: &mut Cells) {
+        let Cells { fine, coarse, most, in_all } = cells;
+        for group in 0..n {
+            let part = GROUP * group..GROUP * (group + 1);
+            for side in 0..2 {
+                let (fine, coarse) = (&fine[side][part.clone()], &coarse[side][part.clone()]);
+                most[0][side][group] = fine.iter().fold(1, |most, &n| most.max(n));
+                most[1][side][group] = coarse.iter().fold(1, |most, &n| most.max(n));
+            }
+            let products = fine[0][part.clone()].iter().zip(&fine[1][part]).map(|(a, b)| (a * b).min(1 << 16));
+            in_all[group] = products.sum();
+        }
+    }
+}
