@@ -24,11 +24,13 @@ impl Reader<'_> {
     /// What is not said is as the model has it by default ([`Shading::new`]).
     pub fn shading(&mut self, fields: &mut Fields) -> Result<Shading> {
         let base = Shading::new(fields.one_of("model", &Model::ALL, Model::Phong)?);
+        let environment = fields.get("environment").map(|node| self.environment(&node)).transpose()?;
         let lights = match fields.get("lights") {
             Some(node) => node.list(MOST_LIGHTS)?.iter().map(light).collect::<Result<_>>()?,
+            // Lit by its environment, such a material needs no light; those that are named are added.
+            None if base.model == Model::Ashikhmin && environment.is_some() => Vec::new(),
             None => base.lights.clone(),
         };
-        let environment = fields.get("environment").map(|node| self.environment(&node)).transpose()?;
         let (specular, shininess) = specular(fields, &base)?;
         Ok(Shading {
             model: base.model,

@@ -8,29 +8,45 @@ use super::{Shading, lobes};
 use crate::math::fast;
 use crate::raster::TILE;
 use crate::shading::ground::{Ground, Light3, Pixels};
+use crate::shading::light::RowLight;
 
 /// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h.
 pub fn shade(shading: &Shading, ground: &Ground, light: &mut Light3) {
-    let (diffuse, specular) = (&shading.diffuse, &shading.specular);
-    let rs = specular.linear().map(|c| c.min(1.0));
-    let kept: [f32; 3] = std::array::from_fn(|c| diffuse.linear()[c] * (1.0 - rs[c]));
     for lit in &shading.lights {
         let lit = lit.on(ground);
-        let is_scaled = diffuse.is_scaled() || specular.is_scaled();
+        let is_scaled = shading.diffuse.is_scaled() || shading.specular.is_scaled();
         let kappa = if is_scaled { ground.kappa(lit.toward()) } else { [0.0; TILE] };
-        if diffuse.weight > 0.0 {
-            let (rho, delta) = matt_row(&ground.normal, &lit.direction);
-            lobes::add(light, lobes::tint(kept, lit.radiance), &rho, Some((diffuse.scaling, &kappa, &delta)));
+        if shading.diffuse.weight > 0.0 {
+            add_matt(shading, ground, &lit, &kappa, light);
         }
-        if specular.weight > 0.0 {
-            let Glossy { rho, white, delta } = glossy_row(&ground.normal, &lit.direction, shading.nu, shading.nv);
-            let scaled = lobes::scaled(&rho, specular.scaling, &kappa, &delta);
-            // R_s + (1 − R_s) f = R_s (1 − f) + f: a coloured part and a white one.
-            let part = |share: &dyn Fn(f32) -> f32| std::array::from_fn(|x| scaled[x] * share(white[x]));
-            lobes::add(light, lobes::tint(rs, lit.radiance), &part(&|f| 1.0 - f), None);
-            lobes::add(light, lit.radiance, &part(&|f| f), None);
+        if shading.specular.weight > 0.0 {
+            add_glossy(shading, ground, &lit, &kappa, light);
         }
     }
+}
+
+/// The matt term under one light; `kappa`: κ(ℓ).
+pub fn add_matt(shading: &Shading, ground: &Ground, lit: &RowLight, kappa: &Pixels, light: &mut Light3) {
+    let diffuse = &shading.diffuse;
+    let (rd, rs) = (diffuse.linear(), mirrored_color(shading));
+    let kept: [f32; 3] = std::array::from_fn(|c| rd[c] * (1.0 - rs[c]));
+    let (rho, delta) = matt_row(&ground.normal, &lit.direction);
+    let scale = diffuse.is_scaled().then_some((diffuse.scaling, kappa, &delta));
+    lobes::add(light, lobes::tint(kept, lit.radiance), &rho, scale);
+}
+
+fn add_glossy(shading: &Shading, ground: &Ground, lit: &RowLight, kappa: &Pixels, light: &mut Light3) {
+    let Glossy { rho, white, delta } = glossy_row(&ground.normal, &lit.direction, shading.nu, shading.nv);
+    let scaled = lobes::scaled(&rho, shading.specular.scaling, kappa, &delta);
+    // R_s + (1 − R_s) f = R_s (1 − f) + f: a coloured part and a white one.
+    let part = |share: &dyn Fn(f32) -> f32| std::array::from_fn(|x| scaled[x] * share(white[x]));
+    lobes::add(light, lobes::tint(mirrored_color(shading), lit.radiance), &part(&|f| 1.0 - f), None);
+    lobes::add(light, lit.radiance, &part(&|f| f), None);
+}
+
+/// R_s, at most 1; black where the glossy term is left out.
+fn mirrored_color(shading: &Shading) -> [f32; 3] {
+    shading.specular.linear().map(|c| c.min(1.0))
 }
 
 /// ρ_d / (R_d (1 − R_s)) = 28/23 (1 − (1 − n·ℓ/2)⁵) (1 − (1 − n·e/2)⁵) (n·ℓ)₊ (Ashikhmin and Shirley 2000, eq. 5).

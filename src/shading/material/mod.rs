@@ -2,6 +2,7 @@
 //! Floor 3. One file a model; `render` makes tiles of them.
 
 mod ashikhmin;
+mod ashikhmin_environment;
 mod lit_sphere;
 mod lobes;
 mod mirror;

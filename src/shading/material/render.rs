@@ -1,7 +1,7 @@
 //! A tile of a shading layer: the model's light row by row, encoded and clipped at the end.
 //! Floor 3.
 
-use super::{Model, Shading, ashikhmin, lit_sphere, mirror, phong, toon};
+use super::{Model, Shading, ashikhmin, ashikhmin_environment::Samples, lit_sphere, mirror, phong, toon};
 use crate::math::{fast, srgb};
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, planar::Row};
 use crate::shading::environment::Environment;
@@ -28,11 +28,15 @@ impl Shading {
             rows.zip(&grounds).zip(&light).for_each(|(((row, _), ground), light)| show(light, ground, row));
             return pixels.quantised();
         }
+        let samples = if self.model == Model::Ashikhmin { Samples::new(self) } else { None };
         for (row, y) in rows {
             let ground = ground(y);
             if ground.coverage().iter().any(|&c| c > 0) {
                 let mut light = [[0.0; TILE]; 3];
                 self.shade(&ground, &mut light);
+                if let Some(samples) = &samples {
+                    samples.shade(self, &ground, &mut light);
+                }
                 show(&light, &ground, row);
             }
         }
