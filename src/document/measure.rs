@@ -4,11 +4,12 @@
 use super::Progress;
 use super::compose::{Composer, Flow};
 use super::prepare::{Adjustment, Prepared, in_parallel};
+use crate::math::fast;
 use crate::math::srgb::{decode_fast, luminance};
-use crate::raster::{PlanarTile, TILE, TileAt};
+use crate::raster::{PlanarTile, TILE, TileAt, planar::Row};
 use crate::shading::radiance::{Beneath, Means};
 use crate::shading::{RadianceScaling, Reference};
-use crate::surface::{Scene, Surface};
+use crate::surface::Scene;
 
 impl Prepared {
     /// Measures what lies beneath the next adjustment, or finds it measured; `None` if cancelled.
@@ -58,20 +59,33 @@ impl Prepared {
 ///
 /// Pixels less than half covered, by paint or by surface, do not count: their straight colours are mostly rounding.
 fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt) -> f32 {
-    let rect = at.rect();
-    let inside = rect.intersect(scene.size.rect());
-    let covers = |surface: &Surface, x: usize, y: usize| {
-        surface.coverage_plane().get(rect.x0 + x as i32, rect.y0 + y as i32).is_some_and(|c| c >= 128)
-    };
-    let mut most = 0.0f32;
-    for (y, row) in pixels.rows().iter().enumerate().take(inside.height()) {
-        for x in 0..inside.width().min(TILE) {
-            let [r, g, b, a] = row.pixel(x);
-            if a >= 0.5 && scene.surface.as_deref().is_none_or(|surface| covers(surface, x, y)) {
-                let [r, g, b] = [r, g, b].map(|v| decode_fast((v / a).min(1.0)));
-                most = most.max(luminance(r, g, b));
+    let inside = at.rect().intersect(scene.size.rect());
+    let mut most = [0.0; TILE];
+    for (row, y) in pixels.rows().iter().zip(inside.y0..inside.y1) {
+        // Beyond the canvas nothing counts.
+        let mut covers = [0; TILE];
+        match scene.surface.as_deref() {
+            Some(surface) => {
+                let coverage = surface.coverage_plane().row(y as usize);
+                let here = inside.x0 as usize..(inside.x1 as usize).min(coverage.len());
+                covers.iter_mut().zip(coverage.get(here).unwrap_or_default()).for_each(|(c, &coverage)| *c = coverage);
             }
+            None => covers[..inside.width().min(TILE)].fill(255),
+        }
+        raise_to_brightest(row, &covers, &mut most);
+    }
+    most.into_iter().fold(0.0, f32::max)
+}
+
+crate::widest! {
+    /// Raises each column's value to the luminance of its pixel in a row, where that counts.
+    fn raise_to_brightest(row: &Row, covers: &[u8; TILE], most: &mut [f32; TILE]) {
+        for x in 0..TILE {
+            let per_a = 1.0 / fast::max(row.a[x], 0.5);
+            let light = |v: f32| decode_fast(fast::min(v * per_a, 1.0));
+            let luminance = luminance(light(row.rgb[0][x]), light(row.rgb[1][x]), light(row.rgb[2][x]));
+            let counts = row.a[x] >= 0.5 && covers[x] >= 128;
+            most[x] = fast::max(if counts { luminance } else { 0.0 }, most[x]);
         }
     }
-    most
 }

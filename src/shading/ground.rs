@@ -5,6 +5,7 @@ use super::features::FeatureMap;
 use crate::math::{Vec3, vec3};
 use crate::raster::TILE;
 use crate::surface::Surface;
+use std::cell::OnceCell;
 
 /// One value for each pixel of a tile's row.
 pub type Pixels = [f32; TILE];
@@ -23,6 +24,8 @@ pub struct Ground<'a> {
     pub width: usize,
     /// Camera space: right, up, to the viewer.
     pub normal: [Pixels; 3],
+    /// κ where it does not depend on the direction, once it was asked for.
+    isotropic: OnceCell<Pixels>,
 }
 
 /// The direction that κ is asked for.
@@ -47,13 +50,19 @@ impl<'a> Ground<'a> {
         normal[0][..width].copy_from_slice(nbar_x);
         normal[2][..width].copy_from_slice(nz);
         normal[1].iter_mut().zip(nbar_y).for_each(|(up, down)| *up = -down);
-        Self { surface, features, x0, y, width, normal }
+        Self { surface, features, x0, y, width, normal, isotropic: OnceCell::new() }
     }
     pub fn normal_at(&self, x: usize) -> Vec3 {
         vec3(self.normal[0][x], self.normal[1][x], self.normal[2][x])
     }
     /// κ(ℓ) along the row.
     pub fn kappa(&self, toward: Toward) -> Pixels {
+        match self.features.is_directional() {
+            true => self.kappa_toward(toward),
+            false => *self.isotropic.get_or_init(|| self.kappa_toward(Toward::VIEWER)),
+        }
+    }
+    fn kappa_toward(&self, toward: Toward) -> Pixels {
         let mut kappa = [0.0; TILE];
         let row = &mut kappa[..self.width];
         match toward {

@@ -7,7 +7,7 @@ use super::{
     features::Features,
     scaling::{Reference, Scaling},
 };
-use crate::math::{Vec3, srgb, vec3};
+use crate::math::{Vec3, fast, srgb, vec3};
 use crate::raster::{PlanarTile, TILE, TileAt, planar::Row};
 use crate::surface::Scene;
 use row::RowScaler;
@@ -95,11 +95,10 @@ impl RadianceScaling {
         let mut means = Means::default();
         self.for_rows(scene, at, |y, kappa, coverage| {
             let Some(row) = pixels.rows().get(y) else { return };
-            for (x, (&kappa, &coverage)) in kappa.iter().zip(coverage).enumerate() {
-                let luminance = luminance(row, x);
-                let light = f64::from(row.a[x]) * f64::from(coverage) * f64::from(luminance);
-                means.before += light;
-                means.after += light * f64::from(self.scaling.sigma_fast(kappa, luminance / y_star));
+            let [before, after] = light_of_row(row, kappa, self.scaling, 1.0 / y_star);
+            for ((&before, &after), &coverage) in before.iter().zip(&after).zip(coverage) {
+                means.before += f64::from(coverage) * f64::from(before);
+                means.after += f64::from(coverage) * f64::from(after);
             }
         });
         means
@@ -122,14 +121,19 @@ impl RadianceScaling {
     }
 }
 
-/// Luminance of one pixel in linear light, its colour straight.
-fn luminance(row: &Row, x: usize) -> f32 {
-    let [r, g, b, a] = row.pixel(x);
-    if a <= 0.0 {
-        return 0.0;
+crate::widest! {
+    /// Alpha × luminance of each pixel, before and after scaling.
+    fn light_of_row(row: &Row, kappa: &[f32; TILE], scaling: Scaling, per_y_star: f32) -> [[f32; TILE]; 2] {
+        let [mut before, mut after] = [[0.0; TILE]; 2];
+        for x in 0..TILE {
+            let per_a = 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE);
+            let light = |v: f32| srgb::decode_fast(fast::min(v * per_a, 1.0));
+            let luminance = srgb::luminance(light(row.rgb[0][x]), light(row.rgb[1][x]), light(row.rgb[2][x]));
+            before[x] = row.a[x] * luminance;
+            after[x] = before[x] * scaling.sigma_fast(kappa[x], luminance * per_y_star);
+        }
+        [before, after]
     }
-    let [r, g, b] = [r, g, b].map(|v| srgb::decode_fast((v / a).min(1.0)));
-    srgb::luminance(r, g, b)
 }
 
 #[cfg(test)]

@@ -58,10 +58,20 @@ impl Scaling {
     /// [`Scaling::sigma`] for inner loops, relative error below 1e-5.
     #[inline(always)]
     pub fn sigma_fast(self, kappa: f32, delta: f32) -> f32 {
+        self.sigma_of(self.exponential(kappa), delta)
+    }
+    /// E = e^(−γκ) of [`Scaling::sigma_fast`].
+    #[inline(always)]
+    pub fn exponential(self, kappa: f32) -> f32 {
         // Both read first: a choice between two places in memory would keep loops from being vectorised.
-        let Scaling { alpha, gamma_convex, gamma_concave } = self;
+        let Scaling { gamma_convex, gamma_concave, .. } = self;
         let gamma = if kappa > 0.0 { gamma_convex } else { gamma_concave };
-        ratio(fast::exp(-gamma * kappa), fast::min(fast::max(delta, 0.0), 1.0), alpha)
+        fast::exp(-gamma * kappa)
+    }
+    /// The rest of [`Scaling::sigma_fast`].
+    #[inline(always)]
+    pub fn sigma_of(self, exponential: f32, delta: f32) -> f32 {
+        ratio(exponential, fast::min(fast::max(delta, 0.0), 1.0), self.alpha)
     }
 }
 

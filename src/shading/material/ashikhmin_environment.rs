@@ -7,7 +7,6 @@
 
 use super::{Shading, ashikhmin};
 use crate::math::{Vec3, vec3};
-use crate::raster::TILE;
 use crate::shading::environment::Surroundings;
 use crate::shading::ground::{Ground, Light3, Toward};
 use crate::shading::light::RowLight;
@@ -113,7 +112,7 @@ fn half(i: usize, nu: f32, nv: f32) -> Half {
 mod tests {
     use super::*;
     use crate::math::{Size, srgb::Color};
-    use crate::raster::{Picture, TileAt};
+    use crate::raster::{Picture, TILE, TileAt};
     use crate::shading::material::tests::{assert_shows, ball, term};
     use crate::shading::{Environment, Model, Scaling, Term};
 

@@ -14,7 +14,7 @@ pub fn tint(color: [f32; 3], radiance: [f32; 3]) -> [f32; 3] {
 /// Adds σ ρ tint to the light of a row. Without scaling κ and δ are not looked at.
 pub fn add(light: &mut Light3, tint: [f32; 3], rho: &Pixels, scale: Option<(Scaling, &Pixels, &Pixels)>) {
     match scale {
-        Some((scaling, kappa, delta)) => add_scaled(light, tint, rho, scaling, kappa, delta),
+        Some((scaling, kappa, delta)) => add_plain(light, tint, &scaled(rho, scaling, kappa, delta)),
         None => add_plain(light, tint, rho),
     }
 }
@@ -32,8 +32,12 @@ crate::widest! {
     /// σ(κ, δ) ρ of each pixel.
     pub fn scaled(rho: &Pixels, scaling: Scaling, kappa: &Pixels, delta: &Pixels) -> Pixels {
         let mut scaled = [0.0; TILE];
+        // Two short loops: in one, each pixel would wait for its exponential.
+        for (x, e) in scaled.iter_mut().enumerate() {
+            *e = scaling.exponential(kappa[x]);
+        }
         for (x, scaled) in scaled.iter_mut().enumerate() {
-            *scaled = rho[x] * scaling.sigma_fast(kappa[x], delta[x]);
+            *scaled = rho[x] * scaling.sigma_of(*scaled, delta[x]);
         }
         scaled
     }
@@ -41,16 +45,6 @@ crate::widest! {
         for x in 0..TILE {
             for c in 0..3 {
                 light[c][x] += tint[c] * rho[x];
-            }
-        }
-    }
-    fn add_scaled(
-        light: &mut Light3, tint: [f32; 3], rho: &Pixels, scaling: Scaling, kappa: &Pixels, delta: &Pixels,
-    ) {
-        for x in 0..TILE {
-            let scaled = rho[x] * scaling.sigma_fast(kappa[x], delta[x]);
-            for c in 0..3 {
-                light[c][x] += tint[c] * scaled;
             }
         }
     }
@@ -77,17 +71,29 @@ crate::widest! {
             // r·ℓ = 2 n_z (n·ℓ) − ℓ_z.
             let mirrored = 2.0 * normal[2][x] * dot(normal, direction, x) - direction[2][x];
             // A unit vector's rounding must not raise a high power above 1.
-            *rho = fast::pow(fast::min(mirrored, 1.0), shininess);
+            *rho = fast::min(mirrored, 1.0);
         }
+        raise(&mut rho, shininess);
         rho
     }
     /// ρ^ζ, 0 where ρ is (RS sec. 5.1: sub-Lambertian).
     pub fn flattened(rho: &Pixels, exponent: f32) -> Pixels {
-        let mut flat = [0.0; TILE];
-        for (x, flat) in flat.iter_mut().enumerate() {
-            *flat = fast::pow(rho[x], exponent);
-        }
+        let mut flat = *rho;
+        raise(&mut flat, exponent);
         flat
+    }
+}
+
+/// v^p, 0 where v is not above 0: `fast::pow` in two short loops, so that no pixel waits for another's logarithm.
+#[inline(always)]
+fn raise(values: &mut Pixels, p: f32) {
+    let mut exponents = [0.0; TILE];
+    for (exponent, v) in exponents.iter_mut().zip(&*values) {
+        *exponent = p * fast::log2(*v);
+    }
+    for (v, exponent) in values.iter_mut().zip(exponents) {
+        let power = fast::exp2(exponent);
+        *v = if *v > 0.0 { power } else { 0.0 };
     }
 }
 

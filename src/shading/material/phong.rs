@@ -10,56 +10,53 @@ use crate::shading::light::Light;
 ///
 /// `exponent`: ζ of the matt term (n·ℓ)₊^ζ; `None` is Phong's own, ζ = 1.
 pub fn shade(shading: &Shading, ground: &Ground, exponent: Option<f32>, light: &mut Light3) {
-    if let Some(part) = ambient(&shading.ambient, ground) {
-        part.add_to(light);
+    if let Some(scaled) = ambient(&shading.ambient, ground) {
+        lobes::add(light, shading.ambient.linear(), &scaled, None);
     }
     for lit in &shading.lights {
-        for part in of_light(shading, lit, ground, exponent).iter().flatten() {
-            part.add_to(light);
-        }
+        under_light(shading, lit, ground, exponent, |_, tint, scaled| lobes::add(light, tint, scaled, None));
     }
 }
 
-/// One term under one light along a row.
-pub struct Part {
-    pub term: Term,
-    /// Of the light, linear.
-    radiance: [f32; 3],
-    /// The term's reflectance, which is its δ too.
-    pub rho: Pixels,
-    /// κ(ℓ); left 0 where the term is not scaled.
-    pub kappa: Pixels,
+/// σ_a ρ_a with ρ_a = 1 and no light's: scaled it is mean-curvature shading, e^(γκ). `None` where the term is left out.
+pub fn ambient(term: &Term, ground: &Ground) -> Option<Pixels> {
+    const RHO: Pixels = [1.0; TILE];
+    let scaled = || lobes::scaled(&RHO, term.scaling, &ground.kappa(Toward::VIEWER), &RHO);
+    (term.weight > 0.0).then(|| if term.is_scaled() { scaled() } else { RHO })
 }
 
-impl Part {
-    /// What the scaled reflectance is multiplied by, linear.
-    pub fn tint(&self) -> [f32; 3] {
-        lobes::tint(self.term.linear(), self.radiance)
-    }
-    fn add_to(&self, light: &mut Light3) {
-        let scale = self.term.is_scaled().then_some((self.term.scaling, &self.kappa, &self.rho));
-        lobes::add(light, self.tint(), &self.rho, scale);
-    }
+/// The two terms that a light makes, where they are not left out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    Matt,
+    Glossy,
 }
 
-/// ρ_a = 1, no light's: scaled alone it is mean-curvature shading, e^(γκ). `None` where the term is left out.
-pub fn ambient(term: &Term, ground: &Ground) -> Option<Part> {
-    let kappa = || if term.is_scaled() { ground.kappa(Toward::VIEWER) } else { [0.0; TILE] };
-    (term.weight > 0.0).then(|| Part { term: *term, radiance: [1.0; 3], rho: [1.0; TILE], kappa: kappa() })
-}
-
-/// The matt and the glossy term under one light, each where it is not left out.
-pub fn of_light(shading: &Shading, light: &Light, ground: &Ground, exponent: Option<f32>) -> [Option<Part>; 2] {
+/// Hands out each term under one light: its colour times the light's, and σρ.
+pub fn under_light(
+    shading: &Shading,
+    light: &Light,
+    ground: &Ground,
+    exponent: Option<f32>,
+    mut with: impl FnMut(Lobe, [f32; 3], &Pixels),
+) {
     let lit = light.on(ground);
     let is_scaled = shading.diffuse.is_scaled() || shading.specular.is_scaled();
     let kappa = if is_scaled { ground.kappa(lit.toward()) } else { [0.0; TILE] };
-    let part = |term: &Term, rho: &dyn Fn() -> Pixels| {
-        (term.weight > 0.0).then(|| Part { term: *term, radiance: lit.radiance, rho: rho(), kappa })
+    let mut hand_out = |lobe: Lobe, term: &Term, rho: Pixels| {
+        let tint = lobes::tint(term.linear(), lit.radiance);
+        match term.is_scaled() {
+            true => with(lobe, tint, &lobes::scaled(&rho, term.scaling, &kappa, &rho)),
+            false => with(lobe, tint, &rho),
+        }
     };
-    let matt = || {
+    if shading.diffuse.weight > 0.0 {
         let lambert = lobes::lambert(&ground.normal, &lit.direction);
-        exponent.map_or(lambert, |zeta| lobes::flattened(&lambert, zeta))
-    };
-    let glossy = || lobes::glossy(&ground.normal, &lit.direction, shading.shininess);
-    [part(&shading.diffuse, &matt), part(&shading.specular, &glossy)]
+        let rho = exponent.map_or(lambert, |zeta| lobes::flattened(&lambert, zeta));
+        hand_out(Lobe::Matt, &shading.diffuse, rho);
+    }
+    if shading.specular.weight > 0.0 {
+        let rho = lobes::glossy(&ground.normal, &lit.direction, shading.shininess);
+        hand_out(Lobe::Glossy, &shading.specular, rho);
+    }
 }

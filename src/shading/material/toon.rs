@@ -3,7 +3,7 @@
 
 use super::{
     Shading, lobes,
-    phong::{self, Part},
+    phong::{self, Lobe},
 };
 use crate::math::fast;
 use crate::raster::TILE;
@@ -15,28 +15,40 @@ use crate::surface::links;
 /// A tone's edge is where σρ crosses a multiple of 1 / bands. It is filtered over the pixel: how fast σρ changes along the
 /// surface there, from its neighbours in the tile, says how much of the pixel lies on either side.
 pub fn shade_tile(shading: &Shading, rows: &[Ground], light: &mut [Light3]) {
-    add_tones(rows, shading.bands, light, |ground| [phong::ambient(&shading.ambient, ground), None]);
+    let ambient: Vec<Pixels> = rows.iter().filter_map(|ground| phong::ambient(&shading.ambient, ground)).collect();
+    add_tones(rows, shading.ambient.linear(), &ambient, shading.bands, light);
     for lit in &shading.lights {
-        add_tones(rows, shading.bands, light, |ground| phong::of_light(shading, lit, ground, None));
+        let mut matt = Scaled::default();
+        let mut glossy = Scaled::default();
+        for ground in rows {
+            phong::under_light(shading, lit, ground, None, |lobe, tint, scaled| {
+                let term = if lobe == Lobe::Matt { &mut matt } else { &mut glossy };
+                term.tint = tint;
+                term.rows.push(*scaled);
+            });
+        }
+        for term in [matt, glossy] {
+            add_tones(rows, term.tint, &term.rows, shading.bands, light);
+        }
     }
 }
 
-/// Adds up to two terms, each quantised by itself.
-fn add_tones(rows: &[Ground], bands: u32, light: &mut [Light3], parts: impl Fn(&Ground) -> [Option<Part>; 2]) {
-    let parts: Vec<[Option<Part>; 2]> = rows.iter().map(parts).collect();
-    for term in 0..2 {
-        // A term is left out of every row or of none.
-        let of_rows: Vec<&Part> = parts.iter().filter_map(|row| row[term].as_ref()).collect();
-        let Some(tint) = of_rows.first().map(|part| part.tint()) else { continue };
-        let scaled: Vec<Pixels> =
-            of_rows.iter().map(|part| lobes::scaled(&part.rho, part.term.scaling, &part.kappa, &part.rho)).collect();
-        for (y, (ground, light)) in rows.iter().zip(light.iter_mut()).enumerate() {
-            let above = if y > 0 { &scaled[y - 1] } else { &scaled[y] };
-            let below = scaled.get(y + 1).unwrap_or(&scaled[y]);
-            let linked = inside_links(ground, y > 0, y + 1 < scaled.len());
-            let tones = tones([above, &scaled[y], below], &linked, bands as f32);
-            lobes::add(light, tint, &tones, None);
-        }
+/// A term over a tile; no rows where it is left out.
+#[derive(Default)]
+struct Scaled {
+    tint: [f32; 3],
+    /// σρ.
+    rows: Vec<Pixels>,
+}
+
+/// Adds the tones of one term.
+fn add_tones(rows: &[Ground], tint: [f32; 3], scaled: &[Pixels], bands: u32, light: &mut [Light3]) {
+    for (y, ((ground, here), light)) in rows.iter().zip(scaled).zip(light).enumerate() {
+        let above = y.checked_sub(1).and_then(|y| scaled.get(y));
+        let below = scaled.get(y + 1);
+        let linked = inside_links(ground, above.is_some(), below.is_some());
+        let tones = tones([above.unwrap_or(here), here, below.unwrap_or(here)], &linked, bands as f32);
+        lobes::add(light, tint, &tones, None);
     }
 }
 

@@ -106,6 +106,11 @@ fn what_is_beyond_the_surface_or_transparent_stays() {
     RadianceScaling::default().apply_tile(&nothing, TileAt::new(0, 0), BENEATH, &mut alone);
     assert_eq!(alone.rows()[0].pixel(0), [0.5, 0.5, 0.5, 1.0]);
 }
+/// Of one opaque pixel.
+fn luminance(row: &crate::raster::planar::Row, x: usize) -> f32 {
+    let [r, g, b, _] = row.pixel(x).map(srgb::decode);
+    srgb::luminance(r, g, b)
+}
 #[test]
 fn the_mean_luminance_can_be_kept() {
     let scene = scene();
