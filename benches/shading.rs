@@ -65,6 +65,16 @@ fn radiance_scaling_layer(bencher: Bencher, run: Run) {
     });
 }
 
+/// Occlusion of a whole map, radius 48 px: once for each surface and radius, then kept.
+#[divan::bench(args = RUNS, sample_count = 3, sample_size = 1)]
+fn ambient_occlusion(bencher: Bencher, run: Run) {
+    let pool = pool(run.1);
+    bencher
+        .counter(area(run))
+        .with_inputs(|| scene(run.0))
+        .bench_local_refs(|scene| pool.install(|| scene.surface.as_deref().map(|surface| surface.occlusion(48.0))));
+}
+
 #[divan::bench(args = RUNS)]
 fn copy_of_the_same_pixels(bencher: Bencher, run: Run) {
     let scene = scene(run.0);

@@ -276,10 +276,10 @@ fn paths_need_not_be_utf8() {
 }
 
 #[test]
-fn a_layer_that_is_not_drawn_yet_is_refused_rather_than_left_out() {
+fn a_mirror_of_nothing_is_refused_rather_than_painted_black() {
     let document = r##"{ "canvas": { "width": 20, "height": 20 }, "layers": [
         { "kind": "fill", "color": "#336699" }, { "kind": "shading", "model": "mirror" }] }"##;
-    refused(&Desk::with(document).render("out.png", &[]), &["layers[1]", "mirror", "not drawn yet"]);
+    refused(&Desk::with(document).render("out.png", &[]), &["layers[1].environment", "mirror", "is missing"]);
     let hidden = document.replace(r#""model""#, r#""visible": false, "model""#);
     assert!(Desk::with(&hidden).render("out.png", &[]).status.success());
 }

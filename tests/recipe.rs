@@ -181,12 +181,14 @@ fn everything() -> Value {
           "lambda": 0.5, "curvature_scale": 2, "blur": 1, "reference": 0.8,
           "bands": 6, "exponent": 0.25, "nu": 10, "nv": 20,
           "environment": { "file": "p.png", "projection": "angular", "rotation": 90, "exposure": 1 },
-          "sphere": { "file": "p.png" }, "sphere_concave": { "file": "p.png" }, "index": 1.33 },
+          "sphere": { "file": "p.png" }, "sphere_concave": { "file": "p.png" }, "index": 1.33, "occlusion_radius": 12 },
         { "name": "shape", "kind": "radiance-scaling", "alpha": 0.5, "gamma_convex": 3, "gamma_concave": 1, "lambda": -1,
           "scales": [{ "curvature_scale": 2, "weight": 2 }, { "blur": 3 }], "light": [1, 0, 0], "reference": 0.5,
           "keep_mean": true },
         { "name": "grain", "kind": "normals", "source": { "file": "p.png" }, "convention": "directx", "placement": placement, "outside": "clamp",
           "strength": 2 },
+        { "name": "brushed", "kind": "normals", "strength": 0.5,
+          "source": { "noise": { "size": 8, "octaves": 2, "roughness": 0.25, "stretch": 20, "seed": 7 } } },
         { "name": "set", "kind": "group", "pass_through": true, "layers": [{ "name": "inner", "kind": "fill", "color": "#000000" }] }
     ]))
 }

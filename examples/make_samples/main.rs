@@ -36,6 +36,9 @@ const SURFACES: [fn() -> Sample; 11] = [
     shapes::moon,
 ];
 
+/// The studio as light.
+const LIGHT: &str = "studio_light.hdr";
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let out = PathBuf::from(arguments.next().ok_or("usage: make_samples OUT_DIR [NAME]")?);
@@ -58,6 +61,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let start = Instant::now();
         output::write_picture(&out.join("pictures").join(name), &make())?;
         println!("{name:<14} {:>4.1} s", start.elapsed().as_secs_f64());
+    }
+    if only.as_deref().is_none_or(|wanted| wanted == LIGHT) {
+        let (width, height, light) = pictures::studio_lat_long();
+        output::write_light(&out.join("pictures").join(LIGHT), width, height, &light)?;
     }
     Ok(())
 }

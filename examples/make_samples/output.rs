@@ -5,9 +5,10 @@ use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::Path;
 
+use image::codecs::hdr::HdrEncoder;
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, Rgba, RgbaImage};
+use image::{ExtendedColorType, ImageEncoder, Rgb, Rgba, RgbaImage};
 
 use crate::render::Maps;
 
@@ -64,4 +65,13 @@ pub fn write_picture(path: &Path, picture: &RgbaImage) -> Outcome {
         return write_png(path, &rgb, size, ExtendedColorType::Rgb8);
     }
     write_png(path, picture.as_raw(), size, ExtendedColorType::Rgba8)
+}
+
+/// Writes linear light as a Radiance picture.
+pub fn write_light(path: &Path, width: usize, height: usize, light: &[Rgb<f32>]) -> Outcome {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    HdrEncoder::new(BufWriter::new(File::create(path)?)).encode(light, width, height)?;
+    Ok(())
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3, DVec4};
-use image::{Rgba, RgbaImage};
+use image::{Rgb, Rgba, RgbaImage};
 use rayon::prelude::*;
 
 use crate::noise::{fbm2, hash, noise2};
@@ -17,7 +17,7 @@ const TEXTURE: u32 = 512;
 pub type Picture = (&'static str, fn() -> RgbaImage);
 
 /// Every picture of this module.
-pub const PICTURES: [Picture; 9] = [
+pub const PICTURES: [Picture; 10] = [
     ("studio.jpg", studio),
     ("tartan.jpg", tartan),
     ("scales.jpg", scales),
@@ -27,6 +27,7 @@ pub const PICTURES: [Picture; 9] = [
     ("star.png", star),
     ("leaf.png", leaf),
     ("window.png", window),
+    ("weave_normal.png", weave_normal),
 ];
 
 /// Linear light in `[0, 1]` as an sRGB byte.
@@ -94,29 +95,77 @@ impl SoftBox {
     }
 }
 
-/// An angular map of a studio: soft boxes before a graded wall. The centre is straight behind the viewer,
-/// the circle that touches the sides straight ahead.
+/// An angular map of the studio. The centre is straight behind the viewer, the circle that touches the sides straight ahead.
 fn studio() -> RgbaImage {
-    let lights = [
-        SoftBox { toward: v(-0.95, 0.5, 0.85), half: DVec2::new(0.4, 0.52), roll: 8.0, light: v(3.2, 3.1, 2.95) },
-        SoftBox { toward: v(1.2, 0.22, 0.35), half: DVec2::new(0.14, 0.95), roll: -4.0, light: v(2.0, 2.2, 2.5) },
-        SoftBox { toward: v(0.35, 1.3, 0.1), half: DVec2::new(0.6, 0.2), roll: 12.0, light: v(2.3, 2.25, 2.2) },
-        SoftBox { toward: v(-1.0, 0.1, -0.9), half: DVec2::new(0.12, 0.8), roll: 0.0, light: v(2.6, 2.0, 1.4) },
-        SoftBox { toward: v(0.55, -0.62, 0.8), half: DVec2::new(0.36, 0.13), roll: 20.0, light: v(0.55, 0.42, 0.3) },
-    ];
     let side = f64::from(TEXTURE);
+    let lights = soft_boxes();
     painted((TEXTURE, TEXTURE), 3, |p| {
         let q = (p / side * 2.0 - DVec2::ONE) * DVec2::new(1.0, -1.0);
         let r = q.length();
         let around = if r > 1e-9 { q / r } else { DVec2::X };
         let turn = PI * r.min(1.0);
         let d = (around * turn.sin()).extend(turn.cos());
-        let mut light = studio_room(d);
-        for soft_box in &lights {
-            light += soft_box.seen(d);
-        }
-        rolled_off(light * 1.15).extend(1.0)
+        rolled_off(studio_light(&lights, d) * 1.15).extend(1.0)
     })
+}
+
+/// The light of the studio itself, not rolled off: a latitude-longitude map of 256 × 128 pixels, its lamps far above white.
+pub fn studio_lat_long() -> (usize, usize, Vec<Rgb<f32>>) {
+    const SIZE: (usize, usize) = (256, 128);
+    const FINE: usize = 4;
+    let lights = soft_boxes();
+    let pixel = |i: usize| {
+        let mut sum = DVec3::ZERO;
+        for k in 0..FINE * FINE {
+            let part = |k: usize| (k as f64 + 0.5) / FINE as f64;
+            let u = ((i % SIZE.0) as f64 + part(k % FINE)) / SIZE.0 as f64 * TAU;
+            let w = ((i / SIZE.0) as f64 + part(k / FINE)) / SIZE.1 as f64 * PI;
+            sum += studio_light(&lights, v(u.sin() * w.sin(), w.cos(), -u.cos() * w.sin()));
+        }
+        let mean = (sum / (FINE * FINE) as f64).as_vec3();
+        Rgb(mean.to_array())
+    };
+    (SIZE.0, SIZE.1, (0..SIZE.0 * SIZE.1).into_par_iter().map(pixel).collect())
+}
+
+/// Linear light from a direction: soft boxes before a graded wall.
+fn studio_light(lights: &[SoftBox], d: DVec3) -> DVec3 {
+    lights.iter().fold(studio_room(d), |light, soft_box| light + soft_box.seen(d))
+}
+
+fn soft_boxes() -> [SoftBox; 5] {
+    [
+        SoftBox { toward: v(-0.95, 0.5, 0.85), half: DVec2::new(0.4, 0.52), roll: 8.0, light: v(3.2, 3.1, 2.95) },
+        SoftBox { toward: v(1.2, 0.22, 0.35), half: DVec2::new(0.14, 0.95), roll: -4.0, light: v(2.0, 2.2, 2.5) },
+        SoftBox { toward: v(0.35, 1.3, 0.1), half: DVec2::new(0.6, 0.2), roll: 12.0, light: v(2.3, 2.25, 2.2) },
+        SoftBox { toward: v(-1.0, 0.1, -0.9), half: DVec2::new(0.12, 0.8), roll: 0.0, light: v(2.6, 2.0, 1.4) },
+        SoftBox { toward: v(0.55, -0.62, 0.8), half: DVec2::new(0.36, 0.13), roll: 20.0, light: v(0.55, 0.42, 0.3) },
+    ]
+}
+
+/// Normals of a plain weave, eight threads each way: tangent space, green up. Seamless.
+fn weave_normal() -> RgbaImage {
+    const THREADS: f64 = 8.0;
+    const SIDE: u32 = 192;
+    let height = |p: DVec2| {
+        let q = p / f64::from(SIDE) * THREADS;
+        let (x, y) = (q.x.rem_euclid(THREADS), q.y.rem_euclid(THREADS));
+        // A thread is round across and rises over every second one it meets.
+        let thread = |across: f64, along: f64, parity: i64| {
+            let round = (1.0 - (2.0 * across.fract() - 1.0).powi(2)).max(0.0).sqrt();
+            let over = (PI * (along + (across.floor() as i64 + parity).rem_euclid(2) as f64)).sin();
+            (0.55 + 0.45 * over) * round
+        };
+        thread(x, y, 0).max(thread(y, x, 1)) * 0.5 / THREADS * f64::from(SIDE)
+    };
+    let pixel = |x: u32, y: u32| {
+        let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let slope = |d: DVec2| (height(p + d) - height(p - d)) / 2.0;
+        let n = v(-slope(DVec2::X), slope(DVec2::Y), 1.0).normalize();
+        let byte = |c: f64| ((c * 0.5 + 0.5) * 255.0).round() as u8;
+        Rgba([byte(n.x), byte(n.y), byte(n.z), 255])
+    };
+    RgbaImage::from_fn(SIDE, SIDE, pixel)
 }
 
 /// Floor, cove and wall, without the lights.

@@ -63,7 +63,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     Format::of(&args.output)?;
     args.limits.install(|| {
         let (document, inputs) = load(args)?;
-        refuse_undrawn(args, &document)?;
+        refuse_incomplete(args, &document)?;
         let target = Target::new(&args.output, &inputs)?;
         let document = scaled(args, document)?;
         let pixels = progress::shown(|progress| match &args.layer {
@@ -92,21 +92,13 @@ fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
     Ok((document, inputs))
 }
 
-/// Layers that documents hold but that are not drawn yet: better a sentence than a picture without them.
-fn refuse_undrawn(args: &RenderArgs, document: &Document) -> Result<()> {
+/// Layers that would paint black for want of what they show: better a sentence.
+fn refuse_incomplete(args: &RenderArgs, document: &Document) -> Result<()> {
     for (path, layer) in document.walk() {
-        let what = match &layer.content {
-            Content::Shading(shading) if !shading.params().model.is_drawn() => shading.params().model.name(),
-            Content::Shading(shading) if layer.visible && shading.params().lacks_environment() => {
-                let reason = format!("is missing; “{}” shows nothing else", shading.params().model.name());
-                return Err(Error::invalid(&args.document, format!("{path}.environment"), reason));
-            }
-            Content::Normals(_) => "normals",
-            _ => continue,
-        };
-        if layer.visible {
-            let reason = format!("{path}: a layer of “{what}” is read and kept, but not drawn yet (hide it to go on)");
-            return Err(Error::unsupported(&args.document, reason));
+        let Content::Shading(shading) = &layer.content else { continue };
+        if layer.visible && shading.params().lacks_environment() {
+            let reason = format!("is missing; “{}” shows nothing else", shading.params().model.name());
+            return Err(Error::invalid(&args.document, format!("{path}.environment"), reason));
         }
     }
     Ok(())

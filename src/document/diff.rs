@@ -2,7 +2,6 @@
 //! and parameters, never pixels.
 //! Floor 4. Conservative: a tile that is not named is the same; a tile that is named may be.
 
-use super::mask::{LayerMask, MaskKind};
 use super::{Content, Document, Layer, LayerId};
 use crate::math::Rect;
 use crate::paint::{Scene, Stroke};
@@ -193,23 +192,9 @@ fn looks_alike(a: &Layer, b: &Layer) -> bool {
         && a.clip_to_surface == b.clip_to_surface
         && match (&a.mask, &b.mask) {
             (None, None) => true,
-            (Some(a), Some(b)) => is_same_mask(a, b),
+            (Some(a), Some(b)) => a.is_same(b),
             _ => false,
         }
-}
-
-fn is_same_mask(a: &LayerMask, b: &LayerMask) -> bool {
-    use MaskKind::{Curvature, Depth, File, Fresnel};
-    let same_kind = match (&a.kind, &b.kind) {
-        (File { coverage: a, .. }, File { coverage: b, .. }) => Arc::ptr_eq(a, b),
-        (Fresnel { f0, power }, Fresnel { f0: f, power: p }) => (f0, power) == (f, p),
-        (Curvature { scale, blur, from, to }, Curvature { scale: s, blur: b, from: f, to: t }) => {
-            (scale, blur, from, to) == (s, b, f, t)
-        }
-        (Depth { from, to }, Depth { from: f, to: t }) => (from, to) == (f, t),
-        _ => false,
-    };
-    same_kind && a.invert == b.invert
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! What was worked out once for a layer and holds until what it was worked out from changes.
 //! Floor 4. Rendered tiles are kept by `live`.
 
-use super::Layer;
+use super::{Layer, normals::Combination};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::shading::RadianceScaling;
-use crate::surface::Scene;
+use crate::surface::{Scene, Surface};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 /// What is known of a layer; shared by its versions.
@@ -15,6 +15,8 @@ pub struct Kept {
     pub look: Memo<(), Encoded>,
     /// The pixels of a paint layer, as a project stores them.
     pub pixels: Memo<(), Encoded>,
+    /// Of a normal layer: the surface with its detail.
+    pub(super) combined: Memo<Combination, Arc<Surface>>,
     /// The greatest luminance.
     pub(super) brightest: Memo<()>,
     /// The factor that restores the mean luminance, for given parameters.

@@ -1,10 +1,10 @@
 //! A layer: how it meets what lies beneath, and what it holds.
 //! Floor 4.
 
-use super::{kept::Kept, live::Live, mask::LayerMask, source::NormalConvention};
+use super::{kept::Kept, live::Live, mask::LayerMask, normals::NormalLayer};
 use crate::math::srgb::Color;
-use crate::paint::{Gradient, PictureSource, PlacedImage, Placement, Stroke};
-use crate::raster::{BlendMode, Outside, TileGrid};
+use crate::paint::{Gradient, PlacedImage, Stroke};
+use crate::raster::{BlendMode, TileGrid};
 use crate::shading::{RadianceScaling, Shading};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -101,18 +101,6 @@ pub struct PixelLayer {
 #[derive(Clone, Default)]
 pub struct StrokeList {
     pub strokes: Vec<Arc<Stroke>>,
-}
-
-/// A detail normal map combined onto the surface: what stands above in its group sees the combined normals.
-#[derive(Clone)]
-pub struct NormalLayer {
-    pub source: PictureSource,
-    /// What the map's numbers mean; found where nothing is said.
-    pub convention: NormalConvention,
-    pub placement: Placement,
-    pub outside: Outside,
-    /// `≥ 0`; 1 is the map as it is.
-    pub strength: f32,
 }
 
 /// Layers flattened together before they meet what lies beneath.

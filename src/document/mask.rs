@@ -89,24 +89,45 @@ fn pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) 
 impl LayerMask {
     /// Multiplies a coverage by the mask. One derived from a surface changes nothing where there is none.
     fn multiply(&self, coverage: Coverage, scene: &Scene, curvature: Option<&Curvature>, at: TileAt) -> Coverage {
+        let needs_surface = !matches!(self.kind, MaskKind::File { .. });
+        if needs_surface && scene.surface.is_none() {
+            return coverage;
+        }
+        coverage.times(pixels(at, |x, y| self.at(scene, curvature, x, y)))
+    }
+    /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived from it.
+    pub(super) fn at(&self, scene: &Scene, curvature: Option<&Curvature>, x: i32, y: i32) -> f32 {
         let way = |v: f32| if self.invert { 1.0 - v } else { v };
-        if let MaskKind::File { coverage: plane, .. } = &self.kind {
-            return coverage.times(pixels(at, |x, y| way(plane.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0))));
+        if let MaskKind::File { coverage, .. } = &self.kind {
+            return way(coverage.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0));
         }
-        let Some(surface) = scene.surface.as_deref() else { return coverage };
-        let on_map = |value: &dyn Fn(usize, usize) -> f32| {
-            let inside = surface.size().rect();
-            let value = |x: i32, y: i32| if inside.contains(x, y) { way(value(x as usize, y as usize)) } else { 0.0 };
-            coverage.clone().times(pixels(at, value))
-        };
+        let Some(surface) = scene.surface.as_deref() else { return 1.0 };
+        if !surface.size().rect().contains(x, y) {
+            return 0.0;
+        }
+        let (x, y) = (x as usize, y as usize);
         match (&self.kind, curvature) {
-            (&MaskKind::Fresnel { f0, power }, _) => on_map(&|x, y| fresnel(surface.normal(x, y).z, f0, power)),
-            (&MaskKind::Depth { from, to }, _) => on_map(&|x, y| ramp(surface.depth(x, y), from, to)),
+            (&MaskKind::Fresnel { f0, power }, _) => way(fresnel(surface.normal(x, y).z, f0, power)),
+            (&MaskKind::Depth { from, to }, _) => way(ramp(surface.depth(x, y), from, to)),
             (&MaskKind::Curvature { scale, from, to, .. }, Some(curvature)) => {
-                on_map(&|x, y| ramp(curvature.kappa(x, y, scale), from, to))
+                way(ramp(curvature.kappa(x, y, scale), from, to))
             }
-            _ => coverage,
+            _ => 1.0,
         }
+    }
+    /// Both cover alike: the same picture by pointer, or the same figures.
+    pub(super) fn is_same(&self, other: &LayerMask) -> bool {
+        use MaskKind::{Curvature, Depth, File, Fresnel};
+        let same_kind = match (&self.kind, &other.kind) {
+            (File { coverage: a, .. }, File { coverage: b, .. }) => Arc::ptr_eq(a, b),
+            (Fresnel { f0, power }, Fresnel { f0: f, power: p }) => (f0, power) == (f, p),
+            (Curvature { scale, blur, from, to }, Curvature { scale: s, blur: b, from: f, to: t }) => {
+                (scale, blur, from, to) == (s, b, f, t)
+            }
+            (Depth { from, to }, Depth { from: f, to: t }) => (from, to) == (f, t),
+            _ => false,
+        };
+        same_kind && self.invert == other.invert
     }
 }
 

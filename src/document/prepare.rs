@@ -1,7 +1,7 @@
 //! A document made ready to be flattened: which layers show, what each is clipped to, which surface each sees.
 //! Floor 4. Done once before the tiles; composing one tile is `compose`.
 
-use super::{Content, Document, Group, Layer, MaskKind, NormalLayer, Progress, content};
+use super::{Content, Document, Group, Layer, MaskKind, Progress, content, normals};
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -102,7 +102,7 @@ impl Builder {
             if let Content::Normals(normals) = &layer.content {
                 // It paints nothing, so it neither is a base nor stands between a base and its clipped layers.
                 if layer.visible {
-                    *scene = scene_above(layer, normals, scene);
+                    *scene = normals::scene_above(layer, normals, scene);
                 }
                 continue;
             }
@@ -152,12 +152,7 @@ impl Builder {
     }
 }
 
-/// What the layers above a normal layer see.
-fn scene_above(_layer: &Layer, _normals: &NormalLayer, beneath: &Scene) -> Scene {
-    beneath.clone()
-}
-
-fn curvature_of_mask(layer: &Layer, scene: &Scene) -> Option<Arc<Curvature>> {
+pub(super) fn curvature_of_mask(layer: &Layer, scene: &Scene) -> Option<Arc<Curvature>> {
     match layer.mask.as_ref()?.kind {
         MaskKind::Curvature { blur, .. } => Some(scene.surface.as_ref()?.curvature(blur)),
         _ => None,

@@ -2,7 +2,7 @@
 //! Floor 4. Live layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
 
 use super::kept::Kept;
-use super::{Content, Document, Group, Layer, Live, MaskKind, PixelLayer, StrokeList};
+use super::{Content, DetailSource, Document, Group, Layer, Live, MaskKind, PixelLayer, StrokeList};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
 use crate::paint::{Brush, Sample, Stroke};
 use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
@@ -78,6 +78,7 @@ impl Scale {
             Content::Shading(live) => {
                 let mut shading = live.params().clone();
                 self.features(&mut shading.features);
+                shading.occlusion_radius_px *= self.length;
                 for light in &mut shading.lights {
                     if let LightKind::Point { position } = &mut light.kind {
                         *position *= self.per_axis.extend(self.length);
@@ -93,6 +94,9 @@ impl Scale {
             Content::Normals(normals) => {
                 let mut normals = normals.clone();
                 normals.placement.center *= self.per_axis;
+                if let DetailSource::Grain(grain) = &mut normals.source {
+                    grain.size_px *= self.length;
+                }
                 Content::Normals(normals)
             }
             Content::Group(group) => {

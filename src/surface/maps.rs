@@ -1,9 +1,10 @@
 //! The surface: normals, depth and coverage in the one convention of the program, whole and finite everywhere.
 //! Floor 2. Not here: files and their conventions (`io::maps`).
 
-use super::{bounds::Bounds, curvature::CurvatureCache, grow, links};
+use super::{bounds::Bounds, curvature::CurvatureCache, grow, links, occlusion::OcclusionCache};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
+use std::sync::Arc;
 
 /// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
 pub struct Maps {
@@ -38,6 +39,9 @@ pub struct Surface {
     links: Plane<u8>,
     depth_range_px: f32,
     curvatures: CurvatureCache,
+    /// What detail was combined onto, if any was: what depth alone tells is its.
+    base: Option<Arc<Surface>>,
+    occlusions: OcclusionCache,
     bounds: Bounds,
 }
 
@@ -78,8 +82,27 @@ impl Surface {
             links,
             depth_range_px,
             curvatures: CurvatureCache::default(),
+            base: None,
+            occlusions: OcclusionCache::default(),
             bounds: Bounds::default(),
         })
+    }
+    /// The same surface with other unit normals (y up), one for each pixel; what depends on depth alone is shared.
+    pub(super) fn with_normals(self: &Arc<Self>, normals: &Plane<Vec3>) -> Self {
+        Self {
+            size: self.size,
+            nbar_x: normals.map(|n| n.x),
+            nbar_y: normals.map(|n| -n.y),
+            nz: normals.map(|n| n.z),
+            depth: self.depth.clone(),
+            coverage: self.coverage.clone(),
+            links: self.links.clone(),
+            depth_range_px: self.depth_range_px,
+            curvatures: CurvatureCache::default(),
+            base: Some(self.base.as_ref().unwrap_or(self).clone()),
+            occlusions: OcclusionCache::default(),
+            bounds: Bounds::default(),
+        }
     }
     pub fn size(&self) -> Size {
         self.size
@@ -128,6 +151,13 @@ impl Surface {
     }
     pub(super) fn curvatures(&self) -> &CurvatureCache {
         &self.curvatures
+    }
+    /// The surface without the detail that was combined onto it.
+    pub(super) fn base(&self) -> &Surface {
+        self.base.as_deref().unwrap_or(self)
+    }
+    pub(super) fn occlusions(&self) -> &OcclusionCache {
+        &self.occlusions
     }
     /// The pixel that holds a canvas point, clamped into the map.
     pub fn pixel_of(&self, q: Vec2) -> (usize, usize) {

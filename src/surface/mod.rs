@@ -6,23 +6,28 @@
 
 pub mod anchor;
 mod bounds;
+pub mod combine;
 pub mod curvature;
 pub mod deformation;
 pub mod differentiate;
 pub mod fit;
 pub mod flow;
+pub mod grain;
 pub mod grow;
 pub mod integrate;
 pub mod links;
 pub mod maps;
+mod occlusion;
 pub mod operator;
 pub mod reach;
 pub mod scene;
 
 pub use anchor::{Anchor, Bend, Weights};
+pub use combine::DetailMap;
 pub use curvature::Curvature;
 pub use deformation::Deformation;
 pub use flow::{Flow, Tensor};
+pub use grain::Grain;
 pub use maps::{Maps, Surface, SurfaceError};
 pub use operator::Operator;
 pub use reach::Reach;

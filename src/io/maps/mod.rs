@@ -4,6 +4,7 @@
 
 mod background;
 mod depth;
+pub mod detail;
 mod encoding;
 pub mod findings;
 mod layers;

@@ -119,7 +119,7 @@ pub fn orient(
 }
 
 /// Two-channel maps rebuild z themselves, so that no other order makes sense.
-fn order_of(channels: [u8; 3], encoding: NormalEncoding) -> [usize; 3] {
+pub(super) fn order_of(channels: [u8; 3], encoding: NormalEncoding) -> [usize; 3] {
     match encoding {
         NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm => [0, 1, 2],
         _ => channels.map(|c| usize::from(c).min(2)),

@@ -7,7 +7,7 @@ use crate::document::kept::Encoded;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };
-use crate::document::{Content, Document, Group, Layer, LayerId, Live, MaskKind, StrokeList};
+use crate::document::{Content, DetailSource, Document, Group, Layer, LayerId, Live, MaskKind, StrokeList};
 use crate::io::exr;
 use crate::paint::{PictureSource, Stroke, Tip};
 use crate::raster::picture::Texels;
@@ -88,7 +88,11 @@ impl Assets {
                 self.source(file, &mut image.source)?;
                 next.content = Content::Image(Live::new(image));
             }
-            Content::Normals(normals) => self.source(file, &mut normals.source)?,
+            Content::Normals(normals) => {
+                if let DetailSource::Map { picture, .. } = &mut normals.source {
+                    self.source(file, picture)?;
+                }
+            }
             Content::Strokes(live) => {
                 let strokes = live.params().strokes.iter().map(|stroke| self.stroke(file, stroke));
                 let strokes = strokes.collect::<Result<_>>()?;

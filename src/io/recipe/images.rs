@@ -4,9 +4,7 @@
 
 use super::Reader;
 use super::names::{FILTERS, OUTSIDES};
-use super::surface::{normal_convention, write_normal_convention};
 use crate::Result;
-use crate::document::{NormalLayer, source::NormalConvention};
 use crate::io::json::{Fields, Node, Object, object};
 use crate::math::{Size, Vec2, srgb::Color, vec2};
 use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
@@ -29,15 +27,6 @@ impl Reader<'_> {
             outside: fields.one_of("outside", &OUTSIDES, Outside::Mirror)?,
             bend: self.bend(fields, placement.center)?,
             filter: fields.one_of("filter", &FILTERS, Filter::Antialias)?,
-        })
-    }
-    pub fn normals(&mut self, fields: &mut Fields) -> Result<NormalLayer> {
-        Ok(NormalLayer {
-            source: self.picture_source(&fields.required("source")?)?,
-            convention: fields.get("convention").map_or(Ok(NormalConvention::default()), |c| normal_convention(&c))?,
-            placement: self.placement(fields)?,
-            outside: fields.one_of("outside", &OUTSIDES, Outside::Repeat)?,
-            strength: fields.number("strength", 1.0, 0.0..=100.0)?,
         })
     }
     /// From the middle of the left side to the middle of the right one, black to white, unless told otherwise.
@@ -176,14 +165,6 @@ pub fn write_image(out: &mut Object, image: &PlacedImage, canvas: Size) {
     out.word("filter", &FILTERS, image.filter, Filter::Antialias);
 }
 
-pub fn write_normals(out: &mut Object, normals: &NormalLayer, canvas: Size) {
-    out.set("source", write_source(&normals.source));
-    write_normal_convention(out, &normals.convention);
-    out.object("placement", write_placement(&normals.placement, canvas));
-    out.word("outside", &OUTSIDES, normals.outside, Outside::Repeat);
-    out.number("strength", normals.strength, 1.0);
-}
-
 pub fn write_gradient(out: &mut Object, gradient: &Gradient) {
     out.set("from", object::point(gradient.from));
     out.set("to", object::point(gradient.to));
@@ -239,7 +220,7 @@ pub fn write_operator(operator: Operator) -> Object {
 }
 
 /// Empty for the placement that covers the canvas.
-fn write_placement(placement: &Placement, canvas: Size) -> Object {
+pub fn write_placement(placement: &Placement, canvas: Size) -> Object {
     let covering = Placement::covering(canvas);
     let mut out = Object::default();
     if placement.center != covering.center {
@@ -250,7 +231,7 @@ fn write_placement(placement: &Placement, canvas: Size) -> Object {
     out
 }
 
-fn write_source(source: &PictureSource) -> Value {
+pub fn write_source(source: &PictureSource) -> Value {
     let plain = Adjust::default();
     let Adjust { blur, exposure, hue, saturation, brightness, contrast } = source.adjust;
     let mut out = Object::default();

@@ -3,7 +3,7 @@
 
 use super::Reader;
 use super::names::{BLEND_SPACES, LOCKS, name_of};
-use super::{images, masks, shading, strokes};
+use super::{images, masks, normals, shading, strokes};
 use crate::document::{Content, Group, Layer, Live, Lock, PixelLayer};
 use crate::io::json::{Fields, Node, Object, object};
 use crate::math::Size;
@@ -133,7 +133,7 @@ fn write_content(out: &mut Object, content: &Content, canvas: Size) {
         Content::Strokes(live) => strokes::write(out, live.params()),
         Content::Shading(live) => shading::write(out, live.params()),
         Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
-        Content::Normals(normals) => images::write_normals(out, normals, canvas),
+        Content::Normals(layer) => normals::write(out, layer, canvas),
         Content::Group(group) => {
             out.flag("pass_through", group.pass_through, false);
             out.set("layers", write(&group.layers, canvas));

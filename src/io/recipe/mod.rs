@@ -16,6 +16,7 @@ mod images;
 mod layers;
 mod masks;
 mod names;
+mod normals;
 mod pictures;
 mod shading;
 mod strokes;

@@ -2,11 +2,14 @@
 //! Floor 5. Decoding is `io::picture`'s.
 
 use super::Source;
+use crate::document::source::NormalConvention;
 use crate::io::json::Node;
+use crate::io::maps::detail;
 use crate::io::{files, picture};
-use crate::math::Size;
+use crate::math::{Size, Vec3};
 use crate::paint::{Adjust, PictureSource};
-use crate::raster::{Picture, Plane, TileGrid};
+use crate::raster::{Picture, Plane, TileGrid, blur};
+use crate::surface::DetailMap;
 use crate::{Error, Result};
 use std::{collections::HashMap, sync::Arc};
 
@@ -18,7 +21,16 @@ pub struct Pictures {
     sources: HashMap<String, Vec<PictureSource>>,
     coverages: HashMap<String, Arc<Plane<u8>>>,
     tiles: HashMap<(String, i32, i32), TileGrid>,
+    details: Vec<Detail>,
     used_px: u64,
+}
+
+/// A detail map as it was read.
+struct Detail {
+    file: String,
+    convention: NormalConvention,
+    blur_px: f32,
+    map: Arc<DetailMap>,
 }
 
 impl Pictures {
@@ -44,6 +56,28 @@ impl Pictures {
         self.spend(source, picture.size)?;
         self.pictures.insert(name.text()?.to_owned(), picture.clone());
         Ok(picture)
+    }
+    /// The detail normals of a picture that a field names, blurred by `blur_px` texels; read anew for each convention.
+    pub fn detail(
+        &mut self,
+        source: Source,
+        name: &Node,
+        convention: &NormalConvention,
+        blur_px: f32,
+    ) -> Result<Arc<DetailMap>> {
+        let file = name.text()?;
+        let is_same = |d: &&Detail| d.file == file && d.convention == *convention && d.blur_px == blur_px;
+        if let Some(known) = self.details.iter().find(is_same) {
+            return Ok(known.map.clone());
+        }
+        let bytes = bytes(source, name)?;
+        let read = detail::read(&source.files.path(file), &bytes, convention, source.budget);
+        let normals = read.map_err(|e| name.led_to(e))?;
+        self.spend(source, normals.size())?;
+        let map = Arc::new(DetailMap::new(blurred(normals, blur_px)));
+        let (file, convention) = (file.to_owned(), convention.clone());
+        self.details.push(Detail { file, convention, blur_px, map: map.clone() });
+        Ok(map)
     }
     /// Counts what a document holds: many pictures, each within its own ceiling, would fill the memory together.
     fn spend(&mut self, source: Source, size: Size) -> Result<()> {
@@ -80,6 +114,13 @@ impl Pictures {
         self.coverages.insert(file.clone(), plane.clone());
         Ok((file, plane))
     }
+}
+
+/// Normals averaged with their neighbours; their lengths do not matter.
+fn blurred(normals: Plane<Vec3>, blur_px: f32) -> Plane<Vec3> {
+    let pixels: Vec<[f32; 3]> = normals.values().iter().map(|n| n.to_array()).collect();
+    let blurred = blur::gaussian_pixels(normals.size(), &pixels, blur_px);
+    Plane::from_values(normals.size(), blurred.into_iter().map(Vec3::from).collect()).unwrap_or(normals)
 }
 
 /// The bytes of a file that a field names. A name that leaves the document's folder is refused before anything is opened.

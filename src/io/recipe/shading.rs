@@ -10,6 +10,7 @@ use crate::shading::{
     Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection, RadianceScaling, Reference,
     Scaling, Shading, Term,
 };
+use crate::surface::Surface;
 use serde_json::{Value, json};
 use std::ops::RangeInclusive;
 
@@ -49,6 +50,11 @@ impl Reader<'_> {
             sphere: self.sphere(fields, "sphere")?,
             sphere_concave: self.sphere(fields, "sphere_concave")?,
             index: fields.number("index", base.index, 0.1..=10.0)?,
+            occlusion_radius_px: fields.number(
+                "occlusion_radius",
+                base.occlusion_radius_px,
+                0.0..=Surface::WIDEST_OCCLUSION_PX,
+            )?,
         })
     }
     fn environment(&mut self, node: &Node) -> Result<Environment> {
@@ -226,6 +232,7 @@ pub fn write(out: &mut Object, shading: &Shading) {
         }
     }
     out.number("index", shading.index, base.index);
+    out.number("occlusion_radius", shading.occlusion_radius_px, base.occlusion_radius_px);
 }
 
 pub fn write_radiance_scaling(out: &mut Object, scaling: &RadianceScaling) {

@@ -6,6 +6,7 @@ mod ashikhmin_environment;
 mod lit_sphere;
 mod lobes;
 mod mirror;
+mod open;
 mod phong;
 mod render;
 mod toon;
@@ -40,10 +41,6 @@ pub enum Model {
 }
 
 impl Model {
-    /// The model is drawn. The others are read and kept in documents, and paint nothing until they are.
-    pub fn is_drawn(self) -> bool {
-        !matches!(self, Model::DiffuseEnvironment | Model::AmbientOcclusion)
-    }
     /// Every model with its name in documents.
     pub const ALL: [(Model, &'static str); 9] = [
         (Model::Phong, "phong"),
@@ -96,7 +93,8 @@ impl Term {
 pub struct Shading {
     pub model: Model,
     pub lights: Vec<Light>,
-    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`].
+    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. Of [`Model::DiffuseEnvironment`] only its scaling
+    /// counts, which scales the occlusion.
     pub ambient: Term,
     /// The matt term.
     pub diffuse: Term,
@@ -120,6 +118,8 @@ pub struct Shading {
     pub sphere_concave: Option<LitSphere>,
     /// Refractive index, `> 0`.
     pub index: f32,
+    /// How far away occluders still count, px; 0 leaves occlusion out.
+    pub occlusion_radius_px: f32,
 }
 
 impl Shading {
@@ -159,6 +159,7 @@ impl Shading {
             sphere: None,
             sphere_concave: None,
             index: 1.5,
+            occlusion_radius_px: 48.0,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A tile of a shading layer: the model's light row by row, encoded and clipped at the end.
 //! Floor 3.
 
-use super::{Model, Shading, ashikhmin, ashikhmin_environment::Samples, lit_sphere, mirror, phong, toon};
+use super::{Model, Shading, ashikhmin, ashikhmin_environment::Samples, lit_sphere, mirror, open, phong, toon};
 use crate::math::{fast, srgb};
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, planar::Row};
 use crate::shading::environment::Environment;
@@ -9,13 +9,12 @@ use crate::shading::ground::{Ground, Light3};
 use crate::surface::Scene;
 
 impl Shading {
-    /// One tile of the material on a scene, opaque wherever there is any surface; `None` where there is none, and for
-    /// a model that is not drawn yet ([`Model::is_drawn`]).
+    /// One tile of the material on a scene, opaque wherever there is any surface; `None` where there is none.
     ///
     /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the first and kept:
     /// [`Shading::warm`] does so ahead.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
-        let surface = scene.surface.as_deref().filter(|_| self.model.is_drawn())?;
+        let surface = scene.surface.as_deref()?;
         let inside = at.rect().intersect(surface.size().rect());
         let features = self.features.on(surface);
         let ground = |y: i32| Ground::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
@@ -46,7 +45,14 @@ impl Shading {
     pub fn warm(&self, scene: &Scene) {
         if let Some(surface) = scene.surface.as_deref() {
             self.features.on(surface);
-            let _ = self.environment.as_ref().map(Environment::surroundings);
+            let surroundings = self.environment.as_ref().map(Environment::surroundings);
+            let shows_occlusion = matches!(self.model, Model::DiffuseEnvironment | Model::AmbientOcclusion);
+            if self.model == Model::DiffuseEnvironment {
+                surroundings.map(|s| s.brightest_matt());
+            }
+            if shows_occlusion && self.occlusion_radius_px > 0.0 {
+                surface.occlusion(self.occlusion_radius_px);
+            }
         }
         if self.model == Model::LitSphere {
             lit_sphere::warm(self);
@@ -59,8 +65,10 @@ impl Shading {
             Model::Ashikhmin => ashikhmin::shade(self, ground, light),
             Model::LitSphere => lit_sphere::shade(self, ground, light),
             Model::Mirror | Model::Refraction => mirror::shade(self, ground, light),
-            // Not drawn: `render_tile` asked.
-            _ => {}
+            Model::DiffuseEnvironment => open::diffuse(self, ground, light),
+            Model::AmbientOcclusion => open::occlusion(self, ground, light),
+            // Its bands look at whole tiles: `render_tile` has drawn it.
+            Model::Toon => {}
         }
     }
 }

@@ -1,0 +1,113 @@
+//! What reaches a point from everywhere: matt under an environment, and ambient occlusion alone (RS sec. 5.3.1, MATH 5).
+//! Floor 3. Occlusion itself is the surface's; the hemisphere's mean light is `environment::irradiance`.
+
+use super::{Shading, lobes};
+use crate::math::{Vec3, srgb};
+use crate::raster::TILE;
+use crate::shading::ground::{Ground, Light3, Pixels, Toward};
+
+/// Adds ρ_d A(p) L̄(n) as the diffuse term, scaled with δ = L̄(n) / max L̄. The scaling of the ambient term, if it has one,
+/// scales the occlusion A on its own, with δ = A.
+pub fn diffuse(shading: &Shading, ground: &Ground, light: &mut Light3) {
+    let (Some(environment), term) = (&shading.environment, &shading.diffuse) else { return };
+    let surroundings = environment.surroundings();
+    let per_brightest = 1.0 / shading.reference.resolve(surroundings.brightest_matt());
+    let tint = Vec3::from(term.linear());
+    let open = scaled_occlusion(shading, ground);
+    let mut seen: Light3 = [[0.0; TILE]; 3];
+    let mut delta = [0.0; TILE];
+    for x in (0..ground.width).filter(|&x| ground.coverage()[x] > 0) {
+        let mean = surroundings.matt(ground.normal_at(x));
+        delta[x] = srgb::luminance(mean.x, mean.y, mean.z) * per_brightest;
+        (seen[0][x], seen[1][x], seen[2][x]) = (mean * tint * open[x]).into();
+    }
+    if !term.is_scaled() {
+        return lobes::add_seen(light, &seen, None);
+    }
+    // The direction that contributes most is the normal's (RS sec. 5.3.1).
+    let kappa = ground.kappa(Toward::Each(&ground.normal[0], &ground.normal[1]));
+    lobes::add_seen(light, &seen, Some((term.scaling, &kappa, &delta)));
+}
+
+/// Adds A(p) as the ambient term, scaled with δ = A.
+pub fn occlusion(shading: &Shading, ground: &Ground, light: &mut Light3) {
+    let open = scaled_occlusion(shading, ground);
+    lobes::add(light, shading.ambient.linear(), &open, None);
+}
+
+/// σ(κ, A) A along the row; A is 1 where no radius is given.
+fn scaled_occlusion(shading: &Shading, ground: &Ground) -> Pixels {
+    let mut open = [1.0; TILE];
+    if shading.occlusion_radius_px > 0.0 {
+        let map = ground.surface.occlusion(shading.occlusion_radius_px);
+        open[..ground.width].copy_from_slice(&map.row(ground.y)[ground.x0..ground.x0 + ground.width]);
+    }
+    let term = &shading.ambient;
+    if term.is_scaled() {
+        let kappa = ground.kappa(Toward::VIEWER);
+        open.iter_mut().zip(&kappa).for_each(|(a, &kappa)| *a *= term.scaling.sigma_fast(kappa, *a));
+    }
+    open
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, srgb::Color, vec3};
+    use crate::raster::Picture;
+    use crate::shading::material::tests::{assert_shows, term};
+    use crate::shading::{Environment, Features, Model, Term};
+
+    /// Light that depends on the height alone: L̄ of 1 + e_y is 1 + ⅔ n_y.
+    fn sky() -> Environment {
+        let row = |y: u32| 1.0 + ((y as f32 + 0.5) / 64.0 * std::f32::consts::PI).cos();
+        let texels = (0..128 * 64).map(|i| [row(i / 128), 0.5 * row(i / 128), 0.7, 1.0]).collect();
+        Environment::new("sky.hdr".into(), Picture::linear(Size::new(128, 64), texels).unwrap())
+    }
+    const CLAY: Color = Color { r: 200, g: 180, b: 160, a: 255 };
+
+    #[test]
+    fn matt_light_is_the_hemispheres_mean_in_its_shade_each_scaled_on_its_own() {
+        for (ambient, lambda) in [(Term::NONE, 0.0), (term(Color::WHITE, 0.0, 0.3, 0.8), 0.5)] {
+            let shading = Shading {
+                environment: Some(sky()),
+                diffuse: term(CLAY, 0.5, 0.4, 1.2),
+                ambient,
+                features: Features { lambda, ..Features::default() },
+                occlusion_radius_px: 12.0,
+                ..Shading::new(Model::DiffuseEnvironment)
+            };
+            assert_shows(&shading, 1.5, |surface, x, y| {
+                let n = surface.normal(x, y);
+                let mean = vec3(1.0 + n.y / 1.5, 0.5 + n.y / 3.0, 0.7);
+                let brightest = srgb::luminance(1.0 + 1.0 / 1.5, 0.5 + 1.0 / 3.0, 0.7);
+                let features = shading.features.on(surface);
+                let open = surface.occlusion(12.0).at(x, y);
+                let open = open * ambient.scaling.sigma(features.at(x, y, Vec3::Z), open);
+                let delta = srgb::luminance(mean.x, mean.y, mean.z) / brightest;
+                Vec3::from(shading.diffuse.linear())
+                    * mean
+                    * open
+                    * shading.diffuse.scaling.sigma(features.at(x, y, n), delta)
+            });
+        }
+    }
+    #[test]
+    fn occlusion_alone_is_the_scaled_open_part() {
+        let shading = Shading {
+            ambient: term(CLAY, 0.9, 0.8, 1.5),
+            occlusion_radius_px: 12.0,
+            ..Shading::new(Model::AmbientOcclusion)
+        };
+        assert_shows(&shading, 1.0, |surface, x, y| {
+            let open = surface.occlusion(12.0).at(x, y);
+            let kappa = shading.features.on(surface).at(x, y, Vec3::Z);
+            Vec3::from(shading.ambient.linear()) * open * shading.ambient.scaling.sigma(kappa, open)
+        });
+    }
+    #[test]
+    fn without_a_radius_nothing_is_hidden() {
+        let shading = Shading { occlusion_radius_px: 0.0, ..Shading::new(Model::AmbientOcclusion) };
+        assert_shows(&shading, 1e-3, |_, _, _| Vec3::ONE);
+    }
+}
