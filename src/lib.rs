@@ -8,8 +8,9 @@
 //!
 //! | floor | module | holds |
 //! |---|---|---|
-//! | 7 | [`cli`] | the subcommands |
-//! | 5 | [`io`] | one file per file format |
+//! | 7 | [`cli`], `app` | the subcommands; the window |
+//! | 6 | [`session`] | the program without its window |
+//! | 5 | [`io`], [`tools`] | one file per file format; one file per tool |
 //! | 4 | [`document`] | layers, content, flattening |
 //! | 3 | [`paint`], [`shading`] | footprints, strokes, gradients, placed images; materials and radiance scaling |
 //! | 2 | [`surface`] | maps, curvature, the operators D_p and D_n, anchors, weights |
@@ -29,7 +30,12 @@ pub mod shading;
 pub mod document;
 
 pub mod io;
+pub mod tools;
 
+pub mod session;
+
+#[cfg(feature = "gui")]
+pub mod app;
 pub mod cli;
 
 pub use error::{Error, Result};

@@ -5,8 +5,10 @@
 mod crash;
 mod info;
 pub mod limits;
+mod open;
 mod progress;
 mod render;
+mod replay;
 mod view;
 
 pub use limits::Limits;
@@ -14,7 +16,10 @@ pub use limits::Limits;
 use crate::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
-use std::{ffi::OsString, process::ExitCode};
+use std::{ffi::OsString, path::PathBuf, process::ExitCode};
+
+/// Opens the window on some files and returns when it is closed. Handed in, for the window stands on the same floor.
+pub type OpenWindow = fn(Vec<PathBuf>) -> Result<()>;
 
 /// Paint over normal and depth maps: brushes, gradients and photos that bend over the shape they are put on.
 #[derive(Parser)]
@@ -27,13 +32,17 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Info(info::InfoArgs),
+    Open(open::OpenArgs),
     Render(render::RenderArgs),
+    Replay(replay::ReplayArgs),
     View(view::ViewArgs),
 }
 
 /// Runs the program on its arguments. Exit code 0; 1 with a sentence on standard error; 2 for a misuse.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let parsed = match Arguments::try_parse_from(arguments) {
+///
+/// `window` opens the window on these files, in a build that has one.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWindow>) -> ExitCode {
+    let parsed = match Arguments::try_parse_from(with_command(arguments.into_iter().collect(), window.is_some())) {
         Ok(parsed) => parsed,
         Err(refusal) => {
             // A closed pipe is no reason to complain about a help page.
@@ -43,7 +52,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let done = crash::caught(|| match parsed.command {
         Some(Command::Info(args)) => info::run(&args),
+        Some(Command::Open(args)) => open::run(args, window),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::View(args)) => view::run(&args),
         None => print(&Arguments::command().render_help().to_string()),
     });
@@ -54,6 +65,18 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Files alone, or nothing at all, open the window: `rilievo open` need not be said.
+fn with_command(mut arguments: Vec<OsString>, has_window: bool) -> Vec<OsString> {
+    let is_file = |word: &OsString| {
+        let is_command = Arguments::command().get_subcommands().any(|command| *word == *command.get_name());
+        !is_command && std::path::Path::new(word).is_file()
+    };
+    if has_window && arguments.get(1).is_none_or(is_file) {
+        arguments.insert(1.min(arguments.len()), "open".into());
+    }
+    arguments
 }
 
 /// Writes to standard output. Whoever closed it has read enough: that is no failure.
@@ -77,6 +100,15 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
+    }
+    #[test]
+    fn files_alone_open_the_window_and_commands_stay_commands() {
+        let said = |words: &[&str]| -> Vec<OsString> { with_command(words.iter().map(Into::into).collect(), true) };
+        assert_eq!(said(&["rilievo"]), ["rilievo", "open"]);
+        assert_eq!(said(&["rilievo", "Cargo.toml"]), ["rilievo", "open", "Cargo.toml"]);
+        assert_eq!(said(&["rilievo", "render", "Cargo.toml"]), ["rilievo", "render", "Cargo.toml"]);
+        assert_eq!(said(&["rilievo", "--help"]), ["rilievo", "--help"]);
+        assert_eq!(said(&["rilievo", "no such file"]), ["rilievo", "no such file"]);
     }
     #[test]
     fn control_characters_are_not_printed() {

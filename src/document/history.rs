@@ -49,6 +49,14 @@ impl History {
         self.past.push(Step { label, document });
         self.done()
     }
+    /// Every edit that was made, oldest first.
+    pub fn past(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.past.iter().map(|step| step.label.as_str())
+    }
+    /// Every edit that was undone, the next to be made again first.
+    pub fn future(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.future.iter().rev().map(|step| step.label.as_str())
+    }
     /// The edit that undo would take back.
     pub fn done(&self) -> Option<&str> {
         self.past.last().map(|step| step.label.as_str())

@@ -117,6 +117,30 @@ impl TileGrid {
             .filter(|&at| differs(self.tile(at), other.tile(at)))
             .collect()
     }
+    /// The same pixels elsewhere: moved by whole pixels, byte for byte.
+    pub fn translated(&self, dx: i32, dy: i32) -> TileGrid {
+        let b = self.bounds();
+        let moved = |v: i32, d: i32| v.saturating_add(d);
+        let to = Rect::new(moved(b.x0, dx), moved(b.y0, dy), moved(b.x1, dx), moved(b.y1, dy));
+        let mut grid = TileGrid::for_rect(to);
+        for at in TileAt::covering(to) {
+            let mut bytes = vec![0u8; TILE * TILE * 4];
+            let from = at.rect();
+            let from = Rect::new(moved(from.x0, -dx), moved(from.y0, -dy), moved(from.x1, -dx), moved(from.y1, -dy));
+            for source in TileAt::covering(from) {
+                let Some(tile) = self.tile(source) else { continue };
+                let area = source.rect().intersect(from);
+                for y in area.y0..area.y1 {
+                    let read = ((y - source.rect().y0) as usize * TILE + (area.x0 - source.rect().x0) as usize) * 4;
+                    let write = ((y - from.y0) as usize * TILE + (area.x0 - from.x0) as usize) * 4;
+                    let n = area.width() * 4;
+                    bytes[write..write + n].copy_from_slice(&tile.bytes()[read..read + n]);
+                }
+            }
+            grid.set(at, Tile::from_pixels(bytes).map(Arc::new));
+        }
+        grid
+    }
     /// Cuts straight-alpha RGBA bytes (`width · height · 4`, row by row) into premultiplied tiles, at a canvas offset.
     pub fn from_straight_rgba(rgba: &[u8], width: usize, height: usize, x: i32, y: i32) -> Self {
         let rect = Rect::new(x, y, x.saturating_add(width as i32), y.saturating_add(height as i32));
@@ -186,6 +210,15 @@ mod tests {
         let grid = TileGrid::from_straight_rgba(&rgba, w, h, -5, 3);
         assert_eq!(grid.to_straight_rgba(Rect::new(-5, 3, 125, 73)), rgba);
         assert_eq!(grid.pixel(-6, 3), [0; 4]);
+    }
+    #[test]
+    fn a_moved_grid_holds_the_same_bytes_elsewhere() {
+        let rgba: Vec<u8> = (0..130 * 70 * 4).map(|i| (i % 249) as u8).collect();
+        let grid = TileGrid::from_straight_rgba(&rgba, 130, 70, -5, 3);
+        let moved = grid.translated(37, -101);
+        for (x, y) in [(-5, 3), (0, 40), (124, 72), (60, 20)] {
+            assert_eq!(moved.pixel(x + 37, y - 101), grid.pixel(x, y));
+        }
     }
     #[test]
     fn a_clone_shares_every_tile_until_one_is_written() {

@@ -7,6 +7,7 @@ mod sheet;
 mod weights;
 
 pub use sheet::sheet;
+pub use weights::color_of as anchor_color;
 
 use super::{Content, Document, Layer};
 use crate::math::{Size, srgb::quantise};

@@ -22,7 +22,7 @@ mod shading;
 mod strokes;
 pub mod surface;
 
-pub use strokes::{preset_names, write_stroke};
+pub use strokes::{preset_brush, preset_names, write_stroke};
 
 use super::json::{self, Fields, Node, Object};
 use super::{Budget, Files, Folder, files, maps};

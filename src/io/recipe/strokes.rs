@@ -29,6 +29,12 @@ pub fn preset_names() -> impl Iterator<Item = &'static str> {
 }
 
 /// A brush that comes with the program, and the operator it is meant for.
+pub fn preset_brush(name: &str) -> Option<(Brush, Operator)> {
+    let (_, text) = PRESETS.iter().find(|(known, _)| *known == name)?;
+    read_preset(text).ok().map(|preset| (preset.brush, preset.operator))
+}
+
+/// A brush that comes with the program, and the operator it is meant for.
 #[derive(Default)]
 struct Preset {
     brush: Brush,

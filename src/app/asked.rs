@@ -1,0 +1,53 @@
+//! What panels ask for: actions that the session does, and things that only a window can do.
+//! Floor 7.
+
+use super::files::Purpose;
+use crate::session::Action;
+use std::path::PathBuf;
+
+/// Pushed by panels, done once a frame.
+#[derive(Default)]
+pub struct Asked {
+    pub actions: Vec<Action>,
+    pub window: Vec<WindowAsk>,
+}
+
+impl Asked {
+    pub fn act(&mut self, action: Action) {
+        self.actions.push(action);
+    }
+    pub fn ask(&mut self, ask: WindowAsk) {
+        self.window.push(ask);
+    }
+}
+
+/// What needs the window: dialogs, other threads, the clipboard.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WindowAsk {
+    NewDialog,
+    OpenDialog,
+    OpenMapsDialog,
+    PlaceDialog,
+    /// Opened on a thread of its own.
+    Open(PathBuf),
+    OpenSample,
+    /// Asks for a file.
+    Choose(Purpose),
+    Save,
+    SaveAs,
+    ExportDialog,
+    /// Asks where to, for a file of this ending.
+    Export(&'static str),
+    /// Asks first where there is unsaved work.
+    Close(usize),
+    Quit,
+    CopyMerged,
+    Paste,
+    Palette,
+    Shortcuts,
+    About,
+    TogglePanels,
+    ToggleTheme,
+    Scale(f32),
+    FullScreen,
+}

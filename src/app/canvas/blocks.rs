@@ -1,0 +1,131 @@
+//! The picture on the graphics card: cut into blocks below any driver's limit, of which only changed parts are sent.
+//! Floor 7.
+
+use crate::math::{Affine2, Rect, Size, vec2};
+use crate::raster::{TILE, TileAt, TileGrid};
+use eframe::egui::{
+    self, Color32, ColorImage, Mesh, Painter, Pos2, Shape, TextureFilter, TextureHandle, TextureOptions,
+    TextureWrapMode, pos2,
+};
+use std::collections::BTreeMap;
+
+/// Side of a block, px: eight tiles. A driver's limit is 2048 at the least; a smaller block is cheaper to shrink again.
+pub const BLOCK: i32 = 512;
+
+/// The blocks of one picture.
+#[derive(Default)]
+pub struct Blocks {
+    size: Option<Size>,
+    textures: BTreeMap<(i32, i32), TextureHandle>,
+    sharp: bool,
+}
+
+impl Blocks {
+    /// Another picture: nothing of the last one stays.
+    pub fn begin(&mut self, size: Size) {
+        if self.size != Some(size) {
+            self.size = Some(size);
+        }
+        self.textures.clear();
+    }
+    /// Sends tiles that changed.
+    pub fn update(&mut self, ctx: &egui::Context, grid: &TileGrid, tiles: impl Iterator<Item = TileAt>) {
+        let Some(size) = self.size else { return };
+        let mut changed: BTreeMap<(i32, i32), Rect> = BTreeMap::new();
+        for at in tiles {
+            let block = (at.rect().x0.div_euclid(BLOCK), at.rect().y0.div_euclid(BLOCK));
+            let area = changed.entry(block).or_insert(Rect::EMPTY);
+            *area = area.union(at.rect());
+        }
+        for (block, area) in changed {
+            let options = self.options();
+            let whole = block_rect(block);
+            match self.textures.get_mut(&block) {
+                Some(texture) => {
+                    let at = [(area.x0 - whole.x0) as usize, (area.y0 - whole.y0) as usize];
+                    texture.set_partial(at, image(grid, area), options);
+                }
+                None if !whole.intersect(size.rect()).is_empty() => {
+                    let texture = ctx.load_texture(format!("canvas {block:?}"), image(grid, whole), options);
+                    self.textures.insert(block, texture);
+                }
+                None => {}
+            }
+        }
+    }
+    /// Pixels as squares, or smooth. The filter belongs to the texture, so one pixel of each is sent again.
+    pub fn set_sharp(&mut self, sharp: bool, grid: &TileGrid) {
+        if self.sharp == sharp {
+            return;
+        }
+        self.sharp = sharp;
+        let options = self.options();
+        for (&block, texture) in &mut self.textures {
+            let whole = block_rect(block);
+            let tile = Rect::new(whole.x0, whole.y0, whole.x0 + 1, whole.y0 + 1);
+            texture.set_partial([0, 0], image(grid, tile), options);
+        }
+    }
+    fn options(&self) -> TextureOptions {
+        let magnification = if self.sharp { TextureFilter::Nearest } else { TextureFilter::Linear };
+        TextureOptions {
+            magnification,
+            minification: TextureFilter::Linear,
+            wrap_mode: TextureWrapMode::ClampToEdge,
+            mipmap_mode: Some(TextureFilter::Linear),
+        }
+    }
+    /// Draws the blocks; `screen_from_canvas` in the window's points.
+    pub fn draw(&self, painter: &Painter, screen_from_canvas: Affine2) {
+        let Some(size) = self.size else { return };
+        for (&block, texture) in &self.textures {
+            let whole = block_rect(block);
+            let shown = whole.intersect(size.rect());
+            let uv = |x: i32, y: i32| pos2((x - whole.x0) as f32 / BLOCK as f32, (y - whole.y0) as f32 / BLOCK as f32);
+            let corners = corners(shown).map(|(x, y)| (on_screen(screen_from_canvas, x, y), uv(x, y)));
+            painter.add(quad(texture.id(), corners, Color32::WHITE));
+        }
+    }
+}
+
+/// A textured quadrilateral, its corners in order around it.
+pub fn quad(texture: egui::TextureId, corners: [(Pos2, Pos2); 4], tint: Color32) -> Shape {
+    let mut mesh = Mesh::with_texture(texture);
+    for (pos, uv) in corners {
+        mesh.vertices.push(egui::epaint::Vertex { pos, uv, color: tint });
+    }
+    mesh.indices = vec![0, 1, 2, 0, 2, 3];
+    Shape::mesh(mesh)
+}
+
+pub fn corners(rect: Rect) -> [(i32, i32); 4] {
+    [(rect.x0, rect.y0), (rect.x1, rect.y0), (rect.x1, rect.y1), (rect.x0, rect.y1)]
+}
+
+pub fn on_screen(screen_from_canvas: Affine2, x: i32, y: i32) -> Pos2 {
+    let p = screen_from_canvas.transform_point2(vec2(x as f32, y as f32));
+    pos2(p.x, p.y)
+}
+
+fn block_rect((col, row): (i32, i32)) -> Rect {
+    Rect::new(col * BLOCK, row * BLOCK, (col + 1) * BLOCK, (row + 1) * BLOCK)
+}
+
+/// Premultiplied pixels of a rectangle, as the graphics card takes them.
+fn image(grid: &TileGrid, rect: Rect) -> ColorImage {
+    let (width, height) = (rect.width(), rect.height());
+    let mut pixels = vec![Color32::TRANSPARENT; width * height];
+    for at in TileAt::covering(rect) {
+        let Some(tile) = grid.tile(at) else { continue };
+        let area = at.rect().intersect(rect);
+        for y in area.y0..area.y1 {
+            let from = ((y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize) * 4;
+            let to = (y - rect.y0) as usize * width + (area.x0 - rect.x0) as usize;
+            let texels = tile.bytes()[from..from + area.width() * 4].as_chunks::<4>().0;
+            for (pixel, &[r, g, b, a]) in pixels[to..].iter_mut().zip(texels) {
+                *pixel = Color32::from_rgba_premultiplied(r, g, b, a);
+            }
+        }
+    }
+    ColorImage::new([width, height], pixels)
+}

@@ -1,0 +1,290 @@
+//! The pen's and the mouse's events on the canvas become actions. Strokes are made of events, one sample each, never of where
+//! the pointer stands when a frame is drawn.
+//! Floor 7.
+
+use crate::math::{Vec2, vec2};
+use crate::paint::Sample;
+use crate::session::actions::{HandAction, PointerAction, ViewAction};
+use crate::session::{Action, Session, View};
+use crate::tools::{Keys, Pen, ToolKind};
+use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Response, TouchPhase, Ui};
+
+/// What the pointer is doing between press and release.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+enum Holding {
+    #[default]
+    Nothing,
+    Drawing,
+    Panning,
+    /// Zooming about the point where it began.
+    Zooming {
+        about: Pos2,
+        moved: bool,
+    },
+    Turning,
+    /// Changing the brush's size from what it was.
+    Sizing {
+        from: Pos2,
+        size: f32,
+    },
+}
+
+/// What is known between frames.
+#[derive(Default)]
+pub struct Hand {
+    holding: Holding,
+    last: Pos2,
+    began_secs: f64,
+    /// The last force that a touch or pen reported.
+    force: Option<f32>,
+    /// Fingers on the canvas: two or more look, they do not paint.
+    fingers: usize,
+    keys: Modifiers,
+    space: bool,
+}
+
+impl Hand {
+    /// The view is being moved: nothing is painted, and no cursor of the brush is shown.
+    pub fn is_looking(&self) -> bool {
+        matches!(self.holding, Holding::Panning | Holding::Zooming { .. } | Holding::Turning) || self.space
+    }
+    /// The tool in hand, or the one a held key lends.
+    pub fn tool(&self, session: &Session) -> ToolKind {
+        let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient);
+        match self.holding {
+            Holding::Nothing if self.space => ToolKind::Hand,
+            Holding::Nothing if self.keys.alt && paints => ToolKind::Eyedropper,
+            _ => session.tool,
+        }
+    }
+    pub fn cursor(&self, session: &Session, on_canvas: bool) -> CursorIcon {
+        match (self.holding, self.tool(session)) {
+            (Holding::Panning | Holding::Turning, _) => CursorIcon::Grabbing,
+            (Holding::Zooming { .. }, _) => CursorIcon::ZoomIn,
+            (Holding::Sizing { .. }, _) => CursorIcon::ResizeHorizontal,
+            (_, ToolKind::Hand) if self.keys.command && self.space => CursorIcon::ZoomIn,
+            (_, ToolKind::Hand) => CursorIcon::Grab,
+            (_, ToolKind::Zoom) if self.keys.alt => CursorIcon::ZoomOut,
+            (_, ToolKind::Zoom) => CursorIcon::ZoomIn,
+            (_, ToolKind::Move | ToolKind::Image) => CursorIcon::Move,
+            // The footprint's outline is the cursor.
+            (_, ToolKind::Brush | ToolKind::Eraser) if on_canvas => CursorIcon::None,
+            _ => CursorIcon::Crosshair,
+        }
+    }
+    /// Reads the events of a frame in their order.
+    pub fn listen(
+        &mut self,
+        ui: &Ui,
+        canvas: &Response,
+        session: &Session,
+        view: &View,
+        middle: Pos2,
+        actions: &mut Vec<Action>,
+    ) {
+        let (events, now_secs, space) = ui.input(|i| (i.events.clone(), i.time, i.key_down(Key::Space)));
+        self.space = space
+            && (canvas.contains_pointer() || self.holding != Holding::Nothing)
+            && !ui.ctx().egui_wants_keyboard_input();
+        self.keys = ui.input(|i| i.modifiers);
+        let mut listening = Listening { session, view: *view, middle, now_secs, actions, pens: Vec::new() };
+        let ours = |pos: Pos2| canvas.rect.contains(pos) && ui.ctx().layer_id_at(pos) == Some(canvas.layer_id);
+        if let Some(touch) = ui.input(|i| i.multi_touch()).filter(|touch| canvas.rect.contains(touch.center_pos)) {
+            self.two_fingers(
+                touch.translation_delta,
+                touch.zoom_delta,
+                touch.rotation_delta,
+                touch.center_pos,
+                &mut listening,
+            );
+        }
+        for event in events {
+            match event {
+                Event::Touch { phase, force, .. } => {
+                    match phase {
+                        TouchPhase::Start => self.fingers += 1,
+                        TouchPhase::End | TouchPhase::Cancel => self.fingers = self.fingers.saturating_sub(1),
+                        TouchPhase::Move => {}
+                    }
+                    self.force = force.filter(|_| self.fingers > 0);
+                }
+                Event::PointerButton { pos, button, pressed: true, .. } if ours(pos) && self.fingers < 2 => {
+                    self.press(pos, button, &mut listening);
+                }
+                Event::PointerMoved(pos) => self.moved(pos, &mut listening),
+                Event::PointerButton { pos, pressed: false, .. } => {
+                    self.moved(pos, &mut listening);
+                    self.release(&mut listening);
+                }
+                Event::Key { key: Key::Escape, pressed: true, .. } if self.holding == Holding::Drawing => {
+                    self.holding = Holding::Nothing;
+                    listening.pens.clear();
+                    listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
+                }
+                Event::MouseWheel { unit, delta, modifiers, .. } if canvas.contains_pointer() => {
+                    wheel(unit, delta, modifiers, self.last, &mut listening);
+                }
+                Event::Zoom(factor) if canvas.contains_pointer() => listening.zoom(factor, self.last),
+                _ => {}
+            }
+        }
+        listening.flush();
+    }
+    fn press(&mut self, pos: Pos2, button: PointerButton, listening: &mut Listening) {
+        if self.holding != Holding::Nothing {
+            return;
+        }
+        (self.last, self.began_secs) = (pos, listening.now_secs);
+        let session = listening.session;
+        let tool = self.tool(session);
+        let is_brush = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
+        self.holding = match (button, tool) {
+            (PointerButton::Middle, _) => Holding::Panning,
+            (PointerButton::Secondary, _) if is_brush => Holding::Sizing { from: pos, size: session.brush.size },
+            (PointerButton::Primary, ToolKind::Hand) if self.space && self.keys.command => {
+                Holding::Zooming { about: pos, moved: false }
+            }
+            (PointerButton::Primary, ToolKind::Hand) if self.keys.shift => Holding::Turning,
+            (PointerButton::Primary, ToolKind::Hand) => Holding::Panning,
+            (PointerButton::Primary, ToolKind::Zoom) => Holding::Zooming { about: pos, moved: false },
+            (PointerButton::Primary, _) => {
+                let (pen, px_per_pt) = (self.pen(pos, listening), 1.0 / listening.view.zoom);
+                listening.actions.push(Action::Pointer(PointerAction::Press { tool, pen, px_per_pt }));
+                Holding::Drawing
+            }
+            _ => Holding::Nothing,
+        };
+    }
+    fn moved(&mut self, pos: Pos2, listening: &mut Listening) {
+        let by = pos - self.last;
+        if by == eframe::egui::Vec2::ZERO {
+            return;
+        }
+        match self.holding {
+            Holding::Nothing => {}
+            Holding::Drawing => {
+                let pen = self.pen(pos, listening);
+                listening.pens.push(pen);
+            }
+            Holding::Panning => listening.view(ViewAction::Pan { by: vec2(by.x, by.y) }),
+            Holding::Zooming { about, .. } => {
+                self.holding = Holding::Zooming { about, moved: true };
+                listening.zoom(((by.x - by.y) * 0.01).exp(), about);
+            }
+            Holding::Turning => {
+                let turn = |p: Pos2| (p - listening.middle).angle();
+                listening.view(ViewAction::Turn { by_rad: turn(pos) - turn(self.last) });
+            }
+            Holding::Sizing { from, size } => {
+                let to = (size * ((pos.x - from.x) * 0.01).exp()).max(1.0);
+                listening.actions.push(Action::Hand(HandAction::Size { to }));
+            }
+        }
+        self.last = pos;
+    }
+    fn release(&mut self, listening: &mut Listening) {
+        match self.holding {
+            Holding::Drawing => {
+                listening.flush();
+                listening.actions.push(Action::Pointer(PointerAction::Release {}));
+            }
+            Holding::Zooming { about, moved: false } => {
+                let factor = if self.keys.alt { 1.0 / 1.5 } else { 1.5 };
+                listening.zoom(factor, about);
+            }
+            _ => {}
+        }
+        self.holding = Holding::Nothing;
+    }
+    fn two_fingers(
+        &mut self,
+        by: eframe::egui::Vec2,
+        zoom: f32,
+        turn_rad: f32,
+        about: Pos2,
+        listening: &mut Listening,
+    ) {
+        if self.holding == Holding::Drawing {
+            listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
+        }
+        self.holding = Holding::Nothing;
+        listening.view(ViewAction::Pan { by: vec2(by.x, by.y) });
+        listening.zoom(zoom, about);
+        if turn_rad != 0.0 {
+            listening.view(ViewAction::Turn { by_rad: turn_rad });
+        }
+    }
+    fn pen(&self, pos: Pos2, listening: &Listening) -> Pen {
+        let sample = Sample {
+            at: listening.on_canvas(pos),
+            pressure: self.force.unwrap_or(1.0).clamp(0.0, 1.0),
+            tilt: Vec2::ZERO,
+            time_secs: (listening.now_secs - self.began_secs).max(0.0) as f32,
+        };
+        let keys = Keys { shift: self.keys.shift, ctrl: self.keys.command, alt: self.keys.alt };
+        Pen { sample, keys }
+    }
+}
+
+/// One frame's listening.
+struct Listening<'a> {
+    session: &'a Session,
+    /// As it is after the actions so far.
+    view: View,
+    middle: Pos2,
+    now_secs: f64,
+    actions: &'a mut Vec<Action>,
+    /// Readings not yet pushed: all of a frame go together.
+    pens: Vec<Pen>,
+}
+
+impl Listening<'_> {
+    fn seen_from_middle(&self, pos: Pos2) -> Vec2 {
+        vec2(pos.x - self.middle.x, pos.y - self.middle.y)
+    }
+    fn on_canvas(&self, pos: Pos2) -> Vec2 {
+        self.view.canvas_from_screen().transform_point2(self.seen_from_middle(pos))
+    }
+    fn view(&mut self, action: ViewAction) {
+        self.actions.push(Action::View(action));
+    }
+    fn zoom(&mut self, factor: f32, about: Pos2) {
+        if factor.is_finite() && factor > 0.0 && factor != 1.0 {
+            let about = self.seen_from_middle(about);
+            self.view = self.view.zoomed(factor, about);
+            self.view(ViewAction::Zoom { factor, about });
+        }
+    }
+    fn flush(&mut self) {
+        let pens = std::mem::take(&mut self.pens);
+        if !pens.is_empty() {
+            self.actions.push(Action::Pointer(PointerAction::Drag { pens }));
+        }
+    }
+}
+
+/// The wheel zooms to the pointer; with Shift it pans sideways, with Alt up and down; a trackpad's fingers pan.
+fn wheel(
+    unit: eframe::egui::MouseWheelUnit,
+    delta: eframe::egui::Vec2,
+    keys: Modifiers,
+    at: Pos2,
+    listening: &mut Listening,
+) {
+    use eframe::egui::MouseWheelUnit::{Line, Page, Point};
+    let points = match unit {
+        Line => delta * 40.0,
+        Page => delta * 400.0,
+        Point => delta,
+    };
+    let is_trackpad = unit == Point && !keys.command;
+    if is_trackpad {
+        listening.view(ViewAction::Pan { by: vec2(points.x, points.y) });
+    } else if keys.shift {
+        listening.view(ViewAction::Pan { by: vec2(points.x + points.y, 0.0) });
+    } else if keys.alt {
+        listening.view(ViewAction::Pan { by: vec2(0.0, points.x + points.y) });
+    } else {
+        listening.zoom((points.y * 0.005).exp(), at);
+    }
+}

@@ -1,0 +1,83 @@
+//! What lies over the picture: the brush's bent footprint, anchors, a gradient's ends.
+//! Floor 7.
+
+use crate::document::Content;
+use crate::math::{Affine2, Vec2};
+use crate::session::Session;
+use crate::tools::{ToolKind, anchors, outline};
+use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2};
+
+/// Draws the marks of the tool in hand; `under`: the canvas point under the pointer.
+pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, under: Option<Vec2>, tool: ToolKind) {
+    let to_screen = |p: Vec2| {
+        let p = screen_from_canvas.transform_point2(p);
+        pos2(p.x, p.y)
+    };
+    if matches!(tool, ToolKind::Anchors | ToolKind::Gradient | ToolKind::Image) {
+        handles(painter, session, &to_screen);
+    }
+    let (Some(at), Some(document)) = (under, session.shown()) else { return };
+    match tool {
+        ToolKind::Brush | ToolKind::Eraser => {
+            let radius = (0.5 * session.brush.size).max(0.5);
+            let lines = outline::outline(document, session.operator, at, radius);
+            let lines: Vec<[Pos2; 2]> = lines.into_iter().map(|line| line.map(to_screen)).collect();
+            // Dark beneath light, so that it is seen on any picture.
+            for stroke in
+                [Stroke::new(2.4, Color32::from_black_alpha(120)), Stroke::new(1.1, Color32::from_white_alpha(230))]
+            {
+                painter.extend(lines.iter().map(|&line| Shape::line_segment(line, stroke)));
+            }
+            let center = to_screen(at);
+            painter.circle_filled(center, 2.2, Color32::from_black_alpha(140));
+            painter.circle_filled(center, 1.2, Color32::WHITE);
+        }
+        ToolKind::Eyedropper => {
+            painter.circle_stroke(to_screen(at), 14.0, Stroke::new(4.0, color32(session.color)));
+            painter.circle_stroke(to_screen(at), 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
+        }
+        _ => {}
+    }
+}
+
+pub fn color32(color: crate::math::srgb::Color) -> Color32 {
+    Color32::from_rgba_unmultiplied(color.r, color.g, color.b, color.a)
+}
+
+/// The handles of the selected layer, and a line from each anchor to the content pinned there.
+fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let Some(layer) = session.layer() else { return };
+    let line = Stroke::new(1.2, Color32::from_white_alpha(200));
+    match &layer.content {
+        Content::Gradient(live) => {
+            let (from, to) = (to_screen(live.params().from), to_screen(live.params().to));
+            painter.line_segment([from, to], Stroke::new(3.0, Color32::from_black_alpha(110)));
+            painter.line_segment([from, to], line);
+        }
+        Content::Image(live) => {
+            for anchor in live.params().bend.anchors.iter().filter(|anchor| anchor.at != anchor.source) {
+                let (from, to) = (to_screen(anchor.at), to_screen(anchor.source));
+                painter.extend(Shape::dashed_line(
+                    &[from, to],
+                    Stroke::new(1.0, Color32::from_white_alpha(140)),
+                    5.0,
+                    4.0,
+                ));
+                painter.circle_stroke(to, 3.0, Stroke::new(1.0, Color32::from_white_alpha(160)));
+            }
+        }
+        _ => {}
+    }
+    for (i, handle) in anchors::handles(layer).into_iter().enumerate() {
+        let at = to_screen(handle);
+        painter.circle_filled(at, 7.0, Color32::from_black_alpha(130));
+        painter.circle_filled(at, 5.5, anchor_color(i));
+        painter.circle_stroke(at, 5.5, Stroke::new(1.4, Color32::WHITE));
+    }
+}
+
+/// The colours by which anchors are told apart, here and in their insets (SF fig. 9).
+pub fn anchor_color(index: usize) -> Color32 {
+    let [r, g, b] = crate::document::view::anchor_color(index).to_array().map(crate::math::srgb::quantise);
+    Color32::from_rgb(r, g, b)
+}

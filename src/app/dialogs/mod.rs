@@ -1,0 +1,90 @@
+//! Dialogs: one at a time, over the window. Each is a struct that holds what was typed and a function that shows it.
+//! Floor 7.
+
+pub mod export;
+pub mod help;
+pub mod import;
+pub mod new;
+pub mod palette;
+pub mod path;
+pub mod unsaved;
+
+use super::asked::{Asked, WindowAsk};
+use super::files::Purpose;
+use crate::document::SurfaceSource;
+use crate::session::Session;
+use eframe::egui::{self, Id, Modal, Ui};
+use std::path::PathBuf;
+
+/// The dialog that is open.
+pub enum Dialog {
+    New(new::New),
+    Export(export::Export),
+    Import(Box<import::Import>),
+    Path(path::PathDialog),
+    Unsaved(unsaved::Unsaved),
+    Palette(palette::Palette),
+    Shortcuts(String),
+    About,
+}
+
+/// What a dialog came to.
+pub enum Answer {
+    /// It stays open.
+    Open,
+    Close,
+    Chosen(Purpose, PathBuf),
+    /// These maps are to be read.
+    Import(Box<SurfaceSource>),
+    /// The document that was made of them.
+    Imported(import::Made),
+    /// Lose what is not saved, and do this.
+    Discard(Then),
+    /// Save first, then do this.
+    SaveThen(Then),
+    Ask(WindowAsk),
+}
+
+/// What follows a question about unsaved work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Then {
+    Close(usize),
+    Quit,
+}
+
+impl Dialog {
+    /// Shows the dialog; escape and a click beside it close it.
+    pub fn show(&mut self, ctx: &egui::Context, session: &Session, asked: &mut Asked) -> Answer {
+        let modal = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
+            ui.spacing_mut().item_spacing.y = 7.0;
+            match self {
+                Dialog::New(new) => new.show(ui, asked),
+                Dialog::Export(export) => export.show(ui, session),
+                Dialog::Import(import) => import.show(ui),
+                Dialog::Path(path) => path.show(ui),
+                Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
+                Dialog::Palette(palette) => palette.show(ui, session, asked),
+                Dialog::Shortcuts(filter) => help::shortcuts(ui, filter),
+                Dialog::About => help::about(ui),
+            }
+        });
+        if modal.should_close() && matches!(modal.inner, Answer::Open) { Answer::Close } else { modal.inner }
+    }
+}
+
+/// The two buttons at a dialog's foot, the affirmative one last; true for it, false for the other.
+fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
+    let mut answer = None;
+    ui.add_space(4.0);
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let enter = ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let strong = egui::Button::new(egui::RichText::new(yes).strong()).fill(ui.visuals().selection.bg_fill);
+        if ui.add_enabled(can, strong).clicked() || (enter && can) {
+            answer = Some(true);
+        }
+        if ui.button("Cancel").clicked() {
+            answer = Some(false);
+        }
+    });
+    answer
+}

@@ -1,0 +1,88 @@
+//! Asking for a file: the system's own dialog, or one of the window where the system has none.
+//! Floor 7.
+
+use super::jobs::{Done, Jobs};
+use crate::io::export::Format;
+use crate::session::storage::{DOCUMENTS, PICTURES};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// What the file is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    Open,
+    Place,
+    NormalMap,
+    DepthMap,
+    MaskMap,
+    Save,
+    Export,
+}
+
+impl Purpose {
+    pub fn title(self) -> &'static str {
+        match self {
+            Purpose::Open => "Open",
+            Purpose::Place => "Place an image",
+            Purpose::NormalMap => "Normal map",
+            Purpose::DepthMap => "Depth map",
+            Purpose::MaskMap => "Mask",
+            Purpose::Save => "Save as",
+            Purpose::Export => "Export the picture",
+        }
+    }
+    pub fn is_saving(self) -> bool {
+        matches!(self, Purpose::Save | Purpose::Export)
+    }
+    /// The endings of files to choose from, each with what they are called together.
+    pub fn filters(self) -> Vec<(&'static str, Vec<&'static str>)> {
+        let pictures = || PICTURES.to_vec();
+        match self {
+            Purpose::Open => vec![
+                ("Everything that opens", [DOCUMENTS.to_vec(), pictures()].concat()),
+                ("Documents", DOCUMENTS.to_vec()),
+                ("Pictures and maps", pictures()),
+            ],
+            Purpose::Place | Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap => {
+                vec![("Pictures", pictures())]
+            }
+            Purpose::Save => vec![("Documents", DOCUMENTS.to_vec())],
+            Purpose::Export => vec![("Pictures", Format::ALL.iter().map(|(_, ending)| *ending).collect())],
+        }
+    }
+}
+
+/// A dialog that comes back this soon without an answer was never shown: there is no portal.
+const NEVER_SHOWN: Duration = Duration::from_millis(60);
+
+/// What the system's dialog came to.
+pub enum Answer {
+    File(PathBuf),
+    Cancelled,
+    /// There is no such dialog here.
+    Nowhere,
+}
+
+/// Asks with the system's dialog, on another thread. [`Done::Chosen`] with `None` means that there is none.
+pub fn ask(jobs: &mut Jobs, purpose: Purpose, name: &str) {
+    let name = name.to_owned();
+    jobs.start(purpose.title().into(), move || match system_dialog(purpose, &name) {
+        Answer::File(file) => Done::Chosen(purpose, Some(file)),
+        Answer::Cancelled => Done::Cancelled,
+        Answer::Nowhere => Done::Chosen(purpose, None),
+    });
+}
+
+fn system_dialog(purpose: Purpose, name: &str) -> Answer {
+    let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
+    for (label, endings) in purpose.filters() {
+        dialog = dialog.add_filter(label, &endings);
+    }
+    let asked = Instant::now();
+    let file = if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
+    match file {
+        Some(file) => Answer::File(file),
+        None if asked.elapsed() < NEVER_SHOWN => Answer::Nowhere,
+        None => Answer::Cancelled,
+    }
+}

@@ -1,0 +1,116 @@
+//! The bar above the canvas: the operator with its numbers, and the options of the tool in hand.
+//! Floor 7.
+
+use crate::app::asked::Asked;
+use crate::app::commands::operators;
+use crate::app::widgets::{Changed, Number};
+use crate::document::Content;
+use crate::session::actions::hand::SIZES;
+use crate::session::actions::{HandAction, LayerAction};
+use crate::session::{Action, LayerPath, Property, Session};
+use crate::surface::Operator;
+use crate::tools::ToolKind;
+use eframe::egui::{Button, RichText, Ui};
+
+/// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the hand's.
+enum Whose {
+    Hand,
+    Layer(LayerPath),
+}
+
+fn whose(session: &Session) -> (Whose, Operator) {
+    let of_layer = matches!(session.tool, ToolKind::Image | ToolKind::Anchors | ToolKind::Move | ToolKind::Gradient);
+    let operator = session.layer().filter(|_| of_layer).and_then(|layer| match &layer.content {
+        Content::Image(live) => Some(live.params().bend.operator),
+        Content::Gradient(live) => Some(live.params().operator),
+        _ => None,
+    });
+    match (operator, session.layer_path()) {
+        (Some(operator), Some(path)) => (Whose::Layer(path), operator),
+        _ => (Whose::Hand, session.operator),
+    }
+}
+
+fn set(asked: &mut Asked, whose: &Whose, operator: Changed<Operator>) {
+    let Changed { to, done } = operator;
+    asked.act(match whose {
+        Whose::Hand => Action::Hand(HandAction::Operator { operator: to }),
+        Whose::Layer(layer) => {
+            Action::Layer(LayerAction::Set { layer: layer.clone(), to: Property::Bend { operator: to }, done })
+        }
+    });
+}
+
+pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    ui.horizontal_wrapped(|ui| {
+        let (whose, operator) = whose(session);
+        let about = match whose {
+            Whose::Hand => "New marks",
+            Whose::Layer(_) => "Selected layer",
+        };
+        ui.label(RichText::new(about).weak());
+        for (label, begins, hint) in operators() {
+            let is_on = std::mem::discriminant(&operator) == std::mem::discriminant(&begins);
+            if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
+                set(asked, &whose, Changed { to: begins, done: true });
+            }
+        }
+        ui.add_space(6.0);
+        if let Some(changed) = numbers(ui, operator) {
+            set(asked, &whose, changed);
+        }
+        if matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) {
+            ui.separator();
+            brush(ui, session, asked);
+        }
+    });
+}
+
+/// The live sliders of an operator, in a bar.
+fn numbers(ui: &mut Ui, operator: Operator) -> Option<Changed<Operator>> {
+    numbers_by(operator, |number, value| number.inline(ui, value, 96.0))
+}
+
+/// The same, one below the other.
+pub fn number_rows(ui: &mut Ui, operator: Operator) -> Option<Changed<Operator>> {
+    numbers_by(operator, |number, value| number.row(ui, value))
+}
+
+fn numbers_by(
+    operator: Operator,
+    mut show: impl FnMut(Number<'static>, f32) -> Option<Changed<f32>>,
+) -> Option<Changed<Operator>> {
+    let alphas = || Number::new("α", -1.5..=1.5, "Strength: a mirror above 0, flat at 0, glass below");
+    let betas = || Number::new("β", 0.0..=5.0, "How much faster the middle of the surface bends than its rim");
+    let details = || Number::new("Detail", 0.0..=2.0, "How much small bumps bend the image beyond the large form");
+    match operator {
+        Operator::None => None,
+        Operator::Depth { gamma } => {
+            let gammas = Number::new("γ", 0.0..=4.0, "How strongly the texture follows the depth");
+            show(gammas, gamma).map(|changed| changed.map(|gamma| Operator::Depth { gamma }))
+        }
+        Operator::Normal { alpha, beta, detail } => {
+            let (a, b, d) = (show(alphas(), alpha), show(betas(), beta), show(details(), detail));
+            a.map(|changed| changed.map(|alpha| Operator::Normal { alpha, beta, detail }))
+                .or(b.map(|changed| changed.map(|beta| Operator::Normal { alpha, beta, detail })))
+                .or(d.map(|changed| changed.map(|detail| Operator::Normal { alpha, beta, detail })))
+        }
+        Operator::Reflection { alpha, detail } => {
+            let (a, d) = (show(alphas(), alpha), show(details(), detail));
+            a.map(|changed| changed.map(|alpha| Operator::Reflection { alpha, detail }))
+                .or(d.map(|changed| changed.map(|detail| Operator::Reflection { alpha, detail })))
+        }
+    }
+}
+
+fn brush(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    let brush = &session.brush;
+    let mut push = |action: Option<HandAction>| asked.actions.extend(action.map(Action::Hand));
+    let size =
+        Number::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab ([ and ], or drag with the right button)").px();
+    push(size.inline(ui, brush.size, 90.0).map(|c| HandAction::Size { to: c.to }));
+    let opacity = Number::new("Opacity", 0.0..=1.0, "Of the whole stroke");
+    push(opacity.inline(ui, brush.opacity, 60.0).map(|c| HandAction::Opacity { to: c.to }));
+    let hardness = Number::new("Hardness", 0.0..=1.0, "How much of the dab is fully covered (Shift with [ and ])");
+    push(hardness.inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }));
+}

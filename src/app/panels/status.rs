@@ -1,0 +1,48 @@
+//! The line at the bottom: zoom, the place under the pointer with what the maps hold there, how long the last redraw took, and
+//! what the tool in hand does.
+//! Floor 7.
+
+use crate::app::asked::{Asked, WindowAsk};
+use crate::app::canvas::Canvas;
+use crate::session::Session;
+use eframe::egui::{self, Button, RichText, Ui};
+
+pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, asked: &mut Asked) {
+    ui.horizontal(|ui| {
+        let Some(tab) = session.tab() else {
+            ui.weak("Open a document, or drop a picture or a normal map on the window");
+            return;
+        };
+        let document = tab.shown();
+        let percent = tab.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
+        if ui
+            .add(Button::new(format!("{percent:.0} %")).frame(false))
+            .on_hover_text("Click for actual pixels")
+            .clicked()
+        {
+            asked.ask(WindowAsk::Scale(1.0));
+        }
+        ui.weak(document.size.to_string());
+        ui.separator();
+        if let Some(at) = canvas.under {
+            let (x, y) = (at.x.floor().max(0.0) as usize, at.y.floor().max(0.0) as usize);
+            ui.label(RichText::new(format!("{x}, {y}")).monospace());
+            if let Some(surface) = document.surface.as_deref().filter(|s| s.coverage(x, y) > 0) {
+                let n = surface.normal(x, y);
+                let about = format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
+                ui.label(RichText::new(about).monospace())
+                    .on_hover_text("The surface's normal and depth under the pointer");
+            }
+        } else {
+            ui.weak(session.tool.row().hint);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
+            let text = if canvas.is_busy { RichText::new("Painting…").weak() } else { RichText::new(took).weak() };
+            ui.label(text).on_hover_text("How long the last redraw took");
+            if document.surface.is_none() {
+                ui.weak("No surface: marks lie flat");
+            }
+        });
+    });
+}

@@ -1,0 +1,47 @@
+//! The strip of tools, and the two colours in hand.
+//! Floor 7.
+
+use crate::app::asked::Asked;
+use crate::app::icons::{Icon, icon_button, sized_button};
+use crate::app::widgets::swatch;
+use crate::session::actions::HandAction;
+use crate::session::{Action, Session};
+use crate::tools::ToolKind;
+use eframe::egui::{Ui, vec2};
+
+pub fn icon(tool: ToolKind) -> Icon {
+    match tool {
+        ToolKind::Brush => Icon::Brush,
+        ToolKind::Eraser => Icon::Eraser,
+        ToolKind::Gradient => Icon::Gradient,
+        ToolKind::Image => Icon::Image,
+        ToolKind::Anchors => Icon::Anchors,
+        ToolKind::Move => Icon::Move,
+        ToolKind::Eyedropper => Icon::Eyedropper,
+        ToolKind::Hand => Icon::Hand,
+        ToolKind::Zoom => Icon::Zoom,
+    }
+}
+
+pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    ui.vertical_centered(|ui| {
+        ui.add_space(2.0);
+        for row in &ToolKind::ALL {
+            let response = sized_button(ui, icon(row.kind), row.label, session.tool == row.kind, 32.0);
+            if response.on_hover_text(format!("{} ({})\n{}", row.label, row.key, row.hint)).clicked() {
+                asked.act(Action::Hand(HandAction::Tool { tool: row.kind }));
+            }
+        }
+        ui.add_space(8.0);
+        swatch(ui, "First colour", session.color, vec2(32.0, 26.0));
+        if swatch(ui, "Second colour", session.second_color, vec2(32.0, 16.0)).clicked() {
+            asked.act(Action::Hand(HandAction::SwapColors {}));
+        }
+        if icon_button(ui, Icon::Swap, "Swap colours", false).on_hover_text("Swap colours (X)").clicked() {
+            asked.act(Action::Hand(HandAction::SwapColors {}));
+        }
+        if icon_button(ui, Icon::Reset, "Default colours", false).on_hover_text("Black and white (D)").clicked() {
+            asked.act(Action::Hand(HandAction::DefaultColors {}));
+        }
+    });
+}

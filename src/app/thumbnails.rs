@@ -1,0 +1,116 @@
+//! Thumbnails of layers, painted on a thread of their own, each once for each version of its layer.
+//! Floor 7.
+
+use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layer};
+use crate::raster::TileGrid;
+use crate::surface::Surface;
+use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2, vec2};
+use std::collections::HashMap;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Weak};
+
+/// The longer side of a thumbnail, px.
+const SIDE: u32 = 64;
+
+/// A layer to be painted small.
+struct Order {
+    layer: Arc<Layer>,
+    document: Document,
+}
+
+/// A layer, painted small.
+struct Small {
+    id: LayerId,
+    image: ColorImage,
+}
+
+/// The thumbnails there are, and the thread that makes them.
+pub struct Thumbnails {
+    orders: Sender<Order>,
+    done: Receiver<Small>,
+    made: HashMap<LayerId, TextureHandle>,
+    /// Which version of a layer was ordered last.
+    ordered: HashMap<LayerId, Weak<Layer>>,
+}
+
+impl Thumbnails {
+    pub fn new(ctx: &egui::Context) -> Self {
+        let (orders, coming) = channel::<Order>();
+        let (finished, done) = channel();
+        let waker = ctx.clone();
+        let work = move || {
+            let mut maker = Maker::default();
+            while let Ok(order) = coming.recv() {
+                // Of a layer that changes while it waits, only the last version counts.
+                let mut latest: HashMap<LayerId, Order> = HashMap::from([(order.layer.id, order)]);
+                latest.extend(coming.try_iter().map(|order| (order.layer.id, order)));
+                for order in latest.into_values() {
+                    let Some(small) = maker.make(&order) else { continue };
+                    if finished.send(small).is_err() {
+                        return;
+                    }
+                    waker.request_repaint();
+                }
+            }
+        };
+        // Without a thread there are no thumbnails, only icons.
+        let _ = std::thread::Builder::new().name("thumbnails".into()).spawn(work);
+        Self { orders, done, made: HashMap::new(), ordered: HashMap::new() }
+    }
+    /// Takes what was made.
+    pub fn collect(&mut self, ctx: &egui::Context) {
+        for Small { id, image } in self.done.try_iter() {
+            let texture = ctx.load_texture(format!("layer {id:?}"), image, TextureOptions::LINEAR);
+            self.made.insert(id, texture);
+        }
+    }
+    /// The thumbnail of a layer, of its last version as soon as that is made. Adjustments have none.
+    pub fn of(&mut self, _ctx: &egui::Context, document: &Document, layer: &Arc<Layer>) -> Option<(TextureId, Vec2)> {
+        if matches!(layer.content, Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_)) {
+            return None;
+        }
+        let is_ordered = self.ordered.get(&layer.id).is_some_and(|known| known.as_ptr() == Arc::as_ptr(layer));
+        if !is_ordered {
+            self.ordered.insert(layer.id, Arc::downgrade(layer));
+            let alone = Document { layers: vec![layer.clone()], ..document.clone() };
+            let _ = self.orders.send(Order { layer: layer.clone(), document: alone });
+        }
+        self.made.get(&layer.id).map(|texture| (texture.id(), vec2(texture.size()[0] as f32, texture.size()[1] as f32)))
+    }
+}
+
+/// The thread's own: the last surface, small.
+#[derive(Default)]
+struct Maker {
+    surface: Option<(Weak<Surface>, Option<Arc<Surface>>)>,
+}
+
+impl Maker {
+    fn make(&mut self, order: &Order) -> Option<Small> {
+        let size = order.document.size;
+        let factor = (SIDE as f32 / size.longer_side()).min(1.0);
+        // The surface is made small once, not for every layer.
+        let flat = Document { surface: None, ..order.document.clone() };
+        let mut small = flat.scaled(factor).ok()?;
+        small.surface = self.small_surface(order.document.surface.as_ref(), &small);
+        let layer = small.layers.first()?;
+        let id = layer.id;
+        let bare = small.with_layer(id, |layer| (layer.opacity, layer.visible) = (1.0, true))?;
+        let grid: TileGrid = flatten_layer(&bare, id, &Progress::default())?;
+        let bytes = grid.to_straight_rgba(bare.size.rect());
+        let pixels = bytes.as_chunks::<4>().0.iter().map(|&[r, g, b, a]| Color32::from_rgba_unmultiplied(r, g, b, a));
+        let image = ColorImage::new([bare.size.width as usize, bare.size.height as usize], pixels.collect());
+        Some(Small { id, image })
+    }
+    fn small_surface(&mut self, surface: Option<&Arc<Surface>>, to: &Document) -> Option<Arc<Surface>> {
+        let surface = surface?;
+        if let Some((known, small)) = &self.surface
+            && known.as_ptr() == Arc::as_ptr(surface)
+        {
+            return small.clone();
+        }
+        let small = surface.stretched(to.size).ok().map(Arc::new);
+        self.surface = Some((Arc::downgrade(surface), small.clone()));
+        small
+    }
+}

@@ -1,0 +1,167 @@
+//! The window's own widgets: every one has a name that a screen reader and a test can find, and tells a drag from its end.
+//! Floor 7.
+
+use super::canvas::color32;
+use crate::math::srgb::Color;
+use eframe::egui::{self, DragValue, Response, RichText, Slider, Ui, vec2};
+use std::ops::RangeInclusive;
+
+/// A value that a widget gave: shown only, or to be kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Changed<T> {
+    pub to: T,
+    /// The hand let go: one step of history.
+    pub done: bool,
+}
+
+impl<T> Changed<T> {
+    pub fn map<U>(self, f: impl FnOnce(T) -> U) -> Changed<U> {
+        Changed { to: f(self.to), done: self.done }
+    }
+}
+
+/// Whether a widget's value is to be shown, kept, or neither.
+pub fn change<T>(response: &Response, to: T) -> Option<Changed<T>> {
+    if response.drag_stopped() {
+        return Some(Changed { to, done: true });
+    }
+    response.changed().then(|| Changed { to, done: !response.dragged() })
+}
+
+/// A number with its name before it.
+pub struct Number<'a> {
+    pub label: &'a str,
+    pub hint: &'a str,
+    pub range: RangeInclusive<f32>,
+    pub suffix: &'a str,
+    pub decimals: usize,
+    pub logarithmic: bool,
+}
+
+impl<'a> Number<'a> {
+    pub fn new(label: &'a str, range: RangeInclusive<f32>, hint: &'a str) -> Self {
+        Self { label, hint, range, suffix: "", decimals: 2, logarithmic: false }
+    }
+    pub fn px(self) -> Self {
+        Self { suffix: " px", decimals: 0, logarithmic: true, ..self }
+    }
+    pub fn degrees(self) -> Self {
+        Self { suffix: "°", decimals: 0, ..self }
+    }
+    pub fn decimals(self, decimals: usize) -> Self {
+        Self { decimals, ..self }
+    }
+    pub fn logarithmic(self) -> Self {
+        Self { logarithmic: true, ..self }
+    }
+    fn slider<'v>(&self, value: &'v mut f32) -> Slider<'v>
+    where
+        'a: 'v,
+    {
+        Slider::new(value, self.range.clone())
+            .suffix(self.suffix)
+            .fixed_decimals(self.decimals)
+            .logarithmic(self.logarithmic)
+            .trailing_fill(true)
+    }
+    /// A slider in a row of its own, the name to its left.
+    pub fn row(self, ui: &mut Ui, value: f32) -> Option<Changed<f32>> {
+        let mut to = value;
+        let response = ui.horizontal(|ui| {
+            let label = name(ui, self.label);
+            let width = (ui.available_width() - 64.0).max(40.0);
+            ui.spacing_mut().slider_width = width;
+            ui.add(self.slider(&mut to)).labelled_by(label.id)
+        });
+        change(&response.inner.on_hover_text(self.hint), to)
+    }
+    /// A slider in a bar among others, its name before it.
+    pub fn inline(self, ui: &mut Ui, value: f32, width_pt: f32) -> Option<Changed<f32>> {
+        let mut to = value;
+        let label = ui.label(self.label);
+        ui.spacing_mut().slider_width = width_pt;
+        let response = ui.add(self.slider(&mut to)).labelled_by(label.id);
+        change(&response.on_hover_text(self.hint), to)
+    }
+    /// A number alone, to be dragged or typed.
+    pub fn field(self, ui: &mut Ui, value: f32) -> Option<Changed<f32>> {
+        let mut to = value;
+        let speed = (self.range.end() - self.range.start()) / 300.0;
+        let drag = DragValue::new(&mut to)
+            .range(self.range.clone())
+            .speed(speed.min(1.0))
+            .suffix(self.suffix)
+            .fixed_decimals(self.decimals);
+        let response = ui.add(drag);
+        response.widget_info(|| egui::WidgetInfo::drag_value(true, f64::from(value)));
+        named(&response, self.label);
+        change(&response.on_hover_text(self.hint), to)
+    }
+}
+
+/// Gives a widget a name for screen readers and tests.
+pub fn named(response: &Response, label: &str) {
+    let label = label.to_owned();
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
+}
+
+/// A property's name, as wide as all of them.
+pub fn name(ui: &mut Ui, text: &str) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(76.0, ui.spacing().interact_size.y), egui::Sense::hover());
+    let color = ui.visuals().text_color();
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, text, font, color);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+    response
+}
+
+/// One of several words.
+pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, current: T, choices: &[(T, &str)]) -> Option<T> {
+    let shown = choices.iter().find(|(choice, _)| *choice == current).map_or("", |(_, word)| word);
+    let mut to = current;
+    let combo = egui::ComboBox::from_id_salt(label).selected_text(sentence(shown)).show_ui(ui, |ui| {
+        for (choice, word) in choices {
+            ui.selectable_value(&mut to, *choice, sentence(word));
+        }
+    });
+    named(&combo.response, label);
+    (to != current).then_some(to)
+}
+
+/// As [`choice`], in a row with its name.
+pub fn choice_row<T: Copy + PartialEq>(ui: &mut Ui, label: &str, current: T, choices: &[(T, &str)]) -> Option<T> {
+    ui.horizontal(|ui| {
+        name(ui, label);
+        choice(ui, label, current, choices)
+    })
+    .inner
+}
+
+/// “color-dodge” as people read it.
+pub fn sentence(word: &str) -> String {
+    let spaced = word.replace('-', " ");
+    let mut letters = spaced.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+pub fn check(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Option<bool> {
+    let mut to = on;
+    ui.checkbox(&mut to, label).on_hover_text(hint).changed().then_some(to)
+}
+
+/// The title of a part of a panel.
+pub fn title(ui: &mut Ui, text: &str) {
+    ui.add_space(2.0);
+    ui.label(RichText::new(text).strong());
+}
+
+/// A field of colour that can be clicked.
+pub fn swatch(ui: &mut Ui, label: &str, color: Color, size: egui::Vec2) -> Response {
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, label));
+    let painter = ui.painter();
+    painter.rect_filled(rect, 3.0, color32(Color { a: 255, ..color }));
+    let rim = if response.hovered() { ui.visuals().widgets.hovered.fg_stroke } else { ui.visuals().window_stroke };
+    painter.rect_stroke(rect, 3.0, rim, egui::StrokeKind::Inside);
+    response.on_hover_text(format!("{label}: {color}"))
+}

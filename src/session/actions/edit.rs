@@ -1,0 +1,29 @@
+//! Walking the history.
+//! Floor 6.
+
+use crate::session::Session;
+use crate::session::replay::actions;
+
+actions! {
+    /// Steps taken back and made again.
+    EditAction {
+        "undo" Undo {}
+        "redo" Redo {}
+        /// Back (negative) or forward by steps.
+        "walk" Walk { steps: i32 }
+    }
+}
+
+impl EditAction {
+    pub fn apply(&self, session: &mut Session) {
+        session.drop_gesture();
+        let steps = match self {
+            EditAction::Undo {} => -1,
+            EditAction::Redo {} => 1,
+            EditAction::Walk { steps } => *steps,
+        };
+        if let Some(tab) = session.tab_mut() {
+            tab.walk(steps);
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Documents in and out, and pictures into documents.
+//! Floor 6. Formats are `io`'s.
+
+use crate::Result;
+use crate::document::{Content, Document, Layer, Live, Progress, flatten};
+use crate::io::export::{Options, Target};
+use crate::io::{Budget, files::read_file, picture};
+use crate::math::{Size, Vec2, srgb::Color};
+use crate::paint::{Adjust, Filter, PictureSource, PlacedImage, Placement};
+use crate::raster::{Outside, Picture};
+use crate::session::actions::layers::above;
+use crate::session::replay::actions;
+use crate::session::{Session, Tab, storage};
+use crate::surface::{Anchor, Bend, Operator, Weights};
+use crate::tools::brush::free_name;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+actions! {
+    /// Paths are those of the user's own files.
+    FileAction {
+        /// An empty document, its bottom layer filled with a colour where there is one.
+        "new" New { width: u32, height: u32, background: Option<Color> }
+        /// A document, or a picture as one.
+        "open" Open { file: PathBuf }
+        /// A document on the surface of these maps, conventions found.
+        "open maps" OpenMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
+        /// A picture as an image layer, pinned to the surface at a canvas point.
+        "place" Place { file: PathBuf, at: Vec2 }
+        "save" Save { file: PathBuf }
+        "export" Export { file: PathBuf, background: Option<Color>, quality: u8 }
+        "tab" Tab { index: usize }
+        /// Whether saved or not.
+        "close" Close { index: usize }
+    }
+}
+
+impl FileAction {
+    pub fn apply(&self, session: &mut Session) -> Result<()> {
+        session.drop_gesture();
+        match self {
+            FileAction::New { width, height, background } => {
+                let size = Budget::default().size(Path::new("new"), (*width).into(), (*height).into())?;
+                let name = session.untitled();
+                session.add_tab(Tab::new(name, empty(size, *background), None));
+            }
+            FileAction::Open { file } => {
+                let opened = storage::open(file)?;
+                session.adopt(opened);
+            }
+            FileAction::OpenMaps { normal, depth } => {
+                let opened = storage::open_maps(&storage::maps_of(normal.as_deref(), depth.as_deref()))?;
+                session.adopt(opened);
+            }
+            FileAction::Place { file, at } => {
+                let bytes = read_file(file, Budget::default().file_bytes)?;
+                let picture = picture::decode(file, &bytes, &Budget::default())?;
+                let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                place(session, &name, picture, *at);
+            }
+            FileAction::Save { file } => {
+                let Some(tab) = session.tab() else { return Ok(()) };
+                let document = tab.document().clone();
+                let stamp = tab.stamp.filter(|_| tab.file.as_ref() == Some(file));
+                let stamp = storage::save(file, &document, stamp)?;
+                if let Some(tab) = session.tab_mut() {
+                    tab.mark_saved(document, file.clone(), stamp);
+                }
+            }
+            FileAction::Export { file, background, quality } => {
+                let Some(tab) = session.tab() else { return Ok(()) };
+                export(tab.document(), file, &Options { background: *background, quality: *quality })?;
+            }
+            FileAction::Tab { index } => session.current = (*index).min(session.tabs.len().saturating_sub(1)),
+            FileAction::Close { index } => session.close_tab(*index),
+        }
+        Ok(())
+    }
+}
+
+/// An empty document.
+pub fn empty(size: Size, background: Option<Color>) -> Document {
+    let fill = background.map(|color| Arc::new(Layer::new("Background", Content::Fill(color))));
+    Document { layers: fill.into_iter().collect(), ..Document::empty(size) }
+}
+
+/// The flattened picture as a file.
+pub fn export(document: &Document, file: &Path, options: &Options) -> Result<()> {
+    let target = Target::new(file, &[])?;
+    // Nothing here cancels, so there always is a picture.
+    let pixels = flatten(document, &Progress::default()).unwrap_or_default();
+    target.write(&pixels, document.size, options)
+}
+
+/// A picture becomes an image layer, bent by the operator in hand (by the normals, if that is flat), pinned at `at`. With
+/// nothing open it becomes a document of its own.
+pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
+    let operator = match session.operator {
+        Operator::None => DROPPED,
+        operator => operator,
+    };
+    let Some(tab) = session.tab_mut() else {
+        let tab = Tab::new(name, of_picture(name, picture), None);
+        return session.add_tab(tab);
+    };
+    let document = tab.document();
+    let operator = if document.surface.is_some() { operator } else { Operator::None };
+    let at = at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
+    let image = PlacedImage {
+        source: PictureSource::new(free_file(document, name), picture, Adjust::default()),
+        placement: Placement::covering(document.size),
+        outside: Outside::Mirror,
+        bend: Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() },
+        filter: Filter::Antialias,
+    };
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));
+    let id = layer.id;
+    if let Some(next) = document.with_inserted(layer, above(tab)) {
+        tab.commit("Place image", next);
+        tab.selected = Some(id);
+    }
+}
+
+/// How a dropped picture bends where nothing else is in hand: like a reflection that is still recognised.
+const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
+
+/// A picture as a document of its own size.
+pub fn of_picture(name: &str, picture: Picture) -> Document {
+    let size = picture.size;
+    let image = PlacedImage {
+        source: PictureSource::new(name.into(), picture, Adjust::default()),
+        placement: Placement::covering(size),
+        outside: Outside::Mirror,
+        bend: Bend::default(),
+        filter: Filter::Antialias,
+    };
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Document { layers: vec![Arc::new(Layer::new(stem, Content::Image(Live::new(image))))], ..Document::empty(size) }
+}
+
+/// A file name that no other picture of the document goes by.
+fn free_file(document: &Document, name: &str) -> String {
+    let taken = |name: &str| {
+        document.walk().iter().any(|(_, layer)| match &layer.content {
+            Content::Image(live) => live.params().source.file == name,
+            Content::Pixels(pixels) => pixels.file == name,
+            _ => false,
+        })
+    };
+    let path = Path::new(name);
+    let (stem, ending) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
+    let mut free = name.to_owned();
+    for i in 2.. {
+        if !taken(&free) {
+            break;
+        }
+        free = format!("{}-{i}.{}", stem.to_string_lossy(), ending.to_string_lossy());
+    }
+    free
+}

@@ -1,0 +1,77 @@
+//! What the hand holds: tool, brush, colours, operator.
+//! Floor 6.
+
+use crate::io::recipe::preset_brush;
+use crate::math::srgb::Color;
+use crate::session::Session;
+use crate::session::replay::{actions, names};
+use crate::surface::Operator;
+use crate::tools::ToolKind;
+
+names!(ToolKind);
+
+actions! {
+    /// Nothing here changes a document.
+    HandAction {
+        "tool" Tool { tool: ToolKind }
+        /// One of the brushes that come with the program.
+        "preset" Preset { name: String }
+        /// Diameter, px.
+        "size" Size { to: f32 }
+        "hardness" Hardness { to: f32 }
+        "opacity" Opacity { to: f32 }
+        "flow" Flow { to: f32 }
+        "spacing" Spacing { to: f32 }
+        "softness" Softness { to: f32 }
+        "rotation" Rotation { to: f32 }
+        /// Shares of size and flow that follow the pen's pressure.
+        "pressure" Pressure { size: f32, flow: f32 }
+        "color" Color { color: Color }
+        "second color" SecondColor { color: Color }
+        "swap colors" SwapColors {}
+        "default colors" DefaultColors {}
+        "operator" Operator { operator: Operator }
+    }
+}
+
+/// Diameters that the hand can choose, px.
+pub const SIZES: [f32; 2] = [1.0, 2000.0];
+
+impl HandAction {
+    pub fn apply(&self, session: &mut Session) {
+        let unit = |v: f32| v.max(0.0).min(1.0);
+        let brush = &mut session.brush;
+        match self {
+            HandAction::Tool { tool } => {
+                session.drop_gesture();
+                session.tool = *tool;
+            }
+            HandAction::Preset { name } => {
+                if let Some((brush, operator)) = preset_brush(name) {
+                    // A brush made for an operator brings it; one that is not leaves what is in hand.
+                    if operator != Operator::None {
+                        session.operator = operator;
+                    }
+                    session.brush = brush;
+                    session.preset.clone_from(name);
+                    session.tool = ToolKind::Brush;
+                }
+            }
+            HandAction::Size { to } => brush.size = to.max(SIZES[0]).min(SIZES[1]),
+            HandAction::Hardness { to } => brush.hardness = unit(*to),
+            HandAction::Opacity { to } => brush.opacity = unit(*to),
+            HandAction::Flow { to } => brush.flow = unit(*to),
+            HandAction::Spacing { to } => brush.spacing = to.max(0.01).min(10.0),
+            HandAction::Softness { to } => brush.softness = unit(*to),
+            HandAction::Rotation { to } => brush.rotation = *to,
+            HandAction::Pressure { size, flow } => {
+                (brush.dynamics.size.pressure, brush.dynamics.flow.pressure) = (unit(*size), unit(*flow));
+            }
+            HandAction::Color { color } => session.color = *color,
+            HandAction::SecondColor { color } => session.second_color = *color,
+            HandAction::SwapColors {} => std::mem::swap(&mut session.color, &mut session.second_color),
+            HandAction::DefaultColors {} => (session.color, session.second_color) = (Color::BLACK, Color::WHITE),
+            HandAction::Operator { operator } => session.operator = *operator,
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! The layer tree and its layers.
+//! Floor 6. The edits themselves are `document::edit`'s.
+
+use crate::document::{
+    Content, Document, Group, Layer, LayerId, Live, PixelLayer, Place, Progress, StrokeList, flatten, flatten_layer,
+};
+use crate::math::vec2;
+use crate::paint::{Filter, Gradient, Stop};
+use crate::raster::TileGrid;
+use crate::session::replay::{actions, names};
+use crate::session::{LayerPath, Property, Session, Tab};
+use crate::shading::{Model, RadianceScaling, Shading};
+use crate::tools::brush::free_name;
+use std::sync::Arc;
+
+/// Layers that can be made of nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NewLayer {
+    Paint,
+    Strokes,
+    Fill,
+    Gradient,
+    Shading,
+    RadianceScaling,
+    Group,
+}
+
+names!(NewLayer, [
+    NewLayer::Paint => "paint", NewLayer::Strokes => "strokes", NewLayer::Fill => "fill",
+    NewLayer::Gradient => "gradient", NewLayer::Shading => "shading",
+    NewLayer::RadianceScaling => "radiance scaling", NewLayer::Group => "group",
+]);
+
+impl NewLayer {
+    /// Every kind with what it is called.
+    pub const ALL: [(NewLayer, &'static str); 7] = [
+        (NewLayer::Paint, "Paint layer"),
+        (NewLayer::Strokes, "Stroke layer"),
+        (NewLayer::Fill, "Fill layer"),
+        (NewLayer::Gradient, "Gradient layer"),
+        (NewLayer::Shading, "Shading layer"),
+        (NewLayer::RadianceScaling, "Radiance scaling"),
+        (NewLayer::Group, "Group"),
+    ];
+}
+
+actions! {
+    /// `layer` is always where it stood before.
+    LayerAction {
+        "select" Select { layer: LayerPath }
+        /// Above the selected layer; into it, if it is a group.
+        "add" Add { kind: NewLayer }
+        "delete" Delete { layer: LayerPath }
+        "duplicate" Duplicate { layer: LayerPath }
+        /// Into a group (or, without one, the document) so that so many layers lie beneath it, not counting itself.
+        "move" Move { layer: LayerPath, group: Option<LayerPath>, index: usize }
+        /// One place up (positive) or down among its siblings.
+        "nudge" Nudge { layer: LayerPath, by: i32 }
+        "merge down" MergeDown { layer: LayerPath }
+        /// All that shows becomes one paint layer.
+        "flatten" Flatten {}
+        /// A live layer becomes paint.
+        "bake" Bake { layer: LayerPath }
+        /// Into a group of its own.
+        "group" Group { layer: LayerPath }
+        "ungroup" Ungroup { layer: LayerPath }
+        /// Shown alone, or no longer.
+        "solo" Solo { layer: LayerPath }
+        /// A property; shown only, until it is `done`.
+        "set" Set { layer: LayerPath, to: Property, done: bool }
+        /// The strokes or pixels are taken out of a layer.
+        "clear" Clear { layer: LayerPath }
+    }
+}
+
+impl LayerAction {
+    pub fn apply(&self, session: &mut Session) {
+        let in_hand = Gradient {
+            from: vec2(0.0, 0.0),
+            to: vec2(1.0, 1.0),
+            stops: vec![Stop { t: 0.0, color: session.color }, Stop { t: 1.0, color: session.second_color }],
+            operator: session.operator,
+            filter: Filter::Antialias,
+        };
+        session.drop_gesture();
+        let Some(tab) = session.tab_mut() else { return };
+        if let LayerAction::Set { layer, to, done } = self {
+            return set(tab, layer, to, *done);
+        }
+        tab.forget_preview();
+        let id = |path: &LayerPath| path.find(tab.document()).map(|layer| layer.id);
+        match self {
+            LayerAction::Select { layer } => tab.selected = id(layer).or(tab.selected),
+            LayerAction::Solo { layer } => {
+                let id = id(layer);
+                tab.solo = if tab.solo == id { None } else { id };
+            }
+            _ => {
+                if let Some((label, document, select)) = self.edit(tab, &in_hand) {
+                    tab.commit(label, document);
+                    tab.selected = select.or(tab.selected);
+                }
+            }
+        }
+    }
+    /// The step, the document it leads to, and what is selected then.
+    fn edit(&self, tab: &Tab, in_hand: &Gradient) -> Option<(&'static str, Document, Option<LayerId>)> {
+        let document = tab.document();
+        let layer = |path: &LayerPath| path.find(document).cloned();
+        Some(match self {
+            LayerAction::Add { kind } => {
+                let new = made(*kind, document, in_hand);
+                let id = new.id;
+                ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
+            }
+            LayerAction::Delete { layer: path } => {
+                let layer = layer(path)?;
+                let place = document.place_of(layer.id)?;
+                let next = document.without_layer(layer.id)?;
+                let neighbour = sibling(&next, Place { index: place.index.saturating_sub(1), ..place });
+                ("Delete layer", next, neighbour)
+            }
+            LayerAction::Duplicate { layer: path } => {
+                let layer = layer(path)?;
+                let place = document.place_of(layer.id)?;
+                let copy = copied(&layer, &free_name(document, &format!("{} copy", layer.name)));
+                let id = copy.id;
+                let next = document.with_inserted(copy, Place { index: place.index + 1, ..place })?;
+                ("Duplicate layer", next, Some(id))
+            }
+            LayerAction::Move { layer: path, group, index } => {
+                let group = group.as_ref().map(|path| layer(path).map(|layer| layer.id).ok_or(())).transpose().ok()?;
+                let id = layer(path)?.id;
+                ("Move layer", document.with_moved(id, Place { group, index: *index })?, Some(id))
+            }
+            LayerAction::Nudge { layer: path, by } => {
+                let id = layer(path)?.id;
+                let place = document.place_of(id)?;
+                let index = place.index.saturating_add_signed(*by as isize);
+                ("Move layer", document.with_moved(id, Place { index, ..place })?, Some(id))
+            }
+            LayerAction::MergeDown { layer: path } => merged(document, &*layer(path)?)?,
+            LayerAction::Flatten {} => {
+                let tiles = flatten(document, &Progress::default())?;
+                let flat = painted("Picture", tiles);
+                let id = flat.id;
+                let next = Document { layers: vec![Arc::new(flat)], ..document.clone() };
+                ("Flatten picture", next, Some(id))
+            }
+            LayerAction::Bake { layer: path } => ("Bake layer", baked(document, &*layer(path)?)?, None),
+            LayerAction::Group { layer: path } => {
+                let layer = layer(path)?;
+                let place = document.place_of(layer.id)?;
+                let group = Group { layers: vec![layer.clone()], pass_through: false };
+                let group = Layer::new(free_name(document, "Group"), Content::Group(group));
+                let id = group.id;
+                ("Group layer", document.without_layer(layer.id)?.with_inserted(group, place)?, Some(id))
+            }
+            LayerAction::Ungroup { layer: path } => {
+                let layer = layer(path)?;
+                let Content::Group(group) = &layer.content else { return None };
+                let place = document.place_of(layer.id)?;
+                let mut next = document.without_layer(layer.id)?;
+                for (i, inner) in group.layers.iter().enumerate() {
+                    next = next.with_inserted(Layer::clone(inner), Place { index: place.index + i, ..place })?;
+                }
+                ("Ungroup", next, group.layers.last().map(|layer| layer.id))
+            }
+            LayerAction::Clear { layer: path } => {
+                let layer = layer(path)?;
+                let next = document.with_layer(layer.id, |layer| match &mut layer.content {
+                    Content::Strokes(live) => *live = Live::new(StrokeList::default()),
+                    Content::Pixels(pixels) => *pixels = no_pixels(),
+                    _ => {}
+                })?;
+                ("Clear layer", next, None)
+            }
+            LayerAction::Select { .. } | LayerAction::Solo { .. } | LayerAction::Set { .. } => return None,
+        })
+    }
+}
+
+fn set(tab: &mut Tab, layer: &LayerPath, to: &Property, done: bool) {
+    let Some(id) = layer.find(tab.document()).map(|layer| layer.id) else { return tab.forget_preview() };
+    let Some(document) = tab.document().with_layer(id, |layer| to.apply(layer)) else { return };
+    if done { tab.commit(to.label(), document) } else { tab.show(to.label(), document) }
+}
+
+/// Where a new layer goes: above the selected one; into it, on top, if it is a group.
+pub fn above(tab: &Tab) -> Place {
+    let document = tab.document();
+    let Some(layer) = tab.selected.and_then(|id| document.layer(id)) else { return Place::top_level(usize::MAX) };
+    if matches!(layer.content, Content::Group(_)) {
+        return Place::in_group(layer.id, usize::MAX);
+    }
+    let place = document.place_of(layer.id).unwrap_or(Place::top_level(usize::MAX));
+    Place { index: place.index.saturating_add(1), ..place }
+}
+
+fn sibling(document: &Document, place: Place) -> Option<LayerId> {
+    let layers = match place.group {
+        None => &document.layers,
+        Some(group) => match &document.layer(group)?.content {
+            Content::Group(group) => &group.layers,
+            _ => return None,
+        },
+    };
+    layers.get(place.index).map(|layer| layer.id).or(place.group)
+}
+
+fn made(kind: NewLayer, document: &Document, in_hand: &Gradient) -> Layer {
+    let size = document.size;
+    let (name, content) = match kind {
+        NewLayer::Paint => ("Paint", Content::Pixels(no_pixels())),
+        NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
+        NewLayer::Fill => {
+            ("Fill", Content::Fill(in_hand.stops.first().map_or(crate::math::srgb::Color::BLACK, |stop| stop.color)))
+        }
+        NewLayer::Gradient => {
+            let middle = size.center();
+            let reach = vec2(0.0, 0.35 * size.height as f32);
+            let gradient = Gradient { from: middle - reach, to: middle + reach, ..in_hand.clone() };
+            ("Gradient", Content::Gradient(Live::new(gradient)))
+        }
+        NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
+        NewLayer::RadianceScaling => ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default())),
+        NewLayer::Group => ("Group", Content::Group(Group::default())),
+    };
+    Layer::new(free_name(document, name), content)
+}
+
+fn no_pixels() -> PixelLayer {
+    PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() }
+}
+
+/// A paint layer that holds these tiles.
+pub fn painted(name: &str, tiles: TileGrid) -> Layer {
+    Layer::new(name, Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
+}
+
+/// A copy under fresh ids.
+fn copied(layer: &Layer, name: &str) -> Layer {
+    let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
+    if let Content::Group(group) = &mut copy.content {
+        group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
+    }
+    copy
+}
+
+/// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to the layer.
+fn baked(document: &Document, layer: &Layer) -> Option<Document> {
+    let bare = document.with_layer(layer.id, |layer| {
+        (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
+    })?;
+    let tiles = flatten_layer(&bare, layer.id, &Progress::default())?;
+    document.with_layer(layer.id, |layer| layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
+}
+
+/// A layer and the one beneath it as one paint layer.
+fn merged(document: &Document, layer: &Layer) -> Option<(&'static str, Document, Option<LayerId>)> {
+    let place = document.place_of(layer.id)?;
+    let beneath = sibling(document, Place { index: place.index.checked_sub(1)?, ..place })?;
+    let beneath = document.layer(beneath)?.clone();
+    // The two alone, in a canvas of their own that sees the same surface.
+    let pair = vec![Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&beneath) })];
+    let mut pair = Document { layers: pair, ..document.clone() };
+    pair.layers.push(Arc::new(layer.clone()));
+    let tiles = flatten(&pair, &Progress::default())?;
+    let next = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
+        layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() });
+        (layer.opacity, layer.mask) = (1.0, None);
+    })?;
+    Some(("Merge down", next, Some(beneath.id)))
+}

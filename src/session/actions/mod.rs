@@ -1,0 +1,75 @@
+//! Everything that can be done, as values: the window pushes them, a replay reads them, [`Action::apply`] does them.
+//! Floor 6. One small enum a room of the house, each with its `apply` in its own file.
+
+pub mod edit;
+pub mod files;
+pub mod hand;
+pub mod layers;
+pub mod pointer;
+pub mod views;
+
+pub use edit::EditAction;
+pub use files::FileAction;
+pub use hand::HandAction;
+pub use layers::{LayerAction, NewLayer};
+pub use pointer::PointerAction;
+pub use views::ViewAction;
+
+use super::Session;
+use super::replay::Replayed;
+use crate::Result;
+use serde_json::Value;
+
+/// One thing done.
+#[derive(Clone)]
+pub enum Action {
+    Edit(EditAction),
+    File(FileAction),
+    Hand(HandAction),
+    Layer(LayerAction),
+    Pointer(PointerAction),
+    View(ViewAction),
+}
+
+impl Action {
+    /// Does it. What cannot be done changes nothing; only files fail.
+    pub fn apply(&self, session: &mut Session) -> Result<()> {
+        match self {
+            Action::Edit(action) => action.apply(session),
+            Action::File(action) => return action.apply(session),
+            Action::Hand(action) => action.apply(session),
+            Action::Layer(action) => action.apply(session),
+            Action::Pointer(action) => action.apply(session),
+            Action::View(action) => action.apply(session),
+        }
+        Ok(())
+    }
+}
+
+impl Replayed for Action {
+    fn written(&self) -> Value {
+        let (room, mut value) = match self {
+            Action::Edit(action) => ("edit", action.written()),
+            Action::File(action) => ("file", action.written()),
+            Action::Hand(action) => ("hand", action.written()),
+            Action::Layer(action) => ("layer", action.written()),
+            Action::Pointer(action) => ("pointer", action.written()),
+            Action::View(action) => ("view", action.written()),
+        };
+        if let Some(object) = value.as_object_mut() {
+            object.insert("in".into(), room.into());
+        }
+        value
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        Ok(match value.get("in").and_then(Value::as_str) {
+            Some("edit") => Action::Edit(Replayed::read(value)?),
+            Some("file") => Action::File(Replayed::read(value)?),
+            Some("hand") => Action::Hand(Replayed::read(value)?),
+            Some("layer") => Action::Layer(Replayed::read(value)?),
+            Some("pointer") => Action::Pointer(Replayed::read(value)?),
+            Some("view") => Action::View(Replayed::read(value)?),
+            _ => return Err("“in” must be edit, file, hand, layer, pointer or view".into()),
+        })
+    }
+}

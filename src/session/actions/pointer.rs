@@ -1,0 +1,104 @@
+//! The pen on the canvas, handed to the tool in hand.
+//! Floor 6.
+
+use crate::math::vec2;
+use crate::paint::Sample;
+use crate::session::Session;
+use crate::session::replay::{Replayed, actions, record};
+use crate::tools::{self, Context, Keys, Outcome, Pen, ToolKind};
+use serde_json::Value;
+
+record!(Keys { shift, ctrl, alt });
+
+/// [x, y, pressure, tilt x, tilt y, seconds] and the keys held.
+impl Replayed for Pen {
+    fn written(&self) -> Value {
+        let Sample { at, pressure, tilt, time_secs } = self.sample;
+        let mut list = vec![at.x, at.y, pressure, tilt.x, tilt.y, time_secs].written();
+        if let Some(list) = list.as_array_mut().filter(|_| self.keys != Keys::default()) {
+            list.push(self.keys.written());
+        }
+        list
+    }
+    fn read(value: &Value) -> Result<Self, String> {
+        let list = value.as_array().ok_or("must be a list of numbers")?;
+        let number = |i: usize, unsaid: f32| list.get(i).map_or(Ok(unsaid), f32::read);
+        let sample = Sample {
+            at: vec2(number(0, 0.0)?, number(1, 0.0)?),
+            pressure: number(2, 1.0)?.max(0.0).min(1.0),
+            tilt: vec2(number(3, 0.0)?, number(4, 0.0)?),
+            time_secs: number(5, 0.0)?,
+        };
+        Ok(Pen { sample, keys: list.get(6).map_or(Ok(Keys::default()), Keys::read)? })
+    }
+}
+
+actions! {
+    /// Canvas px.
+    PointerAction {
+        /// With which tool, for a key may lend another; near is so many px to a screen point.
+        "press" Press { tool: ToolKind, pen: Pen, px_per_pt: f32 }
+        "drag" Drag { pens: Vec<Pen> }
+        "release" Release {}
+        /// What was begun is forgotten.
+        "cancel" Cancel {}
+    }
+}
+
+impl PointerAction {
+    pub fn apply(&self, session: &mut Session) {
+        match self {
+            PointerAction::Press { tool, pen, px_per_pt } => press(session, *tool, *pen, *px_per_pt),
+            PointerAction::Drag { pens } => {
+                let Some(gesture) = &mut session.gesture else { return };
+                let outcome = gesture.drag(pens);
+                session.last_pen = pens.last().map(|pen| pen.sample.at).or(session.last_pen);
+                take(session, outcome);
+            }
+            PointerAction::Release {} => {
+                let Some(mut gesture) = session.gesture.take() else { return };
+                let outcome = gesture.release();
+                take(session, outcome);
+            }
+            PointerAction::Cancel {} => session.drop_gesture(),
+        }
+    }
+}
+
+fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
+    session.drop_gesture();
+    let Some(tab) = session.tab() else { return };
+    let context = Context {
+        document: tab.document(),
+        layer: tab.selected,
+        brush: &session.brush,
+        color: session.color,
+        second_color: session.second_color,
+        operator: session.operator,
+        px_per_pt,
+        last_end: tab.last_end,
+    };
+    let (gesture, outcome) = tools::press(tool, &context, pen);
+    session.gesture = gesture;
+    session.last_pen = Some(pen.sample.at);
+    if matches!(tool, ToolKind::Brush | ToolKind::Gradient) {
+        session.remember_color();
+    }
+    take(session, outcome);
+}
+
+fn take(session: &mut Session, outcome: Outcome) {
+    let end = session.last_pen;
+    let Some(tab) = session.tab_mut() else { return };
+    match outcome {
+        Outcome::Idle => {}
+        Outcome::Preview(document) => tab.show("", document),
+        Outcome::Commit { label, document, select } => {
+            tab.commit(label, document);
+            tab.selected = select.or(tab.selected);
+            tab.last_end = end;
+        }
+        Outcome::Picked(color) => session.color = color,
+        Outcome::Cancel => tab.forget_preview(),
+    }
+}

@@ -1,0 +1,55 @@
+//! How the canvas is seen. Nothing here changes a document.
+//! Floor 6.
+
+use crate::math::Vec2;
+use crate::session::replay::actions;
+use crate::session::{Session, view::View};
+
+actions! {
+    /// Screen points are measured from the middle of the canvas's area, y down.
+    ViewAction {
+        "pan" Pan { by: Vec2 }
+        "zoom" Zoom { factor: f32, about: Vec2 }
+        /// One canvas pixel to so many screen points.
+        "zoom to" ZoomTo { zoom: f32 }
+        "turn" Turn { by_rad: f32 }
+        "mirror" Mirror {}
+        "upright" Upright {}
+        "fit" Fit { window_pt: Vec2 }
+        "look at" LookAt { center: Vec2 }
+        /// A view of the surface over the picture, by its name, or none.
+        "overlay" Overlay { view: Option<String> }
+        "overlay opacity" OverlayOpacity { to: f32 }
+    }
+}
+
+impl ViewAction {
+    pub fn apply(&self, session: &mut Session) {
+        match self {
+            ViewAction::Overlay { view } => session.overlay.clone_from(view),
+            ViewAction::OverlayOpacity { to } => session.overlay_opacity = to.max(0.0).min(1.0),
+            _ => {
+                if let Some(tab) = session.tab_mut() {
+                    let size = tab.document().size;
+                    let view = tab.view.unwrap_or_else(|| View::fitting(size, Vec2::new(800.0, 600.0)));
+                    tab.view = Some(self.seen(view, size));
+                }
+            }
+        }
+    }
+    fn seen(&self, view: View, canvas: crate::math::Size) -> View {
+        match self {
+            ViewAction::Pan { by } => view.panned(*by),
+            ViewAction::Zoom { factor, about } => view.zoomed(*factor, *about),
+            ViewAction::ZoomTo { zoom } => view.zoomed(zoom / view.zoom, Vec2::ZERO),
+            ViewAction::Turn { by_rad } => view.turned(*by_rad),
+            ViewAction::Mirror {} => View { mirrored: !view.mirrored, ..view },
+            ViewAction::Upright {} => View { turn_rad: 0.0, ..view },
+            ViewAction::Fit { window_pt } => {
+                View { mirrored: view.mirrored, ..View::fitting(canvas, window_pt.max(Vec2::ONE)) }
+            }
+            ViewAction::LookAt { center } => View { center: *center, ..view },
+            ViewAction::Overlay { .. } | ViewAction::OverlayOpacity { .. } => view,
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Floor 6: the program without its window. Open documents, what is in hand, and everything that can be done as
+//! [`Action`]s, so that a replay file, a test and the window do the very same.
+
+pub mod actions;
+mod path;
+pub mod property;
+pub mod replay;
+pub mod storage;
+mod tab;
+pub mod view;
+
+pub use actions::Action;
+pub use path::LayerPath;
+pub use property::Property;
+pub use tab::{Tab, is_same};
+pub use view::View;
+
+use crate::Result;
+use crate::document::{Document, Layer};
+use crate::io::recipe::preset_brush;
+use crate::math::{Vec2, srgb::Color};
+use crate::paint::Brush;
+use crate::surface::Operator;
+use crate::tools::{Gesture, ToolKind};
+use std::path::Path;
+use std::sync::Arc;
+use storage::Opened;
+
+/// Colours remembered.
+const RECENT: usize = 16;
+
+/// Everything but the window.
+pub struct Session {
+    pub tabs: Vec<Tab>,
+    /// The one in front, if any.
+    pub current: usize,
+    pub tool: ToolKind,
+    /// The name of the brush in hand among those that come with the program.
+    pub preset: String,
+    pub brush: Brush,
+    pub color: Color,
+    pub second_color: Color,
+    /// The last ones painted with, newest first.
+    pub recent_colors: Vec<Color>,
+    /// How new marks follow the surface.
+    pub operator: Operator,
+    /// A view of the surface shown over the picture, by its name.
+    pub overlay: Option<String>,
+    pub overlay_opacity: f32,
+    gesture: Option<Box<dyn Gesture>>,
+    last_pen: Option<Vec2>,
+    /// Sentences for the user, not shown yet.
+    pub notes: Vec<String>,
+    untitled: usize,
+}
+
+impl Default for Session {
+    fn default() -> Self {
+        let preset = "soft-round";
+        Self {
+            tabs: Vec::new(),
+            current: 0,
+            tool: ToolKind::default(),
+            preset: preset.into(),
+            brush: preset_brush(preset).map(|(brush, _)| brush).unwrap_or_default(),
+            color: Color { r: 0xe8, g: 0xe4, b: 0xda, a: 255 },
+            second_color: Color { r: 0x1c, g: 0x20, b: 0x26, a: 255 },
+            recent_colors: Vec::new(),
+            operator: Operator::None,
+            overlay: None,
+            overlay_opacity: 0.85,
+            gesture: None,
+            last_pen: None,
+            notes: Vec::new(),
+            untitled: 0,
+        }
+    }
+}
+
+impl Session {
+    /// The document in front.
+    pub fn tab(&self) -> Option<&Tab> {
+        self.tabs.get(self.current)
+    }
+    pub fn tab_mut(&mut self) -> Option<&mut Tab> {
+        self.tabs.get_mut(self.current)
+    }
+    /// The document in front, as it is to be seen.
+    pub fn shown(&self) -> Option<&Document> {
+        self.tab().map(Tab::shown)
+    }
+    /// The selected layer, as it is to be seen.
+    pub fn layer(&self) -> Option<&Arc<Layer>> {
+        let tab = self.tab()?;
+        tab.shown().layer(tab.selected?)
+    }
+    /// Where the selected layer stands.
+    pub fn layer_path(&self) -> Option<LayerPath> {
+        let tab = self.tab()?;
+        LayerPath::of(tab.document(), tab.selected?)
+    }
+    /// A tool is between press and release.
+    pub fn is_drawing(&self) -> bool {
+        self.gesture.is_some()
+    }
+    pub fn add_tab(&mut self, tab: Tab) {
+        self.drop_gesture();
+        self.tabs.push(tab);
+        self.current = self.tabs.len() - 1;
+    }
+    /// A document that was opened elsewhere, perhaps on another thread.
+    pub fn adopt(&mut self, opened: Opened) {
+        let Opened { mut tab, notes } = opened;
+        if tab.file.is_none() && tab.name.is_empty() {
+            tab.name = self.untitled();
+        }
+        self.add_tab(tab);
+        self.notes.extend(notes);
+    }
+    pub fn close_tab(&mut self, index: usize) {
+        if index < self.tabs.len() {
+            self.tabs.remove(index);
+            if self.current > index || self.current >= self.tabs.len() {
+                self.current = self.current.saturating_sub(1);
+            }
+        }
+    }
+    /// A name for a document that has none.
+    pub fn untitled(&mut self) -> String {
+        self.untitled += 1;
+        format!("Untitled {}", self.untitled)
+    }
+    /// What was begun is forgotten, and what it showed with it.
+    pub fn drop_gesture(&mut self) {
+        if self.gesture.take().is_some()
+            && let Some(tab) = self.tab_mut()
+        {
+            tab.forget_preview();
+        }
+    }
+    /// The colour in hand goes to the front of those remembered.
+    fn remember_color(&mut self) {
+        let color = self.color;
+        self.recent_colors.retain(|known| *known != color);
+        self.recent_colors.insert(0, color);
+        self.recent_colors.truncate(RECENT);
+    }
+    /// Does what a replay file says, line by line; the first that fails ends it with a sentence.
+    pub fn replay(&mut self, file: &Path, text: &str) -> Result<()> {
+        replay::lines::<Action>(file, text)?.iter().try_for_each(|action| action.apply(self))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,211 @@
+//! Actions as text: one JSON object a line, so that what was done in the window can be done again without it.
+//! Floor 6. [`Replayed`] is how a value is written and read; `actions!`, `record!` and `names!` derive it.
+
+use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
+use crate::{Error, Result};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// A value of an action's field. Reading fails with what is wrong, for a sentence that names the line.
+pub trait Replayed: Sized {
+    fn written(&self) -> Value;
+    fn read(value: &Value) -> std::result::Result<Self, String>;
+}
+
+/// A field of an object; absent counts as `null`.
+pub fn field<T: Replayed>(object: &Value, name: &str) -> std::result::Result<T, String> {
+    T::read(object.get(name).unwrap_or(&Value::Null)).map_err(|reason| format!("“{name}” {reason}"))
+}
+
+impl Replayed for bool {
+    fn written(&self) -> Value {
+        (*self).into()
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        value.as_bool().ok_or_else(|| "must be true or false".into())
+    }
+}
+
+impl Replayed for f32 {
+    fn written(&self) -> Value {
+        // Through its shortest decimal form: 0.1 reads 0.1, not 0.10000000149.
+        self.to_string().parse::<f64>().map_or(Value::Null, Value::from)
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        let number = value.as_f64().map(|v| v as f32).filter(|v| v.is_finite());
+        number.ok_or_else(|| "must be a number".into())
+    }
+}
+
+/// Whole numbers.
+macro_rules! whole {
+    ($($ty:ty),+) => { $(impl Replayed for $ty {
+        fn written(&self) -> Value {
+            json!(self)
+        }
+        fn read(value: &Value) -> std::result::Result<Self, String> {
+            let number = value.as_i64().and_then(|v| <$ty>::try_from(v).ok());
+            number.ok_or_else(|| "must be a whole number".into())
+        }
+    })+ };
+}
+whole!(usize, u32, i32, u8);
+
+impl Replayed for String {
+    fn written(&self) -> Value {
+        self.as_str().into()
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        value.as_str().map(Into::into).ok_or_else(|| "must be a text".into())
+    }
+}
+
+impl Replayed for PathBuf {
+    fn written(&self) -> Value {
+        self.to_string_lossy().into()
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        String::read(value).map(Into::into)
+    }
+}
+
+impl Replayed for Color {
+    fn written(&self) -> Value {
+        self.to_string().into()
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        value.as_str().and_then(Color::parse).ok_or_else(|| "must be a colour such as #c08060".into())
+    }
+}
+
+impl Replayed for Vec2 {
+    fn written(&self) -> Value {
+        Value::Array(self.to_array().iter().map(Replayed::written).collect())
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        match Vec::<f32>::read(value)?[..] {
+            [x, y] => Ok(vec2(x, y)),
+            _ => Err("must be two numbers".into()),
+        }
+    }
+}
+
+impl Replayed for Vec3 {
+    fn written(&self) -> Value {
+        Value::Array(self.to_array().iter().map(Replayed::written).collect())
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        match Vec::<f32>::read(value)?[..] {
+            [x, y, z] => Ok(vec3(x, y, z)),
+            _ => Err("must be three numbers".into()),
+        }
+    }
+}
+
+impl<T: Replayed> Replayed for Vec<T> {
+    fn written(&self) -> Value {
+        Value::Array(self.iter().map(Replayed::written).collect())
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        value.as_array().ok_or("must be a list")?.iter().map(T::read).collect()
+    }
+}
+
+impl<T: Replayed> Replayed for Option<T> {
+    fn written(&self) -> Value {
+        self.as_ref().map_or(Value::Null, Replayed::written)
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        if value.is_null() { Ok(None) } else { T::read(value).map(Some) }
+    }
+}
+
+/// Declares an enum of actions; each variant has a word in replays and named fields.
+macro_rules! actions {
+    ($(#[$meta:meta])* $name:ident {
+        $($(#[$about:meta])* $word:literal $variant:ident { $($field:ident: $ty:ty),* $(,)? })+
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone)]
+        pub enum $name { $($(#[$about])* $variant { $($field: $ty),* }),+ }
+        impl $crate::session::replay::Replayed for $name {
+            fn written(&self) -> serde_json::Value {
+                let mut object = serde_json::Map::new();
+                match self { $(Self::$variant { $($field),* } => {
+                    object.insert("do".into(), $word.into());
+                    $(object.insert(stringify!($field).into(), $field.written());)*
+                })+ }
+                serde_json::Value::Object(object)
+            }
+            fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
+                match value.get("do").and_then(|word| word.as_str()) {
+                    $(Some($word) => Ok(Self::$variant {
+                        $($field: $crate::session::replay::field(value, stringify!($field))?),*
+                    }),)+
+                    Some(word) => Err(format!("“do” is “{word}”, which is not known here")),
+                    None => Err("“do” is missing".into()),
+                }
+            }
+        }
+    };
+}
+pub(crate) use actions;
+
+/// Replays a struct of another floor field by field.
+macro_rules! record {
+    ($name:ty { $($field:ident),+ $(,)? }) => {
+        impl $crate::session::replay::Replayed for $name {
+            fn written(&self) -> serde_json::Value {
+                let mut object = serde_json::Map::new();
+                $(object.insert(stringify!($field).into(), self.$field.written());)+
+                serde_json::Value::Object(object)
+            }
+            fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
+                $(let $field = $crate::session::replay::field(value, stringify!($field))?;)+
+                Ok(Self { $($field),+ })
+            }
+        }
+    };
+}
+pub(crate) use record;
+
+/// Replays an enum of plain choices by their names: `names!(Lock, [Lock::None => "none", …])`, or by its own
+/// `name` and `from_name`: `names!(BlendMode)`.
+macro_rules! names {
+    ($name:ty) => {
+        impl $crate::session::replay::Replayed for $name {
+            fn written(&self) -> serde_json::Value {
+                self.name().into()
+            }
+            fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
+                let found = value.as_str().and_then(<$name>::from_name);
+                found.ok_or_else(|| format!("is {value}, which is not known here"))
+            }
+        }
+    };
+    ($name:ty, [$($choice:path => $word:literal),+ $(,)?]) => {
+        impl $crate::session::replay::Replayed for $name {
+            fn written(&self) -> serde_json::Value {
+                match self { $($choice => $word,)+ }.into()
+            }
+            fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
+                match value.as_str() {
+                    $(Some($word) => Ok($choice),)+
+                    _ => Err(format!("is {value}, which is not known here")),
+                }
+            }
+        }
+    };
+}
+pub(crate) use names;
+
+/// The lines of a replay as values. Empty lines and lines that begin with `#` say nothing.
+pub fn lines<T: Replayed>(file: &Path, text: &str) -> Result<Vec<T>> {
+    let told = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    told.map(|(i, line)| {
+        let value: std::result::Result<Value, _> = serde_json::from_str(line);
+        let read = value.map_err(|e| format!("is not JSON: {e}")).and_then(|value| T::read(&value));
+        read.map_err(|reason| Error::invalid(file, format!("line {}", i + 1), reason))
+    })
+    .collect()
+}

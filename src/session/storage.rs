@@ -1,0 +1,168 @@
+//! Where documents come from and go to: projects, recipes, pictures, maps.
+//! Floor 6. Formats are `io`'s; here is which of them a file is.
+
+use super::Tab;
+use crate::document::source::{MapSource, MaskSource, SurfaceSource};
+use crate::document::{Content, Document, Layer, Progress};
+use crate::io::maps::pairs::{self, Part};
+use crate::io::save::Stamp;
+use crate::io::{self, Budget, Given, Over, files::read_file, inspect, maps};
+use crate::math::srgb::Color;
+use crate::{Error, Result};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Endings of the files that hold documents.
+pub const DOCUMENTS: [&str; 2] = ["ora", "json"];
+/// Endings of the files that hold pictures.
+pub const PICTURES: [&str; 10] = ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr"];
+
+/// What a file is good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Document,
+    /// To paint with.
+    Picture,
+    /// A map of normals, alone or with depth.
+    Normals,
+    /// Perhaps a depth map: grey, and named like one.
+    Depth,
+}
+
+/// A document that was opened, ready to become a tab.
+pub struct Opened {
+    pub tab: Tab,
+    /// Sentences about what was found and what could not be kept.
+    pub notes: Vec<String>,
+}
+
+pub fn is_document(file: &Path) -> bool {
+    ends_in(file, &DOCUMENTS)
+}
+
+fn ends_in(file: &Path, endings: &[&str]) -> bool {
+    let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    endings.contains(&ending.as_str())
+}
+
+/// What a dropped or opened file is, by its ending, its contents and its name.
+pub fn kind_of(file: &Path) -> Result<Kind> {
+    if is_document(file) {
+        return Ok(Kind::Document);
+    }
+    let budget = Budget::default();
+    let bytes = read_file(file, budget.file_bytes)?;
+    let found = inspect::describe(file, &bytes, &budget)?;
+    let named = pairs::part_of(file).map(|(_, part)| part);
+    Ok(if found.looks_like_normals || !found.normals.is_empty() || (named == Some(Part::Normal) && !found.is_grey) {
+        Kind::Normals
+    } else if !found.depths.is_empty() || (found.is_grey && named == Some(Part::Depth)) {
+        Kind::Depth
+    } else {
+        Kind::Picture
+    })
+}
+
+/// Opens a document, a map, or a picture as a document of its own.
+pub fn open(file: &Path) -> Result<Opened> {
+    match kind_of(file)? {
+        Kind::Document | Kind::Picture => {
+            let io::Opened { document, notes, is_whole, kind, stamp } = io::open(file, &Budget::default())?;
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let is_project = kind == io::open::Kind::Project;
+            let mut tab = Tab::new(name, document, is_project.then(|| file.into()));
+            // What is not whole must not replace its file unasked.
+            tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
+            Ok(Opened { tab, notes })
+        }
+        Kind::Normals => open_maps(&maps_of(Some(file), None)),
+        Kind::Depth => open_maps(&maps_of(None, Some(file))),
+    }
+}
+
+/// A surface made of these files, every convention to be found.
+pub fn maps_of(normal: Option<&Path>, depth: Option<&Path>) -> SurfaceSource {
+    let name = |file: &Path| file.to_string_lossy().into_owned();
+    SurfaceSource {
+        normal: normal.map(|file| MapSource { file: name(file), ..MapSource::default() }),
+        depth: depth.map(|file| MapSource { file: name(file), ..MapSource::default() }),
+        mask: None,
+    }
+}
+
+/// Reads a surface from the user's own files.
+pub fn import(source: &SurfaceSource) -> Result<maps::Import> {
+    maps::import(source, &Given::default(), &Budget::default())
+}
+
+/// The maps that belong to a file by their names: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its folder.
+pub fn maps_beside(file: &Path) -> SurfaceSource {
+    let part = pairs::part_of(file);
+    let is_depth = matches!(kind_of(file), Ok(Kind::Depth));
+    let mut source = if is_depth { maps_of(None, Some(file)) } else { maps_of(Some(file), None) };
+    let Some((name, _)) = part else { return source };
+    let beside = file.parent().and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
+    let mut others: Vec<PathBuf> =
+        beside.map(|entry| entry.path()).filter(|other| other != file && ends_in(other, &PICTURES)).collect();
+    others.sort_unstable();
+    for other in others {
+        let text = other.to_string_lossy().into_owned();
+        match pairs::part_of(&other).filter(|(other, _)| *other == name) {
+            Some((_, Part::Normal)) if source.normal.is_none() => {
+                source.normal = Some(MapSource { file: text, ..MapSource::default() });
+            }
+            Some((_, Part::Depth)) if source.depth.is_none() => {
+                source.depth = Some(MapSource { file: text, ..MapSource::default() });
+            }
+            Some((_, Part::Mask)) if source.mask.is_none() => {
+                source.mask = Some(MaskSource::File { file: text, channel: None, invert: false });
+            }
+            _ => {}
+        }
+    }
+    source
+}
+
+/// A new document on a surface, with a plain ground to paint on.
+pub fn open_maps(source: &SurfaceSource) -> Result<Opened> {
+    Ok(of_import(source, import(source)?))
+}
+
+/// The same of maps that were read already.
+pub fn of_import(source: &SurfaceSource, import: maps::Import) -> Opened {
+    let maps::Import { surface, findings, files } = import;
+    let size = surface.size();
+    let ground = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Fill(GROUND)) };
+    let clay = Layer::new("Base", Content::Fill(CLAY));
+    let document = Document {
+        surface: Some(Arc::new(surface)),
+        surface_source: Some(Arc::new(source.clone())),
+        surface_files: Arc::new(files),
+        layers: vec![Arc::new(ground), Arc::new(clay)],
+        ..Document::empty(size)
+    };
+    let file = source.normal.as_ref().map(|map| &map.file).or(source.depth.as_ref().map(|map| &map.file));
+    let stem = file.map(|file| Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned());
+    Opened { tab: Tab::new(stem.unwrap_or_default(), document, None), notes: findings.notes }
+}
+
+const GROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
+const CLAY: Color = Color { r: 0x8f, g: 0x8a, b: 0x84, a: 255 };
+
+/// Saves a document as a project. `stamp`: of the file as it was last read or written here, if it was.
+pub fn save(file: &Path, document: &Document, stamp: Option<Stamp>) -> Result<Stamp> {
+    let over = stamp.map_or(Over::Anything, Over::This);
+    let saved = io::save(document, file, over, &Progress::default())?;
+    // Nothing here cancels, so there always is one.
+    saved.map(|saved| saved.stamp).ok_or_else(|| Error::unsupported(file, "saving was cancelled"))
+}
+
+/// The files of a folder that a document could be opened from, for a picker.
+pub fn is_openable(file: &Path) -> bool {
+    ends_in(file, &DOCUMENTS) || ends_in(file, &PICTURES)
+}
+
+/// With the ending that a project has.
+pub fn with_ending(file: PathBuf) -> PathBuf {
+    if ends_in(&file, &DOCUMENTS[..1]) { file } else { file.with_extension(DOCUMENTS[0]) }
+}

@@ -1,0 +1,172 @@
+//! A document that is open: its history, what is selected in it, where it is kept, and how it is seen.
+//! Floor 6.
+
+use super::view::View;
+use crate::document::{Document, History, LayerId};
+use crate::io::save::Stamp;
+use crate::math::Vec2;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Steps that can be undone.
+const STEPS: usize = 200;
+
+/// An open document.
+pub struct Tab {
+    /// Which tab, as long as the program runs.
+    pub key: usize,
+    pub history: History,
+    /// What is shown while the hand moves: not a step yet.
+    preview: Option<Preview>,
+    pub selected: Option<LayerId>,
+    /// Where it was opened from or saved to.
+    pub file: Option<PathBuf>,
+    /// What it is called while it has no file.
+    pub name: String,
+    /// What that file held when it was last read or written here.
+    pub stamp: Option<Stamp>,
+    /// As the file holds it.
+    saved: Document,
+    /// `None` until the window has shown it once.
+    pub view: Option<View>,
+    /// The one layer that is shown, while it is alone.
+    pub solo: Option<LayerId>,
+    /// Where the last stroke ended, canvas px.
+    pub last_end: Option<Vec2>,
+}
+
+struct Preview {
+    label: String,
+    document: Document,
+}
+
+impl Tab {
+    pub fn new(name: impl Into<String>, document: Document, file: Option<PathBuf>) -> Self {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let selected = document.layers.last().map(|layer| layer.id);
+        Self {
+            key: NEXT.fetch_add(1, Ordering::Relaxed),
+            saved: document.clone(),
+            history: History::new(document, STEPS),
+            preview: None,
+            selected,
+            file,
+            stamp: None,
+            name: name.into(),
+            view: None,
+            solo: None,
+            last_end: None,
+        }
+    }
+    /// The document as the last step left it.
+    pub fn document(&self) -> &Document {
+        self.history.present()
+    }
+    /// The document as it is to be seen: with what the hand is doing.
+    pub fn shown(&self) -> &Document {
+        self.preview.as_ref().map_or(self.history.present(), |preview| &preview.document)
+    }
+    /// As it is to be drawn: a layer that is alone hides the others.
+    pub fn drawn(&self) -> Document {
+        let shown = self.shown();
+        self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
+    }
+    /// The file's name, or the one given.
+    pub fn title(&self) -> String {
+        let name = self.file.as_ref().and_then(|file| file.file_name());
+        name.map_or_else(|| self.name.clone(), |name| name.to_string_lossy().into_owned())
+    }
+    /// There is something that no file holds.
+    pub fn is_dirty(&self) -> bool {
+        !is_same(&self.saved, self.document())
+    }
+    pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: Stamp) {
+        self.saved = document;
+        (self.file, self.stamp) = (Some(file), Some(stamp));
+    }
+    /// What came from elsewhere than a file of its own, such as a recovered document: there is something to save.
+    pub fn mark_unsaved(&mut self) {
+        self.saved = Document::empty(self.document().size);
+    }
+    pub fn is_previewing(&self) -> bool {
+        self.preview.is_some()
+    }
+    /// Shows a document without keeping it.
+    pub fn show(&mut self, label: impl Into<String>, document: Document) {
+        self.preview = Some(Preview { label: label.into(), document });
+    }
+    /// Keeps a document as a step.
+    pub fn commit(&mut self, label: impl Into<String>, document: Document) {
+        self.preview = None;
+        if !is_same(self.document(), &document) {
+            self.history.commit(label, document);
+        }
+        self.repair();
+    }
+    /// Keeps what is shown.
+    pub fn keep_preview(&mut self) {
+        if let Some(Preview { label, document }) = self.preview.take() {
+            self.commit(label, document);
+        }
+    }
+    /// Forgets what is shown.
+    pub fn forget_preview(&mut self) {
+        self.preview = None;
+    }
+    /// Goes back (negative) or forward by steps.
+    pub fn walk(&mut self, steps: i32) {
+        self.preview = None;
+        for _ in 0..steps.unsigned_abs() {
+            let gone = if steps < 0 { self.history.undo().is_some() } else { self.history.redo().is_some() };
+            if !gone {
+                break;
+            }
+        }
+        self.repair();
+    }
+    /// A selected layer that is gone gives way to the topmost.
+    fn repair(&mut self) {
+        let document = self.history.present();
+        let is_there = |id: LayerId| document.layer(id).is_some();
+        if !self.selected.is_some_and(is_there) {
+            self.selected = document.layers.last().map(|layer| layer.id);
+        }
+        if !self.solo.is_some_and(is_there) {
+            self.solo = None;
+        }
+    }
+}
+
+/// Both are the same value: nothing was edited between them.
+pub fn is_same(a: &Document, b: &Document) -> bool {
+    let same_layers =
+        a.layers.len() == b.layers.len() && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));
+    same_layers && a.scene().is_same(&b.scene())
+}
+
+/// The document with one layer shown alone; `None` if it has no such layer.
+fn alone(document: &Document, id: LayerId) -> Option<Document> {
+    use crate::document::{Content, Layer};
+    fn hide(layers: &[Arc<Layer>], id: LayerId) -> (Vec<Arc<Layer>>, bool) {
+        let mut found = false;
+        let layers = layers.iter().map(|layer| {
+            let mut next = Layer::clone(layer);
+            next.visible = layer.id == id || (layer.visible && matches!(layer.content, Content::Normals(_)));
+            if let Content::Group(group) = &mut next.content
+                && layer.id != id
+            {
+                let (inner, inside) = hide(&group.layers, id);
+                group.layers = inner;
+                next.visible = inside;
+            }
+            found |= next.visible;
+            next.clip_below &= layer.id != id;
+            Arc::new(next)
+        });
+        (layers.collect(), found)
+    }
+    document.layer(id)?;
+    let (layers, _) = hide(&document.layers, id);
+    Some(Document { layers, ..document.clone() })
+}

@@ -1,0 +1,122 @@
+//! Stories: what a user does, told as the lines of a replay.
+
+use super::actions::{Action, LayerAction};
+use super::replay::Replayed;
+use super::*;
+use crate::document::{Content, Progress, flatten};
+use crate::raster::BlendMode;
+
+fn told(lines: &str) -> Session {
+    let mut session = Session::default();
+    session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
+    session
+}
+fn names(session: &Session) -> Vec<String> {
+    session.tab().unwrap().document().walk().iter().map(|(_, layer)| layer.name.clone()).collect()
+}
+fn pixel(session: &Session, x: i32, y: i32) -> [u8; 4] {
+    flatten(&session.tab().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y)
+}
+
+const PAPER: &str = r##"{"in":"file","do":"new","width":200,"height":150,"background":"#ffffff"}"##;
+const STROKE: &str = r##"
+{"in":"hand","do":"preset","name":"hard-round"}
+{"in":"hand","do":"color","color":"#c02010"}
+{"in":"pointer","do":"press","tool":"brush","pen":[20,70],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[60,74],[120,70]]}
+{"in":"pointer","do":"drag","pens":[[180,72]]}
+{"in":"pointer","do":"release"}"##;
+
+#[test]
+fn a_stroke_on_paper_is_one_named_step_that_can_be_undone() {
+    let mut session = told(&format!("{PAPER}{STROKE}"));
+    assert_eq!(names(&session), ["Background", "Strokes"]);
+    assert_eq!(session.tab().unwrap().history.done(), Some("Brush stroke"));
+    assert_eq!(pixel(&session, 100, 70), [0xc0, 0x20, 0x10, 255]);
+    assert!(session.tab().unwrap().is_dirty());
+    session.replay(Path::new("story"), r#"{"in":"edit","do":"undo"}"#).unwrap();
+    assert_eq!(pixel(&session, 100, 70), [255; 4]);
+    assert!(!session.tab().unwrap().is_dirty(), "back to what was opened, there is nothing to save");
+    assert_eq!(session.recent_colors, [session.color]);
+}
+#[test]
+fn a_slider_shows_as_it_moves_and_is_one_step_when_it_is_let_go() {
+    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let set = |to: f32, done: bool| {
+        format!(r#"{{"in":"layer","do":"set","layer":"1","to":{{"do":"opacity","to":{to}}},"done":{done}}}"#)
+    };
+    session.replay(Path::new("story"), &set(0.2, false)).unwrap();
+    assert_eq!(session.layer().unwrap().opacity, 0.2);
+    assert_eq!(session.tab().unwrap().document().layers[1].opacity, 1.0);
+    session.replay(Path::new("story"), &format!("{}\n{}", set(0.4, false), set(0.5, true))).unwrap();
+    assert_eq!(session.tab().unwrap().history.past().collect::<Vec<_>>(), ["Brush stroke", "Opacity"]);
+    assert_eq!(session.tab().unwrap().document().layers[1].opacity, 0.5);
+}
+#[test]
+fn layers_are_made_grouped_moved_and_merged() {
+    let session = told(&format!(
+        r#"{PAPER}{STROKE}
+        {{"in":"layer","do":"duplicate","layer":"1"}}
+        {{"in":"layer","do":"group","layer":"2"}}
+        {{"in":"layer","do":"add","kind":"gradient"}}
+        {{"in":"layer","do":"move","layer":"1","group":"2","index":0}}
+        {{"in":"layer","do":"set","layer":"1","to":{{"do":"blend","mode":"multiply"}},"done":true}}"#
+    ));
+    assert_eq!(names(&session), ["Background", "Strokes", "Strokes copy", "Gradient", "Group"]);
+    assert_eq!(session.tab().unwrap().document().layers[1].blend, BlendMode::Multiply);
+    let mut session = session;
+    session
+        .replay(
+            Path::new("story"),
+            "{\"in\":\"layer\",\"do\":\"ungroup\",\"layer\":\"1\"}\n{\"in\":\"layer\",\"do\":\"flatten\"}",
+        )
+        .unwrap();
+    assert_eq!(names(&session), ["Picture"]);
+}
+#[test]
+fn baking_changes_what_a_layer_is_and_no_pixel() {
+    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let before = flatten(session.tab().unwrap().document(), &Progress::default()).unwrap();
+    let bake = Action::Layer(LayerAction::Bake { layer: session.layer_path().unwrap() });
+    bake.apply(&mut session).unwrap();
+    let after = session.tab().unwrap().document();
+    assert!(matches!(after.layers[1].content, Content::Pixels(_)));
+    let after = flatten(after, &Progress::default()).unwrap();
+    let rect = crate::math::Rect::new(0, 0, 200, 150);
+    assert_eq!(before.to_straight_rgba(rect), after.to_straight_rgba(rect));
+}
+#[test]
+fn a_layer_alone_hides_the_others_until_it_is_no_longer() {
+    let mut session = told(&format!("{PAPER}{STROKE}"));
+    let solo = r#"{"in":"layer","do":"solo","layer":"1"}"#;
+    session.replay(Path::new("story"), solo).unwrap();
+    assert_eq!((pixel(&session, 5, 5), pixel(&session, 100, 70)), ([0; 4], [0xc0, 0x20, 0x10, 255]));
+    session.replay(Path::new("story"), solo).unwrap();
+    assert_eq!(pixel(&session, 5, 5), [255; 4]);
+}
+#[test]
+fn what_cannot_be_done_changes_nothing() {
+    let mut session = told(PAPER);
+    let before = session.tab().unwrap().document().clone();
+    let hopeless = r#"
+        {"in":"layer","do":"delete","layer":"7"}
+        {"in":"layer","do":"move","layer":"0","group":"0","index":0}
+        {"in":"layer","do":"merge down","layer":"0"}
+        {"in":"edit","do":"redo"}
+        {"in":"pointer","do":"release"}
+        {"in":"file","do":"tab","index":9}"#;
+    session.replay(Path::new("story"), hopeless).unwrap();
+    assert!(is_same(&before, session.tab().unwrap().document()));
+    assert_eq!(session.tab().unwrap().history.past().len(), 0);
+    let wrong = session.replay(Path::new("story"), "{\"in\":\"layer\",\"do\":\"paint it black\"}").unwrap_err();
+    assert_eq!(wrong.to_string(), "story: line 1: “do” is “paint it black”, which is not known here");
+}
+#[test]
+fn actions_read_back_as_they_were_written() {
+    let story = format!("{PAPER}{STROKE}");
+    let actions = replay::lines::<Action>(Path::new("story"), &story).unwrap();
+    for action in actions {
+        let written = action.written();
+        assert_eq!(Action::read(&written).unwrap().written(), written);
+    }
+}

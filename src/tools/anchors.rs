@@ -1,0 +1,271 @@
+//! The anchor tool: where an image is pinned to the surface, and which of its points is pinned there.
+//! Floor 5. What anchors do is `surface::deformation`'s.
+
+use super::gradient::End;
+use super::{Begun, Context, GRAB_PT, Gesture, Outcome, Pen};
+use crate::document::{Content, Document, Layer, LayerId, Live, Lock};
+use crate::math::Vec2;
+use crate::paint::{Gradient, PlacedImage};
+use crate::surface::{Anchor, Deformation, Surface};
+use std::sync::Arc;
+
+/// What dragging an anchor changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum How {
+    /// The anchor moves along the surface and takes its content with it: `at` changes, `source` stays.
+    Carry,
+    /// The anchor stays, the content moves under it: `source` changes.
+    Content,
+    /// The anchor moves over content that stays: `source` becomes what was shown there.
+    Repin,
+}
+
+/// The handles of a layer, canvas px: its anchors, or a gradient's ends.
+pub fn handles(layer: &Layer) -> Vec<Vec2> {
+    match &layer.content {
+        Content::Image(live) => live.params().bend.anchors.iter().map(|anchor| anchor.at).collect(),
+        Content::Gradient(live) => vec![live.params().from, live.params().to],
+        _ => Vec::new(),
+    }
+}
+
+/// The handle that the pen takes hold of.
+pub fn handle_at(layer: &Layer, at: Vec2, px_per_pt: f32) -> Option<usize> {
+    let near = handles(layer).into_iter().map(|handle| handle.distance(at)).enumerate();
+    near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= GRAB_PT * px_per_pt).map(|(i, _)| i)
+}
+
+pub fn press(context: &Context, pen: Pen) -> Begun {
+    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != Lock::All);
+    let Some(layer) = layer else { return (None, Outcome::Idle) };
+    let taken = handle_at(layer, pen.place(), context.px_per_pt);
+    let document = context.document.clone();
+    match (&layer.content, taken) {
+        (Content::Image(live), None) if !pen.keys.alt => add(document, layer, live.params().clone(), pen),
+        (Content::Image(live), Some(index)) if pen.keys.alt => (None, remove(&document, layer, live.params(), index)),
+        (Content::Image(live), Some(index)) => {
+            let how = match pen.keys {
+                keys if keys.ctrl => How::Content,
+                keys if keys.shift => How::Repin,
+                _ => How::Carry,
+            };
+            let image = live.params().clone();
+            let (before, from, label) = (image.clone(), pen.place(), "Move anchor");
+            (
+                Some(Box::new(Dragged {
+                    document,
+                    layer: layer.id,
+                    image,
+                    before,
+                    index,
+                    how,
+                    from,
+                    moved: false,
+                    label,
+                })),
+                Outcome::Idle,
+            )
+        }
+        (Content::Gradient(live), Some(index)) => {
+            let end = if index == 0 { End::From } else { End::To };
+            let gradient = live.params().clone();
+            (Some(Box::new(DraggedEnd { document, layer: layer.id, gradient, end, moved: false })), Outcome::Idle)
+        }
+        _ => (None, Outcome::Idle),
+    }
+}
+
+/// A new anchor that changes nothing yet: it pins what is shown there.
+fn add(document: Document, layer: &Layer, mut image: PlacedImage, pen: Pen) -> Begun {
+    let surface = document.surface.clone();
+    let at = pen.place();
+    let source = shown_at(&image, surface.as_deref(), &document, at);
+    image.bend.anchors.push(Anchor { at, source });
+    let index = image.bend.anchors.len() - 1;
+    let (before, how, from) = (image.clone(), How::Carry, at);
+    let mut dragged =
+        Dragged { document, layer: layer.id, image, before, index, how, from, moved: true, label: "Add anchor" };
+    let outcome = dragged.show();
+    (Some(Box::new(dragged)), outcome)
+}
+
+fn remove(document: &Document, layer: &Layer, image: &PlacedImage, index: usize) -> Outcome {
+    let mut image = image.clone();
+    image.bend.anchors.remove(index);
+    let content = Content::Image(Live::new(image));
+    match document.with_layer(layer.id, |layer| layer.content = content) {
+        Some(document) => Outcome::Commit { label: "Remove anchor".into(), document, select: None },
+        None => Outcome::Idle,
+    }
+}
+
+/// D(at): which point of the image is shown there.
+fn shown_at(image: &PlacedImage, surface: Option<&Surface>, document: &Document, at: Vec2) -> Vec2 {
+    let deformation = Deformation::new(surface, document.size, &image.bend);
+    let center = at.floor();
+    deformation.at(center.x as i32, center.y as i32) + (at - center - 0.5)
+}
+
+struct Dragged {
+    document: Document,
+    layer: LayerId,
+    image: PlacedImage,
+    /// Before the drag.
+    before: PlacedImage,
+    index: usize,
+    how: How,
+    from: Vec2,
+    moved: bool,
+    label: &'static str,
+}
+
+impl Dragged {
+    fn with(&self) -> Option<Document> {
+        let content = Content::Image(Live::new(self.image.clone()));
+        self.document.with_layer(self.layer, |layer| layer.content = content)
+    }
+    fn show(&mut self) -> Outcome {
+        self.with().map_or(Outcome::Idle, Outcome::Preview)
+    }
+}
+
+impl Gesture for Dragged {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        let Some(&start) = self.before.bend.anchors.get(self.index) else { return Outcome::Idle };
+        let by = pen.place() - self.from;
+        let anchor = match self.how {
+            How::Carry => Anchor { at: start.at + by, source: start.source },
+            // The content follows the pen, so what is pinned lies the other way.
+            How::Content => Anchor { at: start.at, source: start.source - by },
+            How::Repin => {
+                let at = start.at + by;
+                let surface: Option<Arc<Surface>> = self.document.surface.clone();
+                Anchor { at, source: shown_at(&self.before, surface.as_deref(), &self.document, at) }
+            }
+        };
+        if let Some(slot) = self.image.bend.anchors.get_mut(self.index) {
+            *slot = anchor;
+        }
+        self.moved = true;
+        self.show()
+    }
+    fn release(&mut self) -> Outcome {
+        let label = match self.how {
+            How::Content => "Move content under anchor",
+            How::Repin => "Re-pin anchor",
+            How::Carry => self.label,
+        };
+        match self.with() {
+            Some(document) if self.moved => Outcome::Commit { label: label.into(), document, select: None },
+            _ => Outcome::Cancel,
+        }
+    }
+}
+
+/// A gradient's end, taken hold of with the anchor tool.
+struct DraggedEnd {
+    document: Document,
+    layer: LayerId,
+    gradient: Gradient,
+    end: End,
+    moved: bool,
+}
+
+impl DraggedEnd {
+    fn with(&self) -> Option<Document> {
+        let content = Content::Gradient(Live::new(self.gradient.clone()));
+        self.document.with_layer(self.layer, |layer| layer.content = content)
+    }
+}
+
+impl Gesture for DraggedEnd {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        match self.end {
+            End::From => self.gradient.from = pen.place(),
+            End::To => self.gradient.to = pen.place(),
+        }
+        self.moved = true;
+        self.with().map_or(Outcome::Idle, Outcome::Preview)
+    }
+    fn release(&mut self) -> Outcome {
+        match self.with() {
+            Some(document) if self.moved => {
+                Outcome::Commit { label: "Move gradient end".into(), document, select: None }
+            }
+            _ => Outcome::Cancel,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, srgb::Color, vec2};
+    use crate::paint::{Adjust, Brush, Filter, PictureSource, Placement};
+    use crate::raster::{Outside, Picture};
+    use crate::surface::{Bend, Operator, Weights};
+    use crate::tools::Keys;
+
+    fn document(anchors: Vec<Anchor>) -> Document {
+        let size = Size::new(100, 80);
+        let picture = Picture::srgb8(size, vec![[9; 4]; size.area()]).unwrap();
+        let image = PlacedImage {
+            source: PictureSource::new("p.png".into(), picture, Adjust::default()),
+            placement: Placement::covering(size),
+            outside: Outside::Mirror,
+            bend: Bend { operator: Operator::None, anchors, weights: Weights::default() },
+            filter: Filter::Antialias,
+        };
+        let layers = vec![Arc::new(Layer::new("image", Content::Image(Live::new(image))))];
+        Document { layers, ..Document::empty(size) }
+    }
+    fn dragged(document: &Document, keys: Keys, from: Vec2, to: Vec2) -> Option<Vec<Anchor>> {
+        let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
+        let (color, second_color, operator) = (Color::BLACK, Color::WHITE, Operator::None);
+        let context =
+            Context { document, layer, brush: &brush, color, second_color, operator, px_per_pt: 1.0, last_end: None };
+        let (gesture, begun) = press(&context, Pen { keys, ..Pen::at(from) });
+        let outcome = match gesture {
+            Some(mut gesture) => {
+                gesture.drag(&[Pen { keys, ..Pen::at(to) }]);
+                gesture.release()
+            }
+            None => begun,
+        };
+        let Outcome::Commit { document, .. } = outcome else { return None };
+        let Content::Image(live) = &document.layers[0].content else { return None };
+        Some(live.params().bend.anchors.clone())
+    }
+
+    #[test]
+    fn dragging_an_anchor_takes_its_content_along() {
+        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
+        let anchors = dragged(&pinned, Keys::default(), vec2(33.0, 30.0), vec2(53.0, 40.0)).unwrap();
+        assert_eq!(anchors, [Anchor { at: vec2(50.0, 40.0), source: vec2(30.0, 30.0) }]);
+    }
+    #[test]
+    fn dragging_content_leaves_the_anchor_where_it_is() {
+        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
+        let keys = Keys { ctrl: true, ..Keys::default() };
+        let anchors = dragged(&pinned, keys, vec2(30.0, 30.0), vec2(35.0, 32.0)).unwrap();
+        assert_eq!(anchors, [Anchor { at: vec2(30.0, 30.0), source: vec2(25.0, 28.0) }]);
+    }
+    #[test]
+    fn a_new_or_repinned_anchor_changes_no_pixel() {
+        let moved = Anchor { at: vec2(30.0, 30.0), source: vec2(20.0, 30.0) };
+        let anchors = dragged(&document(vec![moved]), Keys::default(), vec2(80.0, 60.5), vec2(80.0, 60.5)).unwrap();
+        assert_eq!(anchors[1], Anchor { at: vec2(80.0, 60.5), source: vec2(70.0, 60.5) });
+        let keys = Keys { shift: true, ..Keys::default() };
+        let anchors = dragged(&document(vec![moved]), keys, vec2(30.0, 30.0), vec2(50.0, 30.0)).unwrap();
+        assert_eq!(anchors, [Anchor { at: vec2(50.0, 30.0), source: vec2(40.0, 30.0) }]);
+    }
+    #[test]
+    fn alt_takes_an_anchor_away_and_nothing_else() {
+        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0)), Anchor::fixed(vec2(60.0, 30.0))]);
+        let keys = Keys { alt: true, ..Keys::default() };
+        assert_eq!(dragged(&pinned, keys, vec2(61.0, 30.0), vec2(61.0, 30.0)).unwrap().len(), 1);
+        assert_eq!(dragged(&pinned, keys, vec2(10.0, 70.0), vec2(10.0, 70.0)), None);
+    }
+}

@@ -1,0 +1,60 @@
+//! The eyedropper: the colour that the flattened picture shows under the pen.
+//! Floor 5.
+
+use super::{Begun, Context, Gesture, Outcome, Pen};
+use crate::document::{Document, Prepared, Progress};
+use crate::math::{Vec2, srgb::Color};
+use crate::raster::grid::unpremultiply;
+use crate::raster::{TILE, TileAt};
+
+pub fn press(context: &Context, pen: Pen) -> Begun {
+    let mut picking = Picking { document: context.document.clone() };
+    let outcome = picking.drag(&[pen]);
+    (Some(Box::new(picking)), outcome)
+}
+
+struct Picking {
+    document: Document,
+}
+
+impl Gesture for Picking {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let color = pens.last().and_then(|pen| color_at(&self.document, pen.place()));
+        color.map_or(Outcome::Idle, Outcome::Picked)
+    }
+    fn release(&mut self) -> Outcome {
+        Outcome::Cancel
+    }
+}
+
+/// The opaque colour of a pixel; `None` off the canvas and where nothing is painted.
+pub fn color_at(document: &Document, at: Vec2) -> Option<Color> {
+    let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
+    if !document.size.rect().contains(x, y) {
+        return None;
+    }
+    let here = TileAt::of_pixel(x, y);
+    let tile = Prepared::new(document, &Progress::default())?.flatten_tile(here)?;
+    let i = ((y - here.rect().y0) as usize * TILE + (x - here.rect().x0) as usize) * 4;
+    let mut straight = [0; 4];
+    unpremultiply(tile.bytes().get(i..i + 4)?, &mut straight);
+    let [r, g, b, a] = straight;
+    (a > 0).then_some(Color { r, g, b, a: 255 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Content, Layer};
+    use crate::math::{Size, vec2};
+    use std::sync::Arc;
+
+    #[test]
+    fn the_colour_is_that_of_the_picture_and_beyond_it_there_is_none() {
+        let teal = Color { r: 10, g: 120, b: 130, a: 255 };
+        let layers = vec![Arc::new(Layer::new("fill", Content::Fill(teal)))];
+        let document = Document { layers, ..Document::empty(Size::new(100, 90)) };
+        assert_eq!(color_at(&document, vec2(99.5, 89.5)), Some(teal));
+        assert_eq!(color_at(&document, vec2(100.5, 10.0)), None);
+    }
+}

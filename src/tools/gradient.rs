@@ -1,0 +1,158 @@
+//! The gradient tool: a drag lays a gradient; the ends of the selected one are handles.
+//! Floor 5.
+
+use super::brush::free_name;
+use super::{Begun, Context, GRAB_PT, Gesture, Outcome, Pen};
+use crate::document::{Content, Document, Layer, LayerId, Live, Lock, Place};
+use crate::math::Vec2;
+use crate::paint::{Filter, Gradient, Stop};
+
+/// Which end of a gradient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    From,
+    To,
+}
+
+pub fn press(context: &Context, pen: Pen) -> Begun {
+    let at = pen.place();
+    let selected = context.layer.and_then(|id| context.document.layer(id));
+    if let Some(layer) = selected
+        && let Content::Gradient(live) = &layer.content
+    {
+        if layer.lock == Lock::All {
+            return (None, Outcome::Idle);
+        }
+        let gradient = live.params().clone();
+        let near = |end: Vec2| end.distance(at) <= GRAB_PT * context.px_per_pt;
+        let end = [(End::To, gradient.to), (End::From, gradient.from)].into_iter().find(|(_, p)| near(*p));
+        if let Some((end, _)) = end {
+            let drag = Dragged { document: context.document.clone(), layer: layer.id, gradient, end, moved: false };
+            return (Some(Box::new(drag)), Outcome::Idle);
+        }
+    }
+    let stops = vec![Stop { t: 0.0, color: context.color }, Stop { t: 1.0, color: context.second_color }];
+    let gradient = Gradient { from: at, to: at, stops, operator: context.operator, filter: Filter::Antialias };
+    let place = selected.and_then(|layer| context.document.place_of(layer.id));
+    let laid = Laid { document: context.document.clone(), place, gradient, layer: None };
+    (Some(Box::new(laid)), Outcome::Idle)
+}
+
+/// A new gradient, from where the pen came down.
+struct Laid {
+    document: Document,
+    /// Of the layer it goes above.
+    place: Option<Place>,
+    gradient: Gradient,
+    layer: Option<Layer>,
+}
+
+impl Laid {
+    fn with(&mut self) -> Option<Document> {
+        let name = free_name(&self.document, "Gradient");
+        let content = Content::Gradient(Live::new(self.gradient.clone()));
+        let layer = self.layer.get_or_insert_with(|| Layer::new(name, content.clone()));
+        layer.content = content;
+        let place = self.place.map_or(Place::top_level(usize::MAX), |p| Place { index: p.index + 1, ..p });
+        self.document.with_inserted(layer.clone(), place)
+    }
+}
+
+impl Gesture for Laid {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        self.gradient.to = if pen.keys.shift { upright(self.gradient.from, pen.place()) } else { pen.place() };
+        self.with().map_or(Outcome::Idle, Outcome::Preview)
+    }
+    fn release(&mut self) -> Outcome {
+        if self.gradient.from.distance(self.gradient.to) < 2.0 {
+            return Outcome::Cancel;
+        }
+        let Some(document) = self.with() else { return Outcome::Cancel };
+        Outcome::Commit { label: "Gradient".into(), document, select: self.layer.as_ref().map(|layer| layer.id) }
+    }
+}
+
+/// The nearest of the eight directions of the compass.
+fn upright(from: Vec2, to: Vec2) -> Vec2 {
+    let step = std::f32::consts::FRAC_PI_4;
+    let turn = ((to - from).to_angle() / step).round() * step;
+    from + Vec2::from_angle(turn) * from.distance(to)
+}
+
+/// One end of a gradient in hand.
+struct Dragged {
+    document: Document,
+    layer: LayerId,
+    gradient: Gradient,
+    end: End,
+    moved: bool,
+}
+
+impl Dragged {
+    fn with(&self) -> Option<Document> {
+        let content = Content::Gradient(Live::new(self.gradient.clone()));
+        self.document.with_layer(self.layer, |layer| layer.content = content)
+    }
+}
+
+impl Gesture for Dragged {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        let fixed = if self.end == End::From { self.gradient.to } else { self.gradient.from };
+        let at = if pen.keys.shift { upright(fixed, pen.place()) } else { pen.place() };
+        match self.end {
+            End::From => self.gradient.from = at,
+            End::To => self.gradient.to = at,
+        }
+        self.moved = true;
+        self.with().map_or(Outcome::Idle, Outcome::Preview)
+    }
+    fn release(&mut self) -> Outcome {
+        match self.with() {
+            Some(document) if self.moved => {
+                Outcome::Commit { label: "Move gradient end".into(), document, select: None }
+            }
+            _ => Outcome::Cancel,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, srgb::Color, vec2};
+    use crate::paint::Brush;
+    use crate::surface::Operator;
+
+    #[test]
+    fn a_drag_lays_a_gradient_and_a_second_one_moves_its_end() {
+        let (empty, brush) = (Document::empty(Size::new(100, 100)), Brush::default());
+        let (color, second_color) = (Color::BLACK, Color::WHITE);
+        let context = Context {
+            document: &empty,
+            layer: None,
+            brush: &brush,
+            color,
+            second_color,
+            operator: Operator::None,
+            px_per_pt: 1.0,
+            last_end: None,
+        };
+        let drag = |context: &Context, from: Vec2, to: Vec2| {
+            let mut gesture = press(context, Pen::at(from)).0.unwrap();
+            gesture.drag(&[Pen::at(to)]);
+            gesture.release()
+        };
+        let Outcome::Commit { document, select, .. } = drag(&context, vec2(10.0, 10.0), vec2(80.0, 20.0)) else {
+            panic!("laid")
+        };
+        let context = Context { document: &document, layer: select, ..context };
+        let Outcome::Commit { document, .. } = drag(&context, vec2(82.0, 21.0), vec2(50.0, 90.0)) else {
+            panic!("moved")
+        };
+        let Content::Gradient(live) = &document.layers[0].content else { panic!("a gradient") };
+        assert_eq!((live.params().from, live.params().to), (vec2(10.0, 10.0), vec2(50.0, 90.0)));
+        assert!(matches!(drag(&context, vec2(40.0, 40.0), vec2(40.5, 40.0)), Outcome::Cancel), "a click lays nothing");
+    }
+}

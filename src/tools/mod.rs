@@ -1,0 +1,206 @@
+//! Floor 5: what the hand holds. A tool turns the pen's events on the canvas into documents: one that is shown while the
+//! hand moves, and one that is kept when it lifts. A tool is a file and a row of [`ToolKind::ALL`].
+//! Not here: which tool is in hand, history (`session`); screen coordinates (`app`).
+
+pub mod anchors;
+pub mod brush;
+pub mod eyedropper;
+pub mod gradient;
+pub mod image;
+pub mod outline;
+mod pixels;
+pub mod shift;
+
+use crate::document::{Document, LayerId};
+use crate::math::{Vec2, srgb::Color};
+use crate::paint::{Brush, Sample};
+use crate::surface::Operator;
+
+/// What can be taken in hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum ToolKind {
+    #[default]
+    Brush,
+    Eraser,
+    Gradient,
+    Image,
+    Anchors,
+    Move,
+    Eyedropper,
+    Hand,
+    Zoom,
+}
+
+/// A tool as people know it.
+#[derive(Clone, Copy)]
+pub struct ToolRow {
+    pub kind: ToolKind,
+    /// In replays.
+    pub name: &'static str,
+    /// On buttons.
+    pub label: &'static str,
+    /// The letter that takes it in hand.
+    pub key: char,
+    /// What it does, for tooltips and the status bar.
+    pub hint: &'static str,
+}
+
+impl ToolKind {
+    pub const ALL: [ToolRow; 9] = [
+        ToolRow {
+            kind: ToolKind::Brush,
+            name: "brush",
+            label: "Brush",
+            key: 'B',
+            hint: "Paint; each dab bends over the surface. Shift joins the last stroke's end with a straight line",
+        },
+        ToolRow {
+            kind: ToolKind::Eraser,
+            name: "eraser",
+            label: "Eraser",
+            key: 'E',
+            hint: "Erase with the brush in hand; on a stroke layer, take away the strokes you touch",
+        },
+        ToolRow {
+            kind: ToolKind::Gradient,
+            name: "gradient",
+            label: "Gradient",
+            key: 'G',
+            hint: "Drag to lay a gradient from the first colour to the second, or drag an end of the selected one",
+        },
+        ToolRow {
+            kind: ToolKind::Image,
+            name: "image",
+            label: "Image",
+            key: 'J',
+            hint: "Drag to move the selected image before it is bent; Shift scales it, Ctrl turns it",
+        },
+        ToolRow {
+            kind: ToolKind::Anchors,
+            name: "anchors",
+            label: "Anchors",
+            key: 'A',
+            hint: "Drag an anchor along the surface; Ctrl drags the content under it, Shift re-pins it; click adds, Alt-click removes",
+        },
+        ToolRow {
+            kind: ToolKind::Move,
+            name: "move",
+            label: "Move",
+            key: 'V',
+            hint: "Drag the selected layer; on a stroke layer, the stroke you take hold of (Shift: all of them)",
+        },
+        ToolRow {
+            kind: ToolKind::Eyedropper,
+            name: "eyedropper",
+            label: "Eyedropper",
+            key: 'I',
+            hint: "Take a colour from the picture",
+        },
+        ToolRow { kind: ToolKind::Hand, name: "hand", label: "Hand", key: 'H', hint: "Drag the view" },
+        ToolRow {
+            kind: ToolKind::Zoom,
+            name: "zoom",
+            label: "Zoom",
+            key: 'Z',
+            hint: "Click to zoom in, Alt-click to zoom out",
+        },
+    ];
+    pub fn row(self) -> &'static ToolRow {
+        const ROWS: &[ToolRow] = &ToolKind::ALL;
+        ROWS.iter().find(|row| row.kind == self).unwrap_or(&ROWS[0])
+    }
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|row| row.name == name).map(|row| row.kind)
+    }
+}
+
+/// One reading of the pen with what else is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pen {
+    pub sample: Sample,
+    pub keys: Keys,
+}
+
+/// The modifier keys, as they are called on most keyboards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Keys {
+    pub shift: bool,
+    /// Ctrl, or Command.
+    pub ctrl: bool,
+    pub alt: bool,
+}
+
+impl Pen {
+    /// A mouse without keys.
+    pub fn at(at: Vec2) -> Self {
+        Self { sample: Sample::at(at), keys: Keys::default() }
+    }
+    pub fn place(&self) -> Vec2 {
+        self.sample.at
+    }
+}
+
+/// What a tool works on and with, as it is when the pen comes down.
+pub struct Context<'a> {
+    pub document: &'a Document,
+    /// The selected layer.
+    pub layer: Option<LayerId>,
+    pub brush: &'a Brush,
+    /// The colour in hand, and the one behind it.
+    pub color: Color,
+    pub second_color: Color,
+    /// How new marks follow the surface.
+    pub operator: Operator,
+    /// Canvas px to a screen point: how near is near.
+    pub px_per_pt: f32,
+    /// Where the last stroke ended.
+    pub last_end: Option<Vec2>,
+}
+
+/// What a tool made of what the pen did.
+pub enum Outcome {
+    Idle,
+    /// To be shown until the next outcome.
+    Preview(Document),
+    /// To be kept, as a step of this name.
+    Commit {
+        label: String,
+        document: Document,
+        /// To be selected from now on.
+        select: Option<LayerId>,
+    },
+    /// A colour was taken.
+    Picked(Color),
+    /// What was shown is to be forgotten.
+    Cancel,
+}
+
+/// A tool between the pen's coming down and its lifting. It holds what it began with: documents are cheap to clone.
+pub trait Gesture: Send {
+    /// The pen's readings since the last call, in their order.
+    fn drag(&mut self, pens: &[Pen]) -> Outcome;
+    fn release(&mut self) -> Outcome;
+}
+
+/// What a tool begins with.
+pub type Begun = (Option<Box<dyn Gesture>>, Outcome);
+
+/// The pen comes down. Hand and zoom have nothing to do with documents: they begin nothing.
+pub fn press(kind: ToolKind, context: &Context, pen: Pen) -> Begun {
+    match kind {
+        ToolKind::Brush => brush::press(context, pen, brush::Purpose::Paint),
+        ToolKind::Eraser => brush::press(context, pen, brush::Purpose::Erase),
+        ToolKind::Gradient => gradient::press(context, pen),
+        ToolKind::Image => image::press(context, pen),
+        ToolKind::Anchors => anchors::press(context, pen),
+        ToolKind::Move => shift::press(context, pen),
+        ToolKind::Eyedropper => eyedropper::press(context, pen),
+        ToolKind::Hand | ToolKind::Zoom => (None, Outcome::Idle),
+    }
+}
+
+/// How near the pen must come to a handle, screen points.
+pub const GRAB_PT: f32 = 10.0;

@@ -1,0 +1,107 @@
+//! The brush's cursor: the outline of the next dab as the surface bends it.
+//! Floor 5. Where D(q) is as far from the anchor as the footprint is wide, found on a grid.
+
+use crate::document::Document;
+use crate::math::{Rect, Vec2, vec2};
+use crate::surface::reach::{Extent, Reach};
+use crate::surface::{Deformation, Operator};
+
+/// Cells along the longer side of the grid: finer than the eye needs for a cursor, and fast enough for every frame.
+const CELLS: i32 = 72;
+
+/// The outline of a dab of `radius_px` at `at`, as pairs of points to be joined by lines; canvas px.
+pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32) -> Vec<[Vec2; 2]> {
+    let surface = document.surface.as_deref();
+    let deformation = Deformation::of_dab(surface, document.size, operator, at);
+    if deformation.is_identity() || !at.is_finite() {
+        return circle(at, radius_px);
+    }
+    let extent = Extent { radius_px, filter_px: 0.0 };
+    let mut touched = Rect::EMPTY;
+    Reach::new(surface, document.size, operator, at, extent).for_each_tile(|tile| touched = touched.union(tile.rect()));
+    let area = touched.intersect(document.size.rect()).grown(1);
+    if area.is_empty() {
+        return circle(at, radius_px);
+    }
+    let step = (area.width().max(area.height()) as i32 / CELLS).max(1);
+    let distance = |x: i32, y: i32| deformation.at(x, y).distance(at) - radius_px;
+    let (cols, rows) = (area.width() as i32 / step + 1, area.height() as i32 / step + 1);
+    let at_node = |c: i32, r: i32| (area.x0 + c * step, area.y0 + r * step);
+    let nodes: Vec<f32> = (0..rows * cols)
+        .map(|i| {
+            let (x, y) = at_node(i % cols, i / cols);
+            distance(x, y)
+        })
+        .collect();
+    let node = |c: i32, r: i32| nodes[(r * cols + c) as usize];
+    let point = |c: i32, r: i32| {
+        let (x, y) = at_node(c, r);
+        vec2(x as f32 + 0.5, y as f32 + 0.5)
+    };
+    let mut lines = Vec::new();
+    for r in 0..rows - 1 {
+        for c in 0..cols - 1 {
+            let corners = [(c, r), (c + 1, r), (c + 1, r + 1), (c, r + 1)].map(|(c, r)| (point(c, r), node(c, r)));
+            cell(&corners, &mut lines);
+        }
+    }
+    lines
+}
+
+/// Marching squares: where the outline crosses a cell.
+fn cell(corners: &[(Vec2, f32); 4], lines: &mut Vec<[Vec2; 2]>) {
+    let crossing = |i: usize| {
+        let ((a, va), (b, vb)) = (corners[i], corners[(i + 1) % 4]);
+        ((va < 0.0) != (vb < 0.0)).then(|| a.lerp(b, va / (va - vb)))
+    };
+    let crossings: Vec<Vec2> = (0..4).filter_map(crossing).collect();
+    for pair in crossings.chunks_exact(2) {
+        lines.push([pair[0], pair[1]]);
+    }
+}
+
+fn circle(at: Vec2, radius_px: f32) -> Vec<[Vec2; 2]> {
+    const SIDES: usize = 64;
+    let on = |i: usize| at + radius_px * Vec2::from_angle(i as f32 * std::f32::consts::TAU / SIDES as f32);
+    (0..SIDES).map(|i| [on(i), on(i + 1)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, vec3};
+    use crate::raster::Plane;
+    use crate::surface::{Maps, Surface};
+    use std::sync::Arc;
+
+    fn ball() -> Document {
+        let size = Size::new(128, 128);
+        let at = |x: usize, y: usize| vec2(x as f32 + 0.5 - 64.0, y as f32 + 0.5 - 64.0) / 60.0;
+        let z = |p: Vec2| (1.0 - p.length_squared()).max(0.0).sqrt();
+        let normals = Plane::from_fn(size, |x, y| vec3(at(x, y).x, -at(x, y).y, z(at(x, y))));
+        let coverage = Plane::from_fn(size, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
+        let depth = Plane::from_fn(size, |x, y| 1.0 - z(at(x, y)));
+        let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
+        Document { surface: Some(Arc::new(surface)), ..Document::empty(size) }
+    }
+
+    #[test]
+    fn without_a_surface_the_footprint_is_a_circle() {
+        let flat = Document::empty(Size::new(100, 100));
+        let lines = outline(&flat, Operator::Depth { gamma: 2.0 }, vec2(50.0, 40.0), 12.0);
+        assert!(lines.iter().flatten().all(|p| (p.distance(vec2(50.0, 40.0)) - 12.0).abs() < 1e-3));
+    }
+    #[test]
+    fn on_a_ball_a_reflecting_dab_is_smaller_and_its_outline_is_where_d_is_its_radius() {
+        let (ball, at) = (ball(), vec2(64.0, 64.0));
+        let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
+        let lines = outline(&ball, operator, at, 20.0);
+        assert!(lines.len() > 8);
+        // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is brought r + α L (r / 60)² away.
+        let a = 0.5 * 128.0 / (60.0 * 60.0);
+        let expected = ((1.0f32 + 4.0 * a * 20.0).sqrt() - 1.0) / (2.0 * a);
+        for point in lines.iter().flatten() {
+            assert!((point.distance(at) - expected).abs() < 0.5, "{}", point.distance(at));
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! The move tool: a layer, or one stroke of a stroke layer, elsewhere on the canvas.
+//! Floor 5.
+
+use super::brush::is_on;
+use super::{Begun, Context, Gesture, Outcome, Pen};
+use crate::document::{Content, Document, Group, Layer, LayerId, Live, Lock, PixelLayer, StrokeList};
+use crate::math::Vec2;
+use crate::paint::{Gradient, PlacedImage, Placement, Sample, Stroke};
+use std::sync::Arc;
+
+pub fn press(context: &Context, pen: Pen) -> Begun {
+    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != Lock::All);
+    let Some(layer) = layer else { return (None, Outcome::Idle) };
+    let stroke = match &layer.content {
+        Content::Strokes(live) if !pen.keys.shift => {
+            let strokes = &live.params().strokes;
+            strokes.iter().rposition(|stroke| is_on(stroke, pen.place()))
+        }
+        _ => None,
+    };
+    let (document, id) = (context.document.clone(), layer.id);
+    (Some(Box::new(Moving { document, layer: id, stroke, from: pen.place(), by: Vec2::ZERO })), Outcome::Idle)
+}
+
+struct Moving {
+    document: Document,
+    layer: LayerId,
+    /// One stroke alone.
+    stroke: Option<usize>,
+    from: Vec2,
+    by: Vec2,
+}
+
+impl Moving {
+    fn with(&self) -> Option<Document> {
+        self.document.with_layer(self.layer, |layer| match (&layer.content, self.stroke) {
+            (Content::Strokes(live), Some(index)) => {
+                let mut strokes = live.params().strokes.clone();
+                if let Some(stroke) = strokes.get_mut(index) {
+                    *stroke = Arc::new(moved_stroke(stroke, self.by));
+                }
+                layer.content = Content::Strokes(Live::new(StrokeList { strokes }));
+            }
+            _ => *layer = moved(layer, self.by),
+        })
+    }
+}
+
+impl Gesture for Moving {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        // Whole pixels, so that paint is not resampled.
+        self.by = (pen.place() - self.from).round();
+        self.with().map_or(Outcome::Idle, Outcome::Preview)
+    }
+    fn release(&mut self) -> Outcome {
+        match self.with() {
+            Some(document) if self.by != Vec2::ZERO => {
+                let label = if self.stroke.is_some() { "Move stroke" } else { "Move layer" };
+                Outcome::Commit { label: label.into(), document, select: None }
+            }
+            _ => Outcome::Cancel,
+        }
+    }
+}
+
+/// The layer with all it holds elsewhere; `by` in whole pixels. What covers the canvas anyway stays as it is.
+pub fn moved(layer: &Layer, by: Vec2) -> Layer {
+    let content = match &layer.content {
+        Content::Pixels(pixels) => Content::Pixels(PixelLayer {
+            x: pixels.x.saturating_add(by.x as i32),
+            y: pixels.y.saturating_add(by.y as i32),
+            tiles: pixels.tiles.translated(by.x as i32, by.y as i32),
+            file: pixels.file.clone(),
+        }),
+        Content::Image(live) => {
+            let image = live.params();
+            let placement = Placement { center: image.placement.center + by, ..image.placement };
+            Content::Image(Live::new(PlacedImage { placement, ..image.clone() }))
+        }
+        Content::Gradient(live) => {
+            let gradient = live.params();
+            Content::Gradient(Live::new(Gradient {
+                from: gradient.from + by,
+                to: gradient.to + by,
+                ..gradient.clone()
+            }))
+        }
+        Content::Strokes(live) => {
+            let strokes = live.params().strokes.iter().map(|stroke| Arc::new(moved_stroke(stroke, by))).collect();
+            Content::Strokes(Live::new(StrokeList { strokes }))
+        }
+        Content::Group(group) => {
+            let layers = group.layers.iter().map(|layer| Arc::new(moved(layer, by))).collect();
+            Content::Group(Group { layers, ..group.clone() })
+        }
+        content => content.clone(),
+    };
+    Layer { content, ..layer.clone() }
+}
+
+fn moved_stroke(stroke: &Stroke, by: Vec2) -> Stroke {
+    let samples = stroke.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
+    Stroke::new(stroke.brush().clone(), stroke.operator(), stroke.color(), samples)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, srgb::Color, vec2};
+    use crate::paint::Brush;
+    use crate::raster::TileGrid;
+    use crate::surface::Operator;
+
+    fn dragged(document: &Document, from: Vec2, to: Vec2) -> Document {
+        let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
+        let (color, second_color, operator) = (Color::BLACK, Color::WHITE, Operator::None);
+        let context =
+            Context { document, layer, brush: &brush, color, second_color, operator, px_per_pt: 1.0, last_end: None };
+        let mut gesture = press(&context, Pen::at(from)).0.unwrap();
+        gesture.drag(&[Pen::at(to)]);
+        match gesture.release() {
+            Outcome::Commit { document, .. } => document,
+            _ => panic!("moved"),
+        }
+    }
+    fn one(content: Content) -> Document {
+        Document { layers: vec![Arc::new(Layer::new("one", content))], ..Document::empty(Size::new(100, 100)) }
+    }
+
+    #[test]
+    fn paint_moves_by_whole_pixels() {
+        let tiles = TileGrid::from_straight_rgba(&[7, 8, 9, 255], 1, 1, 10, 20);
+        let document = one(Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
+        let moved = dragged(&document, vec2(5.0, 5.0), vec2(67.6, -3.2));
+        let Content::Pixels(pixels) = &moved.layers[0].content else { panic!("paint") };
+        assert_eq!((pixels.tiles.pixel(73, 12), pixels.tiles.pixel(10, 20)), ([7, 8, 9, 255], [0; 4]));
+    }
+    #[test]
+    fn a_stroke_under_the_pen_moves_alone() {
+        let stroke = |y: f32| {
+            let samples = [vec2(10.0, y), vec2(90.0, y)].map(Sample::at).to_vec();
+            Arc::new(Stroke::new(Brush { size: 6.0, ..Brush::default() }, Operator::None, Color::BLACK, samples))
+        };
+        let document = one(Content::Strokes(Live::new(StrokeList { strokes: vec![stroke(20.0), stroke(60.0)] })));
+        let moved = dragged(&document, vec2(50.0, 21.0), vec2(50.0, 31.0));
+        let Content::Strokes(live) = &moved.layers[0].content else { panic!("strokes") };
+        let tops: Vec<f32> = live.params().strokes.iter().map(|stroke| stroke.samples()[0].at.y).collect();
+        assert_eq!(tops, [30.0, 60.0]);
+    }
+}

@@ -1,0 +1,106 @@
+//! The window, driven by the names of its controls, with no display and no graphics card.
+#![cfg(feature = "window-tests")]
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use rilievo::app::Window;
+use rilievo::document::Content;
+use std::path::PathBuf;
+
+/// A window of a usual size, with an empty canvas in it.
+fn window() -> Harness<'static, Option<Window>> {
+    let show = |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
+        let window = window.get_or_insert_with(|| Window::new(ui.ctx()));
+        window.show(ui);
+    };
+    let mut harness = Harness::builder().with_size([1280.0, 820.0]).build_ui_state(show, None);
+    harness.step();
+    click(&mut harness, "File");
+    click(&mut harness, "New…");
+    click(&mut harness, "Create");
+    harness
+}
+/// The painter's thread asks for frames as it likes, so a fixed number of them is enough.
+fn steps(harness: &mut Harness<Option<Window>>) {
+    (0..4).for_each(|_| harness.step());
+}
+fn click(harness: &mut Harness<Option<Window>>, label: &str) {
+    harness.get_by_label_contains(label).click();
+    steps(harness);
+}
+fn session<'a>(harness: &'a Harness<Option<Window>>) -> &'a rilievo::session::Session {
+    &harness.state().as_ref().unwrap().session
+}
+fn layers(harness: &Harness<Option<Window>>) -> Vec<String> {
+    let document = session(harness).tab().unwrap().document();
+    document.layers.iter().map(|layer| layer.name.clone()).collect()
+}
+
+#[test]
+fn a_new_document_is_painted_on_and_the_stroke_undone() {
+    let mut harness = window();
+    assert_eq!(layers(&harness), ["Background"]);
+    let canvas = harness.get_by_label("Canvas").rect();
+    harness.drag_at(canvas.center());
+    steps(&mut harness);
+    harness.hover_at(canvas.center() + eframe::egui::vec2(90.0, 30.0));
+    steps(&mut harness);
+    harness.drop_at(canvas.center() + eframe::egui::vec2(90.0, 30.0));
+    steps(&mut harness);
+    assert_eq!(layers(&harness), ["Background", "Strokes"]);
+    let Content::Strokes(live) = &session(&harness).layer().unwrap().content else { panic!("a stroke layer") };
+    assert!(live.params().strokes[0].samples().len() >= 2);
+    click(&mut harness, "Edit");
+    click(&mut harness, "Undo");
+    assert_eq!(layers(&harness), ["Background"]);
+}
+#[test]
+fn layers_are_added_hidden_and_deleted_by_their_buttons() {
+    let mut harness = window();
+    click(&mut harness, "+ Add");
+    click(&mut harness, "Gradient layer");
+    assert_eq!(layers(&harness), ["Background", "Gradient"]);
+    harness.get_by_label("Show Gradient").click();
+    steps(&mut harness);
+    assert!(!session(&harness).layer().unwrap().visible);
+    harness.get_by_label("Delete layer").click();
+    steps(&mut harness);
+    assert_eq!(layers(&harness), ["Background"]);
+}
+#[test]
+fn every_panel_shows_every_kind_of_layer() {
+    let mut harness = window();
+    for kind in
+        ["Paint layer", "Stroke layer", "Fill layer", "Gradient layer", "Shading layer", "Radiance scaling", "Group"]
+    {
+        click(&mut harness, "+ Add");
+        harness.get_by_label(kind).click();
+        steps(&mut harness);
+        for panel in ["Brushes", "Properties", "Surface", "History", "Navigator", "Colour"] {
+            harness.get_by_label(panel).click();
+            steps(&mut harness);
+        }
+    }
+}
+#[test]
+fn closing_with_unsaved_work_asks_first() {
+    let mut harness = window();
+    click(&mut harness, "+ Add");
+    click(&mut harness, "Fill layer");
+    click(&mut harness, "File");
+    harness.get_by_label("Close").click();
+    steps(&mut harness);
+    harness.get_by_label("Do not save").click();
+    steps(&mut harness);
+    assert!(session(&harness).tab().is_none());
+}
+#[test]
+fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
+    let mut harness = window();
+    harness.state_mut().as_mut().unwrap().begin(vec![PathBuf::from("no such picture.png")]);
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    steps(&mut harness);
+    harness.get_by_label_contains("no such picture.png");
+    click(&mut harness, "Dismiss");
+    assert!(harness.query_by_label_contains("no such picture.png").is_none());
+}
