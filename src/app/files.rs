@@ -52,8 +52,8 @@ impl Purpose {
     }
 }
 
-/// A dialog that comes back this soon without an answer was never shown: there is no portal.
-const NEVER_SHOWN: Duration = Duration::from_millis(60);
+/// A dialog that comes back this soon without an answer was never shown: there is no portal. Nobody cancels as fast.
+const NEVER_SHOWN: Duration = Duration::from_millis(500);
 
 /// What the system's dialog came to.
 pub enum Answer {
@@ -74,6 +74,11 @@ pub fn ask(jobs: &mut Jobs, purpose: Purpose, name: &str) {
 }
 
 fn system_dialog(purpose: Purpose, name: &str) -> Answer {
+    // Elsewhere than on Windows and macOS the dialog is another program's, reached over the session's bus.
+    let is_own = cfg!(any(target_os = "windows", target_os = "macos"));
+    if !is_own && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none() {
+        return Answer::Nowhere;
+    }
     let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
     for (label, endings) in purpose.filters() {
         dialog = dialog.add_filter(label, &endings);

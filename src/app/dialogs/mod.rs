@@ -76,7 +76,8 @@ impl Dialog {
 fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
     let mut answer = None;
     ui.add_space(4.0);
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+    let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let enter = ui.input(|i| i.key_pressed(egui::Key::Enter));
         let strong = egui::Button::new(egui::RichText::new(yes).strong()).fill(ui.visuals().selection.bg_fill);
         if ui.add_enabled(can, strong).clicked() || (enter && can) {

@@ -10,8 +10,7 @@ use crate::shading::{FeatureScale, Features, Light, LightKind, Model, RadianceSc
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
 
 pub fn shading(ui: &mut Ui, shading: &Shading, setter: &mut Setter) {
-    let models: Vec<(Model, &str)> = Model::ALL.iter().copied().filter(|(model, _)| model.is_drawn()).collect();
-    if let Some(model) = choice_row(ui, "Model", shading.model, &models) {
+    if let Some(model) = choice_row(ui, "Model", shading.model, &Model::ALL) {
         setter.set(Property::ShadingModel { model }, true);
     }
     term(ui, "Ambient", shading.ambient, setter, |term| Property::Ambient { term });

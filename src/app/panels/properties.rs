@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         Content::Shading(live) => material::shading(ui, live.params(), &mut setter),
         Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
         Content::Normals(normals) => {
-            ui.label(&normals.source.file);
+            ui.label("Normals combined onto the surface: what stands above sees them.");
             let number = Number::new("Strength", 0.0..=4.0, "1 is the map as it is");
             setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
         }
