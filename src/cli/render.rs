@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::{Limits, progress};
-use crate::document::source::{MapSource, MaskSource};
+use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
 use crate::document::{Content, Document, SurfaceSource, flatten, flatten_layer};
 use crate::io::export::{Format, Options, Target};
 use crate::io::files::{Noted, read_file};
@@ -30,6 +30,12 @@ pub struct RenderArgs {
     /// Put the painting on another object: its depth map
     #[arg(long, value_name = "FILE")]
     depth: Option<PathBuf>,
+    /// What its normals mean: auto (found), opengl (green up) or directx (green down)
+    #[arg(long, value_name = "WORD", default_value = "auto", requires = "normal", value_parser = convention)]
+    convention: NormalConvention,
+    /// Which numbers of its depth are nearer: auto (found), low or high
+    #[arg(long, value_name = "END", default_value = "auto", requires = "depth", value_parser = near)]
+    near: Near,
     /// The other object's mask
     #[arg(long, value_name = "FILE", requires = "maps")]
     mask: Option<PathBuf>,
@@ -52,6 +58,15 @@ pub struct RenderArgs {
 fn scale(text: &str) -> std::result::Result<f32, String> {
     let factor = text.parse().ok().filter(|f| (0.001..=100.0).contains(f));
     factor.ok_or_else(|| "a factor is a number between 0.001 and 100".to_owned())
+}
+
+fn convention(word: &str) -> std::result::Result<NormalConvention, String> {
+    NormalConvention::from_word(word).ok_or_else(|| format!("one of {}", NormalConvention::WORDS.join(", ")))
+}
+
+fn near(word: &str) -> std::result::Result<Near, String> {
+    Near::from_name(word)
+        .ok_or_else(|| format!("one of {}", Near::ALL.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", ")))
 }
 
 pub(super) fn color(text: &str) -> std::result::Result<Color, String> {
@@ -109,8 +124,12 @@ fn other_object(args: &RenderArgs, given: &mut Given) -> Option<SurfaceSource> {
     let mut name = |path: &Option<PathBuf>| path.as_deref().map(|path: &Path| given.add(path));
     let (normal, depth, mask) = (name(&args.normal), name(&args.depth), name(&args.mask));
     (normal.is_some() || depth.is_some()).then(|| SurfaceSource {
-        normal: normal.map(|file| MapSource { file, ..MapSource::default() }),
-        depth: depth.map(|file| MapSource { file, ..MapSource::default() }),
+        normal: normal.map(|file| MapSource { file, channel: None, convention: args.convention.clone() }),
+        depth: depth.map(|file| MapSource {
+            file,
+            channel: None,
+            convention: DepthConvention { near: args.near, ..DepthConvention::default() },
+        }),
         mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
     })
 }
