@@ -88,7 +88,7 @@ fn closing_with_unsaved_work_asks_first() {
     click(&mut harness, "+ Add");
     click(&mut harness, "Fill layer");
     click(&mut harness, "File");
-    harness.get_by_label("Close").click();
+    harness.get_by_label_contains("Close Ctrl").click();
     steps(&mut harness);
     harness.get_by_label("Do not save").click();
     steps(&mut harness);

@@ -11,7 +11,7 @@ use crate::surface::{Maps, Operator, Surface};
 use crate::{Error, Result};
 use std::sync::Arc;
 
-const SIDE: usize = 896;
+const SIDE: usize = 640;
 
 /// The sample as a document of its own.
 pub fn open() -> Result<Opened> {
@@ -68,6 +68,10 @@ fn height(p: Vec2) -> Option<f32> {
 /// The near surface of a tilted torus, found along the line of sight.
 fn ring(p: Vec2) -> Option<f32> {
     let (center, large, small) = RING;
+    let beside = (p - center).abs();
+    if beside.x > large + small || beside.y > large * TILT + small {
+        return None;
+    }
     let (sin, cos) = ((1.0 - TILT * TILT).sqrt(), TILT);
     let inside = |z: f32| {
         let q = p - center;
@@ -75,7 +79,7 @@ fn ring(p: Vec2) -> Option<f32> {
         let (x, y, h) = (q.x, q.y * cos + z * sin, z * cos - q.y * sin);
         (vec2(x, y).length() - large).hypot(h) - small
     };
-    let (near, far, steps) = (0.5, -0.5, 160);
+    let (near, far, steps) = (0.42, -0.42, 72);
     let at = |i: usize| near + (far - near) * i as f32 / steps as f32;
     let hit = (0..steps).find(|&i| inside(at(i + 1)) < 0.0)?;
     let (mut outer, mut inner) = (at(hit), at(hit + 1));
@@ -119,8 +123,13 @@ fn surface() -> std::result::Result<Surface, crate::surface::SurfaceError> {
     let low = heights.values().iter().copied().filter(finite).fold(f32::INFINITY, f32::min);
     let high = heights.values().iter().copied().filter(finite).fold(f32::NEG_INFINITY, f32::max);
     let depth = heights.map(|h| if h.is_finite() { (high - h) / (high - low).max(1e-6) } else { f32::NAN });
-    // Coverage: 3 × 3 places a pixel.
+    // Coverage: 3 × 3 places of each pixel at the rim.
     let coverage = Plane::from_fn(size, |x, y| {
+        let is_on = |dx: i32, dy: i32| heights.clamped(x as i32 + dx, y as i32 + dy).is_finite();
+        let on = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().filter(|&(dx, dy)| is_on(dx, dy)).count();
+        if on == 0 || on == 5 {
+            return if on == 0 { 0 } else { 255 };
+        }
         let here = place(x, y);
         let sub = |i: i32| (i % 3 - 1) as f32 * px / 3.0;
         let covered = (0..9).filter(|&i| height(here + vec2(sub(i), sub(i / 3))).is_some()).count();

@@ -48,6 +48,8 @@ impl Import {
         match purpose {
             Purpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
             Purpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
+            // The first file brings those that belong to it.
+            _ if self.source == SurfaceSource::default() => self.source = storage::maps_beside(Path::new(&file)),
             _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
         }
     }

@@ -13,6 +13,8 @@ pub struct PathDialog {
     /// What is typed: a name in the folder, or a whole path.
     name: String,
     listed: Listed,
+    /// The name has been given the keyboard once.
+    is_begun: bool,
 }
 
 /// What is in the folder that is shown.
@@ -25,7 +27,7 @@ struct Listed {
 
 impl PathDialog {
     pub fn new(purpose: Purpose, folder: PathBuf, name: &str) -> Self {
-        Self { purpose, folder, name: name.into(), listed: Listed::default() }
+        Self { purpose, folder, name: name.into(), listed: Listed::default(), is_begun: false }
     }
     pub fn show(&mut self, ui: &mut Ui) -> Answer {
         ui.set_width(460.0);
@@ -59,7 +61,10 @@ impl PathDialog {
         });
         ui.horizontal(|ui| {
             let label = ui.label("File");
-            ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY)).labelled_by(label.id);
+            let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY)).labelled_by(label.id);
+            if !std::mem::replace(&mut self.is_begun, true) {
+                field.request_focus();
+            }
         });
         // A whole path replaces the folder.
         let typed = self.folder.join(self.name.trim());
