@@ -182,7 +182,8 @@ impl Surface {
             return found;
         }
         // Never under the lock: a thread that waits for its own pool's work would stand still.
-        let computed = Arc::new(rows::compute(base, &Ways::new(radius_px)));
+        let open = rows::compute(base, &Ways::new(radius_px));
+        let computed = Arc::new(rows::smoothed(base, &open));
         let mut kept = lock();
         if let Some(found) = find(&kept) {
             return found;

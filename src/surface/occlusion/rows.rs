@@ -4,7 +4,7 @@
 use super::{FLOATS, Way, Ways, excess, height_between, open_part, slope, tangents};
 use crate::math::{Vec2, fast};
 use crate::raster::Plane;
-use crate::surface::Surface;
+use crate::surface::{Surface, links};
 use rayon::prelude::*;
 
 /// Pixels computed side by side.
@@ -66,6 +66,41 @@ pub(super) fn compute(surface: &Surface, ways: &Ways) -> Plane<f32> {
         }
     });
     open
+}
+
+/// The open part averaged over five pixels each way, never across a depth jump: what is left of the steps of depth, and of
+/// directions being few, is finer than that.
+pub(super) fn smoothed(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
+    let across = along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
+    along_links(surface, &across, (links::UP, links::DOWN), (0, 1))
+}
+
+/// Binomial weights 1 4 6 4 1 along a row or a column, as far as the links reach.
+fn along_links(surface: &Surface, open: &Plane<f32>, (back, forth): (u8, u8), step: (usize, usize)) -> Plane<f32> {
+    let joined = surface.links_plane();
+    Plane::from_fn(open.size(), |x, y| {
+        let (mut sum, mut weights) = (6.0 * open.at(x, y), 6.0);
+        let mut add = |at: (usize, usize), weight: f32| {
+            sum += weight * open.at(at.0, at.1);
+            weights += weight;
+        };
+        let (mut before, mut after) = ((x, y), (x, y));
+        for weight in [4.0, 1.0] {
+            if joined.at(before.0, before.1) & back == 0 {
+                break;
+            }
+            before = (before.0 - step.0, before.1 - step.1);
+            add(before, weight);
+        }
+        for weight in [4.0, 1.0] {
+            if joined.at(after.0, after.1) & forth == 0 {
+                break;
+            }
+            after = (after.0 + step.0, after.1 + step.1);
+            add(after, weight);
+        }
+        sum / weights
+    })
 }
 
 /// How the surface stands at each pixel, image axes.

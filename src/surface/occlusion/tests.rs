@@ -44,13 +44,13 @@ fn convex_ground_is_open_to_its_silhouette() {
 #[test]
 fn the_bottom_of_a_valley_sees_what_its_walls_leave() {
     // Walls at 45°: the horizon in direction φ has tan e = |cos φ|; the mean of cos² e over all directions is 1/√2.
-    let open = relief(|x, _| Some(x.abs())).occlusion(1000.0);
+    let open = rows::compute(&relief(|x, _| Some(x.abs())), &Ways::new(1000.0));
     assert!((open.at(80, 80) - 0.5f32.sqrt()).abs() < 0.02, "{}", open.at(80, 80));
 }
 #[test]
 fn a_pit_is_darkest_in_its_middle() {
     // A cone of tan e = 1 all around: cos² e = ½.
-    let open = relief(|x, y| Some(x.hypot(y).min(60.0))).occlusion(1000.0);
+    let open = rows::compute(&relief(|x, y| Some(x.hypot(y).min(60.0))), &Ways::new(1000.0));
     assert!((open.at(80, 80) - 0.5).abs() < 0.03, "{}", open.at(80, 80));
 }
 #[test]
@@ -64,7 +64,7 @@ fn rows_hold_what_a_pixel_alone_sees() {
     let height = |x: f32, y: f32| Some(14.0 * (x * 0.11).sin() * (y * 0.07).cos() + if x > 30.0 { 8.0 } else { 0.0 });
     let surface = relief(height);
     let ways = Ways::new(24.0);
-    let fast = surface.occlusion(24.0);
+    let fast = rows::compute(&surface, &ways);
     let range = surface.depth_range_px();
     for (x, y) in [(3, 4), (80, 80), (111, 60), (108, 23), (160, 160), (64, 127)] {
         let slope = slope(&surface, x, y);
@@ -95,6 +95,14 @@ fn rows_hold_what_a_pixel_alone_sees() {
         }
         assert!((fast.at(x, y) - open / whole).abs() < 1e-3, "{x} {y}: {} {}", fast.at(x, y), open / whole);
     }
+}
+#[test]
+fn smoothing_evens_steps_out_but_stops_at_a_depth_jump() {
+    let surface = relief(|x, _| Some(if x < 0.0 { 0.0 } else { 60.0 }));
+    let stripes = Plane::from_fn(SIZE, |x, y| if x < 80 { 0.2 } else { 0.8 + 0.1 * (y % 2) as f32 });
+    let even = rows::smoothed(&surface, &stripes);
+    assert!((even.at(79, 80) - 0.2).abs() < 1e-6, "{}", even.at(79, 80));
+    assert!((even.at(80, 80) - 0.85).abs() < 1e-6, "{}", even.at(80, 80));
 }
 #[test]
 fn senseless_radii_are_bounded_and_asking_again_costs_nothing() {
