@@ -42,7 +42,12 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         Ok(Box::new(window))
     };
     eframe::run_native("rilievo", options, Box::new(start)).map_err(|error| {
-        let reason = format!("no window can be opened here ({error}); “rilievo render” paints without one");
-        Error::unsupported("display", reason)
+        // Only what is wrong, not where the windowing library found it.
+        let said = error.to_string();
+        let wrong = said.rsplit(": ").next().unwrap_or(&said).trim_end_matches(['.', ')']);
+        Error::unsupported(
+            "display",
+            format!("no window can be opened here ({wrong}); “rilievo render” paints without one"),
+        )
     })
 }

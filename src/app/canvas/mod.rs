@@ -12,7 +12,7 @@ use super::painter::{Painter, Wanted};
 use super::theme;
 use crate::document::view::View as SurfaceView;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
-use crate::raster::{Picture, TileGrid};
+use crate::raster::{Picture, TileAt, TileGrid};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session, View, is_same};
 use blocks::{Blocks, corners, on_screen, quad};
@@ -21,7 +21,7 @@ use eframe::egui::{
 };
 use hand::Hand;
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// What the window knows of the canvas.
 pub struct Canvas {
@@ -38,6 +38,9 @@ pub struct Canvas {
     overlay: Overlay,
     /// The picture for the navigator, and whether it is older than the picture.
     small: Option<TextureHandle>,
+    /// Tiles that were painted and are not on the graphics card yet, and since when.
+    unsent: Vec<TileAt>,
+    unsent_since: Option<Instant>,
     small_is_old: bool,
     /// Of the canvas's area, screen points.
     pub area_pt: Vec2,
@@ -47,6 +50,9 @@ pub struct Canvas {
     pub took: Duration,
     pub is_busy: bool,
 }
+
+/// A redraw that takes no longer is shown at once.
+const WHOLE: Duration = Duration::from_millis(160);
 
 /// A view of the surface, drawn on a thread of its own.
 #[derive(Default)]
@@ -71,6 +77,8 @@ impl Canvas {
             checker: None,
             overlay: Overlay::default(),
             small: None,
+            unsent: Vec::new(),
+            unsent_since: None,
             small_is_old: true,
             area_pt: vec2(800.0, 600.0),
             under: None,
@@ -127,6 +135,7 @@ impl Canvas {
             self.grid = TileGrid::default();
             self.grid.reserve(drawn.size.rect());
             self.blocks.begin(drawn.size);
+            self.unsent.clear();
             self.wanted = None;
         }
         if !self.wanted.as_ref().is_some_and(|old| is_same(old, &drawn)) {
@@ -135,16 +144,24 @@ impl Canvas {
             self.wanted = Some(drawn);
             self.is_busy = true;
         }
-        let mut changed = Vec::new();
         for painted in self.painter.painted().filter(|painted| painted.picture == self.picture) {
             for (at, tile) in painted.tiles {
                 self.grid.set(at, tile);
-                changed.push(at);
+                self.unsent.push(at);
             }
             (self.took, self.is_busy) = (painted.took, !painted.is_settled);
         }
-        self.small_is_old |= !changed.is_empty();
-        self.blocks.update(ctx, &self.grid, changed.into_iter());
+        if self.unsent.is_empty() {
+            return;
+        }
+        // A drag shows whole pictures, not the tiles of two; a long redraw shows itself as it goes.
+        let since = *self.unsent_since.get_or_insert_with(Instant::now);
+        if self.is_busy && since.elapsed() < WHOLE {
+            return;
+        }
+        self.unsent_since = None;
+        self.small_is_old = true;
+        self.blocks.update(ctx, &self.grid, self.unsent.drain(..));
     }
     /// The picture, small, for the navigator; made again when the painter rests.
     pub fn small(&mut self, ctx: &egui::Context, canvas: Size) -> Option<egui::TextureId> {
