@@ -17,7 +17,7 @@ const TEXTURE: u32 = 512;
 pub type Picture = (&'static str, fn() -> RgbaImage);
 
 /// Every picture of this module.
-pub const PICTURES: [Picture; 10] = [
+pub const PICTURES: [Picture; 12] = [
     ("studio.jpg", studio),
     ("tartan.jpg", tartan),
     ("scales.jpg", scales),
@@ -28,6 +28,8 @@ pub const PICTURES: [Picture; 10] = [
     ("leaf.png", leaf),
     ("window.png", window),
     ("weave_normal.png", weave_normal),
+    ("sphere_wax.png", sphere_wax),
+    ("sphere_ink.png", sphere_ink),
 ];
 
 /// Linear light in `[0, 1]` as an sRGB byte.
@@ -413,4 +415,35 @@ fn twig_shadow(q: DVec2) -> f64 {
         best = best.min(leaf);
     }
     best
+}
+
+/// A lit sphere of pale wax: warm light from the upper left, a cool sky, red where little light comes through.
+fn sphere_wax() -> RgbaImage {
+    lit_sphere(|n| {
+        let (key, sky) = (n.dot(v(-0.5, 0.6, 0.62)), 0.5 + 0.5 * n.y);
+        let matt = srgb(0x6a2a20).lerp(srgb(0xf0c898), smooth_step(-0.35, 0.95, key));
+        let sheen = smooth_step(0.55, 0.9, key) * 0.25 + smooth_step(0.93, 0.985, n.dot(v(-0.28, 0.34, 0.9))) * 0.45;
+        matt + srgb(0x27405f) * 0.35 * sky * (1.0 - n.z) + DVec3::splat(sheen)
+    })
+}
+
+/// A lit sphere of ink wash: blue shade that closes toward the contour.
+fn sphere_ink() -> RgbaImage {
+    lit_sphere(|n| {
+        let light = smooth_step(-0.5, 1.0, n.dot(v(-0.5, 0.6, 0.62)));
+        srgb(0x101c3c).lerp(srgb(0x7f8fae), light) * (0.25 + 0.75 * smooth_step(0.0, 0.6, n.z))
+    })
+}
+
+/// A sphere seen from the front, its colour from its normal (y up).
+fn lit_sphere(colour: impl Fn(DVec3) -> DVec3 + Sync) -> RgbaImage {
+    const SIDE: f64 = 192.0;
+    painted((SIDE as u32, SIDE as u32), 3, |q| {
+        let (x, y) = (q.x / SIDE * 2.0 - 1.0, 1.0 - q.y / SIDE * 2.0);
+        let r = x.hypot(y);
+        // The contour's colour continues beyond it, under a soft edge.
+        let (x, y) = if r > 0.999 { (x / r * 0.999, y / r * 0.999) } else { (x, y) };
+        let n = v(x, y, (1.0 - x * x - y * y).max(0.0).sqrt());
+        colour(n).extend(1.0 - smooth_step(1.0, 1.01, r))
+    })
 }

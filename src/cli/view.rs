@@ -10,7 +10,7 @@ use crate::io::files::{Noted, read_file};
 use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, Source};
 use crate::io::{Budget, Folder, Given};
-use crate::math::srgb::Color;
+use crate::math::{Size, srgb::Color};
 use crate::raster::{Picture, TileGrid, picture::Texels};
 use crate::{Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -21,7 +21,7 @@ use std::sync::Arc;
 #[derive(clap::Args)]
 pub struct ViewArgs {
     /// A recipe, or normal, depth and mask maps told apart by their names (pot_n.png, pot_depth.exr, pot_mask.png)
-    #[arg(value_name = "FILES", required_unless_present_any = ["normal", "depth"])]
+    #[arg(value_name = "FILES")]
     files: Vec<PathBuf>,
     /// What to show; “sheet” is all of it side by side
     #[arg(long, value_name = "VIEW", default_value = "sheet", value_parser = shown())]
@@ -76,7 +76,10 @@ fn not_negative(text: &str) -> std::result::Result<f32, String> {
 /// Draws what was asked for.
 pub fn run(args: &ViewArgs) -> Result<()> {
     args.limits.install(|| {
-        let (document, inputs) = opened(args)?;
+        let (document, inputs) = match args.show {
+            Show::One(view) if view.is_of_nothing() => (Document::empty(Size::new(1, 1)), Vec::new()),
+            _ => opened(args)?,
+        };
         let layer = args.layer.as_deref().map(|name| named(args, &document, name)).transpose()?;
         let options = ViewOptions { curvature_scale_px: args.curvature_scale, blur_px: args.blur };
         let draw = |view: View| {

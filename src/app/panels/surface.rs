@@ -68,6 +68,7 @@ fn about(view: View) -> &'static str {
         View::FlowDepth => "How a texture on the surface is squeezed",
         View::FlowNormals => "How a reflection is squeezed",
         View::FlowOperator => "How the selected layer's operator squeezes its image",
+        View::Scaling => "Radiance scaling: how much light of each strength is raised on bulges and lowered in hollows",
         View::Lit => "The surface and a ball under one light: if they agree, the maps are the right way round",
     }
 }

@@ -19,9 +19,9 @@ pub(super) fn mask(surface: &Surface) -> Picture {
 }
 
 /// Convex, flat, concave: encoded.
-const CONVEX: Vec3 = vec3(0.10, 0.25, 0.90);
+pub(super) const CONVEX: Vec3 = vec3(0.10, 0.25, 0.90);
 const FLAT: Vec3 = vec3(1.00, 0.92, 0.35);
-const CONCAVE: Vec3 = vec3(0.85, 0.08, 0.10);
+pub(super) const CONCAVE: Vec3 = vec3(0.85, 0.08, 0.10);
 
 pub(super) fn curvature(surface: &Surface, options: &ViewOptions) -> Picture {
     let curvature = surface.curvature(options.blur_px);

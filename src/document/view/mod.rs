@@ -3,6 +3,7 @@
 
 mod flows;
 mod maps;
+mod scaling;
 mod sheet;
 mod weights;
 
@@ -37,6 +38,8 @@ pub enum View {
     FlowNormals,
     /// ∂D/∂q: how a layer's operator squeezes its image (SF fig. 3c).
     FlowOperator,
+    /// σ over δ for several κ, at α = 0.2 and 0.8 (RS fig. 2): needs no document.
+    Scaling,
     /// The surface and a ball beside it under one light: if they agree, the maps are read the right way round.
     Lit,
 }
@@ -54,6 +57,7 @@ impl View {
         (View::FlowDepth, "flow-depth"),
         (View::FlowNormals, "flow-normals"),
         (View::FlowOperator, "flow-operator"),
+        (View::Scaling, "scaling"),
         (View::Lit, "lit"),
     ];
     pub fn name(self) -> &'static str {
@@ -61,6 +65,10 @@ impl View {
     }
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, n)| *n == name).map(|(view, _)| *view)
+    }
+    /// It shows no document.
+    pub fn is_of_nothing(self) -> bool {
+        self == View::Scaling
     }
     /// It shows a layer's anchors or operator, and so needs one that has them.
     pub fn is_of_layer(self) -> bool {
@@ -88,6 +96,8 @@ impl Default for ViewOptions {
 pub enum Unseen {
     #[error("the document has no surface to show")]
     NoSurface,
+    #[error("there is no memory for the picture")]
+    NoMemory,
     #[error("the document has no layer with anchors")]
     NoAnchoredLayer,
     #[error("the layer “{0}” has no anchors; image and gradient layers have them")]
@@ -104,6 +114,7 @@ pub fn draw(document: &Document, layer: Option<&Layer>, view: View, options: &Vi
         View::Curvature => maps::curvature(surface()?, options),
         View::CurvatureGrey => maps::curvature_grey(surface()?, options),
         View::Lit => maps::lit(surface()?),
+        View::Scaling => scaling::plots().ok_or(Unseen::NoMemory)?,
         View::Directions => flows::directions(surface()?, options),
         View::FlowDepth => flows::of_depth(surface()?, options),
         View::FlowNormals => flows::of_normals(surface()?, options),
@@ -119,6 +130,8 @@ pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<View> {
     let can = |view: View| match view {
         View::Weights => bend(document, layer).is_ok(),
         View::FlowOperator => bend(document, layer).is_ok(),
+        // It says nothing of this document.
+        View::Scaling => false,
         _ => document.surface.is_some(),
     };
     View::ALL.iter().map(|(view, _)| *view).filter(|&view| can(view)).collect()

@@ -42,9 +42,11 @@ fn every_view_has_a_name_of_its_own_and_a_picture_of_the_canvas() {
     for (view, name) in View::ALL {
         assert_eq!(View::from_name(name), Some(*view));
         assert_eq!(view.name(), *name);
-        assert_eq!(drawn(*view).size, Size::new(160, 160), "{name}");
+        if !view.is_of_nothing() {
+            assert_eq!(drawn(*view).size, Size::new(160, 160), "{name}");
+        }
     }
-    assert_eq!(available(&ball(), None).len(), View::ALL.len());
+    assert_eq!(available(&ball(), None).len(), View::ALL.len() - 1, "all but the one of no document");
 }
 #[test]
 fn the_top_of_a_ball_shows_green_in_the_normals_and_is_near_in_the_middle() {
