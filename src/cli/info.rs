@@ -5,6 +5,9 @@
 //!
 //! ```json
 //! { "format": "rilievo-info", "version": 1,
+//!   "documents": [ { "file": "pot.ora", "kind": "project", "width": 512, "height": 512, "surface": true, "whole": true,
+//!                    "layers": [ { "path": "layers[0]", "name": "ground", "kind": "fill", "visible": true, "opacity": 1,
+//!                                  "blend": "normal" } ], "notes": [] } ],
 //!   "files": [ { "file": "pot_n.png", "format": "PNG", "width": 512, "height": 512, "bits": 8, "channels": ["r", "g", "b"],
 //!                "role": "normal", "notes": [] },
 //!              { "file": "g.exr", "format": "EXR", …, "compression": "zip block compression",
@@ -20,19 +23,23 @@
 //! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface` can be
 //! pasted into a recipe: it spells what was found.
 
+mod documents;
+
 use super::{Limits, print};
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::io::inspect::{Description, describe};
 use crate::io::maps::{self, Findings, Import, pairs};
-use crate::io::{Files, Given, recipe};
+use crate::io::open::Kind;
+use crate::io::{Files, Given, open, recipe};
 use crate::{Error, Result};
+use documents::DocumentFile;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Say what picture files are and how they would be understood as normal and depth maps
+/// Say what files are: documents with their layers, pictures and how they would be understood as normal and depth maps
 #[derive(clap::Args)]
 pub struct InfoArgs {
-    /// Normal maps, depth maps, masks, EXR files, pictures
+    /// Projects, recipes, normal maps, depth maps, masks, EXR files, pictures
     #[arg(required = true, value_name = "FILES")]
     files: Vec<PathBuf>,
     /// Print one JSON object
@@ -50,7 +57,12 @@ pub fn run(args: &InfoArgs) -> Result<()> {
         let mut given = Given::default();
         for path in &args.files {
             let name = given.add(path);
-            let described = given.read(&name, &budget).and_then(|bytes| describe(path, &bytes, &budget));
+            let bytes = given.read(&name, &budget);
+            if bytes.as_ref().is_ok_and(|bytes| Kind::of(bytes) != Kind::Picture) {
+                report.documents.push(DocumentFile { name, opened: open(path, &budget) });
+                continue;
+            }
+            let described = bytes.and_then(|bytes| describe(path, &bytes, &budget));
             report.files.push(File { name, path: path.clone(), described });
         }
         for source in report.sources() {
@@ -64,6 +76,7 @@ pub fn run(args: &InfoArgs) -> Result<()> {
 
 #[derive(Default)]
 struct Report {
+    documents: Vec<DocumentFile>,
     files: Vec<File>,
     surfaces: Vec<Surface>,
 }
@@ -146,22 +159,25 @@ impl Report {
         out
     }
     fn first_error(self) -> Option<Error> {
-        let files = self.files.into_iter().filter_map(|f| f.described.err());
+        let documents = self.documents.into_iter().filter_map(|d| d.opened.err());
+        let files = documents.chain(self.files.into_iter().filter_map(|f| f.described.err()));
         files.chain(self.surfaces.into_iter().filter_map(|s| s.import.err())).next()
     }
     fn json(&self) -> String {
         let value = json!({
             "format": "rilievo-info",
             "version": 1,
+            "documents": self.documents.iter().map(DocumentFile::json).collect::<Vec<_>>(),
             "files": self.files.iter().map(File::json).collect::<Vec<_>>(),
             "surfaces": self.surfaces.iter().map(Surface::json).collect::<Vec<_>>(),
         });
         format!("{value:#}\n")
     }
     fn text(&self) -> String {
+        let documents: String = self.documents.iter().map(DocumentFile::text).collect();
         let files: String = self.files.iter().map(File::text).collect();
         let surfaces: String = self.surfaces.iter().map(Surface::text).collect();
-        files + &surfaces
+        documents + &files + &surfaces
     }
 }
 

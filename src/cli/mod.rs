@@ -2,6 +2,7 @@
 //!
 //! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for a misuse of the command line.
 
+mod convert;
 mod crash;
 mod info;
 pub mod limits;
@@ -31,6 +32,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Convert(convert::ConvertArgs),
     Info(info::InfoArgs),
     Open(open::OpenArgs),
     Render(render::RenderArgs),
@@ -51,6 +53,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
         }
     };
     let done = crash::caught(|| match parsed.command {
+        Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Open(args)) => open::run(args, window),
         Some(Command::Render(args)) => render::run(&args),

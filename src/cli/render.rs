@@ -1,27 +1,28 @@
 //! `rilievo render`: a document to a picture.
 //! Floor 7.
 
-use super::{Limits, progress};
+use super::{Limits, convert, progress};
 use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
 use crate::document::{Content, Document, SurfaceSource, flatten, flatten_layer};
 use crate::io::export::{Format, Options, Target};
 use crate::io::files::{Noted, read_file};
+use crate::io::open::Kind;
 use crate::io::recipe::{self, Onto, Source};
-use crate::io::{Folder, Given};
+use crate::io::{Folder, Given, open};
 use crate::math::srgb::Color;
 use crate::raster::TileGrid;
 use crate::{Error, Result};
 use clap::ArgGroup;
 use std::path::{Path, PathBuf};
 
-/// Render a recipe to a picture
+/// Render a project or a recipe to a picture
 #[derive(clap::Args)]
 #[command(group(ArgGroup::new("maps").args(["normal", "depth"]).multiple(true)))]
 pub struct RenderArgs {
-    /// The recipe: a JSON file; the files it names lie beside it
+    /// The project (.ora), or the recipe: a JSON file; the files it names lie beside it
     #[arg(value_name = "DOC")]
     document: PathBuf,
-    /// Where the picture goes: .png, .exr, .jpg or .webp
+    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Put the painting on another object: its normal map
@@ -55,7 +56,7 @@ pub struct RenderArgs {
     limits: Limits,
 }
 
-fn scale(text: &str) -> std::result::Result<f32, String> {
+pub(super) fn scale(text: &str) -> std::result::Result<f32, String> {
     let factor = text.parse().ok().filter(|f| (0.001..=100.0).contains(f));
     factor.ok_or_else(|| "a factor is a number between 0.001 and 100".to_owned())
 }
@@ -78,16 +79,20 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     Format::of(&args.output)?;
     args.limits.install(|| {
         let (document, inputs) = load(args)?;
-        refuse_incomplete(args, &document)?;
+        refuse_incomplete(&args.document, &document)?;
         let target = Target::new(&args.output, &inputs)?;
-        let document = scaled(args, document)?;
+        let document = scaled(&args.document, args.scale, &args.limits, document)?;
         let pixels = progress::shown(|progress| match &args.layer {
             None => Ok(flatten(&document, progress)),
             Some(name) => Ok(flatten_layer(&document, named(args, &document, name)?, progress)),
         })?;
         // Nothing here cancels, so there always is a picture.
         let pixels: TileGrid = pixels.unwrap_or_default();
-        target.write(&pixels, document.size, &Options { background: args.background, quality: args.quality })
+        target.write(
+            &pixels,
+            document.size,
+            &Options { background: args.background, quality: args.quality, ..Options::default() },
+        )
     })
 }
 
@@ -99,8 +104,17 @@ fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
     let surface = other_object(args, &mut given);
     let given = Noted::new(given);
     let onto = surface.as_ref().map(|surface| Onto { surface, files: &given });
-    let text = read_file(&args.document, budget.json_bytes)?;
-    let document = recipe::read(&text, Source { file: &args.document, files: &files, budget: &budget, onto })?;
+    let bytes = read_file(&args.document, budget.file_bytes)?;
+    let document = match Kind::of(&bytes) {
+        Kind::Recipe => recipe::read(&bytes, Source { file: &args.document, files: &files, budget: &budget, onto })?,
+        _ => {
+            let opened = open(&args.document, &budget)?;
+            convert::tell(&args.document, &opened.notes);
+            onto.map_or(Ok(opened.document.clone()), |onto| {
+                recipe::put_onto(&opened.document, &args.document, onto, &budget)
+            })?
+        }
+    };
     let mut inputs = vec![args.document.clone()];
     inputs.extend(files.read_paths());
     inputs.extend(given.read_paths());
@@ -108,12 +122,12 @@ fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
 }
 
 /// Layers that would paint black for want of what they show: better a sentence.
-fn refuse_incomplete(args: &RenderArgs, document: &Document) -> Result<()> {
+pub(super) fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> {
     for (path, layer) in document.walk() {
         let Content::Shading(shading) = &layer.content else { continue };
         if layer.visible && shading.params().lacks_environment() {
             let reason = format!("is missing; “{}” shows nothing else", shading.params().model.name());
-            return Err(Error::invalid(&args.document, format!("{path}.environment"), reason));
+            return Err(Error::invalid(file, format!("{path}.environment"), reason));
         }
     }
     Ok(())
@@ -134,13 +148,14 @@ fn other_object(args: &RenderArgs, given: &mut Given) -> Option<SurfaceSource> {
     })
 }
 
-fn scaled(args: &RenderArgs, document: Document) -> Result<Document> {
-    if args.scale == 1.0 {
+/// The document at another size, within the limits.
+pub(super) fn scaled(file: &Path, factor: f32, limits: &Limits, document: Document) -> Result<Document> {
+    if factor == 1.0 {
         return Ok(document);
     }
-    let size = document.size.scaled(args.scale);
-    args.limits.budget().size(&args.document, size.width.into(), size.height.into())?;
-    document.scaled(args.scale).map_err(|error| Error::invalid(&args.document, "--scale", error))
+    let size = document.size.scaled(factor);
+    limits.budget().size(file, size.width.into(), size.height.into())?;
+    document.scaled(factor).map_err(|error| Error::invalid(file, "--scale", error))
 }
 
 fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {

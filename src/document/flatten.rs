@@ -14,6 +14,24 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
 
+/// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row. `None` if cancelled.
+pub fn flatten_deep(document: &Document, progress: &Progress) -> Option<Vec<[f32; 4]>> {
+    let prepared = Prepared::new(document, progress)?;
+    let tiles = prepared.all_tiles();
+    let composed = in_parallel(&tiles, progress, |at| prepared.compose_tile(at))?;
+    let canvas = document.size.rect();
+    let mut pixels = vec![[0.0; 4]; document.size.area()];
+    for (at, tile) in tiles.iter().zip(composed) {
+        let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
+        for (y, row) in (inside.y0..inside.y1).zip(tile.rows()) {
+            let start = y as usize * canvas.width() + rect.x0 as usize;
+            let onto = pixels.iter_mut().skip(start).take(inside.width());
+            onto.enumerate().for_each(|(x, pixel)| *pixel = row.pixel(x));
+        }
+    }
+    Some(pixels)
+}
+
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around it.
 /// It sees the surface that it sees in its place. `None` if cancelled or if there is no such layer.
 pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> Option<TileGrid> {
@@ -61,10 +79,13 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
 impl Prepared {
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
+        self.compose_tile(at).quantised().map(Arc::new)
+    }
+    fn compose_tile(&self, at: TileAt) -> PlanarTile {
         let mut pixels = PlanarTile::transparent();
         // Nothing is sought, so composing runs to its end.
         let _ = Composer { prepared: self, at, sought: None }.stack(&self.stack, &mut pixels);
-        pixels.quantised().map(Arc::new)
+        pixels
     }
     /// A picture with some of its tiles composed anew; `None` if cancelled.
     pub fn flatten_tiles(&self, old: &TileGrid, tiles: &[TileAt], progress: &Progress) -> Option<TileGrid> {

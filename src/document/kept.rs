@@ -11,8 +11,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 /// What is known of a layer; shared by its versions.
 #[derive(Clone, Default)]
 pub struct Kept {
-    /// The look of the layer alone, as a project stores it.
-    pub look: Memo<(), Encoded>,
+    /// The look of the layer alone, as a file stores it; with its mask or without.
+    pub look: Memo<bool, Encoded>,
     /// The pixels of a paint layer, as a project stores them.
     pub pixels: Memo<(), Encoded>,
     /// Of a normal layer: the surface with its detail.

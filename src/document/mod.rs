@@ -21,7 +21,7 @@ pub mod view;
 
 pub use diff::diff;
 pub use edit::Place;
-pub use flatten::{flatten, flatten_layer, flatten_layers};
+pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers};
 pub use history::History;
 pub use layer::{Content, Group, Layer, LayerId, Lock, PixelLayer, StrokeList};
 pub use live::Live;

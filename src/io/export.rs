@@ -1,7 +1,10 @@
-//! Pictures out: PNG, JPEG, WebP and EXR, each written whole or not at all.
-//! Floor 5. Not here: what the picture shows (`document::flatten`).
+//! Pictures out: PNG, JPEG, WebP, TIFF and EXR, each written whole or not at all.
+//! Floor 5. Not here: what the picture shows (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
 
-use crate::math::{Size, srgb, srgb::Color};
+pub mod deep;
+pub mod layers;
+
+use crate::math::{Rect, Size, srgb, srgb::Color};
 use crate::raster::TileGrid;
 use crate::{Error, Result};
 use std::fs;
@@ -18,18 +21,22 @@ pub enum Format {
     Jpeg,
     /// Lossless.
     WebP,
+    /// 8 bits, straight alpha.
+    Tiff,
     /// Linear light, half floats, premultiplied.
     Exr,
 }
 
 impl Format {
     /// Every format by the extensions of its files.
-    pub const ALL: [(Format, &'static str); 5] = [
+    pub const ALL: [(Format, &'static str); 7] = [
         (Format::Png, "png"),
         (Format::Exr, "exr"),
         (Format::Jpeg, "jpg"),
         (Format::Jpeg, "jpeg"),
         (Format::WebP, "webp"),
+        (Format::Tiff, "tif"),
+        (Format::Tiff, "tiff"),
     ];
 
     /// The format that a file's name asks for.
@@ -50,11 +57,15 @@ pub struct Options {
     pub background: Option<Color>,
     /// Of a JPEG, 1 … 100.
     pub quality: u8,
+    /// What the picture is printed at, where the format can say so (PNG).
+    pub dots_per_inch: Option<f32>,
+    /// The part that is written; all of the canvas by default.
+    pub crop: Option<Rect>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { background: None, quality: 92 }
+        Self { background: None, quality: 92, dots_per_inch: None, crop: None }
     }
 }
 
@@ -64,14 +75,22 @@ pub struct Target {
     named: PathBuf,
     /// With links resolved: the file a link leads to is replaced, not the link.
     file: PathBuf,
-    format: Format,
+    /// Absent for a document, whose bytes are not made here.
+    format: Option<Format>,
+}
+
+/// The name asks for a whole document, not for a picture.
+fn is_document(named: &Path) -> bool {
+    let ending = named.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    ["ora", "psd"].contains(&ending.as_str())
 }
 
 impl Target {
     /// Fails where the name asks for no known format, names a folder, lies in a folder that does not exist, or is one of
     /// the files that are being read.
     pub fn new(named: &Path, inputs: &[PathBuf]) -> Result<Self> {
-        let format = Format::of(named)?;
+        let format = Format::of(named);
+        let format = if is_document(named) { None } else { Some(format?) };
         let file = fs::canonicalize(named).unwrap_or_else(|_| named.into());
         if file.exists() && !file.is_file() {
             return Err(Error::unsupported(named, "it is not a regular file, so it cannot be replaced"));
@@ -87,7 +106,8 @@ impl Target {
     }
     /// Encodes and writes the part of a flattened picture that the canvas shows.
     pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &Options) -> Result<()> {
-        self.replace(&encode(&self.named, self.format, pixels, canvas, options)?)
+        let format = self.format.map_or_else(|| Format::of(&self.named), Ok)?;
+        self.replace(&encode(&self.named, format, pixels, canvas, options)?)
     }
     /// Writes a temporary file beside the target and renames it: the target is the old file or the new one, never half of it.
     pub fn replace(&self, bytes: &[u8]) -> Result<()> {
@@ -117,14 +137,20 @@ fn folder_of(file: &Path) -> &Path {
 
 /// The bytes of a picture file; `file` is for messages.
 pub fn encode(file: &Path, format: Format, pixels: &TileGrid, canvas: Size, options: &Options) -> Result<Vec<u8>> {
-    let mut rgba = pixels.to_straight_rgba(canvas.rect());
+    let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
+    if rect.is_empty() {
+        return Err(Error::unsupported(file, "the part to be written holds no pixels"));
+    }
+    let canvas = Size::new(rect.width() as u32, rect.height() as u32);
+    let mut rgba = pixels.to_straight_rgba(rect);
     if let Some(background) = options.background {
         lay_on(&mut rgba, background);
     }
     match format {
-        Format::Png => png(&rgba, canvas).map_err(|e| Error::unsupported(file, e)),
+        Format::Png => png(&rgba, canvas, options.dots_per_inch).map_err(|e| Error::unsupported(file, e)),
         Format::Jpeg => jpeg(file, &rgba, canvas, options.quality),
         Format::WebP => webp(file, &rgba, canvas),
+        Format::Tiff => tiff(file, rgba, canvas),
         Format::Exr => exr(&rgba, canvas).map_err(|e| Error::unsupported(file, e)),
     }
 }
@@ -146,12 +172,24 @@ fn lay_on(rgba: &mut [u8], background: Color) {
     }
 }
 
-fn png(rgba: &[u8], size: Size) -> Result<Vec<u8>, png::EncodingError> {
+fn tiff(file: &Path, rgba: Vec<u8>, size: Size) -> Result<Vec<u8>> {
+    let image = image::RgbaImage::from_raw(size.width, size.height, rgba);
+    deep::tiff(file, image.map(image::DynamicImage::ImageRgba8))
+}
+
+/// Pixels a metre.
+fn png_resolution(dots_per_inch: f32) -> png::PixelDimensions {
+    let per_metre = (dots_per_inch / 0.0254).round() as u32;
+    png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
+}
+
+fn png(rgba: &[u8], size: Size, dots_per_inch: Option<f32>) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_pixel_dims(dots_per_inch.map(png_resolution));
     let mut writer = encoder.write_header()?;
     writer.write_image_data(rgba)?;
     writer.finish()?;

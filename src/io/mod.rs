@@ -12,6 +12,7 @@ pub mod maps;
 pub mod open;
 pub mod picture;
 pub mod project;
+pub mod psd;
 pub mod recipe;
 pub mod recovery;
 pub mod save;

@@ -5,7 +5,7 @@ use super::files::{Folder, read_file};
 use super::project::{self, Archive, Contents};
 use super::recipe::{self, Source};
 use super::save::Stamp;
-use super::{Budget, picture};
+use super::{Budget, picture, psd};
 use crate::Result;
 use crate::document::{Content, Document, Layer, PixelLayer};
 use std::path::Path;
@@ -29,22 +29,33 @@ pub enum Kind {
     /// OpenRaster, ours or another program's; the only kind that a document is saved to.
     Project,
     Recipe,
+    /// A Photoshop file.
+    Psd,
     Picture,
 }
 
 impl Kind {
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Project => "project",
+            Kind::Recipe => "recipe",
+            Kind::Psd => "psd",
+            Kind::Picture => "picture",
+        }
+    }
     /// What a file is by its first bytes; a picture where nothing else fits.
     pub fn of(bytes: &[u8]) -> Self {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
             _ if Archive::is_zip(bytes) => Kind::Project,
             Some(b'{') => Kind::Recipe,
+            _ if bytes.starts_with(&psd::MAGIC) => Kind::Psd,
             _ => Kind::Picture,
         }
     }
 }
 
-/// Opens a project, a recipe (the files it names lie beside it), or a picture, which becomes a document of one paint layer.
+/// Opens a project, a recipe (the files it names lie beside it), a Photoshop file, or a picture, which becomes a document of one paint layer.
 ///
 /// A damaged project gives every layer that is intact; `notes` say what is not, and `is_whole` is false.
 pub fn open(file: &Path, budget: &Budget) -> Result<Opened> {
@@ -54,6 +65,7 @@ pub fn open(file: &Path, budget: &Budget) -> Result<Opened> {
     let Contents { document, notes, is_whole } = match kind {
         Kind::Project => project::read(file, &bytes, budget)?,
         Kind::Recipe => whole(recipe::read(&bytes, Source { file, files: &Folder::beside(file), budget, onto: None })?),
+        Kind::Psd => psd::read(file, &bytes, budget)?,
         Kind::Picture => single(file, &bytes, budget)?,
     };
     Ok(Opened { document, notes, is_whole, kind, stamp: Stamp::of(&bytes) })
@@ -77,6 +89,7 @@ mod tests {
     fn what_a_file_is_shows_in_its_first_bytes() {
         assert_eq!(Kind::of(b"PK\x03\x04rest"), Kind::Project);
         assert_eq!(Kind::of(b"\xef\xbb\xbf \n{\"format\""), Kind::Recipe);
+        assert_eq!(Kind::of(b"8BPS\0\x01"), Kind::Psd);
         assert_eq!(Kind::of(b"\x89PNG"), Kind::Picture);
     }
 }

@@ -118,6 +118,21 @@ fn exr_texels(file: &Path, exr: &ExrFile) -> Result<Vec<[f32; 4]>> {
         .collect())
 }
 
+/// The very profile that this program writes: nothing is to be done.
+pub fn is_own_srgb(icc: &[u8]) -> bool {
+    ColorProfile::new_srgb().encode().is_ok_and(|own| own == icc)
+}
+
+/// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where [`through_profile`] finds nothing to do.
+pub fn to_srgb(size: Size, rgba: Vec<u8>, icc: &[u8]) -> Vec<u8> {
+    let Some(image) = image::RgbaImage::from_raw(size.width, size.height, rgba) else { return Vec::new() };
+    let image = DynamicImage::ImageRgba8(image);
+    match through_profile(&image, icc) {
+        Some(texels) => texels.into_flattened(),
+        None => image.into_rgba8().into_raw(),
+    }
+}
+
 /// Straight sRGB bytes of an integer image in the colours of its ICC profile.
 ///
 /// `None` where the profile is sRGB as far as a byte can tell (so that such files keep their bytes), does not belong to

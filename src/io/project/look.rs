@@ -21,7 +21,7 @@ pub fn render(file: &Path, document: &Document, items: &[Item], progress: &Progr
     progress.add_total(shown.len() as u64);
     let one = |item: &&Item| {
         let encoded = match &item.shows {
-            Shows::Layer(layer) => look(file, document, layer, progress)?,
+            Shows::Layer(layer) => look(file, document, layer, item.mask.is_none(), progress)?,
             Shows::Composed { document, layers } => flatten_layers(document, layers, progress)
                 .map(|tiles| pixels::encode(file, &tiles, None))
                 .transpose()?,
@@ -49,20 +49,27 @@ pub fn pictures_of(items: &[Item]) -> Vec<&Item> {
     out
 }
 
-/// The look of a layer alone: wholly opaque, its mask and the surface's edge in its pixels.
-fn look(file: &Path, document: &Document, layer: &Arc<Layer>, progress: &Progress) -> Cancellable<Encoded> {
-    if let Some(tiles) = bare(document, layer) {
+/// The look of a layer alone: wholly opaque, the surface's edge in its pixels, and its mask if it is to be `masked`.
+fn look(
+    file: &Path,
+    document: &Document,
+    layer: &Arc<Layer>,
+    masked: bool,
+    progress: &Progress,
+) -> Cancellable<Encoded> {
+    if let Some(tiles) = bare(document, layer, masked) {
         return pixels_of(file, document, layer, tiles).map(Some);
     }
     let render = || {
         let plain = document.with_layer(layer.id, |layer| {
             (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
+            layer.mask = layer.mask.take().filter(|_| masked);
         });
         let tiles = plain.and_then(|plain| flatten_layer(&plain, layer.id, progress));
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
-    let look = layer.kept.look.get(&document.scene(), &seen_by(document, layer), &(), || {
+    let look = layer.kept.look.get(&document.scene(), &seen_by(document, layer), &masked, || {
         render().unwrap_or_else(|error| {
             failed = Some(error);
             None
@@ -72,8 +79,8 @@ fn look(file: &Path, document: &Document, layer: &Arc<Layer>, progress: &Progres
 }
 
 /// A paint layer's pixels, where nothing hides any of them from other programs.
-fn bare<'a>(document: &Document, layer: &'a Layer) -> Option<&'a TileGrid> {
-    let is_cut = layer.mask.is_some() || (document.surface.is_some() && layer.clip_to_surface);
+fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a TileGrid> {
+    let is_cut = (masked && layer.mask.is_some()) || (document.surface.is_some() && layer.clip_to_surface);
     match &layer.content {
         Content::Pixels(pixels) if !is_cut => Some(&pixels.tiles),
         _ => None,
@@ -92,7 +99,11 @@ pub fn remember(document: &Document, looks: &BTreeMap<LayerId, Encoded>) {
     for (_, layer) in document.walk() {
         if let Some(encoded) = looks.get(&layer.id) {
             let (scene, seen) = (document.scene(), seen_by(document, layer));
-            layer.kept.look.get(&scene, &seen, &(), || Some(encoded.clone()));
+            layer.kept.look.get(&scene, &seen, &true, || Some(encoded.clone()));
+            // Nothing hides any of its pixels: they are its look.
+            if bare(document, layer, true).is_some() {
+                layer.kept.pixels.get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));
+            }
         }
     }
 }

@@ -14,7 +14,7 @@ const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 pub struct Manifest {
     /// The version that wrote the file.
     pub program: String,
-    /// CRC-32 of `stack.xml`.
+    /// CRC-32 of `stack.xml`, or of what tells the layers in another format.
     pub stack: u32,
     pub pictures: Vec<Shown>,
 }
@@ -32,13 +32,13 @@ pub struct Shown {
 }
 
 impl Manifest {
-    pub fn new(document: &Document, stack: &str, shown: &BTreeMap<LayerId, &(String, Encoded)>) -> Self {
+    pub fn new(document: &Document, stack: u32, shown: &BTreeMap<LayerId, &(String, Encoded)>) -> Self {
         let pictures = document.walk().into_iter().filter_map(|(path, layer)| {
             let (name, look) = shown.get(&layer.id)?;
             let crc = crc32fast::hash(look.file.bytes());
             Some(Shown { layer: path, name: name.clone(), crc, x: look.x, y: look.y })
         });
-        Self { program: PROGRAM.into(), stack: crc32fast::hash(stack.as_bytes()), pictures: pictures.collect() }
+        Self { program: PROGRAM.into(), stack, pictures: pictures.collect() }
     }
     pub fn is_of_this_program(&self) -> bool {
         self.program == PROGRAM

@@ -11,15 +11,15 @@
 //! | `manifest` | which picture is whose, so that another program's change is seen |
 //! | `open`, `repair`, `foreign` | reading: our own, damaged, other programs' |
 
-mod archive;
+pub(super) mod archive;
 pub(super) mod assets;
 mod foreign;
-mod look;
-mod manifest;
+pub(super) mod look;
+pub(super) mod manifest;
 mod open;
-mod packer;
+pub(super) mod packer;
 pub(super) mod pixels;
-mod plan;
+pub(super) mod plan;
 mod repair;
 #[cfg(test)]
 pub(super) mod sample;
@@ -32,21 +32,22 @@ pub use look::Cancellable;
 pub use open::{Contents, read};
 
 use super::recipe;
-use crate::Error;
 use crate::document::kept::Encoded;
 use crate::document::{Document, LayerId, Progress, flatten};
 use crate::math::Size;
+use crate::raster::Asset;
+use crate::{Error, Result};
 use assets::{Assets, Painted};
 use manifest::Manifest;
 use packer::Packer;
-use plan::{Item, Shows};
+use plan::{Item, Shows, Words};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 const MIMETYPE: &str = "mimetype";
 const MIME: &str = "image/openraster";
 const DOCUMENT: &str = "rilievo/document.json";
-const MANIFEST: &str = "rilievo/manifest.json";
+pub const MANIFEST: &str = "rilievo/manifest.json";
 const STACK: &str = "stack.xml";
 const MERGED: &str = "mergedimage.png";
 const THUMBNAIL: &str = "Thumbnails/thumbnail.png";
@@ -57,44 +58,77 @@ const THUMBNAIL_PX: u32 = 256;
 ///
 /// The same document gives the same bytes, and so does the document read back from them.
 pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {
-    let items = plan::plan(document);
+    let items = plan::plan(document, Words::OPENRASTER);
     let paint = look::paint(file, document)?;
     let Some(looks) = look::render(file, document, &items, progress)? else { return Ok(None) };
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
     let pictures: Vec<(String, Encoded)> =
         looks.into_iter().enumerate().map(|(i, look)| (format!("data/{i:03}.png"), look)).collect();
     let shown = shown_alone(&items, &pictures);
-
-    let shared = shown.iter().filter(|(id, (_, look))| paint.get(id) == Some(look));
-    let shared = shared.map(|(id, (name, _))| (*id, name.clone())).collect();
-    let mut assets = Assets::default();
-    let renamed = assets.rename(file, document, &Painted { pixels: &paint, shared: &shared })?;
     let xml = stack::write(document.size, &items, &pictures);
-    let manifest = Manifest::new(document, &xml, &shown);
-
-    let json = |value: &serde_json::Value| format!("{value:#}\n").into_bytes();
-    let packed = || {
-        let mut packer = Packer::default();
-        packer.store(MIMETYPE, MIME.as_bytes())?;
-        packer.deflate(DOCUMENT, &json(&recipe::write(&renamed)))?;
-        packer.deflate(MANIFEST, &json(&manifest.write()))?;
-        packer.deflate(STACK, xml.as_bytes())?;
-        for (name, picture) in &pictures {
-            packer.store(name, picture.file.bytes())?;
-        }
-        for (name, asset) in assets.files() {
-            packer.store(name, asset.bytes())?;
-        }
-        Ok(packer)
-    };
-    let failed = |e: zip::result::ZipError| Error::unsupported(file, format!("the project cannot be packed ({e})"));
-    let mut packer = packed().map_err(failed)?;
+    let mut entries = vec![Entry::text(MIMETYPE, MIME.as_bytes().to_vec())];
+    entries.extend(documents(file, document, &paint, &shown, crc32fast::hash(xml.as_bytes()))?);
+    // Behind the document and the manifest, before all pictures.
+    entries.insert(3, Entry::text(STACK, xml.into_bytes()));
+    let layers = pictures.iter().map(|(name, picture)| Entry::bytes(name, picture.file.clone()));
+    entries.splice(4..4, layers);
     let whole = merged.to_straight_rgba(document.size.rect());
     let (small, size) = thumbnail(&whole, document.size);
     for (name, rgba, size) in [(MERGED, &whole, document.size), (THUMBNAIL, &small, size)] {
-        packer.store(name, pixels::encode_texels(file, rgba.as_chunks().0, size)?.bytes()).map_err(failed)?;
+        entries.push(Entry::bytes(name, pixels::encode_texels(file, rgba.as_chunks().0, size)?));
     }
-    Ok(Some(packer.finish().map_err(failed)?))
+    packed(file, &entries).map(Some)
+}
+
+/// An entry of the zip.
+pub struct Entry {
+    name: String,
+    bytes: Asset,
+    is_text: bool,
+}
+
+impl Entry {
+    fn text(name: &str, bytes: Vec<u8>) -> Self {
+        Self { name: name.into(), bytes: bytes.into(), is_text: name != MIMETYPE }
+    }
+    fn bytes(name: &str, bytes: Asset) -> Self {
+        Self { name: name.into(), bytes, is_text: false }
+    }
+}
+
+/// What only Rilievo understands: the document, the manifest, and every file they name that is none of the pictures `shown`.
+///
+/// * `paint`: all pixels of the paint layers.
+/// * `shown`: the pictures that show one layer alone, with their names.
+/// * `stack`: a checksum of what tells other programs how the layers lie.
+pub fn documents(
+    file: &Path,
+    document: &Document,
+    paint: &BTreeMap<LayerId, Encoded>,
+    shown: &BTreeMap<LayerId, &(String, Encoded)>,
+    stack: u32,
+) -> Result<Vec<Entry>> {
+    let shared = shown.iter().filter(|(id, (_, look))| paint.get(id) == Some(look));
+    let shared = shared.map(|(id, (name, _))| (*id, name.clone())).collect();
+    let mut assets = Assets::default();
+    let renamed = assets.rename(file, document, &Painted { pixels: paint, shared: &shared })?;
+    let json = |name, value: serde_json::Value| Entry::text(name, format!("{value:#}\n").into_bytes());
+    let manifest = Manifest::new(document, stack, shown);
+    let mut entries = vec![json(DOCUMENT, recipe::write(&renamed)), json(MANIFEST, manifest.write())];
+    entries.extend(assets.files().iter().map(|(name, asset)| Entry::bytes(name, asset.clone())));
+    Ok(entries)
+}
+
+/// Entries as a zip.
+pub fn packed(file: &Path, entries: &[Entry]) -> Result<Vec<u8>> {
+    let pack = || {
+        let mut packer = Packer::default();
+        for Entry { name, bytes, is_text } in entries {
+            if *is_text { packer.deflate(name, bytes.bytes())? } else { packer.store(name, bytes.bytes())? }
+        }
+        packer.finish()
+    };
+    pack().map_err(|e| Error::unsupported(file, format!("the project cannot be packed ({e})")))
 }
 
 /// A small version of straight pixels; of a small picture, the picture itself.

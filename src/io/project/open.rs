@@ -6,14 +6,16 @@ use super::manifest::{Manifest, Shown};
 use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, repair, stack};
 use crate::document::kept::Encoded;
 use crate::document::{Document, LayerId};
-use crate::io::recipe::{self, Source};
-use crate::io::{Budget, json};
+use crate::io::recipe::{self, Source, Tiles};
+use crate::io::{Budget, json, picture};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::{Error, Result};
+use rayon::prelude::*;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What a project gave.
 pub struct Contents {
@@ -104,7 +106,9 @@ impl Reading<'_> {
     /// The document as it was saved, with what another program changed and without what is damaged.
     fn own(&mut self, mut value: Value, manifest: Option<&Manifest>) -> Result<Document> {
         let intact = manifest.map(|manifest| repair::check_pictures(self, &mut value, manifest)).unwrap_or_default();
-        let document = match self.read_value(&value) {
+        let path = self.archive_path(DOCUMENT);
+        let source = Source { file: &path, files: self.archive, budget: self.budget, onto: None };
+        let document = match recipe::read_with_tiles(&value, source, self.decoded_ahead(&value)) {
             Ok(document) => document,
             Err(error) => {
                 // A newer version, or a field out of range, is no damage that leaving something out would mend.
@@ -119,6 +123,21 @@ impl Reading<'_> {
             remember(&document, &looks(&document, intact));
         }
         Ok(document)
+    }
+    /// The pixels of the paint layers, decoded side by side; what cannot be read is left to be told in its turn.
+    fn decoded_ahead(&self, value: &Value) -> Tiles {
+        let mut wanted = BTreeSet::new();
+        list_paint(&value["layers"], &mut wanted);
+        let left_px = AtomicU64::new(self.budget.document_px);
+        let one = |key: (String, i32, i32)| {
+            let bytes = self.archive.bytes(&key.0, self.budget.file_bytes).ok()?;
+            let area = repair::png_size(&bytes)?.area() as u64;
+            let less = |left: u64| left.checked_sub(area);
+            left_px.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).ok()?;
+            let picture = picture::decode(Path::new(&key.0), &bytes, self.budget).ok()?;
+            Some((key.clone(), picture::to_tiles(&picture, key.1, key.2)))
+        };
+        wanted.into_par_iter().filter_map(one).collect()
     }
     pub fn read_value(&self, value: &Value) -> Result<Document> {
         let path = self.archive_path(DOCUMENT);
@@ -135,6 +154,22 @@ impl Reading<'_> {
             Ok(layers) => foreign::document(self, layers),
             Err(error) => foreign::leftovers(self, error),
         }
+    }
+}
+
+/// The file and the corner of every paint layer.
+fn list_paint(layers: &Value, out: &mut BTreeSet<(String, i32, i32)>) {
+    for layer in layers.as_array().into_iter().flatten() {
+        let corner = |name: &str| match layer.get(name) {
+            None => Some(0),
+            Some(value) => value.as_i64().and_then(|v| i32::try_from(v).ok()).filter(|v| v.abs() <= 1_000_000),
+        };
+        if let (Some("pixels"), Some(file)) = (layer["kind"].as_str(), layer["file"].as_str())
+            && let (Some(x), Some(y)) = (corner("x"), corner("y"))
+        {
+            out.insert((file.to_owned(), x, y));
+        }
+        list_paint(&layer["layers"], out);
     }
 }
 

@@ -51,7 +51,8 @@ fn encoded(values: &[u8], size: Size, color: png::ColorType) -> Result<Vec<u8>, 
     Ok(bytes)
 }
 
-fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
+/// The values of a PNG that was encoded here.
+pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
     let mut values = vec![0; reader.output_buffer_size()?];
     let info = reader.next_frame(&mut values).ok()?;

@@ -1,15 +1,16 @@
-//! What other programs see of a document: nested stacks of pictures, in the words of OpenRaster.
+//! What other programs see of a document: nested stacks of pictures, in the words of the format.
 //! Floor 5. Pure: which pictures there are, not their pixels (`look`) nor their XML (`stack`).
 //!
-//! OpenRaster has no masks, no clipping, no adjustments, and not every way to blend. What it cannot say is composed here:
+//! OpenRaster has no masks, no clipping, no adjustments, and not every way to blend; Photoshop's format has more words. What
+//! the format cannot say is composed here:
 //!
 //! * a mask, and clipping to the surface, go into the layer's own picture;
 //! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden beside it;
 //! * so does an isolated group with a mask;
-//! * a layer that changes or reads what lies beneath in a way that cannot be said (radiance scaling, exclusion, blending in
-//!   linear light, a pass-through group with a mask or opacity) is composed with all that lies beneath it in its scope.
+//! * a layer that changes or reads what lies beneath in a way that cannot be said (radiance scaling, exclusion, plus,
+//!   blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies beneath it in its scope.
 
-use crate::document::{Content, Document, Group, Layer, LayerId, Lock};
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, Lock, MaskKind};
 use crate::raster::BlendMode;
 use std::sync::Arc;
 
@@ -19,8 +20,30 @@ pub struct Item {
     pub visible: bool,
     pub opacity: f32,
     pub blend: BlendMode,
-    pub locked: bool,
+    pub lock: Lock,
+    /// Clipped to the item beneath, where the format has a word for it.
+    pub clipped: bool,
+    /// Not in the pixels, where the format has a word for it.
+    pub mask: Option<LayerMask>,
     pub shows: Shows,
+}
+
+/// What a format has words for.
+#[derive(Clone, Copy)]
+pub struct Words {
+    /// Layers clipped to one beneath.
+    pub clipping: bool,
+    /// Masks that are pictures.
+    pub masks: bool,
+    /// Blend modes that it has no word for, or one that others read otherwise: most take W3C's “plus” for a sum of colours
+    /// alone, whatever the alpha.
+    pub unsaid: &'static [BlendMode],
+}
+
+impl Words {
+    pub const OPENRASTER: Words =
+        Words { clipping: false, masks: false, unsaid: &[BlendMode::Exclusion, BlendMode::Plus] };
+    pub const PHOTOSHOP: Words = Words { clipping: true, masks: true, unsaid: &[] };
 }
 
 pub enum Shows {
@@ -35,19 +58,20 @@ pub enum Shows {
 }
 
 /// The items of a document, bottom first.
-pub fn plan(document: &Document) -> Vec<Item> {
-    Planner { document }.scope(&document.layers)
+pub fn plan(document: &Document, words: Words) -> Vec<Item> {
+    Planner { document, words }.scope(&document.layers)
 }
 
 struct Planner<'a> {
     document: &'a Document,
+    words: Words,
 }
 
 impl Planner<'_> {
     /// Layers that are composed with each other.
     fn scope(&self, layers: &[Arc<Layer>]) -> Vec<Item> {
         let runs = runs(layers);
-        let last = runs.iter().rposition(|run| reads_beneath(run));
+        let last = runs.iter().rposition(|run| self.reads_beneath(run));
         let mut items = Vec::new();
         if let Some(last) = last {
             items.extend(self.composed_with_beneath(&runs[..=last]));
@@ -61,15 +85,20 @@ impl Planner<'_> {
         let parts = runs.iter().flat_map(|run| self.run(run)).collect();
         let top = runs.last().and_then(|run| run.first());
         let name = top.map_or(String::new(), |layer| layer.name.clone());
-        let visible = runs.iter().filter(|run| run.first().is_some_and(|base| base.visible));
+        // Without a base, what is clipped paints nothing.
+        let visible = runs.iter().filter(|run| run.first().is_some_and(|base| base.visible && is_base(base)));
         let layers = visible.flat_map(|run| run.iter()).filter(|l| l.visible).map(|layer| layer.id).collect();
         [hidden_parts(&name, parts), picture(name, Shows::Composed { document: self.document.clone(), layers })]
     }
     /// A layer and those clipped to it.
     fn run(&self, run: &[Arc<Layer>]) -> Vec<Item> {
         let Some((base, rest)) = run.split_first() else { return Vec::new() };
-        let is_base = !base.clip_below && !matches!(base.content, Content::Normals(_));
+        let is_base = is_base(base);
         let clipped = rest.iter().any(|layer| layer.clip_below && layer.visible);
+        if is_base && self.words.clipping && !matches!(base.content, Content::Group(_)) {
+            let item = |layer: &Arc<Layer>| Item { clipped: layer.clip_below, ..self.single(layer) };
+            return run.iter().map(item).collect();
+        }
         if is_base && base.visible && clipped {
             return vec![self.clipping_stack(base, run)];
         }
@@ -100,7 +129,11 @@ impl Planner<'_> {
             Content::Group(group) => return self.group(layer, group),
             _ => Shows::Layer(layer.clone()),
         };
-        Item { shows, ..item(layer) }
+        let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
+        Item { shows, mask, ..item(layer) }
+    }
+    fn has_word_for(&self, mask: &LayerMask) -> bool {
+        self.words.masks && matches!(mask.kind, MaskKind::File { .. })
     }
     fn group(&self, layer: &Arc<Layer>, group: &Group) -> Item {
         let parts = self.scope(&group.layers);
@@ -108,46 +141,53 @@ impl Planner<'_> {
             let shows = Shows::Stack { isolated: false, items: parts };
             return Item { opacity: 1.0, blend: BlendMode::Normal, shows, ..item(layer) };
         }
+        let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
         let items = match &layer.mask {
+            _ if mask.is_some() => parts,
             None => parts,
             Some(_) => {
                 let composed = Shows::Composed { document: self.plain(layer.id), layers: vec![layer.id] };
                 vec![hidden_parts(&layer.name, parts), picture(layer.name.clone(), composed)]
             }
         };
-        Item { shows: Shows::Stack { isolated: true, items }, ..item(layer) }
+        Item { shows: Shows::Stack { isolated: true, items }, mask, ..item(layer) }
     }
+
+    /// A visible run that cannot be shown without composing it with what lies beneath.
+    fn reads_beneath(&self, run: &[Arc<Layer>]) -> bool {
+        let Some((base, rest)) = run.split_first() else { return false };
+        if !base.visible || base.clip_below {
+            return false;
+        }
+        let clips = rest.iter().any(|layer| layer.clip_below && layer.visible);
+        match &base.content {
+            Content::RadianceScaling(_) => true,
+            Content::Normals(_) => false,
+            Content::Group(group) if group.pass_through && !clips => {
+                let is_faded = base.opacity < 1.0 || base.mask.is_some();
+                is_faded || runs(&group.layers).iter().any(|run| self.reads_beneath(run))
+            }
+            _ => base.blend_linear || self.words.unsaid.contains(&base.blend),
+        }
+    }
+}
+
+/// Layers above may be clipped to it; normals stand in nobody's way.
+fn is_base(layer: &Layer) -> bool {
+    !layer.clip_below && !matches!(layer.content, Content::Normals(_))
 }
 
 /// Layers cut before each that is a base: not clipped, and not normals, which stand in nobody's way.
 fn runs(layers: &[Arc<Layer>]) -> Vec<&[Arc<Layer>]> {
-    let begins = |layer: &Arc<Layer>| !layer.clip_below && !matches!(layer.content, Content::Normals(_));
     let mut runs = Vec::new();
     let mut start = 0;
     for i in 1..=layers.len() {
-        if i == layers.len() || begins(&layers[i]) {
+        if i == layers.len() || is_base(&layers[i]) {
             runs.push(&layers[start..i]);
             start = i;
         }
     }
     runs
-}
-
-/// A visible run that cannot be shown without composing it with what lies beneath.
-fn reads_beneath(run: &[Arc<Layer>]) -> bool {
-    let Some((base, rest)) = run.split_first() else { return false };
-    if !base.visible || base.clip_below {
-        return false;
-    }
-    let clips = rest.iter().any(|layer| layer.clip_below && layer.visible);
-    match &base.content {
-        Content::RadianceScaling(_) => true,
-        Content::Normals(_) => false,
-        Content::Group(group) if group.pass_through && !clips => {
-            base.opacity < 1.0 || base.mask.is_some() || self::runs(&group.layers).iter().any(|run| reads_beneath(run))
-        }
-        _ => base.blend_linear || base.blend == BlendMode::Exclusion,
-    }
 }
 
 fn item(layer: &Layer) -> Item {
@@ -156,13 +196,24 @@ fn item(layer: &Layer) -> Item {
         visible: layer.visible,
         opacity: layer.opacity,
         blend: layer.blend,
-        locked: layer.lock == Lock::All,
+        lock: layer.lock,
+        clipped: false,
+        mask: None,
         shows: Shows::Stack { isolated: true, items: Vec::new() },
     }
 }
 
 fn picture(name: String, shows: Shows) -> Item {
-    Item { name, visible: true, opacity: 1.0, blend: BlendMode::Normal, locked: false, shows }
+    Item {
+        name,
+        visible: true,
+        opacity: 1.0,
+        blend: BlendMode::Normal,
+        lock: Lock::None,
+        clipped: false,
+        mask: None,
+        shows,
+    }
 }
 
 /// The layers that a composed picture shows, kept out of sight.
@@ -174,7 +225,6 @@ fn hidden_parts(name: &str, items: Vec<Item>) -> Item {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::MaskKind;
     use crate::math::{Size, srgb::Color};
     use crate::shading::RadianceScaling;
 
@@ -188,7 +238,7 @@ mod tests {
     fn planned(layers: Vec<Layer>) -> String {
         let layers = layers.into_iter().map(Arc::new).collect();
         let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
-        text(&plan(&document))
+        text(&plan(&document, Words::OPENRASTER))
     }
     /// Names; hidden ones in lower case brackets, composed ones with a star, stacks with what they hold.
     fn text(items: &[Item]) -> String {
@@ -223,6 +273,8 @@ mod tests {
     fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {
         let adjustment = || Layer::new("r", Content::RadianceScaling(RadianceScaling::default()));
         assert_eq!(planned(vec![fill("a"), adjustment(), fill("b")]), "-r~[a r0] r*2 b");
+        let clipped = Layer { clip_below: true, ..fill("c") };
+        assert_eq!(planned(vec![clipped, adjustment()]), "-r~[-c r0] r*1", "clipped to nothing, it is not composed");
         assert_eq!(
             planned(vec![fill("a"), group("g", false, vec![fill("b"), adjustment()])]),
             "a g[-r~[b r0] r*2]",
@@ -236,7 +288,7 @@ mod tests {
         let exclusion = Layer { blend: BlendMode::Exclusion, ..fill("e") };
         assert_eq!(planned(vec![fill("a"), exclusion.clone()]), "-e~[a e] e*2");
         assert_eq!(planned(vec![fill("a"), Layer { visible: false, ..exclusion }]), "a -e");
-        let mask = crate::document::LayerMask { kind: MaskKind::Fresnel { f0: 0.1, power: 1.0 }, invert: false };
+        let mask = LayerMask { kind: MaskKind::Fresnel { f0: 0.1, power: 1.0 }, invert: false };
         let masked = Layer { mask: Some(mask), ..group("g", false, vec![fill("b")]) };
         assert_eq!(planned(vec![fill("a"), masked]), "a g[-g~[b] g*1]");
     }

@@ -3,7 +3,7 @@
 
 use super::plan::{Item, Shows};
 use crate::document::kept::Encoded;
-use crate::document::{Content, Layer};
+use crate::document::{Content, Layer, Lock};
 use crate::io::Budget;
 use crate::math::Size;
 use crate::raster::BlendMode;
@@ -62,7 +62,7 @@ fn write_item(item: &Item, pictures: &mut dyn Iterator<Item = &(String, Encoded)
         escaped(&item.name),
         item.opacity
     );
-    if item.locked {
+    if item.lock == Lock::All {
         common += " edit-locked=\"true\"";
     }
     match &item.shows {
@@ -256,7 +256,7 @@ impl<'a> Parser<'a> {
         layer.blend = blend.unwrap_or_default();
         layer.clip_to_surface = false;
         if attributes.get("edit-locked") == Some("true") {
-            layer.lock = crate::document::Lock::All;
+            layer.lock = Lock::All;
         }
         let offset = |name: &str| {
             let value = attributes.get(name).and_then(|v| v.trim().parse::<f64>().ok()).unwrap_or(0.0);

@@ -1,3 +1,5 @@
+mod damage;
+
 use super::sample::{assert_same, everything, png};
 use super::*;
 use crate::document::{Content, Layer, MaskKind};

@@ -32,6 +32,7 @@ use crate::raster::Asset;
 use crate::surface::{Surface, SurfaceError};
 use crate::{Error, Result};
 use pictures::Pictures;
+pub use pictures::Tiles;
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
@@ -75,6 +76,11 @@ pub fn read(text: &[u8], source: Source) -> Result<Document> {
 
 /// Reads a document from JSON that is parsed already.
 pub fn read_value(value: &Value, source: Source) -> Result<Document> {
+    read_with_tiles(value, source, Tiles::new())
+}
+
+/// As [`read_value`], with the pixels of some paint layers known already; they were within the budget.
+pub fn read_with_tiles(value: &Value, source: Source, tiles: Tiles) -> Result<Document> {
     let mut root = Node::root(source.file, value).fields()?;
     check_version(&mut root)?;
     let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
@@ -84,7 +90,7 @@ pub fn read_value(value: &Value, source: Source) -> Result<Document> {
 
     let Shape { size, surface, files } = shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
-    let mut reader = Reader { source, size, layers_left: source.budget.layers, pictures: Pictures::default() };
+    let mut reader = Reader { source, size, layers_left: source.budget.layers, pictures: Pictures::knowing(tiles) };
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
     Ok(Document { size, surface, surface_source, surface_files: Arc::new(files), layers })
 }
@@ -106,6 +112,14 @@ fn canvas(node: &Node, source: Source) -> Result<Size> {
     let (width, height) = (side("width")?, side("height")?);
     fields.finish()?;
     source.budget.size(source.file, width as u64, height as u64)
+}
+
+/// A document put on another object; its canvas stays, the maps are fitted to it.
+pub fn put_onto(document: &Document, file: &Path, onto: Onto, budget: &Budget) -> Result<Document> {
+    let maps::Import { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
+    let surface = fitted(surface, document.size).map_err(|e| Error::unsupported(file, e))?;
+    let surface_source = Some(Arc::new(onto.surface.clone()));
+    Ok(Document { surface: Some(surface), surface_source, surface_files: Arc::new(files), ..document.clone() })
 }
 
 struct Shape {

@@ -13,6 +13,9 @@ use crate::surface::DetailMap;
 use crate::{Error, Result};
 use std::{collections::HashMap, sync::Arc};
 
+/// The pixels of paint layers by file and corner.
+pub type Tiles = HashMap<(String, i32, i32), TileGrid>;
+
 /// What has been decoded in one load, by name.
 #[derive(Default)]
 pub struct Pictures {
@@ -20,7 +23,7 @@ pub struct Pictures {
     /// With each set of adjustments in use, so that layers share the adjusted texture as well.
     sources: HashMap<String, Vec<PictureSource>>,
     coverages: HashMap<String, Arc<Plane<u8>>>,
-    tiles: HashMap<(String, i32, i32), TileGrid>,
+    tiles: Tiles,
     details: Vec<Detail>,
     used_px: u64,
 }
@@ -34,6 +37,9 @@ struct Detail {
 }
 
 impl Pictures {
+    pub fn knowing(tiles: Tiles) -> Self {
+        Self { tiles, ..Self::default() }
+    }
     /// The picture that a field names, with its adjustments.
     pub fn source(&mut self, source: Source, name: &Node, adjust: Adjust) -> Result<PictureSource> {
         let picture = self.picture(source, name)?;

@@ -69,7 +69,11 @@ impl FileAction {
             }
             FileAction::Export { file, background, quality } => {
                 let Some(tab) = session.tab() else { return Ok(()) };
-                export(tab.document(), file, &Options { background: *background, quality: *quality })?;
+                export(
+                    tab.document(),
+                    file,
+                    &Options { background: *background, quality: *quality, ..Options::default() },
+                )?;
             }
             FileAction::Tab { index } => session.current = (*index).min(session.tabs.len().saturating_sub(1)),
             FileAction::Close { index } => session.close_tab(*index),

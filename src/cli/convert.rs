@@ -1,0 +1,157 @@
+//! `rilievo convert`: from any file that can be opened to any that can be written.
+//! Floor 7. What each format can hold is the formats' own knowledge (`io`); what is left behind is told.
+
+use super::{Limits, progress, render};
+use crate::Result;
+use crate::document::{Content, Document, flatten, flatten_deep, flatten_layer};
+use crate::io::export::{Format, Options, Target, deep, layers};
+use crate::io::{Opened, Over, open, psd, save};
+use crate::math::{Rect, srgb::Color};
+use std::path::{Path, PathBuf};
+
+/// Convert between projects, Photoshop files, recipes and pictures
+#[derive(clap::Args)]
+pub struct ConvertArgs {
+    /// What to read: .ora, .psd, .json, or a picture
+    #[arg(value_name = "FROM")]
+    from: PathBuf,
+    /// What to write: .ora, .psd, or a picture (.png, .exr, .jpg, .webp, .tif) of all that is visible
+    #[arg(value_name = "TO")]
+    to: PathBuf,
+    /// Size of the result relative to the canvas
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = render::scale)]
+    scale: f32,
+    /// Only the part of a picture that the surface covers
+    #[arg(long)]
+    crop_to_surface: bool,
+    /// Each layer to a picture of its own, its number and name added to TO; of an .exr: each layer to channels of its own
+    #[arg(long)]
+    layers: bool,
+    /// Bits a channel of a .png or .tif: 8 or 16
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = bits)]
+    bits: u8,
+    /// Dots per inch that a .png says it is printed at
+    #[arg(long, value_name = "N", value_parser = dots_per_inch)]
+    dpi: Option<f32>,
+    /// What shows where a picture is transparent, as #rrggbb
+    #[arg(long, value_name = "COLOUR", value_parser = render::color)]
+    background: Option<Color>,
+    /// Quality of a JPEG, 1 to 100
+    #[arg(long, value_name = "N", default_value_t = Options::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
+    quality: u8,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+fn bits(text: &str) -> std::result::Result<u8, String> {
+    let bits = text.parse().ok().filter(|bits| [8, 16].contains(bits));
+    bits.ok_or_else(|| "a channel has 8 or 16 bits".to_owned())
+}
+
+fn dots_per_inch(text: &str) -> std::result::Result<f32, String> {
+    let dots = text.parse().ok().filter(|dots| (1.0..=100_000.0).contains(dots));
+    dots.ok_or_else(|| "a resolution is a number between 1 and 100000".to_owned())
+}
+
+/// What a name asks for.
+enum Output {
+    Project,
+    Psd,
+    Picture(Format),
+}
+
+impl Output {
+    fn of(file: &Path) -> Result<Self> {
+        let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        Ok(match ending.as_str() {
+            "ora" => Output::Project,
+            "psd" => Output::Psd,
+            _ => Output::Picture(Format::of(file)?),
+        })
+    }
+}
+
+pub fn run(args: &ConvertArgs) -> Result<()> {
+    args.limits.install(|| {
+        let output = Output::of(&args.to)?;
+        let target = Target::new(&args.to, std::slice::from_ref(&args.from))?;
+        let Opened { document, notes, .. } = open(&args.from, &args.limits.budget())?;
+        tell(&args.from, &notes);
+        let document = render::scaled(&args.from, args.scale, &args.limits, document)?;
+        match output {
+            Output::Project => {
+                // Nothing here cancels, so it is always saved.
+                progress::shown(|progress| save(&document, &args.to, Over::Anything, progress)).map(drop)
+            }
+            Output::Psd => {
+                let written = progress::shown(|progress| psd::write(&args.to, &document, progress))?;
+                // As above.
+                let Some(written) = written else { return Ok(()) };
+                tell(&args.to, &written.notes);
+                target.replace(&written.bytes)
+            }
+            Output::Picture(format) => {
+                render::refuse_incomplete(&args.from, &document)?;
+                picture(args, &document, format, &target)
+            }
+        }
+    })
+}
+
+fn picture(args: &ConvertArgs, document: &Document, format: Format, target: &Target) -> Result<()> {
+    let crop = args.crop_to_surface.then(|| covered(document)).flatten();
+    let options = Options { background: args.background, quality: args.quality, dots_per_inch: args.dpi, crop };
+    let is_exr = format == Format::Exr;
+    if args.layers && is_exr {
+        let bytes = progress::shown(|progress| layers::encode(&args.to, document, progress))?;
+        return target.replace(&bytes.unwrap_or_default());
+    }
+    if args.layers {
+        return each_layer(args, document, &options);
+    }
+    if is_exr || args.bits == 16 {
+        let pixels = progress::shown(|progress| flatten_deep(document, progress)).unwrap_or_default();
+        return target.replace(&deep::encode(&args.to, format, &pixels, document.size, &options)?);
+    }
+    let pixels = progress::shown(|progress| flatten(document, progress)).unwrap_or_default();
+    target.write(&pixels, document.size, &options)
+}
+
+/// Every layer with pixels, hidden ones too, beside the name that was asked for: `out-00-sky.png`.
+fn each_layer(args: &ConvertArgs, document: &Document, options: &Options) -> Result<()> {
+    let stem = args.to.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = args.to.extension().unwrap_or_default().to_string_lossy();
+    for (i, (_, layer)) in document.walk().into_iter().enumerate() {
+        if matches!(layer.content, Content::Group(_) | Content::Normals(_) | Content::RadianceScaling(_)) {
+            continue;
+        }
+        let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
+        let name: String = layer.name.chars().take(60).map(plain).collect();
+        let file = args.to.with_file_name(format!("{stem}-{i:02}-{name}.{ending}"));
+        let target = Target::new(&file, std::slice::from_ref(&args.from))?;
+        let pixels = progress::shown(|progress| flatten_layer(document, layer.id, progress)).unwrap_or_default();
+        target.write(&pixels, document.size, options)?;
+    }
+    Ok(())
+}
+
+/// The smallest rectangle that holds the surface; `None` where there is none.
+fn covered(document: &Document) -> Option<Rect> {
+    let coverage = document.surface.as_deref()?.coverage_plane();
+    let mut rect = Rect::EMPTY;
+    for y in 0..document.size.height as usize {
+        let row = coverage.row(y);
+        let is_covered = |c: &u8| *c > 0;
+        if let (Some(first), Some(last)) = (row.iter().position(is_covered), row.iter().rposition(is_covered)) {
+            rect = rect.union(Rect::new(first as i32, y as i32, last as i32 + 1, y as i32 + 1));
+        }
+    }
+    Some(rect)
+}
+
+/// What was not carried over goes to standard error: it is no failure, but it must not pass unseen.
+pub fn tell(file: &Path, notes: &[String]) {
+    for note in notes {
+        eprintln!("rilievo: {}", super::printable(&format!("{}: {note}", file.display())));
+    }
+}

@@ -1,0 +1,81 @@
+//! What `rilievo info` says of documents: their size, their layers, what is not as it was saved.
+//! Floor 7.
+
+use crate::Result;
+use crate::document::{Content, Layer};
+use crate::io::Opened;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// A file that holds a whole document, or should.
+pub struct DocumentFile {
+    pub name: String,
+    pub opened: Result<Opened>,
+}
+
+impl DocumentFile {
+    pub fn json(&self) -> Value {
+        let opened = match &self.opened {
+            Ok(opened) => opened,
+            Err(e) => return json!({ "file": self.name, "error": e.to_string() }),
+        };
+        let layer = |(path, layer): (String, &Arc<Layer>)| {
+            json!({
+                "path": path, "name": layer.name, "kind": kind(layer), "visible": layer.visible,
+                "opacity": f64::from(layer.opacity), "blend": layer.blend.name(),
+            })
+        };
+        let document = &opened.document;
+        json!({
+            "file": self.name,
+            "kind": opened.kind.name(),
+            "width": document.size.width,
+            "height": document.size.height,
+            "surface": document.surface.is_some(),
+            "whole": opened.is_whole,
+            "layers": document.walk().into_iter().map(layer).collect::<Vec<_>>(),
+            "notes": opened.notes,
+        })
+    }
+    pub fn text(&self) -> String {
+        let opened = match &self.opened {
+            Ok(opened) => opened,
+            Err(e) => return format!("{e}\n"),
+        };
+        let document = &opened.document;
+        let surface = if document.surface.is_some() { ", on a surface" } else { "" };
+        let layers = document.walk();
+        let count = layers.len();
+        let plural = if count == 1 { "" } else { "s" };
+        let mut out = format!(
+            "{}: {}, {} pixels, {count} layer{plural}{surface}\n",
+            self.name,
+            opened.kind.name(),
+            document.size
+        );
+        for (path, layer) in layers.into_iter().rev() {
+            let depth = path.matches('.').count();
+            let hidden = if layer.visible { "" } else { ", hidden" };
+            let (blend, percent) = (layer.blend.name(), layer.opacity * 100.0);
+            let indent = "  ".repeat(depth + 1);
+            out += &format!("{indent}“{}”: {}, {blend}, {percent:.0} %{hidden}\n", layer.name, kind(layer));
+        }
+        opened.notes.iter().for_each(|note| out += &format!("  {note}\n"));
+        out
+    }
+}
+
+/// The layer's kind, as documents call it.
+fn kind(layer: &Layer) -> &'static str {
+    match &layer.content {
+        Content::Fill(_) => "fill",
+        Content::Pixels(_) => "pixels",
+        Content::Image(_) => "image",
+        Content::Gradient(_) => "gradient",
+        Content::Strokes(_) => "strokes",
+        Content::Shading(_) => "shading",
+        Content::RadianceScaling(_) => "radiance-scaling",
+        Content::Normals(_) => "normals",
+        Content::Group(_) => "group",
+    }
+}

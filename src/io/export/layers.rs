@@ -1,0 +1,99 @@
+//! A document as a multilayer EXR: one group of channels a layer, and the surface's normals and depth.
+//! Floor 5. Names and conventions are those that compositing programs expect: `LAYER.R`, `normal.X`, `depth.Z`.
+
+use super::deep::light;
+use crate::document::{Content, Document, Progress, flatten, flatten_layer};
+use crate::io::project::Cancellable;
+use crate::math::Size;
+use crate::raster::TileGrid;
+use crate::{Error, Result};
+use exr::prelude::*;
+use std::collections::BTreeSet;
+use std::io::Cursor;
+use std::path::Path;
+
+/// The bytes of the EXR; `None` if cancelled. The whole picture stands in R, G, B and A; colours are linear half floats
+/// multiplied by alpha, each layer with its own opacity and mask; normals and depth are 32 bits.
+pub fn encode(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {
+    let size = document.size;
+    let mut channels = Vec::new();
+    let Some(whole) = flatten(document, progress) else { return Ok(None) };
+    push_picture(&mut channels, "", &whole, size);
+    let mut taken = BTreeSet::from(["normal".to_owned(), "depth".to_owned()]);
+    for (_, layer) in document.walk() {
+        let has_pixels =
+            !matches!(layer.content, Content::Group(_) | Content::Normals(_) | Content::RadianceScaling(_));
+        if layer.visible && has_pixels {
+            let Some(tiles) = flatten_layer(document, layer.id, progress) else { return Ok(None) };
+            push_picture(&mut channels, &format!("{}.", free_name(&layer.name, &mut taken)), &tiles, size);
+        }
+    }
+    if let Some(surface) = document.surface.as_deref() {
+        let pixels = || (0..size.height as usize).flat_map(|y| (0..size.width as usize).map(move |x| (x, y)));
+        for (c, name) in ["normal.X", "normal.Y", "normal.Z"].into_iter().enumerate() {
+            let values = pixels().map(|(x, y)| surface.normal(x, y)[c]).collect();
+            channels.push(AnyChannel::new(name, FlatSamples::F32(values)));
+        }
+        let depth = pixels().map(|(x, y)| surface.depth(x, y)).collect();
+        channels.push(AnyChannel::new("depth.Z", FlatSamples::F32(depth)));
+    }
+    written(size, channels).map(Some).map_err(|e| Error::unsupported(file, e))
+}
+
+fn push_picture(channels: &mut Vec<AnyChannel<FlatSamples>>, prefix: &str, tiles: &TileGrid, size: Size) {
+    let bytes = tiles.to_straight_rgba(size.rect());
+    let premultiplied = |p: &[u8; 4]| {
+        let [r, g, b, a] = p.map(|v| f32::from(v) / 255.0);
+        light(&[r * a, g * a, b * a, a])
+    };
+    let pixels: Vec<[f32; 4]> = bytes.as_chunks().0.iter().map(premultiplied).collect();
+    for (c, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
+        let values = pixels.iter().map(|p| f16::from_f32(p[c])).collect();
+        channels.push(AnyChannel::new(format!("{prefix}{name}").as_str(), FlatSamples::F16(values)));
+    }
+}
+
+/// A name for a group of channels: no dots, which part groups, and none twice.
+fn free_name(name: &str, taken: &mut BTreeSet<String>) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_ ".contains(c) { c } else { '_' };
+    let plain: String = name.chars().take(60).map(plain).collect();
+    let plain = if plain.trim().is_empty() { "layer".to_owned() } else { plain };
+    let numbered = |n: usize| if n == 1 { plain.clone() } else { format!("{plain} {n}") };
+    let free = (1..).map(numbered).find(|name| taken.insert(name.to_lowercase()));
+    free.unwrap_or(plain)
+}
+
+fn written(size: Size, channels: Vec<AnyChannel<FlatSamples>>) -> Result<Vec<u8>, exr::error::Error> {
+    let encoding =
+        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let extent = (size.width as usize, size.height as usize);
+    let layer = Layer::new(extent, LayerAttributes::default(), encoding, AnyChannels::sort(channels.into()));
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Budget, exr::ExrFile, project::sample::everything};
+
+    #[test]
+    fn every_visible_layer_and_the_surface_have_channels() {
+        let document = everything(32);
+        let bytes = encode(Path::new("a.exr"), &document, &Progress::default()).unwrap().unwrap();
+        let budget = Budget::default();
+        let file = ExrFile::open(Path::new("a.exr"), &bytes, &budget).unwrap();
+        let names: Vec<&str> = file.channels().iter().map(|channel| channel.name.as_str()).collect();
+        for name in ["R", "A", "ground.R", "photo.B", "lit.A", "normal.X", "normal.Z", "depth.Z"] {
+            assert!(names.contains(&name), "{name} in {names:?}");
+        }
+        assert!(!names.iter().any(|name| name.starts_with("hidden")));
+    }
+    #[test]
+    fn names_are_told_apart() {
+        let mut taken = BTreeSet::new();
+        let names = ["a.b", "a/b", "", "  "].map(|name| free_name(name, &mut taken));
+        assert_eq!(names, ["a_b", "a_b 2", "layer", "layer 2"]);
+    }
+}

@@ -1,0 +1,216 @@
+//! One channel's values, row by row: plain, run lengths (PackBits), or ZIP with and without prediction.
+//! Floor 5.
+
+use super::cursor::Cursor;
+use std::io::Read;
+use zip::ZipReadOptions;
+use zip::read::read_zipfile_from_stream_with_options;
+
+/// How a channel's values are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    pub width: usize,
+    pub height: usize,
+    /// 8 or 16.
+    pub bits: u16,
+    /// Row lengths take four bytes instead of two.
+    pub large: bool,
+}
+
+impl Shape {
+    fn row_bytes(self) -> usize {
+        self.width * usize::from(self.bits / 8)
+    }
+    fn bytes(self) -> usize {
+        self.row_bytes() * self.height
+    }
+}
+
+/// The 8-bit values of a channel: its compression, then its data. `None` where the data is damaged, or too short to hold
+/// what the shape promises.
+pub fn decode(data: &mut Cursor, shape: Shape) -> Option<Vec<u8>> {
+    let compression = data.u16()?;
+    decode_as(data, shape, compression)
+}
+
+/// As [`decode`], for data whose compression was told before; leaves the cursor behind the channel.
+pub fn decode_as(data: &mut Cursor, shape: Shape, compression: u16) -> Option<Vec<u8>> {
+    match compression {
+        0 => Some(to_bytes(data.take(shape.bytes())?, shape)),
+        1 => {
+            let lengths = row_lengths(data, shape, shape.height)?;
+            unpack_rows(data, shape, &lengths)
+        }
+        2 | 3 => {
+            let mut values = inflate(data.rest(), shape.bytes())?;
+            data.take(data.rest().len())?;
+            if compression == 3 {
+                undo_prediction(&mut values, shape);
+            }
+            Some(to_bytes(&values, shape))
+        }
+        _ => None,
+    }
+}
+
+/// How long each packed row is.
+pub fn row_lengths(data: &mut Cursor, shape: Shape, rows: usize) -> Option<Vec<usize>> {
+    // The table is there before room is made for it.
+    let width = if shape.large { 4 } else { 2 };
+    let mut table = Cursor::new(data.take(rows.checked_mul(width)?)?);
+    (0..rows).map(|_| if shape.large { table.length(false) } else { table.u16().map(usize::from) }).collect()
+}
+
+/// Rows of run lengths.
+pub fn unpack_rows(data: &mut Cursor, shape: Shape, lengths: &[usize]) -> Option<Vec<u8>> {
+    let packed: usize = lengths.iter().sum();
+    // Two bytes hold at most 128.
+    if shape.bytes() / 64 > packed + shape.height {
+        return None;
+    }
+    let mut values = Vec::with_capacity(shape.bytes());
+    for length in lengths {
+        unpack(data.take(*length)?, shape.row_bytes(), &mut values)?;
+    }
+    Some(to_bytes(&values, shape))
+}
+
+/// One row of PackBits; `None` unless it holds exactly `wanted` bytes.
+fn unpack(mut packed: &[u8], wanted: usize, out: &mut Vec<u8>) -> Option<()> {
+    let end = out.len() + wanted;
+    while out.len() < end {
+        let (&head, rest) = packed.split_first()?;
+        match head {
+            0..=127 => {
+                let (plain, rest) = rest.split_at_checked(usize::from(head) + 1)?;
+                out.extend(plain);
+                packed = rest;
+            }
+            128 => packed = rest,
+            _ => {
+                let (&value, rest) = rest.split_first()?;
+                out.resize(out.len() + 257 - usize::from(head), value);
+                packed = rest;
+            }
+        }
+    }
+    (out.len() == end).then_some(())
+}
+
+/// PackBits: runs of three and more as runs, the rest plain.
+pub fn pack(row: &[u8], out: &mut Vec<u8>) {
+    let run_at = |i: usize| row[i..].iter().take(128).take_while(|&&v| v == row[i]).count();
+    let mut i = 0;
+    while i < row.len() {
+        let run = run_at(i);
+        if run >= 3 {
+            out.extend([(257 - run) as u8, row[i]]);
+            i += run;
+            continue;
+        }
+        let start = i;
+        while i < row.len() && i - start < 128 && run_at(i) < 3 {
+            i += 1;
+        }
+        out.push((i - start - 1) as u8);
+        out.extend(&row[start..i]);
+    }
+}
+
+/// Unfolds a zlib stream to exactly `wanted` bytes.
+///
+/// The inflater is the zip reader's, which wants a file header before the data.
+fn inflate(zlib: &[u8], wanted: usize) -> Option<Vec<u8>> {
+    // DEFLATE reaches 1032 : 1.
+    if wanted / 1100 > zlib.len() {
+        return None;
+    }
+    let deflated = zlib.get(2..)?;
+    let length = u32::try_from(deflated.len()).ok()?.to_le_bytes();
+    let mut header = b"PK\x03\x04\x14\0\0\0\x08\0\0\0\0\0\0\0\0\0".to_vec();
+    header.extend(length);
+    header.extend(u32::try_from(wanted).ok()?.to_le_bytes());
+    header.extend([1, 0, 0, 0, b'c']);
+    let mut stream = header.chain(deflated);
+    let options = ZipReadOptions::new().ignore_crc32(true);
+    let entry = read_zipfile_from_stream_with_options(&mut stream, options).ok()??;
+    let mut values = Vec::new();
+    entry.take(wanted as u64).read_to_end(&mut values).ok()?;
+    (values.len() == wanted).then_some(values)
+}
+
+/// Each value was stored as what it differs by from its left neighbour.
+fn undo_prediction(values: &mut [u8], shape: Shape) {
+    for row in values.chunks_exact_mut(shape.row_bytes().max(1)) {
+        if shape.bits == 16 {
+            for i in (2..row.len()).step_by(2) {
+                let value = |at: usize| u16::from_be_bytes([row[at], row[at + 1]]);
+                let sum = value(i).wrapping_add(value(i - 2)).to_be_bytes();
+                row[i..i + 2].copy_from_slice(&sum);
+            }
+        } else {
+            for i in 1..row.len() {
+                row[i] = row[i].wrapping_add(row[i - 1]);
+            }
+        }
+    }
+}
+
+/// 16 bits to 8, rounded.
+fn to_bytes(values: &[u8], shape: Shape) -> Vec<u8> {
+    if shape.bits == 8 {
+        return values.to_vec();
+    }
+    let byte = |v: &[u8; 2]| ((u32::from(u16::from_be_bytes(*v)) + 128) / 257) as u8;
+    values.as_chunks().0.iter().map(byte).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::hash;
+
+    fn shape(width: usize, height: usize, bits: u16) -> Shape {
+        Shape { width, height, bits, large: false }
+    }
+
+    #[test]
+    fn packed_rows_come_back() {
+        for n in 0..300 {
+            for grain in [1, 2, 5, 40] {
+                let row: Vec<u8> = (0..n).map(|i| hash::mix(i / grain) as u8 % 3).collect();
+                let (mut packed, mut back) = (Vec::new(), Vec::new());
+                pack(&row, &mut packed);
+                unpack(&packed, row.len(), &mut back).unwrap();
+                assert_eq!(back, row);
+                assert!(packed.len() <= row.len() + row.len() / 128 + 1);
+            }
+        }
+    }
+    #[test]
+    fn sixteen_bits_with_prediction_come_back_rounded() {
+        let values: [u16; 4] = [0, 257 * 100, 257 * 100 + 129, 65535];
+        let mut bytes: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
+        for i in (2..bytes.len()).step_by(2).rev() {
+            let value = |at: usize| u16::from_be_bytes([bytes[at], bytes[at + 1]]);
+            let difference = value(i).wrapping_sub(value(i - 2)).to_be_bytes();
+            bytes[i..i + 2].copy_from_slice(&difference);
+        }
+        // A zlib stream of one stored block.
+        let mut zlib = vec![0x78, 1, 1, 8, 0, 0xf7, 0xff];
+        zlib.extend(&bytes);
+        let data = [&[0, 3][..], &zlib].concat();
+        let decoded = decode(&mut Cursor::new(&data), shape(4, 1, 16)).unwrap();
+        assert_eq!(decoded, [0, 100, 101, 255]);
+    }
+    #[test]
+    fn damaged_rows_are_refused_before_room_is_made_for_them() {
+        let mut out = Vec::new();
+        assert_eq!(unpack(&[5, 1, 2], 6, &mut out), None);
+        assert_eq!(unpack(&[129, 7], 3, &mut Vec::new()), None, "a run beyond the row");
+        let huge = Shape { width: 300_000, height: 300_000, bits: 8, large: true };
+        for compression in 0..5 {
+            assert_eq!(decode_as(&mut Cursor::new(&[0; 100]), huge, compression), None);
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! A document into records: what Photoshop has words for as such, the rest as pixels, with the document itself beside them.
+//! Floor 5. Laying the records out as bytes is `emit`'s.
+
+use super::{BLENDS, Mask, PASS_THROUGH, Record, Section, emit, signature};
+use crate::document::kept::Encoded;
+use crate::document::{Content, Document, LayerId, LayerMask, Lock, MaskKind, Progress, flatten};
+use crate::io::project::look::{self, Cancellable};
+use crate::io::project::plan::{Item, Shows, Words, plan};
+use crate::io::project::{self, pixels};
+use crate::math::{Rect, Size};
+use crate::raster::BlendMode;
+use crate::{Error, Result};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A side of a file of this kind.
+const LONGEST_PX: u32 = 30_000;
+
+/// A Photoshop file and what other programs see otherwise than here.
+pub struct Written {
+    pub bytes: Vec<u8>,
+    pub notes: Vec<String>,
+}
+
+/// The bytes of a Photoshop file, 8 bits a channel; `None` if cancelled. `file` is for messages.
+pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Written> {
+    if document.size.width.max(document.size.height) > LONGEST_PX {
+        let reason = format!("a Photoshop file has at most {LONGEST_PX} pixels a side, not {}", document.size);
+        return Err(Error::unsupported(file, reason));
+    }
+    let items = plan(document, Words::PHOTOSHOP);
+    let paint = look::paint(file, document)?;
+    let Some(looks) = look::render(file, document, &items, progress)? else { return Ok(None) };
+    let Some(merged) = flatten(document, progress) else { return Ok(None) };
+    let mut lowering = Lowering { size: document.size, looks: looks.into_iter(), ..Lowering::default() };
+    lowering.items(file, &items)?;
+    let Lowering { records, shown, notes, .. } = lowering;
+    let shown: BTreeMap<LayerId, &(String, Encoded)> = shown.iter().map(|(id, picture)| (*id, picture)).collect();
+    let ours = project::documents(file, document, &paint, &shown, signature(&records))?;
+    let ours = project::packed(file, &ours)?;
+    let merged = merged.to_straight_rgba(document.size.rect());
+    Ok(Some(Written { bytes: emit::emit(document.size, &records, &merged, &ours), notes }))
+}
+
+/// Records in the making.
+struct Lowering {
+    size: Size,
+    /// Of the plan's pictures, in their order.
+    looks: std::vec::IntoIter<Encoded>,
+    records: Vec<Record>,
+    /// Which record shows a layer alone, as the manifest names it.
+    shown: Vec<(LayerId, (String, Encoded))>,
+    notes: Vec<String>,
+}
+
+impl Default for Lowering {
+    fn default() -> Self {
+        let looks = Vec::new().into_iter();
+        Self { size: Size::new(1, 1), looks, records: Vec::new(), shown: Vec::new(), notes: Vec::new() }
+    }
+}
+
+impl Lowering {
+    fn items(&mut self, file: &Path, items: &[Item]) -> Result<()> {
+        items.iter().try_for_each(|item| self.item(file, item))
+    }
+    fn item(&mut self, file: &Path, item: &Item) -> Result<()> {
+        if let Shows::Stack { isolated, items } = &item.shows {
+            self.records.push(Record { name: "</Layer group>".into(), section: Section::End, ..blank() });
+            self.items(file, items)?;
+            let blend = if *isolated { key(item.blend) } else { PASS_THROUGH };
+            let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
+            self.records.push(Record { blend, mask, section: Section::Group, ..record(item) });
+            return Ok(());
+        }
+        let damaged = || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
+        let look = self.looks.next().ok_or_else(damaged)?;
+        let rgba = pixels::decoded(look.file.bytes()).ok_or_else(damaged)?;
+        let is_empty = rgba.chunks_exact(4).all(|pixel| pixel[3] == 0);
+        let (x1, y1) = (look.x + look.size.width as i32, look.y + look.size.height as i32);
+        let (rect, rgba) = if is_empty { (Rect::EMPTY, Vec::new()) } else { (Rect::new(look.x, look.y, x1, y1), rgba) };
+        let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
+        match &item.shows {
+            Shows::Layer(layer) | Shows::Nothing(layer) => {
+                if !matches!(layer.content, Content::Pixels(_)) {
+                    self.notes.push(format!("“{}” is live here and pixels for other programs", item.name));
+                }
+                let name = format!("data/{:03}.png", self.records.len());
+                self.shown.push((layer.id, (name, look)));
+            }
+            _ => self.notes.push(format!("“{}” is composed of several layers for other programs", item.name)),
+        }
+        if item.blend == BlendMode::Plus {
+            self.notes.push(format!("“{}”: “plus” is Linear Dodge for other programs", item.name));
+        }
+        self.records.push(Record { rect, rgba, mask, ..record(item) });
+        Ok(())
+    }
+    /// A mask of a picture; derived ones are in the layer's pixels.
+    fn mask(&self, mask: &LayerMask) -> Option<Mask> {
+        let MaskKind::File { coverage, .. } = &mask.kind else { return None };
+        let way = |v: &u8| if mask.invert { 255 - v } else { *v };
+        Some(Mask { rect: self.size.rect(), outside: 0, values: coverage.values().iter().map(way).collect() })
+    }
+}
+
+fn key(blend: BlendMode) -> [u8; 4] {
+    BLENDS.iter().find(|(mode, _)| *mode == blend).map_or(*b"norm", |(_, key)| *key)
+}
+
+fn blank() -> Record {
+    Record {
+        name: String::new(),
+        rect: Rect::EMPTY,
+        blend: *b"norm",
+        opacity: 255,
+        clipped: false,
+        visible: true,
+        lock_alpha: false,
+        lock_all: false,
+        section: Section::Layer,
+        mask: None,
+        rgba: Vec::new(),
+        lost: Vec::new(),
+    }
+}
+
+/// What an item says of itself.
+fn record(item: &Item) -> Record {
+    Record {
+        name: item.name.clone(),
+        blend: key(item.blend),
+        opacity: (item.opacity * 255.0).round() as u8,
+        clipped: item.clipped,
+        visible: item.visible,
+        // Who may change nothing may not change the transparency either.
+        lock_alpha: item.lock != Lock::None,
+        lock_all: item.lock == Lock::All,
+        ..blank()
+    }
+}

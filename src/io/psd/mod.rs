@@ -1,0 +1,109 @@
+//! Photoshop documents, in and out: the format that illustrators exchange (docs/PROJECTS.md says what is carried).
+//! Floor 5. 8- and 16-bit RGB and grey in, PSD and PSB; 8-bit RGB out.
+//!
+//! | file | |
+//! |---|---|
+//! | `cursor` | numbers and sections read from bytes, never beyond their end |
+//! | `channel` | planes of bytes, plain, PackBits or ZIP |
+//! | `parse` | a file into records, as they stand in it |
+//! | `tree` | records into a document |
+//! | `lower` | a document into records |
+//! | `emit` | records into a file |
+//!
+//! Ours hold a private resource with the document itself, so that live layers come back live.
+
+mod channel;
+mod cursor;
+mod emit;
+mod lower;
+mod parse;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+pub use lower::write;
+pub use tree::read;
+
+use crate::math::Rect;
+use crate::raster::BlendMode;
+
+/// What a file begins with.
+pub const MAGIC: [u8; 4] = *b"8BPS";
+/// Image resources.
+const RESOLUTION: u16 = 1005;
+const ICC_PROFILE: u16 = 1039;
+const VERSION_INFO: u16 = 1057;
+/// Of the numbers left to plug-ins, ours: a zip of the document and its files.
+const OURS: u16 = 4711;
+
+/// The keys of blend modes.
+const BLENDS: [(BlendMode, [u8; 4]); 17] = [
+    (BlendMode::Normal, *b"norm"),
+    (BlendMode::Multiply, *b"mul "),
+    (BlendMode::Screen, *b"scrn"),
+    (BlendMode::Overlay, *b"over"),
+    (BlendMode::Darken, *b"dark"),
+    (BlendMode::Lighten, *b"lite"),
+    (BlendMode::ColorDodge, *b"div "),
+    (BlendMode::ColorBurn, *b"idiv"),
+    (BlendMode::HardLight, *b"hLit"),
+    (BlendMode::SoftLight, *b"sLit"),
+    (BlendMode::Difference, *b"diff"),
+    (BlendMode::Exclusion, *b"smud"),
+    (BlendMode::Hue, *b"hue "),
+    (BlendMode::Saturation, *b"sat "),
+    (BlendMode::Color, *b"colr"),
+    (BlendMode::Luminosity, *b"lum "),
+    (BlendMode::Plus, *b"lddg"),
+];
+const PASS_THROUGH: [u8; 4] = *b"pass";
+
+/// A layer as it stands in the file; groups are records too, around those of their layers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    pub name: String,
+    pub rect: Rect,
+    pub blend: [u8; 4],
+    pub opacity: u8,
+    pub clipped: bool,
+    pub visible: bool,
+    pub lock_alpha: bool,
+    pub lock_all: bool,
+    pub section: Section,
+    pub mask: Option<Mask>,
+    /// Straight RGBA of `rect`, row by row.
+    pub rgba: Vec<u8>,
+    /// What the layer has that is not carried.
+    pub lost: Vec<&'static str>,
+}
+
+/// What a record stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    Layer,
+    /// The bottom of a group; its layers follow, then its [`Section::Group`].
+    End,
+    Group,
+}
+
+/// A layer's mask: coverage in its rectangle, and everywhere else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mask {
+    pub rect: Rect,
+    pub outside: u8,
+    pub values: Vec<u8>,
+}
+
+/// What tells whether another program changed the layers: all of them but their pixels.
+fn signature(records: &[Record]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    for r in records {
+        let flags = [r.clipped, r.visible, r.lock_alpha, r.lock_all].map(u8::from);
+        hasher.update(format!("{:?}{:?}{:?}{}{flags:?}{:?}", r.name, r.rect, r.blend, r.opacity, r.section).as_bytes());
+        if let Some(mask) = &r.mask {
+            hasher.update(format!("{:?}{}", mask.rect, mask.outside).as_bytes());
+            hasher.update(&mask.values);
+        }
+    }
+    hasher.finalize()
+}

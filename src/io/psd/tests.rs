@@ -1,0 +1,161 @@
+use super::*;
+use crate::document::{Content, Document, Group, Layer, MaskKind, PixelLayer, Progress, flatten};
+use crate::io::Budget;
+use crate::io::project::Contents;
+use crate::io::project::sample::{assert_same, everything, files, read as read_recipe};
+use crate::math::Size;
+use crate::raster::TileGrid;
+use serde_json::json;
+use std::path::Path;
+use std::sync::Arc;
+
+fn written(document: &Document) -> Vec<u8> {
+    write(Path::new("a.psd"), document, &Progress::default()).unwrap().unwrap().bytes
+}
+fn read_back(bytes: &[u8]) -> Contents {
+    read(Path::new("a.psd"), bytes, &Budget::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+/// The file with our own resource under a number that nobody knows, as a program leaves it that does.
+fn without_ours(bytes: &[u8]) -> Vec<u8> {
+    let mark = [&b"8BIM"[..], &OURS.to_be_bytes()].concat();
+    let at = bytes.windows(6).position(|w| w == mark).unwrap();
+    let mut other = bytes.to_vec();
+    other[at + 4..at + 6].copy_from_slice(&4999u16.to_be_bytes());
+    other
+}
+fn worst(a: &Document, b: &Document) -> u8 {
+    let picture = |d: &Document| flatten(d, &Progress::default()).unwrap();
+    let (x, y) = (picture(a), picture(b));
+    let pixels = (0..a.size.height as i32).flat_map(|row| (0..a.size.width as i32).map(move |col| (col, row)));
+    pixels
+        .flat_map(|(col, row)| (0..4).map(move |c| (col, row, c)))
+        .map(|(col, row, c)| x.pixel(col, row)[c].abs_diff(y.pixel(col, row)[c]))
+        .max()
+        .unwrap_or(0)
+}
+
+#[test]
+fn our_own_file_comes_back_live_in_every_parameter_and_pixel() {
+    let document = everything(64);
+    let back = read_back(&written(&document));
+    assert_eq!(back.notes, [""; 0]);
+    assert!(back.is_whole);
+    assert_same(&document, &back.document);
+}
+#[test]
+fn the_same_document_gives_the_same_bytes() {
+    assert!(written(&everything(48)) == written(&everything(48)));
+}
+#[test]
+fn other_programs_see_the_same_picture() {
+    let document = everything(64);
+    let seen = read_back(&without_ours(&written(&document)));
+    assert!(worst(&document, &seen.document) <= 3, "{}", worst(&document, &seen.document));
+}
+#[test]
+fn layers_groups_masks_clipping_locks_and_names_are_carried() {
+    let document = read_recipe(
+        &json!({ "canvas": { "width": 40, "height": 30 }, "layers": [
+            { "name": "grund “ü” 絵", "kind": "pixels", "file": "paint.png", "x": -11, "y": 22, "lock": "alpha" },
+            { "name": "clip", "kind": "pixels", "file": "photo.png", "x": 3, "y": 9, "clip_below": true, "blend": "soft-light" },
+            { "name": "g", "kind": "group", "opacity": 0.5, "blend": "multiply", "visible": false, "layers": [
+                { "name": "inner", "kind": "pixels", "file": "photo.png", "x": 100, "y": 100, "lock": "all" } ] },
+            { "name": "through", "kind": "group", "pass_through": true, "layers": [] } ] }),
+        &files(40),
+    );
+    let masked = document.with_layer(document.layers[0].id, |layer| {
+        let coverage = crate::raster::Plane::from_fn(Size::new(40, 30), |x, y| (x * 5 + y) as u8);
+        let kind = MaskKind::File { file: String::new(), coverage: Arc::new(coverage) };
+        layer.mask = Some(crate::document::LayerMask { kind, invert: false });
+    });
+    let document = masked.unwrap();
+    let back = read_back(&without_ours(&written(&document))).document;
+    let names =
+        |d: &Document| d.walk().iter().map(|(path, layer)| format!("{path} {}", layer.name)).collect::<Vec<_>>();
+    assert_eq!(names(&document), names(&back));
+    for ((_, a), (_, b)) in document.walk().iter().zip(back.walk()) {
+        assert_eq!(
+            (a.visible, a.clip_below, a.lock, a.blend),
+            (b.visible, b.clip_below, b.lock, b.blend),
+            "{}",
+            a.name
+        );
+        assert!((a.opacity - b.opacity).abs() < 0.003);
+        match (&a.content, &b.content) {
+            (Content::Pixels(a), Content::Pixels(b)) => {
+                let rect = a.tiles.bounds().union(b.tiles.bounds());
+                assert!(
+                    a.tiles.to_straight_rgba(rect) == b.tiles.to_straight_rgba(rect),
+                    "pixels beyond the canvas too"
+                );
+            }
+            (Content::Group(a), Content::Group(b)) => assert_eq!(a.pass_through, b.pass_through),
+            _ => panic!("another kind"),
+        }
+    }
+    let coverage = |d: &Document| match &d.layers[0].mask.as_ref().unwrap().kind {
+        MaskKind::File { coverage, .. } => coverage.values().to_vec(),
+        _ => panic!("a picture"),
+    };
+    assert_eq!(coverage(&document), coverage(&back));
+}
+#[test]
+fn every_blend_mode_is_carried() {
+    for (blend, name) in BlendMode::ALL {
+        let tiles = TileGrid::from_straight_rgba(&[90; 4 * 4], 2, 2, 0, 0);
+        let content = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+        let layer = Layer { blend, ..Layer::new(name, content) };
+        let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(Size::new(2, 2)) };
+        assert_eq!(read_back(&without_ours(&written(&document))).document.layers[0].blend, blend, "{name}");
+    }
+}
+#[test]
+fn layers_that_another_program_changed_are_believed() {
+    let document = everything(48);
+    let bytes = written(&document);
+    // A layer's opacity, in its record: behind its blend mode.
+    let at = bytes.windows(8).position(|w| w == b"8BIMhLit").unwrap();
+    let mut other = bytes.clone();
+    other[at + 8] = 10;
+    let back = read_back(&other);
+    assert!(back.notes[0].contains("changed by another program"), "{:?}", back.notes);
+    assert!((back.document.layer_named("last").unwrap().opacity - 10.0 / 255.0).abs() < 1e-6);
+}
+#[test]
+fn broken_files_get_a_sentence_or_what_is_left() {
+    let bytes = written(&everything(32));
+    for end in (0..bytes.len()).step_by(499) {
+        if let Ok(back) = read(Path::new("a.psd"), &bytes[..end], &Budget::default()) {
+            assert!(!back.is_whole || back.document.walk().len() > 5, "cut at {end}");
+        }
+    }
+    let mut huge = bytes.clone();
+    huge[14..22].copy_from_slice(&[0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60]);
+    let said = read(Path::new("a.psd"), &huge, &Budget::default()).err().unwrap().to_string();
+    assert!(said.contains("60000"), "{said}");
+    let mut cmyk = bytes;
+    cmyk[25] = 4;
+    assert!(read(Path::new("a.psd"), &cmyk, &Budget::default()).err().unwrap().to_string().contains("CMYK"));
+}
+#[test]
+fn groups_that_are_never_closed_or_never_opened_lose_no_layer() {
+    let group = |layers: Vec<Layer>| {
+        let layers = layers.into_iter().map(Arc::new).collect();
+        Layer::new("g", Content::Group(Group { layers, pass_through: false }))
+    };
+    let pixels = || {
+        let tiles = TileGrid::from_straight_rgba(&[255; 4], 1, 1, 0, 0);
+        Layer::new("p", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }))
+    };
+    let layers = vec![Arc::new(group(vec![pixels(), pixels()])), Arc::new(pixels())];
+    let bytes = without_ours(&written(&Document { layers, ..Document::empty(Size::new(4, 4)) }));
+    for kind in [1u32, 3] {
+        let mark = [&b"8BIMlsct\0\0\0\x0c"[..], &kind.to_be_bytes()].concat();
+        let at = bytes.windows(mark.len()).position(|w| w == mark).unwrap();
+        let mut broken = bytes.clone();
+        // No divider at all: a plain layer.
+        broken[at + mark.len() - 1] = 0;
+        let back = read_back(&broken).document;
+        assert_eq!(back.walk().iter().filter(|(_, layer)| layer.name == "p").count(), 3);
+    }
+}

@@ -1,0 +1,183 @@
+//! A Photoshop file's records into a document: ours as it was written, others' as far as both programs agree.
+//! Floor 5. Parsing is `parse`'s.
+
+use super::parse::{Parsed, parse};
+use super::{BLENDS, Mask, PASS_THROUGH, Record, Section, signature};
+use crate::document::{Content, Document, Group, Layer, LayerMask, Lock, MaskKind, PixelLayer};
+use crate::io::project::archive::Archive;
+use crate::io::project::manifest::Manifest;
+use crate::io::project::packer::Packer;
+use crate::io::project::{self, Contents, pixels};
+use crate::io::{Budget, picture};
+use crate::math::Size;
+use crate::raster::{BlendMode, Plane, TileGrid};
+use crate::{Error, Result};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads a Photoshop file; what was not carried over stands in the notes.
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
+    let mut parsed = parse(file, bytes, budget)?;
+    let damage = std::mem::take(&mut parsed.damage);
+    let mut notes = damage.clone();
+    if let Some(ours) = parsed.ours {
+        match restored(file, ours, &parsed.records, budget) {
+            Ok(Some(contents)) => {
+                notes.extend(contents.notes);
+                return Ok(Contents { is_whole: contents.is_whole && damage.is_empty(), notes, ..contents });
+            }
+            Ok(None) => notes.push("the layers were changed by another program: live layers became pixels".into()),
+            Err(error) => notes.push(format!("live layers became pixels: {error}")),
+        }
+    }
+    if parsed.is_deep {
+        notes.push("its 16 bits a channel became 8".into());
+    }
+    let records = layers_of(&mut parsed);
+    let mut builder = Builder { size: parsed.size, open: vec![Vec::new()], notes };
+    records.into_iter().for_each(|record| builder.add(record));
+    let (layers, notes) = builder.done();
+    let document = Document { layers, ..Document::empty(parsed.size) };
+    Ok(Contents { document, notes, is_whole: damage.is_empty() })
+}
+
+/// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are others.
+fn restored(file: &Path, ours: &[u8], records: &[Record], budget: &Budget) -> Result<Option<Contents>> {
+    let archive = Archive::open(file, ours, budget)?;
+    let damaged = |e: zip::result::ZipError| Error::decode(file, format!("our part of the file is damaged ({e})"));
+    let text = archive.bytes(project::MANIFEST, budget.json_bytes)?;
+    let manifest = serde_json::from_slice(&text).ok().as_ref().and_then(Manifest::read);
+    let manifest = manifest.ok_or_else(|| Error::decode(file, "our part of the file is damaged"))?;
+    if manifest.stack != signature(records) {
+        return Ok(None);
+    }
+    let mut packer = Packer::default();
+    for name in archive.names() {
+        packer.store(name, &archive.bytes(name, budget.file_bytes)?).map_err(damaged)?;
+    }
+    for shown in &manifest.pictures {
+        let number = shown.name.strip_prefix("data/").and_then(|name| name.strip_suffix(".png"));
+        let record = number.and_then(|n| n.parse::<usize>().ok()).and_then(|n| records.get(n));
+        let Some(record) = record else { continue };
+        packer.store(&shown.name, png(file, record)?.bytes()).map_err(damaged)?;
+    }
+    project::read(file, &packer.finish().map_err(damaged)?, budget).map(Some)
+}
+
+/// A record's pixels as a project would store them.
+fn png(file: &Path, record: &Record) -> Result<crate::raster::Asset> {
+    if record.rect.is_empty() {
+        return pixels::encode_texels(file, &[[0; 4]], Size::new(1, 1));
+    }
+    let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
+    pixels::encode_texels(file, record.rgba.as_chunks().0, size)
+}
+
+/// The records, in the colours of this program; of a file without layers its picture.
+fn layers_of(parsed: &mut Parsed) -> Vec<Record> {
+    let mut records = std::mem::take(&mut parsed.records);
+    if let (true, Some(rgba)) = (records.is_empty(), parsed.merged.take()) {
+        records.push(Record {
+            name: "Background".into(),
+            rect: parsed.size.rect(),
+            blend: *b"norm",
+            opacity: 255,
+            clipped: false,
+            visible: true,
+            lock_alpha: false,
+            lock_all: false,
+            section: Section::Layer,
+            mask: None,
+            rgba,
+            lost: Vec::new(),
+        });
+    }
+    if let Some(icc) = parsed.icc.filter(|icc| !picture::is_own_srgb(icc)) {
+        for record in records.iter_mut().filter(|record| !record.rgba.is_empty()) {
+            let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
+            record.rgba = picture::to_srgb(size, std::mem::take(&mut record.rgba), icc);
+        }
+    }
+    records
+}
+
+/// Layers gathered bottom first, each open group a list of its own.
+struct Builder {
+    size: Size,
+    open: Vec<Vec<Arc<Layer>>>,
+    notes: Vec<String>,
+}
+
+impl Builder {
+    fn add(&mut self, record: Record) {
+        for what in &record.lost {
+            self.notes.push(format!("“{}”: {what}", record.name));
+        }
+        let layer = match record.section {
+            Section::End => return self.open.push(Vec::new()),
+            Section::Group => {
+                // Without a beginning, a group holds nothing.
+                let layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
+                let group = Group { layers, pass_through: record.blend == PASS_THROUGH };
+                self.layer(record, Content::Group(group))
+            }
+            Section::Layer => {
+                let (w, h) = (record.rect.width(), record.rect.height());
+                let (x, y) = (record.rect.x0, record.rect.y0);
+                let tiles = match record.rect.is_empty() {
+                    true => TileGrid::default(),
+                    false => TileGrid::from_straight_rgba(&record.rgba, w, h, x, y),
+                };
+                self.layer(record, Content::Pixels(PixelLayer { file: String::new(), x, y, tiles }))
+            }
+        };
+        if let Some(list) = self.open.last_mut() {
+            list.push(Arc::new(layer));
+        }
+    }
+    fn layer(&mut self, record: Record, content: Content) -> Layer {
+        let known = BLENDS.iter().find(|(_, key)| *key == record.blend).map(|(mode, _)| *mode);
+        if known.is_none() && record.blend != PASS_THROUGH {
+            let key = String::from_utf8_lossy(&record.blend).into_owned();
+            let reason =
+                format!("“{}” is blended by “{}” elsewhere; here it is blended normally", record.name, key.trim());
+            self.notes.push(reason);
+        }
+        Layer {
+            visible: record.visible,
+            opacity: f32::from(record.opacity) / 255.0,
+            blend: known.unwrap_or(BlendMode::Normal),
+            clip_below: record.clipped,
+            lock: match (record.lock_all, record.lock_alpha) {
+                (true, _) => Lock::All,
+                (false, true) => Lock::Alpha,
+                (false, false) => Lock::None,
+            },
+            mask: record.mask.as_ref().map(|mask| self.mask(mask)),
+            clip_to_surface: false,
+            ..Layer::new(record.name, content)
+        }
+    }
+    fn mask(&self, mask: &Mask) -> LayerMask {
+        let rect = mask.rect;
+        let value = |x: i32, y: i32| {
+            let at = (y - rect.y0) as usize * rect.width() + (x - rect.x0) as usize;
+            mask.values.get(at).copied().unwrap_or(mask.outside)
+        };
+        let coverage = Plane::from_fn(self.size, |x, y| {
+            let (x, y) = (x as i32, y as i32);
+            if rect.contains(x, y) { value(x, y) } else { mask.outside }
+        });
+        LayerMask { kind: MaskKind::File { file: String::new(), coverage: Arc::new(coverage) }, invert: false }
+    }
+    /// Groups that were never closed end with the file.
+    fn done(mut self) -> (Vec<Arc<Layer>>, Vec<String>) {
+        while self.open.len() > 1 {
+            let layers = self.open.pop().unwrap_or_default();
+            if let Some(list) = self.open.last_mut() {
+                list.extend(layers);
+            }
+        }
+        (self.open.pop().unwrap_or_default(), self.notes)
+    }
+}
