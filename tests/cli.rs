@@ -248,14 +248,22 @@ fn a_misuse_of_the_command_line_has_its_own_exit_code() {
     ] {
         assert_eq!(rilievo(args).output().unwrap().status.code(), Some(2), "{args:?}");
     }
-    for args in [&[][..], &["--help"], &["--version"], &["render", "--help"]] {
+    for args in [&["--help"][..], &["--version"], &["render", "--help"]] {
         assert_eq!(rilievo(args).output().unwrap().status.code(), Some(0), "{args:?}");
     }
 }
 
+/// With a window it would open one.
+#[cfg(not(feature = "gui"))]
+#[test]
+fn without_words_the_help_is_shown() {
+    assert_eq!(rilievo(&[]).output().unwrap().status.code(), Some(0));
+}
+
 #[test]
 fn a_closed_pipe_is_no_failure() {
-    let mut child = rilievo(&[]).stdout(std::process::Stdio::piped()).spawn().unwrap();
+    let map = concat!(env!("CARGO_MANIFEST_DIR"), "/sample_normals/medal/normal.png");
+    let mut child = rilievo(&["info", map]).stdout(std::process::Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     assert!(child.wait().unwrap().success());
 }
