@@ -123,7 +123,7 @@ pub fn is_own_srgb(icc: &[u8]) -> bool {
     ColorProfile::new_srgb().encode().is_ok_and(|own| own == icc)
 }
 
-/// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where [`through_profile`] finds nothing to do.
+/// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where `through_profile` finds nothing to do.
 pub fn to_srgb(size: Size, rgba: Vec<u8>, icc: &[u8]) -> Vec<u8> {
     let Some(image) = image::RgbaImage::from_raw(size.width, size.height, rgba) else { return Vec::new() };
     let image = DynamicImage::ImageRgba8(image);
