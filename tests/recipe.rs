@@ -132,7 +132,7 @@ fn strokes_read_their_samples_brush_and_preset() {
     assert_eq!(strokes[1].brush().size, 33.0);
     assert!(matches!(strokes[1].operator(), Operator::Normal { .. }), "the preset's own operator");
     assert!(matches!(strokes[2].brush().tip, Tip::Picture(_)));
-    assert_eq!(strokes[2].brush().dynamics.size.pressure, 1.0);
+    assert_eq!(strokes[2].brush().dynamics.pressure_share(rilievo::paint::Property::Size), 1.0);
     assert_eq!(strokes[2].operator(), Operator::Depth { gamma: 1.0 });
 }
 

@@ -1,7 +1,9 @@
 //! A brush: the footprint of one dab and how dabs follow each other.
-//! Floor 3.
+//! Floor 3. Not here: how the hand and the surface drive it (`dynamics`), the dabs themselves (`laying`).
 
+use super::dynamics::Dynamics;
 use super::image::PictureSource;
+use crate::raster::BlendMode;
 
 /// The settings of a brush. Lengths are canvas px, ratios plain numbers.
 #[derive(Clone)]
@@ -20,8 +22,42 @@ pub struct Brush {
     pub rotation: f32,
     /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
     pub softness: f32,
+    /// How far a dab may stand from the stroke, a ratio of its diameter, `[0, 10]`.
+    pub scatter: f32,
+    pub jitter: Jitter,
+    /// How the stroke meets what is beneath it in its layer.
+    pub blend: BlendMode,
+    /// The stroke takes paint away from its layer instead of adding it.
+    pub erases: bool,
+    /// The stroke shows only where its layer is painted already, whose coverage stays.
+    pub keeps_alpha: bool,
     pub tip: Tip,
+    /// What calmed the hand. The samples of a stroke are calm already: painting them again does not ask for it.
+    pub stabilizer: Stabilizer,
     pub dynamics: Dynamics,
+    /// Whatever is random about a stroke follows from it: the same seed and samples paint the same pixels.
+    pub seed: u32,
+}
+
+/// How far a dab's colour may be from the stroke's, either way; each dab at random.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Jitter {
+    /// `[0, 180]`.
+    pub hue_degrees: f32,
+    /// `[0, 1]`, of the colour's saturation and value (HSV).
+    pub saturation: f32,
+    pub value: f32,
+}
+
+/// How the tool calms the pen before it becomes a stroke.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Stabilizer {
+    #[default]
+    None,
+    /// The line trails the pen as a running average; `weight` in `[0, 1)`, the share of the past after ten pixels.
+    Average { weight: f32 },
+    /// The pen pulls the line along on a string, px: wiggles shorter than it do not show.
+    String { length_px: f32 },
 }
 
 /// What a dab looks like before it is bent.
@@ -31,34 +67,6 @@ pub enum Tip {
     /// A picture whose longer side is the diameter. Opaque and grey throughout, it is coverage, white covering wholly;
     /// any other is a stamp in its own colours.
     Picture(PictureSource),
-}
-
-/// How the pen drives a dab: one row a property.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dynamics {
-    pub size: Drive,
-    pub flow: Drive,
-}
-
-/// How one property follows the pen.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Drive {
-    /// Share of the value that pressure scales, `[0, 1]`: 0 ignores the pen, 1 vanishes with it.
-    pub pressure: f32,
-}
-
-impl Drive {
-    /// The factor of the property at a pressure in `[0, 1]`.
-    pub fn factor(self, pressure: f32) -> f32 {
-        1.0 - self.pressure * (1.0 - pressure)
-    }
-}
-
-impl Default for Dynamics {
-    /// A lighter hand paints fainter, not thinner.
-    fn default() -> Self {
-        Self { size: Drive { pressure: 0.0 }, flow: Drive { pressure: 1.0 } }
-    }
 }
 
 impl Default for Brush {
@@ -71,8 +79,15 @@ impl Default for Brush {
             spacing: 0.1,
             rotation: 0.0,
             softness: 0.0,
+            scatter: 0.0,
+            jitter: Jitter::default(),
+            blend: BlendMode::Normal,
+            erases: false,
+            keeps_alpha: false,
             tip: Tip::Round,
+            stabilizer: Stabilizer::None,
             dynamics: Dynamics::default(),
+            seed: 0,
         }
     }
 }

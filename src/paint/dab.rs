@@ -1,19 +1,19 @@
 //! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch.
-//! Floor 3. Not here: where dabs stand (`path`), the tips (`profile`, `stamp`), how dabs add up to a stroke (`stroke`).
+//! Floor 3. Not here: where dabs stand (`laying`), the tips (`profile`, `stamp`), how dabs add up to a stroke (`stroke`).
 
 use super::image::transform;
+use super::laying::Dab;
 use super::patches::Patches;
-use super::path::Dab;
 use super::profile::RoundProfile;
 use super::scene::Scene;
 use super::stamp::Stamp;
-use super::wash::Wash;
-use crate::math::{Rect, Vec2};
+use super::wash::{DabPaint, Wash};
+use crate::math::{Rect, Vec2, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::reach::{BLOCK, Extent, Reach, TileBlocks};
-use crate::surface::{Operator, Surface, links};
+use crate::surface::{Surface, links};
 
 /// One dab on the canvas it is painted on.
 pub struct PlacedDab<'s> {
@@ -39,6 +39,8 @@ pub fn round_extent(dab: &Dab) -> Extent {
 pub struct DabScratch {
     deformed: DeformedRect,
     stamping: Stamping,
+    /// Coverage of a row, for washes of colours.
+    covered: Vec<f32>,
 }
 
 /// What reading a picture tip takes.
@@ -52,48 +54,65 @@ struct Stamping {
 
 impl<'s> PlacedDab<'s> {
     /// `extent`: of the tip's footprint.
-    pub fn new(dab: Dab, operator: Operator, scene: &'s Scene, extent: Extent) -> Self {
+    pub fn new(dab: Dab, scene: &'s Scene, extent: Extent) -> Self {
         let surface = scene.surface.as_deref();
-        let deformation = Deformation::of_dab(surface, scene.size, operator, dab.at);
+        let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at);
         let bent_over = surface.filter(|_| !deformation.is_identity());
-        let reach = Reach::new(surface, scene.size, operator, dab.at, extent);
+        let reach = Reach::new(surface, scene.size, dab.operator, dab.at, extent);
         Self { dab, scene, deformation, bent_over, reach }
     }
     pub fn reach(&self) -> &Reach<'s> {
         &self.reach
     }
-    /// Adds a round tip to a tile, row by row: a ← a + f (1 − a), f = flow · F.
+    /// What it brings of the stroke's colours; `None`: a stamp's own.
+    fn paint(&self, color: Option<Color>) -> DabPaint {
+        DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
+    }
+    /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling c.
     pub fn add_round(&self, at: TileAt, wash: &mut Wash, scratch: &mut DabScratch) {
         let blocks = self.reach.blocks(at);
         let area = touched(&blocks, at).intersect(self.scene.size.rect());
-        let tip = RoundTip::new(&self.dab);
+        let mut tip = RoundTip::new(&self.dab);
+        let DabScratch { deformed, covered, .. } = scratch;
         let field = self.bent_over.map(|surface| {
-            self.deformation.fill(area.grown(1), &mut scratch.deformed);
-            Field { surface, rect: area.grown(1), d: &scratch.deformed }
+            self.deformation.fill(area.grown(1), deformed);
+            Field { surface, rect: area.grown(1), d: deformed }
         });
-        for span in spans(&blocks, at, area) {
-            let out = wash.coverage(span.start_in(at), span.n);
-            match &field {
-                Some(field) => bent_row(field.around(span), &tip, out),
-                None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, out),
+        let add = |span: Span, tip: &RoundTip, out: &mut [f32]| match &field {
+            Some(field) => bent_row(field.around(span), tip, out),
+            None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, out),
+        };
+        if wash.is_one_color() {
+            for span in spans(&blocks, at, area) {
+                add(span, &tip, wash.coverage(span.start_in(at), span.n));
             }
+            return;
+        }
+        // The ceiling is the wash's to keep, which knows the coverage.
+        tip.ceiling = 1.0;
+        for span in spans(&blocks, at, area) {
+            covered.clear();
+            covered.resize(span.n, 0.0);
+            add(span, &tip, covered);
+            wash.cover(span.start_in(at), covered, DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) });
         }
     }
     /// Adds a picture tip to a tile: its mean over the patch of the image plane under each pixel.
     pub fn add_stamp(&self, stamp: &Stamp, at: TileAt, wash: &mut Wash, scratch: &mut DabScratch) {
         let blocks = self.reach.blocks(at);
         let area = touched(&blocks, at).intersect(self.scene.size.rect());
-        let DabScratch { deformed, stamping: Stamping { patches, antialias, row } } = scratch;
+        let DabScratch { deformed, stamping: Stamping { patches, antialias, row }, .. } = scratch;
         let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
         self.deformation.fill(area.grown(1), deformed);
         transform(texels_from_canvas, &mut deformed.x, &mut deformed.y);
         let antialias = antialias.get_or_insert_default();
         row.resize(area.width(), [0; 4]);
+        let paint = self.paint((!stamp.is_colored).then_some(self.dab.color));
         for span in spans(&blocks, at, area) {
             let patches = patches.row(self.scene, area, span.y, deformed, texels_from_canvas);
             antialias.row(stamp.texture(), patches, Outside::None, row);
             let from = (span.x - area.x0) as usize;
-            wash.stamp(span.start_in(at), &row[from..from + span.n], self.dab.flow);
+            wash.stamp(span.start_in(at), &row[from..from + span.n], paint);
         }
     }
 }
@@ -172,12 +191,13 @@ struct RoundTip {
     per_radius: f32,
     profile: RoundProfile,
     flow: f32,
+    ceiling: f32,
 }
 
 impl RoundTip {
     fn new(dab: &Dab) -> Self {
         let profile = RoundProfile::new(dab.hardness, dab.softness);
-        Self { at: dab.at, per_radius: 1.0 / dab.radius, profile, flow: dab.flow }
+        Self { at: dab.at, per_radius: 1.0 / dab.radius, profile, flow: dab.flow, ceiling: dab.ceiling }
     }
     /// Adds the coverage of one pixel.
     ///
@@ -191,7 +211,8 @@ impl RoundTip {
         // Comparisons turn NaN into nothing, and rounding must not leave the range.
         let f = if f > 0.0 { f } else { 0.0 };
         let f = if f < 1.0 { f } else { 1.0 };
-        *coverage += f * (1.0 - *coverage);
+        let room = self.ceiling - *coverage;
+        *coverage += f * if room > 0.0 { room } else { 0.0 };
     }
     /// Adds a pixel at (x, y) from the centre in the image plane, J's columns `across` and `along`.
     ///

@@ -3,20 +3,24 @@
 
 pub mod adjust;
 pub mod brush;
+mod curve;
 mod dab;
+pub mod dynamics;
 pub mod gradient;
 pub mod image;
+mod laying;
 mod patches;
-mod path;
 mod profile;
 mod ramp;
 pub mod scene;
 mod stamp;
 pub mod stroke;
+mod tint;
 mod wash;
 
 pub use adjust::Adjust;
-pub use brush::{Brush, Drive, Dynamics, Tip};
+pub use brush::{Brush, Jitter, Stabilizer, Tip};
+pub use dynamics::{Curve, Drive, Dynamics, Input, Property, Readings};
 pub use gradient::{Gradient, Stop};
 pub use image::{PictureSource, PlacedImage, Placement};
 pub use scene::{Filter, Scene};

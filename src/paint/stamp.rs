@@ -2,7 +2,7 @@
 //! Floor 3. Not here: where a stamp lands (`dab`), reading pictures under a deformation (`raster::sampler`).
 
 use super::image::PictureSource;
-use super::path::Dab;
+use super::laying::Dab;
 use crate::math::{Affine2, Size, Vec2};
 use crate::raster::texture::Level;
 use crate::raster::{Picture, Texture, blur};
@@ -130,7 +130,7 @@ mod tests {
         PictureSource::new("tip.png".into(), Picture::srgb8(size, texels.collect()).unwrap(), Adjust::default())
     }
     fn dab(radius: f32, rotation_rad: f32) -> Dab {
-        Dab { at: vec2(50.0, 60.0), radius, rotation_rad, hardness: 1.0, softness: 0.0, flow: 1.0 }
+        Dab { rotation_rad, ..Dab::plain(vec2(50.0, 60.0), radius) }
     }
 
     #[test]

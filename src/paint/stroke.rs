@@ -1,12 +1,13 @@
 //! The brush tool: a stroke is a list of dabs, each a footprint bent around its own centre (SF sec. 5.2, fig. 7).
-//! Floor 3. Not here: dabs from samples (`path`), one dab on a tile (`dab`).
+//! Floor 3. Not here: dabs from samples (`laying`), one dab on a tile (`dab`).
 
 use super::brush::{Brush, Tip};
 use super::dab::{DabScratch, PlacedDab, round_extent};
-use super::path::{self, Dab};
+use super::laying::{self, Dab};
 use super::scene::Scene;
 use super::stamp::{Stamp, Stamps};
-use super::wash::Wash;
+use super::tint;
+use super::wash::{Manner, Wash};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
@@ -104,12 +105,12 @@ impl LaidTip {
             Tip::Picture(source) => Self::Stamp(Stamps::of(source, brush.softness.max(0.0).min(1.0))),
         }
     }
-    fn place<'s>(&self, dab: Dab, operator: Operator, scene: &'s Scene) -> PlacedDab<'s> {
+    fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         let extent = match self {
             Self::Round => round_extent(&dab),
             Self::Stamp(stamp) => stamp.extent(&dab),
         };
-        PlacedDab::new(dab, operator, scene, extent)
+        PlacedDab::new(dab, scene, extent)
     }
     fn brings_colors(&self) -> bool {
         matches!(self, Self::Stamp(stamp) if stamp.is_colored)
@@ -124,10 +125,10 @@ const MAX_RUNS: usize = 1024;
 impl Laid {
     fn new(stroke: &Stroke, scene: &Scene) -> Self {
         let tip = LaidTip::of(&stroke.brush);
-        let dabs = path::dabs(&stroke.brush, &stroke.samples);
+        let dabs = laying::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
         let mut tiles: HashMap<TileAt, Vec<Range<u32>>> = HashMap::new();
         for (i, dab) in (0..).zip(&dabs) {
-            tip.place(*dab, stroke.operator, scene).reach().for_each_tile(|at| {
+            tip.place(*dab, scene).reach().for_each_tile(|at| {
                 let runs = tiles.entry(at).or_default();
                 let is_full = runs.len() >= MAX_RUNS;
                 match runs.last_mut() {
@@ -149,15 +150,18 @@ impl Stroke {
     /// Paints the stroke over a tile in flight. Flow is per dab; opacity caps the whole.
     fn paint(&self, scene: &Scene, at: TileAt, pixels: &mut PlanarTile, scratch: &mut DabScratch) {
         let laid = self.laid(scene);
-        let mut wash = if laid.tip.brings_colors() { Wash::colors() } else { Wash::one_color() };
+        let brings_colors = laid.tip.brings_colors() || tint::varies(&self.brush);
+        let mut wash = if brings_colors { Wash::colors() } else { Wash::one_color() };
         for dab in laid.on_tile(at) {
-            let placed = laid.tip.place(*dab, self.operator, scene);
+            let placed = laid.tip.place(*dab, scene);
             match &laid.tip {
                 LaidTip::Round => placed.add_round(at, &mut wash, scratch),
                 LaidTip::Stamp(stamp) => placed.add_stamp(stamp, at, &mut wash, scratch),
             }
         }
-        wash.lay_over(pixels, self.color, self.brush.opacity.max(0.0).min(1.0));
+        let Brush { opacity, blend, erases, keeps_alpha, .. } = self.brush;
+        let opacity = opacity.max(0.0).min(1.0);
+        wash.lay_over(pixels, Manner { color: self.color, opacity, mode: blend, erases, keeps_alpha });
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::math::srgb::Color;
 use crate::raster::planar::Row;
 use crate::raster::tile::TILE_AREA;
-use crate::raster::{PlanarTile, TILE};
+use crate::raster::{BlendMode, Coverage, Mix, Paint, PlanarTile, TILE};
 
 /// The paint of a stroke, still wet.
 pub enum Wash {
@@ -14,12 +14,40 @@ pub enum Wash {
     Colors(PlanarTile),
 }
 
+/// What one dab brings to a wash.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DabPaint {
+    /// Coverage that it adds where its footprint is whole, `[0, 1]`.
+    pub flow: f32,
+    /// The coverage that it may bring a pixel to, `[0, 1]`; beyond it only colours mix.
+    pub ceiling: f32,
+    /// Opaque; `None` where a stamp brings its own.
+    pub color: Option<Color>,
+}
+
+/// How a dried wash meets the pixels of its layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Manner {
+    /// Of one-colour washes; of others only its alpha counts.
+    pub color: Color,
+    /// Of the whole stroke, `[0, 1]`.
+    pub opacity: f32,
+    pub mode: BlendMode,
+    /// Takes away, instead.
+    pub erases: bool,
+    /// Only where there is paint, whose coverage stays.
+    pub keeps_alpha: bool,
+}
+
 impl Wash {
     pub fn one_color() -> Self {
         Wash::OneColor(Box::new([0.0; TILE_AREA]))
     }
     pub fn colors() -> Self {
         Wash::Colors(PlanarTile::transparent())
+    }
+    pub fn is_one_color(&self) -> bool {
+        matches!(self, Wash::OneColor(_))
     }
     /// Coverage of `n` pixels from the `start`th on; nothing of a wash of colours.
     pub fn coverage(&mut self, start: usize, n: usize) -> &mut [f32] {
@@ -28,19 +56,55 @@ impl Wash {
             Wash::Colors(_) => &mut [],
         }
     }
-    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on: a ← a + f (1 − a), f = flow · F.
-    pub fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], flow: f32) {
+    /// Adds one colour to a row from the `start`th pixel on, as far as each is `covered`: a ← a + f (c − a), f = flow · covered,
+    /// up to the ceiling c.
+    pub fn cover(&mut self, start: usize, covered: &[f32], paint: DabPaint) {
         match self {
-            Wash::OneColor(_) => add_coverage(stamped, flow / 255.0, self.coverage(start, stamped.len())),
+            Wash::OneColor(_) => add_covered(covered, paint, self.coverage(start, covered.len())),
             Wash::Colors(tile) => {
                 if let Some(row) = tile.rows_mut().get_mut(start / TILE) {
-                    add_colors(stamped, flow / 255.0, start % TILE, row);
+                    let [r, g, b, _] = paint.color.unwrap_or(Color::BLACK).to_f32();
+                    let source = |i: usize| (covered[i] * paint.flow, [r, g, b]);
+                    add_colors(covered.len(), source, paint.ceiling, start % TILE, row);
                 }
             }
         }
     }
-    /// Lays the dried paint over pixels (source over). Of stamps only the colour's alpha counts.
-    pub fn lay_over(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
+    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on, as [`Wash::cover`] does.
+    pub fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
+        let flow = paint.flow / 255.0;
+        match self {
+            Wash::OneColor(_) => add_alpha(stamped, flow, paint.ceiling, self.coverage(start, stamped.len())),
+            Wash::Colors(tile) => {
+                let Some(row) = tile.rows_mut().get_mut(start / TILE) else { return };
+                match paint.color.map(Color::to_f32) {
+                    Some([r, g, b, _]) => {
+                        let source = |i: usize| (flow * f32::from(stamped[i][3]), [r, g, b]);
+                        add_colors(stamped.len(), source, paint.ceiling, start % TILE, row);
+                    }
+                    None => add_stamped(stamped, flow, paint.ceiling, start % TILE, row),
+                }
+            }
+        }
+    }
+    /// Lays the dried paint on pixels.
+    pub fn lay_over(&self, pixels: &mut PlanarTile, manner: Manner) {
+        if manner.erases {
+            // What may not lose its coverage cannot be erased.
+            if !manner.keeps_alpha {
+                self.take_out(pixels, manner.opacity * f32::from(manner.color.a) / 255.0);
+            }
+        } else if manner.mode == BlendMode::Normal && !manner.keeps_alpha {
+            self.lay_plainly(pixels, manner.color, manner.opacity);
+        } else {
+            let mut paint = PlanarTile::transparent();
+            self.lay_plainly(&mut paint, manner.color, manner.opacity);
+            let mix = Mix { mode: manner.mode, atop: manner.keeps_alpha, ..Mix::default() };
+            pixels.blend(mix, Paint::Planar(&paint), &Coverage::FULL);
+        }
+    }
+    /// Source over. Of stamps only the colour's alpha counts.
+    fn lay_plainly(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
         match self {
             Wash::OneColor(coverage) => {
                 let color = color.premultiplied().map(|c| c * opacity);
@@ -56,20 +120,59 @@ impl Wash {
             }
         }
     }
+    /// Destination out.
+    fn take_out(&self, pixels: &mut PlanarTile, opacity: f32) {
+        match self {
+            Wash::OneColor(coverage) => {
+                for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut()) {
+                    take_out_row(coverage, opacity, row);
+                }
+            }
+            Wash::Colors(tile) => {
+                for (from, row) in tile.rows().iter().zip(pixels.rows_mut()) {
+                    take_out_row(&from.a, opacity, row);
+                }
+            }
+        }
+    }
+}
+
+/// Coverage of weight f added up to a ceiling; what is beyond the ceiling already stays.
+#[inline(always)]
+fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
+    let room = ceiling - coverage;
+    coverage + f * if room > 0.0 { room } else { 0.0 }
+}
+
+/// One premultiplied pixel with a colour of weight f over it, up to a ceiling: colours mix as source over mixes them, coverage
+/// rises no further than the ceiling.
+#[inline(always)]
+fn mixed(p: [f32; 4], f: f32, source: [f32; 3], ceiling: f32) -> [f32; 4] {
+    let over = |c: usize| p[c] * (1.0 - f) + source[c];
+    let a_over = p[3] * (1.0 - f) + f;
+    let a = raised(p[3], f, ceiling);
+    let share = if ceiling < 1.0 && a_over > 0.0 && a < a_over { a / a_over } else { 1.0 };
+    [over(0) * share, over(1) * share, over(2) * share, a_over * share]
 }
 
 crate::widest! {
-    fn add_coverage(stamped: &[[u8; 4]], flow: f32, coverage: &mut [f32]) {
+    fn add_covered(covered: &[f32], paint: DabPaint, coverage: &mut [f32]) {
+        for (a, f) in coverage.iter_mut().zip(covered) {
+            *a = raised(*a, paint.flow * f, paint.ceiling);
+        }
+    }
+    fn add_alpha(stamped: &[[u8; 4]], flow: f32, ceiling: f32, coverage: &mut [f32]) {
         for (a, s) in coverage.iter_mut().zip(stamped) {
-            *a += flow * f32::from(s[3]) * (1.0 - *a);
+            *a = raised(*a, flow * f32::from(s[3]), ceiling);
         }
     }
     /// `x`: column of the first pixel.
-    fn add_colors(stamped: &[[u8; 4]], flow: f32, x: usize, row: &mut Row) {
-        for (c, plane) in row.rgb.iter_mut().chain([&mut row.a]).enumerate() {
-            for (p, s) in plane[x..].iter_mut().zip(stamped) {
-                *p = *p * (1.0 - flow * f32::from(s[3])) + flow * f32::from(s[c]);
-            }
+    fn add_stamped(stamped: &[[u8; 4]], flow: f32, ceiling: f32, x: usize, row: &mut Row) {
+        let Row { rgb: [r, g, b], a } = row;
+        let (r, g, b, a) = (&mut r[x..], &mut g[x..], &mut b[x..], &mut a[x..]);
+        for (i, s) in stamped.iter().enumerate().take(a.len()) {
+            let source = [0, 1, 2].map(|c| flow * f32::from(s[c]));
+            [r[i], g[i], b[i], a[i]] = mixed([r[i], g[i], b[i], a[i]], flow * f32::from(s[3]), source, ceiling);
         }
     }
     /// Lays one premultiplied colour over a row, as far as each pixel is covered.
@@ -86,5 +189,22 @@ crate::widest! {
                 *p = *p * (1.0 - opacity * a) + opacity * s;
             }
         }
+    }
+    fn take_out_row(coverage: &[f32; TILE], opacity: f32, row: &mut Row) {
+        for plane in row.rgb.iter_mut().chain([&mut row.a]) {
+            for (p, a) in plane.iter_mut().zip(coverage) {
+                *p *= 1.0 - opacity * a;
+            }
+        }
+    }
+}
+
+/// Adds one colour to `n` pixels of a row from column `x` on; `source`: the weight at each, and the straight colour.
+fn add_colors(n: usize, source: impl Fn(usize) -> (f32, [f32; 3]), ceiling: f32, x: usize, row: &mut Row) {
+    let Row { rgb: [r, g, b], a } = row;
+    for i in 0..n.min(TILE - x) {
+        let (f, color) = source(i);
+        let p = [r[x + i], g[x + i], b[x + i], a[x + i]];
+        [r[x + i], g[x + i], b[x + i], a[x + i]] = mixed(p, f, color.map(|c| c * f), ceiling);
     }
 }

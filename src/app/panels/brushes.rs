@@ -5,6 +5,7 @@ use crate::app::asked::Asked;
 use crate::app::swatches::Swatches;
 use crate::app::widgets::{Number, sentence, title};
 use crate::io::recipe::preset_names;
+use crate::paint::Property;
 use crate::session::actions::HandAction;
 use crate::session::actions::hand::SIZES;
 use crate::session::{Action, Session};
@@ -64,7 +65,7 @@ fn numbers(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     let rotation = Number::new("Rotation", -180.0..=180.0, "Of the tip, counter-clockwise").degrees();
     push(rotation.row(ui, brush.rotation).map(|c| HandAction::Rotation { to: c.to }));
     title(ui, "Pen pressure");
-    let (size, flow) = (brush.dynamics.size.pressure, brush.dynamics.flow.pressure);
+    let [size, flow] = [Property::Size, Property::Flow].map(|property| brush.dynamics.pressure_share(property));
     let drives = Number::new("Size", 0.0..=1.0, "How much the size follows the pressure");
     push(drives.row(ui, size).map(|c| HandAction::Pressure { size: c.to, flow }));
     let drives = Number::new("Flow", 0.0..=1.0, "How much the flow follows the pressure");

@@ -12,6 +12,7 @@
 //! | `masks` | layer masks |
 //! | `pictures` | the files that layers name, each decoded once |
 
+mod brush;
 mod images;
 mod layers;
 mod masks;

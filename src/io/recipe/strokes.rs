@@ -2,15 +2,16 @@
 //! Floor 5. The presets are files in `brushes/`, built into the program: a new one is a file and a line here.
 
 use super::Reader;
-use super::images::{TURNS, operator, write_operator};
+use super::brush::{settings, write_brush};
+use super::images::{operator, write_operator};
 use crate::Result;
 use crate::document::StrokeList;
 use crate::io::Budget;
 use crate::io::json::{self, Fields, Node, Object, fields::COORDINATE, object};
 use crate::math::{srgb::Color, vec2};
-use crate::paint::{Adjust, Brush, Drive, Dynamics, Sample, Stroke, Tip};
+use crate::paint::{Adjust, Brush, Sample, Stroke, Tip};
 use crate::surface::Operator;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::{path::Path, sync::Arc};
 
 /// Every preset: its name and its file.
@@ -80,37 +81,6 @@ impl Reader<'_> {
     }
 }
 
-/// The numbers of a brush; what is not said stays as it is in `base`.
-fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
-    Ok(Brush {
-        size: fields.number("size", base.size, 0.1..=20_000.0)?,
-        hardness: fields.number("hardness", base.hardness, 0.0..=1.0)?,
-        opacity: fields.number("opacity", base.opacity, 0.0..=1.0)?,
-        flow: fields.number("flow", base.flow, 0.0..=1.0)?,
-        // A hundredth of the diameter is as good as a line; less only costs time.
-        spacing: fields.number("spacing", base.spacing, 0.01..=100.0)?,
-        rotation: fields.number("rotation", base.rotation, TURNS)?,
-        softness: fields.number("softness", base.softness, 0.0..=1.0)?,
-        tip: base.tip,
-        dynamics: fields.get("dynamics").map_or(Ok(base.dynamics), |node| dynamics(&node, base.dynamics))?,
-    })
-}
-
-/// `{ "size": { "pressure": 0 }, "flow": { "pressure": 1 } }`: how much of each follows the pen.
-fn dynamics(node: &Node, base: Dynamics) -> Result<Dynamics> {
-    let mut fields = node.fields()?;
-    let mut drive = |name, base: Drive| -> Result<Drive> {
-        let Some(node) = fields.get(name) else { return Ok(base) };
-        let mut fields = node.fields()?;
-        let pressure = fields.number("pressure", base.pressure, 0.0..=1.0)?;
-        fields.finish()?;
-        Ok(Drive { pressure })
-    };
-    let dynamics = Dynamics { size: drive("size", base.size)?, flow: drive("flow", base.flow)? };
-    fields.finish()?;
-    Ok(dynamics)
-}
-
 fn preset(name: &Node) -> Result<Preset> {
     let wanted = name.text()?;
     let Some((_, text)) = PRESETS.iter().find(|(known, _)| *known == wanted) else {
@@ -162,30 +132,6 @@ pub fn write_stroke(stroke: &Stroke) -> Value {
     out.set("color", object::color(stroke.color()));
     out.set("samples", stroke.samples().iter().map(write_sample).collect());
     out.done()
-}
-
-fn write_brush(brush: &Brush) -> Object {
-    let plain = Brush::default();
-    let mut out = Object::default();
-    out.number("size", brush.size, plain.size);
-    out.number("hardness", brush.hardness, plain.hardness);
-    out.number("opacity", brush.opacity, plain.opacity);
-    out.number("flow", brush.flow, plain.flow);
-    out.number("spacing", brush.spacing, plain.spacing);
-    out.number("rotation", brush.rotation, plain.rotation);
-    out.number("softness", brush.softness, plain.softness);
-    if let Tip::Picture(tip) = &brush.tip {
-        out.set("tip", json!({ "file": tip.file }));
-    }
-    let (dynamics, plain) = (brush.dynamics, plain.dynamics);
-    let mut driven = Object::default();
-    for (name, drive, plain) in [("size", dynamics.size, plain.size), ("flow", dynamics.flow, plain.flow)] {
-        let mut by = Object::default();
-        by.number("pressure", drive.pressure, plain.pressure);
-        driven.object(name, by);
-    }
-    out.object("dynamics", driven);
-    out
 }
 
 /// As few numbers as say it.

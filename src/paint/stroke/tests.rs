@@ -3,8 +3,8 @@
 use super::*;
 use crate::math::{Size, vec2, vec3};
 use crate::paint::profile::RoundProfile;
-use crate::paint::{Adjust, PictureSource};
-use crate::raster::{Picture, Plane, TileGrid};
+use crate::paint::{Adjust, Dynamics, Jitter, PictureSource, Property};
+use crate::raster::{BlendMode, Picture, Plane, TileGrid};
 use crate::surface::{Deformation, Maps, Surface, links};
 use proptest::prelude::*;
 
@@ -59,7 +59,7 @@ fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
     dab.flow * RoundProfile::new(dab.hardness, dab.softness).mean(from_center.length() / dab.radius, width_squared)
 }
 fn reference(stroke: &Stroke, scene: &Scene) -> Plane<f32> {
-    let dabs = path::dabs(&stroke.brush, &stroke.samples);
+    let dabs = laying::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
     Plane::from_fn(scene.size, |x, y| {
         let through = dabs.iter().map(|dab| 1.0 - dab_at(dab, stroke.operator, scene, x as i32, y as i32));
         stroke.brush.opacity * (1.0 - through.product::<f32>())
@@ -263,4 +263,72 @@ fn a_grey_tip_is_painted_in_the_strokes_colour_and_softness_spreads_it() {
     assert_eq!(alpha(0.0), 0);
     let spread: Vec<u8> = (0..=10).map(|i| alpha(i as f32 / 10.0)).collect();
     assert!(spread.windows(2).all(|s| s[1].abs_diff(s[0]) < 25) && spread[10] > 20, "{spread:?}");
+}
+
+/// A square of 60 px, opaque red, and over it a dot of a brush.
+fn over_red(brush: Brush, color: &str) -> TileGrid {
+    let red = Brush { size: 120.0, hardness: 1.0, ..Brush::default() };
+    let dot = |brush, color: &str, at| {
+        Arc::new(Stroke::new(brush, Operator::None, Color::parse(color).unwrap(), vec![Sample::at(at)]))
+    };
+    let over = Brush { size: 40.0, hardness: 1.0, ..brush };
+    render(&[dot(red, "#ff0000", vec2(60.0, 60.0)), dot(over, color, vec2(120.0, 60.0))], &flat())
+}
+#[test]
+fn a_stroke_blends_with_what_is_beneath_it_in_its_layer() {
+    let multiplied = over_red(Brush { blend: BlendMode::Multiply, ..Brush::default() }, "#8080ff");
+    assert_eq!(multiplied.pixel(110, 60), [128, 0, 0, 255]);
+    assert_eq!(multiplied.pixel(130, 60), [128, 128, 255, 255], "beneath is nothing");
+}
+#[test]
+fn an_erasing_stroke_takes_away_and_one_that_keeps_alpha_paints_only_on_paint() {
+    let erased = over_red(Brush { erases: true, opacity: 0.5, ..Brush::default() }, "#00ff00");
+    assert_eq!((erased.pixel(110, 60), erased.pixel(130, 60)), ([128, 0, 0, 128], [0; 4]));
+    let kept = over_red(Brush { keeps_alpha: true, ..Brush::default() }, "#00ff00");
+    assert_eq!((kept.pixel(110, 60), kept.pixel(130, 60)), ([0, 255, 0, 255], [0; 4]));
+}
+#[test]
+fn a_driven_opacity_is_a_ceiling_that_more_dabs_do_not_pass() {
+    let dynamics = Dynamics::none().with_pressure(Property::Opacity, 1.0);
+    let press = |pressure: f32, jitter: Jitter| {
+        let brush = Brush {
+            size: 30.0,
+            flow: 0.5,
+            spacing: 0.02,
+            hardness: 1.0,
+            jitter,
+            dynamics: dynamics.clone(),
+            ..Brush::default()
+        };
+        let samples = line(vec2(40.0, 60.0), vec2(100.0, 60.0)).into_iter().map(|s| Sample { pressure, ..s }).collect();
+        one(white(brush, Operator::None, samples), &flat()).pixel(70, 60)
+    };
+    let varied = Jitter { hue_degrees: 1.0, ..Jitter::default() };
+    assert_eq!(press(0.5, Jitter::default()), [128; 4]);
+    assert_eq!(press(0.5, varied), [128; 4], "white has no hue to vary");
+    assert_eq!(press(1.0, varied), [255; 4]);
+}
+#[test]
+fn every_dab_has_its_own_colour_where_the_brush_varies_it() {
+    let brush = Brush {
+        size: 10.0,
+        hardness: 1.0,
+        spacing: 2.0,
+        jitter: Jitter { hue_degrees: 180.0, ..Jitter::default() },
+        ..Brush::default()
+    };
+    let stroke =
+        Stroke::new(brush, Operator::None, Color::parse("#ff0000").unwrap(), line(vec2(10.0, 60.0), vec2(130.0, 60.0)));
+    let dabs = laying::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, &flat());
+    let grid = one(stroke, &flat());
+    let mut colors: Vec<[u8; 4]> = dabs
+        .iter()
+        .map(|dab| {
+            let pixel = grid.pixel(dab.at.x as i32, dab.at.y as i32);
+            assert_eq!(pixel, [dab.color.r, dab.color.g, dab.color.b, 255]);
+            pixel
+        })
+        .collect();
+    colors.dedup();
+    assert!(colors.len() > 4, "{colors:?}");
 }

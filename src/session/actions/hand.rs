@@ -3,6 +3,7 @@
 
 use crate::io::recipe::preset_brush;
 use crate::math::srgb::Color;
+use crate::paint::Property;
 use crate::session::Session;
 use crate::session::replay::{actions, names};
 use crate::surface::Operator;
@@ -65,7 +66,8 @@ impl HandAction {
             HandAction::Softness { to } => brush.softness = unit(*to),
             HandAction::Rotation { to } => brush.rotation = *to,
             HandAction::Pressure { size, flow } => {
-                (brush.dynamics.size.pressure, brush.dynamics.flow.pressure) = (unit(*size), unit(*flow));
+                let dynamics = brush.dynamics.with_pressure(Property::Size, *size);
+                brush.dynamics = dynamics.with_pressure(Property::Flow, *flow);
             }
             HandAction::Color { color } => session.color = *color,
             HandAction::SecondColor { color } => session.second_color = *color,

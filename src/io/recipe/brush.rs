@@ -1,0 +1,201 @@
+//! The settings of a brush. Read and written.
+//! Floor 5. Not here: strokes and presets (`strokes`).
+
+use super::images::TURNS;
+use crate::Result;
+use crate::io::json::{Fields, Node, Object, object};
+use crate::math::vec2;
+use crate::paint::dynamics::MAX_POINTS;
+use crate::paint::{Brush, Curve, Dynamics, Input, Jitter, Property, Stabilizer, Tip};
+use crate::raster::BlendMode;
+use serde_json::{Value, json};
+
+/// A brush's fields; what is not said stays as it is in `base`.
+pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
+    Ok(Brush {
+        size: fields.number("size", base.size, 0.1..=20_000.0)?,
+        hardness: fields.number("hardness", base.hardness, 0.0..=1.0)?,
+        opacity: fields.number("opacity", base.opacity, 0.0..=1.0)?,
+        flow: fields.number("flow", base.flow, 0.0..=1.0)?,
+        // A hundredth of the diameter is as good as a line; less only costs time.
+        spacing: fields.number("spacing", base.spacing, 0.01..=100.0)?,
+        rotation: fields.number("rotation", base.rotation, TURNS)?,
+        softness: fields.number("softness", base.softness, 0.0..=1.0)?,
+        scatter: fields.number("scatter", base.scatter, 0.0..=10.0)?,
+        jitter: fields.get("jitter").map_or(Ok(base.jitter), |node| jitter(&node, base.jitter))?,
+        blend: fields.one_of("blend", &BlendMode::ALL, base.blend)?,
+        erases: fields.boolean("erases", base.erases)?,
+        keeps_alpha: fields.boolean("keeps_alpha", base.keeps_alpha)?,
+        stabilizer: fields.get("stabilizer").map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
+        dynamics: fields.get("dynamics").map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics))?,
+        seed: fields.get("seed").map_or(Ok(base.seed), |node| seed(&node))?,
+        tip: base.tip,
+    })
+}
+
+/// `{ "hue": 0, "saturation": 0, "value": 0 }`: how far a dab's colour may be from the stroke's, hue in degrees.
+fn jitter(node: &Node, base: Jitter) -> Result<Jitter> {
+    let mut fields = node.fields()?;
+    let jitter = Jitter {
+        hue_degrees: fields.number("hue", base.hue_degrees, 0.0..=180.0)?,
+        saturation: fields.number("saturation", base.saturation, 0.0..=1.0)?,
+        value: fields.number("value", base.value, 0.0..=1.0)?,
+    };
+    fields.finish()?;
+    Ok(jitter)
+}
+
+/// `{ "average": 0.8 }`, `{ "string": 20 }`, or `{}` for none.
+fn stabilizer(node: &Node) -> Result<Stabilizer> {
+    let mut fields = node.fields()?;
+    let average = fields.get("average").map(|weight| weight.number(0.0..=1.0)).transpose()?;
+    let string = fields.get("string").map(|length| length.number(0.0..=10_000.0)).transpose()?;
+    fields.finish()?;
+    match (average, string) {
+        (Some(_), Some(_)) => Err(node.refused("is both an average and a string; it must be one of them")),
+        (Some(weight), None) => Ok(Stabilizer::Average { weight }),
+        (None, Some(length_px)) => Ok(Stabilizer::String { length_px }),
+        (None, None) => Ok(Stabilizer::None),
+    }
+}
+
+fn seed(node: &Node) -> Result<u32> {
+    node.integer(0..=i64::from(u32::MAX)).map(|seed| seed as u32)
+}
+
+/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]] } }`: what each property follows, and how. A number p is the line
+/// from 1 − p to 1.
+fn dynamics(node: &Node, base: Dynamics) -> Result<Dynamics> {
+    let mut fields = node.fields()?;
+    let mut dynamics = base;
+    for (property, name) in Property::ALL {
+        let Some(node) = fields.get(name) else { continue };
+        let mut inputs = node.fields()?;
+        for (input, name) in Input::ALL {
+            if let Some(node) = inputs.get(name) {
+                dynamics = dynamics.with(property, input, curve(&node)?);
+            }
+        }
+        inputs.finish()?;
+    }
+    fields.finish()?;
+    Ok(dynamics)
+}
+
+fn curve(node: &Node) -> Result<Curve> {
+    if node.value().is_number() {
+        return node.number(0.0..=1.0).map(Curve::Share);
+    }
+    let points = node.list(MAX_POINTS)?;
+    let points = points.iter().map(|point| point.numbers(2, 2, 0.0..=1.0).map(|p| vec2(p[0], p[1])));
+    let curve = Curve::through(points.collect::<Result<_>>()?);
+    curve.ok_or_else(|| node.refused("is no curve; it must have points whose first numbers do not fall"))
+}
+
+pub fn write_brush(brush: &Brush) -> Object {
+    let plain = Brush::default();
+    let mut out = Object::default();
+    out.number("size", brush.size, plain.size);
+    out.number("hardness", brush.hardness, plain.hardness);
+    out.number("opacity", brush.opacity, plain.opacity);
+    out.number("flow", brush.flow, plain.flow);
+    out.number("spacing", brush.spacing, plain.spacing);
+    out.number("rotation", brush.rotation, plain.rotation);
+    out.number("softness", brush.softness, plain.softness);
+    out.number("scatter", brush.scatter, plain.scatter);
+    let mut jitter = Object::default();
+    jitter.number("hue", brush.jitter.hue_degrees, 0.0);
+    jitter.number("saturation", brush.jitter.saturation, 0.0);
+    jitter.number("value", brush.jitter.value, 0.0);
+    out.object("jitter", jitter);
+    out.word("blend", &BlendMode::ALL, brush.blend, plain.blend);
+    out.flag("erases", brush.erases, plain.erases);
+    out.flag("keeps_alpha", brush.keeps_alpha, plain.keeps_alpha);
+    if let Tip::Picture(tip) = &brush.tip {
+        out.set("tip", json!({ "file": tip.file }));
+    }
+    match brush.stabilizer {
+        Stabilizer::None => {}
+        Stabilizer::Average { weight } => out.set("stabilizer", json!({ "average": object::number(weight) })),
+        Stabilizer::String { length_px } => out.set("stabilizer", json!({ "string": object::number(length_px) })),
+    }
+    out.object("dynamics", write_dynamics(&brush.dynamics));
+    if brush.seed != plain.seed {
+        out.set("seed", brush.seed.into());
+    }
+    out
+}
+
+/// What differs from the plain brush's: what that follows and this does not is said to be 0.
+fn write_dynamics(dynamics: &Dynamics) -> Object {
+    let plain = Dynamics::default();
+    let mut out = Object::default();
+    for (property, property_name) in Property::ALL {
+        let mut inputs = Object::default();
+        for (input, name) in Input::ALL {
+            match (dynamics.curve(property, input), plain.curve(property, input)) {
+                (own, plain) if own == plain => {}
+                (own, _) => inputs.set(name, own.map_or(0.into(), write_curve)),
+            }
+        }
+        out.object(property_name, inputs);
+    }
+    out
+}
+
+fn write_curve(curve: &Curve) -> Value {
+    match curve {
+        Curve::Share(p) => object::number(*p),
+        Curve::Points(points) => points.iter().map(|p| object::point(*p)).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn read(value: &Value) -> Result<Brush> {
+        let mut fields = Node::root(Path::new("r.json"), value).fields()?;
+        let brush = settings(&mut fields, Brush::default())?;
+        fields.finish()?;
+        Ok(brush)
+    }
+
+    #[test]
+    fn every_field_is_written_as_it_was_read() {
+        let text = json!({
+            "size": 20, "hardness": 0.25, "opacity": 0.5, "flow": 0.75, "spacing": 0.3, "rotation": 30, "softness": 0.1,
+            "scatter": 2, "jitter": { "hue": 20, "saturation": 0.1, "value": 0.2 }, "blend": "multiply", "erases": true,
+            "keeps_alpha": true, "stabilizer": { "string": 25 },
+            "dynamics": {
+                "size": { "pressure": 0.1, "speed": [[0, 1], [1, 0.3]] },
+                "flow": { "pressure": 0, "curvature": [[0, 0], [0.5, 1]] },
+                "rotation": { "tilt-direction": 1 },
+            },
+            "seed": 4_000_000_000u32,
+        });
+        let brush = read(&text).unwrap();
+        assert_eq!(write_brush(&brush).done(), text);
+        assert!(brush.dynamics.curve(Property::Flow, Input::Pressure).is_none());
+        assert_eq!(write_brush(&Brush::default()).done(), json!({}));
+        let average = json!({ "stabilizer": { "average": 0.5 } });
+        assert_eq!(write_brush(&read(&average).unwrap()).done(), average);
+    }
+    #[test]
+    fn what_cannot_be_is_refused_in_a_sentence() {
+        let says = |value: Value, what: &str| {
+            let said = read(&value).err().map(|e| e.to_string()).unwrap_or_default();
+            assert!(said.contains(what), "{said}");
+        };
+        says(json!({ "scatter": 11 }), "scatter: is 11; it must be between 0 and 10");
+        says(json!({ "dynamics": { "size": { "presure": 1 } } }), "did you mean “pressure”?");
+        says(json!({ "dynamics": { "sise": {} } }), "did you mean “size”?");
+        says(json!({ "dynamics": { "size": { "tilt": [[1, 0], [0, 1]] } } }), "dynamics.size.tilt: is no curve");
+        says(json!({ "dynamics": { "size": { "tilt": [] } } }), "is no curve");
+        says(json!({ "dynamics": { "size": { "tilt": [[0, 2]] } } }), "must be between 0 and 1");
+        says(json!({ "stabilizer": { "string": 3, "average": 0.5 } }), "must be one of them");
+        says(json!({ "seed": -1 }), "seed: is -1");
+        says(json!({ "blend": "mulitply" }), "must be one of normal");
+    }
+}

@@ -1,0 +1,341 @@
+//! How a brush follows the hand and the surface: each property of a dab driven by curves over what is known where it stands.
+//! Floor 3. Not here: where dabs stand and what is read there (`laying`).
+
+use crate::math::{Vec2, hash, vec2};
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+/// What can be driven. Curves multiply, except where [`Property::adds`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Property {
+    Size,
+    /// The coverage that a dab may bring its pixels to, beside the stroke's own opacity.
+    Opacity,
+    Flow,
+    Hardness,
+    Spacing,
+    /// A curve's 1 is a full turn counter-clockwise.
+    Rotation,
+    Scatter,
+    Softness,
+    /// A curve's 1 is once round the colour wheel.
+    Hue,
+    Saturation,
+    Value,
+    /// α of D_n and D_r.
+    Alpha,
+    /// γ of D_p.
+    Gamma,
+    /// μ, the detail of D_n and D_r.
+    Detail,
+}
+
+impl Property {
+    /// Every property with its name in documents.
+    pub const ALL: [(Property, &str); 14] = [
+        (Property::Size, "size"),
+        (Property::Opacity, "opacity"),
+        (Property::Flow, "flow"),
+        (Property::Hardness, "hardness"),
+        (Property::Spacing, "spacing"),
+        (Property::Rotation, "rotation"),
+        (Property::Scatter, "scatter"),
+        (Property::Softness, "softness"),
+        (Property::Hue, "hue"),
+        (Property::Saturation, "saturation"),
+        (Property::Value, "value"),
+        (Property::Alpha, "alpha"),
+        (Property::Gamma, "gamma"),
+        (Property::Detail, "detail"),
+    ];
+    /// Its curves are turns that add up, instead of factors that multiply.
+    pub fn adds(self) -> bool {
+        matches!(self, Property::Rotation | Property::Hue)
+    }
+}
+
+/// What can drive, each in `[0, 1]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Input {
+    /// Of the pen, as it is.
+    Pressure,
+    /// From upright, 0, to lying, 1: the length of (tilt x, tilt y) over 90°.
+    Tilt,
+    /// Where the pen leans to, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright pen.
+    TiltDirection,
+    /// Where the stroke goes, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of a stroke of one sample.
+    Direction,
+    /// Over [`FAST_LENGTHS_PER_SEC`].
+    Speed,
+    /// Along the stroke, over [`FAR_DIAMETERS`] of the brush.
+    Distance,
+    /// Anew for every dab and property, even.
+    Random,
+    /// 1 − n_z: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
+    Slope,
+    /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the surface.
+    Curvature,
+    /// Of the map: 0 near, 1 far. 1 off the surface.
+    Depth,
+}
+
+impl Input {
+    /// Every input with its name in documents.
+    pub const ALL: [(Input, &str); 10] = [
+        (Input::Pressure, "pressure"),
+        (Input::Tilt, "tilt"),
+        (Input::TiltDirection, "tilt-direction"),
+        (Input::Direction, "direction"),
+        (Input::Speed, "speed"),
+        (Input::Distance, "distance"),
+        (Input::Random, "random"),
+        (Input::Slope, "slope"),
+        (Input::Curvature, "curvature"),
+        (Input::Depth, "depth"),
+    ];
+}
+
+/// The speed that reads 1, canvas lengths *L* a second.
+pub const FAST_LENGTHS_PER_SEC: f32 = 2.0;
+/// The distance that reads 1, diameters.
+pub const FAR_DIAMETERS: f32 = 10.0;
+
+/// What is known where a dab stands, each in `[0, 1]` as [`Input`] says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Readings {
+    pub pressure: f32,
+    pub tilt: f32,
+    pub tilt_direction: f32,
+    pub direction: f32,
+    pub speed: f32,
+    pub distance: f32,
+    pub slope: f32,
+    pub curvature: f32,
+    pub depth: f32,
+    /// Of this dab alone: what is random about it follows.
+    pub seed: u32,
+}
+
+impl Default for Readings {
+    /// Full pressure, upright, at rest, off the surface.
+    fn default() -> Self {
+        Self {
+            pressure: 1.0,
+            tilt: 0.0,
+            tilt_direction: 0.0,
+            direction: 0.0,
+            speed: 0.0,
+            distance: 0.0,
+            slope: 0.0,
+            curvature: 0.5,
+            depth: 1.0,
+            seed: 0,
+        }
+    }
+}
+
+impl Readings {
+    /// What drives a property by an input.
+    fn of(&self, input: Input, property: Property) -> f32 {
+        match input {
+            Input::Pressure => self.pressure,
+            Input::Tilt => self.tilt,
+            Input::TiltDirection => self.tilt_direction,
+            Input::Direction => self.direction,
+            Input::Speed => self.speed,
+            Input::Distance => self.distance,
+            Input::Random => hash::unit(self.seed, property as u32, 1),
+            Input::Slope => self.slope,
+            Input::Curvature => self.curvature,
+            Input::Depth => self.depth,
+        }
+    }
+}
+
+/// The direction of a vector in image axes (y down), in turns counter-clockwise as seen, `[0, 1)`; 0 of none.
+pub fn turns_of(v: Vec2) -> f32 {
+    let turns = if v == Vec2::ZERO { 0.0 } else { (-v.y).atan2(v.x) / TAU };
+    // A turn just below 0 rounds up to 1.
+    (turns - turns.floor()) % 1.0
+}
+
+/// What an input in `[0, 1]` makes of a property, in `[0, 1]`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Curve {
+    /// The line from 1 − p to 1: p in `[0, 1]` is the share of the property that follows the input.
+    Share(f32),
+    /// Straight lines between points, level beyond the first and the last. Only of [`Curve::through`].
+    Points(Arc<[Vec2]>),
+}
+
+/// Points of one curve: more than a hand sets.
+pub const MAX_POINTS: usize = 64;
+
+impl Curve {
+    /// The curve through points (input, output) of `[0, 1]²` from left to right; two above each other are a step.
+    /// `None` of no points, too many, or others than these.
+    pub fn through(points: Vec<Vec2>) -> Option<Self> {
+        let is_inside = |p: &Vec2| (0.0..=1.0).contains(&p.x) && (0.0..=1.0).contains(&p.y);
+        let is_ordered = points.windows(2).all(|pair| pair[0].x <= pair[1].x);
+        let is_curve = (1..=MAX_POINTS).contains(&points.len()) && points.iter().all(is_inside) && is_ordered;
+        is_curve.then(|| Curve::Points(points.into()))
+    }
+    /// The output at an input; NaN counts as 0.
+    pub fn at(&self, x: f32) -> f32 {
+        let x = x.max(0.0).min(1.0);
+        match self {
+            Curve::Share(p) => 1.0 - p * (1.0 - x),
+            Curve::Points(points) => {
+                let mut before = points.first().copied().unwrap_or(vec2(0.0, 1.0));
+                for &point in points.iter() {
+                    if x <= point.x {
+                        let width = point.x - before.x;
+                        let along = if width > 0.0 { (x - before.x) / width } else { 1.0 };
+                        return before.y + (point.y - before.y) * along;
+                    }
+                    before = point;
+                }
+                before.y
+            }
+        }
+    }
+    /// It is 1 everywhere.
+    fn is_idle(&self) -> bool {
+        match self {
+            Curve::Share(p) => *p == 0.0,
+            Curve::Points(points) => points.iter().all(|p| p.y == 1.0),
+        }
+    }
+}
+
+/// One row: a property follows an input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    pub property: Property,
+    pub input: Input,
+    pub curve: Curve,
+}
+
+/// All rows of a brush, at most one for a property and an input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dynamics {
+    drives: Arc<[Drive]>,
+}
+
+impl Default for Dynamics {
+    /// A lighter hand paints fainter, not thinner.
+    fn default() -> Self {
+        Self::none().with(Property::Flow, Input::Pressure, Curve::Share(1.0))
+    }
+}
+
+impl Dynamics {
+    /// Nothing follows anything.
+    pub fn none() -> Self {
+        Self { drives: Arc::new([]) }
+    }
+    pub fn drives(&self) -> &[Drive] {
+        &self.drives
+    }
+    /// With this row in place of the one for the same property and input. A factor that is always 1 is no row.
+    pub fn with(&self, property: Property, input: Input, curve: Curve) -> Self {
+        let is_row = |drive: &&Drive| drive.property == property && drive.input == input;
+        let is_idle = if property.adds() { curve == Curve::Share(0.0) } else { curve.is_idle() };
+        let row = (!is_idle).then_some(Drive { property, input, curve });
+        let mut drives: Vec<Drive> = self.drives.to_vec();
+        match (self.drives.iter().position(|drive| is_row(&drive)), row) {
+            (Some(at), Some(row)) => drives[at] = row,
+            (Some(at), None) => drop(drives.remove(at)),
+            (None, row) => drives.extend(row),
+        }
+        Self { drives: drives.into() }
+    }
+    pub fn curve(&self, property: Property, input: Input) -> Option<&Curve> {
+        self.drives.iter().find(|drive| drive.property == property && drive.input == input).map(|drive| &drive.curve)
+    }
+    /// The share of a property that follows the pressure, `[0, 1]`: what a slider shows of any curve is its fall.
+    pub fn pressure_share(&self, property: Property) -> f32 {
+        self.curve(property, Input::Pressure).map_or(0.0, |curve| (curve.at(1.0) - curve.at(0.0)).max(0.0))
+    }
+    pub fn with_pressure(&self, property: Property, share: f32) -> Self {
+        self.with(property, Input::Pressure, Curve::Share(share.max(0.0).min(1.0)))
+    }
+    /// Some property follows this input.
+    pub fn follow(&self, input: Input) -> bool {
+        self.drives.iter().any(|drive| drive.input == input)
+    }
+    /// Something drives this property.
+    pub fn drive(&self, property: Property) -> bool {
+        self.drives.iter().any(|drive| drive.property == property)
+    }
+    fn outputs(&self, property: Property, readings: &Readings) -> impl Iterator<Item = f32> {
+        let rows = self.drives.iter().filter(move |drive| drive.property == property);
+        rows.map(move |drive| drive.curve.at(readings.of(drive.input, property)))
+    }
+    /// What a property is multiplied by, `[0, 1]`.
+    pub fn factor(&self, property: Property, readings: &Readings) -> f32 {
+        self.outputs(property, readings).product()
+    }
+    /// What is added to an angle, in turns.
+    pub fn turns(&self, property: Property, readings: &Readings) -> f32 {
+        self.outputs(property, readings).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn through(points: &[(f32, f32)]) -> Curve {
+        Curve::through(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_curve_is_straight_between_its_points_and_level_beyond_them() {
+        let curve = through(&[(0.2, 1.0), (0.6, 0.5), (0.6, 0.1), (0.8, 0.3)]);
+        for (x, y) in [(0.0, 1.0), (0.2, 1.0), (0.4, 0.75), (0.6, 0.5), (0.7, 0.2), (0.9, 0.3), (f32::NAN, 1.0)] {
+            assert!((curve.at(x) - y).abs() < 1e-6, "{x}: {}", curve.at(x));
+        }
+        assert!(curve.at(0.6001) < 0.11, "two points above each other are a step");
+        assert_eq!([0.0, 0.5, 1.0].map(|x| Curve::Share(0.5).at(x)), [0.5, 0.75, 1.0]);
+    }
+    #[test]
+    fn points_that_run_back_or_leave_the_square_are_no_curve() {
+        for points in [&[][..], &[(0.5, 0.5), (0.4, 0.5)], &[(0.0, 1.5)], &[(f32::NAN, 0.5)]] {
+            assert!(Curve::through(points.iter().map(|&(x, y)| vec2(x, y)).collect()).is_none(), "{points:?}");
+        }
+        assert!(Curve::through(vec![Vec2::ZERO; MAX_POINTS + 1]).is_none());
+    }
+    #[test]
+    fn rows_of_one_property_multiply_and_angles_add() {
+        let dynamics = Dynamics::none()
+            .with(Property::Size, Input::Pressure, Curve::Share(1.0))
+            .with(Property::Size, Input::Slope, through(&[(0.0, 1.0), (1.0, 0.5)]))
+            .with(Property::Rotation, Input::Direction, Curve::Share(1.0))
+            .with(Property::Rotation, Input::Tilt, Curve::Share(1.0));
+        let readings = Readings { pressure: 0.5, slope: 1.0, direction: 0.25, tilt: 0.5, ..Readings::default() };
+        assert_eq!(dynamics.factor(Property::Size, &readings), 0.25);
+        assert_eq!(dynamics.turns(Property::Rotation, &readings), 0.75);
+        assert_eq!(dynamics.factor(Property::Flow, &readings), 1.0);
+    }
+    #[test]
+    fn a_row_takes_the_place_of_the_one_before_and_a_factor_of_one_is_none() {
+        let plain = Dynamics::default();
+        assert_eq!(plain.with_pressure(Property::Flow, 0.0), Dynamics::none());
+        let twice = plain.with_pressure(Property::Flow, 0.25).with_pressure(Property::Flow, 0.5);
+        assert_eq!((twice.drives().len(), twice.pressure_share(Property::Flow)), (1, 0.5));
+    }
+    #[test]
+    fn directions_turn_counter_clockwise_as_seen() {
+        let turns = [vec2(1.0, 0.0), vec2(0.0, -2.0), vec2(-1.0, 0.0), vec2(0.0, 3.0), Vec2::ZERO].map(turns_of);
+        assert_eq!(turns, [0.0, 0.25, 0.5, 0.75, 0.0]);
+        assert!(turns_of(vec2(1.0, 1e-9)) < 1.0);
+    }
+    #[test]
+    fn what_is_random_differs_from_dab_to_dab_and_from_property_to_property() {
+        let random = |seed, property| Readings { seed, ..Readings::default() }.of(Input::Random, property);
+        assert_eq!(random(3, Property::Size), random(3, Property::Size));
+        assert_ne!(random(3, Property::Size), random(4, Property::Size));
+        assert_ne!(random(3, Property::Size), random(3, Property::Hue));
+    }
+}

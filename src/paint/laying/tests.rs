@@ -1,0 +1,228 @@
+//! Dabs from samples, against hand-computed places and readings.
+
+use super::*;
+use crate::math::vec2;
+use crate::math::{Size, vec3};
+use crate::paint::{Curve, Dynamics, Jitter};
+use crate::raster::Plane;
+use crate::surface::{Maps, Surface};
+use proptest::prelude::*;
+
+fn flat() -> Scene {
+    Scene { size: Size::new(1000, 500), surface: None }
+}
+fn dabs(brush: &Brush, samples: &[Sample]) -> Vec<Dab> {
+    super::dabs(brush, Operator::None, Color::BLACK, samples, &flat())
+}
+
+fn brush(size: f32) -> Brush {
+    Brush { size, spacing: 0.25, ..Brush::default() }
+}
+fn line(n: usize) -> Vec<Sample> {
+    (0..n).map(|i| Sample::at(vec2(10.0, 20.0).lerp(vec2(110.0, 95.0), i as f32 / (n - 1) as f32))).collect()
+}
+
+#[test]
+fn dabs_stand_a_share_of_their_diameter_apart() {
+    let dabs = dabs(&brush(20.0), &line(2));
+    assert_eq!(dabs.len(), 26, "125 px in steps of 5, and the first");
+    for pair in dabs.windows(2) {
+        assert!((pair[0].at.distance(pair[1].at) - 5.0).abs() < 1e-3);
+    }
+    assert_eq!(dabs[0].at, vec2(10.0, 20.0));
+    assert_eq!(dabs[0].radius, 10.0);
+}
+#[test]
+fn dabs_do_not_depend_on_how_densely_a_line_was_sampled() {
+    let (few, many) = (dabs(&brush(20.0), &line(2)), dabs(&brush(20.0), &line(1234)));
+    assert!(few.len().abs_diff(many.len()) <= 1, "{} and {}", few.len(), many.len());
+    for (a, b) in few.iter().zip(&many) {
+        assert!(a.at.distance(b.at) < 0.01, "{} and {}", a.at, b.at);
+    }
+}
+#[test]
+fn a_circle_sampled_at_twelve_points_stays_round() {
+    let on_circle = |i: usize| vec2(200.0, 200.0) + 100.0 * Vec2::from_angle(i as f32 * std::f32::consts::PI / 6.0);
+    let samples: Vec<Sample> = (0..14).map(|i| Sample::at(on_circle(i))).collect();
+    // Away from its ends, where the curve does not know how it goes on.
+    for dab in dabs(&brush(10.0), &samples).iter().filter(|d| d.at.distance(on_circle(0)) > 60.0) {
+        let radius = dab.at.distance(vec2(200.0, 200.0));
+        assert!((radius - 100.0).abs() < 0.25, "{radius}");
+    }
+}
+#[test]
+fn the_curve_passes_through_every_sample() {
+    let samples: Vec<Sample> =
+        [(0.0, 0.0), (30.0, 5.0), (32.0, 40.0), (90.0, 41.0)].map(|(x, y)| Sample::at(vec2(x, y))).into();
+    let dabs = dabs(&Brush { size: 1.0, ..brush(1.0) }, &samples);
+    for s in &samples {
+        assert!(dabs.iter().any(|d| d.at.distance(s.at) < 0.3), "{}", s.at);
+    }
+}
+#[test]
+fn one_sample_and_many_at_one_place_leave_one_dab() {
+    let one = dabs(&brush(20.0), &[Sample::at(vec2(5.0, 5.0))]);
+    assert_eq!(one.len(), 1);
+    let pressed: Vec<Sample> = [0.2, 0.9, 0.4].map(|pressure| Sample { pressure, ..Sample::at(vec2(5.0, 5.0)) }).into();
+    let dabs = dabs(&brush(20.0), &pressed);
+    assert_eq!((dabs.len(), dabs[0].flow), (1, 0.9));
+}
+#[test]
+fn pressure_drives_what_the_dynamics_say() {
+    let dynamics = Dynamics::default().with_pressure(Property::Size, 0.5);
+    let brush = Brush { dynamics, ..brush(20.0) };
+    let dab = dabs(&brush, &[Sample { pressure: 0.5, ..Sample::at(Vec2::ONE) }])[0];
+    assert_eq!((dab.radius, dab.flow), (7.5, 0.5));
+    let none = dabs(&brush, &[Sample { pressure: 0.0, ..Sample::at(Vec2::ONE) }]);
+    assert!(none.is_empty(), "without pressure nothing flows");
+}
+#[test]
+fn hostile_samples_are_dropped_and_hostile_brushes_paint_nothing() {
+    let mut samples = line(5);
+    let clean = dabs(&brush(20.0), &samples);
+    for (i, bad) in [f32::NAN, f32::INFINITY, -1e30].into_iter().enumerate() {
+        samples.insert(2 * i, Sample::at(vec2(bad, 3.0)));
+        samples.push(Sample { pressure: f32::NAN, ..Sample::at(vec2(3.0, 3.0)) });
+    }
+    assert_eq!(dabs(&brush(20.0), &samples), clean);
+    for size in [f32::NAN, f32::INFINITY, 0.0, -5.0] {
+        assert!(dabs(&brush(size), &line(3)).is_empty(), "{size}");
+    }
+    let ends = [Sample::at(vec2(-9e5, 0.0)), Sample::at(vec2(9e5, 0.0))];
+    assert!(dabs(&Brush { spacing: f32::NAN, ..brush(1.0) }, &ends).len() <= MAX_STEPS as usize + 1);
+}
+
+/// A slope to the right, its depth and normal known, hollow along a groove at x = 500.
+fn slope() -> Scene {
+    let size = Size::new(1000, 500);
+    let nz = 0.8f32;
+    let normals = Plane::from_fn(size, |_, _| vec3(0.6, 0.0, nz));
+    let depth = Plane::from_fn(size, |x, _| x as f32 / 999.0);
+    let coverage = Plane::from_fn(size, |_, y| if y < 400 { 255 } else { 0 });
+    Scene { size, surface: Some(Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())) }
+}
+fn timed(points: &[(f32, f32, f32)]) -> Vec<Sample> {
+    points.iter().map(|&(x, y, time_secs)| Sample { time_secs, ..Sample::at(vec2(x, y)) }).collect()
+}
+fn driven(property: Property, input: Input, scene: &Scene, samples: &[Sample]) -> Vec<Dab> {
+    let dynamics = Dynamics::none().with(property, input, Curve::Share(1.0));
+    let brush = Brush { dynamics, ..brush(20.0) };
+    super::dabs(&brush, Operator::Normal { alpha: 0.8, beta: 1.0, detail: 0.5 }, Color::BLACK, samples, scene)
+}
+
+#[test]
+fn every_input_reads_what_it_says() {
+    let up = timed(&[(500.0, 450.0, 0.0), (500.0, 350.0, 0.1), (500.0, 250.0, 0.2)]);
+    let flow = |input, scene: &Scene| driven(Property::Flow, input, scene, &up);
+    // 1000 px/s of 2 · 1000.
+    assert!(flow(Input::Speed, &flat()).iter().all(|dab| (dab.flow - 0.5).abs() < 1e-4));
+    assert!(flow(Input::Direction, &flat()).iter().all(|dab| (dab.flow - 0.25).abs() < 1e-4));
+    // The first lies at distance 0, and is not seen; the next a quarter of a diameter on, of ten.
+    let distances: Vec<f32> = flow(Input::Distance, &flat()).iter().map(|dab| dab.flow).take(3).collect();
+    assert!(distances.iter().zip([0.025, 0.05, 0.075]).all(|(a, b)| (a - b).abs() < 1e-4), "{distances:?}");
+    let slopes = flow(Input::Slope, &slope());
+    assert!(slopes.iter().all(|dab| (dab.flow - 0.2).abs() < 1e-5 && dab.at.y < 400.0), "unseen off the surface");
+    for dab in flow(Input::Depth, &slope()) {
+        let expected = if dab.at.y < 400.0 { 500.0 / 999.0 } else { 1.0 };
+        assert!((dab.flow - expected).abs() < 2e-3, "{}: {}", dab.at, dab.flow);
+    }
+    let leaning = [Sample { tilt: vec2(0.0, 45.0), ..Sample::at(vec2(9.0, 9.0)) }];
+    assert_eq!(driven(Property::Flow, Input::Tilt, &flat(), &leaning)[0].flow, 0.5);
+    assert_eq!(driven(Property::Flow, Input::TiltDirection, &flat(), &leaning)[0].flow, 0.75, "it leans down");
+    let random: Vec<f32> = flow(Input::Random, &flat()).iter().map(|dab| dab.flow).collect();
+    let mean = random.iter().sum::<f32>() / random.len() as f32;
+    assert!((mean - 0.5).abs() < 0.15 && random[0] != random[1], "{mean}");
+}
+#[test]
+fn every_property_follows_what_drives_it() {
+    let pressed = [Sample { pressure: 0.25, ..Sample::at(vec2(40.0, 40.0)) }];
+    let dab = |property| driven(property, Input::Pressure, &flat(), &pressed)[0];
+    let plain = dab(Property::Spacing);
+    assert_eq!((plain.radius, plain.hardness, plain.ceiling), (10.0, 0.5, 1.0));
+    assert_eq!(dab(Property::Size).radius, 2.5);
+    assert_eq!(dab(Property::Opacity).ceiling, 0.25);
+    assert_eq!(dab(Property::Flow).flow, 0.25);
+    assert_eq!(dab(Property::Hardness).hardness, 0.125);
+    assert_eq!(dab(Property::Rotation).rotation_rad, TAU / 4.0);
+    assert_eq!(dab(Property::Alpha).operator, Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.5 });
+    assert_eq!(dab(Property::Detail).operator, Operator::Normal { alpha: 0.8, beta: 1.0, detail: 0.125 });
+    let line = [(10.0, 10.0), (60.0, 10.0)].map(|(x, y)| Sample { pressure: 0.5, ..Sample::at(vec2(x, y)) });
+    let close = driven(Property::Spacing, Input::Pressure, &flat(), &line);
+    assert!((close[1].at.x - close[0].at.x - 2.5).abs() < 1e-4, "half of a quarter of 20 px");
+    let depth = Dynamics::none().with(Property::Gamma, Input::Pressure, Curve::Share(1.0));
+    let brush = Brush { dynamics: depth, ..brush(20.0) };
+    let bent = super::dabs(&brush, Operator::Depth { gamma: 2.0 }, Color::BLACK, &pressed, &flat());
+    assert_eq!(bent[0].operator, Operator::Depth { gamma: 0.5 });
+}
+#[test]
+fn hollows_read_low_and_ridges_high() {
+    let size = Size::new(320, 64);
+    // Waves: x = 40 is a ridge's top (normals diverge), x = 80 a groove's.
+    let normals = Plane::from_fn(size, |x, _| vec3(-(0.05 * (x as f32 + 0.5) * TAU / 4.0).cos(), 0.0, 1.0));
+    let maps = Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+    let scene = Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
+    let at = |x: f32| driven(Property::Flow, Input::Curvature, &scene, &[Sample::at(vec2(x, 32.0))])[0].flow;
+    // The slope −n̄/n_z turns at 0.0785 per px there, s is 10 px: κ = tanh(0.785), less a little for the blur.
+    let (low, high) = [at(60.0), at(100.0), at(140.0)].iter().fold((1.0f32, 0.0f32), |(l, h), &v| (l.min(v), h.max(v)));
+    assert!((high - (0.5 + 0.5 * 0.785f32.tanh())).abs() < 0.01, "{high}");
+    assert!((low - (0.5 - 0.5 * 0.785f32.tanh())).abs() < 0.01, "{low}");
+}
+#[test]
+fn scattered_dabs_stay_within_their_reach_and_fill_it() {
+    let brush = Brush { scatter: 2.0, spacing: 0.05, ..brush(20.0) };
+    let (scattered, straight) = (dabs(&brush, &line(2)), dabs(&Brush { scatter: 0.0, ..brush.clone() }, &line(2)));
+    let off: Vec<Vec2> = scattered.iter().zip(&straight).map(|(a, b)| a.at - b.at).collect();
+    assert!(off.iter().all(|v| v.length() <= 40.0) && off.iter().any(|v| v.length() > 35.0));
+    let mean = off.iter().sum::<Vec2>() / off.len() as f32;
+    assert!(mean.length() < 8.0, "{mean}");
+    assert_eq!(scattered, dabs(&brush, &line(2)), "the same samples lay the same dabs");
+    assert_ne!(scattered, dabs(&Brush { seed: 1, ..brush }, &line(2)));
+}
+#[test]
+fn colours_vary_only_where_the_brush_says() {
+    let brush = Brush { jitter: Jitter { value: 0.3, ..Jitter::default() }, ..brush(20.0) };
+    let lay = |brush: &Brush| super::dabs(brush, Operator::None, Color::parse("#808080").unwrap(), &line(2), &flat());
+    let values: Vec<u8> = lay(&brush).iter().map(|dab| dab.color.r).collect();
+    assert!(values.iter().all(|v| (51..=205).contains(v)) && values[0] != values[1], "{values:?}");
+    assert!(lay(&Brush { jitter: Jitter::default(), ..brush }).iter().all(|dab| dab.color.r == 128));
+}
+#[test]
+fn time_that_runs_backward_and_clocks_that_stand_still_do_no_harm() {
+    let good = timed(&[(0.0, 0.0, 0.0), (50.0, 0.0, 0.1), (100.0, 0.0, 0.2)]);
+    let mut bad = good.clone();
+    bad.insert(2, Sample { time_secs: 0.05, ..Sample::at(vec2(70.0, 300.0)) });
+    bad.insert(1, Sample { time_secs: f32::NAN, ..Sample::at(vec2(20.0, 300.0)) });
+    assert_eq!(dabs(&brush(20.0), &bad), dabs(&brush(20.0), &good));
+    let still = driven(Property::Flow, Input::Speed, &flat(), &timed(&[(0.0, 0.0, 1.0), (50.0, 0.0, 1.0)]));
+    assert!(still.is_empty(), "without time there is no speed");
+}
+
+proptest! {
+    #[test]
+    fn dabs_come_out_the_same_however_the_samples_come_in(
+        points in prop::collection::vec((-50.0f32..300.0, -50.0f32..300.0, 0.0f32..1.0, 0.0f32..0.02), 0..24),
+        cuts in prop::collection::vec(0usize..24, 0..6),
+    ) {
+        let mut time_secs = 0.0;
+        let samples: Vec<Sample> = points.iter().map(|&(x, y, pressure, dt)| {
+            time_secs += dt;
+            Sample { pressure, time_secs, ..Sample::at(vec2(x, y)) }
+        }).collect();
+        let dynamics = Dynamics::default().with(Property::Size, Input::Speed, Curve::Share(0.9));
+        let brush = Brush { scatter: 0.5, dynamics, ..brush(17.0) };
+        let whole = dabs(&brush, &samples);
+        let mut laying = Laying::new(&brush, Operator::None, Color::BLACK, &flat());
+        let mut laid = Vec::new();
+        for (i, sample) in samples.iter().enumerate() {
+            laying.push(sample, &mut laid);
+            prop_assert_eq!(&laid[..], &whole[..laid.len()], "settled dabs never change");
+            if cuts.contains(&i) {
+                let mut shown = laid.clone();
+                shown.extend(laying.tail());
+                prop_assert_eq!(shown, dabs(&brush, &samples[..=i]), "what is shown is what painting at once gives");
+            }
+        }
+        laid.extend(laying.tail());
+        prop_assert_eq!(laid, whole);
+    }
+}

@@ -1,0 +1,91 @@
+//! The colour of one dab: the stroke's, turned round the wheel and jittered (HSV of the encoded values).
+//! Floor 3.
+
+use super::brush::Brush;
+use super::dynamics::{Property, Readings};
+use crate::math::{
+    hash,
+    srgb::{Color, quantise},
+};
+
+/// Dabs of this brush differ in colour.
+pub fn varies(brush: &Brush) -> bool {
+    let jitter = brush.jitter;
+    let jitters = [jitter.hue_degrees, jitter.saturation, jitter.value].iter().any(|&v| v > 0.0);
+    jitters || [Property::Hue, Property::Saturation, Property::Value].iter().any(|&p| brush.dynamics.drive(p))
+}
+
+/// The colour of a dab; alpha stays the stroke's.
+pub fn of(brush: &Brush, color: Color, readings: &Readings) -> Color {
+    let unit = |v: f32| v.max(0.0).min(1.0);
+    let either_way = |channel: u32| 2.0 * hash::unit(readings.seed, channel, 2) - 1.0;
+    let (jitter, dynamics) = (brush.jitter, &brush.dynamics);
+    let [h, s, v] = hsv(color);
+    let turns = dynamics.turns(Property::Hue, readings) + unit(jitter.hue_degrees / 180.0) * 0.5 * either_way(0);
+    let s = s * dynamics.factor(Property::Saturation, readings) + unit(jitter.saturation) * either_way(1);
+    let v = v * dynamics.factor(Property::Value, readings) + unit(jitter.value) * either_way(2);
+    let [r, g, b] = rgb([h + turns, unit(s), unit(v)]).map(quantise);
+    Color { r, g, b, ..color }
+}
+
+/// Hue in turns, saturation, value: each in `[0, 1]`.
+fn hsv(color: Color) -> [f32; 3] {
+    let [r, g, b, _] = color.to_f32();
+    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
+    let range = most - least;
+    if range <= 0.0 {
+        return [0.0, 0.0, most];
+    }
+    let sixths = if most == r {
+        (g - b) / range
+    } else if most == g {
+        2.0 + (b - r) / range
+    } else {
+        4.0 + (r - g) / range
+    };
+    [(sixths / 6.0).rem_euclid(1.0), range / most, most]
+}
+
+/// The inverse; the hue may lie any number of turns away.
+fn rgb([hue, saturation, value]: [f32; 3]) -> [f32; 3] {
+    // How far from each primary, in sixths of a turn.
+    [5.0, 3.0, 1.0].map(|primary| {
+        let k = (primary + 6.0 * hue).rem_euclid(6.0);
+        value * (1.0 - saturation * k.min(4.0 - k).max(0.0).min(1.0))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paint::{Curve, Dynamics, Input, Jitter};
+
+    #[test]
+    fn colours_go_to_hsv_and_back() {
+        for text in ["#000000", "#ffffff", "#ff0000", "#123456", "#fe01a0", "#80ff7f", "#0000ff"] {
+            let color = Color::parse(text).unwrap();
+            let [r, g, b] = rgb(hsv(color)).map(quantise);
+            assert_eq!([r, g, b], [color.r, color.g, color.b], "{text}");
+        }
+    }
+    #[test]
+    fn a_third_of_a_turn_makes_red_green() {
+        let third = Curve::through(vec![crate::math::vec2(0.0, 1.0 / 3.0)]).unwrap();
+        let brush =
+            Brush { dynamics: Dynamics::none().with(Property::Hue, Input::Pressure, third), ..Brush::default() };
+        let red = Color::parse("#ff000080").unwrap();
+        assert_eq!(of(&brush, red, &Readings::default()).to_string(), "#00ff0080");
+    }
+    #[test]
+    fn jitter_stays_within_its_bounds_and_reaches_far_into_them() {
+        let brush = Brush { jitter: Jitter { hue_degrees: 36.0, saturation: 0.2, value: 0.1 }, ..Brush::default() };
+        let color = Color::parse("#804040").unwrap();
+        let all: Vec<[f32; 3]> =
+            (0..500).map(|seed| hsv(of(&brush, color, &Readings { seed, ..Readings::default() }))).collect();
+        for (c, (middle, reach)) in [(0.0, 0.1), (0.5, 0.2), (0.502, 0.1)].into_iter().enumerate() {
+            let from_middle = |v: &[f32; 3]| if c == 0 { (v[0] + 0.5) % 1.0 - 0.5 } else { v[c] - middle };
+            let farthest = all.iter().map(|v| from_middle(v).abs()).fold(0.0, f32::max);
+            assert!(farthest > 0.9 * reach && farthest < 1.05 * reach + 0.01, "channel {c}: {farthest}");
+        }
+    }
+}
