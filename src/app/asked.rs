@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use super::files::Purpose;
+use super::panels::Front;
 use crate::session::Action;
 use std::path::PathBuf;
 
@@ -47,6 +48,10 @@ pub enum WindowAsk {
     Shortcuts,
     About,
     TogglePanels,
+    OtherSide,
+    PanelsApart,
+    /// A panel into a window of its own, or back.
+    Float(Front),
     ToggleTheme,
     Scale(f32),
     FullScreen,

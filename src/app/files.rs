@@ -1,7 +1,7 @@
 //! Asking for a file: the system's own dialog, or one of the window where the system has none.
 //! Floor 7.
 
-use super::jobs::{Done, Jobs};
+use super::jobs::{Done, Jobs, While};
 use crate::io::export::Format;
 use crate::session::storage::{DOCUMENTS, PICTURES};
 use std::path::PathBuf;
@@ -66,9 +66,9 @@ pub enum Answer {
 /// Asks with the system's dialog, on another thread. [`Done::Chosen`] with `None` means that there is none.
 pub fn ask(jobs: &mut Jobs, purpose: Purpose, name: &str) {
     let name = name.to_owned();
-    jobs.start(purpose.title().into(), move || match system_dialog(purpose, &name) {
+    jobs.start(purpose.title().into(), While::Asking, move |_| match system_dialog(purpose, &name) {
         Answer::File(file) => Done::Chosen(purpose, Some(file)),
-        Answer::Cancelled => Done::Cancelled,
+        Answer::Cancelled => Done::Nothing,
         Answer::Nowhere => Done::Chosen(purpose, None),
     });
 }

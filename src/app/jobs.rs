@@ -1,12 +1,19 @@
-//! Work on files, each on a thread of its own, so that the window never waits for a disk.
+//! Long work, each piece on a thread of its own with a bar of progress and a way to give it up, so that the window never waits.
 //! Floor 7.
 
+use crate::app::files::Purpose;
+use crate::document::{Document, Progress};
 use crate::io::maps;
+use crate::io::save::Stamp;
+use crate::raster::Picture;
+use crate::session::Edit;
 use crate::session::storage::{self, Kind, Opened};
 use crate::{Error, Result};
 use eframe::egui;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
 
 /// What a job came to; done by the window when it arrives.
 pub enum Done {
@@ -15,49 +22,134 @@ pub enum Done {
     IsMap(PathBuf),
     /// Maps were read, for the import dialog.
     Read(Box<Result<maps::Import>>),
-    /// Nothing is to be done.
-    Cancelled,
+    /// A picture was read, to become an image layer.
+    Pictured(String, Picture),
+    /// The document of a tab was saved; `None` if that was given up.
+    Saved(Box<Saved>),
+    /// An edit of the document of a tab that took long.
+    Edited(Box<Edited>),
+    /// The finished picture, for the clipboard.
+    Copied(egui::ColorImage),
+    /// Nothing is left to be done, as when a job was given up.
+    Nothing,
+    Failed(Error),
     /// A file dialog was answered; `None` where the system has no dialog.
-    Chosen(crate::app::files::Purpose, Option<PathBuf>),
+    Chosen(Purpose, Option<PathBuf>),
+}
+
+pub struct Saved {
+    /// By its key.
+    pub tab: usize,
+    pub file: PathBuf,
+    /// What the file holds now.
+    pub document: Document,
+    pub stamp: Result<Option<Stamp>>,
+}
+
+pub struct Edited {
+    /// By its key.
+    pub tab: usize,
+    /// What was edited.
+    pub from: Document,
+    pub edit: Edit,
+}
+
+/// What can be seen and done while a job lasts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum While {
+    /// It can be given up.
+    Working,
+    /// It edits the document in front, so nothing else may meanwhile. It can be given up.
+    Editing,
+    /// Another program is at work: a dialog of the system.
+    Asking,
+}
+
+/// A job under way.
+pub struct UnderWay {
+    key: usize,
+    /// What it does, for the status bar.
+    pub name: String,
+    pub progress: Arc<Progress>,
+    pub kind: While,
+    since: Instant,
+}
+
+impl UnderWay {
+    /// How far it has come, `[0, 1]`; `None` while that cannot be told.
+    pub fn share(&self) -> Option<f32> {
+        let (done, total) = self.progress.read();
+        (total > 0).then(|| done as f32 / total as f32)
+    }
+    /// It has lasted long enough to be worth a word.
+    pub fn is_long(&self) -> bool {
+        self.since.elapsed() > Duration::from_millis(250)
+    }
 }
 
 /// The jobs under way.
 pub struct Jobs {
-    sender: Sender<Done>,
-    done: Receiver<Done>,
+    sender: Sender<(usize, Done)>,
+    done: Receiver<(usize, Done)>,
     ctx: egui::Context,
-    /// What each is called, for the status bar.
-    pub under_way: Vec<String>,
+    next: usize,
+    pub under_way: Vec<UnderWay>,
 }
 
 impl Jobs {
     pub fn new(ctx: &egui::Context) -> Self {
         let (sender, done) = channel();
-        Self { sender, done, ctx: ctx.clone(), under_way: Vec::new() }
+        Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new() }
     }
     /// Runs a job; `name` is shown while it lasts.
-    pub fn start(&mut self, name: String, work: impl FnOnce() -> Done + Send + 'static) {
-        self.under_way.push(name.clone());
-        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
+    pub fn start(&mut self, name: String, kind: While, work: impl FnOnce(&Progress) -> Done + Send + 'static) {
+        let key = self.next;
+        self.next += 1;
+        let progress = Arc::new(Progress::default());
+        let (sender, ctx, watched) = (self.sender.clone(), self.ctx.clone(), progress.clone());
         let run = move || {
-            let _ = sender.send(work());
+            // The window may be gone by then.
+            let _ = sender.send((key, work(&watched)));
             ctx.request_repaint();
         };
-        if let Err(error) = std::thread::Builder::new().name("job".into()).spawn(run) {
-            let _ = self.sender.send(Done::Opened(Box::new(Err(Error::io(name, error)))));
+        if let Err(error) = spawn(&name, run) {
+            // This very end of the channel is held here.
+            let _ = self.sender.send((key, Done::Failed(error)));
         }
+        self.under_way.push(UnderWay { key, name, progress, kind, since: Instant::now() });
     }
     pub fn open(&mut self, file: PathBuf) {
-        self.start(format!("Opening {}", file.display()), move || match storage::kind_of(&file) {
+        let name = format!("Opening {}", short(&file));
+        self.start(name, While::Working, move |_| match storage::kind_of(&file) {
             Ok(Kind::Normals | Kind::Depth) => Done::IsMap(file),
             _ => Done::Opened(Box::new(storage::open(&file))),
         });
     }
-    /// What was finished since the last call.
+    /// What was finished since the last call. What was given up comes to nothing, unless it was done already.
     pub fn finished(&mut self) -> Vec<Done> {
-        let done: Vec<Done> = self.done.try_iter().collect();
-        // They end in any order; how many are left is what counts.
-        self.under_way.truncate(self.under_way.len().saturating_sub(done.len()));
-        done
+        let mut finished = Vec::new();
+        for (key, done) in self.done.try_iter() {
+            let given_up = self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
+            self.under_way.retain(|job| job.key != key);
+            if !given_up || matches!(done, Done::Saved(_)) {
+                finished.push(done);
+            }
+        }
+        finished
     }
+    /// The job that nothing else may be done beside.
+    pub fn editing(&self) -> Option<&UnderWay> {
+        self.under_way.iter().find(|job| job.kind == While::Editing)
+    }
+}
+
+/// A file's own name, for a line in which a whole path has no room.
+pub fn short(file: &std::path::Path) -> String {
+    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Starts a thread. Fails where the system starts none, with a sentence that names what it was for.
+pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
+    let started = std::thread::Builder::new().name("rilievo".into()).spawn(work);
+    started.map(drop).map_err(|error| Error::io(name, error))
 }

@@ -8,10 +8,12 @@ mod dialogs;
 mod files;
 mod icons;
 mod jobs;
+mod keymap;
 mod keys;
 mod painter;
 mod panels;
 mod sample;
+mod settings;
 mod swatches;
 mod theme;
 mod thumbnails;
@@ -37,7 +39,7 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
     let options = eframe::NativeOptions { viewport, ..Default::default() };
     let start = move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {
         theme::install(&cc.egui_ctx);
-        let mut window = Window::new(&cc.egui_ctx);
+        let mut window = Window::remembering(&cc.egui_ctx, settings::file());
         window.begin(files);
         Ok(Box::new(window))
     };

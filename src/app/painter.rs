@@ -1,12 +1,14 @@
 //! The painter: a thread that flattens documents tile by tile, so that the window never waits for pixels. It compares what it
-//! shows with what it is given and paints only tiles that differ, those in sight first.
-//! Floor 7. Pixels are `document::flatten`'s.
+//! shows with what it is given and paints only tiles that differ, those in sight first. While something is dragged and whole
+//! pixels would take longer than a frame, it paints a smaller picture instead, and the whole one as soon as the hand rests.
+//! Floor 7. Pixels are `document::flatten`'s; what is left to paint of one picture is `pass`'s.
 
-use crate::document::{Document, Prepared, Progress, diff};
-use crate::math::Rect;
+mod pass;
+
+use crate::document::{Document, Reduced};
+use crate::math::{Rect, Size};
 use crate::raster::{Tile, TileAt};
-use rayon::prelude::*;
-use std::collections::BTreeSet;
+use pass::Pass;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -18,11 +20,17 @@ pub struct Wanted {
     pub document: Document,
     /// The canvas pixels in sight.
     pub visible: Rect,
+    /// The hand holds a slider or a handle: a smaller picture soon is worth more than a whole one late.
+    pub is_dragged: bool,
 }
 
 /// Tiles that were painted.
 pub struct Painted {
     pub picture: u64,
+    /// Canvas pixels to a pixel of these tiles, a side: 1 are whole pixels.
+    pub step: u32,
+    /// Of the picture that the tiles are cut from.
+    pub size: Size,
     pub tiles: Vec<(TileAt, Option<Arc<Tile>>)>,
     /// Nothing in sight is left to paint.
     pub is_settled: bool,
@@ -45,18 +53,25 @@ pub struct Painter {
 
 /// Tiles painted between two looks at whether something newer is wanted.
 const BATCH: usize = 48;
+/// The same while something is dragged: a slow redraw is to be noticed soon.
+const FEW: usize = 12;
 /// A pass over what is in sight may take so long before something newer cuts in, so that a drag shows whole pictures.
 const PASS: Duration = Duration::from_millis(150);
+/// A redraw during a drag that takes no longer is painted in whole pixels.
+const FRAME: Duration = Duration::from_millis(30);
+/// The hand rests when nothing newer came for so long: then the whole picture is painted.
+const REST: Duration = Duration::from_millis(180);
+/// Canvas pixels to a pixel of the smallest picture.
+const COARSEST: u32 = 8;
 
 impl Painter {
-    /// `done` is called on the painter's thread after each batch.
-    pub fn new(done: impl Fn() + Send + 'static) -> Self {
+    /// `done` is called on the painter's thread after each batch. Fails where the system starts no thread.
+    pub fn new(done: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let (sender, painted) = channel();
         let for_thread = shared.clone();
-        // Without a thread nothing is painted; the window still opens and says so by staying empty.
-        let _ = std::thread::Builder::new().name("painter".into()).spawn(move || work(&for_thread, &sender, &done));
-        Self { shared, painted }
+        std::thread::Builder::new().name("painter".into()).spawn(move || work(&for_thread, &sender, &done))?;
+        Ok(Self { shared, painted })
     }
     /// Asks for a document; the last one asked for counts.
     pub fn want(&self, wanted: Wanted) {
@@ -84,48 +99,44 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 #[derive(Default)]
 struct Work {
     wanted: Option<Wanted>,
-    prepared: Option<Prepared>,
-    /// Tiles that are not yet those of the wanted document.
-    dirty: BTreeSet<TileAt>,
-    begun: Option<Instant>,
+    whole: Pass,
+    draft: Option<Draft>,
+    /// The drag is shown by the draft.
+    is_drafting: bool,
+    /// The hand rested on this document: it is painted whole, however long that takes.
+    is_resting: bool,
 }
 
-fn work(shared: &Shared, sender: &Sender<Painted>, done: &dyn Fn()) {
+/// A smaller picture, for as long as a drag lasts and the next ones.
+struct Draft {
+    step: u32,
+    reduced: Reduced,
+    pass: Pass,
+}
+
+/// `None` once the window is gone.
+fn work(shared: &Shared, sender: &Sender<Painted>, done: &dyn Fn()) -> Option<()> {
     let mut work = Work::default();
+    let send = |painted| {
+        sender.send(painted).ok()?;
+        done();
+        Some(())
+    };
     loop {
-        let mut wanted = lock(&shared.wanted);
-        while wanted.is_none() && work.dirty.is_empty() {
-            if *lock(&shared.closed) {
-                return;
-            }
-            wanted = shared.wake.wait(wanted).unwrap_or_else(PoisonError::into_inner);
-        }
-        if *lock(&shared.closed) {
-            return;
-        }
-        let next = wanted.take();
-        drop(wanted);
-        if let Some(next) = next {
+        if let Some(next) = work.wait(shared)? {
             let picture = next.picture;
             work.take_up(next);
             // Nothing differs: whoever waits for the picture has it.
-            if work.dirty.is_empty() {
-                let painted = Painted { picture, tiles: Vec::new(), is_settled: true, took: Duration::ZERO };
-                if sender.send(painted).is_err() {
-                    return;
-                }
-                done();
+            if !work.has_more() {
+                send(Painted { picture, ..work.nothing() })?;
             }
         }
-        let pass = Instant::now();
+        let begun = Instant::now();
         while let Some(painted) = work.paint() {
             let is_settled = painted.is_settled;
-            if sender.send(painted).is_err() {
-                return;
-            }
-            done();
+            send(painted)?;
             let newer = lock(&shared.wanted).is_some();
-            if newer && (is_settled || pass.elapsed() > PASS) {
+            if (newer && (is_settled || begun.elapsed() > PASS)) || (work.is_drafting && is_settled) {
                 break;
             }
         }
@@ -133,48 +144,119 @@ fn work(shared: &Shared, sender: &Sender<Painted>, done: &dyn Fn()) {
 }
 
 impl Work {
-    fn take_up(&mut self, next: Wanted) {
-        let same =
-            self.wanted.as_ref().filter(|old| old.picture == next.picture && old.document.size == next.document.size);
-        match same {
-            Some(old) => self.dirty.extend(diff(&old.document, &next.document)),
-            None => self.dirty = TileAt::covering(next.document.size.rect()).collect(),
+    /// Waits for something to do; the document that is newly wanted, if any. `None` once the window is gone.
+    fn wait(&mut self, shared: &Shared) -> Option<Option<Wanted>> {
+        let mut wanted = lock(&shared.wanted);
+        loop {
+            if *lock(&shared.closed) {
+                return None;
+            }
+            if wanted.is_some() || (!self.is_drafting && self.has_more()) {
+                return Some(wanted.take());
+            }
+            if self.is_drafting {
+                let (next, waited) = shared.wake.wait_timeout(wanted, REST).unwrap_or_else(PoisonError::into_inner);
+                wanted = next;
+                (self.is_drafting, self.is_resting) = (!waited.timed_out(), waited.timed_out());
+            } else {
+                wanted = shared.wake.wait(wanted).unwrap_or_else(PoisonError::into_inner);
+            }
         }
-        if !self.dirty.is_empty() {
-            self.begun = Some(Instant::now());
-        }
-        self.prepared = None;
-        self.wanted = Some(next);
     }
-    /// Paints the next tiles, those in sight first; `None` where nothing is left.
+    fn take_up(&mut self, next: Wanted) {
+        if self.wanted.as_ref().is_none_or(|old| old.picture != next.picture) {
+            (self.whole, self.draft) = (Pass::default(), None);
+        }
+        self.whole.take_up(next.document.clone());
+        let was_quick = self.draft.as_ref().is_none_or(Draft::would_be_quick_in_whole_pixels);
+        self.is_drafting = next.is_dragged && !was_quick;
+        (self.wanted, self.is_resting) = (Some(next), false);
+        if self.is_drafting {
+            self.redraft();
+        }
+    }
+    /// Hands the wanted document to the draft.
+    fn redraft(&mut self) {
+        let (Some(draft), Some(wanted)) = (&mut self.draft, &self.wanted) else { return };
+        if draft.is_slow() {
+            *draft = Draft::new(draft.step * 2);
+        }
+        match draft.reduced.of(&wanted.document) {
+            Ok(small) => draft.pass.take_up(small),
+            // A surface too thin to be made small is painted whole.
+            Err(_) => (self.draft, self.is_drafting) = (None, false),
+        }
+    }
+    fn has_more(&self) -> bool {
+        match &self.draft {
+            Some(draft) if self.is_drafting => draft.pass.has_more(),
+            _ => self.whole.has_more(),
+        }
+    }
+    fn nothing(&self) -> Painted {
+        let size = self.wanted.as_ref().map_or(Size::new(0, 0), |wanted| wanted.document.size);
+        let (step, size) = match &self.draft {
+            Some(draft) if self.is_drafting => (draft.step, draft.pass.size().unwrap_or(size)),
+            _ => (1, size),
+        };
+        Painted { picture: 0, step, size, tiles: Vec::new(), is_settled: true, took: Duration::ZERO }
+    }
+    /// Paints some of what is left, tiles in sight first.
     fn paint(&mut self) -> Option<Painted> {
         let wanted = self.wanted.as_ref()?;
-        if self.dirty.is_empty() {
-            return None;
+        let (picture, is_dragged, visible) = (wanted.picture, wanted.is_dragged, wanted.visible);
+        if let Some(draft) = self.draft.as_mut().filter(|_| self.is_drafting) {
+            let done = draft.pass.paint(draft.in_sight(visible), BATCH)?;
+            let (step, size) = (draft.step, draft.pass.size()?);
+            return Some(done.painted(picture, step, size));
         }
-        if self.prepared.is_none() {
-            self.prepared = Prepared::new(&wanted.document, &Progress::default());
+        let done = self.whole.paint(visible, if is_dragged { FEW } else { BATCH })?;
+        if is_dragged && !self.is_resting && !done.is_settled && done.took > FRAME {
+            let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
+            if self.draft.as_ref().is_none_or(|draft| draft.step != step) {
+                self.draft = Some(Draft::new(step));
+            }
+            self.is_drafting = true;
+            self.redraft();
         }
-        let prepared = self.prepared.as_ref()?;
-        let in_sight = |at: &TileAt| !at.rect().intersect(wanted.visible).is_empty();
-        let mut batch: Vec<TileAt> = self.dirty.iter().copied().filter(in_sight).take(BATCH).collect();
-        if batch.is_empty() {
-            batch = self.dirty.iter().copied().take(BATCH).collect();
-        }
-        let tiles: Vec<_> = batch.par_iter().map(|&at| (at, prepared.flatten_tile(at))).collect();
-        for at in &batch {
-            self.dirty.remove(at);
-        }
-        let is_settled = !self.dirty.iter().any(in_sight);
-        let took = self.begun.map_or(Duration::ZERO, |begun| begun.elapsed());
-        Some(Painted { picture: wanted.picture, tiles, is_settled, took })
+        let size = wanted_size(self.wanted.as_ref());
+        Some(done.painted(picture, 1, size))
+    }
+}
+
+fn wanted_size(wanted: Option<&Wanted>) -> Size {
+    wanted.map_or(Size::new(0, 0), |wanted| wanted.document.size)
+}
+
+/// How much smaller a picture must be that is to be painted within a frame, when whole pixels take so long.
+fn step_for(whole: Duration) -> u32 {
+    let fits = |step: u32| whole.as_secs_f32() <= FRAME.as_secs_f32() * (step * step) as f32;
+    [2, 4].into_iter().find(|&step| fits(step)).unwrap_or(COARSEST)
+}
+
+impl Draft {
+    fn new(step: u32) -> Self {
+        Self { step, reduced: Reduced::new(1.0 / step as f32), pass: Pass::default() }
+    }
+    /// Of the small picture, the pixels in sight.
+    fn in_sight(&self, canvas: Rect) -> Rect {
+        let step = self.step as i32;
+        let Rect { x0, y0, x1, y1 } = canvas;
+        Rect::new(x0.div_euclid(step), y0.div_euclid(step), x1.div_euclid(step) + 1, y1.div_euclid(step) + 1)
+    }
+    /// Its passes take longer than they should, though there is a coarser one. The first made everything small.
+    fn is_slow(&self) -> bool {
+        self.step < COARSEST && self.pass.passes() > 1 && self.pass.took() > FRAME.mul_f32(1.6)
+    }
+    fn would_be_quick_in_whole_pixels(&self) -> bool {
+        self.pass.passes() > 1 && self.pass.took() * self.step * self.step < FRAME
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Content, Layer, flatten};
+    use crate::document::{Content, Layer, Progress, flatten};
     use crate::math::{Size, srgb::Color};
     use crate::raster::TileGrid;
 
@@ -196,10 +278,10 @@ mod tests {
         let size = Size::new(300, 200);
         let fill = Layer::new("fill", Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 }));
         let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(size) };
-        let painter = Painter::new(|| {});
+        let painter = Painter::new(|| {}).unwrap();
         let mut grid = TileGrid::default();
         let visible = size.rect();
-        painter.want(Wanted { picture: 1, document: document.clone(), visible });
+        painter.want(Wanted { picture: 1, document: document.clone(), visible, is_dragged: false });
         assert_eq!(settled(&painter, &mut grid), 5 * 4);
         let whole = flatten(&document, &Progress::default()).unwrap();
         assert!(grid.to_straight_rgba(visible) == whole.to_straight_rgba(visible));
@@ -207,10 +289,10 @@ mod tests {
         let pixels = crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles: dot };
         let mut next = document.clone();
         next.layers.push(Arc::new(Layer::new("dot", Content::Pixels(pixels))));
-        painter.want(Wanted { picture: 1, document: next.clone(), visible });
+        painter.want(Wanted { picture: 1, document: next.clone(), visible, is_dragged: false });
         assert_eq!(settled(&painter, &mut grid), 1);
         assert_eq!(grid.pixel(100, 100), [255, 0, 0, 255]);
-        painter.want(Wanted { picture: 1, document: next, visible });
+        painter.want(Wanted { picture: 1, document: next, visible, is_dragged: false });
         assert_eq!(settled(&painter, &mut grid), 0, "what is the same is settled at once");
     }
 }

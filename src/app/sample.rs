@@ -38,10 +38,7 @@ pub fn open() -> Result<Opened> {
     let layers = vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
     let size = Size::new(SIDE as u32, SIDE as u32);
     let document = Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
-    let hint = "This is the sample. 1: drop a photo on it. 2: take the shading operator and paint highlights. \
-                3: take the anchor tool (A) and drag what you placed along the surface."
-        .to_owned();
-    Ok(Opened { tab: Tab::new("Sample", document, None), notes: vec![hint] })
+    Ok(Opened { tab: Tab::new("Sample", document, None), notes: Vec::new() })
 }
 
 fn grey(v: u8) -> Color {

@@ -1,6 +1,8 @@
 //! What a preset paints: one stroke over a ball, bent by the preset's operator.
 //! Floor 7. Painted once, on a thread of its own.
 
+use super::jobs;
+use crate::Error;
 use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
 use crate::io::recipe::{preset_brush, preset_names};
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
@@ -17,6 +19,8 @@ use std::sync::mpsc::{Receiver, channel};
 pub struct Swatches {
     coming: Option<Receiver<(&'static str, ColorImage)>>,
     made: HashMap<String, TextureHandle>,
+    /// What cannot be done here, to be told once.
+    pub trouble: Option<Error>,
 }
 
 /// Side of a swatch, px, and of the ball's radius in it.
@@ -39,7 +43,7 @@ impl Swatches {
                 }
             };
             // Without a thread there are no pictures, only names.
-            let _ = std::thread::Builder::new().name("swatches".into()).spawn(work);
+            self.trouble = jobs::spawn("pictures of the brushes", work).err();
             coming
         });
         for (name, image) in coming.try_iter() {

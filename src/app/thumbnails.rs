@@ -1,6 +1,8 @@
 //! Thumbnails of layers, painted on a thread of their own, each once for each version of its layer.
 //! Floor 7.
 
+use super::jobs;
+use crate::Error;
 use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layer};
 use crate::raster::TileGrid;
 use crate::surface::Surface;
@@ -31,6 +33,8 @@ pub struct Thumbnails {
     made: HashMap<LayerId, TextureHandle>,
     /// Which version of a layer was ordered last.
     ordered: HashMap<LayerId, Weak<Layer>>,
+    /// What cannot be done here, to be told once.
+    pub trouble: Option<Error>,
 }
 
 impl Thumbnails {
@@ -54,8 +58,8 @@ impl Thumbnails {
             }
         };
         // Without a thread there are no thumbnails, only icons.
-        let _ = std::thread::Builder::new().name("thumbnails".into()).spawn(work);
-        Self { orders, done, made: HashMap::new(), ordered: HashMap::new() }
+        let trouble = jobs::spawn("thumbnails", work).err();
+        Self { orders, done, made: HashMap::new(), ordered: HashMap::new(), trouble }
     }
     /// Takes what was made.
     pub fn collect(&mut self, ctx: &egui::Context) {
@@ -73,6 +77,7 @@ impl Thumbnails {
         if !is_ordered {
             self.ordered.insert(layer.id, Arc::downgrade(layer));
             let alone = Document { layers: vec![layer.clone()], ..document.clone() };
+            // Without a thread nobody takes orders, and that was told.
             let _ = self.orders.send(Order { layer: layer.clone(), document: alone });
         }
         self.made.get(&layer.id).map(|texture| (texture.id(), vec2(texture.size()[0] as f32, texture.size()[1] as f32)))

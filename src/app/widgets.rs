@@ -3,7 +3,7 @@
 
 use super::canvas::color32;
 use crate::math::srgb::Color;
-use eframe::egui::{self, DragValue, Response, RichText, Slider, Ui, vec2};
+use eframe::egui::{self, DragValue, ProgressBar, Response, RichText, Slider, Ui, vec2};
 use std::ops::RangeInclusive;
 
 /// A value that a widget gave: shown only, or to be kept.
@@ -153,6 +153,14 @@ pub fn check(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Option<bool> {
 pub fn title(ui: &mut Ui, text: &str) {
     ui.add_space(2.0);
     ui.label(RichText::new(text).strong());
+}
+
+/// How far a job has come.
+pub fn bar(ui: &mut Ui, share: Option<f32>, width_pt: f32) {
+    match share {
+        Some(share) => drop(ui.add(ProgressBar::new(share).desired_width(width_pt).desired_height(8.0))),
+        None => drop(ui.spinner()),
+    }
 }
 
 /// A field of colour that can be clicked.

@@ -29,6 +29,7 @@ pub use mask::{LayerMask, MaskKind};
 pub use normals::{DetailSource, NormalLayer};
 pub use prepare::Prepared;
 pub use progress::Progress;
+pub use scale::Reduced;
 pub use source::SurfaceSource;
 
 use crate::{math::Size, paint::Scene, raster::Asset, surface::Surface};

@@ -1,6 +1,10 @@
 //! A document at another resolution: for a quick preview, or a larger print of what is live.
 //! Floor 4. Live layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
 
+mod reduced;
+
+pub use reduced::Reduced;
+
 use super::kept::Kept;
 use super::{Content, DetailSource, Document, Group, Layer, Live, MaskKind, PixelLayer, StrokeList};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
@@ -17,14 +21,9 @@ impl Document {
     /// `factor`: finite and `> 0`, else the document comes back as it is. Whether there is room for the result is the
     /// caller's to check. Fails where nothing is left of a surface thinner than the new pixels.
     pub fn scaled(&self, factor: f32) -> Result<Document, SurfaceError> {
-        let size = self.size.scaled(factor);
-        if !(factor.is_finite() && factor > 0.0) || size == self.size {
-            return Ok(self.clone());
-        }
-        let per_axis = vec2(size.width as f32 / self.size.width as f32, size.height as f32 / self.size.height as f32);
-        let scale = Scale { per_axis, length: factor, from: self.size, to: size };
-        let surface = self.surface.as_ref().map(|s| s.stretched(size).map(Arc::new)).transpose()?;
-        Ok(Document { size, surface, layers: scale.layers(&self.layers), ..self.clone() })
+        let Some(scale) = Scale::of(self.size, factor) else { return Ok(self.clone()) };
+        let surface = self.surface.as_ref().map(|s| s.stretched(scale.to).map(Arc::new)).transpose()?;
+        Ok(Document { size: scale.to, surface, layers: scale.layers(&self.layers), ..self.clone() })
     }
 }
 
@@ -39,6 +38,15 @@ struct Scale {
 }
 
 impl Scale {
+    /// `None` where nothing is to be scaled.
+    fn of(from: Size, factor: f32) -> Option<Self> {
+        let to = from.scaled(factor);
+        if !(factor.is_finite() && factor > 0.0) || to == from {
+            return None;
+        }
+        let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
+        Some(Self { per_axis, length: factor, from, to })
+    }
     fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()
     }

@@ -12,7 +12,7 @@ pub mod view;
 pub use actions::Action;
 pub use path::LayerPath;
 pub use property::Property;
-pub use tab::{Tab, is_same};
+pub use tab::{Edit, Tab, is_same};
 pub use view::View;
 
 use crate::Result;

@@ -2,13 +2,13 @@
 //! Floor 6. Formats are `io`'s; here is which of them a file is.
 
 use super::Tab;
+use crate::Result;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::document::{Content, Document, Layer, Progress};
 use crate::io::maps::pairs::{self, Part};
 use crate::io::save::Stamp;
 use crate::io::{self, Budget, Given, Over, files::read_file, inspect, maps};
 use crate::math::srgb::Color;
-use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -150,11 +150,10 @@ const GROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
 const CLAY: Color = Color { r: 0x8f, g: 0x8a, b: 0x84, a: 255 };
 
 /// Saves a document as a project. `stamp`: of the file as it was last read or written here, if it was.
-pub fn save(file: &Path, document: &Document, stamp: Option<Stamp>) -> Result<Stamp> {
+/// `None` if it was given up.
+pub fn save(file: &Path, document: &Document, stamp: Option<Stamp>, progress: &Progress) -> Result<Option<Stamp>> {
     let over = stamp.map_or(Over::Anything, Over::This);
-    let saved = io::save(document, file, over, &Progress::default())?;
-    // Nothing here cancels, so there always is one.
-    saved.map(|saved| saved.stamp).ok_or_else(|| Error::unsupported(file, "saving was cancelled"))
+    Ok(io::save(document, file, over, progress)?.map(|saved| saved.stamp))
 }
 
 /// The files of a folder that a document could be opened from, for a picker.

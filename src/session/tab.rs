@@ -12,6 +12,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Steps that can be undone.
 const STEPS: usize = 200;
 
+/// A step: what it is called, the document it leads to, and what is selected then.
+pub struct Edit {
+    pub label: &'static str,
+    pub document: Document,
+    pub select: Option<LayerId>,
+}
+
 /// An open document.
 pub struct Tab {
     /// Which tab, as long as the program runs.
@@ -103,6 +110,12 @@ impl Tab {
             self.history.commit(label, document);
         }
         self.repair();
+    }
+    /// Keeps an edit as a step.
+    pub fn take(&mut self, edit: Edit) {
+        let Edit { label, document, select } = edit;
+        self.commit(label, document);
+        self.selected = select.or(self.selected);
     }
     /// Keeps what is shown.
     pub fn keep_preview(&mut self) {

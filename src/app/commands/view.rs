@@ -3,6 +3,7 @@
 
 use super::{Command, Menu, always, ctrl, ctrl_shift, has_document, key, line};
 use crate::app::asked::{Asked, WindowAsk};
+use crate::app::panels::Front;
 use crate::math::Vec2;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session};
@@ -137,6 +138,30 @@ pub const COMMANDS: &[Command] = &[
         hint: "Only the canvas, or all panels again",
         can: always,
         run: |_, asked| asked.ask(WindowAsk::TogglePanels),
+    },
+    Command {
+        name: "Panels on the other side",
+        menu: MENU,
+        keys: &[],
+        hint: "To the left of the canvas, or to the right",
+        can: always,
+        run: |_, asked| asked.ask(WindowAsk::OtherSide),
+    },
+    Command {
+        name: "Panels in a window",
+        menu: MENU,
+        keys: &[],
+        hint: "Apart from the canvas, to be moved about; or beside it again. A right-click on a panel's name takes one out",
+        can: always,
+        run: |_, asked| asked.ask(WindowAsk::PanelsApart),
+    },
+    Command {
+        name: "Layers in a window",
+        menu: MENU,
+        keys: &[],
+        hint: "The layers alone, to be moved about; or beside the canvas again",
+        can: always,
+        run: |_, asked| asked.ask(WindowAsk::Float(Front::Layers)),
     },
     Command {
         name: "Full screen",

@@ -7,10 +7,12 @@ pub mod import;
 pub mod new;
 pub mod palette;
 pub mod path;
+pub mod shortcuts;
 pub mod unsaved;
 
 use super::asked::{Asked, WindowAsk};
 use super::files::Purpose;
+use super::keymap::Keymap;
 use crate::document::SurfaceSource;
 use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
@@ -24,7 +26,7 @@ pub enum Dialog {
     Path(path::PathDialog),
     Unsaved(unsaved::Unsaved),
     Palette(palette::Palette),
-    Shortcuts(String),
+    Shortcuts(shortcuts::Shortcuts),
     About,
 }
 
@@ -54,7 +56,7 @@ pub enum Then {
 
 impl Dialog {
     /// Shows the dialog; escape and a click beside it close it.
-    pub fn show(&mut self, ctx: &egui::Context, session: &Session, asked: &mut Asked) -> Answer {
+    pub fn show(&mut self, ctx: &egui::Context, session: &Session, keymap: &mut Keymap, asked: &mut Asked) -> Answer {
         let modal = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
             ui.spacing_mut().item_spacing.y = 7.0;
             match self {
@@ -63,8 +65,8 @@ impl Dialog {
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),
                 Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
-                Dialog::Palette(palette) => palette.show(ui, session, asked),
-                Dialog::Shortcuts(filter) => help::shortcuts(ui, filter),
+                Dialog::Palette(palette) => palette.show(ui, session, keymap, asked),
+                Dialog::Shortcuts(shortcuts) => shortcuts.show(ui, keymap),
                 Dialog::About => help::about(ui),
             }
         });

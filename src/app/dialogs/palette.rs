@@ -4,6 +4,7 @@
 use super::Answer;
 use crate::app::asked::Asked;
 use crate::app::commands::{self, Command};
+use crate::app::keymap::Keymap;
 use crate::app::widgets::named;
 use crate::session::Session;
 use eframe::egui::{Button, Key, ScrollArea, TextEdit, Ui};
@@ -16,7 +17,7 @@ pub struct Palette {
 }
 
 impl Palette {
-    pub fn show(&mut self, ui: &mut Ui, session: &Session, asked: &mut Asked) -> Answer {
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, keymap: &Keymap, asked: &mut Asked) -> Answer {
         ui.set_width(420.0);
         let field =
             ui.add(TextEdit::singleline(&mut self.typed).hint_text("Type a command").desired_width(f32::INFINITY));
@@ -25,7 +26,8 @@ impl Palette {
         if field.changed() {
             self.at = 0;
         }
-        let found: Vec<&Command> = commands::all().filter(|command| matches(command.name, &self.typed)).collect();
+        let found: Vec<&'static Command> =
+            commands::all().filter(|command| matches(command.name, &self.typed)).collect();
         let (up, down, enter) =
             ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter)));
         if down {
@@ -39,8 +41,8 @@ impl Palette {
         ScrollArea::vertical().max_height(300.0).auto_shrink([false, true]).show(ui, |ui| {
             for (i, command) in found.iter().enumerate() {
                 let mut button = Button::selectable(i == self.at, command.name);
-                if let Some(keys) = command.keys.first() {
-                    button = button.shortcut_text(ui.ctx().format_shortcut(keys));
+                if let Some(keys) = keymap.first(command) {
+                    button = button.shortcut_text(ui.ctx().format_shortcut(&keys));
                 }
                 let response = ui.add_enabled((command.can)(session), button.min_size([400.0, 0.0].into()));
                 if (up || down) && i == self.at {

@@ -4,13 +4,15 @@
 use crate::app::asked::{Asked, WindowAsk};
 use crate::app::commands::{self, Command, Menu};
 use crate::app::icons::{Icon, sized_button};
+use crate::app::keymap::Keymap;
+use crate::app::settings::Settings;
 use crate::session::actions::FileAction;
 use crate::session::{Action, Session};
 use eframe::egui::{self, Button, RichText, Ui};
 use std::path::PathBuf;
 
 /// The menus, made from the commands.
-pub fn show(ui: &mut Ui, session: &Session, recent: &[PathBuf], asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, asked: &mut Asked) {
     egui::MenuBar::new().ui(ui, |ui| {
         for (menu, title) in Menu::ALL {
             ui.menu_button(title, |ui| {
@@ -20,9 +22,9 @@ pub fn show(ui: &mut Ui, session: &Session, recent: &[PathBuf], asked: &mut Aske
                         ui.separator();
                         continue;
                     }
-                    entry(ui, session, command, asked);
+                    entry(ui, session, &settings.keymap, command, asked);
                     if command.name == "Open…" {
-                        recent_files(ui, recent, asked);
+                        recent_files(ui, &settings.recent, asked);
                     }
                 }
             });
@@ -30,10 +32,10 @@ pub fn show(ui: &mut Ui, session: &Session, recent: &[PathBuf], asked: &mut Aske
     });
 }
 
-fn entry(ui: &mut Ui, session: &Session, command: &Command, asked: &mut Asked) {
+fn entry(ui: &mut Ui, session: &Session, keymap: &Keymap, command: &'static Command, asked: &mut Asked) {
     let mut button = Button::new(command.name);
-    if let Some(keys) = command.keys.first() {
-        button = button.shortcut_text(ui.ctx().format_shortcut(keys));
+    if let Some(keys) = keymap.first(command) {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&keys));
     }
     let response = ui.add_enabled((command.can)(session), button);
     if response.on_hover_text(command.hint).clicked() {

@@ -14,3 +14,35 @@ pub mod properties;
 pub mod status;
 pub mod surface;
 pub mod tools;
+
+/// A panel that can stand beside the canvas or in a window of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Front {
+    Color,
+    Brushes,
+    Properties,
+    Surface,
+    History,
+    Navigator,
+    /// Beneath the others, which share a place.
+    Layers,
+}
+
+impl Front {
+    /// Every panel with what it is called.
+    pub const ALL: [(Front, &'static str); 7] = [
+        (Front::Color, "Colour"),
+        (Front::Brushes, "Brushes"),
+        (Front::Properties, "Properties"),
+        (Front::Surface, "Surface"),
+        (Front::History, "History"),
+        (Front::Navigator, "Navigator"),
+        (Front::Layers, "Layers"),
+    ];
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(front, _)| *front == self).map_or("", |(_, name)| name)
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known)| *known == name).map(|(front, _)| *front)
+    }
+}

@@ -4,11 +4,24 @@
 
 use crate::app::asked::{Asked, WindowAsk};
 use crate::app::canvas::Canvas;
+use crate::app::jobs::{Jobs, While};
+use crate::app::widgets::bar;
 use crate::session::Session;
 use eframe::egui::{self, Button, RichText, Ui};
 
-pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, asked: &mut Asked) {
     ui.horizontal(|ui| {
+        for job in jobs.under_way.iter().filter(|job| job.kind == While::Working && job.is_long()) {
+            ui.label(&job.name);
+            bar(ui, job.share(), 90.0);
+            if ui.small_button("Cancel").on_hover_text(format!("Give up: {}", job.name)).clicked() {
+                job.progress.cancel();
+            }
+            ui.separator();
+        }
+        if !jobs.under_way.is_empty() {
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(80));
+        }
         let Some(tab) = session.tab() else {
             ui.weak("Open a document, or drop a picture or a normal map on the window");
             return;

@@ -3,10 +3,11 @@
 
 use crate::app::asked::Asked;
 use crate::app::icons::{Icon, icon_button, sized_button};
+use crate::app::keymap::{Keyed, Keymap};
 use crate::app::widgets::swatch;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::tools::ToolKind;
+use crate::tools::{ToolKind, ToolRow};
 use eframe::egui::{Ui, vec2};
 
 pub fn icon(tool: ToolKind) -> Icon {
@@ -23,12 +24,17 @@ pub fn icon(tool: ToolKind) -> Icon {
     }
 }
 
-pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, asked: &mut Asked) {
     ui.vertical_centered(|ui| {
         ui.add_space(2.0);
-        for row in &ToolKind::ALL {
+        const TOOLS: &[ToolRow] = &ToolKind::ALL;
+        for row in TOOLS {
             let response = sized_button(ui, icon(row.kind), row.label, session.tool == row.kind, 32.0);
-            if response.on_hover_text(format!("{} ({})\n{}", row.label, row.key, row.hint)).clicked() {
+            let keys = keymap
+                .of(Keyed::Tool(row))
+                .first()
+                .map_or_else(String::new, |keys| format!(" ({})", ui.ctx().format_shortcut(keys)));
+            if response.on_hover_text(format!("{}{keys}\n{}", row.label, row.hint)).clicked() {
                 asked.act(Action::Hand(HandAction::Tool { tool: row.kind }));
             }
         }

@@ -4,10 +4,11 @@
 use super::Window;
 use crate::app::dialogs::{Dialog, import, path};
 use crate::app::files::{self, Purpose};
-use crate::app::jobs::Done;
+use crate::app::jobs::{Done, While, short};
 use crate::math::Vec2;
-use crate::session::actions::FileAction;
-use crate::session::{Action, storage};
+use crate::raster::Picture;
+use crate::session::actions::files::{place, read_picture};
+use crate::session::storage;
 use eframe::egui;
 use std::path::{Path, PathBuf};
 
@@ -38,34 +39,42 @@ impl Window {
                     let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };
                     self.dialogs.push(Dialog::Path(path::PathDialog::new(purpose, folder, &name)));
                 }
-                Done::Cancelled => {}
+                Done::Pictured(name, picture) => self.pictured(&name, picture),
+                Done::Saved(saved) => self.saved(ctx, *saved),
+                Done::Edited(edited) => self.edited(*edited),
+                Done::Copied(image) => ctx.copy_image(image),
+                Done::Failed(error) => self.messages.push(error.to_string()),
+                Done::Nothing => {}
             }
         }
+    }
+    pub(super) fn read_picture(&mut self, file: PathBuf) {
+        self.jobs.start(format!("Reading {}", short(&file)), While::Working, move |_| match read_picture(&file) {
+            Ok((name, picture)) => Done::Pictured(name, picture),
+            Err(error) => Done::Failed(error),
+        });
+    }
+    fn pictured(&mut self, name: &str, picture: Picture) {
+        place(&mut self.session, name, picture, self.place_at);
     }
     /// A file was chosen in a dialog.
     pub(super) fn chosen(&mut self, purpose: Purpose, file: PathBuf) {
         match purpose {
             Purpose::Open => self.jobs.open(file),
             Purpose::Place => {
-                let at = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
-                self.apply(&Action::File(FileAction::Place { file, at }));
+                self.place_at = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
+                self.read_picture(file);
             }
             Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap => {
                 if let Some(import) = self.import() {
                     import.take_file(purpose, file);
                 }
             }
-            Purpose::Save => {
-                let file = storage::with_ending(file);
-                if self.apply(&Action::File(FileAction::Save { file: file.clone() })) {
-                    self.recent_is(Some(file));
-                }
-            }
+            Purpose::Save => self.save_to(storage::with_ending(file)),
             Purpose::Export => {
                 let file =
                     if file.extension().is_some() { file } else { file.with_added_extension(self.export.ending) };
-                let (background, quality) = (self.export.background, self.export.quality);
-                self.apply(&Action::File(FileAction::Export { file, background, quality }));
+                self.export_to(file);
             }
         }
     }
@@ -88,15 +97,18 @@ impl Window {
     }
     /// The folder to begin in.
     pub(super) fn folder(&self) -> PathBuf {
-        let beside =
-            self.session.tab().and_then(|tab| tab.file.as_deref()).or(self.recent.first().map(PathBuf::as_path));
+        let beside = self.session.tab().and_then(|tab| tab.file.as_deref()).or(self
+            .settings
+            .recent
+            .first()
+            .map(PathBuf::as_path));
         let folder = beside.and_then(Path::parent).filter(|folder| folder.is_dir()).map(Path::to_owned);
         folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default()
     }
     pub(super) fn recent_is(&mut self, file: Option<PathBuf>) {
-        let Some(file) = file else { return };
-        self.recent.retain(|known| *known != file);
-        self.recent.insert(0, file);
-        self.recent.truncate(12);
+        if let Some(file) = file {
+            // As it is found from anywhere, on the next run too.
+            self.settings.recent_is(std::path::absolute(&file).unwrap_or(file));
+        }
     }
 }

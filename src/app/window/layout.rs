@@ -1,53 +1,129 @@
-//! Where the panels stand.
-//! Floor 7.
+//! Where the panels stand: beside the canvas, in a window together, or each in one of its own.
+//! Floor 7. What is in them is `panels`'.
 
-use super::{Front, Window};
+use super::Window;
 use crate::app::asked::Asked;
-use crate::app::panels;
-use eframe::egui::{self, CentralPanel, Frame, Margin, Panel, RichText, Ui};
+use crate::app::panels::{self, Front};
+use crate::app::settings::Side;
+use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
+
+/// How wide the panels may be, points.
+const WIDTHS_PT: std::ops::RangeInclusive<f32> = 230.0..=460.0;
 
 impl Window {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, asked: &mut Asked) {
         let bar = |ui: &Ui| Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(6, 3));
-        Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, &self.recent, asked));
-        if !self.panels_hidden {
+        let settings = &self.settings;
+        Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, asked));
+        if !self.settings.layout.is_hidden {
             Panel::top("options").frame(bar(ui)).show(ui, |ui| panels::options::show(ui, &self.session, asked));
             Panel::bottom("status")
                 .frame(bar(ui))
-                .show(ui, |ui| panels::status::show(ui, &self.session, &self.canvas, asked));
+                .show(ui, |ui| panels::status::show(ui, &self.session, &self.canvas, &self.jobs, asked));
+            let keymap = &self.settings.keymap;
             Panel::left("tools").exact_size(44.0).resizable(false).frame(bar(ui)).show(ui, |ui| {
-                panels::tools::show(ui, &self.session, asked);
+                panels::tools::show(ui, &self.session, keymap, asked);
             });
-            Panel::right("panels").default_size(268.0).size_range(230.0..=460.0).show(ui, |ui| self.side(ui, asked));
+            self.side(ui, asked);
+            self.apart(ui.ctx(), asked);
         }
         if !self.session.tabs.is_empty() {
             Panel::top("tabs").frame(bar(ui)).show(ui, |ui| panels::menu::tabs(ui, &self.session, asked));
         }
         self.show_messages(ui);
-        CentralPanel::no_frame().show(ui, |ui| self.canvas.show(ui, &self.session, &mut asked.actions));
-    }
-    /// The panels at the right: one of those above, the layers below.
-    pub(super) fn side(&mut self, ui: &mut Ui, asked: &mut Asked) {
-        Panel::top("front").resizable(true).default_size(330.0).size_range(140.0..=640.0).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                for (front, name) in Front::ALL {
-                    ui.selectable_value(&mut self.front, front, name);
-                }
-            });
-            ui.add_space(2.0);
-            egui::ScrollArea::vertical().id_salt("front").auto_shrink([false, false]).show(ui, |ui| match self.front {
-                Front::Color => panels::colors::show(ui, &self.session, asked),
-                Front::Brushes => panels::brushes::show(ui, &self.session, &mut self.swatches, asked),
-                Front::Properties => panels::properties::show(ui, &self.session, asked),
-                Front::Surface => panels::surface::show(ui, &self.session, asked),
-                Front::History => panels::history::show(ui, &self.session, asked),
-                Front::Navigator => panels::navigator::show(ui, &self.session, &mut self.canvas, asked),
-            });
-        });
         CentralPanel::no_frame().show(ui, |ui| {
-            ui.add_space(4.0);
-            panels::layers::show(ui, &self.session, &mut self.thumbnails, asked);
+            self.canvas.show(ui, &self.session, &mut asked.actions);
+            self.show_steps(ui);
         });
+    }
+    /// The panels that are together.
+    fn side(&mut self, ui: &mut Ui, asked: &mut Asked) {
+        let side = self.settings.layout.side;
+        let beside = match side {
+            Side::Left => Panel::left("panels left"),
+            Side::Right => Panel::right("panels right"),
+            Side::Apart => {
+                let window = egui::Window::new("Panels").id(Id::unique("panels apart")).constrain(true);
+                let window = window.default_size([self.settings.layout.width_pt, 640.0]).min_size([230.0, 300.0]);
+                return drop(window.show(ui.ctx(), |ui| self.together(ui, asked)));
+            }
+        };
+        let beside = beside.default_size(self.settings.layout.width_pt).size_range(WIDTHS_PT);
+        let shown = beside.show(ui, |ui| self.together(ui, asked));
+        self.settings.layout.width_pt = shown.response.rect.width().round();
+    }
+    /// One of those that share a place above, the layers below.
+    fn together(&mut self, ui: &mut Ui, asked: &mut Asked) {
+        let apart = &self.settings.layout.apart;
+        let strip: Vec<_> =
+            Front::ALL.into_iter().filter(|(front, _)| *front != Front::Layers && !apart.contains(front)).collect();
+        let front = match self.settings.layout.front {
+            front if strip.iter().any(|(known, _)| *known == front) => Some(front),
+            _ => strip.first().map(|(front, _)| *front),
+        };
+        let has_layers = !apart.contains(&Front::Layers);
+        if let Some(front) = front {
+            if has_layers {
+                let above = Panel::top("front").resizable(true).default_size(330.0).size_range(140.0..=640.0);
+                above.show(ui, |ui| self.fronted(ui, &strip, front, asked));
+            } else {
+                self.fronted(ui, &strip, front, asked);
+            }
+        }
+        if has_layers {
+            CentralPanel::no_frame().show(ui, |ui| {
+                ui.add_space(4.0);
+                panels::layers::show(ui, &self.session, &mut self.thumbnails, asked);
+            });
+        }
+    }
+    /// The names of the panels that share a place, and the one in front.
+    fn fronted(&mut self, ui: &mut Ui, strip: &[(Front, &str)], mut front: Front, asked: &mut Asked) {
+        let mut gone = None;
+        ui.horizontal_wrapped(|ui| {
+            for &(choice, name) in strip {
+                let tab = ui.selectable_value(&mut front, choice, name);
+                let tab = tab.on_hover_text("Right-click for a window of its own");
+                tab.context_menu(|ui| {
+                    if ui.button("In a window of its own").clicked() {
+                        gone = Some(choice);
+                        ui.close();
+                    }
+                });
+            }
+        });
+        self.settings.layout.front = front;
+        self.settings.layout.apart.extend(gone);
+        ui.add_space(2.0);
+        let area = egui::ScrollArea::vertical().id_salt("front").auto_shrink([false, false]);
+        area.show(ui, |ui| self.panel(ui, front, asked));
+    }
+    fn panel(&mut self, ui: &mut Ui, front: Front, asked: &mut Asked) {
+        match front {
+            Front::Color => panels::colors::show(ui, &self.session, asked),
+            Front::Brushes => panels::brushes::show(ui, &self.session, &mut self.swatches, asked),
+            Front::Properties => panels::properties::show(ui, &self.session, asked),
+            Front::Surface => panels::surface::show(ui, &self.session, asked),
+            Front::History => panels::history::show(ui, &self.session, asked),
+            Front::Navigator => panels::navigator::show(ui, &self.session, &mut self.canvas, asked),
+            Front::Layers => panels::layers::show(ui, &self.session, &mut self.thumbnails, asked),
+        }
+    }
+    /// The panels in windows of their own; closing one puts it back.
+    fn apart(&mut self, ctx: &egui::Context, asked: &mut Asked) {
+        for front in self.settings.layout.apart.clone() {
+            let mut is_open = true;
+            let window = egui::Window::new(front.name()).id(Id::unique(("panel", front.name())));
+            let window = window.default_size([268.0, 340.0]).min_size([230.0, 160.0]).open(&mut is_open);
+            let area = |ui: &mut Ui| {
+                let area = egui::ScrollArea::vertical().id_salt(front.name()).auto_shrink([false, false]);
+                area.show(ui, |ui| self.panel(ui, front, asked));
+            };
+            window.show(ctx, area);
+            if !is_open {
+                self.settings.layout.apart.retain(|other| *other != front);
+            }
+        }
     }
     pub(super) fn show_messages(&mut self, ui: &mut Ui) {
         if self.messages.is_empty() {

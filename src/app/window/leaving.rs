@@ -4,23 +4,11 @@
 use super::Window;
 use crate::app::asked::{Asked, WindowAsk};
 use crate::app::dialogs::{Dialog, Then, unsaved};
-use crate::app::files::Purpose;
 use crate::math::Vec2;
-use crate::session::actions::FileAction;
-use crate::session::{Action, storage};
+use crate::session::storage;
 use eframe::egui::{self, ViewportCommand};
 
 impl Window {
-    /// Saves the document in front; whether that was possible without asking.
-    pub(super) fn save(&mut self) -> bool {
-        match self.session.tab().and_then(|tab| tab.file.clone()).filter(|file| storage::is_document(file)) {
-            Some(file) => self.apply(&Action::File(FileAction::Save { file })),
-            None => {
-                self.ask_where(Purpose::Save);
-                false
-            }
-        }
-    }
     pub(super) fn close(&mut self, ctx: &egui::Context, tab: usize) {
         if self.session.tabs.get(tab).is_some_and(|tab| tab.is_dirty()) {
             self.session.current = tab;
@@ -64,18 +52,13 @@ impl Window {
                 Ok(storage::Kind::Picture) if self.session.tab().is_some() => {
                     let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
                     let at = self.canvas.under.unwrap_or(center);
-                    asked.act(Action::File(FileAction::Place { file: path, at }));
+                    self.place_at = at;
+                    self.read_picture(path);
                 }
                 Ok(_) => asked.ask(WindowAsk::Open(path)),
                 Err(error) => self.messages.push(error.to_string()),
             }
         }
-    }
-    pub(super) fn copy_merged(&mut self, ctx: &egui::Context) {
-        let Some(document) = self.session.shown() else { return };
-        let rgba = self.canvas.grid.to_straight_rgba(document.size.rect());
-        let size = [document.size.width as usize, document.size.height as usize];
-        ctx.copy_image(egui::ColorImage::from_rgba_unmultiplied(size, &rgba));
     }
     pub(super) fn paste(&mut self) {
         let pasted = arboard::Clipboard::new().and_then(|mut clipboard| clipboard.get_image());

@@ -4,15 +4,20 @@
 mod files;
 mod layout;
 mod leaving;
+mod steps;
+mod work;
 
 use super::asked::{Asked, WindowAsk};
 use super::canvas::Canvas;
-use super::dialogs::{Answer, Dialog, export, new, palette};
+use super::dialogs::{Answer, Dialog, Then, export, new, palette, shortcuts};
 use super::files::{self as choosing, Purpose};
-use super::jobs::{Done, Jobs};
+use super::jobs::{Done, Jobs, While};
+use super::settings::{Keeper, Settings, Side};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
+use crate::document::Progress;
+use crate::math::Vec2;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session, storage};
 use eframe::egui::{self, Ui, ViewportCommand};
@@ -29,41 +34,30 @@ pub struct Window {
     dialogs: Vec<Dialog>,
     /// Sentences that stay until they are read.
     messages: Vec<String>,
-    panels_hidden: bool,
-    /// Which panel is in front above the layers.
-    front: Front,
-    recent: Vec<PathBuf>,
+    settings: Settings,
+    keeper: Keeper,
+    /// The program was started without a file, so the sample is open.
+    is_first_start: bool,
     export: export::Export,
     /// What the file dialog of the system is asked for with this name.
     title: String,
     /// The user agreed to leave.
     leaving: bool,
-}
-
-/// The panels that share a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Front {
-    Color,
-    Brushes,
-    Properties,
-    Surface,
-    History,
-    Navigator,
-}
-
-impl Front {
-    const ALL: [(Front, &'static str); 6] = [
-        (Front::Color, "Colour"),
-        (Front::Brushes, "Brushes"),
-        (Front::Properties, "Properties"),
-        (Front::Surface, "Surface"),
-        (Front::History, "History"),
-        (Front::Navigator, "Navigator"),
-    ];
+    /// What is to be done once the document is saved.
+    after_saving: Option<Then>,
+    /// Where a picture that is being read is to be pinned, canvas px.
+    place_at: Vec2,
 }
 
 impl Window {
+    /// A window that remembers nothing.
     pub fn new(ctx: &egui::Context) -> Self {
+        Self::remembering(ctx, None)
+    }
+    /// A window with the settings of a file, kept there from now on.
+    pub fn remembering(ctx: &egui::Context, file: Option<PathBuf>) -> Self {
+        let (settings, keeper, trouble) = Keeper::new(file);
+        ctx.set_theme(if settings.is_light { egui::Theme::Light } else { egui::Theme::Dark });
         Self {
             session: Session::default(),
             canvas: Canvas::new(ctx),
@@ -71,42 +65,56 @@ impl Window {
             swatches: Swatches::default(),
             jobs: Jobs::new(ctx),
             dialogs: Vec::new(),
-            messages: Vec::new(),
-            panels_hidden: false,
-            front: Front::Color,
-            recent: Vec::new(),
+            messages: trouble.into_iter().collect(),
+            settings,
+            keeper,
+            is_first_start: false,
             export: export::Export::default(),
             title: String::new(),
             leaving: false,
+            after_saving: None,
+            place_at: Vec2::ZERO,
         }
     }
     /// Opens what the program was started with.
     pub fn begin(&mut self, files: Vec<PathBuf>) {
+        self.is_first_start = files.is_empty();
         if files.is_empty() {
-            self.jobs.start("Opening the sample".into(), || Done::Opened(Box::new(sample::open())));
+            self.open_sample();
         }
         for file in files {
             self.jobs.open(file);
         }
     }
+    fn open_sample(&mut self) {
+        self.jobs.start("Opening the sample".into(), While::Working, |_| Done::Opened(Box::new(sample::open())));
+    }
     /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
         let mut asked = Asked::default();
         self.finish_jobs(ui.ctx());
+        self.tell_troubles();
         self.thumbnails.collect(ui.ctx());
-        if self.dialogs.is_empty() {
-            keys::listen(ui.ctx(), &self.session, &mut asked);
+        if self.dialogs.is_empty() && self.jobs.editing().is_none() {
+            keys::listen(ui.ctx(), &self.session, &self.settings.keymap, &mut asked);
         }
         self.take_dropped(ui.ctx(), &mut asked);
         self.lay_out(ui, &mut asked);
         self.show_dialog(ui.ctx(), &mut asked);
+        self.show_editing(ui.ctx());
         self.guard_leaving(ui.ctx());
         self.do_asked(ui.ctx(), asked);
         self.set_title(ui.ctx());
+        self.keeper.keep(&self.settings);
+    }
+    /// What the window's own threads could not do.
+    fn tell_troubles(&mut self) {
+        let troubles = [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
+        self.messages.extend(troubles.into_iter().filter_map(Option::take).map(|error| error.to_string()));
     }
     fn show_dialog(&mut self, ctx: &egui::Context, asked: &mut Asked) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
-        let answer = dialog.show(ctx, &self.session, asked);
+        let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, asked);
         if let Dialog::Export(export) = dialog {
             self.export = export.clone();
         }
@@ -115,8 +123,8 @@ impl Window {
             // The dialog stays while a file is chosen for it.
             Answer::Ask(ask @ WindowAsk::Choose(_)) => return asked.ask(ask),
             Answer::Import(source) => {
-                let read = move || Done::Read(Box::new(storage::import(&source)));
-                return self.jobs.start("Reading maps".into(), read);
+                let read = move |_: &Progress| Done::Read(Box::new(storage::import(&source)));
+                return self.jobs.start("Reading maps".into(), While::Working, read);
             }
             _ => drop(self.dialogs.pop()),
         }
@@ -125,9 +133,8 @@ impl Window {
             Answer::Imported(opened) => self.session.adopt(*opened),
             Answer::Discard(then) => self.proceed(ctx, then, true),
             Answer::SaveThen(then) => {
-                if self.save() {
-                    self.proceed(ctx, then, false);
-                }
+                self.after_saving = Some(then);
+                self.save();
             }
             Answer::Ask(ask) => asked.ask(ask),
             Answer::Open | Answer::Close | Answer::Import(_) => {}
@@ -135,7 +142,12 @@ impl Window {
     }
     /// Does what was asked for.
     fn do_asked(&mut self, ctx: &egui::Context, asked: Asked) {
+        let is_editing = self.jobs.editing().is_some();
         for action in asked.actions {
+            // Seen it may be, but not changed, while an edit is under way.
+            if (is_editing && !matches!(action, Action::View(_))) || self.begin_edit(&action) {
+                continue;
+            }
             if let Err(error) = action.apply(&mut self.session) {
                 self.messages.push(error.to_string());
             }
@@ -153,10 +165,8 @@ impl Window {
             WindowAsk::Choose(purpose) => choosing::ask(&mut self.jobs, purpose, ""),
             WindowAsk::PlaceDialog => choosing::ask(&mut self.jobs, Purpose::Place, ""),
             WindowAsk::Open(file) => self.jobs.open(file),
-            WindowAsk::OpenSample => {
-                self.jobs.start("Opening the sample".into(), || Done::Opened(Box::new(sample::open())))
-            }
-            WindowAsk::Save => drop(self.save()),
+            WindowAsk::OpenSample => self.open_sample(),
+            WindowAsk::Save => self.save(),
             WindowAsk::SaveAs => self.ask_where(Purpose::Save),
             WindowAsk::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
             WindowAsk::Export(ending) => {
@@ -165,15 +175,24 @@ impl Window {
             }
             WindowAsk::Close(tab) => self.close(ctx, tab),
             WindowAsk::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
-            WindowAsk::CopyMerged => self.copy_merged(ctx),
+            WindowAsk::CopyMerged => self.copy_merged(),
             WindowAsk::Paste => self.paste(),
             WindowAsk::Palette => self.dialogs.push(Dialog::Palette(palette::Palette::default())),
-            WindowAsk::Shortcuts => self.dialogs.push(Dialog::Shortcuts(String::new())),
+            WindowAsk::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::Shortcuts::default())),
             WindowAsk::About => self.dialogs.push(Dialog::About),
-            WindowAsk::TogglePanels => self.panels_hidden = !self.panels_hidden,
+            WindowAsk::TogglePanels => self.settings.layout.is_hidden = !self.settings.layout.is_hidden,
+            WindowAsk::OtherSide => self.settings.layout.side = self.settings.layout.side.other(),
+            WindowAsk::PanelsApart => {
+                let side = &mut self.settings.layout.side;
+                *side = if *side == Side::Apart { Side::Right } else { Side::Apart };
+            }
+            WindowAsk::Float(front) => {
+                let apart = &mut self.settings.layout.apart;
+                if apart.contains(&front) { apart.retain(|other| *other != front) } else { apart.push(front) }
+            }
             WindowAsk::ToggleTheme => {
-                let dark = ctx.global_style().visuals.dark_mode;
-                ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });
+                self.settings.is_light = !self.settings.is_light;
+                ctx.set_theme(if self.settings.is_light { egui::Theme::Light } else { egui::Theme::Dark });
             }
             WindowAsk::Scale(scale) => self.scale(ctx, scale),
             WindowAsk::FullScreen => {
@@ -221,5 +240,11 @@ impl Window {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
+    }
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        if let Err(error) = self.keeper.finish(&self.settings) {
+            // The window is gone; whoever started it from a terminal sees it.
+            eprintln!("{error}");
+        }
     }
 }

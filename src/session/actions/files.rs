@@ -53,17 +53,17 @@ impl FileAction {
                 session.adopt(opened);
             }
             FileAction::Place { file, at } => {
-                let bytes = read_file(file, Budget::default().file_bytes)?;
-                let picture = picture::decode(file, &bytes, &Budget::default())?;
-                let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let (name, picture) = read_picture(file)?;
                 place(session, &name, picture, *at);
             }
             FileAction::Save { file } => {
                 let Some(tab) = session.tab() else { return Ok(()) };
                 let document = tab.document().clone();
                 let stamp = tab.stamp.filter(|_| tab.file.as_ref() == Some(file));
-                let stamp = storage::save(file, &document, stamp)?;
-                if let Some(tab) = session.tab_mut() {
+                // Nothing here gives up, so it is saved.
+                if let (Some(stamp), Some(tab)) =
+                    (storage::save(file, &document, stamp, &Progress::default())?, session.tab_mut())
+                {
                     tab.mark_saved(document, file.clone(), stamp);
                 }
             }
@@ -73,6 +73,7 @@ impl FileAction {
                     tab.document(),
                     file,
                     &Options { background: *background, quality: *quality, ..Options::default() },
+                    &Progress::default(),
                 )?;
             }
             FileAction::Tab { index } => session.current = (*index).min(session.tabs.len().saturating_sub(1)),
@@ -88,12 +89,20 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
     Document { layers: fill.into_iter().collect(), ..Document::empty(size) }
 }
 
-/// The flattened picture as a file.
-pub fn export(document: &Document, file: &Path, options: &Options) -> Result<()> {
+/// The flattened picture as a file; none is written if that is given up.
+pub fn export(document: &Document, file: &Path, options: &Options, progress: &Progress) -> Result<()> {
     let target = Target::new(file, &[])?;
-    // Nothing here cancels, so there always is a picture.
-    let pixels = flatten(document, &Progress::default()).unwrap_or_default();
-    target.write(&pixels, document.size, options)
+    match flatten(document, progress) {
+        Some(pixels) => target.write(&pixels, document.size, options),
+        None => Ok(()),
+    }
+}
+
+/// A picture of the user's own, with the name it goes by.
+pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
+    let bytes = read_file(file, Budget::default().file_bytes)?;
+    let picture = picture::decode(file, &bytes, &Budget::default())?;
+    Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
 }
 
 /// A picture becomes an image layer, bent by the operator in hand (by the normals, if that is flat), pinned at `at`. With

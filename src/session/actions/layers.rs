@@ -1,13 +1,12 @@
 //! The layer tree and its layers.
 //! Floor 6. The edits themselves are `document::edit`'s.
 
-use crate::document::{
-    Content, Document, Group, Layer, LayerId, Live, PixelLayer, Place, Progress, StrokeList, flatten, flatten_layer,
-};
+use super::flattening::no_pixels;
+use crate::document::{Content, Document, Group, Layer, LayerId, Live, Place, Progress, StrokeList};
 use crate::math::vec2;
 use crate::paint::{Filter, Gradient, Stop};
-use crate::raster::TileGrid;
 use crate::session::replay::{actions, names};
+use crate::session::tab::Edit;
 use crate::session::{LayerPath, Property, Session, Tab};
 use crate::shading::{Model, RadianceScaling, Shading};
 use crate::tools::brush::free_name;
@@ -96,18 +95,17 @@ impl LayerAction {
                 tab.solo = if tab.solo == id { None } else { id };
             }
             _ => {
-                if let Some((label, document, select)) = self.edit(tab, &in_hand) {
-                    tab.commit(label, document);
-                    tab.selected = select.or(tab.selected);
+                if let Some(edit) = self.edit(tab, &in_hand) {
+                    tab.take(edit);
                 }
             }
         }
     }
     /// The step, the document it leads to, and what is selected then.
-    fn edit(&self, tab: &Tab, in_hand: &Gradient) -> Option<(&'static str, Document, Option<LayerId>)> {
+    fn edit(&self, tab: &Tab, in_hand: &Gradient) -> Option<Edit> {
         let document = tab.document();
         let layer = |path: &LayerPath| path.find(document).cloned();
-        Some(match self {
+        let (label, document, select) = match self {
             LayerAction::Add { kind } => {
                 let new = made(*kind, document, in_hand);
                 let id = new.id;
@@ -139,15 +137,9 @@ impl LayerAction {
                 let index = place.index.saturating_add_signed(*by as isize);
                 ("Move layer", document.with_moved(id, Place { index, ..place })?, Some(id))
             }
-            LayerAction::MergeDown { layer: path } => merged(document, &*layer(path)?)?,
-            LayerAction::Flatten {} => {
-                let tiles = flatten(document, &Progress::default())?;
-                let flat = painted("Picture", tiles);
-                let id = flat.id;
-                let next = Document { layers: vec![Arc::new(flat)], ..document.clone() };
-                ("Flatten picture", next, Some(id))
+            LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
+                return self.flattened(document, &Progress::default());
             }
-            LayerAction::Bake { layer: path } => ("Bake layer", baked(document, &*layer(path)?)?, None),
             LayerAction::Group { layer: path } => {
                 let layer = layer(path)?;
                 let place = document.place_of(layer.id)?;
@@ -176,7 +168,8 @@ impl LayerAction {
                 ("Clear layer", next, None)
             }
             LayerAction::Select { .. } | LayerAction::Solo { .. } | LayerAction::Set { .. } => return None,
-        })
+        };
+        Some(Edit { label, document, select })
     }
 }
 
@@ -197,7 +190,8 @@ pub fn above(tab: &Tab) -> Place {
     Place { index: place.index.saturating_add(1), ..place }
 }
 
-fn sibling(document: &Document, place: Place) -> Option<LayerId> {
+/// The layer at a place, or the group it is in.
+pub(super) fn sibling(document: &Document, place: Place) -> Option<LayerId> {
     let layers = match place.group {
         None => &document.layers,
         Some(group) => match &document.layer(group)?.content {
@@ -229,15 +223,6 @@ fn made(kind: NewLayer, document: &Document, in_hand: &Gradient) -> Layer {
     Layer::new(free_name(document, name), content)
 }
 
-fn no_pixels() -> PixelLayer {
-    PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() }
-}
-
-/// A paint layer that holds these tiles.
-pub fn painted(name: &str, tiles: TileGrid) -> Layer {
-    Layer::new(name, Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
-}
-
 /// A copy under fresh ids.
 fn copied(layer: &Layer, name: &str) -> Layer {
     let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
@@ -245,30 +230,4 @@ fn copied(layer: &Layer, name: &str) -> Layer {
         group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
     }
     copy
-}
-
-/// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to the layer.
-fn baked(document: &Document, layer: &Layer) -> Option<Document> {
-    let bare = document.with_layer(layer.id, |layer| {
-        (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
-    })?;
-    let tiles = flatten_layer(&bare, layer.id, &Progress::default())?;
-    document.with_layer(layer.id, |layer| layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
-}
-
-/// A layer and the one beneath it as one paint layer.
-fn merged(document: &Document, layer: &Layer) -> Option<(&'static str, Document, Option<LayerId>)> {
-    let place = document.place_of(layer.id)?;
-    let beneath = sibling(document, Place { index: place.index.checked_sub(1)?, ..place })?;
-    let beneath = document.layer(beneath)?.clone();
-    // The two alone, in a canvas of their own that sees the same surface.
-    let pair = vec![Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&beneath) })];
-    let mut pair = Document { layers: pair, ..document.clone() };
-    pair.layers.push(Arc::new(layer.clone()));
-    let tiles = flatten(&pair, &Progress::default())?;
-    let next = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
-        layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() });
-        (layer.opacity, layer.mask) = (1.0, None);
-    })?;
-    Some(("Merge down", next, Some(beneath.id)))
 }

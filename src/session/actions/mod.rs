@@ -3,6 +3,7 @@
 
 pub mod edit;
 pub mod files;
+mod flattening;
 pub mod hand;
 pub mod layers;
 pub mod pointer;

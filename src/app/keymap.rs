@@ -1,0 +1,158 @@
+//! Which keys do what: the commands' and tools' own, and those the user chose instead.
+//! Floor 7. Listening to them is `keys`'.
+
+use super::commands::{self, Command};
+use crate::tools::{ToolKind, ToolRow};
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+
+/// The keys chosen by the user, by the name of the command or the label of the tool; all others keep their own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Keymap {
+    chosen: BTreeMap<String, Vec<KeyboardShortcut>>,
+}
+
+/// What keys can be given to.
+#[derive(Clone, Copy)]
+pub enum Keyed {
+    Command(&'static Command),
+    Tool(&'static ToolRow),
+}
+
+impl Keyed {
+    /// Everything that keys can be given to, tools first.
+    pub fn all() -> impl Iterator<Item = Keyed> {
+        const TOOLS: &[ToolRow] = &ToolKind::ALL;
+        let commands = commands::all().filter(|command| !command.name.is_empty()).map(Keyed::Command);
+        TOOLS.iter().map(Keyed::Tool).chain(commands)
+    }
+    pub fn name(self) -> &'static str {
+        match self {
+            Keyed::Command(command) => command.name,
+            Keyed::Tool(row) => row.label,
+        }
+    }
+    pub fn hint(self) -> &'static str {
+        match self {
+            Keyed::Command(command) => command.hint,
+            Keyed::Tool(row) => row.hint,
+        }
+    }
+    /// The keys it comes with.
+    fn own(self) -> Vec<KeyboardShortcut> {
+        match self {
+            Keyed::Command(command) => command.keys.to_vec(),
+            Keyed::Tool(row) => {
+                let key = Key::from_name(&row.key.to_string());
+                key.into_iter().map(|key| KeyboardShortcut::new(Modifiers::NONE, key)).collect()
+            }
+        }
+    }
+}
+
+impl Keymap {
+    pub fn of(&self, keyed: Keyed) -> Vec<KeyboardShortcut> {
+        self.chosen.get(keyed.name()).cloned().unwrap_or_else(|| keyed.own())
+    }
+    /// The first key of a command, which menus show.
+    pub fn first(&self, command: &'static Command) -> Option<KeyboardShortcut> {
+        self.of(Keyed::Command(command)).first().copied()
+    }
+    pub fn is_chosen(&self, keyed: Keyed) -> bool {
+        self.chosen.contains_key(keyed.name())
+    }
+    /// Gives keys; those it comes with need not be remembered.
+    pub fn set(&mut self, keyed: Keyed, keys: Vec<KeyboardShortcut>) {
+        if keys == keyed.own() {
+            self.chosen.remove(keyed.name());
+        } else {
+            self.chosen.insert(keyed.name().to_owned(), keys);
+        }
+    }
+    pub fn reset(&mut self, keyed: Keyed) {
+        self.chosen.remove(keyed.name());
+    }
+    /// What else has this key.
+    pub fn conflict(&self, keys: KeyboardShortcut, except: Keyed) -> Option<Keyed> {
+        Keyed::all().find(|other| other.name() != except.name() && self.of(*other).contains(&keys))
+    }
+    /// Takes a key from whatever has it, and gives it.
+    pub fn take(&mut self, keys: KeyboardShortcut, to: Keyed) {
+        while let Some(other) = self.conflict(keys, to) {
+            let left = self.of(other).into_iter().filter(|known| *known != keys).collect();
+            self.set(other, left);
+        }
+        let mut of = self.of(to);
+        if !of.contains(&keys) {
+            of.push(keys);
+        }
+        self.set(to, of);
+    }
+    pub fn to_json(&self) -> Value {
+        let text = |keys: &Vec<KeyboardShortcut>| keys.iter().map(|&keys| Value::from(written(keys))).collect();
+        Value::Object(self.chosen.iter().map(|(name, keys)| (name.clone(), Value::Array(text(keys)))).collect())
+    }
+    /// What is not understood is left out.
+    pub fn from_json(value: &Map<String, Value>) -> Self {
+        let known = |name: &str| Keyed::all().any(|keyed| keyed.name() == name);
+        let keys = |list: &Value| -> Option<Vec<KeyboardShortcut>> {
+            list.as_array()?.iter().map(|keys| read(keys.as_str()?)).collect()
+        };
+        let chosen = value.iter().filter(|(name, _)| known(name));
+        Self { chosen: chosen.filter_map(|(name, list)| Some((name.clone(), keys(list)?))).collect() }
+    }
+}
+
+/// “Ctrl+Shift+Z”, the same on every system.
+fn written(keys: KeyboardShortcut) -> String {
+    let Modifiers { alt, shift, command, .. } = keys.modifiers;
+    let mut text = String::new();
+    for (is_held, word) in [(command, "Ctrl+"), (alt, "Alt+"), (shift, "Shift+")] {
+        text.push_str(if is_held { word } else { "" });
+    }
+    text + keys.logical_key.name()
+}
+
+fn read(text: &str) -> Option<KeyboardShortcut> {
+    let (mut modifiers, mut rest) = (Modifiers::NONE, text);
+    for (word, modifier) in [("Ctrl+", Modifiers::COMMAND), ("Alt+", Modifiers::ALT), ("Shift+", Modifiers::SHIFT)] {
+        if let Some(after) = rest.strip_prefix(word) {
+            (modifiers, rest) = (modifiers.plus(modifier), after);
+        }
+    }
+    Some(KeyboardShortcut::new(modifiers, Key::from_name(rest)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(name: &str) -> Keyed {
+        Keyed::all().find(|keyed| keyed.name() == name).unwrap()
+    }
+
+    #[test]
+    fn every_key_survives_being_written_and_read() {
+        for keyed in Keyed::all() {
+            for keys in keyed.own() {
+                assert_eq!(read(&written(keys)), Some(keys), "{}", written(keys));
+            }
+        }
+        assert_eq!(read("Ctrl+Nothing"), None);
+    }
+    #[test]
+    fn a_key_that_is_taken_is_gone_from_where_it_was() {
+        let mut keymap = Keymap::default();
+        let [brush, save] = ["Brush", "Save"].map(named);
+        let of_brush = keymap.of(brush)[0];
+        assert_eq!(keymap.conflict(of_brush, save).unwrap().name(), "Brush");
+        keymap.take(of_brush, save);
+        assert!(keymap.of(brush).is_empty() && keymap.of(save).contains(&of_brush));
+        let json = keymap.to_json();
+        assert_eq!(Keymap::from_json(json.as_object().unwrap()), keymap);
+        keymap.reset(brush);
+        keymap.reset(save);
+        assert_eq!(keymap, Keymap::default());
+    }
+}

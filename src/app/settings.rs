@@ -1,0 +1,223 @@
+//! What the window remembers from one run to the next: recent files, where panels stand, the theme, keys. A small JSON file
+//! in the user's folder for settings; one that is broken is told of and never keeps the program from starting.
+//! Floor 7. Replacing the file is `io::save`'s.
+
+use super::jobs;
+use super::keymap::Keymap;
+use super::panels::Front;
+use crate::document::Progress;
+use crate::io::fs::Disk;
+use crate::io::save::{Over, replace};
+use crate::{Error, Result};
+use serde_json::{Map, Value, json};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Files remembered.
+const RECENT: usize = 12;
+/// A settings file is never larger; what is, is none.
+const LARGEST_BYTES: u64 = 1 << 20;
+/// Between two looks at whether something changed.
+const PAUSE: Duration = Duration::from_secs(2);
+
+/// Everything that is remembered.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Newest first.
+    pub recent: Vec<PathBuf>,
+    pub is_light: bool,
+    pub layout: Layout,
+    pub keymap: Keymap,
+    /// The three steps of a first start were seen to the end, or put away.
+    pub is_hint_done: bool,
+}
+
+/// Where the panels stand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    pub side: Side,
+    pub is_hidden: bool,
+    /// Which panel is in front above the layers.
+    pub front: Front,
+    /// Panels in windows of their own.
+    pub apart: Vec<Front>,
+    pub width_pt: f32,
+}
+
+/// On which side of the canvas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Left,
+    Right,
+    /// In a window of their own.
+    Apart,
+}
+
+impl Side {
+    pub fn other(self) -> Self {
+        if self == Side::Right { Side::Left } else { Side::Right }
+    }
+}
+
+const SIDES: [(Side, &str); 3] = [(Side::Left, "left"), (Side::Right, "right"), (Side::Apart, "apart")];
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self { side: Side::Right, is_hidden: false, front: Front::Color, apart: Vec::new(), width_pt: 268.0 }
+    }
+}
+
+impl Settings {
+    pub fn recent_is(&mut self, file: PathBuf) {
+        self.recent.retain(|known| *known != file);
+        self.recent.insert(0, file);
+        self.recent.truncate(RECENT);
+    }
+    fn to_json(&self) -> Value {
+        let Layout { side, is_hidden, front, apart, width_pt } = &self.layout;
+        let recent: Vec<String> = self.recent.iter().map(|file| file.to_string_lossy().into_owned()).collect();
+        let apart: Vec<&str> = apart.iter().map(|front| front.name()).collect();
+        let side = SIDES.iter().find(|(known, _)| known == side).map_or("right", |(_, name)| name);
+        json!({
+            "recent": recent,
+            "light": self.is_light,
+            "hint done": self.is_hint_done,
+            "panels": {
+                "side": side, "hidden": is_hidden, "front": front.name(), "apart": apart,
+                "width": width_pt.round(),
+            },
+            "keys": self.keymap.to_json(),
+        })
+    }
+    /// What is not understood stays as it comes with the program.
+    fn from_json(value: &Map<String, Value>) -> Self {
+        let text = |value: &Value| value.as_str().map(str::to_owned);
+        let texts = |value: Option<&Value>| -> Vec<String> {
+            value.and_then(Value::as_array).into_iter().flatten().filter_map(text).collect()
+        };
+        let flag = |object: &Map<String, Value>, name: &str| object.get(name).and_then(Value::as_bool).unwrap_or(false);
+        let nothing = Map::new();
+        let object = |name: &str| value.get(name).and_then(Value::as_object).unwrap_or(&nothing);
+        let panels = object("panels");
+        let word = |name: &str| panels.get(name).and_then(Value::as_str).unwrap_or_default();
+        let plain = Layout::default();
+        let width = panels.get("width").and_then(Value::as_f64).map_or(plain.width_pt, |width| width as f32);
+        let layout = Layout {
+            side: SIDES.iter().find(|(_, name)| *name == word("side")).map_or(plain.side, |(side, _)| *side),
+            is_hidden: flag(panels, "hidden"),
+            front: Front::from_name(word("front")).unwrap_or(plain.front),
+            apart: texts(panels.get("apart")).iter().filter_map(|name| Front::from_name(name)).collect(),
+            width_pt: width.max(200.0).min(800.0),
+        };
+        let recent = texts(value.get("recent")).into_iter().take(RECENT).map(PathBuf::from).collect();
+        let keymap = Keymap::from_json(object("keys"));
+        Self { recent, is_light: flag(value, "light"), layout, keymap, is_hint_done: flag(value, "hint done") }
+    }
+    /// Reads a settings file; none is an empty one. Fails where it is not JSON, or not to be read.
+    pub fn read(file: &Path) -> Result<Self> {
+        let bytes = match std::fs::metadata(file) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
+            Err(error) => return Err(Error::io(file, error)),
+            Ok(found) if found.len() > LARGEST_BYTES => return Err(Error::too_large(file, "it is no settings file")),
+            Ok(_) => std::fs::read(file).map_err(|error| Error::io(file, error))?,
+        };
+        let value: Value = serde_json::from_slice(&bytes).map_err(|error| Error::decode(file, error))?;
+        let object = value.as_object().ok_or_else(|| Error::decode(file, "it holds no object"))?;
+        Ok(Self::from_json(object))
+    }
+    /// Replaces the file: all of it or nothing.
+    pub fn write(&self, file: &Path) -> Result<()> {
+        if let Some(folder) = file.parent() {
+            std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
+        }
+        let text = format!("{:#}\n", self.to_json());
+        replace(&Disk, file, text.as_bytes(), Over::Anything, &Progress::default()).map(drop)
+    }
+}
+
+/// Where settings stand: `rilievo/settings.json` in the user's folder for them; `None` where the system names none.
+pub fn file() -> Option<PathBuf> {
+    use etcetera::BaseStrategy;
+    let base = etcetera::choose_base_strategy().ok()?;
+    Some(base.config_dir().join("rilievo").join("settings.json"))
+}
+
+/// Keeps the file as the settings are.
+pub struct Keeper {
+    file: Option<PathBuf>,
+    written: Settings,
+    looked: Instant,
+}
+
+impl Keeper {
+    /// The settings of a file and their keeper; without one nothing is remembered.
+    pub fn new(file: Option<PathBuf>) -> (Settings, Self, Option<String>) {
+        let read = file.as_deref().map_or_else(|| Ok(Settings::default()), Settings::read);
+        let (settings, trouble) = match read {
+            Ok(settings) => (settings, None),
+            Err(error) => {
+                (Settings::default(), Some(format!("{error}; the window starts as it comes with the program")))
+            }
+        };
+        let keeper = Self { file, written: settings.clone(), looked: Instant::now() };
+        (settings, keeper, trouble)
+    }
+    /// Writes what changed, on a thread of its own, not too often.
+    pub fn keep(&mut self, settings: &Settings) {
+        if self.looked.elapsed() < PAUSE {
+            return;
+        }
+        self.looked = Instant::now();
+        let Some(file) = self.file.clone().filter(|_| self.written != *settings) else { return };
+        self.written = settings.clone();
+        let settings = settings.clone();
+        // That settings are not kept is no reason to disturb who paints; leaving tells it.
+        let _ = jobs::spawn("settings", move || drop(settings.write(&file)));
+    }
+    /// Writes what changed, now.
+    pub fn finish(&mut self, settings: &Settings) -> Result<()> {
+        match &self.file {
+            Some(file) if Settings::read(file).ok().as_ref() != Some(settings) => settings.write(file),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_come_back_as_they_were_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("deep").join("settings.json");
+        assert_eq!(Settings::read(&file).unwrap(), Settings::default(), "no file is an empty one");
+        let layout = Layout {
+            side: Side::Left,
+            is_hidden: true,
+            front: Front::History,
+            apart: vec![Front::Navigator],
+            width_pt: 300.0,
+        };
+        let mut settings = Settings { is_light: true, layout, is_hint_done: true, ..Settings::default() };
+        (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
+        settings.write(&file).unwrap();
+        let read = Settings::read(&file).unwrap();
+        assert_eq!(read, settings);
+        assert_eq!((read.recent.len(), read.recent[0].to_str()), (RECENT, Some("19.ora")));
+    }
+    #[test]
+    fn a_broken_file_is_told_of_and_starts_all_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("settings.json");
+        for text in
+            ["{", "[]", "\u{0}", "{\"panels\": 7, \"recent\": [3], \"keys\": {\"Save\": [9]}, \"light\": \"x\"}"]
+        {
+            std::fs::write(&file, text).unwrap();
+            let (settings, _, trouble) = Keeper::new(Some(file.clone()));
+            assert_eq!(settings, Settings::default(), "{text}");
+            let is_told = trouble.is_some_and(|trouble| trouble.contains("settings.json"));
+            assert_eq!(is_told, text.len() < 9, "{text}");
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The three steps of a first start, over the canvas until they are done or put away.
+//! Floor 7.
+
+use super::Window;
+use crate::document::Content;
+use crate::session::Session;
+use crate::surface::Operator;
+use eframe::egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
+
+/// Each step, how it is done, and whether it is.
+type Step = (&'static str, &'static str, fn(&Session) -> bool);
+
+const STEPS: [Step; 3] = [
+    ("Drop a photo on the shape", "It bends over it like a reflection. Or File, Place image…", has_image),
+    ("Paint highlights", "Brush (B), operator Shading (F3): strokes follow the form", has_bent_stroke),
+    ("Move what you made", "Anchors (A) carry the photo along the surface, Move (V) a stroke", has_moved),
+];
+
+fn any(session: &Session, is: impl Fn(&Content) -> bool) -> bool {
+    session.shown().is_some_and(|document| document.walk().iter().any(|(_, layer)| is(&layer.content)))
+}
+fn has_image(session: &Session) -> bool {
+    any(session, |content| matches!(content, Content::Image(_)))
+}
+fn has_bent_stroke(session: &Session) -> bool {
+    let bent = |stroke: &crate::paint::Stroke| stroke.operator() != Operator::None;
+    any(session, |content| matches!(content, Content::Strokes(live) if live.params().strokes.iter().any(|s| bent(s))))
+}
+fn has_moved(session: &Session) -> bool {
+    let moves = ["Move anchor", "Add anchor", "Move stroke", "Move layer"];
+    session.tab().is_some_and(|tab| tab.history.past().any(|label| moves.contains(&label)))
+}
+
+impl Window {
+    /// Shows them, until all are done or they are put away.
+    pub(super) fn show_steps(&mut self, ui: &mut Ui) {
+        let is_over =
+            self.settings.is_hint_done || self.session.tab().is_none_or(|tab| tab.document().surface.is_none());
+        if is_over || !self.is_first_start {
+            return;
+        }
+        let done = STEPS.map(|(_, _, is_done)| is_done(&self.session));
+        let corner = ui.max_rect().left_top() + vec2(14.0, 14.0);
+        let area = Area::new(Id::unique("first steps")).fixed_pos(corner).pivot(Align2::LEFT_TOP);
+        area.show(ui.ctx(), |ui| {
+            Frame::popup(ui.style()).show(ui, |ui| {
+                ui.set_width(230.0);
+                ui.label(RichText::new("Three steps").strong());
+                for (i, ((name, how, _), is_done)) in STEPS.iter().zip(done).enumerate() {
+                    let mark = if is_done { "\u{2714}".to_owned() } else { format!("{}", i + 1) };
+                    let name = RichText::new(format!("{mark}  {name}"));
+                    ui.label(if is_done { name.weak() } else { name.strong() });
+                    if !is_done {
+                        ui.label(RichText::new(*how).small().weak());
+                    }
+                }
+                let put_away = if done == [true; 3] { "Done" } else { "Not now" };
+                if ui.button(put_away).clicked() {
+                    self.settings.is_hint_done = true;
+                }
+            });
+        });
+    }
+}

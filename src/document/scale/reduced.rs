@@ -1,0 +1,106 @@
+//! A document that is made small again and again while it changes: what is the very same is not made small twice.
+//! Floor 4. How one layer is made small is `scale`'s.
+
+use super::super::{Content, Document, Group, Layer, LayerId};
+use super::Scale;
+use crate::surface::{Surface, SurfaceError};
+use std::collections::HashMap;
+use std::sync::{Arc, Weak};
+
+/// Makes documents small by one factor, and remembers the parts of the last one.
+///
+/// Parts that did not change come back as the very same `Arc`, so that [`diff`](super::super::diff()) names only what did.
+pub struct Reduced {
+    factor: f32,
+    surface: Option<(Weak<Surface>, Arc<Surface>)>,
+    layers: HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
+}
+
+impl Reduced {
+    /// `factor`: as of [`Document::scaled`].
+    pub fn new(factor: f32) -> Self {
+        Self { factor, surface: None, layers: HashMap::new() }
+    }
+    /// The document, small: equal to [`Document::scaled`], and failing like it.
+    pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
+        let Some(scale) = Scale::of(document.size, self.factor) else { return Ok(document.clone()) };
+        let surface = document.surface.as_ref().map(|surface| self.surface(surface, &scale)).transpose()?;
+        let mut layers = HashMap::new();
+        let small = self.stack(&document.layers, &scale, &mut layers);
+        self.layers = layers;
+        Ok(Document { size: scale.to, surface, layers: small, ..document.clone() })
+    }
+    fn surface(&mut self, surface: &Arc<Surface>, scale: &Scale) -> Result<Arc<Surface>, SurfaceError> {
+        if let Some((known, small)) = &self.surface
+            && known.as_ptr() == Arc::as_ptr(surface)
+            && small.size() == scale.to
+        {
+            return Ok(small.clone());
+        }
+        let small = Arc::new(surface.stretched(scale.to)?);
+        self.surface = Some((Arc::downgrade(surface), small.clone()));
+        Ok(small)
+    }
+    /// A list of layers, those that are known taken from last time; `next` is what is known from now on.
+    fn stack(
+        &self,
+        layers: &[Arc<Layer>],
+        scale: &Scale,
+        next: &mut HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
+    ) -> Vec<Arc<Layer>> {
+        let mut small = Vec::with_capacity(layers.len());
+        for layer in layers {
+            let known = self.layers.get(&layer.id).filter(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
+            // Also where the group itself is known: what is in it must stay known.
+            let inner = match &layer.content {
+                Content::Group(group) => {
+                    Some(Group { layers: self.stack(&group.layers, scale, next), ..group.clone() })
+                }
+                _ => None,
+            };
+            let made = match (known, inner) {
+                (Some((_, made)), _) => made.clone(),
+                (None, Some(group)) => {
+                    let hollow = Layer { content: Content::Group(Group::default()), ..Layer::clone(layer) };
+                    Arc::new(Layer { content: Content::Group(group), ..scale.layer(&hollow) })
+                }
+                (None, None) => Arc::new(scale.layer(layer)),
+            };
+            next.insert(layer.id, (Arc::downgrade(layer), made.clone()));
+            small.push(made);
+        }
+        small
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Progress, diff, flatten};
+    use crate::math::{Size, srgb::Color};
+
+    fn fill(name: &str, v: u8) -> Layer {
+        Layer::new(name, Content::Fill(Color { r: v, g: v, b: v, a: 255 }))
+    }
+
+    #[test]
+    fn what_did_not_change_is_the_very_same_and_the_picture_is_that_of_scaling() {
+        let group =
+            Layer::new("group", Content::Group(Group { layers: vec![Arc::new(fill("in", 9))], pass_through: true }));
+        let layers = vec![Arc::new(fill("beneath", 40)), Arc::new(group)];
+        let document = Document { layers, ..Document::empty(Size::new(300, 200)) };
+        let mut reduced = Reduced::new(0.5);
+        let first = reduced.of(&document).unwrap();
+        assert_eq!(first.size, Size::new(150, 100));
+        let inner = document.layer_named("in").unwrap().id;
+        let changed = document.with_layer(inner, |layer| layer.opacity = 0.5).unwrap();
+        let second = reduced.of(&changed).unwrap();
+        assert!(Arc::ptr_eq(&first.layers[0], &second.layers[0]));
+        assert!(!diff(&first, &second).is_empty());
+        assert!(diff(&second, &reduced.of(&changed).unwrap()).is_empty());
+        let (ours, whole) =
+            (flatten(&second, &Progress::default()), flatten(&changed.scaled(0.5).unwrap(), &Progress::default()));
+        let area = second.size.rect();
+        assert!(ours.unwrap().to_straight_rgba(area) == whole.unwrap().to_straight_rgba(area));
+    }
+}

@@ -1,0 +1,74 @@
+//! Edits that flatten: they take as long as a picture takes, so the window does them beside itself.
+//! Floor 6. Flattening itself is `document::flatten`'s.
+
+use super::LayerAction;
+use super::layers::sibling;
+use crate::document::{Content, Document, Layer, LayerId, PixelLayer, Place, Progress, flatten, flatten_layer};
+use crate::raster::TileGrid;
+use crate::session::tab::Edit;
+use std::sync::Arc;
+
+impl LayerAction {
+    /// What is being done, of an edit that takes long.
+    pub fn takes_long(&self) -> Option<&'static str> {
+        match self {
+            LayerAction::MergeDown { .. } => Some("Merging layers"),
+            LayerAction::Bake { .. } => Some("Baking the layer"),
+            LayerAction::Flatten {} => Some("Flattening the picture"),
+            _ => None,
+        }
+    }
+    /// Does an edit that takes long to a document; `None` for any other, where it cannot be done, or given up.
+    pub fn flattened(&self, document: &Document, progress: &Progress) -> Option<Edit> {
+        match self {
+            LayerAction::MergeDown { layer } => merged(document, layer.find(document)?, progress),
+            LayerAction::Bake { layer } => {
+                let document = baked(document, layer.find(document)?, progress)?;
+                Some(Edit { label: "Bake layer", document, select: None })
+            }
+            LayerAction::Flatten {} => {
+                let flat = painted("Picture", flatten(document, progress)?);
+                let select = Some(flat.id);
+                let document = Document { layers: vec![Arc::new(flat)], ..document.clone() };
+                Some(Edit { label: "Flatten picture", document, select })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A paint layer's content without paint.
+pub(super) fn no_pixels() -> PixelLayer {
+    PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() }
+}
+
+/// A paint layer that holds these tiles.
+pub fn painted(name: &str, tiles: TileGrid) -> Layer {
+    Layer::new(name, Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
+}
+
+/// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to the layer.
+fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Document> {
+    let bare = document.with_layer(layer.id, |layer| {
+        (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
+    })?;
+    let tiles = flatten_layer(&bare, layer.id, progress)?;
+    document.with_layer(layer.id, |layer| layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
+}
+
+/// A layer and the one beneath it as one paint layer.
+fn merged(document: &Document, layer: &Layer, progress: &Progress) -> Option<Edit> {
+    let place = document.place_of(layer.id)?;
+    let beneath: LayerId = sibling(document, Place { index: place.index.checked_sub(1)?, ..place })?;
+    let beneath = document.layer(beneath)?.clone();
+    // The two alone, in a canvas of their own that sees the same surface.
+    let pair = vec![Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&beneath) })];
+    let mut pair = Document { layers: pair, ..document.clone() };
+    pair.layers.push(Arc::new(layer.clone()));
+    let tiles = flatten(&pair, progress)?;
+    let document = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
+        layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() });
+        (layer.opacity, layer.mask) = (1.0, None);
+    })?;
+    Some(Edit { label: "Merge down", document, select: Some(beneath.id) })
+}
