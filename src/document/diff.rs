@@ -2,7 +2,7 @@
 //! and parameters, never pixels.
 //! Floor 4. Conservative: a tile that is not named is the same; a tile that is named may be.
 
-use super::{Content, Document, Layer, LayerId};
+use super::{Content, Document, Layer, LayerId, Live, StrokeList};
 use crate::math::Rect;
 use crate::paint::{Scene, Stroke};
 use crate::raster::TileAt;
@@ -15,8 +15,13 @@ pub fn diff(old: &Document, new: &Document) -> BTreeSet<TileAt> {
     if !old.scene().is_same(&new.scene()) {
         return TileAt::covering(new.size.rect()).collect();
     }
-    let mut diff =
-        Diff { old: surroundings(old), new: surroundings(new), scene: new.scene(), changed: BTreeSet::new() };
+    let mut diff = Diff {
+        old: surroundings(old),
+        new: surroundings(new),
+        document: new,
+        scene: new.scene(),
+        changed: BTreeSet::new(),
+    };
     diff.stack(&old.layers, &new.layers, false);
     diff.changed
 }
@@ -66,14 +71,16 @@ fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTre
     }
 }
 
-struct Diff {
+struct Diff<'d> {
     old: BTreeMap<LayerId, Surroundings>,
     new: BTreeMap<LayerId, Surroundings>,
+    /// The new one.
+    document: &'d Document,
     scene: Scene,
     changed: BTreeSet<TileAt>,
 }
 
-impl Diff {
+impl Diff<'_> {
     /// Compares two versions of a list of layers; whether anything changed in it, or had `beneath` it.
     fn stack(&mut self, old: &[Arc<Layer>], new: &[Arc<Layer>], beneath: bool) -> bool {
         let mut changed = beneath;
@@ -119,9 +126,7 @@ impl Diff {
             (Content::Image(a), Content::Image(b)) => !a.ptr_eq(b) && self.both(old, new),
             (Content::Gradient(a), Content::Gradient(b)) => !a.ptr_eq(b) && self.both(old, new),
             (Content::Shading(a), Content::Shading(b)) => !a.ptr_eq(b) && self.both(old, new),
-            (Content::Strokes(a), Content::Strokes(b)) => {
-                !a.ptr_eq(b) && self.strokes(new.id, &a.params().strokes, &b.params().strokes)
-            }
+            (Content::Strokes(a), Content::Strokes(b)) => !a.ptr_eq(b) && self.drawn(new.id, a, b),
             // Children of an isolated group have a scope of their own.
             (Content::Group(a), Content::Group(b)) if a.pass_through == b.pass_through => {
                 self.stack(&a.layers, &b.layers, beneath && b.pass_through)
@@ -129,21 +134,24 @@ impl Diff {
             _ => self.both(old, new),
         }
     }
-    /// Strokes are painted in order, so those between a common beginning and a common end may change what they touch.
-    fn strokes(&mut self, layer: LayerId, old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> bool {
-        let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
-        let start = old.iter().zip(new).take_while(same).count();
-        let (old, new) = (&old[start..], &new[start..]);
-        let end = old.iter().rev().zip(new.iter().rev()).take_while(same).count();
-        let differing = old[..old.len() - end].iter().chain(&new[..new.len() - end]);
-        let bounds: Vec<Rect> = differing.map(|stroke| self.stroke_bounds(layer, stroke)).collect();
-        bounds.into_iter().fold(false, |changed, rect| self.rect(rect) | changed)
+    /// Two versions of a stroke layer that see the same surface: where both are rendered, their tiles tell.
+    fn drawn(&mut self, layer: LayerId, old: &Live<StrokeList>, new: &Live<StrokeList>) -> bool {
+        let seen = if self.sees_normals(layer) { self.document.scene_of(layer) } else { None };
+        let scene = seen.unwrap_or_else(|| self.scene.clone());
+        let canvas = self.scene.size.rect();
+        let differing = differing(&old.params().strokes, &new.params().strokes);
+        let tiles = differing.flat_map(|stroke| TileAt::covering(stroke.bounds(&scene).intersect(canvas)));
+        let tiles: BTreeSet<TileAt> = tiles.collect();
+        let differs = |at: &TileAt| !old.same_tile(new, &scene, *at);
+        let tiles = tiles.into_iter().filter(differs).collect();
+        self.tiles(tiles)
     }
     fn stroke_bounds(&self, layer: LayerId, stroke: &Stroke) -> Rect {
-        let sees_normals =
-            [&self.old, &self.new].iter().any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()));
         // Bounds hold for one surface; normal layers put another in its place.
-        if sees_normals { self.scene.size.rect() } else { stroke.bounds(&self.scene) }
+        if self.sees_normals(layer) { self.scene.size.rect() } else { stroke.bounds(&self.scene) }
+    }
+    fn sees_normals(&self, layer: LayerId) -> bool {
+        [&self.old, &self.new].iter().any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()))
     }
     fn both(&mut self, old: &Layer, new: &Layer) -> bool {
         self.whole(old) | self.whole(new)
@@ -158,7 +166,11 @@ impl Diff {
                 let tiles = pixels.tiles.iter().map(|(at, _)| at).collect();
                 self.tiles(tiles)
             }
-            Content::Strokes(live) => self.strokes(layer.id, &live.params().strokes, &[]),
+            Content::Strokes(live) => {
+                let bounds: Vec<Rect> =
+                    live.params().strokes.iter().map(|stroke| self.stroke_bounds(layer.id, stroke)).collect();
+                bounds.into_iter().fold(false, |changed, rect| self.rect(rect) | changed)
+            }
             Content::Group(group) => group.layers.iter().fold(false, |changed, layer| self.whole(layer) | changed),
             // What sees them has other surroundings.
             Content::Normals(_) => false,
@@ -180,6 +192,15 @@ impl Diff {
         self.changed.extend(&tiles);
         !tiles.is_empty()
     }
+}
+
+/// Strokes are painted in order, so those between a common beginning and a common end may change what they touch.
+fn differing<'s>(old: &'s [Arc<Stroke>], new: &'s [Arc<Stroke>]) -> impl Iterator<Item = &'s Arc<Stroke>> {
+    let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
+    let start = old.iter().zip(new).take_while(same).count();
+    let (old, new) = (&old[start..], &new[start..]);
+    let end = old.iter().rev().zip(new.iter().rev()).take_while(same).count();
+    old[..old.len() - end].iter().chain(&new[..new.len() - end])
 }
 
 /// All but the content, the name and the lock is equal.

@@ -59,6 +59,41 @@ impl<T> Live<T> {
         }
         next
     }
+    /// New parameters whose tiles differ from these only where `tiles` says, which are rendered already.
+    ///
+    /// * `scene`: what the layer sees. On any other than it was rendered for, nothing is taken over.
+    pub fn with_tiles(
+        &self,
+        params: T,
+        scene: &Scene,
+        tiles: impl IntoIterator<Item = (TileAt, Option<Arc<Tile>>)>,
+    ) -> Self {
+        let (old, cells) = (self.cells(scene), Cells::for_scene(scene));
+        for (at, tile) in tiles {
+            cells.cell(at).map(|cell| cell.set(tile));
+        }
+        for (to, from) in cells.cells.iter().zip(&old.cells) {
+            if let (None, Some(tile)) = (to.get(), from.get()) {
+                let _ = to.set(tile.clone());
+            }
+        }
+        let next = Self::new(params);
+        *next.lock() = Some((scene.clone(), Arc::new(cells)));
+        next
+    }
+    /// A tile is known to look the same in both on this scene: rendered, and the very same pixels.
+    pub fn same_tile(&self, other: &Self, scene: &Scene, at: TileAt) -> bool {
+        let tile = |live: &Self| {
+            let seen = live.lock();
+            let (_, cells) = seen.as_ref().filter(|(on, _)| on.is_same(scene))?;
+            cells.cell(at)?.get().cloned()
+        };
+        match (tile(self), tile(other)) {
+            (Some(Some(a)), Some(Some(b))) => Arc::ptr_eq(&a, &b),
+            (Some(None), Some(None)) => true,
+            _ => false,
+        }
+    }
     /// A tile of the layer on a scene, rendered by `render` unless it has been.
     pub fn tile(&self, scene: &Scene, at: TileAt, render: impl FnOnce() -> Option<Tile>) -> Option<Arc<Tile>> {
         let cells = self.cells(scene);
@@ -99,6 +134,20 @@ mod tests {
         let again = live.clone().tile(&scene, at, || unreachable!()).unwrap();
         assert!(Arc::ptr_eq(&first, &again));
         assert!(live.tile(&scene, TileAt::new(2, 0), blank).is_none(), "beyond the canvas there are no tiles");
+    }
+    #[test]
+    fn tiles_that_come_rendered_are_taken_and_the_others_stay() {
+        let scene = Scene { size: Size::new(128, 64), surface: None };
+        let blank = || Tile::from_bytes(vec![255; 64 * 64 * 4]);
+        let (left, right) = (TileAt::new(0, 0), TileAt::new(1, 0));
+        let live = Live::new(1);
+        live.tile(&scene, left, blank);
+        live.tile(&scene, right, blank);
+        let next = live.with_tiles(2, &scene, [(right, None), (TileAt::new(9, 9), None)]);
+        assert!(next.same_tile(&live, &scene, left) && !next.same_tile(&live, &scene, right));
+        assert!(next.tile(&scene, right, || unreachable!()).is_none());
+        let elsewhere = Scene { size: Size::new(128, 65), surface: None };
+        assert!(!next.same_tile(&live, &elsewhere, left), "on another canvas nothing is known");
     }
     #[test]
     fn new_parameters_keep_the_tiles_they_do_not_touch() {

@@ -16,6 +16,7 @@ pub mod normals;
 mod prepare;
 pub mod progress;
 pub mod scale;
+mod seen;
 pub mod source;
 pub mod view;
 

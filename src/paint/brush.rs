@@ -1,7 +1,7 @@
 //! A brush: the footprint of one dab and how dabs follow each other.
 //! Floor 3. Not here: how the hand and the surface drive it (`dynamics`), the dabs themselves (`laying`).
 
-use super::dynamics::Dynamics;
+use super::dynamics::{Dynamics, Input};
 use super::image::PictureSource;
 use crate::raster::BlendMode;
 
@@ -54,7 +54,8 @@ pub struct Jitter {
 pub enum Stabilizer {
     #[default]
     None,
-    /// The line trails the pen as a running average; `weight` in `[0, 1)`, the share of the past after ten pixels.
+    /// The line trails the pen as a running average; `weight` in `[0, 1)`, the share of the past that is left after
+    /// ten px of the pen's way.
     Average { weight: f32 },
     /// The pen pulls the line along on a string, px: wiggles shorter than it do not show.
     String { length_px: f32 },
@@ -89,5 +90,14 @@ impl Default for Brush {
             dynamics: Dynamics::default(),
             seed: 0,
         }
+    }
+}
+
+impl Brush {
+    /// Chance decides something about its strokes: they want a seed of their own.
+    pub fn is_random(&self) -> bool {
+        let Jitter { hue_degrees, saturation, value } = self.jitter;
+        let strays = [self.scatter, hue_degrees, saturation, value].iter().any(|&v| v > 0.0);
+        strays || self.dynamics.follow(Input::Random) || !matches!(self.tip, Tip::Round | Tip::Picture(_))
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod adjust;
 pub mod brush;
+pub mod calm;
 mod curve;
 mod dab;
 pub mod dynamics;
@@ -20,8 +21,9 @@ mod wash;
 
 pub use adjust::Adjust;
 pub use brush::{Brush, Jitter, Stabilizer, Tip};
+pub use calm::Calm;
 pub use dynamics::{Curve, Drive, Dynamics, Input, Property, Readings};
 pub use gradient::{Gradient, Stop};
 pub use image::{PictureSource, PlacedImage, Placement};
 pub use scene::{Filter, Scene};
-pub use stroke::{Sample, Stroke};
+pub use stroke::{Ground, InHand, Sample, Stroke};

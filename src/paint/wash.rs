@@ -1,12 +1,14 @@
 //! What one stroke lays on one tile, dab by dab, in f32, before its opacity caps it and it meets the layer.
 //! Floor 3.
 
+use super::brush::Brush;
 use crate::math::srgb::Color;
 use crate::raster::planar::Row;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{BlendMode, Coverage, Mix, Paint, PlanarTile, TILE};
 
 /// The paint of a stroke, still wet.
+#[derive(Clone)]
 pub enum Wash {
     /// Coverage by the stroke's one colour, `[0, 1]`, row by row.
     OneColor(Box<[f32; TILE_AREA]>),
@@ -37,6 +39,13 @@ pub struct Manner {
     pub erases: bool,
     /// Only where there is paint, whose coverage stays.
     pub keeps_alpha: bool,
+}
+
+impl Manner {
+    pub fn of(brush: &Brush, color: Color) -> Self {
+        let Brush { opacity, blend, erases, keeps_alpha, .. } = *brush;
+        Self { color, opacity: opacity.max(0.0).min(1.0), mode: blend, erases, keeps_alpha }
+    }
 }
 
 impl Wash {

@@ -21,7 +21,7 @@ use crate::io::recipe::preset_brush;
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::Brush;
 use crate::surface::Operator;
-use crate::tools::{Gesture, ToolKind};
+use crate::tools::{Gesture, Symmetry, ToolKind};
 use std::path::Path;
 use std::sync::Arc;
 use storage::Opened;
@@ -44,6 +44,8 @@ pub struct Session {
     pub recent_colors: Vec<Color>,
     /// How new marks follow the surface.
     pub operator: Operator,
+    /// How strokes repeat.
+    pub symmetry: Symmetry,
     /// A view of the surface shown over the picture, by its name.
     pub overlay: Option<String>,
     pub overlay_opacity: f32,
@@ -67,6 +69,7 @@ impl Default for Session {
             second_color: Color { r: 0x1c, g: 0x20, b: 0x26, a: 255 },
             recent_colors: Vec::new(),
             operator: Operator::None,
+            symmetry: Symmetry::None,
             overlay: None,
             overlay_opacity: 0.85,
             gesture: None,

@@ -207,6 +207,7 @@ mod tests {
     use crate::raster::{Outside, Picture};
     use crate::surface::{Bend, Operator, Weights};
     use crate::tools::Keys;
+    use crate::tools::Symmetry;
 
     fn document(anchors: Vec<Anchor>) -> Document {
         let size = Size::new(100, 80);
@@ -224,8 +225,17 @@ mod tests {
     fn dragged(document: &Document, keys: Keys, from: Vec2, to: Vec2) -> Option<Vec<Anchor>> {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
         let (color, second_color, operator) = (Color::BLACK, Color::WHITE, Operator::None);
-        let context =
-            Context { document, layer, brush: &brush, color, second_color, operator, px_per_pt: 1.0, last_end: None };
+        let context = Context {
+            document,
+            layer,
+            brush: &brush,
+            color,
+            second_color,
+            operator,
+            px_per_pt: 1.0,
+            last_end: None,
+            symmetry: Symmetry::None,
+        };
         let (gesture, begun) = press(&context, Pen { keys, ..Pen::at(from) });
         let outcome = match gesture {
             Some(mut gesture) => {

@@ -1,13 +1,12 @@
 //! The brush and the eraser: the pen's readings become one stroke, live on a stroke layer, pixels on a paint layer.
 //! Floor 5. Dabs and tiles are `paint`'s.
 
-use super::pixels::{self, Effect};
+use super::symmetry::Image;
 use super::{Begun, Context, Gesture, Outcome, Pen};
 use crate::document::{Content, Document, Layer, LayerId, Live, Lock, PixelLayer, Place, StrokeList};
-use crate::math::{Vec2, srgb::Color};
-use crate::paint::{Brush, Sample, Scene, Stroke, Tip};
-use crate::raster::{TileAt, TileGrid};
-use crate::surface::Operator;
+use crate::math::{Vec2, hash, srgb::Color};
+use crate::paint::{Calm, Ground, InHand, Sample, Scene, Stroke, Tip};
+use crate::raster::{Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
 /// What the stroke is for.
@@ -21,38 +20,53 @@ pub enum Purpose {
 pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
     let Some((document, id)) = paintable(context, purpose) else { return (None, Outcome::Idle) };
     let Some(layer) = document.layer(id) else { return (None, Outcome::Idle) };
-    let target = match (&layer.content, purpose) {
-        (Content::Strokes(list), Purpose::Paint) => Target::Strokes(list.clone()),
+    let scene = document.scene_of(id).unwrap_or_else(|| document.scene());
+    let (target, ground) = match (&layer.content, purpose) {
+        (Content::Strokes(list), Purpose::Paint) => {
+            let strokes = list.params().strokes.clone();
+            // Of an empty layer everything is known.
+            let blank = TileAt::covering(scene.size.rect()).filter(|_| strokes.is_empty()).map(|at| (at, None));
+            let shown = list.with_tiles(list.params().clone(), &scene, blank);
+            (Target::Strokes { beneath: strokes.clone(), shown }, Ground::Strokes(strokes))
+        }
         (Content::Strokes(list), Purpose::Erase) => {
             let taken =
                 TakenAway { document: context.document.clone(), layer: id, list: list.clone(), gone: Vec::new() };
             return begin(taken, pen);
         }
         (Content::Pixels(pixels), _) => {
-            let effect = match (purpose, layer.lock) {
-                (Purpose::Erase, _) => Effect::Erase,
-                (Purpose::Paint, Lock::Alpha) => Effect::Atop,
-                (Purpose::Paint, _) => Effect::Over,
-            };
-            Target::Pixels { base: pixels.clone(), shown: pixels.tiles.clone(), effect }
+            let mut shown = pixels.tiles.clone();
+            shown.reserve(scene.size.rect());
+            let base = PixelLayer { file: String::new(), ..pixels.clone() };
+            (Target::Pixels { base, shown }, Ground::Pixels(pixels.tiles.clone()))
         }
         _ => return (None, Outcome::Idle),
     };
-    let mut samples = Vec::new();
-    if let Some(last) = context.last_end.filter(|_| pen.keys.shift) {
-        // A straight line from where the last stroke ended, its pressure that of this pen.
-        samples.extend((0..8).map(|i| Sample { at: last.lerp(pen.place(), i as f32 / 8.0), ..pen.sample }));
+    let is_eraser = purpose == Purpose::Erase;
+    let mut brush = context.brush.clone();
+    brush.erases |= is_eraser;
+    brush.keeps_alpha |= layer.lock == Lock::Alpha;
+    if brush.is_random() {
+        // Whoever draws the same stroke again gets the same one.
+        brush.seed = hash::mix(pen.place().x.to_bits() ^ hash::mix(pen.place().y.to_bits()));
     }
+    let color = if is_eraser { Color { a: 255, ..context.color } } else { context.color };
+    let images = context.symmetry.images(document.size);
+    let like = |image: &Image| Stroke::new(image.brush(&brush), context.operator, color, Vec::new());
+    let strokes: Vec<Stroke> = images.iter().map(like).collect();
+    // With Shift a straight line from where the last stroke ended, its pressure that of this pen.
+    let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
+    let line = start.flat_map(|last| (0..8).map(move |i| last.lerp(pen.place(), i as f32 / 8.0)));
     let painting = Painting {
-        brush: context.brush.clone(),
-        operator: context.operator,
-        color: if purpose == Purpose::Erase { Color { a: 255, ..context.color } } else { context.color },
-        scene: document.scene(),
-        label: if purpose == Purpose::Erase { "Erase" } else { "Brush stroke" },
+        lead: line.map(|at| Sample { at, ..pen.sample }).collect(),
+        in_hand: Some(InHand::new(&strokes, ground, &scene)),
+        calm: Calm::new(brush.stabilizer),
+        label: if is_eraser { "Erase" } else { "Brush stroke" },
         document,
         layer: id,
+        scene,
         target,
-        samples,
+        images,
     };
     begin(painting, pen)
 }
@@ -99,69 +113,69 @@ pub fn free_name(document: &Document, base: &str) -> String {
     name
 }
 
-/// Where the stroke goes.
+/// Where the strokes go.
 enum Target {
-    Strokes(Live<StrokeList>),
-    Pixels { base: PixelLayer, shown: TileGrid, effect: Effect },
+    Strokes { beneath: Vec<Arc<Stroke>>, shown: Live<StrokeList> },
+    Pixels { base: PixelLayer, shown: TileGrid },
 }
 
-/// A stroke in the making.
+/// A stroke in the making, and its mirror images.
 struct Painting {
     /// As it was before the stroke, with the layer that the stroke goes to.
     document: Document,
     layer: LayerId,
+    /// What the layer sees.
     scene: Scene,
     target: Target,
-    brush: Brush,
-    operator: Operator,
-    color: Color,
-    samples: Vec<Sample>,
+    /// `None` once it is finished.
+    in_hand: Option<InHand>,
+    images: Vec<Image>,
+    calm: Calm,
+    /// Samples before the pen's first.
+    lead: Vec<Sample>,
     label: &'static str,
 }
 
-/// The curve up to the sample before the last but one no longer changes as samples are added.
-const TAIL: usize = 3;
-
 impl Painting {
-    fn stroke(&self, samples: Vec<Sample>) -> Arc<Stroke> {
-        Arc::new(Stroke::new(self.brush.clone(), self.operator, self.color, samples))
-    }
-    /// The document with the stroke as it is; only tiles for which `changes` is true are painted anew.
-    fn with(&mut self, stroke: &Arc<Stroke>, changes: impl Fn(TileAt) -> bool) -> Option<Document> {
-        match &mut self.target {
-            Target::Strokes(list) => {
-                let mut strokes = list.params().strokes.clone();
-                strokes.push(stroke.clone());
-                let next = list.with(StrokeList { strokes }, |at| !stroke.touches(&self.scene, at));
-                self.document.with_layer(self.layer, |layer| layer.content = Content::Strokes(next))
-            }
-            Target::Pixels { base, shown, effect } => {
-                let canvas = TileAt::covering(self.scene.size.rect());
-                let tiles: Vec<TileAt> = canvas.filter(|&at| stroke.touches(&self.scene, at) && changes(at)).collect();
-                *shown = pixels::painted(&base.tiles, shown, stroke, &self.scene, *effect, &tiles);
-                // What was painted here is no longer what the file holds.
-                let next = PixelLayer { file: String::new(), tiles: shown.clone(), ..base.clone() };
-                self.document.with_layer(self.layer, |layer| layer.content = Content::Pixels(next))
-            }
+    /// Draws on to more samples; the tiles that changed.
+    fn draw(&mut self, samples: Vec<Sample>) -> Vec<(TileAt, Option<Arc<Tile>>)> {
+        let Some(in_hand) = &mut self.in_hand else { return Vec::new() };
+        let of_image = |image: &Image| samples.iter().map(|sample| image.sample(sample)).collect();
+        let samples: Vec<Vec<Sample>> = self.images.iter().map(of_image).collect();
+        let tiles = in_hand.draw(&samples);
+        if let Target::Pixels { shown, .. } = &mut self.target {
+            tiles.iter().for_each(|(at, tile)| shown.set(*at, tile.clone()));
         }
+        tiles
+    }
+    /// The document with the strokes, of which these tiles changed.
+    fn with(&mut self, strokes: Vec<Stroke>, tiles: Vec<(TileAt, Option<Arc<Tile>>)>) -> Option<Document> {
+        let content = match &mut self.target {
+            Target::Strokes { beneath, shown } => {
+                let strokes = beneath.iter().cloned().chain(strokes.into_iter().map(Arc::new)).collect();
+                *shown = shown.with_tiles(StrokeList { strokes }, &self.scene, tiles);
+                Content::Strokes(shown.clone())
+            }
+            // What was painted here is no longer what the file holds.
+            Target::Pixels { base, shown } => Content::Pixels(PixelLayer { tiles: shown.clone(), ..base.clone() }),
+        };
+        self.document.with_layer(self.layer, |layer| layer.content = content)
     }
 }
 
 impl Gesture for Painting {
     fn drag(&mut self, pens: &[Pen]) -> Outcome {
-        let from = self.samples.len().saturating_sub(TAIL);
-        self.samples.extend(pens.iter().map(|pen| pen.sample));
-        let tail = self.stroke(self.samples[from..].to_vec());
-        // Dabs of the tail stand a step apart from the stroke's own: a little larger, it covers them.
-        let mut wider = tail.brush().clone();
-        wider.size *= 1.0 + 2.0 * wider.spacing.min(1.0);
-        let tail = Stroke::new(wider, self.operator, self.color, tail.samples().to_vec());
-        let (stroke, scene) = (self.stroke(self.samples.clone()), self.scene.clone());
-        self.with(&stroke, |at| tail.touches(&scene, at)).map_or(Outcome::Idle, Outcome::Preview)
+        let mut samples = std::mem::take(&mut self.lead);
+        samples.extend(pens.iter().filter_map(|pen| self.calm.push(pen.sample)));
+        let tiles = self.draw(samples);
+        let strokes = self.in_hand.as_ref().map_or(Vec::new(), InHand::strokes);
+        self.with(strokes, tiles).map_or(Outcome::Idle, Outcome::Preview)
     }
     fn release(&mut self) -> Outcome {
-        let stroke = self.stroke(self.samples.clone());
-        let Some(document) = self.with(&stroke, |_| true) else { return Outcome::Cancel };
+        let rest = self.calm.finish().into_iter().collect();
+        let tiles = self.draw(rest);
+        let strokes = self.in_hand.take().map_or(Vec::new(), InHand::finish);
+        let Some(document) = self.with(strokes, tiles) else { return Outcome::Cancel };
         Outcome::Commit { label: self.label.into(), document, select: Some(self.layer) }
     }
 }
@@ -228,6 +242,9 @@ pub fn is_on(stroke: &Stroke, at: Vec2) -> bool {
 mod tests {
     use super::*;
     use crate::math::{Size, vec2};
+    use crate::paint::{Brush, Stabilizer};
+    use crate::surface::Operator;
+    use crate::tools::Symmetry;
 
     fn context<'a>(document: &'a Document, layer: Option<LayerId>, brush: &'a Brush) -> Context<'a> {
         let (color, second_color) = (Color::BLACK, Color::WHITE);
@@ -240,6 +257,7 @@ mod tests {
             operator: Operator::None,
             px_per_pt: 1.0,
             last_end: None,
+            symmetry: Symmetry::None,
         }
     }
     fn drawn(context: &Context, purpose: Purpose, points: &[Vec2]) -> (Document, Option<LayerId>) {
@@ -328,5 +346,55 @@ mod tests {
         let Content::Strokes(list) = &left.layers[0].content else { panic!("a stroke layer") };
         assert_eq!(list.params().strokes.len(), 1);
         assert_eq!(list.params().strokes[0].samples()[0].at.y, 20.0);
+    }
+    #[test]
+    fn mirror_images_are_strokes_of_their_own() {
+        let empty = Document::empty(Size::new(200, 150));
+        let brush = Brush { size: 8.0, hardness: 1.0, ..Brush::default() };
+        let plain = context(&empty, None, &brush);
+        let mirrored = Context { symmetry: Symmetry::Vertical, ..plain };
+        let (document, _) = drawn(&mirrored, Purpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
+        let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
+        let ends: Vec<Vec2> = list.params().strokes.iter().map(|stroke| stroke.samples()[1].at).collect();
+        assert_eq!(ends, [vec2(60.0, 90.0), vec2(140.0, 90.0)]);
+        let on_paint = Context { document: &paint_layer(), layer: None, ..mirrored };
+        let id = on_paint.document.layers[0].id;
+        let (painted, _) = drawn(&Context { layer: Some(id), ..on_paint }, Purpose::Paint, &[vec2(20.0, 40.0)]);
+        assert_eq!((tiles(&painted).pixel(20, 40)[3], tiles(&painted).pixel(179, 40)[3]), (255, 255));
+    }
+    #[test]
+    fn a_calmed_line_is_finished_when_the_pen_lifts() {
+        let empty = Document::empty(Size::new(200, 150));
+        let brush = Brush { size: 8.0, stabilizer: Stabilizer::String { length_px: 40.0 }, ..Brush::default() };
+        let (document, _) =
+            drawn(&context(&empty, None, &brush), Purpose::Paint, &[vec2(20.0, 40.0), vec2(120.0, 40.0)]);
+        let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
+        let places: Vec<f32> = list.params().strokes[0].samples().iter().map(|s| s.at.x).collect();
+        assert_eq!(places, [20.0, 80.0, 120.0]);
+    }
+    #[test]
+    fn an_erasing_brush_takes_nothing_from_paint_whose_alpha_is_locked() {
+        let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
+        let document = paint_layer();
+        let id = Some(document.layers[0].id);
+        let (painted, _) = drawn(&context(&document, id, &brush), Purpose::Paint, &LINE);
+        let locked = painted.with_layer(painted.layers[0].id, |layer| layer.lock = Lock::Alpha).unwrap();
+        let (erased, _) = drawn(&context(&locked, id, &brush), Purpose::Erase, &LINE);
+        assert_eq!(tiles(&erased).pixel(60, 52), [0, 0, 0, 255]);
+    }
+    #[test]
+    fn what_is_redrawn_while_drawing_does_not_grow_with_the_stroke() {
+        use crate::document::diff::diff;
+        let (empty, brush) = (Document::empty(Size::new(2000, 500)), Brush { size: 20.0, ..Brush::default() });
+        let (gesture, first) = press(&context(&empty, None, &brush), Pen::at(vec2(20.0, 100.0)), Purpose::Paint);
+        let (mut gesture, Outcome::Preview(mut before)) = (gesture.unwrap(), first) else { panic!("it shows") };
+        for i in 1..90 {
+            let Outcome::Preview(next) = gesture.drag(&[Pen::at(vec2(20.0 + 20.0 * i as f32, 100.0))]) else {
+                panic!("it shows")
+            };
+            let redrawn = diff(&before, &next).len();
+            assert!(redrawn <= 8, "{redrawn} tiles at sample {i}");
+            before = next;
+        }
     }
 }

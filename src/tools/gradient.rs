@@ -124,6 +124,7 @@ mod tests {
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::Brush;
     use crate::surface::Operator;
+    use crate::tools::Symmetry;
 
     #[test]
     fn a_drag_lays_a_gradient_and_a_second_one_moves_its_end() {
@@ -138,6 +139,7 @@ mod tests {
             operator: Operator::None,
             px_per_pt: 1.0,
             last_end: None,
+            symmetry: Symmetry::None,
         };
         let drag = |context: &Context, from: Vec2, to: Vec2| {
             let mut gesture = press(context, Pen::at(from)).0.unwrap();

@@ -8,13 +8,14 @@ pub mod eyedropper;
 pub mod gradient;
 pub mod image;
 pub mod outline;
-mod pixels;
 pub mod shift;
+pub mod symmetry;
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Sample};
 use crate::surface::Operator;
+pub use symmetry::Symmetry;
 
 /// What can be taken in hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -158,6 +159,8 @@ pub struct Context<'a> {
     pub px_per_pt: f32,
     /// Where the last stroke ended.
     pub last_end: Option<Vec2>,
+    /// How strokes repeat.
+    pub symmetry: Symmetry,
 }
 
 /// What a tool made of what the pen did.

@@ -111,12 +111,22 @@ mod tests {
     use crate::paint::Brush;
     use crate::raster::TileGrid;
     use crate::surface::Operator;
+    use crate::tools::Symmetry;
 
     fn dragged(document: &Document, from: Vec2, to: Vec2) -> Document {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
         let (color, second_color, operator) = (Color::BLACK, Color::WHITE, Operator::None);
-        let context =
-            Context { document, layer, brush: &brush, color, second_color, operator, px_per_pt: 1.0, last_end: None };
+        let context = Context {
+            document,
+            layer,
+            brush: &brush,
+            color,
+            second_color,
+            operator,
+            px_per_pt: 1.0,
+            last_end: None,
+            symmetry: Symmetry::None,
+        };
         let mut gesture = press(&context, Pen::at(from)).0.unwrap();
         gesture.drag(&[Pen::at(to)]);
         match gesture.release() {

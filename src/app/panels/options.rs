@@ -9,7 +9,7 @@ use crate::session::actions::hand::SIZES;
 use crate::session::actions::{HandAction, LayerAction};
 use crate::session::{Action, LayerPath, Property, Session};
 use crate::surface::Operator;
-use crate::tools::ToolKind;
+use crate::tools::{Symmetry, ToolKind};
 use eframe::egui::{Button, RichText, Ui};
 
 /// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the hand's.
@@ -62,8 +62,33 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         if matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) {
             ui.separator();
             brush(ui, session, asked);
+            symmetry(ui, session, asked);
         }
     });
+}
+
+/// How strokes repeat, as a menu.
+fn symmetry(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    const CHOICES: [(Symmetry, &str); 8] = [
+        (Symmetry::None, "No symmetry"),
+        (Symmetry::Vertical, "Left and right"),
+        (Symmetry::Horizontal, "Above and below"),
+        (Symmetry::Both, "All four"),
+        (Symmetry::Radial(3), "3 times round"),
+        (Symmetry::Radial(5), "5 times round"),
+        (Symmetry::Radial(6), "6 times round"),
+        (Symmetry::Radial(8), "8 times round"),
+    ];
+    let known = CHOICES.iter().find(|(choice, _)| *choice == session.symmetry).map(|(_, label)| *label);
+    let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| {
+        for (choice, label) in CHOICES {
+            if ui.selectable_label(choice == session.symmetry, label).clicked() {
+                asked.act(Action::Hand(HandAction::Symmetry { symmetry: choice }));
+                ui.close();
+            }
+        }
+    });
+    menu.response.on_hover_text("Repeat every stroke about the middle of the canvas, each bending at its own place");
 }
 
 /// The live sliders of an operator, in a bar.

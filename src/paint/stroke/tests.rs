@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::math::{Size, vec2, vec3};
+use crate::paint::laying::{self, Dab};
 use crate::paint::profile::RoundProfile;
-use crate::paint::{Adjust, Dynamics, Jitter, PictureSource, Property};
+use crate::paint::{Adjust, Dynamics, Jitter, PictureSource, Property, Tip};
 use crate::raster::{BlendMode, Picture, Plane, TileGrid};
 use crate::surface::{Deformation, Maps, Surface, links};
 use proptest::prelude::*;

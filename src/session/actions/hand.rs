@@ -5,11 +5,36 @@ use crate::io::recipe::preset_brush;
 use crate::math::srgb::Color;
 use crate::paint::Property;
 use crate::session::Session;
-use crate::session::replay::{actions, names};
+use crate::session::replay::{Replayed, actions, names};
 use crate::surface::Operator;
-use crate::tools::ToolKind;
+use crate::tools::symmetry::MOST_ROUND;
+use crate::tools::{Symmetry, ToolKind};
+use serde_json::Value;
 
 names!(ToolKind);
+
+/// A word, or how many times round.
+impl Replayed for Symmetry {
+    fn written(&self) -> Value {
+        match *self {
+            Symmetry::None => "none".into(),
+            Symmetry::Vertical => "vertical".into(),
+            Symmetry::Horizontal => "horizontal".into(),
+            Symmetry::Both => "both".into(),
+            Symmetry::Radial(n) => n.into(),
+        }
+    }
+    fn read(value: &Value) -> Result<Self, String> {
+        match value.as_str() {
+            Some("none") => Ok(Symmetry::None),
+            Some("vertical") => Ok(Symmetry::Vertical),
+            Some("horizontal") => Ok(Symmetry::Horizontal),
+            Some("both") => Ok(Symmetry::Both),
+            Some(_) => Err("must be none, vertical, horizontal, both or how many times round".into()),
+            None => u32::read(value).map(|n| Symmetry::Radial(n.clamp(2, MOST_ROUND))),
+        }
+    }
+}
 
 actions! {
     /// Nothing here changes a document.
@@ -32,6 +57,7 @@ actions! {
         "swap colors" SwapColors {}
         "default colors" DefaultColors {}
         "operator" Operator { operator: Operator }
+        "symmetry" Symmetry { symmetry: Symmetry }
     }
 }
 
@@ -74,6 +100,7 @@ impl HandAction {
             HandAction::SwapColors {} => std::mem::swap(&mut session.color, &mut session.second_color),
             HandAction::DefaultColors {} => (session.color, session.second_color) = (Color::BLACK, Color::WHITE),
             HandAction::Operator { operator } => session.operator = *operator,
+            HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
         }
     }
 }

@@ -77,6 +77,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
         operator: session.operator,
         px_per_pt,
         last_end: tab.last_end,
+        symmetry: session.symmetry,
     };
     let (gesture, outcome) = tools::press(tool, &context, pen);
     session.gesture = gesture;

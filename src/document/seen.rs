@@ -1,0 +1,36 @@
+//! Which surface a layer sees, without preparing the whole document: its own canvas, with the normal layers beneath it.
+//! Floor 4.
+
+use super::{Content, Document, Layer, LayerId, normals};
+use crate::paint::Scene;
+use std::sync::Arc;
+
+impl Document {
+    /// What a layer is painted on: the document's surface and the normal layers beneath it in its scope. `None` where there
+    /// is no such layer.
+    pub fn scene_of(&self, layer: LayerId) -> Option<Scene> {
+        find(&self.layers, layer, &mut self.scene())
+    }
+}
+
+/// `scene` becomes what stands above the layers sees.
+fn find(layers: &[Arc<Layer>], id: LayerId, scene: &mut Scene) -> Option<Scene> {
+    for layer in layers {
+        if layer.id == id {
+            return Some(scene.clone());
+        }
+        let found = match &layer.content {
+            Content::Normals(normals) if layer.visible => {
+                *scene = normals::scene_above(layer, normals, scene);
+                None
+            }
+            Content::Group(group) if group.pass_through && layer.visible => find(&group.layers, id, scene),
+            Content::Group(group) => find(&group.layers, id, &mut scene.clone()),
+            _ => None,
+        };
+        if found.is_some() {
+            return found;
+        }
+    }
+    None
+}

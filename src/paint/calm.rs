@@ -1,0 +1,149 @@
+//! Calming the hand: the pen's samples drawn into a smoother line while they come, and the line finished when the pen lifts.
+//! Floor 3.
+
+use super::brush::Stabilizer;
+use super::stroke::Sample;
+use crate::math::Vec2;
+
+/// After so many px of the pen's way the weight of a [`Stabilizer::Average`] is what is left of the past.
+const WEIGHED_PX: f32 = 10.0;
+/// A heavier past would hold the line where it began.
+const MOST_WEIGHT: f32 = 0.99;
+/// The string is pulled in steps no longer than this, so that the line does not depend on how densely the pen reports.
+const PULL_PX: f32 = 1.0;
+/// Steps between two samples: a pen that leaps leaves a straighter line.
+const MOST_PULLS: f32 = 4096.0;
+
+/// A line that follows the pen.
+#[derive(Clone)]
+pub struct Calm {
+    stabilizer: Stabilizer,
+    /// Where the line ends, and what the pen said last.
+    line: Option<(Vec2, Sample)>,
+}
+
+impl Calm {
+    pub fn new(stabilizer: Stabilizer) -> Self {
+        Self { stabilizer, line: None }
+    }
+    /// Takes the pen's next sample in; `None` while the line does not move.
+    ///
+    /// A sample whose place is not finite is passed on as it is, for the stroke to skip.
+    pub fn push(&mut self, pen: Sample) -> Option<Sample> {
+        if self.stabilizer == Stabilizer::None || !pen.at.is_finite() {
+            return Some(pen);
+        }
+        let Some((end, last)) = self.line else {
+            self.line = Some((pen.at, pen));
+            return Some(pen);
+        };
+        let at = match self.stabilizer {
+            Stabilizer::None => pen.at,
+            Stabilizer::Average { weight } => trailed(end, last.at, pen.at, weight),
+            Stabilizer::String { length_px } => pulled(end, last.at, pen.at, length_px),
+        };
+        // A hostile leap may leave f32: the line stays.
+        let at = if at.is_finite() { at } else { end };
+        self.line = Some((at, pen));
+        (at != end).then_some(Sample { at, ..pen })
+    }
+    /// The rest of the way to where the pen lifts; `None` where the line is there already.
+    pub fn finish(&mut self) -> Option<Sample> {
+        let (end, last) = self.line.take()?;
+        (end != last.at).then_some(last)
+    }
+}
+
+/// The end of a line that follows a pen from `from` to `to`: every px it makes up a share 1/ℓ of what it lags behind,
+/// e^(−10/ℓ) = weight. Exact for a pen that moves straight, so that samples between change nothing.
+fn trailed(end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
+    let weight = weight.max(0.0).min(MOST_WEIGHT);
+    let way = to - from;
+    let (length, lag) = (way.length(), if weight > 0.0 { -WEIGHED_PX / weight.ln() } else { 0.0 });
+    if lag <= 0.0 || length <= 0.0 {
+        return if lag <= 0.0 { to } else { end };
+    }
+    // How far behind it comes to trail at last.
+    let behind = way / length * lag;
+    to - behind + (end - from + behind) * (-length / lag).exp()
+}
+
+/// The end of a string of this length whose other end is pulled straight from `from` to `to`.
+fn pulled(end: Vec2, from: Vec2, to: Vec2, length_px: f32) -> Vec2 {
+    let length_px = length_px.max(0.0);
+    let steps = (from.distance(to) / PULL_PX).ceil().max(1.0).min(MOST_PULLS) as usize;
+    (1..=steps).fold(end, |end, step| {
+        let hand = from.lerp(to, step as f32 / steps as f32);
+        let string = end - hand;
+        let length = string.length();
+        if length > length_px { hand + string * (length_px / length) } else { end }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vec2;
+
+    /// The calm line of a pen, finished.
+    fn line(stabilizer: Stabilizer, pens: &[Vec2]) -> Vec<Vec2> {
+        let mut calm = Calm::new(stabilizer);
+        let mut line: Vec<Vec2> = pens.iter().filter_map(|&at| calm.push(Sample::at(at))).map(|s| s.at).collect();
+        line.extend(calm.finish().map(|s| s.at));
+        line
+    }
+    fn wiggle(step: f32) -> Vec<Vec2> {
+        let n = (200.0 / step) as usize;
+        (0..=n).map(|i| vec2(step * i as f32, 8.0 * (0.4 * step * i as f32).sin())).collect()
+    }
+    const CALM: [Stabilizer; 2] = [Stabilizer::Average { weight: 0.6 }, Stabilizer::String { length_px: 20.0 }];
+
+    #[test]
+    fn wiggles_flatten_and_the_line_ends_where_the_pen_lifts() {
+        for stabilizer in CALM {
+            let (pens, line) = (wiggle(1.0), line(stabilizer, &wiggle(1.0)));
+            let reach = |points: &[Vec2]| points[60..150].iter().map(|p| p.y.abs()).fold(0.0, f32::max);
+            assert!(reach(&line) < 0.5 * reach(&pens), "{stabilizer:?}: {}", reach(&line));
+            assert_eq!((line.first(), line.last()), (pens.first(), pens.last()));
+        }
+    }
+    #[test]
+    fn how_densely_the_pen_reports_changes_the_line_little() {
+        for stabilizer in CALM {
+            let corner = |n: usize| {
+                let leg = |from: Vec2, to: Vec2| (0..n).map(move |i| from.lerp(to, i as f32 / n as f32));
+                let (a, b, c) = (vec2(0.0, 0.0), vec2(100.0, 0.0), vec2(100.0, 80.0));
+                let mut calm = Calm::new(stabilizer);
+                let end = leg(a, b).chain(leg(b, c)).chain([c]).filter_map(|at| calm.push(Sample::at(at))).last();
+                end.map(|sample| sample.at).unwrap_or_default()
+            };
+            assert!(corner(2).distance(corner(500)) < 0.2, "{stabilizer:?}: {} and {}", corner(2), corner(500));
+        }
+    }
+    #[test]
+    fn a_straight_pull_trails_by_the_strings_length_and_by_the_averages_lag() {
+        let to = vec2(300.0, 0.0);
+        assert_eq!(pulled(Vec2::ZERO, Vec2::ZERO, to, 20.0), vec2(280.0, 0.0));
+        // e^(−10/ℓ) = 0.6: ℓ is 19.58 px.
+        assert!((trailed(Vec2::ZERO, Vec2::ZERO, to, 0.6).x - (300.0 - 19.576)).abs() < 0.01);
+    }
+    #[test]
+    fn a_tap_within_the_string_leaves_its_dot_and_reaches_the_pen() {
+        assert_eq!(line(CALM[1], &[Vec2::ZERO, vec2(5.0, 0.0)]), [Vec2::ZERO, vec2(5.0, 0.0)]);
+    }
+    #[test]
+    fn hostile_samples_and_settings_leave_the_line_finite() {
+        for stabilizer in [
+            Stabilizer::Average { weight: f32::NAN },
+            Stabilizer::Average { weight: 7.0 },
+            Stabilizer::String { length_px: f32::NAN },
+            Stabilizer::String { length_px: -3.0 },
+        ] {
+            let mut calm = Calm::new(stabilizer);
+            for at in [Vec2::ZERO, Vec2::NAN, vec2(3e38, -3e38), vec2(f32::INFINITY, 0.0), vec2(9.0, 9.0)] {
+                calm.push(Sample::at(at));
+            }
+            assert_eq!(calm.finish().map_or(vec2(9.0, 9.0), |s| s.at), vec2(9.0, 9.0));
+        }
+    }
+}
