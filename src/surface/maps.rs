@@ -1,10 +1,10 @@
 //! The surface: normals, depth and coverage in the one convention of the program, whole and finite everywhere.
 //! Floor 2. Not here: files and their conventions (`io::maps`).
 
-use super::{bounds::Bounds, curvature::CurvatureCache, grow, links, occlusion::OcclusionCache};
+use super::{bounds::Bounds, curvature::CurvatureCache, grow, links, objects::Objects, occlusion::OcclusionCache};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
 pub struct Maps {
@@ -43,6 +43,7 @@ pub struct Surface {
     base: Option<Arc<Surface>>,
     occlusions: OcclusionCache,
     bounds: Bounds,
+    objects: OnceLock<Objects>,
 }
 
 impl Surface {
@@ -85,6 +86,7 @@ impl Surface {
             base: None,
             occlusions: OcclusionCache::default(),
             bounds: Bounds::default(),
+            objects: OnceLock::new(),
         })
     }
     /// The same surface with other unit normals (y up), one for each pixel; what depends on depth alone is shared.
@@ -102,6 +104,7 @@ impl Surface {
             base: Some(self.base.as_ref().unwrap_or(self).clone()),
             occlusions: OcclusionCache::default(),
             bounds: Bounds::default(),
+            objects: OnceLock::new(),
         }
     }
     pub fn size(&self) -> Size {
@@ -155,6 +158,10 @@ impl Surface {
     /// The surface without the detail that was combined onto it.
     pub(super) fn base(&self) -> &Surface {
         self.base.as_deref().unwrap_or(self)
+    }
+    /// Split by the thread that asks, and by no other: see `bounds`.
+    pub(super) fn objects_cell(&self) -> &OnceLock<Objects> {
+        &self.objects
     }
     pub(super) fn occlusions(&self) -> &OcclusionCache {
         &self.occlusions

@@ -61,6 +61,7 @@ fn about(view: View) -> &'static str {
         View::Normals => "Red to the right, green up, blue toward you",
         View::Depth => "Black near, white far",
         View::Mask => "White where the surface is",
+        View::Objects => "A colour for each object: what depth jumps tear apart",
         View::Curvature => "Convex blue, concave red, flat yellow",
         View::CurvatureGrey => "Convex light, concave dark",
         View::Directions => "Lines along the direction that curves most",

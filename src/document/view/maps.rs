@@ -18,6 +18,15 @@ pub(super) fn mask(surface: &Surface) -> Picture {
     painted(surface.size(), None, |x, y| [f32::from(surface.coverage(x, y)) / 255.0; 3])
 }
 
+/// A colour for each object, darker where it turns away.
+pub(super) fn objects(surface: &Surface) -> Picture {
+    let labels = surface.objects().labels();
+    painted(surface.size(), Some(surface), |x, y| {
+        let color = super::anchor_color((labels.at(x, y) as usize).saturating_sub(1));
+        (color * (0.35 + 0.65 * surface.normal(x, y).z.max(0.0))).to_array()
+    })
+}
+
 /// Convex, flat, concave: encoded.
 pub(super) const CONVEX: Vec3 = vec3(0.10, 0.25, 0.90);
 const FLAT: Vec3 = vec3(1.00, 0.92, 0.35);

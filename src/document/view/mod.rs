@@ -24,6 +24,8 @@ pub enum View {
     Depth,
     /// White where the surface is.
     Mask,
+    /// What the surface falls into along its depth jumps: a colour for each object.
+    Objects,
     /// Convex blue, concave red, flat yellow.
     Curvature,
     /// Convex light, concave dark.
@@ -50,6 +52,7 @@ impl View {
         (View::Normals, "normals"),
         (View::Depth, "depth"),
         (View::Mask, "mask"),
+        (View::Objects, "objects"),
         (View::Curvature, "curvature"),
         (View::CurvatureGrey, "curvature-grey"),
         (View::Directions, "directions"),
@@ -111,6 +114,7 @@ pub fn draw(document: &Document, layer: Option<&Layer>, view: View, options: &Vi
         View::Normals => maps::normals(surface()?),
         View::Depth => maps::depth(surface()?),
         View::Mask => maps::mask(surface()?),
+        View::Objects => maps::objects(surface()?),
         View::Curvature => maps::curvature(surface()?, options),
         View::CurvatureGrey => maps::curvature_grey(surface()?, options),
         View::Lit => maps::lit(surface()?),

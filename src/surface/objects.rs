@@ -1,0 +1,276 @@
+//! Objects: the pieces that a surface falls into along its silhouette and its depth jumps, and marks bounded to them.
+//! Floor 2. Which neighbouring pixels hang together is `links`'.
+
+use super::{Surface, links};
+use crate::math::{Rect, Vec2};
+use crate::raster::Plane;
+use std::sync::Arc;
+
+/// Pieces smaller than this are crumbs of a torn edge, not objects: they join what they are nearest to in depth. A share of
+/// the longer side, squared, so that the same picture falls into the same objects at any size; at least some pixels.
+const CRUMB_SIDE: (f32, f32) = (0.006, 4.0);
+
+/// Which object each pixel of a surface belongs to.
+pub struct Objects {
+    /// 0 where there is no surface, else one more than the object's place in `rects`.
+    labels: Plane<u32>,
+    rects: Vec<Rect>,
+}
+
+/// One object of a surface: 1 is the one whose first pixel comes first, row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ObjectId(u32);
+
+impl Objects {
+    /// Splits a surface: pixels are of one object where a path of linked neighbours joins them.
+    fn new(surface: &Surface) -> Self {
+        let mut pieces = Pieces::of(surface);
+        pieces.join_crumbs(surface);
+        pieces.numbered(surface)
+    }
+    /// The object that covers a pixel; `None` off the surface and off the canvas.
+    pub fn at(&self, x: i32, y: i32) -> Option<ObjectId> {
+        self.labels.get(x, y).filter(|label| *label > 0).map(ObjectId)
+    }
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.rects.len()
+    }
+    /// The smallest rectangle that holds an object; empty for one of another surface.
+    pub fn rect(&self, object: ObjectId) -> Rect {
+        self.rects.get(object.0 as usize - 1).copied().unwrap_or(Rect::EMPTY)
+    }
+    /// For each pixel 0 where there is no surface, else which object it is of, from 1 on.
+    pub fn labels(&self) -> &Plane<u32> {
+        &self.labels
+    }
+}
+
+/// A forest over the pixels: each knows another of its piece that comes before it, the first itself.
+struct Pieces {
+    parent: Vec<u32>,
+    /// Of the piece, at its first pixel.
+    area: Vec<u32>,
+    width: usize,
+}
+
+impl Pieces {
+    fn of(surface: &Surface) -> Self {
+        let size = surface.size();
+        let mut pieces =
+            Self { parent: (0..size.area() as u32).collect(), area: vec![1; size.area()], width: size.width as usize };
+        for (i, &linked) in surface.links_plane().values().iter().enumerate() {
+            if linked & links::LEFT != 0 {
+                pieces.join(i - 1, i);
+            }
+            if linked & links::UP != 0 {
+                pieces.join(i - pieces.width, i);
+            }
+        }
+        pieces
+    }
+    /// The first pixel of a pixel's piece.
+    fn first(&mut self, mut i: usize) -> usize {
+        while self.parent[i] as usize != i {
+            // Halving the path keeps it short.
+            self.parent[i] = self.parent[self.parent[i] as usize];
+            i = self.parent[i] as usize;
+        }
+        i
+    }
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.first(a), self.first(b));
+        if a != b {
+            let (first, later) = (a.min(b), a.max(b));
+            self.parent[later] = first as u32;
+            self.area[first] += self.area[later];
+        }
+    }
+    /// Hands pieces too small to be objects to their neighbours, across the smallest steps of depth first.
+    fn join_crumbs(&mut self, surface: &Surface) {
+        let side = (CRUMB_SIDE.0 * surface.size().longer_side()).max(CRUMB_SIDE.1);
+        let crumb_px = (side * side) as u32;
+        let covered = |i: usize| surface.coverage_plane().values()[i] > 0;
+        let depth = surface.depth_plane().values();
+        let mut torn = Vec::new();
+        for (i, &linked) in surface.links_plane().values().iter().enumerate() {
+            let (has_left, has_above) = (i % self.width > 0, i >= self.width);
+            for (bit, has, step) in [(links::LEFT, has_left, 1), (links::UP, has_above, self.width)] {
+                if has && linked & bit == 0 && covered(i) && covered(i - step) {
+                    let (a, b) = (self.first(i), self.first(i - step));
+                    if self.area[a].min(self.area[b]) < crumb_px {
+                        torn.push(((depth[i] - depth[i - step]).abs(), i, i - step));
+                    }
+                }
+            }
+        }
+        torn.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        for (_, i, j) in torn {
+            let (a, b) = (self.first(i), self.first(j));
+            if self.area[a].min(self.area[b]) < crumb_px {
+                self.join(a, b);
+            }
+        }
+    }
+    fn numbered(mut self, surface: &Surface) -> Objects {
+        let mut labels = Plane::filled(surface.size(), 0);
+        let mut rects: Vec<Rect> = Vec::new();
+        for i in 0..self.parent.len() {
+            if surface.coverage_plane().values()[i] == 0 {
+                continue;
+            }
+            let first = self.first(i);
+            // A piece's first pixel comes first, so it has been numbered.
+            let label = if first == i { rects.len() as u32 + 1 } else { labels.values()[first] };
+            labels.values_mut()[i] = label;
+            let (x, y) = ((i % self.width) as i32, (i / self.width) as i32);
+            let pixel = Rect::new(x, y, x + 1, y + 1);
+            match rects.get_mut(label as usize - 1) {
+                Some(rect) => *rect = rect.union(pixel),
+                None => rects.push(pixel),
+            }
+        }
+        Objects { labels, rects }
+    }
+}
+
+impl Surface {
+    /// The objects of the surface. Kept: asking again costs nothing. Normal layers split nothing: jumps are depth's.
+    pub fn objects(&self) -> &Objects {
+        let base = self.base();
+        base.objects_cell().get_or_init(|| Objects::new(base))
+    }
+}
+
+/// How far a mark may go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Bounded {
+    /// Everywhere.
+    #[default]
+    Free,
+    /// Where the surface is.
+    Surface,
+    /// To the object on which it begins; a mark that begins off the surface, to what is off it.
+    Object,
+}
+
+impl Bounded {
+    /// Every choice with its name in documents.
+    pub const ALL: [(Bounded, &'static str); 3] =
+        [(Bounded::Free, "free"), (Bounded::Surface, "surface"), (Bounded::Object, "object")];
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(bounded, _)| *bounded == self).map_or("free", |(_, name)| name)
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, n)| *n == name).map(|(bounded, _)| *bounded)
+    }
+    /// The part of the canvas that a mark may touch which begins at `start`, canvas px. Without a surface, all of it.
+    pub fn from(self, surface: Option<&Arc<Surface>>, start: Vec2) -> Part {
+        let Some(surface) = surface else { return Part::Whole };
+        match self {
+            Bounded::Free => Part::Whole,
+            Bounded::Surface => Part::Surface(surface.clone()),
+            Bounded::Object => {
+                // Off the canvas, and for what is not a number, there is no surface.
+                let pixel = start.floor().as_ivec2();
+                let object = surface.objects().at(pixel.x, pixel.y).filter(|_| start.is_finite());
+                object.map_or(Part::Backdrop(surface.clone()), |object| Part::Object(surface.clone(), object))
+            }
+        }
+    }
+}
+
+/// A part of the canvas.
+#[derive(Clone)]
+pub enum Part {
+    Whole,
+    Surface(Arc<Surface>),
+    Object(Arc<Surface>, ObjectId),
+    /// All that the surface does not cover.
+    Backdrop(Arc<Surface>),
+}
+
+impl Part {
+    /// The share of a pixel that is in the part, `[0, 1]`; off the canvas there is no surface.
+    pub fn coverage(&self, x: i32, y: i32) -> f32 {
+        let covered = |surface: &Surface| surface.coverage_plane().get(x, y).map_or(0.0, |c| f32::from(c) / 255.0);
+        match self {
+            Part::Whole => 1.0,
+            Part::Surface(surface) => covered(surface),
+            Part::Backdrop(surface) => 1.0 - covered(surface),
+            Part::Object(surface, object) => {
+                if surface.objects().at(x, y) == Some(*object) {
+                    covered(surface)
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+    pub fn is_whole(&self) -> bool {
+        matches!(self, Part::Whole)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, Vec3, vec2};
+    use crate::surface::Maps;
+
+    const SIZE: Size = Size::new(120, 80);
+
+    /// A plate from column 10 on, a disc of 20 px that floats before its middle, and a crumb of 2 × 2 px behind both.
+    fn plate_and_disc() -> Arc<Surface> {
+        let disc = |x: usize, y: usize| vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(60.0, 40.0)) < 20.0;
+        let crumb = |x: usize, y: usize| (100..102).contains(&x) && (60..62).contains(&y);
+        let depth = Plane::from_fn(SIZE, |x, y| match (disc(x, y), crumb(x, y)) {
+            (true, _) => 0.2,
+            (_, true) => 1.0,
+            _ => 0.6,
+        });
+        let coverage = Plane::from_fn(SIZE, |x, _| if x < 10 { 0 } else { 255 });
+        Arc::new(Surface::new(Maps { normals: Plane::filled(SIZE, Vec3::Z), depth, coverage }).unwrap())
+    }
+
+    #[test]
+    fn a_disc_before_a_plate_is_an_object_of_its_own_and_a_crumb_is_none() {
+        let surface = plate_and_disc();
+        let objects = surface.objects();
+        assert_eq!(objects.count(), 2);
+        let (plate, disc) = (objects.at(15, 5).unwrap(), objects.at(60, 40).unwrap());
+        for (x, y) in (0..80).flat_map(|y| (0..120).map(move |x| (x, y))) {
+            let in_disc = vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(60.0, 40.0)) < 20.0;
+            let expected = if x < 10 { None } else { Some(if in_disc { disc } else { plate }) };
+            assert_eq!(objects.at(x, y), expected, "({x}, {y})");
+        }
+        assert_eq!(objects.rect(disc), Rect::new(40, 20, 80, 60));
+        assert_eq!(objects.at(-1, 5), None);
+    }
+    #[test]
+    fn a_ramp_as_high_as_a_cliff_tears_nothing() {
+        let depth = Plane::from_fn(SIZE, |x, _| x as f32 / 119.0);
+        let normal = Vec3::new(-0.6, 0.0, 0.8);
+        let maps = Maps { normals: Plane::filled(SIZE, normal), depth, coverage: Plane::filled(SIZE, 255) };
+        assert_eq!(Surface::new(maps).unwrap().objects().count(), 1);
+    }
+    #[test]
+    fn a_mark_is_bounded_to_what_it_begins_on() {
+        let surface = plate_and_disc();
+        // On the disc, on the plate, off the surface, off the canvas.
+        let points = [(60, 40), (30, 70), (3, 3), (-4, 200)];
+        let covered = |bounded: Bounded, start: Vec2| {
+            let part = bounded.from(Some(&surface), start);
+            points.map(|(x, y)| part.coverage(x, y))
+        };
+        let disc = vec2(60.5, 40.5);
+        assert_eq!(covered(Bounded::Free, disc), [1.0, 1.0, 1.0, 1.0]);
+        assert_eq!(covered(Bounded::Surface, disc), [1.0, 1.0, 0.0, 0.0]);
+        assert_eq!(covered(Bounded::Object, disc), [1.0, 0.0, 0.0, 0.0]);
+        assert_eq!(covered(Bounded::Object, vec2(30.0, 70.0)), [0.0, 1.0, 0.0, 0.0]);
+        for off in [vec2(3.0, 3.0), vec2(f32::NAN, 3.0), vec2(-1e30, f32::INFINITY)] {
+            assert_eq!(covered(Bounded::Object, off), [0.0, 0.0, 1.0, 1.0], "{off}");
+        }
+        assert!(Bounded::Object.from(None, disc).is_whole());
+    }
+}
