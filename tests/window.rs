@@ -104,3 +104,60 @@ fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
     click(&mut harness, "Dismiss");
     assert!(harness.query_by_label_contains("no such picture.png").is_none());
 }
+#[test]
+fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
+    let mut harness = window();
+    let canvas = harness.get_by_label("Canvas").rect();
+    for dy in [-40.0, 40.0] {
+        let from = canvas.center() + eframe::egui::vec2(-60.0, dy);
+        harness.drag_at(from);
+        steps(&mut harness);
+        harness.drop_at(from + eframe::egui::vec2(120.0, 0.0));
+        steps(&mut harness);
+    }
+    let heights = |harness: &Harness<Option<Window>>| -> Vec<f32> {
+        let tab = session(harness).tab().unwrap();
+        tab.document().strokes(tab.selected.unwrap()).iter().map(|stroke| stroke.samples()[0].at.y).collect()
+    };
+    let [upper, lower] = heights(&harness)[..] else { panic!("two strokes") };
+    harness.get_by_label("Properties").click();
+    steps(&mut harness);
+    click(&mut harness, "Stroke 1 ·");
+    assert_eq!(session(&harness).tool, rilievo::tools::ToolKind::Strokes);
+    assert_eq!(session(&harness).tab().unwrap().chosen_strokes(), [0]);
+    harness.get_by_label("Stroke up").click();
+    steps(&mut harness);
+    assert_eq!(heights(&harness), [lower, upper]);
+    harness.get_by_label("Duplicate strokes").click();
+    steps(&mut harness);
+    assert_eq!(heights(&harness).len(), 3);
+    harness.get_by_label("Delete strokes").click();
+    steps(&mut harness);
+    assert_eq!(heights(&harness), [lower, upper]);
+    // On the canvas: the lower one, dragged up.
+    harness.drag_at(canvas.center() + eframe::egui::vec2(0.0, 40.0));
+    steps(&mut harness);
+    harness.hover_at(canvas.center() + eframe::egui::vec2(0.0, 10.0));
+    steps(&mut harness);
+    harness.drop_at(canvas.center() + eframe::egui::vec2(0.0, 10.0));
+    steps(&mut harness);
+    assert_eq!(session(&harness).tab().unwrap().chosen_strokes(), [0]);
+    assert!(heights(&harness)[0] < lower && heights(&harness)[1] == upper);
+}
+#[test]
+fn the_fill_tool_shows_its_options_and_fills() {
+    let mut harness = window();
+    click(&mut harness, "Fill");
+    harness.get_by_label("Close gaps");
+    harness.get_by_label("This layer only").click();
+    steps(&mut harness);
+    assert!(session(&harness).fill.layer_alone);
+    let canvas = harness.get_by_label("Canvas").rect();
+    harness.drag_at(canvas.center());
+    steps(&mut harness);
+    harness.drop_at(canvas.center());
+    steps(&mut harness);
+    assert_eq!(layers(&harness), ["Background", "Paint"]);
+    let Content::Pixels(pixels) = &session(&harness).layer().unwrap().content else { panic!("a paint layer") };
+    assert_ne!(pixels.tiles.pixel(3, 3), [0; 4]);
+}

@@ -45,6 +45,10 @@ impl<'a> Number<'a> {
     pub fn px(self) -> Self {
         Self { suffix: " px", decimals: 0, logarithmic: true, ..self }
     }
+    /// A few pixels, perhaps none.
+    pub fn pixels(self) -> Self {
+        Self { suffix: " px", decimals: 1, ..self }
+    }
     pub fn degrees(self) -> Self {
         Self { suffix: "°", decimals: 0, ..self }
     }

@@ -18,6 +18,7 @@ pub mod progress;
 pub mod scale;
 mod seen;
 pub mod source;
+mod strokes;
 pub mod view;
 
 pub use diff::diff;

@@ -4,6 +4,7 @@
 pub mod asset;
 pub mod blend;
 pub mod blur;
+pub mod distance;
 pub mod grid;
 pub mod line_integral;
 pub mod picture;

@@ -19,7 +19,7 @@ use crate::Result;
 use crate::document::{Document, Layer};
 use crate::io::recipe::preset_brush;
 use crate::math::{Vec2, srgb::Color};
-use crate::paint::Brush;
+use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
 use crate::tools::{Gesture, Symmetry, ToolKind};
 use std::path::Path;
@@ -46,6 +46,8 @@ pub struct Session {
     pub operator: Operator,
     /// How strokes repeat.
     pub symmetry: Symmetry,
+    /// How far the fill tool goes.
+    pub fill: Fill,
     /// A view of the surface shown over the picture, by its name.
     pub overlay: Option<String>,
     pub overlay_opacity: f32,
@@ -70,6 +72,7 @@ impl Default for Session {
             recent_colors: Vec::new(),
             operator: Operator::None,
             symmetry: Symmetry::None,
+            fill: Fill::default(),
             overlay: None,
             overlay_opacity: 0.85,
             gesture: None,

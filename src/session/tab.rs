@@ -41,6 +41,8 @@ pub struct Tab {
     pub solo: Option<LayerId>,
     /// Where the last stroke ended, canvas px.
     pub last_end: Option<Vec2>,
+    /// The strokes chosen, by their places in the layer.
+    chosen: Option<(LayerId, Vec<usize>)>,
 }
 
 struct Preview {
@@ -64,6 +66,7 @@ impl Tab {
             view: None,
             solo: None,
             last_end: None,
+            chosen: None,
         }
     }
     /// The document as the last step left it.
@@ -126,6 +129,19 @@ impl Tab {
     /// Forgets what is shown.
     pub fn forget_preview(&mut self) {
         self.preview = None;
+    }
+    /// The strokes of the selected layer that are chosen, in rising order; those that are there.
+    pub fn chosen_strokes(&self) -> Vec<usize> {
+        let Some((layer, chosen)) = self.chosen.as_ref().filter(|(layer, _)| Some(*layer) == self.selected) else {
+            return Vec::new();
+        };
+        let count = self.shown().strokes(*layer).len();
+        chosen.iter().copied().filter(|&index| index < count).collect()
+    }
+    pub fn choose_strokes(&mut self, layer: LayerId, mut strokes: Vec<usize>) {
+        strokes.sort_unstable();
+        strokes.dedup();
+        self.chosen = Some((layer, strokes));
     }
     /// Goes back (negative) or forward by steps.
     pub fn walk(&mut self, steps: i32) {

@@ -120,3 +120,40 @@ fn actions_read_back_as_they_were_written() {
         assert_eq!(Action::read(&written).unwrap().written(), written);
     }
 }
+#[test]
+fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
+    let mut session = told(&format!(
+        r##"{PAPER}{STROKE}
+        {{"in":"stroke","do":"duplicate","layer":"1","strokes":[0]}}
+        {{"in":"stroke","do":"restyle","layer":"1","strokes":[1],"to":{{"do":"color","color":"#0000ff"}},"done":true}}
+        {{"in":"stroke","do":"move","layer":"1","strokes":[1],"by":[0,40]}}"##
+    ));
+    assert_eq!(session.tab().unwrap().chosen_strokes(), [1]);
+    assert_eq!((pixel(&session, 100, 70), pixel(&session, 112, 123)), ([0xc0, 0x20, 0x10, 255], [0, 0, 255, 255]));
+    let past: Vec<&str> = session.tab().unwrap().history.past().collect();
+    assert_eq!(past[1..], ["Duplicate stroke", "Restyle stroke", "Move stroke"]);
+    let rest = r#"
+        {"in":"stroke","do":"take","layer":"1","stroke":1}
+        {"in":"stroke","do":"order","layer":"1","stroke":1,"to":0}
+        {"in":"stroke","do":"bake","layer":"1","strokes":[0]}
+        {"in":"stroke","do":"delete","layer":"2","strokes":[0]}
+        {"in":"stroke","do":"delete","layer":"2","strokes":[7]}"#;
+    session.replay(Path::new("story"), rest).unwrap();
+    assert_eq!(session.color.to_string(), "#0000ff");
+    assert_eq!(names(&session), ["Background", "Strokes baked", "Strokes"]);
+    assert_eq!((pixel(&session, 100, 70), pixel(&session, 112, 123)), ([255; 4], [0, 0, 255, 255]));
+}
+#[test]
+fn a_fill_stops_at_a_stroke_and_is_one_step() {
+    let session = told(&format!(
+        r##"{PAPER}{STROKE}
+        {{"in":"hand","do":"fill","fill":{{"tolerance":0.2,"gap_px":0,"grow_px":1,"antialias":true,"layer_alone":false,"bounded":"free"}}}}
+        {{"in":"hand","do":"color","color":"#00ff00"}}
+        {{"in":"pointer","do":"press","tool":"fill","pen":[100,20],"px_per_pt":1}}
+        {{"in":"pointer","do":"release"}}"##
+    ));
+    assert_eq!(names(&session), ["Background", "Strokes", "Paint"]);
+    assert_eq!(session.tab().unwrap().history.done(), Some("Fill"));
+    assert_eq!((pixel(&session, 100, 20), pixel(&session, 100, 70)), ([0, 255, 0, 255], [0xc0, 0x20, 0x10, 255]));
+    assert_eq!(pixel(&session, 5, 140), [0, 255, 0, 255], "around the stroke's ends");
+}

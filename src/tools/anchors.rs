@@ -1,11 +1,11 @@
 //! The anchor tool: where an image is pinned to the surface, and which of its points is pinned there.
 //! Floor 5. What anchors do is `surface::deformation`'s.
 
-use super::gradient::End;
+use super::gradient::{self, End};
 use super::{Begun, Context, GRAB_PT, Gesture, Outcome, Pen};
 use crate::document::{Content, Document, Layer, LayerId, Live, Lock};
 use crate::math::Vec2;
-use crate::paint::{Gradient, PlacedImage};
+use crate::paint::PlacedImage;
 use crate::surface::{Anchor, Deformation, Surface};
 use std::sync::Arc;
 
@@ -69,7 +69,7 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
         (Content::Gradient(live), Some(index)) => {
             let end = if index == 0 { End::From } else { End::To };
             let gradient = live.params().clone();
-            (Some(Box::new(DraggedEnd { document, layer: layer.id, gradient, end, moved: false })), Outcome::Idle)
+            gradient::drag_end(document, layer.id, gradient, end)
         }
         _ => (None, Outcome::Idle),
     }
@@ -163,51 +163,14 @@ impl Gesture for Dragged {
     }
 }
 
-/// A gradient's end, taken hold of with the anchor tool.
-struct DraggedEnd {
-    document: Document,
-    layer: LayerId,
-    gradient: Gradient,
-    end: End,
-    moved: bool,
-}
-
-impl DraggedEnd {
-    fn with(&self) -> Option<Document> {
-        let content = Content::Gradient(Live::new(self.gradient.clone()));
-        self.document.with_layer(self.layer, |layer| layer.content = content)
-    }
-}
-
-impl Gesture for DraggedEnd {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
-        let Some(pen) = pens.last() else { return Outcome::Idle };
-        match self.end {
-            End::From => self.gradient.from = pen.place(),
-            End::To => self.gradient.to = pen.place(),
-        }
-        self.moved = true;
-        self.with().map_or(Outcome::Idle, Outcome::Preview)
-    }
-    fn release(&mut self) -> Outcome {
-        match self.with() {
-            Some(document) if self.moved => {
-                Outcome::Commit { label: "Move gradient end".into(), document, select: None }
-            }
-            _ => Outcome::Cancel,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, srgb::Color, vec2};
+    use crate::math::{Size, vec2};
     use crate::paint::{Adjust, Brush, Filter, PictureSource, Placement};
     use crate::raster::{Outside, Picture};
     use crate::surface::{Bend, Operator, Weights};
     use crate::tools::Keys;
-    use crate::tools::Symmetry;
 
     fn document(anchors: Vec<Anchor>) -> Document {
         let size = Size::new(100, 80);
@@ -224,18 +187,7 @@ mod tests {
     }
     fn dragged(document: &Document, keys: Keys, from: Vec2, to: Vec2) -> Option<Vec<Anchor>> {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
-        let (color, second_color, operator) = (Color::BLACK, Color::WHITE, Operator::None);
-        let context = Context {
-            document,
-            layer,
-            brush: &brush,
-            color,
-            second_color,
-            operator,
-            px_per_pt: 1.0,
-            last_end: None,
-            symmetry: Symmetry::None,
-        };
+        let context = Context { layer, ..Context::new(document, &brush) };
         let (gesture, begun) = press(&context, Pen { keys, ..Pen::at(from) });
         let outcome = match gesture {
             Some(mut gesture) => {

@@ -247,18 +247,7 @@ mod tests {
     use crate::tools::Symmetry;
 
     fn context<'a>(document: &'a Document, layer: Option<LayerId>, brush: &'a Brush) -> Context<'a> {
-        let (color, second_color) = (Color::BLACK, Color::WHITE);
-        Context {
-            document,
-            layer,
-            brush,
-            color,
-            second_color,
-            operator: Operator::None,
-            px_per_pt: 1.0,
-            last_end: None,
-            symmetry: Symmetry::None,
-        }
+        Context { layer, ..Context::new(document, brush) }
     }
     fn drawn(context: &Context, purpose: Purpose, points: &[Vec2]) -> (Document, Option<LayerId>) {
         let (gesture, _) = press(context, Pen::at(points[0]), purpose);

@@ -27,8 +27,7 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
         let near = |end: Vec2| end.distance(at) <= GRAB_PT * context.px_per_pt;
         let end = [(End::To, gradient.to), (End::From, gradient.from)].into_iter().find(|(_, p)| near(*p));
         if let Some((end, _)) = end {
-            let drag = Dragged { document: context.document.clone(), layer: layer.id, gradient, end, moved: false };
-            return (Some(Box::new(drag)), Outcome::Idle);
+            return drag_end(context.document.clone(), layer.id, gradient, end);
         }
     }
     let stops = vec![Stop { t: 0.0, color: context.color }, Stop { t: 1.0, color: context.second_color }];
@@ -80,6 +79,11 @@ fn upright(from: Vec2, to: Vec2) -> Vec2 {
     from + Vec2::from_angle(turn) * from.distance(to)
 }
 
+/// Takes hold of one end of a gradient.
+pub(super) fn drag_end(document: Document, layer: LayerId, gradient: Gradient, end: End) -> Begun {
+    (Some(Box::new(Dragged { document, layer, gradient, end, moved: false })), Outcome::Idle)
+}
+
 /// One end of a gradient in hand.
 struct Dragged {
     document: Document,
@@ -121,26 +125,13 @@ impl Gesture for Dragged {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, srgb::Color, vec2};
+    use crate::math::{Size, vec2};
     use crate::paint::Brush;
-    use crate::surface::Operator;
-    use crate::tools::Symmetry;
 
     #[test]
     fn a_drag_lays_a_gradient_and_a_second_one_moves_its_end() {
         let (empty, brush) = (Document::empty(Size::new(100, 100)), Brush::default());
-        let (color, second_color) = (Color::BLACK, Color::WHITE);
-        let context = Context {
-            document: &empty,
-            layer: None,
-            brush: &brush,
-            color,
-            second_color,
-            operator: Operator::None,
-            px_per_pt: 1.0,
-            last_end: None,
-            symmetry: Symmetry::None,
-        };
+        let context = Context::new(&empty, &brush);
         let drag = |context: &Context, from: Vec2, to: Vec2| {
             let mut gesture = press(context, Pen::at(from)).0.unwrap();
             gesture.drag(&[Pen::at(to)]);

@@ -5,15 +5,17 @@
 pub mod anchors;
 pub mod brush;
 pub mod eyedropper;
+pub mod fill;
 pub mod gradient;
 pub mod image;
 pub mod outline;
 pub mod shift;
+pub mod strokes;
 pub mod symmetry;
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
-use crate::paint::{Brush, Sample};
+use crate::paint::{Brush, Fill, Sample};
 use crate::surface::Operator;
 pub use symmetry::Symmetry;
 
@@ -23,10 +25,12 @@ pub enum ToolKind {
     #[default]
     Brush,
     Eraser,
+    Fill,
     Gradient,
     Image,
     Anchors,
     Move,
+    Strokes,
     Eyedropper,
     Hand,
     Zoom,
@@ -47,7 +51,7 @@ pub struct ToolRow {
 }
 
 impl ToolKind {
-    pub const ALL: [ToolRow; 9] = [
+    pub const ALL: [ToolRow; 11] = [
         ToolRow {
             kind: ToolKind::Brush,
             name: "brush",
@@ -61,6 +65,13 @@ impl ToolKind {
             label: "Eraser",
             key: 'E',
             hint: "Erase with the brush in hand; on a stroke layer, take away the strokes you touch",
+        },
+        ToolRow {
+            kind: ToolKind::Fill,
+            name: "fill",
+            label: "Fill",
+            key: 'F',
+            hint: "Click to fill what is joined to the pixel you click; gaps in its border can be closed",
         },
         ToolRow {
             kind: ToolKind::Gradient,
@@ -89,6 +100,13 @@ impl ToolKind {
             label: "Move",
             key: 'V',
             hint: "Drag the selected layer; on a stroke layer, the stroke you take hold of (Shift: all of them)",
+        },
+        ToolRow {
+            kind: ToolKind::Strokes,
+            name: "strokes",
+            label: "Strokes",
+            key: 'S',
+            hint: "Choose strokes of a stroke layer and drag them along the surface; Shift chooses more. Properties lists them",
         },
         ToolRow {
             kind: ToolKind::Eyedropper,
@@ -161,6 +179,29 @@ pub struct Context<'a> {
     pub last_end: Option<Vec2>,
     /// How strokes repeat.
     pub symmetry: Symmetry,
+    /// How far the fill tool goes.
+    pub fill: Fill,
+    /// The strokes of the selected layer that are chosen.
+    pub strokes: &'a [usize],
+}
+
+impl<'a> Context<'a> {
+    /// As it is when nothing was chosen yet: no layer, black before white, flat, a pixel to a point.
+    pub fn new(document: &'a Document, brush: &'a Brush) -> Self {
+        Self {
+            document,
+            layer: None,
+            brush,
+            color: Color::BLACK,
+            second_color: Color::WHITE,
+            operator: Operator::None,
+            px_per_pt: 1.0,
+            last_end: None,
+            symmetry: Symmetry::None,
+            fill: Fill::default(),
+            strokes: &[],
+        }
+    }
 }
 
 /// What a tool made of what the pen did.
@@ -175,6 +216,8 @@ pub enum Outcome {
         /// To be selected from now on.
         select: Option<LayerId>,
     },
+    /// These strokes of the selected layer are chosen from now on.
+    Chosen(Vec<usize>),
     /// A colour was taken.
     Picked(Color),
     /// What was shown is to be forgotten.
@@ -196,10 +239,12 @@ pub fn press(kind: ToolKind, context: &Context, pen: Pen) -> Begun {
     match kind {
         ToolKind::Brush => brush::press(context, pen, brush::Purpose::Paint),
         ToolKind::Eraser => brush::press(context, pen, brush::Purpose::Erase),
+        ToolKind::Fill => fill::press(context, pen),
         ToolKind::Gradient => gradient::press(context, pen),
         ToolKind::Image => image::press(context, pen),
         ToolKind::Anchors => anchors::press(context, pen),
         ToolKind::Move => shift::press(context, pen),
+        ToolKind::Strokes => strokes::press(context, pen),
         ToolKind::Eyedropper => eyedropper::press(context, pen),
         ToolKind::Hand | ToolKind::Zoom => (None, Outcome::Idle),
     }

@@ -1,10 +1,12 @@
-//! The brush's cursor: the outline of the next dab as the surface bends it.
-//! Floor 5. Where D(q) is as far from the anchor as the footprint is wide, found on a grid.
+//! Outlines: of the next dab as the surface bends it, which is the brush's cursor, and of a stroke.
+//! Floor 5. Where D(q) is as far from the anchor as the footprint is wide, or paint begins, found on a grid.
 
 use crate::document::Document;
 use crate::math::{Rect, Vec2, vec2};
+use crate::paint::{Scene, Stroke};
 use crate::surface::reach::{Extent, Reach};
 use crate::surface::{Deformation, Operator};
+use std::sync::Arc;
 
 /// Cells along the longer side of the grid: finer than the eye needs for a cursor, and fast enough for every frame.
 const CELLS: i32 = 72;
@@ -48,6 +50,28 @@ pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32
     lines
 }
 
+/// The outline of what a stroke covers, as pairs of points to be joined by lines; canvas px.
+pub fn of_stroke(stroke: &Arc<Stroke>, scene: &Scene) -> Vec<[Vec2; 2]> {
+    /// From this alpha on a pixel counts as covered.
+    const LEAST: f32 = 24.0;
+    /// Cells along the longer side: a stroke's outline is more winding than a dab's.
+    const CELLS: i32 = 400;
+    let covered = stroke.covered(scene);
+    let area = stroke.bounds(scene).grown(1);
+    let step = (area.width().max(area.height()) as i32 / CELLS).max(1);
+    let (cols, rows) = (area.width() as i32 / step + 1, area.height() as i32 / step + 1);
+    let corner = |c: i32, r: i32| {
+        let (x, y) = (area.x0 + c * step, area.y0 + r * step);
+        (vec2(x as f32 + 0.5, y as f32 + 0.5), LEAST - f32::from(covered.pixel(x, y)[3]))
+    };
+    let mut lines = Vec::new();
+    for (r, c) in (0..rows - 1).flat_map(|r| (0..cols - 1).map(move |c| (r, c))) {
+        let corners = [(c, r), (c + 1, r), (c + 1, r + 1), (c, r + 1)].map(|(c, r)| corner(c, r));
+        cell(&corners, &mut lines);
+    }
+    lines
+}
+
 /// Marching squares: where the outline crosses a cell.
 fn cell(corners: &[(Vec2, f32); 4], lines: &mut Vec<[Vec2; 2]>) {
     let crossing = |i: usize| {
@@ -72,7 +96,6 @@ mod tests {
     use crate::math::{Size, vec3};
     use crate::raster::Plane;
     use crate::surface::{Maps, Surface};
-    use std::sync::Arc;
 
     fn ball() -> Document {
         let size = Size::new(128, 128);
@@ -85,6 +108,20 @@ mod tests {
         Document { surface: Some(Arc::new(surface)), ..Document::empty(size) }
     }
 
+    #[test]
+    fn a_strokes_outline_runs_where_its_paint_begins() {
+        use crate::math::srgb::Color;
+        use crate::paint::{Brush, Sample};
+        let scene = Scene { size: Size::new(200, 100), surface: None };
+        let samples = [vec2(50.0, 50.0), vec2(150.0, 50.0)].map(Sample::at).to_vec();
+        let brush = Brush { size: 30.0, hardness: 1.0, spacing: 0.05, ..Brush::default() };
+        let lines = of_stroke(&Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples)), &scene);
+        assert!(lines.len() > 100);
+        for p in lines.iter().flatten() {
+            let to_line = p.distance(vec2(p.x.clamp(50.0, 150.0), 50.0));
+            assert!((to_line - 15.0).abs() < 1.0, "{p}");
+        }
+    }
     #[test]
     fn without_a_surface_the_footprint_is_a_circle() {
         let flat = Document::empty(Size::new(100, 100));

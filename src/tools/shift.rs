@@ -1,11 +1,10 @@
 //! The move tool: a layer, or one stroke of a stroke layer, elsewhere on the canvas.
 //! Floor 5.
 
-use super::brush::is_on;
 use super::{Begun, Context, Gesture, Outcome, Pen};
 use crate::document::{Content, Document, Group, Layer, LayerId, Live, Lock, PixelLayer, StrokeList};
 use crate::math::Vec2;
-use crate::paint::{Gradient, PlacedImage, Placement, Sample, Stroke};
+use crate::paint::{Gradient, PlacedImage, Placement, picking};
 use std::sync::Arc;
 
 pub fn press(context: &Context, pen: Pen) -> Begun {
@@ -14,7 +13,8 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
     let stroke = match &layer.content {
         Content::Strokes(live) if !pen.keys.shift => {
             let strokes = &live.params().strokes;
-            strokes.iter().rposition(|stroke| is_on(stroke, pen.place()))
+            let scene = context.document.scene_of(layer.id).unwrap_or_else(|| context.document.scene());
+            picking::topmost_at(strokes, &scene, pen.place())
         }
         _ => None,
     };
@@ -33,16 +33,10 @@ struct Moving {
 
 impl Moving {
     fn with(&self) -> Option<Document> {
-        self.document.with_layer(self.layer, |layer| match (&layer.content, self.stroke) {
-            (Content::Strokes(live), Some(index)) => {
-                let mut strokes = live.params().strokes.clone();
-                if let Some(stroke) = strokes.get_mut(index) {
-                    *stroke = Arc::new(moved_stroke(stroke, self.by));
-                }
-                layer.content = Content::Strokes(Live::new(StrokeList { strokes }));
-            }
-            _ => *layer = moved(layer, self.by),
-        })
+        match self.stroke {
+            Some(index) => self.document.with_moved_strokes(self.layer, &[index], self.by),
+            None => self.document.with_layer(self.layer, |layer| *layer = moved(layer, self.by)),
+        }
     }
 }
 
@@ -87,7 +81,7 @@ pub fn moved(layer: &Layer, by: Vec2) -> Layer {
             }))
         }
         Content::Strokes(live) => {
-            let strokes = live.params().strokes.iter().map(|stroke| Arc::new(moved_stroke(stroke, by))).collect();
+            let strokes = live.params().strokes.iter().map(|stroke| Arc::new(stroke.moved(by))).collect();
             Content::Strokes(Live::new(StrokeList { strokes }))
         }
         Content::Group(group) => {
@@ -99,34 +93,17 @@ pub fn moved(layer: &Layer, by: Vec2) -> Layer {
     Layer { content, ..layer.clone() }
 }
 
-fn moved_stroke(stroke: &Stroke, by: Vec2) -> Stroke {
-    let samples = stroke.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
-    Stroke::new(stroke.brush().clone(), stroke.operator(), stroke.color(), samples)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::{Size, srgb::Color, vec2};
-    use crate::paint::Brush;
+    use crate::paint::{Brush, Sample, Stroke};
     use crate::raster::TileGrid;
     use crate::surface::Operator;
-    use crate::tools::Symmetry;
 
     fn dragged(document: &Document, from: Vec2, to: Vec2) -> Document {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
-        let (color, second_color, operator) = (Color::BLACK, Color::WHITE, Operator::None);
-        let context = Context {
-            document,
-            layer,
-            brush: &brush,
-            color,
-            second_color,
-            operator,
-            px_per_pt: 1.0,
-            last_end: None,
-            symmetry: Symmetry::None,
-        };
+        let context = Context { layer, ..Context::new(document, &brush) };
         let mut gesture = press(&context, Pen::at(from)).0.unwrap();
         gesture.drag(&[Pen::at(to)]);
         match gesture.release() {

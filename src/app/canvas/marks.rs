@@ -3,9 +3,11 @@
 
 use crate::document::Content;
 use crate::math::{Affine2, Vec2};
+use crate::paint::Stroke as PaintStroke;
 use crate::session::Session;
 use crate::tools::{ToolKind, anchors, outline};
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2};
+use std::sync::Arc;
 
 /// Draws the marks of the tool in hand; `under`: the canvas point under the pointer.
 pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, under: Option<Vec2>, tool: ToolKind) {
@@ -15,6 +17,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     };
     if matches!(tool, ToolKind::Anchors | ToolKind::Gradient | ToolKind::Image) {
         handles(painter, session, &to_screen);
+    }
+    if tool == ToolKind::Strokes {
+        chosen(painter, session, &to_screen);
     }
     let (Some(at), Some(document)) = (under, session.shown()) else { return };
     match tool {
@@ -38,6 +43,43 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
         }
         _ => {}
     }
+}
+
+/// Pairs of points to be joined.
+type Lines = Arc<Vec<[Vec2; 2]>>;
+
+/// What was found out about the strokes that are chosen: kept by egui between frames.
+#[derive(Clone, Default)]
+struct Outlines {
+    kept: Vec<(Arc<PaintStroke>, Lines)>,
+}
+
+/// The chosen strokes: their outlines, or the lines through their samples while they move.
+fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let Some((tab, layer)) = session.tab().zip(session.layer()) else { return };
+    let document = tab.shown();
+    let strokes = document.strokes(layer.id);
+    let chosen: Vec<&Arc<PaintStroke>> = tab.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
+    let looks = [Stroke::new(2.6, Color32::from_black_alpha(130)), Stroke::new(1.2, Color32::from_rgb(120, 200, 255))];
+    if tab.is_previewing() {
+        for stroke in chosen {
+            let line: Vec<Pos2> = stroke.samples().iter().map(|sample| to_screen(sample.at)).collect();
+            painter.extend(looks.map(|look| Shape::line(line.clone(), look)));
+        }
+        return;
+    }
+    let id = eframe::egui::Id::unique("outlines of strokes");
+    let old: Outlines = painter.ctx().data_mut(|data| data.get_temp(id).unwrap_or_default());
+    let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
+    let kept = |stroke: &Arc<PaintStroke>| old.kept.iter().find(|(known, _)| Arc::ptr_eq(known, stroke)).cloned();
+    let made = |stroke: &Arc<PaintStroke>| (stroke.clone(), Arc::new(outline::of_stroke(stroke, &scene)));
+    let now =
+        Outlines { kept: chosen.into_iter().map(|stroke| kept(stroke).unwrap_or_else(|| made(stroke))).collect() };
+    for look in looks {
+        let lines = now.kept.iter().flat_map(|(_, lines)| lines.iter());
+        painter.extend(lines.map(|line| Shape::line_segment(line.map(to_screen), look)));
+    }
+    painter.ctx().data_mut(|data| data.insert_temp(id, now));
 }
 
 pub fn color32(color: crate::math::srgb::Color) -> Color32 {

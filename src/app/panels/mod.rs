@@ -4,6 +4,7 @@
 
 pub mod brushes;
 pub mod colors;
+pub mod fill;
 pub mod history;
 pub mod layers;
 pub mod material;
@@ -12,6 +13,7 @@ pub mod navigator;
 pub mod options;
 pub mod properties;
 pub mod status;
+pub mod strokes;
 pub mod surface;
 pub mod tools;
 

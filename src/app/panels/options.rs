@@ -1,6 +1,7 @@
 //! The bar above the canvas: the operator with its numbers, and the options of the tool in hand.
 //! Floor 7.
 
+use super::fill;
 use crate::app::asked::Asked;
 use crate::app::commands::operators;
 use crate::app::widgets::{Changed, Number};
@@ -43,6 +44,10 @@ fn set(asked: &mut Asked, whose: &Whose, operator: Changed<Operator>) {
 
 pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     ui.horizontal_wrapped(|ui| {
+        // It lays pixels where they are: nothing is bent.
+        if session.tool == ToolKind::Fill {
+            return fill::options(ui, session.fill, asked);
+        }
         let (whose, operator) = whose(session);
         let about = match whose {
             Whose::Hand => "New marks",

@@ -1,7 +1,7 @@
 //! Properties of the selected layer: what it is made of, where it lies, how it bends.
 //! Floor 7. Materials and lights are `material`'s.
 
-use super::{colors, material, options};
+use super::{colors, material, options, strokes};
 use crate::app::asked::Asked;
 use crate::app::widgets::{Changed, Number, check, choice_row, title};
 use crate::document::{Content, Layer, MaskKind};
@@ -47,9 +47,7 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
             ui.weak("Paint. Strokes on it are pixels.");
         }
         Content::Strokes(live) => {
-            let n = live.params().strokes.len();
-            ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
-            ui.weak("The move tool takes hold of a single stroke; the eraser takes whole strokes away.");
+            strokes::show(ui, session, &setter.layer, &live.params().strokes, setter.asked);
         }
         Content::Image(live) => image(ui, live.params(), &mut setter),
         Content::Gradient(live) => gradient(ui, live.params(), &mut setter),

@@ -14,10 +14,12 @@ pub fn icon(tool: ToolKind) -> Icon {
     match tool {
         ToolKind::Brush => Icon::Brush,
         ToolKind::Eraser => Icon::Eraser,
+        ToolKind::Fill => Icon::Bucket,
         ToolKind::Gradient => Icon::Gradient,
         ToolKind::Image => Icon::Image,
         ToolKind::Anchors => Icon::Anchors,
         ToolKind::Move => Icon::Move,
+        ToolKind::Strokes => Icon::Strokes,
         ToolKind::Eyedropper => Icon::Eyedropper,
         ToolKind::Hand => Icon::Hand,
         ToolKind::Zoom => Icon::Zoom,

@@ -3,15 +3,18 @@
 
 use crate::io::recipe::preset_brush;
 use crate::math::srgb::Color;
+use crate::paint::Fill;
 use crate::paint::Property;
 use crate::session::Session;
-use crate::session::replay::{Replayed, actions, names};
-use crate::surface::Operator;
+use crate::session::replay::{Replayed, actions, names, record};
+use crate::surface::{Bounded, Operator};
 use crate::tools::symmetry::MOST_ROUND;
 use crate::tools::{Symmetry, ToolKind};
 use serde_json::Value;
 
 names!(ToolKind);
+names!(Bounded);
+record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
 /// A word, or how many times round.
 impl Replayed for Symmetry {
@@ -58,6 +61,7 @@ actions! {
         "default colors" DefaultColors {}
         "operator" Operator { operator: Operator }
         "symmetry" Symmetry { symmetry: Symmetry }
+        "fill" Fill { fill: Fill }
     }
 }
 
@@ -101,6 +105,7 @@ impl HandAction {
             HandAction::DefaultColors {} => (session.color, session.second_color) = (Color::BLACK, Color::WHITE),
             HandAction::Operator { operator } => session.operator = *operator,
             HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
+            HandAction::Fill { fill } => session.fill = *fill,
         }
     }
 }

@@ -7,6 +7,7 @@ mod flattening;
 pub mod hand;
 pub mod layers;
 pub mod pointer;
+pub mod strokes;
 pub mod views;
 
 pub use edit::EditAction;
@@ -14,6 +15,7 @@ pub use files::FileAction;
 pub use hand::HandAction;
 pub use layers::{LayerAction, NewLayer};
 pub use pointer::PointerAction;
+pub use strokes::{StrokeAction, Style};
 pub use views::ViewAction;
 
 use super::Session;
@@ -29,6 +31,7 @@ pub enum Action {
     Hand(HandAction),
     Layer(LayerAction),
     Pointer(PointerAction),
+    Stroke(StrokeAction),
     View(ViewAction),
 }
 
@@ -41,6 +44,7 @@ impl Action {
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),
+            Action::Stroke(action) => action.apply(session),
             Action::View(action) => action.apply(session),
         }
         Ok(())
@@ -55,6 +59,7 @@ impl Replayed for Action {
             Action::Hand(action) => ("hand", action.written()),
             Action::Layer(action) => ("layer", action.written()),
             Action::Pointer(action) => ("pointer", action.written()),
+            Action::Stroke(action) => ("stroke", action.written()),
             Action::View(action) => ("view", action.written()),
         };
         if let Some(object) = value.as_object_mut() {
@@ -69,8 +74,9 @@ impl Replayed for Action {
             Some("hand") => Action::Hand(Replayed::read(value)?),
             Some("layer") => Action::Layer(Replayed::read(value)?),
             Some("pointer") => Action::Pointer(Replayed::read(value)?),
+            Some("stroke") => Action::Stroke(Replayed::read(value)?),
             Some("view") => Action::View(Replayed::read(value)?),
-            _ => return Err("“in” must be edit, file, hand, layer, pointer or view".into()),
+            _ => return Err("“in” must be edit, file, hand, layer, pointer, stroke or view".into()),
         })
     }
 }

@@ -68,6 +68,7 @@ impl PointerAction {
 fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
     session.drop_gesture();
     let Some(tab) = session.tab() else { return };
+    let strokes = tab.chosen_strokes();
     let context = Context {
         document: tab.document(),
         layer: tab.selected,
@@ -78,11 +79,13 @@ fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
         px_per_pt,
         last_end: tab.last_end,
         symmetry: session.symmetry,
+        fill: session.fill,
+        strokes: &strokes,
     };
     let (gesture, outcome) = tools::press(tool, &context, pen);
     session.gesture = gesture;
     session.last_pen = Some(pen.sample.at);
-    if matches!(tool, ToolKind::Brush | ToolKind::Gradient) {
+    if matches!(tool, ToolKind::Brush | ToolKind::Fill | ToolKind::Gradient) {
         session.remember_color();
     }
     take(session, outcome);
@@ -98,6 +101,11 @@ fn take(session: &mut Session, outcome: Outcome) {
             tab.commit(label, document);
             tab.selected = select.or(tab.selected);
             tab.last_end = end;
+        }
+        Outcome::Chosen(strokes) => {
+            if let Some(layer) = tab.selected {
+                tab.choose_strokes(layer, strokes);
+            }
         }
         Outcome::Picked(color) => session.color = color,
         Outcome::Cancel => tab.forget_preview(),

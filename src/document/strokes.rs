@@ -1,0 +1,245 @@
+//! Edits of the strokes of a stroke layer: which there are, in what order, where and how each is painted.
+//! Floor 4. Only tiles that an edit can change are rendered again.
+
+use super::{Content, Document, Layer, LayerId, Live, Lock, PixelLayer, Place, Progress, StrokeList, flatten_layer};
+use crate::math::Vec2;
+use crate::paint::{Scene, Stroke};
+use crate::raster::TileAt;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked; strokes are named by their places,
+/// the first painted 0. `self` never changes.
+impl Document {
+    /// The strokes of a stroke layer, the first painted first; none of another.
+    pub fn strokes(&self, layer: LayerId) -> &[Arc<Stroke>] {
+        match self.layer(layer).map(|layer| &layer.content) {
+            Some(Content::Strokes(live)) => &live.params().strokes,
+            _ => &[],
+        }
+    }
+    /// With some strokes changed, each for itself.
+    pub fn with_each_stroke(
+        &self,
+        layer: LayerId,
+        chosen: &[usize],
+        change: impl Fn(&Stroke) -> Stroke,
+    ) -> Option<Document> {
+        self.with_strokes(layer, |strokes| {
+            for &index in in_order(chosen, strokes)?.iter() {
+                strokes[index] = Arc::new(change(&strokes[index]));
+            }
+            Some(())
+        })
+    }
+    pub fn with_moved_strokes(&self, layer: LayerId, chosen: &[usize], by: Vec2) -> Option<Document> {
+        self.with_each_stroke(layer, chosen, |stroke| stroke.moved(by))
+    }
+    pub fn without_strokes(&self, layer: LayerId, chosen: &[usize]) -> Option<Document> {
+        self.with_strokes(layer, |strokes| {
+            for &index in in_order(chosen, strokes)?.iter().rev() {
+                strokes.remove(index);
+            }
+            Some(())
+        })
+    }
+    /// With a copy of each right above it, moved; and where the copies are.
+    pub fn with_copied_strokes(&self, layer: LayerId, chosen: &[usize], by: Vec2) -> Option<(Document, Vec<usize>)> {
+        let mut copies = Vec::new();
+        let next = self.with_strokes(layer, |strokes| {
+            for (before, &index) in in_order(chosen, strokes)?.iter().enumerate() {
+                // The copies so far stand below.
+                let index = index + before;
+                strokes.insert(index + 1, Arc::new(strokes[index].moved(by)));
+                copies.push(index + 1);
+            }
+            Some(())
+        })?;
+        Some((next, copies))
+    }
+    /// With one stroke at another place, counted without it; beyond the last means on top.
+    pub fn with_reordered_stroke(&self, layer: LayerId, stroke: usize, to: usize) -> Option<Document> {
+        self.with_strokes(layer, |strokes| {
+            if stroke >= strokes.len() {
+                return None;
+            }
+            let taken = strokes.remove(stroke);
+            strokes.insert(to.min(strokes.len()), taken);
+            Some(())
+        })
+    }
+    /// With some strokes taken out of their layer and put as pixels on a paint layer of their own, whose id is told.
+    ///
+    /// It stands beneath the stroke layer if the strokes were its lowest, else above it, and blends as that layer does.
+    pub fn with_baked_strokes(&self, layer: LayerId, chosen: &[usize]) -> Option<(Document, LayerId)> {
+        let all = self.strokes(layer);
+        let chosen = in_order(chosen, all)?;
+        let are_lowest = chosen.iter().enumerate().all(|(i, &index)| i == index) && chosen.len() < all.len();
+        let strokes = chosen.iter().filter_map(|&index| all.get(index).cloned()).collect();
+        let bare = self.with_layer(layer, |layer| {
+            layer.content = Content::Strokes(Live::new(StrokeList { strokes }));
+            (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
+        })?;
+        let tiles = flatten_layer(&bare, layer, &Progress::default())?;
+        let left = self.without_strokes(layer, &chosen)?;
+        let old = self.layer(layer)?;
+        let pixels = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+        let name = format!("{} baked", old.name);
+        let baked =
+            Layer { id: LayerId::fresh(), name, kept: Default::default(), content: pixels, ..Layer::clone(old) };
+        let (id, place) = (baked.id, self.place_of(layer)?);
+        let index = if are_lowest { place.index } else { place.index + 1 };
+        Some((left.with_inserted(baked, Place { index, ..place })?, id))
+    }
+    /// With the strokes of a layer edited as a list.
+    pub fn with_strokes(
+        &self,
+        layer: LayerId,
+        edit: impl FnOnce(&mut Vec<Arc<Stroke>>) -> Option<()>,
+    ) -> Option<Document> {
+        let old = self.layer(layer).filter(|layer| layer.lock != Lock::All)?;
+        let Content::Strokes(live) = &old.content else { return None };
+        let before = &live.params().strokes;
+        let mut strokes = before.clone();
+        edit(&mut strokes)?;
+        let changed = changed_tiles(&self.scene_of(layer)?, before, &strokes);
+        let next = live.with(StrokeList { strokes }, |at| !changed.contains(&at));
+        self.with_layer(layer, |layer| layer.content = Content::Strokes(next))
+    }
+}
+
+/// Places in rising order, each once; `None` if one is not there, or there are none.
+fn in_order(chosen: &[usize], strokes: &[Arc<Stroke>]) -> Option<Vec<usize>> {
+    let places: BTreeSet<usize> = chosen.iter().copied().collect();
+    let all_there = places.last().is_some_and(|&last| last < strokes.len());
+    all_there.then(|| places.into_iter().collect())
+}
+
+/// The tiles on which two lists paint different strokes, or the same in another order.
+fn changed_tiles(scene: &Scene, old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> BTreeSet<TileAt> {
+    let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
+    let start = old.iter().zip(new).take_while(same).count();
+    let (old, new) = (&old[start..], &new[start..]);
+    let end = old.iter().rev().zip(new.iter().rev()).take_while(same).count();
+    let (old, new) = (&old[..old.len() - end], &new[..new.len() - end]);
+    let on_tile = |strokes: &[Arc<Stroke>], at: TileAt| -> Vec<*const Stroke> {
+        strokes.iter().filter(|stroke| stroke.touches(scene, at)).map(Arc::as_ptr).collect()
+    };
+    let canvas = TileAt::covering(scene.size.rect());
+    canvas.filter(|&at| on_tile(old, at) != on_tile(new, at)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::flatten;
+    use crate::math::{Size, srgb::Color, vec2};
+    use crate::paint::{Brush, Sample};
+    use crate::surface::Operator;
+
+    const SIZE: Size = Size::new(300, 200);
+
+    /// Dots in a row from the left, each over the one before it, in hues of their own.
+    fn document() -> (Document, LayerId) {
+        let stroke = |i: u8| {
+            let brush = Brush { size: 50.0, hardness: 1.0, ..Brush::default() };
+            let color = Color { r: 60 * i, g: 255 - 60 * i, b: 40, a: 255 };
+            Arc::new(Stroke::new(
+                brush,
+                Operator::None,
+                color,
+                vec![Sample::at(vec2(40.0 + 35.0 * f32::from(i), 40.0))],
+            ))
+        };
+        let list = StrokeList { strokes: (0..4).map(stroke).collect() };
+        let layer = Layer::new("Dots", Content::Strokes(Live::new(list)));
+        let id = layer.id;
+        (Document { layers: vec![Arc::new(layer)], ..Document::empty(SIZE) }, id)
+    }
+    /// Premultiplied.
+    fn picture(document: &Document) -> Vec<u8> {
+        let grid = flatten(document, &Progress::default()).unwrap();
+        (0..200).flat_map(|y| (0..300).map(move |x| (x, y))).flat_map(|(x, y)| grid.pixel(x, y)).collect()
+    }
+    /// The same layers, nothing of them rendered yet.
+    fn afresh(document: &Document, id: LayerId) -> Document {
+        let strokes = document.strokes(id).to_vec();
+        let content = Content::Strokes(Live::new(StrokeList { strokes }));
+        document.with_layer(id, |layer| layer.content = content).unwrap()
+    }
+    fn colors(document: &Document, id: LayerId) -> Vec<u8> {
+        document.strokes(id).iter().map(|stroke| stroke.color().r / 60).collect()
+    }
+
+    #[test]
+    fn every_edit_of_a_rendered_layer_looks_like_the_list_it_leads_to_painted_afresh() {
+        let (old, id) = document();
+        let before = picture(&old);
+        let green = |stroke: &Stroke| {
+            let color = Color { r: 0, g: 200, b: 0, a: 255 };
+            Stroke::new(stroke.brush().clone(), stroke.operator(), color, stroke.samples().to_vec())
+        };
+        let edits = [
+            old.with_moved_strokes(id, &[1], vec2(60.0, 90.0)),
+            old.with_each_stroke(id, &[0, 3, 3], green),
+            old.without_strokes(id, &[2, 0]),
+            old.with_copied_strokes(id, &[0, 2], vec2(0.0, 80.0)).map(|(document, _)| document),
+            old.with_reordered_stroke(id, 0, 2),
+            old.with_reordered_stroke(id, 3, 0),
+        ];
+        for (i, edited) in edits.into_iter().enumerate() {
+            let edited = edited.unwrap();
+            let now = picture(&edited);
+            assert!(now == picture(&afresh(&edited, id)), "edit {i}");
+            assert!(now != before, "edit {i} shows");
+        }
+        assert!(picture(&old) == before, "the old document is as it was");
+    }
+    #[test]
+    fn moving_a_stroke_renders_no_tile_it_does_not_touch() {
+        let (old, id) = document();
+        picture(&old);
+        let far = old.with_moved_strokes(id, &[0], vec2(0.0, 120.0)).unwrap();
+        let tile = |document: &Document, at: TileAt| match &document.layer(id).unwrap().content {
+            Content::Strokes(live) => live.tile(&document.scene(), at, || panic!("rendered again")),
+            _ => panic!("strokes"),
+        };
+        // Column 2 is beyond the first dot, before and after.
+        let kept = tile(&far, TileAt::new(2, 0)).unwrap();
+        assert!(Arc::ptr_eq(&kept, &tile(&old, TileAt::new(2, 0)).unwrap()));
+        let changed = crate::document::diff(&old, &far);
+        assert!(!changed.contains(&TileAt::new(2, 0)) && changed.contains(&TileAt::new(0, 0)));
+    }
+    #[test]
+    fn order_copies_and_removals_are_those_asked_for() {
+        let (old, id) = document();
+        assert_eq!(colors(&old.with_reordered_stroke(id, 0, 99).unwrap(), id), [1, 2, 3, 0]);
+        assert_eq!(colors(&old.with_reordered_stroke(id, 2, 1).unwrap(), id), [0, 2, 1, 3]);
+        assert_eq!(colors(&old.without_strokes(id, &[1, 3]).unwrap(), id), [0, 2]);
+        let (copied, copies) = old.with_copied_strokes(id, &[2, 0], vec2(1.0, 0.0)).unwrap();
+        assert_eq!((colors(&copied, id), copies), (vec![0, 0, 1, 2, 2, 3], vec![1, 4]));
+    }
+    #[test]
+    fn what_is_not_there_or_locked_is_not_edited() {
+        let (old, id) = document();
+        assert!(old.without_strokes(id, &[4]).is_none() && old.without_strokes(id, &[]).is_none());
+        assert!(old.with_reordered_stroke(id, 9, 0).is_none());
+        assert!(old.without_strokes(LayerId::fresh(), &[0]).is_none());
+        let locked = old.with_layer(id, |layer| layer.lock = Lock::All).unwrap();
+        assert!(locked.with_moved_strokes(id, &[0], Vec2::ONE).is_none());
+    }
+    #[test]
+    fn baked_strokes_look_as_they_did_and_the_lowest_go_beneath() {
+        let (old, id) = document();
+        let before = picture(&old);
+        for (chosen, place) in [(vec![0, 1], 0), (vec![2, 3], 1), (vec![0, 1, 2, 3], 1)] {
+            let (baked, pixels) = old.with_baked_strokes(id, &chosen).unwrap();
+            assert_eq!(baked.place_of(pixels), Some(Place::top_level(place)));
+            assert_eq!(baked.strokes(id).len(), 4 - chosen.len());
+            let now = picture(&baked);
+            let apart = now.iter().zip(&before).map(|(a, b)| a.abs_diff(*b)).max();
+            // Rims are rounded to bytes once more.
+            assert!(apart <= Some(1), "{apart:?}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The fill: the pixels joined to one by colours like its own, with small gaps in their border closed and its edge smoothed.
+//! Floor 3. `flood` finds what is joined, `gaps` what would only be reached through a gap; here the settings and the edge.
+//! Not here: which picture is read, and what the pixels become (`tools::fill`).
+
+mod flood;
+mod gaps;
+
+#[cfg(test)]
+mod tests;
+
+use crate::math::{Rect, Size, Vec2};
+use crate::raster::{Plane, Tile, TileAt, distance};
+use crate::surface::objects::{Bounded, Part};
+use std::sync::Arc;
+
+/// How far a fill goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fill {
+    /// The largest difference to the first pixel's colour, of any channel of the premultiplied encoded colour, `[0, 1]`.
+    pub tolerance: f32,
+    /// Gaps up to this wide are closed, px, `[0, 64]`; 0 closes none.
+    pub gap_px: f32,
+    /// How far the edge moves outward, px, `[-32, 32]`: under the softened edge of a line, so that no pale seam is left.
+    pub grow_px: f32,
+    /// Pixels at the edge are covered in part.
+    pub antialias: bool,
+    /// Colours are those of the layer alone, not of the picture.
+    pub layer_alone: bool,
+    pub bounded: Bounded,
+}
+
+impl Default for Fill {
+    fn default() -> Self {
+        let bounded = Bounded::Free;
+        Self { tolerance: 0.1, gap_px: 0.0, grow_px: 1.0, antialias: true, layer_alone: false, bounded }
+    }
+}
+
+/// The widest gap that can be closed, and the farthest an edge can move, px.
+pub const WIDEST_GAP_PX: f32 = 64.0;
+pub const FARTHEST_GROWTH_PX: f32 = 32.0;
+
+/// What a fill covers.
+pub struct Filled {
+    /// The canvas pixels that `coverage` holds, column 0 and row 0 at its corner.
+    pub rect: Rect,
+    /// 255 wholly covered.
+    coverage: Plane<u8>,
+}
+
+impl Filled {
+    /// The share of a canvas pixel that is covered, `[0, 1]`.
+    pub fn coverage(&self, x: i32, y: i32) -> f32 {
+        let at = |v: i32, from: i32| v.saturating_sub(from);
+        f32::from(self.coverage.get(at(x, self.rect.x0), at(y, self.rect.y0)).unwrap_or(0)) / 255.0
+    }
+}
+
+impl Fill {
+    /// Fills from a canvas point. `None` where it is off the canvas or outside of `part`.
+    ///
+    /// * `part`: of the canvas that may be touched (`Bounded::from`); its border is one of the fill's.
+    /// * `tile`: the picture that is read, premultiplied; asked once for each tile that the fill reaches.
+    pub fn from(
+        &self,
+        start: Vec2,
+        canvas: Size,
+        part: &Part,
+        tile: impl Fn(TileAt) -> Option<Arc<Tile>> + Sync,
+    ) -> Option<Filled> {
+        let (x, y) = (start.x.floor() as i32, start.y.floor() as i32);
+        if !start.is_finite() || !canvas.rect().contains(x, y) {
+            return None;
+        }
+        // Comparisons that turn NaN into the least.
+        let tolerance = (self.tolerance.max(0.0).min(1.0) * 255.0).round() as u8;
+        let mut inside = flood::joined((x, y), canvas, part, tolerance, tile)?;
+        let gap_px = self.gap_px.max(0.0).min(WIDEST_GAP_PX);
+        if gap_px > 0.0 {
+            inside = gaps::closed(inside, (x, y), canvas, gap_px);
+        }
+        Some(self.edged(inside, canvas, part))
+    }
+    /// The pixels found as coverage, the edge moved and smoothed.
+    ///
+    /// A pixel is covered by ½ + g − d, clamped, with g the growth and d how far its centre lies beyond the edge, which runs
+    /// midway between pixels inside and outside: a step across an axis stays sharp, a slanted one is smoothed.
+    fn edged(&self, inside: Inside, canvas: Size, part: &Part) -> Filled {
+        let grow_px = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
+        let limit = grow_px.abs().ceil() as u16 + 1;
+        let Inside { rect, pixels } = inside.within(inside.rect.grown(i32::from(limit)).intersect(canvas.rect()));
+        let to_inside = distance::squared(&pixels, limit);
+        let to_outside = distance::squared(&pixels.map(|p| u8::from(p == 0)), limit);
+        let coverage = Plane::from_fn(pixels.size(), |x, y| {
+            let beyond = match pixels.at(x, y) {
+                0 => f32::from(to_inside.at(x, y)).sqrt() - 0.5,
+                _ => 0.5 - f32::from(to_outside.at(x, y)).sqrt(),
+            };
+            let share = 0.5 + grow_px - beyond;
+            let share = if self.antialias { share.clamp(0.0, 1.0) } else { f32::from(u8::from(share > 0.5)) };
+            let (x, y) = (x as i32 + rect.x0, y as i32 + rect.y0);
+            let allowed = if part.is_whole() || share == 0.0 { 1.0 } else { part.coverage(x, y) };
+            (share * allowed * 255.0).round() as u8
+        });
+        Filled { rect, coverage }
+    }
+}
+
+/// Some pixels of the canvas: 1 in a plane that holds a rectangle of it.
+struct Inside {
+    rect: Rect,
+    pixels: Plane<u8>,
+}
+
+impl Inside {
+    /// The same pixels in another rectangle.
+    fn within(&self, rect: Rect) -> Inside {
+        let size = Size::new(rect.width() as u32, rect.height() as u32);
+        let (dx, dy) = (rect.x0 - self.rect.x0, rect.y0 - self.rect.y0);
+        let pixels = Plane::from_fn(size, |x, y| self.pixels.get(x as i32 + dx, y as i32 + dy).unwrap_or(0));
+        Inside { rect, pixels }
+    }
+}

@@ -1,0 +1,112 @@
+//! Gap closing: what a fill reached only through a narrow passage is left out, up to the narrowest place of the passage.
+//! Floor 3.
+//!
+//! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages between them saddles; a
+//! watershed (Vincent and Soille 1991, by a union of pixels in falling order) gives each pixel to the hill it lies on. Two
+//! hills are one room unless the saddle between them is a gap: low enough, and clearly lower than both tops.
+
+use super::Inside;
+use crate::math::Size;
+use crate::raster::{Plane, distance};
+
+/// How much lower than both tops a saddle must be to be a gap, px. Pixels make the sides of an even corridor rough by less.
+const CLEARLY_PX: f32 = 1.0;
+/// Levels of distance to a pixel.
+const LEVELS_PER_PX: f32 = 4.0;
+
+/// The room that holds `start`, of what was joined to it.
+pub(super) fn closed(inside: Inside, start: (i32, i32), canvas: Size, gap_px: f32) -> Inside {
+    // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w + 1)/2. Tops count no
+    // higher than makes a saddle of that distance a gap.
+    let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
+    let limit = top_px.ceil() as u16;
+    // The border is seen around the rectangle too; the canvas's edge is none.
+    let inside = inside.within(inside.rect.grown(i32::from(limit)).intersect(canvas.rect()));
+    let to_border = distance::squared(&inside.pixels.map(|p| u8::from(p == 0)), limit);
+    let top = (top_px * LEVELS_PER_PX) as u8;
+    let levels = to_border.map(|d| ((f32::from(d).sqrt() * LEVELS_PER_PX) as u8).min(top));
+    let mut rooms = Rooms::new(&inside.pixels, &levels, top);
+    rooms.rise();
+    let first = (start.1 - inside.rect.y0) as usize * inside.pixels.width() + (start.0 - inside.rect.x0) as usize;
+    let room = rooms.top_of(first);
+    let mut pixels = inside.pixels.clone();
+    for i in 0..pixels.values().len() {
+        if pixels.values()[i] != 0 && rooms.top_of(i) != room {
+            pixels.values_mut()[i] = 0;
+        }
+    }
+    Inside { rect: inside.rect, pixels }
+}
+
+/// Hills of distance: a forest over the pixels, each tree one hill, its root a pixel of its top.
+struct Rooms<'a> {
+    pixels: &'a Plane<u8>,
+    levels: &'a Plane<u8>,
+    /// The level from which tops are equal.
+    top: u8,
+    /// `NONE` before its turn.
+    parent: Vec<u32>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<'a> Rooms<'a> {
+    fn new(pixels: &'a Plane<u8>, levels: &'a Plane<u8>, top: u8) -> Self {
+        Self { pixels, levels, top, parent: vec![NONE; pixels.values().len()] }
+    }
+    fn top_of(&mut self, mut i: usize) -> usize {
+        while let Some(&up) = self.parent.get(i).filter(|&&up| up != NONE && up as usize != i) {
+            self.parent[i] = self.parent[up as usize];
+            i = self.parent[i] as usize;
+        }
+        i
+    }
+    fn level(&self, i: usize) -> u8 {
+        self.levels.values()[i]
+    }
+    /// The pixels from the tops downward, those of one level in their order.
+    fn rise(&mut self) {
+        let width = self.pixels.width();
+        let mut of_level: Vec<Vec<u32>> = vec![Vec::new(); usize::from(self.top) + 1];
+        for (i, (&p, &level)) in self.pixels.values().iter().zip(self.levels.values()).enumerate() {
+            if p != 0 && level < self.top {
+                of_level[usize::from(level)].push(i as u32);
+            } else if p != 0 {
+                // Tops stand first, and need not be sorted.
+                self.stand(i, width);
+            }
+        }
+        for i in of_level.into_iter().rev().flatten() {
+            self.stand(i as usize, width);
+        }
+    }
+    /// A pixel joins the highest hill beside it, and makes one of hills that are one room.
+    fn stand(&mut self, i: usize, width: usize) {
+        self.parent[i] = i as u32;
+        let beside = [
+            i.checked_sub(width),
+            Some(i).filter(|i| i % width > 0).map(|i| i - 1),
+            Some(i + 1).filter(|i| i % width > 0),
+            Some(i + width),
+        ];
+        let mut tops = [None; 4];
+        for (top, j) in tops.iter_mut().zip(beside) {
+            let stands = j.filter(|&j| self.parent.get(j).is_some_and(|&up| up != NONE));
+            *top = stands.map(|j| self.top_of(j));
+        }
+        let rank = |rooms: &Self, top: usize| (rooms.level(top), std::cmp::Reverse(top));
+        let Some(highest) = tops.into_iter().flatten().max_by_key(|&top| rank(self, top)) else { return };
+        self.parent[i] = highest as u32;
+        let clearly = (CLEARLY_PX * LEVELS_PER_PX) as u8;
+        let mut room = highest;
+        for top in tops.into_iter().flatten() {
+            let (top, one) = (self.top_of(top), self.top_of(room));
+            let lower = self.level(top).min(self.level(one));
+            if top != one && lower - self.level(i).min(lower) < clearly {
+                let (above, below) = if rank(self, top) > rank(self, one) { (top, one) } else { (one, top) };
+                self.parent[below] = above as u32;
+                room = above;
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! The strokes of stroke layers: chosen, changed, ordered, taken away, baked.
+//! Floor 6. The edits themselves are `document`'s.
+
+use crate::document::{Document, LayerId};
+use crate::math::{Vec2, srgb::Color, vec2};
+use crate::paint::{Brush, Stroke};
+use crate::session::replay::actions;
+use crate::session::{LayerPath, Session};
+use crate::surface::Operator;
+
+actions! {
+    /// `strokes` are places in the layer's list, the first painted 0.
+    StrokeAction {
+        /// Chosen, to be changed; none, to let go.
+        "choose" Choose { layer: LayerPath, strokes: Vec<usize> }
+        "move" Move { layer: LayerPath, strokes: Vec<usize>, by: Vec2 }
+        /// Shown only, until it is `done`.
+        "restyle" Restyle { layer: LayerPath, strokes: Vec<usize>, to: Style, done: bool }
+        /// To a place counted without it.
+        "order" Order { layer: LayerPath, stroke: usize, to: usize }
+        /// Each right above itself, a little aside.
+        "duplicate" Duplicate { layer: LayerPath, strokes: Vec<usize> }
+        "delete" Delete { layer: LayerPath, strokes: Vec<usize> }
+        /// To pixels, on a paint layer of their own.
+        "bake" Bake { layer: LayerPath, strokes: Vec<usize> }
+        /// Its brush, operator and colour come into the hand.
+        "take" Take { layer: LayerPath, stroke: usize }
+    }
+}
+
+actions! {
+    /// One thing about how a stroke is painted.
+    Style {
+        "color" Color { color: Color }
+        "operator" Operator { operator: Operator }
+        "size" Size { to: f32 }
+        "hardness" Hardness { to: f32 }
+        "opacity" Opacity { to: f32 }
+        "flow" Flow { to: f32 }
+        "softness" Softness { to: f32 }
+        "spacing" Spacing { to: f32 }
+        "rotation" Rotation { to: f32 }
+        /// With the brush in hand.
+        "brush" Brush {}
+    }
+}
+
+/// A copy stands so far right of and below what it is a copy of, px.
+const ASIDE_PX: f32 = 12.0;
+
+impl StrokeAction {
+    pub fn apply(&self, session: &mut Session) {
+        session.drop_gesture();
+        let in_hand = session.brush.clone();
+        let Some(tab) = session.tab_mut() else { return };
+        tab.forget_preview();
+        let document = tab.document();
+        let id = |path: &LayerPath| path.find(document).map(|layer| layer.id);
+        match self {
+            StrokeAction::Choose { layer, strokes } => {
+                if let Some(id) = id(layer) {
+                    tab.selected = Some(id);
+                    tab.choose_strokes(id, strokes.clone());
+                }
+            }
+            StrokeAction::Take { layer, stroke } => {
+                let stroke = id(layer).and_then(|id| document.strokes(id).get(*stroke).cloned());
+                if let Some(stroke) = stroke {
+                    (session.brush, session.operator) = (stroke.brush().clone(), stroke.operator());
+                    session.color = stroke.color();
+                }
+            }
+            StrokeAction::Restyle { layer, strokes, to, done } => {
+                let Some(id) = id(layer) else { return };
+                let next = document.with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &in_hand));
+                match next {
+                    Some(next) if *done => tab.commit("Restyle stroke", next),
+                    Some(next) => tab.show("Restyle stroke", next),
+                    None => {}
+                }
+            }
+            _ => {
+                if let Some((label, next, layer, chosen)) = self.edit(document) {
+                    tab.commit(label, next);
+                    tab.choose_strokes(layer, chosen);
+                }
+            }
+        }
+    }
+    /// The step, the document it leads to, and which strokes of which layer are chosen then.
+    fn edit(&self, document: &Document) -> Option<(&'static str, Document, LayerId, Vec<usize>)> {
+        let id = |path: &LayerPath| path.find(document).map(|layer| layer.id);
+        Some(match self {
+            StrokeAction::Move { layer, strokes, by } => {
+                let id = id(layer)?;
+                ("Move stroke", document.with_moved_strokes(id, strokes, *by)?, id, strokes.clone())
+            }
+            StrokeAction::Order { layer, stroke, to } => {
+                let id = id(layer)?;
+                let next = document.with_reordered_stroke(id, *stroke, *to)?;
+                ("Order strokes", next, id, vec![(*to).min(document.strokes(id).len().saturating_sub(1))])
+            }
+            StrokeAction::Duplicate { layer, strokes } => {
+                let id = id(layer)?;
+                let (next, copies) = document.with_copied_strokes(id, strokes, vec2(ASIDE_PX, ASIDE_PX))?;
+                ("Duplicate stroke", next, id, copies)
+            }
+            StrokeAction::Delete { layer, strokes } => {
+                let id = id(layer)?;
+                ("Delete stroke", document.without_strokes(id, strokes)?, id, Vec::new())
+            }
+            StrokeAction::Bake { layer, strokes } => {
+                let id = id(layer)?;
+                let (next, _) = document.with_baked_strokes(id, strokes)?;
+                ("Bake stroke", next, id, Vec::new())
+            }
+            StrokeAction::Choose { .. } | StrokeAction::Restyle { .. } | StrokeAction::Take { .. } => return None,
+        })
+    }
+}
+
+impl Style {
+    /// The stroke painted in this way; `in_hand`: the brush that [`Style::Brush`] gives.
+    fn given_to(&self, stroke: &Stroke, in_hand: &Brush) -> Stroke {
+        let unit = |v: f32| v.max(0.0).min(1.0);
+        let mut brush = stroke.brush().clone();
+        let (mut operator, mut color) = (stroke.operator(), stroke.color());
+        match self {
+            Style::Color { color: to } => color = *to,
+            Style::Operator { operator: to } => operator = *to,
+            Style::Size { to } => {
+                let [least, most] = super::hand::SIZES;
+                brush.size = to.max(least).min(most);
+            }
+            Style::Hardness { to } => brush.hardness = unit(*to),
+            Style::Opacity { to } => brush.opacity = unit(*to),
+            Style::Flow { to } => brush.flow = unit(*to),
+            Style::Softness { to } => brush.softness = unit(*to),
+            Style::Spacing { to } => brush.spacing = to.max(0.01).min(10.0),
+            Style::Rotation { to } => brush.rotation = *to,
+            Style::Brush {} => brush = in_hand.clone(),
+        }
+        Stroke::new(brush, operator, color, stroke.samples().to_vec())
+    }
+}

@@ -1,0 +1,146 @@
+//! The fill tool: a click fills what is joined to the pixel under the pen, on a paint layer.
+//! Floor 5. How far it goes is `paint::fill`'s.
+
+use super::brush::free_name;
+use super::{Begun, Context, Outcome, Pen};
+use crate::document::{Content, Document, Layer, LayerId, Lock, PixelLayer, Place, Prepared, Progress};
+use crate::math::srgb::Color;
+use crate::paint::fill::Filled;
+use crate::raster::{Coverage, Mix, Paint, PlanarTile, Tile, TileAt, TileGrid};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// The pen comes down: all is done at once. A selected layer that holds no pixels gets a paint layer above it.
+pub fn press(context: &Context, pen: Pen) -> Begun {
+    (None, filled(context, pen).unwrap_or(Outcome::Idle))
+}
+
+fn filled(context: &Context, pen: Pen) -> Option<Outcome> {
+    let (document, id) = fillable(context)?;
+    let layer = document.layer(id)?;
+    let Content::Pixels(pixels) = &layer.content else { return None };
+    let part = context.fill.bounded.from(document.surface.as_ref(), pen.place());
+    let filled = if context.fill.layer_alone {
+        context.fill.from(pen.place(), document.size, &part, |at| pixels.tiles.tile(at).cloned())
+    } else {
+        let picture = Prepared::new(context.document, &Progress::default())?;
+        context.fill.from(pen.place(), document.size, &part, |at| picture.flatten_tile(at))
+    }?;
+    let mix = Mix { atop: layer.lock == Lock::Alpha, ..Mix::default() };
+    let tiles = painted(&pixels.tiles, &filled, context.color, mix);
+    let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
+    let document = document.with_layer(id, |layer| layer.content = Content::Pixels(next))?;
+    Some(Outcome::Commit { label: "Fill".into(), document, select: Some(id) })
+}
+
+/// The document with a paint layer to fill; `None` where the layer in hand is locked.
+fn fillable(context: &Context) -> Option<(Document, LayerId)> {
+    let document = context.document;
+    let selected = context.layer.and_then(|id| document.layer(id));
+    if let Some(layer) = selected.filter(|layer| matches!(layer.content, Content::Pixels(_))) {
+        return (layer.lock != Lock::All).then(|| (document.clone(), layer.id));
+    }
+    let place = selected
+        .and_then(|layer| document.place_of(layer.id))
+        .map_or(Place::top_level(usize::MAX), |place| Place { index: place.index + 1, ..place });
+    let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() };
+    let layer = Layer::new(free_name(document, "Paint"), Content::Pixels(pixels));
+    let id = layer.id;
+    Some((document.with_inserted(layer, place)?, id))
+}
+
+/// The layer's pixels with a colour laid over them as far as they are filled.
+fn painted(base: &TileGrid, filled: &Filled, color: Color, mix: Mix) -> TileGrid {
+    let tiles: Vec<TileAt> = TileAt::covering(filled.rect).collect();
+    let made: Vec<Option<Arc<Tile>>> =
+        tiles.par_iter().map(|&at| tile(base.tile(at), at, filled, color, mix)).collect();
+    let mut grid = base.clone();
+    grid.reserve(filled.rect);
+    tiles.iter().zip(made).for_each(|(&at, tile)| grid.set(at, tile));
+    grid
+}
+
+fn tile(base: Option<&Arc<Tile>>, at: TileAt, filled: &Filled, color: Color, mix: Mix) -> Option<Arc<Tile>> {
+    let corner = at.rect();
+    let covered = |x: usize, y: usize| filled.coverage(corner.x0 + x as i32, corner.y0 + y as i32);
+    let coverage = Coverage::FULL.times(covered);
+    if coverage.is_none() {
+        return base.cloned();
+    }
+    let mut pixels = PlanarTile::transparent();
+    if let Some(base) = base {
+        pixels.blend(Mix::default(), Paint::Bytes(base), &Coverage::FULL);
+    }
+    pixels.blend(mix, Paint::Solid(color.premultiplied()), &coverage);
+    pixels.quantised().map(Arc::new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, Vec2, vec2};
+    use crate::paint::{Brush, Fill};
+    use crate::surface::Bounded;
+
+    const BLUE: Color = Color { r: 0, g: 0, b: 255, a: 255 };
+
+    /// A red left half on a paint layer, over a blue fill.
+    fn document() -> Document {
+        let red: Vec<u8> = [255, 0, 0, 255].repeat(60 * 80);
+        let tiles = TileGrid::from_straight_rgba(&red, 60, 80, 0, 0);
+        let pixels = PixelLayer { file: "half.png".into(), x: 0, y: 0, tiles };
+        let layers = vec![
+            Arc::new(Layer::new("Ground", Content::Fill(BLUE))),
+            Arc::new(Layer::new("Half", Content::Pixels(pixels))),
+        ];
+        Document { layers, ..Document::empty(Size::new(120, 80)) }
+    }
+    fn click(document: &Document, layer: usize, fill: Fill, at: Vec2) -> Option<Document> {
+        let (brush, white) = (Brush::default(), Color::WHITE);
+        let context =
+            Context { layer: Some(document.layers[layer].id), color: white, fill, ..Context::new(document, &brush) };
+        match press(&context, Pen::at(at)).1 {
+            Outcome::Commit { document, .. } => Some(document),
+            _ => None,
+        }
+    }
+    fn pixel(document: &Document, layer: usize, x: i32, y: i32) -> [u8; 4] {
+        let Content::Pixels(pixels) = &document.layers[layer].content else { panic!("paint") };
+        pixels.tiles.pixel(x, y)
+    }
+    const SHARP: Fill = Fill {
+        tolerance: 0.1,
+        gap_px: 0.0,
+        grow_px: 0.0,
+        antialias: false,
+        layer_alone: false,
+        bounded: Bounded::Free,
+    };
+
+    #[test]
+    fn what_the_picture_shows_tells_where_the_fill_ends() {
+        let filled = click(&document(), 1, SHARP, vec2(90.0, 40.0)).unwrap();
+        assert_eq!([59, 60, 119].map(|x| pixel(&filled, 1, x, 79)), [[255, 0, 0, 255], [255; 4], [255; 4]]);
+        let Content::Pixels(pixels) = &filled.layers[1].content else { panic!("paint") };
+        assert!(pixels.file.is_empty(), "these are no longer the file's pixels");
+    }
+    #[test]
+    fn a_layer_that_holds_no_pixels_gets_a_paint_layer_above_it() {
+        let filled = click(&document(), 0, SHARP, vec2(10.0, 40.0)).unwrap();
+        assert_eq!(filled.layers.len(), 3);
+        assert_eq!((pixel(&filled, 1, 30, 30), pixel(&filled, 1, 90, 30)), ([255; 4], [0; 4]));
+    }
+    #[test]
+    fn locked_alpha_fills_only_what_is_painted_and_a_locked_layer_nothing() {
+        let document = document();
+        let lock = |lock: Lock| document.with_layer(document.layers[1].id, |layer| layer.lock = lock).unwrap();
+        let all = Fill { tolerance: 1.0, ..SHARP };
+        let filled = click(&lock(Lock::Alpha), 1, all, vec2(10.0, 40.0)).unwrap();
+        assert_eq!((pixel(&filled, 1, 30, 30), pixel(&filled, 1, 90, 30)), ([255; 4], [0; 4]));
+        assert!(click(&lock(Lock::All), 1, all, vec2(10.0, 40.0)).is_none());
+        let alone = Fill { layer_alone: true, ..SHARP };
+        let filled = click(&document, 1, alone, vec2(90.0, 40.0)).unwrap();
+        assert_eq!(pixel(&filled, 1, 60, 30), [255; 4], "beside the paint the layer is empty");
+        assert!(click(&document, 1, alone, vec2(500.0, 40.0)).is_none());
+    }
+}

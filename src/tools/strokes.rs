@@ -1,0 +1,141 @@
+//! The stroke tool: strokes of a stroke layer are chosen on the canvas and moved along the surface.
+//! Floor 5. The edits are `document`'s; which strokes are chosen is remembered by the session.
+
+use super::{Begun, Context, Gesture, Outcome, Pen};
+use crate::document::{Content, Document, LayerId, Lock};
+use crate::math::Vec2;
+use crate::paint::picking;
+
+/// The pen comes down: on a stroke it chooses it (with Shift, it as well, or no longer), beside all it lets go of them.
+pub fn press(context: &Context, pen: Pen) -> Begun {
+    let nothing = (None, Outcome::Idle);
+    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return nothing };
+    if layer.lock == Lock::All || !matches!(layer.content, Content::Strokes(_)) {
+        return nothing;
+    }
+    let strokes = context.document.strokes(layer.id);
+    let scene = context.document.scene_of(layer.id).unwrap_or_else(|| context.document.scene());
+    let Some(hit) = picking::topmost_at(strokes, &scene, pen.place()) else {
+        let kept = if pen.keys.shift { context.strokes.to_vec() } else { Vec::new() };
+        return (None, Outcome::Chosen(kept));
+    };
+    let was_chosen = context.strokes.contains(&hit);
+    let chosen: Vec<usize> = match (pen.keys.shift, was_chosen) {
+        (true, true) => context.strokes.iter().copied().filter(|&index| index != hit).collect(),
+        (true, false) => context.strokes.iter().copied().chain([hit]).collect(),
+        (false, true) => context.strokes.to_vec(),
+        (false, false) => vec![hit],
+    };
+    let moving = Moving {
+        document: context.document.clone(),
+        layer: layer.id,
+        chosen: chosen.clone(),
+        from: pen.place(),
+        by: Vec2::ZERO,
+        slop_px: SLOP_PT * context.px_per_pt,
+        moves: false,
+    };
+    (Some(Box::new(moving)), Outcome::Chosen(chosen))
+}
+
+/// A hand that chooses trembles: nearer than this nothing is moved, screen points.
+const SLOP_PT: f32 = 3.0;
+
+struct Moving {
+    document: Document,
+    layer: LayerId,
+    chosen: Vec<usize>,
+    from: Vec2,
+    by: Vec2,
+    slop_px: f32,
+    moves: bool,
+}
+
+impl Moving {
+    fn with(&self) -> Option<Document> {
+        self.document.with_moved_strokes(self.layer, &self.chosen, self.by)
+    }
+}
+
+impl Gesture for Moving {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        self.by = pen.place() - self.from;
+        self.moves |= self.by.length() > self.slop_px;
+        if self.moves { self.with().map_or(Outcome::Idle, Outcome::Preview) } else { Outcome::Idle }
+    }
+    fn release(&mut self) -> Outcome {
+        match self.with().filter(|_| self.moves) {
+            Some(document) => {
+                let label = if self.chosen.len() == 1 { "Move stroke" } else { "Move strokes" };
+                Outcome::Commit { label: label.into(), document, select: None }
+            }
+            None => Outcome::Cancel,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Layer, Live, StrokeList};
+    use crate::math::{Size, srgb::Color, vec2};
+    use crate::paint::{Brush, Sample, Stroke};
+    use crate::surface::Operator;
+    use crate::tools::Keys;
+    use std::sync::Arc;
+
+    /// Lines at y = 20, 60 and 100.
+    fn document() -> Document {
+        let line = |y: f32| {
+            let samples = [vec2(10.0, y), vec2(190.0, y)].map(Sample::at).to_vec();
+            Arc::new(Stroke::new(Brush { size: 12.0, ..Brush::default() }, Operator::None, Color::BLACK, samples))
+        };
+        let list = StrokeList { strokes: [20.0, 60.0, 100.0].map(line).to_vec() };
+        let layers = vec![Arc::new(Layer::new("Lines", Content::Strokes(Live::new(list))))];
+        Document { layers, ..Document::empty(Size::new(200, 150)) }
+    }
+    /// What is chosen after a press, and what the drag leads to.
+    fn dragged(strokes: &[usize], shift: bool, from: Vec2, to: Vec2) -> (Option<Vec<usize>>, Option<Vec<f32>>) {
+        let (document, brush) = (document(), Brush::default());
+        let layer = Some(document.layers[0].id);
+        let context = Context { layer, strokes, ..Context::new(&document, &brush) };
+        let keys = Keys { shift, ..Keys::default() };
+        let (gesture, begun) = press(&context, Pen { keys, ..Pen::at(from) });
+        let chosen = if let Outcome::Chosen(chosen) = begun { Some(chosen) } else { None };
+        let moved = gesture.and_then(|mut gesture| {
+            gesture.drag(&[Pen { keys, ..Pen::at(to) }]);
+            match gesture.release() {
+                Outcome::Commit { document, .. } => {
+                    let strokes = document.strokes(document.layers[0].id);
+                    Some(strokes.iter().map(|stroke| stroke.samples()[0].at.y).collect())
+                }
+                _ => None,
+            }
+        });
+        (chosen, moved)
+    }
+
+    #[test]
+    fn a_stroke_that_is_taken_hold_of_is_chosen_and_moved_alone() {
+        let (chosen, moved) = dragged(&[2], false, vec2(50.0, 61.0), vec2(50.0, 71.5));
+        assert_eq!((chosen, moved), (Some(vec![1]), Some(vec![20.0, 70.5, 100.0])));
+    }
+    #[test]
+    fn strokes_chosen_together_move_together() {
+        let (chosen, moved) = dragged(&[0, 2], false, vec2(50.0, 100.0), vec2(50.0, 110.0));
+        assert_eq!((chosen, moved), (Some(vec![0, 2]), Some(vec![30.0, 60.0, 110.0])));
+    }
+    #[test]
+    fn shift_chooses_more_or_fewer_and_a_click_beside_all_lets_go() {
+        let still = |strokes: &[usize], shift: bool, at: Vec2| dragged(strokes, shift, at, at);
+        assert_eq!(still(&[0], true, vec2(50.0, 60.0)), (Some(vec![0, 1]), None));
+        assert_eq!(still(&[0, 1], true, vec2(50.0, 60.0)), (Some(vec![0]), None));
+        assert_eq!(still(&[0, 1], false, vec2(50.0, 140.0)), (Some(vec![]), None));
+        assert_eq!(still(&[0, 1], true, vec2(50.0, 140.0)), (Some(vec![0, 1]), None));
+    }
+    #[test]
+    fn a_trembling_hand_moves_nothing() {
+        assert_eq!(dragged(&[], false, vec2(50.0, 60.0), vec2(51.0, 62.0)).1, None);
+    }
+}
