@@ -98,6 +98,10 @@ impl Composer<'_> {
         else {
             return Flow::Continue(());
         };
+        if coverage.is_full() && node.clipped.is_empty() {
+            scaling.apply_tile(&node.scene, self.at, beneath, onto);
+            return Flow::Continue(());
+        }
         let mut after = onto.clone();
         scaling.apply_tile(&node.scene, self.at, beneath, &mut after);
         self.clipped(node, &mut after)?;

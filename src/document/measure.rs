@@ -5,11 +5,12 @@ use super::Progress;
 use super::compose::{Composer, Flow};
 use super::prepare::{Adjustment, Prepared, in_parallel};
 use crate::math::fast;
-use crate::math::srgb::{decode_fast, luminance};
+use crate::math::srgb::{decode, decode_fast, luminance};
 use crate::raster::{PlanarTile, TILE, TileAt, planar::Row};
 use crate::shading::radiance::{Beneath, Means};
 use crate::shading::{RadianceScaling, Reference};
 use crate::surface::Scene;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 impl Prepared {
     /// Measures what lies beneath the next adjustment, or finds it measured; `None` if cancelled.
@@ -32,7 +33,15 @@ impl Prepared {
     }
     /// Y*: the greatest luminance beneath the next adjustment.
     fn brightest_beneath(&self, scene: &Scene, progress: &Progress) -> Option<f32> {
-        let of_tile = |at| self.beneath_next(at).map_or(0.0, |pixels| brightest(&pixels, scene, at));
+        // A tile that cannot be brighter than one already measured is not measured: whatever the order, the greatest is found.
+        // Luminance is not negative, so that floats are in the order of their bits.
+        let known = AtomicU32::new(0);
+        let of_tile = |at| {
+            let most = f32::from_bits(known.load(Relaxed));
+            let found = self.beneath_next(at).map_or(0.0, |pixels| brightest(&pixels, scene, at, most));
+            known.fetch_max(found.to_bits(), Relaxed);
+            found
+        };
         let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
         Some(tiles.into_iter().fold(0.0, f32::max))
     }
@@ -58,7 +67,11 @@ impl Prepared {
 /// The greatest luminance (Rec. 709, linear light, straight colour) of a tile, over the surface where there is one.
 ///
 /// Pixels less than half covered, by paint or by surface, do not count: their straight colours are mostly rounding.
-fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt) -> f32 {
+/// Where it can be told at a glance that the tile has none above `known`, 0.
+fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt, known: f32) -> f32 {
+    if bound(pixels.rows()) <= known {
+        return 0.0;
+    }
     let inside = at.rect().intersect(scene.size.rect());
     let mut most = [0.0; TILE];
     for (row, y) in pixels.rows().iter().zip(inside.y0..inside.y1) {
@@ -77,7 +90,30 @@ fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt) -> f32 {
     most.into_iter().fold(0.0, f32::max)
 }
 
+/// What no pixel's luminance is above: that of the greatest red, green and blue.
+fn bound(rows: &[Row]) -> f32 {
+    let mut most = [[0.0; TILE]; 3];
+    rows.iter().for_each(|row| raise_to_channels(row, &mut most));
+    let [r, g, b] = most.map(|column| column.into_iter().fold(0.0, f32::max));
+    luminance(decode(r), decode(g), decode(b)) * (1.0 + DECODE_ERROR)
+}
+
+/// More than [`decode_fast`] is off by, as a ratio.
+const DECODE_ERROR: f32 = 1e-3;
+
 crate::widest! {
+    /// Raises each column's red, green and blue to a row's straight ones.
+    fn raise_to_channels(row: &Row, most: &mut [[f32; TILE]; 3]) {
+        let mut per_a = [0.0; TILE];
+        for (per_a, &a) in per_a.iter_mut().zip(&row.a) {
+            *per_a = 1.0 / fast::max(a, 0.5);
+        }
+        for (most, channel) in most.iter_mut().zip(&row.rgb) {
+            for x in 0..TILE {
+                most[x] = fast::max(fast::min(channel[x] * per_a[x], 1.0), most[x]);
+            }
+        }
+    }
     /// Raises each column's value to the luminance of its pixel in a row, where that counts.
     fn raise_to_brightest(row: &Row, covers: &[u8; TILE], most: &mut [f32; TILE]) {
         for x in 0..TILE {

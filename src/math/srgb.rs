@@ -34,12 +34,15 @@ pub fn luminance_fast(r: f32, g: f32, b: f32) -> f32 {
     luminance(decode(r), decode(g), decode(b))
 }
 
-/// [`encode`] for `[0, 1]` by square roots: error below 0.06/255.
+/// [`encode`] for `[0, 1]` by a square root: error below 0.05/255.
 #[inline(always)]
 pub fn encode_fast(linear: f32) -> f32 {
-    // In the fourth root the curve is nearly a parabola.
-    let root = linear.sqrt().sqrt();
-    let power = -0.071_762_61 + root * (0.255_802_74 + root * (0.952_567_8 + root * -0.136_822_99));
+    // In the root the curve is nearly straight. Pairs of terms, so that no step waits for all before it.
+    let root = linear.sqrt();
+    let squared = root * root;
+    let low = (-0.042_232_01 + root * 1.575_272) + squared * (-1.899_483 + root * 3.898_457_3);
+    let high = (-5.003_188 + root * 3.418_699) + squared * -0.947_674_1;
+    let power = low + (squared * squared) * high;
     if linear <= 0.003_130_8 { linear * 12.92 } else { power }
 }
 
@@ -90,8 +93,8 @@ pub fn decode_u8(encoded: u8) -> f32 {
 /// Nearest byte of a value in `[0, 1]`; out of range clamps, NaN becomes 0. The only quantisation in the program.
 #[inline(always)]
 pub fn quantise(value: f32) -> u8 {
-    // `max` first: NaN.max(0) is 0.
-    let scaled = value.max(0.0).min(1.0) * 255.0 + 0.5;
+    // `max` first: of NaN and 0 it is 0.
+    let scaled = super::fast::min(super::fast::max(value, 0.0), 1.0) * 255.0 + 0.5;
     // SAFETY: in [0.5, 255.5] by the line above. The checked cast is not vectorised: 4 ns a pixel instead of 0.5.
     unsafe { scaled.to_int_unchecked::<i32>() as u8 }
 }
@@ -169,7 +172,7 @@ mod tests {
         for i in 0..=100_000 {
             let v = i as f32 / 100_000.0;
             assert!((decode_fast(v) - decode(v)).abs() <= 4e-4 * decode(v), "{v}");
-            assert!((encode_fast(v) - encode(v)).abs() < 0.06 / 255.0, "{v}");
+            assert!((encode_fast(v) - encode(v)).abs() < 0.05 / 255.0, "{v}");
         }
     }
     #[test]

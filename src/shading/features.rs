@@ -1,8 +1,11 @@
 //! Which features of the surface are enhanced: the scales of curvature, their weights and their direction (RS sec. 4).
 //! Floor 3. Curvature itself is the surface's; what κ then does is `scaling`.
 
-use crate::math::{Vec3, fast};
-use crate::surface::{Surface, curvature::Curvature};
+use crate::math::{Vec3, fast, simd::prefetch};
+use crate::surface::{
+    Surface,
+    curvature::{Curvature, Kappa, KappaScale},
+};
 use std::sync::Arc;
 
 /// The mapping from the curvature tensor to κ.
@@ -41,22 +44,35 @@ impl Features {
     /// The features of a surface. Its curvature is computed here unless the surface has kept it: ask before going parallel.
     pub fn on(&self, surface: &Surface) -> FeatureMap {
         let total: f32 = self.scales.iter().map(|s| s.weight).sum();
+        let share = |s: &FeatureScale| if total > 0.0 { s.weight / total } else { 0.0 };
+        if self.lambda == 0.0 {
+            let scale = |s: &FeatureScale| {
+                let FeatureScale { curvature_scale_px, blur_px, .. } = *s;
+                KappaScale { blur_px, curvature_scale_px, share: share(s) }
+            };
+            return FeatureMap::Isotropic(surface.kappa(&self.scales.iter().map(scale).collect::<Vec<_>>()));
+        }
         let part = |s: &FeatureScale| Part {
             curvature: surface.curvature(s.blur_px),
             curvature_scale_px: s.curvature_scale_px,
-            share: if total > 0.0 { s.weight / total } else { 0.0 },
+            share: share(s),
         };
-        FeatureMap { parts: self.scales.iter().map(part).collect(), lambda: self.lambda }
+        FeatureMap::Directional { parts: self.scales.iter().map(part).collect(), lambda: self.lambda }
     }
 }
 
 /// κ of every pixel of one surface, in `[−1, 1]`: convex > 0, 0 off the surface, at its edge and at depth jumps.
-pub struct FeatureMap {
-    parts: Vec<Part>,
-    lambda: f32,
+pub enum FeatureMap {
+    /// λ = 0: the same toward every light.
+    Isotropic(Arc<Kappa>),
+    Directional {
+        parts: Vec<Part>,
+        lambda: f32,
+    },
 }
 
-struct Part {
+/// One scale of several.
+pub struct Part {
     curvature: Arc<Curvature>,
     curvature_scale_px: f32,
     /// Shares add up to 1.
@@ -66,37 +82,57 @@ struct Part {
 impl FeatureMap {
     /// κ(ℓ) of one pixel (MATH 4): the reference of the rows below. `light`: ℓ, camera space, any length.
     pub fn at(&self, x: usize, y: usize, light: Vec3) -> f32 {
-        let kappa = |p: &Part| p.share * p.curvature.kappa_along(x, y, p.curvature_scale_px, self.lambda, light);
-        self.parts.iter().map(kappa).sum()
+        match self {
+            Self::Isotropic(kappa) => kappa.at(x, y),
+            Self::Directional { parts, lambda } => {
+                let kappa = |p: &Part| p.share * p.curvature.kappa_along(x, y, p.curvature_scale_px, *lambda, light);
+                parts.iter().map(kappa).sum()
+            }
+        }
     }
     /// κ depends on the direction of the light.
     pub fn is_directional(&self) -> bool {
-        self.lambda != 0.0
+        matches!(self, Self::Directional { .. })
+    }
+    /// Asks for what the rows below will soon read of a row.
+    pub fn prefetch(&self, x0: usize, y: usize, width: usize) {
+        match self {
+            Self::Isotropic(kappa) => prefetch(kappa.steps(x0, y, width)),
+            Self::Directional { parts, .. } => {
+                for TensorRow { hxx, hxy, hyy, fade } in parts.iter().map(|p| p.row(x0, y, width)) {
+                    [hxx, hxy, hyy].into_iter().for_each(prefetch);
+                    prefetch(fade);
+                }
+            }
+        }
     }
     /// κ toward one direction, for the pixels of row `y` from column `x0` on, as many as `kappa` holds.
     pub fn row_toward(&self, x0: usize, y: usize, light: Vec3, kappa: &mut [f32]) {
-        let l = light.normalize_or(Vec3::Z);
-        // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors, see `Curvature::kappa_along`.
-        let (along, across) = (self.lambda * (l.x * l.x - l.y * l.y), self.lambda * 4.0 * l.x * l.y);
-        kappa.fill(0.0);
-        for p in &self.parts {
-            let tensor = p.row(x0, y, kappa.len());
-            let s = p.curvature_scale_px;
-            if self.is_directional() {
-                add_toward(tensor, [s * (1.0 + along), s * across, s * (1.0 - along)], p.share, kappa);
-            } else {
-                add_isotropic(tensor, s, p.share, kappa);
+        match self {
+            Self::Isotropic(map) => map.row(x0, y, kappa),
+            Self::Directional { parts, lambda } => {
+                let l = light.normalize_or(Vec3::Z);
+                // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors, see `Curvature::kappa_along`.
+                let (along, across) = (lambda * (l.x * l.x - l.y * l.y), lambda * 4.0 * l.x * l.y);
+                kappa.fill(0.0);
+                for p in parts {
+                    let s = p.curvature_scale_px;
+                    let factors = [s * (1.0 + along), s * across, s * (1.0 - along)];
+                    add_toward(p.row(x0, y, kappa.len()), factors, p.share, kappa);
+                }
             }
         }
     }
     /// κ toward each pixel's own direction: `light_x`, `light_y` are ℓ of unit length, as long as `kappa`.
     pub fn row_along(&self, x0: usize, y: usize, light: [&[f32]; 2], kappa: &mut [f32]) {
-        if !self.is_directional() {
-            return self.row_toward(x0, y, Vec3::Z, kappa);
-        }
-        kappa.fill(0.0);
-        for p in &self.parts {
-            add_along(p.row(x0, y, kappa.len()), light, [p.curvature_scale_px, self.lambda, p.share], kappa);
+        match self {
+            Self::Isotropic(map) => map.row(x0, y, kappa),
+            Self::Directional { parts, lambda } => {
+                kappa.fill(0.0);
+                for p in parts {
+                    add_along(p.row(x0, y, kappa.len()), light, [p.curvature_scale_px, *lambda, p.share], kappa);
+                }
+            }
         }
     }
 }
@@ -125,13 +161,6 @@ fn faded(share: f32, fade: u8) -> f32 {
 }
 
 crate::widest! {
-    /// Adds share · fade · tanh(s (h_xx + h_yy)) to each pixel.
-    fn add_isotropic(tensor: TensorRow, s: f32, share: f32, kappa: &mut [f32]) {
-        let pixels = tensor.hxx.iter().zip(tensor.hyy).zip(tensor.fade).zip(kappa);
-        for (((&hxx, &hyy), &fade), kappa) in pixels {
-            *kappa += faded(share, fade) * fast::tanh(s * (hxx + hyy));
-        }
-    }
     /// Adds share · fade · tanh(f · h) to each pixel.
     fn add_toward(tensor: TensorRow, factors: [f32; 3], share: f32, kappa: &mut [f32]) {
         let [fxx, fxy, fyy] = factors;
@@ -174,12 +203,21 @@ mod tests {
         for lambda in [0.0, 1.0, -0.6] {
             let map = features(lambda).on(&surface);
             let (mut toward, mut along) = ([9.0; 33], [9.0; 33]);
+            let Features { scales, .. } = features(lambda);
+            let exact = |x: usize| -> f32 {
+                let kappa = |s: &FeatureScale| {
+                    let curvature = surface.curvature(s.blur_px);
+                    s.weight / 4.0 * curvature.kappa_along(x, 11, s.curvature_scale_px, lambda, light)
+                };
+                scales.iter().map(kappa).sum()
+            };
             map.row_toward(20, 11, light, &mut toward);
             let l = light.normalize();
             map.row_along(20, 11, [&[l.x; 33], &[l.y; 33]], &mut along);
             for i in 0..33 {
-                let expected = map.at(20 + i, 11, light);
-                assert!((toward[i] - expected).abs() < 3e-6 && (along[i] - expected).abs() < 3e-6, "{lambda} {i}");
+                let expected = exact(20 + i);
+                let is_near = |kappa: f32| (kappa - expected).abs() < 1.6e-5;
+                assert!(is_near(toward[i]) && is_near(along[i]) && is_near(map.at(20 + i, 11, light)), "{lambda} {i}");
             }
         }
     }
@@ -189,7 +227,7 @@ mod tests {
         let one =
             |i: usize| Features { scales: vec![features(0.0).scales[i]], lambda: 0.0 }.on(&surface).at(35, 20, Vec3::Z);
         let both = features(0.0).on(&surface).at(35, 20, Vec3::Z);
-        assert!((both - (one(0) + 3.0 * one(1)) / 4.0).abs() < 1e-6);
+        assert!((both - (one(0) + 3.0 * one(1)) / 4.0).abs() < 4e-5);
     }
     #[test]
     fn anisotropy_follows_the_light() {
@@ -198,6 +236,6 @@ mod tests {
         let iso = kappa(0.0, Vec3::X);
         assert!(kappa(1.0, Vec3::Y) > iso && kappa(1.0, Vec3::X) < iso, "it curves more along y");
         assert_eq!(kappa(-1.0, Vec3::X), kappa(1.0, Vec3::Y));
-        assert_eq!(kappa(1.0, Vec3::Z), iso, "toward the viewer only the mean is left");
+        assert!((kappa(1.0, Vec3::Z) - iso).abs() < 1.6e-5, "toward the viewer only the mean is left");
     }
 }

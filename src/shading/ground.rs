@@ -1,11 +1,10 @@
 //! What one row of a tile offers to light: normals, κ, and where it lies.
 //! Floor 3. Materials read it; the maps themselves are the surface's.
 
-use super::features::FeatureMap;
-use crate::math::{Vec3, vec3};
+use super::{features::FeatureMap, scaling::Scaling};
+use crate::math::{Vec3, simd::prefetch, vec3};
 use crate::raster::TILE;
 use crate::surface::Surface;
-use std::cell::OnceCell;
 
 /// One value for each pixel of a tile's row.
 pub type Pixels = [f32; TILE];
@@ -24,8 +23,6 @@ pub struct Ground<'a> {
     pub width: usize,
     /// Camera space: right, up, to the viewer.
     pub normal: [Pixels; 3],
-    /// κ where it does not depend on the direction, once it was asked for.
-    isotropic: OnceCell<Pixels>,
 }
 
 /// The direction that κ is asked for.
@@ -45,25 +42,41 @@ impl Toward<'_> {
 impl<'a> Ground<'a> {
     /// The row of a tile that begins at canvas pixel (x0, y); `width` pixels of it lie on the canvas.
     pub fn new(surface: &'a Surface, features: &'a FeatureMap, x0: usize, y: usize, width: usize) -> Self {
-        let [nbar_x, nbar_y, nz] = surface.normal_planes().map(|plane| &plane.row(y)[x0..x0 + width]);
-        let mut normal = [[0.0; TILE], [0.0; TILE], [1.0; TILE]];
-        normal[0][..width].copy_from_slice(nbar_x);
-        normal[2][..width].copy_from_slice(nz);
-        normal[1].iter_mut().zip(nbar_y).for_each(|(up, down)| *up = -down);
-        Self { surface, features, x0, y, width, normal, isotropic: OnceCell::new() }
+        let normal = [[0.0; TILE], [0.0; TILE], [1.0; TILE]];
+        let mut ground = Self { surface, features, x0, y, width, normal };
+        ground.move_to(y);
+        ground
+    }
+    /// Goes to another row of the tile.
+    pub fn move_to(&mut self, y: usize) {
+        self.y = y;
+        let columns = self.x0..self.x0 + self.width;
+        let [nbar_x, nbar_y, nz] = self.surface.normal_planes().map(|plane| &plane.row(y)[columns.clone()]);
+        self.normal[0][..self.width].copy_from_slice(nbar_x);
+        self.normal[2][..self.width].copy_from_slice(nz);
+        self.normal[1].iter_mut().zip(nbar_y).for_each(|(up, down)| *up = -down);
+        self.prefetch(y + 2);
+    }
+    /// Asks for what a row further down will read: it lies a canvas's width away from the one before.
+    fn prefetch(&self, y: usize) {
+        if y < self.surface.size().height as usize {
+            let columns = self.x0..self.x0 + self.width;
+            self.surface.normal_planes().into_iter().for_each(|plane| prefetch(&plane.row(y)[columns.clone()]));
+            prefetch(&self.surface.coverage_plane().row(y)[columns]);
+            self.features.prefetch(self.x0, y, self.width);
+        }
     }
     pub fn normal_at(&self, x: usize) -> Vec3 {
         vec3(self.normal[0][x], self.normal[1][x], self.normal[2][x])
     }
     /// κ(ℓ) along the row.
     pub fn kappa(&self, toward: Toward) -> Pixels {
-        match self.features.is_directional() {
-            true => self.kappa_toward(toward),
-            false => *self.isotropic.get_or_init(|| self.kappa_toward(Toward::VIEWER)),
-        }
-    }
-    fn kappa_toward(&self, toward: Toward) -> Pixels {
         let mut kappa = [0.0; TILE];
+        self.find_kappa(toward, &mut kappa);
+        kappa
+    }
+    /// As [`Ground::kappa`], into an array.
+    fn find_kappa(&self, toward: Toward, kappa: &mut Pixels) {
         let row = &mut kappa[..self.width];
         match toward {
             Toward::One(light) => self.features.row_toward(self.x0, self.y, light, row),
@@ -71,7 +84,6 @@ impl<'a> Ground<'a> {
                 self.features.row_along(self.x0, self.y, [&x[..self.width], &y[..self.width]], row);
             }
         }
-        kappa
     }
     /// Which neighbours continue the surface, along the row: bits of [`crate::surface::links`].
     pub fn links(&self) -> &[u8] {
@@ -80,5 +92,57 @@ impl<'a> Ground<'a> {
     /// Coverage by the surface, `[0, 1]`, along the row.
     pub fn coverage(&self) -> &[u8] {
         &self.surface.coverage_plane().row(self.y)[self.x0..self.x0 + self.width]
+    }
+}
+
+/// How a row bends toward a light, and the exponentials E = e^(−γκ) (MATH 5) that its terms share: terms are often scaled
+/// alike, and without λ κ is the same toward every light.
+pub struct Relief {
+    kappa: Pixels,
+    /// Which γ (convex, concave) `exponentials` are of; `None` before the first.
+    gammas: Option<(f32, f32)>,
+    exponentials: Pixels,
+    is_isotropic: bool,
+}
+
+impl Default for Relief {
+    /// One to go from row to row with; it knows nothing yet.
+    fn default() -> Self {
+        Self { kappa: [0.0; TILE], gammas: None, exponentials: [1.0; TILE], is_isotropic: false }
+    }
+}
+
+impl Relief {
+    /// Forgets the row it was on.
+    pub fn leave_row(&mut self) {
+        (self.is_isotropic, self.gammas) = (false, None);
+    }
+    /// Turns to a direction: κ(ℓ), where it is not the same for all.
+    pub fn turn(&mut self, ground: &Ground, toward: Toward) {
+        if !self.is_isotropic {
+            ground.find_kappa(toward, &mut self.kappa);
+            (self.is_isotropic, self.gammas) = (!ground.features.is_directional(), None);
+        }
+    }
+    /// κ toward the direction last turned to.
+    pub fn kappa(&self) -> &Pixels {
+        &self.kappa
+    }
+    /// E for a scaling's γ.
+    pub fn exponentials(&mut self, scaling: Scaling) -> &Pixels {
+        let gammas = (scaling.gamma_convex, scaling.gamma_concave);
+        if self.gammas != Some(gammas) {
+            find_exponentials(scaling, &self.kappa, &mut self.exponentials);
+            self.gammas = Some(gammas);
+        }
+        &self.exponentials
+    }
+}
+
+crate::widest! {
+    fn find_exponentials(scaling: Scaling, kappa: &Pixels, exponentials: &mut Pixels) {
+        for (e, &kappa) in exponentials.iter_mut().zip(kappa) {
+            *e = scaling.exponential(kappa);
+        }
     }
 }

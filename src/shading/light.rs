@@ -2,7 +2,7 @@
 //! Floor 3.
 
 use super::ground::{Ground, Pixels, Toward};
-use crate::math::{Vec3, srgb::Color, vec3};
+use crate::math::{Vec3, fast, srgb::Color, vec3};
 use crate::raster::TILE;
 
 /// One light. It casts no shadows and does not weaken with distance.
@@ -34,45 +34,69 @@ impl Default for Light {
 pub struct RowLight {
     /// ℓ, unit, camera space.
     pub direction: [Pixels; 3],
-    /// ℓ where it is the same for all.
-    one: Option<Vec3>,
     /// Colour × intensity, linear.
     pub radiance: [f32; 3],
+    stands: Stands,
+}
+
+enum Stands {
+    /// ℓ, the same everywhere.
+    Afar(Vec3),
+    /// As [`LightKind::Point`].
+    At(Vec3),
 }
 
 impl RowLight {
     /// From one direction, of any length; `radiance` linear.
     pub fn directional(direction: Vec3, radiance: [f32; 3]) -> Self {
         let l = direction.normalize_or(Vec3::Z);
-        Self { direction: l.to_array().map(|v| [v; TILE]), one: Some(l), radiance }
+        Self { direction: l.to_array().map(|v| [v; TILE]), radiance, stands: Stands::Afar(l) }
     }
-    fn point(position: Vec3, radiance: [f32; 3], ground: &Ground) -> Self {
-        let [mut lx, mut ly, mut lz] = [[0.0; TILE], [0.0; TILE], [1.0; TILE]];
-        let surface = ground.surface;
-        for (x, ((lx, ly), lz)) in lx.iter_mut().zip(&mut ly).zip(&mut lz).enumerate().take(ground.width) {
-            // The surface recedes from its nearest point, at height 0, by its depth.
-            let depth_px = surface.depth(ground.x0 + x, ground.y) * surface.depth_range_px();
-            let (right, down) = ((ground.x0 + x) as f32 + 0.5, ground.y as f32 + 0.5);
-            let l = vec3(position.x - right, down - position.y, position.z + depth_px).normalize_or(Vec3::Z);
-            (*lx, *ly, *lz) = (l.x, l.y, l.z);
-        }
-        Self { direction: [lx, ly, lz], one: None, radiance }
+    fn point(position: Vec3, radiance: [f32; 3]) -> Self {
+        Self { direction: [[0.0; TILE], [0.0; TILE], [1.0; TILE]], radiance, stands: Stands::At(position) }
+    }
+    /// Turns to a row.
+    pub fn turn(&mut self, ground: &Ground) {
+        let Stands::At(position) = self.stands else { return };
+        let (surface, columns) = (ground.surface, ground.x0..ground.x0 + ground.width);
+        // The first pixel from the light, x right, y up; heights are counted from the surface's nearest point.
+        let first = vec3(position.x - (ground.x0 as f32 + 0.5), ground.y as f32 + 0.5 - position.y, position.z);
+        let depth = &surface.depth_plane().row(ground.y)[columns];
+        turn_to_point(first, surface.depth_range_px(), depth, &mut self.direction);
     }
     /// What κ(ℓ) is asked for.
     pub fn toward(&self) -> Toward<'_> {
-        match self.one {
-            Some(l) => Toward::One(l),
-            None => Toward::Each(&self.direction[0], &self.direction[1]),
+        match self.stands {
+            Stands::Afar(l) => Toward::One(l),
+            Stands::At(_) => Toward::Each(&self.direction[0], &self.direction[1]),
         }
     }
 }
 
 impl Light {
-    pub fn on(&self, ground: &Ground) -> RowLight {
+    /// The light as the rows of a tile see it; it is turned to each.
+    pub fn seen(&self) -> RowLight {
         let radiance = self.color.linear().map(|c| c * self.intensity);
         match self.kind {
             LightKind::Directional { direction } => RowLight::directional(direction, radiance),
-            LightKind::Point { position } => RowLight::point(position, radiance, ground),
+            LightKind::Point { position } => RowLight::point(position, radiance),
+        }
+    }
+}
+
+crate::widest! {
+    /// ℓ of each pixel of a row: toward a point that lies at `from_first` from the first pixel, were it at height 0; the
+    /// surface recedes from there by its depth.
+    fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: &mut [Pixels; 3]) {
+        let [lx, ly, lz] = direction;
+        for (x, (&depth, ((lx, ly), lz))) in depth.iter().zip(lx.iter_mut().zip(ly).zip(lz)).enumerate() {
+            let (right, up) = (from_first.x - x as i32 as f32, from_first.y);
+            let toward = from_first.z + depth * depth_range_px;
+            let squared = right * right + up * up + toward * toward;
+            // A light that touches the pixel shines straight at it.
+            let per_length = 1.0 / fast::max(squared, f32::MIN_POSITIVE).sqrt();
+            (*lx, *ly, *lz) = (right * per_length, up * per_length, toward * per_length);
+            *lz = if squared > 0.0 { *lz } else { 1.0 };
         }
     }
 }

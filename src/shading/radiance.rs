@@ -113,6 +113,10 @@ impl RadianceScaling {
         let mut kappa = [0.0; TILE];
         for (row, y) in (inside.y0 as usize..inside.y1 as usize).enumerate() {
             let coverage = &surface.coverage_plane().row(y)[columns.clone()];
+            if y + 1 < inside.y1 as usize {
+                // The next row lies a canvas's width away.
+                features.prefetch(columns.start, y + 1, columns.len());
+            }
             if coverage.iter().any(|&c| c > 0) {
                 features.row_toward(columns.start, y, self.light, &mut kappa[..columns.len()]);
                 with(row, &kappa, coverage);

@@ -1,7 +1,14 @@
 //! The surface: normals, depth and coverage in the one convention of the program, whole and finite everywhere.
 //! Floor 2. Not here: files and their conventions (`io::maps`).
 
-use super::{bounds::Bounds, curvature::CurvatureCache, grow, links, objects::Objects, occlusion::OcclusionCache};
+use super::{
+    bounds::Bounds,
+    curvature::{Curvature, Kappa},
+    grow,
+    kept::Kept,
+    links,
+    objects::Objects,
+};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 use std::sync::{Arc, OnceLock};
@@ -38,10 +45,14 @@ pub struct Surface {
     /// Which neighbours belong to the same piece of surface (`links`).
     links: Plane<u8>,
     depth_range_px: f32,
-    curvatures: CurvatureCache,
+    /// By blur.
+    curvatures: Kept<u32, Curvature>,
+    /// By the scales that are weighed.
+    kappas: Kept<Vec<[u32; 3]>, Kappa>,
     /// What detail was combined onto, if any was: what depth alone tells is its.
     base: Option<Arc<Surface>>,
-    occlusions: OcclusionCache,
+    /// By radius.
+    occlusions: Kept<u32, Plane<f32>>,
     bounds: Bounds,
     objects: OnceLock<Objects>,
 }
@@ -82,9 +93,10 @@ impl Surface {
             coverage,
             links,
             depth_range_px,
-            curvatures: CurvatureCache::default(),
+            curvatures: Kept::default(),
+            kappas: Kept::default(),
             base: None,
-            occlusions: OcclusionCache::default(),
+            occlusions: Kept::default(),
             bounds: Bounds::default(),
             objects: OnceLock::new(),
         })
@@ -100,9 +112,10 @@ impl Surface {
             coverage: self.coverage.clone(),
             links: self.links.clone(),
             depth_range_px: self.depth_range_px,
-            curvatures: CurvatureCache::default(),
+            curvatures: Kept::default(),
+            kappas: Kept::default(),
             base: Some(self.base.as_ref().unwrap_or(self).clone()),
-            occlusions: OcclusionCache::default(),
+            occlusions: Kept::default(),
             bounds: Bounds::default(),
             objects: OnceLock::new(),
         }
@@ -152,8 +165,11 @@ impl Surface {
     pub(super) fn bounds(&self) -> &Bounds {
         &self.bounds
     }
-    pub(super) fn curvatures(&self) -> &CurvatureCache {
+    pub(super) fn curvatures(&self) -> &Kept<u32, Curvature> {
         &self.curvatures
+    }
+    pub(super) fn kappas(&self) -> &Kept<Vec<[u32; 3]>, Kappa> {
+        &self.kappas
     }
     /// The surface without the detail that was combined onto it.
     pub(super) fn base(&self) -> &Surface {
@@ -163,7 +179,7 @@ impl Surface {
     pub(super) fn objects_cell(&self) -> &OnceLock<Objects> {
         &self.objects
     }
-    pub(super) fn occlusions(&self) -> &OcclusionCache {
+    pub(super) fn occlusions(&self) -> &Kept<u32, Plane<f32>> {
         &self.occlusions
     }
     /// The pixel that holds a canvas point, clamped into the map.

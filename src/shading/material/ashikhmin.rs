@@ -7,41 +7,48 @@
 use super::{Shading, lobes};
 use crate::math::fast;
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Pixels};
+use crate::shading::ground::{Ground, Light3, Pixels, Relief};
 use crate::shading::light::RowLight;
 
-/// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h.
-pub fn shade(shading: &Shading, ground: &Ground, light: &mut Light3) {
-    for lit in &shading.lights {
-        let lit = lit.on(ground);
-        let is_scaled = shading.diffuse.is_scaled() || shading.specular.is_scaled();
-        let kappa = if is_scaled { ground.kappa(lit.toward()) } else { [0.0; TILE] };
+/// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to the row.
+pub fn shade(shading: &Shading, ground: &Ground, lights: &[RowLight], relief: &mut Relief, light: &mut Light3) {
+    for lit in lights {
         if shading.diffuse.weight > 0.0 {
-            add_matt(shading, ground, &lit, &kappa, light);
+            add_matt(shading, ground, lit, relief, light);
         }
         if shading.specular.weight > 0.0 {
-            add_glossy(shading, ground, &lit, &kappa, light);
+            add_glossy(shading, ground, lit, relief, light);
         }
     }
 }
 
-/// The matt term under one light; `kappa`: κ(ℓ).
-pub fn add_matt(shading: &Shading, ground: &Ground, lit: &RowLight, kappa: &Pixels, light: &mut Light3) {
+/// The matt term under one light.
+pub fn add_matt(shading: &Shading, ground: &Ground, lit: &RowLight, relief: &mut Relief, light: &mut Light3) {
     let diffuse = &shading.diffuse;
     let (rd, rs) = (diffuse.linear(), mirrored_color(shading));
     let kept: [f32; 3] = std::array::from_fn(|c| rd[c] * (1.0 - rs[c]));
-    let (rho, delta) = matt_row(&ground.normal, &lit.direction);
-    let scale = diffuse.is_scaled().then_some((diffuse.scaling, kappa, &delta));
-    lobes::add(light, lobes::tint(kept, lit.radiance), &rho, scale);
+    let (mut rho, mut delta) = ([0.0; TILE], [0.0; TILE]);
+    matt_row(&ground.normal, &lit.direction, &mut rho, &mut delta);
+    if diffuse.is_scaled() {
+        relief.turn(ground, lit.toward());
+        lobes::scale(&mut rho, diffuse.scaling, relief.exponentials(diffuse.scaling), &delta);
+    }
+    lobes::add(light, lobes::tint(kept, lit.radiance), &rho);
 }
 
-fn add_glossy(shading: &Shading, ground: &Ground, lit: &RowLight, kappa: &Pixels, light: &mut Light3) {
-    let Glossy { rho, white, delta } = glossy_row(&ground.normal, &lit.direction, shading.nu, shading.nv);
-    let scaled = lobes::scaled(&rho, shading.specular.scaling, kappa, &delta);
-    // R_s + (1 − R_s) f = R_s (1 − f) + f: a coloured part and a white one.
-    let part = |share: &dyn Fn(f32) -> f32| std::array::from_fn(|x| scaled[x] * share(white[x]));
-    lobes::add(light, lobes::tint(mirrored_color(shading), lit.radiance), &part(&|f| 1.0 - f), None);
-    lobes::add(light, lit.radiance, &part(&|f| f), None);
+fn add_glossy(shading: &Shading, ground: &Ground, lit: &RowLight, relief: &mut Relief, light: &mut Light3) {
+    let mut row = Glossy { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
+    glossy_row(&ground.normal, &lit.direction, shading.nu, shading.nv, &mut row);
+    let specular = &shading.specular;
+    if specular.is_scaled() {
+        relief.turn(ground, lit.toward());
+        lobes::scale(&mut row.rho, specular.scaling, relief.exponentials(specular.scaling), &row.delta);
+    }
+    // R_s + (1 − R_s) f = R_s + f (1 − R_s): a coloured part and a whiter one.
+    let rs = mirrored_color(shading);
+    lobes::add(light, lobes::tint(rs, lit.radiance), &row.rho);
+    row.rho.iter_mut().zip(&row.white).for_each(|(rho, f)| *rho *= f);
+    lobes::add(light, lobes::tint(rs.map(|c| 1.0 - c), lit.radiance), &row.rho);
 }
 
 /// R_s, at most 1; black where the glossy term is left out.
@@ -108,17 +115,14 @@ struct Glossy {
 
 crate::widest! {
     /// ρ_d without its colours, and n·ℓ.
-    fn matt_row(normal: &[Pixels; 3], direction: &[Pixels; 3]) -> (Pixels, Pixels) {
-        let (mut rho, mut delta) = ([0.0; TILE], [0.0; TILE]);
+    fn matt_row(normal: &[Pixels; 3], direction: &[Pixels; 3], rho: &mut Pixels, delta: &mut Pixels) {
         for x in 0..TILE {
             let n_l = normal[0][x] * direction[0][x] + normal[1][x] * direction[1][x] + normal[2][x] * direction[2][x];
             rho[x] = matt(n_l, normal[2][x]);
             delta[x] = fast::max(n_l, 0.0);
         }
-        (rho, delta)
     }
-    fn glossy_row(normal: &[Pixels; 3], direction: &[Pixels; 3], nu: f32, nv: f32) -> Glossy {
-        let mut row = Glossy { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
+    fn glossy_row(normal: &[Pixels; 3], direction: &[Pixels; 3], nu: f32, nv: f32, row: &mut Glossy) {
         for x in 0..TILE {
             let n = [normal[0][x], normal[1][x], normal[2][x]];
             let l = [direction[0][x], direction[1][x], direction[2][x]];
@@ -131,6 +135,5 @@ crate::widest! {
             row.white[x] = whiteness(0.5 * length);
             row.delta[x] = h_uvn[2];
         }
-        row
     }
 }

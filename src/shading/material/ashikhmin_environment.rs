@@ -8,7 +8,7 @@
 use super::{Shading, ashikhmin};
 use crate::math::{Vec3, vec3};
 use crate::shading::environment::Surroundings;
-use crate::shading::ground::{Ground, Light3, Toward};
+use crate::shading::ground::{Ground, Light3, Relief, Toward};
 use crate::shading::light::RowLight;
 use std::f32::consts::PI;
 
@@ -46,15 +46,13 @@ impl Samples {
         Some(Self { surroundings, lights, halves })
     }
     /// Adds both terms along a row.
-    pub fn shade(&self, shading: &Shading, ground: &Ground, light: &mut Light3) {
-        let kappa = ground.kappa(Toward::VIEWER);
+    pub fn shade(&self, shading: &Shading, ground: &Ground, relief: &mut Relief, light: &mut Light3) {
         if shading.diffuse.weight > 0.0 {
-            for lit in &self.lights {
-                let toward = if ground.features.is_directional() { &ground.kappa(lit.toward()) } else { &kappa };
-                ashikhmin::add_matt(shading, ground, lit, toward, light);
-            }
+            self.lights.iter().for_each(|lit| ashikhmin::add_matt(shading, ground, lit, relief, light));
         }
         if shading.specular.weight > 0.0 {
+            relief.turn(ground, Toward::VIEWER);
+            let kappa = relief.kappa();
             for x in (0..ground.width).filter(|&x| ground.coverage()[x] > 0) {
                 let glossy = self.glossy(shading, ground, x, kappa[x]);
                 (0..3).for_each(|c| light[c][x] += glossy[c]);

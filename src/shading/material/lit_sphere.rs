@@ -6,26 +6,30 @@ use super::{Shading, lobes};
 use crate::math::{srgb, vec2};
 use crate::raster::TILE;
 use crate::shading::LitSphere;
-use crate::shading::ground::{Ground, Light3, Pixels, Toward};
+use crate::shading::ground::{Ground, Light3, Pixels, Relief, Toward};
 use crate::shading::sphere::SphereLight;
 
 /// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest there is on the spheres.
 ///
 /// Of two spheres the convex one counts (1 + κ) / 2, so that flat parts show half of each.
-pub fn shade(shading: &Shading, ground: &Ground, light: &mut Light3) {
+pub fn shade(shading: &Shading, ground: &Ground, relief: &mut Relief, light: &mut Light3) {
     let term = &shading.specular;
     if term.weight <= 0.0 {
         return;
     }
     let convex = convex(shading).light();
     let concave = shading.sphere_concave.as_ref().map(LitSphere::light);
-    let needs_kappa = term.is_scaled() || concave.is_some();
-    // A painted sphere has no one direction of light, so κ is isotropic.
-    let kappa = if needs_kappa { ground.kappa(Toward::VIEWER) } else { [0.0; TILE] };
-    let shown = looked_up(ground, convex, concave, &kappa);
+    if term.is_scaled() || concave.is_some() {
+        // A painted sphere has no one direction of light, so κ is isotropic.
+        relief.turn(ground, Toward::VIEWER);
+    }
+    let shown = looked_up(ground, convex, concave, relief.kappa());
     let brightest = concave.map_or(0.0, SphereLight::brightest).max(convex.brightest());
     let delta = reflectances(&shown, 1.0 / shading.reference.resolve(brightest));
-    let sigma = lobes::scaled(&[1.0; TILE], term.scaling, &kappa, &delta);
+    let mut sigma = [1.0; TILE];
+    if term.is_scaled() {
+        lobes::scale(&mut sigma, term.scaling, relief.exponentials(term.scaling), &delta);
+    }
     lobes::add_shown(light, term.linear(), &shown, &sigma);
 }
 

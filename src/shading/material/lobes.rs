@@ -6,17 +6,12 @@ use crate::raster::TILE;
 use crate::shading::ground::{Light3, Pixels};
 use crate::shading::scaling::Scaling;
 
+/// Pixels whose sums are kept in registers.
+const CHUNK: usize = 16;
+
 /// A term's colour × weight, linear, times a light's.
 pub fn tint(color: [f32; 3], radiance: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|c| color[c] * radiance[c])
-}
-
-/// Adds σ ρ tint to the light of a row. Without scaling κ and δ are not looked at.
-pub fn add(light: &mut Light3, tint: [f32; 3], rho: &Pixels, scale: Option<(Scaling, &Pixels, &Pixels)>) {
-    match scale {
-        Some((scaling, kappa, delta)) => add_plain(light, tint, &scaled(rho, scaling, kappa, delta)),
-        None => add_plain(light, tint, rho),
-    }
 }
 
 /// Adds σ times light that was looked up, one colour a pixel.
@@ -29,22 +24,42 @@ pub fn add_seen(light: &mut Light3, seen: &Light3, scale: Option<(Scaling, &Pixe
 }
 
 crate::widest! {
-    /// σ(κ, δ) ρ of each pixel.
-    pub fn scaled(rho: &Pixels, scaling: Scaling, kappa: &Pixels, delta: &Pixels) -> Pixels {
-        let mut scaled = [0.0; TILE];
-        // Two short loops: in one, each pixel would wait for its exponential.
-        for (x, e) in scaled.iter_mut().enumerate() {
-            *e = scaling.exponential(kappa[x]);
+    /// ρ ← σ(κ, δ) ρ of each pixel; `exponentials`: E of κ.
+    pub fn scale(rho: &mut Pixels, scaling: Scaling, exponentials: &Pixels, delta: &Pixels) {
+        for (x, rho) in rho.iter_mut().enumerate() {
+            *rho *= scaling.sigma_of(exponentials[x], delta[x]);
         }
-        for (x, scaled) in scaled.iter_mut().enumerate() {
-            *scaled = rho[x] * scaling.sigma_of(*scaled, delta[x]);
-        }
-        scaled
     }
-    fn add_plain(light: &mut Light3, tint: [f32; 3], rho: &Pixels) {
-        for x in 0..TILE {
-            for c in 0..3 {
-                light[c][x] += tint[c] * rho[x];
+    /// As [`scale`] with δ = ρ.
+    pub fn scale_by_itself(rho: &mut Pixels, scaling: Scaling, exponentials: &Pixels) {
+        for (x, rho) in rho.iter_mut().enumerate() {
+            *rho *= scaling.sigma_of(exponentials[x], *rho);
+        }
+    }
+    /// Σ ρ tint of several terms, a tint and a row for each.
+    pub fn sum(light: &mut Light3, tints: &[[f32; 3]], terms: &[Pixels]) {
+        let [red, green, blue] = light;
+        let chunks = red.as_chunks_mut::<CHUNK>().0.iter_mut();
+        let chunks = chunks.zip(green.as_chunks_mut::<CHUNK>().0).zip(blue.as_chunks_mut::<CHUNK>().0);
+        for (i, ((red, green), blue)) in chunks.enumerate() {
+            // The three sums stay in registers.
+            let [mut r, mut g, mut b] = [[0.0; CHUNK]; 3];
+            for (tint, rho) in tints.iter().zip(terms) {
+                let rho = &rho[i * CHUNK..(i + 1) * CHUNK];
+                for x in 0..CHUNK {
+                    r[x] += tint[0] * rho[x];
+                    g[x] += tint[1] * rho[x];
+                    b[x] += tint[2] * rho[x];
+                }
+            }
+            (*red, *green, *blue) = (r, g, b);
+        }
+    }
+    /// Adds ρ tint to the light of a row.
+    pub fn add(light: &mut Light3, tint: [f32; 3], rho: &Pixels) {
+        for (light, tint) in light.iter_mut().zip(tint) {
+            for (light, &rho) in light.iter_mut().zip(rho) {
+                *light += tint * rho;
             }
         }
     }
@@ -57,30 +72,24 @@ crate::widest! {
         }
     }
     /// (n·ℓ)₊ of each pixel.
-    pub fn lambert(normal: &[Pixels; 3], direction: &[Pixels; 3]) -> Pixels {
-        let mut rho = [0.0; TILE];
+    pub fn lambert(normal: &[Pixels; 3], direction: &[Pixels; 3], rho: &mut Pixels) {
         for (x, rho) in rho.iter_mut().enumerate() {
             *rho = fast::max(dot(normal, direction, x), 0.0);
         }
-        rho
     }
     /// Phong's ρ_s = (r·ℓ)₊^η with r = 2(n·e)n − e the mirrored view, e = (0, 0, 1) (RS sec. 5.1).
-    pub fn glossy(normal: &[Pixels; 3], direction: &[Pixels; 3], shininess: f32) -> Pixels {
-        let mut rho = [0.0; TILE];
+    pub fn glossy(normal: &[Pixels; 3], direction: &[Pixels; 3], shininess: f32, rho: &mut Pixels) {
         for (x, rho) in rho.iter_mut().enumerate() {
             // r·ℓ = 2 n_z (n·ℓ) − ℓ_z.
             let mirrored = 2.0 * normal[2][x] * dot(normal, direction, x) - direction[2][x];
             // A unit vector's rounding must not raise a high power above 1.
             *rho = fast::min(mirrored, 1.0);
         }
-        raise(&mut rho, shininess);
-        rho
+        raise(rho, shininess);
     }
-    /// ρ^ζ, 0 where ρ is (RS sec. 5.1: sub-Lambertian).
-    pub fn flattened(rho: &Pixels, exponent: f32) -> Pixels {
-        let mut flat = *rho;
-        raise(&mut flat, exponent);
-        flat
+    /// ρ ← ρ^ζ, 0 where ρ is (RS sec. 5.1: sub-Lambertian).
+    pub fn flatten(rho: &mut Pixels, exponent: f32) {
+        raise(rho, exponent);
     }
 }
 

@@ -32,7 +32,7 @@ pub fn diffuse(shading: &Shading, ground: &Ground, light: &mut Light3) {
 /// Adds A(p) as the ambient term, scaled with δ = A.
 pub fn occlusion(shading: &Shading, ground: &Ground, light: &mut Light3) {
     let open = scaled_occlusion(shading, ground);
-    lobes::add(light, shading.ambient.linear(), &open, None);
+    lobes::add(light, shading.ambient.linear(), &open);
 }
 
 /// σ(κ, A) A along the row; A is 1 where no radius is given.

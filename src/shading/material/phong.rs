@@ -1,62 +1,78 @@
 //! Phong, and the sub-Lambertian material that is Phong with a flatter matt term (RS sec. 5.1, MATH 5).
-//! Floor 3.
+//! Floor 3. Toon draws the same terms in bands.
 
-use super::{Shading, Term, lobes};
+use super::{Model, Shading, lobes};
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Pixels, Toward};
-use crate::shading::light::Light;
+use crate::shading::ground::{Ground, Light3, Pixels, Relief, Toward};
+use crate::shading::light::RowLight;
 
-/// Adds every light's terms, and the ambient one once: `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j.
+/// A material's terms along a row: the ambient one, and two for every light; those of weight 0 are left out.
 ///
-/// `exponent`: ζ of the matt term (n·ℓ)₊^ζ; `None` is Phong's own, ζ = 1.
-pub fn shade(shading: &Shading, ground: &Ground, exponent: Option<f32>, light: &mut Light3) {
-    if let Some(scaled) = ambient(&shading.ambient, ground) {
-        lobes::add(light, shading.ambient.linear(), &scaled, None);
-    }
-    for lit in &shading.lights {
-        under_light(shading, lit, ground, exponent, |_, tint, scaled| lobes::add(light, tint, scaled, None));
-    }
-}
-
-/// σ_a ρ_a with ρ_a = 1 and no light's: scaled it is mean-curvature shading, e^(γκ). `None` where the term is left out.
-pub fn ambient(term: &Term, ground: &Ground) -> Option<Pixels> {
-    const RHO: Pixels = [1.0; TILE];
-    let scaled = || lobes::scaled(&RHO, term.scaling, &ground.kappa(Toward::VIEWER), &RHO);
-    (term.weight > 0.0).then(|| if term.is_scaled() { scaled() } else { RHO })
-}
-
-/// The two terms that a light makes, where they are not left out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lobe {
-    Matt,
-    Glossy,
-}
-
-/// Hands out each term under one light: its colour times the light's, and σρ.
-pub fn under_light(
-    shading: &Shading,
-    light: &Light,
-    ground: &Ground,
+/// `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j; ρ_a = 1 has no light of its own: scaled it is mean-curvature
+/// shading, e^(γκ).
+pub struct Terms {
+    lobes: Vec<Lobe>,
+    /// Colour × weight of each, times its light's, linear.
+    pub tints: Vec<[f32; 3]>,
+    /// σρ of each along the row.
+    pub scaled: Vec<Pixels>,
+    /// ζ of the matt terms (n·ℓ)₊^ζ; `None` is Phong's own, ζ = 1.
     exponent: Option<f32>,
-    mut with: impl FnMut(Lobe, [f32; 3], &Pixels),
-) {
-    let lit = light.on(ground);
-    let is_scaled = shading.diffuse.is_scaled() || shading.specular.is_scaled();
-    let kappa = if is_scaled { ground.kappa(lit.toward()) } else { [0.0; TILE] };
-    let mut hand_out = |lobe: Lobe, term: &Term, rho: Pixels| {
-        let tint = lobes::tint(term.linear(), lit.radiance);
-        match term.is_scaled() {
-            true => with(lobe, tint, &lobes::scaled(&rho, term.scaling, &kappa, &rho)),
-            false => with(lobe, tint, &rho),
-        }
-    };
-    if shading.diffuse.weight > 0.0 {
-        let lambert = lobes::lambert(&ground.normal, &lit.direction);
-        let rho = exponent.map_or(lambert, |zeta| lobes::flattened(&lambert, zeta));
-        hand_out(Lobe::Matt, &shading.diffuse, rho);
+}
+
+/// Which term, and the number of its light.
+#[derive(Clone, Copy)]
+enum Lobe {
+    Ambient,
+    Matt(usize),
+    Glossy(usize),
+}
+
+impl Terms {
+    /// `lights`: those of the material.
+    pub fn new(shading: &Shading, lights: &[RowLight]) -> Self {
+        let ambient = [(Lobe::Ambient, &shading.ambient, [1.0; 3])];
+        let lit = lights.iter().enumerate().flat_map(|(i, light)| {
+            [(Lobe::Matt(i), &shading.diffuse, light.radiance), (Lobe::Glossy(i), &shading.specular, light.radiance)]
+        });
+        let (lobes, tints): (Vec<_>, Vec<_>) = ambient
+            .into_iter()
+            .chain(lit)
+            .filter(|(_, term, _)| term.weight > 0.0)
+            .map(|(lobe, term, radiance)| (lobe, lobes::tint(term.linear(), radiance)))
+            .unzip();
+        let scaled = vec![[0.0; TILE]; lobes.len()];
+        let exponent = (shading.model == Model::SubLambertian).then_some(shading.exponent);
+        Self { lobes, tints, scaled, exponent }
     }
-    if shading.specular.weight > 0.0 {
-        let rho = lobes::glossy(&ground.normal, &lit.direction, shading.shininess);
-        hand_out(Lobe::Glossy, &shading.specular, rho);
+    /// Finds σρ of every term. `lights`: turned to the row; `relief`: left the row before.
+    pub fn find(&mut self, shading: &Shading, ground: &Ground, lights: &[RowLight], relief: &mut Relief) {
+        for (lobe, rho) in self.lobes.iter().zip(&mut self.scaled) {
+            let (term, toward) = match *lobe {
+                Lobe::Ambient => {
+                    rho.fill(1.0);
+                    (&shading.ambient, Toward::VIEWER)
+                }
+                Lobe::Matt(i) => {
+                    lobes::lambert(&ground.normal, &lights[i].direction, rho);
+                    if let Some(zeta) = self.exponent {
+                        lobes::flatten(rho, zeta);
+                    }
+                    (&shading.diffuse, lights[i].toward())
+                }
+                Lobe::Glossy(i) => {
+                    lobes::glossy(&ground.normal, &lights[i].direction, shading.shininess, rho);
+                    (&shading.specular, lights[i].toward())
+                }
+            };
+            if term.is_scaled() {
+                relief.turn(ground, toward);
+                lobes::scale_by_itself(rho, term.scaling, relief.exponentials(term.scaling));
+            }
+        }
+    }
+    /// The light of the row: the terms added up.
+    pub fn sum(&self, light: &mut Light3) {
+        lobes::sum(light, &self.tints, &self.scaled);
     }
 }

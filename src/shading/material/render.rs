@@ -1,11 +1,12 @@
 //! A tile of a shading layer: the model's light row by row, encoded and clipped at the end.
 //! Floor 3.
 
-use super::{Model, Shading, ashikhmin, ashikhmin_environment::Samples, lit_sphere, mirror, open, phong, toon};
+use super::{Model, Shading, ashikhmin, ashikhmin_environment::Samples, lit_sphere, mirror, open, phong::Terms, toon};
 use crate::math::{fast, srgb};
-use crate::raster::{PlanarTile, TILE, Tile, TileAt, planar::Row};
+use crate::raster::{TILE, Tile, TileAt, tile::TILE_AREA};
 use crate::shading::environment::Environment;
-use crate::shading::ground::{Ground, Light3};
+use crate::shading::ground::{Ground, Light3, Relief};
+use crate::shading::light::{Light, RowLight};
 use crate::surface::Scene;
 
 impl Shading {
@@ -18,28 +19,24 @@ impl Shading {
         let inside = at.rect().intersect(surface.size().rect());
         let features = self.features.on(surface);
         let ground = |y: i32| Ground::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
-        let mut pixels = PlanarTile::transparent();
-        let rows = pixels.rows_mut().iter_mut().zip(inside.y0..inside.y1);
+        let mut bytes = vec![0; 4 * TILE_AREA];
+        let rows = bytes.chunks_exact_mut(4 * TILE).zip(inside.y0..inside.y1);
         if self.model == Model::Toon {
             let grounds: Vec<Ground> = (inside.y0..inside.y1).map(ground).collect();
             let mut light = vec![[[0.0; TILE]; 3]; grounds.len()];
             toon::shade_tile(self, &grounds, &mut light);
-            rows.zip(&grounds).zip(&light).for_each(|(((row, _), ground), light)| show(light, ground, row));
-            return pixels.quantised();
-        }
-        let samples = if self.model == Model::Ashikhmin { Samples::new(self) } else { None };
-        for (row, y) in rows {
-            let ground = ground(y);
-            if ground.coverage().iter().any(|&c| c > 0) {
-                let mut light = [[0.0; TILE]; 3];
-                self.shade(&ground, &mut light);
-                if let Some(samples) = &samples {
-                    samples.shade(self, &ground, &mut light);
+            rows.zip(&grounds).zip(&light).for_each(|(((row, _), ground), light)| show(light, ground.coverage(), row));
+        } else if !inside.is_empty() {
+            let mut ground = ground(inside.y0);
+            let mut worker = RowWorker::new(self);
+            for (row, y) in rows {
+                ground.move_to(y as usize);
+                if ground.coverage().iter().any(|&c| c > 0) {
+                    show(worker.light(&ground), ground.coverage(), row);
                 }
-                show(&light, &ground, row);
             }
         }
-        pixels.quantised()
+        Tile::from_pixels(bytes)
     }
     /// Computes now what many tiles would otherwise compute at the same time.
     pub fn warm(&self, scene: &Scene) {
@@ -58,36 +55,79 @@ impl Shading {
             lit_sphere::warm(self);
         }
     }
-    fn shade(&self, ground: &Ground, light: &mut Light3) {
-        match self.model {
-            Model::Phong => phong::shade(self, ground, None, light),
-            Model::SubLambertian => phong::shade(self, ground, Some(self.exponent), light),
-            Model::Ashikhmin => ashikhmin::shade(self, ground, light),
-            Model::LitSphere => lit_sphere::shade(self, ground, light),
-            Model::Mirror | Model::Refraction => mirror::shade(self, ground, light),
-            Model::DiffuseEnvironment => open::diffuse(self, ground, light),
-            Model::AmbientOcclusion => open::occlusion(self, ground, light),
-            // Its bands look at whole tiles: `render_tile` has drawn it.
+}
+
+/// The material at work on the rows of a tile, with what it reuses from row to row.
+struct RowWorker<'a> {
+    shading: &'a Shading,
+    lights: Vec<RowLight>,
+    /// Of Phong and what is like it.
+    terms: Terms,
+    /// Of an Ashikhmin material in an environment.
+    samples: Option<Samples>,
+    relief: Relief,
+    light: Light3,
+}
+
+impl<'a> RowWorker<'a> {
+    fn new(shading: &'a Shading) -> Self {
+        let samples = if shading.model == Model::Ashikhmin { Samples::new(shading) } else { None };
+        let lights: Vec<RowLight> = shading.lights.iter().map(Light::seen).collect();
+        let terms = Terms::new(shading, &lights);
+        Self { shading, lights, terms, samples, relief: Relief::default(), light: [[0.0; TILE]; 3] }
+    }
+    /// Linear light along a row.
+    fn light(&mut self, ground: &Ground) -> &Light3 {
+        let Self { shading, lights, terms, samples, relief, light } = self;
+        relief.leave_row();
+        lights.iter_mut().for_each(|lit| lit.turn(ground));
+        *light = [[0.0; TILE]; 3];
+        match shading.model {
+            Model::Phong | Model::SubLambertian => {
+                terms.find(shading, ground, lights, relief);
+                terms.sum(light);
+            }
+            Model::Ashikhmin => {
+                ashikhmin::shade(shading, ground, lights, relief, light);
+                if let Some(samples) = samples {
+                    samples.shade(shading, ground, relief, light);
+                }
+            }
+            Model::LitSphere => lit_sphere::shade(shading, ground, relief, light),
+            Model::Mirror | Model::Refraction => mirror::shade(shading, ground, light),
+            Model::DiffuseEnvironment => open::diffuse(shading, ground, light),
+            Model::AmbientOcclusion => open::occlusion(shading, ground, light),
+            // Its bands look at whole tiles: `render_tile` draws it.
             Model::Toon => {}
         }
+        light
     }
 }
 
-/// Linear light on a row, opaque where the surface covers any of a pixel.
-fn show(light: &Light3, ground: &Ground, row: &mut Row) {
-    for (alpha, &coverage) in row.a.iter_mut().zip(ground.coverage()) {
-        *alpha = if coverage > 0 { 1.0 } else { 0.0 };
-    }
-    encode(light, row);
+/// Linear light as a row of bytes, opaque wherever the surface covers any of a pixel.
+fn show(light: &Light3, coverage: &[u8], row: &mut [u8]) {
+    let mut covered = [0; TILE];
+    covered[..coverage.len()].copy_from_slice(coverage);
+    encode(light, &covered, row);
 }
 
 crate::widest! {
-    /// Linear light to sRGB, clipped, where the row has coverage.
-    fn encode(light: &Light3, row: &mut Row) {
-        for (channel, light) in row.rgb.iter_mut().zip(light) {
-            for ((v, &light), &a) in channel.iter_mut().zip(light).zip(&row.a) {
-                *v = srgb::encode_fast(fast::min(fast::max(light, 0.0), 1.0)) * a;
-            }
+    /// Linear light to sRGB bytes, clipped, four to a pixel; transparent where nothing is covered.
+    fn encode(light: &Light3, covered: &[u8; TILE], row: &mut [u8]) {
+        let [red, green, blue] = light;
+        let mut packed = [0u32; TILE];
+        for x in 0..TILE {
+            let pixel = byte(red[x]) | byte(green[x]) << 8 | byte(blue[x]) << 16 | 0xff << 24;
+            packed[x] = if covered[x] > 0 { pixel } else { 0 };
+        }
+        for (bytes, packed) in row.chunks_exact_mut(4).zip(packed) {
+            bytes.copy_from_slice(&packed.to_le_bytes());
         }
     }
+}
+
+/// The sRGB byte of linear light, clipped.
+#[inline(always)]
+fn byte(light: f32) -> u32 {
+    u32::from(srgb::quantise(srgb::encode_fast(fast::min(fast::max(light, 0.0), 1.0))))
 }

@@ -1,13 +1,11 @@
 //! Toon: Phong in flat tones, each term quantised after it was scaled (RS sec. 5.1, MATH 5).
 //! Floor 3.
 
-use super::{
-    Shading, lobes,
-    phong::{self, Lobe},
-};
+use super::{Shading, lobes, phong::Terms};
 use crate::math::fast;
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Pixels};
+use crate::shading::ground::{Ground, Light3, Pixels, Relief};
+use crate::shading::light::{Light, RowLight};
 use crate::surface::links;
 
 /// Adds every light's terms in `bands` tones to the rows of a tile.
@@ -15,30 +13,19 @@ use crate::surface::links;
 /// A tone's edge is where σρ crosses a multiple of 1 / bands. It is filtered over the pixel: how fast σρ changes along the
 /// surface there, from its neighbours in the tile, says how much of the pixel lies on either side.
 pub fn shade_tile(shading: &Shading, rows: &[Ground], light: &mut [Light3]) {
-    let ambient: Vec<Pixels> = rows.iter().filter_map(|ground| phong::ambient(&shading.ambient, ground)).collect();
-    add_tones(rows, shading.ambient.linear(), &ambient, shading.bands, light);
-    for lit in &shading.lights {
-        let mut matt = Scaled::default();
-        let mut glossy = Scaled::default();
-        for ground in rows {
-            phong::under_light(shading, lit, ground, None, |lobe, tint, scaled| {
-                let term = if lobe == Lobe::Matt { &mut matt } else { &mut glossy };
-                term.tint = tint;
-                term.rows.push(*scaled);
-            });
-        }
-        for term in [matt, glossy] {
-            add_tones(rows, term.tint, &term.rows, shading.bands, light);
-        }
+    let mut lights: Vec<RowLight> = shading.lights.iter().map(Light::seen).collect();
+    let (mut terms, mut relief) = (Terms::new(shading, &lights), Relief::default());
+    // σρ over the tile, term by term.
+    let mut scaled: Vec<Vec<Pixels>> = vec![Vec::with_capacity(rows.len()); terms.tints.len()];
+    for ground in rows {
+        relief.leave_row();
+        lights.iter_mut().for_each(|lit| lit.turn(ground));
+        terms.find(shading, ground, &lights, &mut relief);
+        scaled.iter_mut().zip(&terms.scaled).for_each(|(all, row)| all.push(*row));
     }
-}
-
-/// A term over a tile; no rows where it is left out.
-#[derive(Default)]
-struct Scaled {
-    tint: [f32; 3],
-    /// σρ.
-    rows: Vec<Pixels>,
+    for (tint, scaled) in terms.tints.iter().zip(&scaled) {
+        add_tones(rows, *tint, scaled, shading.bands, light);
+    }
 }
 
 /// Adds the tones of one term.
@@ -48,7 +35,7 @@ fn add_tones(rows: &[Ground], tint: [f32; 3], scaled: &[Pixels], bands: u32, lig
         let below = scaled.get(y + 1);
         let linked = inside_links(ground, above.is_some(), below.is_some());
         let tones = tones([above.unwrap_or(here), here, below.unwrap_or(here)], &linked, bands as f32);
-        lobes::add(light, tint, &tones, None);
+        lobes::add(light, tint, &tones);
     }
 }
 

@@ -3,15 +3,18 @@
 //! what is done with it (`shading::radiance`, the detail of D_n).
 
 mod fade;
+mod kappa;
 mod tiles;
 
 #[cfg(test)]
 mod reference;
 
+pub use kappa::{Kappa, KappaScale};
+
 use super::Surface;
 use crate::math::{Vec2, Vec3, vec2};
 use crate::raster::Plane;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Below this n_z a slope is not followed further: the surface is seen edge-on.
 pub const GRAZING_NZ: f32 = 0.05;
@@ -84,46 +87,8 @@ impl Curvature {
     }
 }
 
-/// The curvatures of one surface that were asked for, by blur; the last few are kept.
-#[derive(Default)]
-pub(super) struct CurvatureCache {
-    kept: Mutex<Vec<(u32, Arc<Curvature>)>>,
-}
-
-impl CurvatureCache {
-    /// Pixels of all curvatures kept, 13 bytes each: a few scales weighed at once, or two on a large canvas.
-    const KEPT_PX: usize = 16 << 20;
-
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(u32, Arc<Curvature>)>> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-    /// Never computes under the lock: a thread that waits for its own pool's work would stand still.
-    ///
-    /// `keep`: how many are held; `compute` is handed the planes of one that nobody holds any more.
-    fn get_or_compute(
-        &self,
-        blur_px: f32,
-        keep: usize,
-        compute: impl FnOnce(Option<Curvature>) -> Curvature,
-    ) -> Arc<Curvature> {
-        let key = blur_px.to_bits();
-        let find = |kept: &[(u32, Arc<Curvature>)]| kept.iter().find(|(k, _)| *k == key).map(|(_, c)| c.clone());
-        let recycled = {
-            let mut kept = self.lock();
-            if let Some(found) = find(&kept) {
-                return found;
-            }
-            (kept.len() >= keep).then(|| kept.remove(0).1).and_then(Arc::into_inner)
-        };
-        let computed = Arc::new(compute(recycled));
-        let mut kept = self.lock();
-        if let Some(found) = find(&kept) {
-            return found;
-        }
-        kept.push((key, computed.clone()));
-        computed
-    }
-}
+/// Pixels of all curvatures kept, 13 bytes each: a few scales weighed at once, or two on a large canvas.
+const KEPT_PX: usize = 16 << 20;
 
 impl Surface {
     /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at all).
@@ -133,8 +98,8 @@ impl Surface {
     pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
         // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.
         let blur_px = blur_px.max(0.0).min(0.5 * self.size().longer_side());
-        let keep = (CurvatureCache::KEPT_PX / self.size().area().max(1)).clamp(2, 8);
-        self.curvatures().get_or_compute(blur_px, keep, |recycled| tiles::compute(self, blur_px, recycled))
+        let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
+        self.curvatures().get_or_compute(blur_px.to_bits(), keep, |recycled| tiles::compute(self, blur_px, recycled))
     }
 }
 

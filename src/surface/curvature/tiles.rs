@@ -2,7 +2,7 @@
 //! Floor 2. The plain version that reads like the paper is `reference`.
 
 use super::{Curvature, fade, slope, tensor};
-use crate::math::Size;
+use crate::math::{Size, simd::prefetch};
 use crate::raster::{Plane, blur::half_kernel};
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
@@ -73,6 +73,10 @@ impl TileRect {
     fn clear<T: Copy>(&self, band: &mut [T], size: Size, nothing: T) {
         (0..self.rows).for_each(|y| band[y * size.width as usize..][self.columns()].fill(nothing));
     }
+    /// How many chunks hold the tile and a pixel at both sides.
+    fn chunks(&self) -> usize {
+        (self.cols + 2).div_ceil(LANES)
+    }
     pub fn columns(&self) -> std::ops::Range<usize> {
         self.x0..self.x0 + self.cols
     }
@@ -113,7 +117,7 @@ impl Scratch {
             self.blur_row(surface, taps, tile, row);
         }
         let [sx, sy] = &mut self.slopes;
-        for chunk in 0..CHUNKS {
+        for chunk in 0..tile.chunks() {
             // Taps step over the links of the rows from the topmost to the one above the lowest.
             let joined: Vec<bool> = (0..tile.rows + 2)
                 .map(|row| self.joined_rows[(row + 2 * reach).saturating_sub(1)][chunk] >= 2 * reach)
@@ -121,9 +125,13 @@ impl Scratch {
             let columns = Columns { taps, across: &self.across, down: &self.down, joined: &joined };
             blur_down_to_slopes(columns, chunk * LANES, sx, sy);
         }
+        let width = surface.size().width as usize;
         for y in 0..tile.rows {
             let links = &surface.links_plane().row(tile.y0 + y)[tile.columns()];
-            let from = y * surface.size().width as usize + tile.x0;
+            let from = y * width + tile.x0;
+            // The next row lies a map's width away.
+            out.iter()
+                .for_each(|plane| prefetch(plane.get(from + width..from + width + tile.cols).unwrap_or_default()));
             let [hxx, hxy, hyy] = out.each_mut().map(|plane| &mut plane[from..from + tile.cols]);
             let slopes = [&sx[y * STRIDE..(y + 3) * STRIDE], &sy[y * STRIDE..(y + 3) * STRIDE]];
             if all_linked(links) {
@@ -163,14 +171,19 @@ impl Scratch {
             joined_down = std::array::from_fn(|i| all_set(lanes(&self.down, at.start + i * LANES)));
         }
         self.joined_rows[row] = std::array::from_fn(|i| if joined_down[i] { above[i] + 1 } else { 0 });
+        let reaching = STRIDE + 2 * reach;
+        let ahead = |y: usize| usize::try_from(first).ok().filter(|_| y < surface.size().height as usize);
         for (plane, across) in surface.normal_planes().into_iter().zip(&mut self.across) {
-            let reaching = STRIDE + 2 * reach;
+            if let Some(first) = ahead(y + 2) {
+                prefetch(plane.row(y + 2).get(first..first + reaching).unwrap_or_default());
+            }
             let inside = usize::try_from(first).ok().and_then(|first| plane.row(y).get(first..first + reaching));
             let line = inside.unwrap_or_else(|| {
                 copy_row(plane.row(y), first, 0.0, &mut self.line, |v| v);
                 &self.line
             });
-            blur_line(line, &self.joined, joined_chunks, taps, &mut across[at.clone()]);
+            let across = &mut across[at.clone()][..tile.chunks() * LANES];
+            blur_line(line, &self.joined, joined_chunks, taps, across);
         }
     }
 }

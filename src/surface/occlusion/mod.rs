@@ -14,7 +14,7 @@ use super::{Surface, links};
 use crate::math::{Vec2, fast, vec2};
 use crate::raster::Plane;
 use std::f32::consts::PI;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Directions, in pairs of opposite ones.
 const SLICES: usize = 10;
@@ -156,12 +156,6 @@ fn slope(surface: &Surface, x: usize, y: usize) -> Vec2 {
     vec2(mean(rows.as_flattened()), mean(columns.as_flattened()))
 }
 
-/// The occlusions of one surface that were asked for, by radius; the last few are kept.
-#[derive(Default)]
-pub(super) struct OcclusionCache {
-    kept: Mutex<Vec<(u32, Arc<Plane<f32>>)>>,
-}
-
 impl Surface {
     /// A(p) of every pixel, `[0, 1]`: 1 where nothing hides the light, 1 off the surface.
     ///
@@ -174,25 +168,10 @@ impl Surface {
         let radius_px = radius_px.max(1.0).min(Self::WIDEST_OCCLUSION_PX);
         // Detail that was combined onto it casts no shade.
         let base = self.base();
-        let cache = base.occlusions();
-        let lock = || cache.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let key = radius_px.to_bits();
-        let find = |kept: &[(u32, Arc<Plane<f32>>)]| kept.iter().find(|(k, _)| *k == key).map(|(_, a)| a.clone());
-        if let Some(found) = find(&lock()) {
-            return found;
-        }
-        // Never under the lock: a thread that waits for its own pool's work would stand still.
-        let open = rows::compute(base, &Ways::new(radius_px));
-        let computed = Arc::new(rows::smoothed(base, &open));
-        let mut kept = lock();
-        if let Some(found) = find(&kept) {
-            return found;
-        }
-        if kept.len() >= KEPT {
-            kept.remove(0);
-        }
-        kept.push((key, computed.clone()));
-        computed
+        base.occlusions().get_or_compute(radius_px.to_bits(), KEPT, |_| {
+            let open = rows::compute(base, &Ways::new(radius_px));
+            rows::smoothed(base, &open)
+        })
     }
     /// The widest radius of occlusion, px.
     pub const WIDEST_OCCLUSION_PX: f32 = 1024.0;
