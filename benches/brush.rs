@@ -1,13 +1,18 @@
 //! The brush: strokes of dabs, flat and bent, in ns per covered pixel on one thread, beside libmypaint's flat dabs.
 //! `cargo bench --bench brush`; quote ratios from one run, never times from another day.
 //!
+//! Then what a hand feels: a frame's worth of events on a large document, from the pen to the flattened tiles, as the stroke
+//! grows; and one of a thousand strokes moved.
+//!
 //! A stroke's cost is all of it: its dabs found, what they reach, their coverage, laid on the tiles and quantised. The peer
 //! (benches/peers/libmypaint_dabs.c) is built with `cc` where libmypaint's headers are; else it is skipped, aloud.
 
-use rilievo::math::{Size, Vec2, srgb::Color, vec2, vec3};
+use rilievo::document::{Content, Document, Layer, Live, PixelLayer, Prepared, Progress, StrokeList, diff::diff};
+use rilievo::math::{Size, Vec2, hash, srgb::Color, vec2, vec3};
 use rilievo::paint::{Brush, Sample, Stroke, stroke};
-use rilievo::raster::{Plane, Tile, TileAt};
+use rilievo::raster::{Plane, Tile, TileAt, TileGrid};
 use rilievo::surface::{Maps, Operator, Scene, Surface};
+use rilievo::tools::{self, Context, Outcome, Pen, Symmetry, ToolKind};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
@@ -121,4 +126,160 @@ fn main() {
         });
         println!("{name:32} {:10.2} {:10.2} {:10.2}   {ratios}", ns[0], ns[1], ns[2]);
     }
+    frames();
+    one_of_a_thousand();
+}
+
+/// Waves all over a large canvas.
+const LARGE: Size = Size::new(4096, 4096);
+static WAVES: LazyLock<Arc<Surface>> = LazyLock::new(|| {
+    let normals = Plane::from_fn(LARGE, |x, y| {
+        let (x, y) = (x as f32, y as f32);
+        vec3(0.5 * (x / 97.0).cos() * (y / 131.0).sin(), 0.5 * (x / 89.0).sin() * (y / 113.0).cos(), 1.0)
+    });
+    let depth = Plane::from_fn(LARGE, |x, y| 0.5 + 0.3 * (x as f32 / 97.0).sin() * (y as f32 / 131.0).sin());
+    let maps = Maps { normals, depth, coverage: Plane::filled(LARGE, 255) };
+    Arc::new(Surface::new(maps).expect("maps of one size"))
+});
+
+/// Rows of tiles that the layers of the large document are painted in: where the strokes go.
+const BAND: std::ops::Range<i32> = 26..38;
+
+/// Twenty half-transparent paint layers, every tile its own.
+fn layers() -> Document {
+    let layer = |i: u32| {
+        let mut tiles = TileGrid::default();
+        tiles.reserve(LARGE.rect());
+        for (row, col) in BAND.flat_map(|row| (0..64).map(move |col| (row, col))) {
+            let tile = |p: u32| {
+                let a = 64 + (hash::mix(p ^ i << 12 ^ (row as u32) << 20 ^ (col as u32) << 26) & 127) as u8;
+                [a / 2, a / 3, a, a]
+            };
+            let bytes = (0..64 * 64).flat_map(tile).collect();
+            tiles.set(TileAt::new(col, row), Tile::from_bytes(bytes).map(Arc::new));
+        }
+        let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles };
+        Arc::new(Layer::new(format!("paint {i}"), Content::Pixels(pixels)))
+    };
+    Document { surface: Some(WAVES.clone()), layers: (0..20).map(layer).collect(), ..Document::empty(LARGE) }
+}
+
+/// Samples a frame at 1,000 a second, and how far apart the hand puts them at 2,000 px a second.
+const FRAME: usize = 16;
+const HAND_PX: f32 = 2.0;
+
+/// The `i`th sample of a wavy line through the band.
+fn on_wave(i: usize) -> Pen {
+    let x = 200.0 + HAND_PX * i as f32;
+    let sample = Sample { time_secs: i as f32 / 1000.0, ..Sample::at(vec2(x, 2048.0 + 120.0 * (x / 150.0).sin())) };
+    Pen { sample, ..Pen::at(Vec2::ZERO) }
+}
+
+/// ms from a frame's events to its flattened tiles: painted, found, made ready, flattened.
+fn frame_times(document: &Document, layer: usize, operator: Operator) -> Vec<[f64; 4]> {
+    let brush = Brush { size: 128.0, ..Brush::default() };
+    let context = Context {
+        document,
+        layer: Some(document.layers[layer].id),
+        brush: &brush,
+        color: Color::BLACK,
+        second_color: Color::WHITE,
+        operator,
+        px_per_pt: 1.0,
+        last_end: None,
+        symmetry: Symmetry::None,
+    };
+    let (gesture, _) = tools::press(ToolKind::Brush, &context, on_wave(0));
+    let mut gesture = gesture.expect("the layer takes paint");
+    let progress = Progress::default();
+    let picture = Prepared::new(document, &progress).expect("nobody cancels");
+    let mut picture =
+        picture.flatten_tiles(&TileGrid::default(), &picture.all_tiles(), &progress).expect("nobody cancels");
+    let mut shown = document.clone();
+    let frame = |frame: usize| {
+        let pens: Vec<Pen> = (1..=FRAME).map(|i| on_wave(frame * FRAME + i)).collect();
+        let start = Instant::now();
+        let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
+        let painted = start.elapsed();
+        let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
+        let found = start.elapsed();
+        let prepared = Prepared::new(&next, &progress)?;
+        let ready = start.elapsed();
+        picture = prepared.flatten_tiles(&picture, &tiles, &progress)?;
+        let flattened = start.elapsed();
+        shown = next;
+        let steps = [painted, found - painted, ready - found, flattened - ready];
+        Some(steps.map(|step| step.as_secs_f64() * 1e3))
+    };
+    (0..100).map_while(frame).collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn frames() {
+    println!(
+        "\nms a frame of 16 samples, radius 64, 4096² of 20 layers   painted  found  ready  flattened  in all   9 of 10 within   first and last fifth"
+    );
+    let mut document = layers();
+    let strokes = Layer::new("strokes", Content::Strokes(Live::new(StrokeList::default())));
+    document.layers[19] = Arc::new(strokes);
+    for (name, layer, operator) in [
+        ("flat, paint layer", 10, Operator::None),
+        ("D_n, paint layer", 10, OPERATORS[1].1),
+        ("D_n, stroke layer", 19, OPERATORS[1].1),
+    ] {
+        let times = frame_times(&document, layer, operator);
+        let step = |i: usize| median(times.iter().map(|steps| steps[i]).collect());
+        let mut all: Vec<f64> = times.iter().map(|steps| steps.iter().sum()).collect();
+        let fifth = all.len() / 5;
+        let (first, last) = (median(all[..fifth].to_vec()), median(all[all.len() - fifth..].to_vec()));
+        all.sort_by(f64::total_cmp);
+        let (middle, most) = (all[all.len() / 2], all[all.len() * 9 / 10]);
+        println!(
+            "{name:56} {:8.2} {:6.2} {:6.2} {:10.2} {middle:7.2} {most:16.2} {first:13.2} {last:6.2}",
+            step(0),
+            step(1),
+            step(2),
+            step(3)
+        );
+    }
+}
+
+/// A stroke layer of a thousand strokes, one of which is moved: what is painted again, and how long it takes.
+fn one_of_a_thousand() {
+    let random = |i, j| hash::unit(7, i, j);
+    let stroke = |i: u32, by: Vec2| {
+        let start = vec2(3900.0 * random(i, 0), 3900.0 * random(i, 1)) + by;
+        let samples =
+            (0..5).map(|j| Sample::at(start + 40.0 * Vec2::from_angle(6.0 * random(i, 2)) * j as f32)).collect();
+        Arc::new(Stroke::new(Brush { size: 48.0, ..Brush::default() }, OPERATORS[1].1, Color::BLACK, samples))
+    };
+    let list = StrokeList { strokes: (0..1000).map(|i| stroke(i, Vec2::ZERO)).collect() };
+    let layer = Layer::new("strokes", Content::Strokes(Live::new(list)));
+    let id = layer.id;
+    let document = Document { surface: Some(WAVES.clone()), layers: vec![Arc::new(layer)], ..Document::empty(LARGE) };
+    let progress = Progress::default();
+    let start = Instant::now();
+    let prepared = Prepared::new(&document, &progress).expect("nobody cancels");
+    let picture =
+        prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), &progress).expect("nobody cancels");
+    let whole = start.elapsed().as_secs_f64() * 1e3;
+    let move_one = |i: u32| {
+        let moved = stroke(i, vec2(20.0, 10.0));
+        let start = Instant::now();
+        let next = document.with_strokes(id, |strokes| {
+            *strokes.get_mut(i as usize)? = moved.clone();
+            Some(())
+        })?;
+        let tiles: Vec<TileAt> = diff(&document, &next).into_iter().collect();
+        let prepared = Prepared::new(&next, &progress)?;
+        divan::black_box(prepared.flatten_tiles(&picture, &tiles, &progress)?);
+        Some((start.elapsed().as_secs_f64() * 1e3, tiles.len() as f64))
+    };
+    let moved: Vec<(f64, f64)> = (0..50).filter_map(|i| move_one(i * 17)).collect();
+    let (ms, tiles) = (median(moved.iter().map(|m| m.0).collect()), median(moved.iter().map(|m| m.1).collect()));
+    println!("\na thousand strokes on 4096²: {whole:.0} ms for all; one moved: {ms:.2} ms, {tiles:.0} of 4096 tiles");
 }

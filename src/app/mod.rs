@@ -12,6 +12,7 @@ mod keymap;
 mod keys;
 mod painter;
 mod panels;
+mod pen;
 mod sample;
 mod settings;
 mod swatches;

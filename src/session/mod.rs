@@ -48,6 +48,8 @@ pub struct Session {
     pub symmetry: Symmetry,
     /// How far the fill tool goes.
     pub fill: Fill,
+    /// A mouse, which has no pressure, presses less the faster it goes.
+    pub presses_by_speed: bool,
     /// A view of the surface shown over the picture, by its name.
     pub overlay: Option<String>,
     pub overlay_opacity: f32,
@@ -73,6 +75,7 @@ impl Default for Session {
             operator: Operator::None,
             symmetry: Symmetry::None,
             fill: Fill::default(),
+            presses_by_speed: false,
             overlay: None,
             overlay_opacity: 0.85,
             gesture: None,

@@ -2,12 +2,13 @@
 //! the pointer stands when a frame is drawn.
 //! Floor 7.
 
+use crate::app::pen::{PenSource, Phase, Reading, Report, Watch, WindowPen};
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
 use crate::session::actions::{HandAction, PointerAction, ViewAction};
 use crate::session::{Action, Session, View};
 use crate::tools::{Keys, Pen, ToolKind};
-use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Response, TouchPhase, Ui};
+use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Response, Ui};
 
 /// What the pointer is doing between press and release.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -34,11 +35,9 @@ enum Holding {
 pub struct Hand {
     holding: Holding,
     last: Pos2,
-    began_secs: f64,
-    /// The last force that a touch or pen reported.
-    force: Option<f32>,
-    /// Fingers on the canvas: two or more look, they do not paint.
-    fingers: usize,
+    pen: WindowPen,
+    /// While a stroke is drawn.
+    watch: Option<Watch>,
     keys: Modifiers,
     space: bool,
 }
@@ -87,7 +86,7 @@ impl Hand {
             && (canvas.contains_pointer() || self.holding != Holding::Nothing)
             && !ui.ctx().egui_wants_keyboard_input();
         self.keys = ui.input(|i| i.modifiers);
-        let mut listening = Listening { session, view: *view, middle, now_secs, actions, pens: Vec::new() };
+        let mut listening = Listening { session, view: *view, middle, actions, pens: Vec::new() };
         let ours = |pos: Pos2| canvas.rect.contains(pos) && ui.ctx().layer_id_at(pos) == Some(canvas.layer_id);
         if let Some(touch) = ui.input(|i| i.multi_touch()).filter(|touch| canvas.rect.contains(touch.center_pos)) {
             self.two_fingers(
@@ -99,23 +98,22 @@ impl Hand {
             );
         }
         for event in events {
-            match event {
-                Event::Touch { phase, force, .. } => {
-                    match phase {
-                        TouchPhase::Start => self.fingers += 1,
-                        TouchPhase::End | TouchPhase::Cancel => self.fingers = self.fingers.saturating_sub(1),
-                        TouchPhase::Move => {}
+            self.pen.hear(&event, now_secs);
+            while let Some(report) = self.pen.next() {
+                match report.phase {
+                    Phase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
+                        self.press(&report, button, &mut listening);
                     }
-                    self.force = force.filter(|_| self.fingers > 0);
+                    Phase::Down(_) => {}
+                    Phase::Move => self.moved(&report, &mut listening),
+                    Phase::Up => {
+                        self.moved(&report, &mut listening);
+                        self.release(&mut listening);
+                    }
+                    Phase::Lost => self.release(&mut listening),
                 }
-                Event::PointerButton { pos, button, pressed: true, .. } if ours(pos) && self.fingers < 2 => {
-                    self.press(pos, button, &mut listening);
-                }
-                Event::PointerMoved(pos) => self.moved(pos, &mut listening),
-                Event::PointerButton { pos, pressed: false, .. } => {
-                    self.moved(pos, &mut listening);
-                    self.release(&mut listening);
-                }
+            }
+            match event {
                 Event::Key { key: Key::Escape, pressed: true, .. } if self.holding == Holding::Drawing => {
                     self.holding = Holding::Nothing;
                     listening.pens.clear();
@@ -130,13 +128,17 @@ impl Hand {
         }
         listening.flush();
     }
-    fn press(&mut self, pos: Pos2, button: PointerButton, listening: &mut Listening) {
+    fn press(&mut self, report: &Report, button: PointerButton, listening: &mut Listening) {
         if self.holding != Holding::Nothing {
             return;
         }
-        (self.last, self.began_secs) = (pos, listening.now_secs);
+        let pos = report.at;
+        self.last = pos;
         let session = listening.session;
-        let tool = self.tool(session);
+        let tool = match self.tool(session) {
+            ToolKind::Brush if report.is_eraser => ToolKind::Eraser,
+            tool => tool,
+        };
         let is_brush = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
         self.holding = match (button, tool) {
             (PointerButton::Middle, _) => Holding::Panning,
@@ -148,23 +150,28 @@ impl Hand {
             (PointerButton::Primary, ToolKind::Hand) => Holding::Panning,
             (PointerButton::Primary, ToolKind::Zoom) => Holding::Zooming { about: pos, moved: false },
             (PointerButton::Primary, _) => {
-                let (pen, px_per_pt) = (self.pen(pos, listening), 1.0 / listening.view.zoom);
+                let Some((watch, reading)) = Watch::begin(report, session.presses_by_speed) else { return };
+                self.watch = Some(watch);
+                let (pen, px_per_pt) = (self.reading(reading, listening), 1.0 / listening.view.zoom);
                 listening.actions.push(Action::Pointer(PointerAction::Press { tool, pen, px_per_pt }));
                 Holding::Drawing
             }
             _ => Holding::Nothing,
         };
     }
-    fn moved(&mut self, pos: Pos2, listening: &mut Listening) {
-        let by = pos - self.last;
+    fn moved(&mut self, report: &Report, listening: &mut Listening) {
+        let (pos, by) = (report.at, report.at - self.last);
         if by == eframe::egui::Vec2::ZERO {
             return;
         }
         match self.holding {
             Holding::Nothing => {}
             Holding::Drawing => {
-                let pen = self.pen(pos, listening);
-                listening.pens.push(pen);
+                // A pen that went bad ends its stroke at the last good reading.
+                let Some(reading) = self.watch.as_mut().and_then(|watch| watch.follow(report)) else {
+                    return self.release(listening);
+                };
+                listening.pens.push(self.reading(reading, listening));
             }
             Holding::Panning => listening.view(ViewAction::Pan { by: vec2(by.x, by.y) }),
             Holding::Zooming { about, .. } => {
@@ -214,12 +221,12 @@ impl Hand {
             listening.view(ViewAction::Turn { by_rad: turn_rad });
         }
     }
-    fn pen(&self, pos: Pos2, listening: &Listening) -> Pen {
+    fn reading(&self, reading: Reading, listening: &Listening) -> Pen {
         let sample = Sample {
-            at: listening.on_canvas(pos),
-            pressure: self.force.unwrap_or(1.0).clamp(0.0, 1.0),
-            tilt: Vec2::ZERO,
-            time_secs: (listening.now_secs - self.began_secs).max(0.0) as f32,
+            at: listening.on_canvas(reading.at),
+            pressure: reading.pressure,
+            tilt: vec2(reading.tilt.0, reading.tilt.1),
+            time_secs: reading.secs,
         };
         let keys = Keys { shift: self.keys.shift, ctrl: self.keys.command, alt: self.keys.alt };
         Pen { sample, keys }
@@ -232,7 +239,6 @@ struct Listening<'a> {
     /// As it is after the actions so far.
     view: View,
     middle: Pos2,
-    now_secs: f64,
     actions: &'a mut Vec<Action>,
     /// Readings not yet pushed: all of a frame go together.
     pens: Vec<Pen>,

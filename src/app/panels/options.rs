@@ -68,6 +68,11 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
             ui.separator();
             brush(ui, session, asked);
             symmetry(ui, session, asked);
+            let mut by_speed = session.presses_by_speed;
+            let hint = "A mouse or finger without pressure presses less the faster it goes";
+            if ui.checkbox(&mut by_speed, "Speed presses").on_hover_text(hint).changed() {
+                asked.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
+            }
         }
     });
 }

@@ -62,6 +62,8 @@ actions! {
         "operator" Operator { operator: Operator }
         "symmetry" Symmetry { symmetry: Symmetry }
         "fill" Fill { fill: Fill }
+        /// A mouse presses less the faster it goes.
+        "press by speed" PressBySpeed { on: bool }
     }
 }
 
@@ -106,6 +108,7 @@ impl HandAction {
             HandAction::Operator { operator } => session.operator = *operator,
             HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
             HandAction::Fill { fill } => session.fill = *fill,
+            HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
         }
     }
 }

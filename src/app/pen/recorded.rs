@@ -1,0 +1,37 @@
+//! A recorded pen, for tests: one report a line, `[x, y, pressure, secs]`, `null` for a pressure that was not told and `"nan"`
+//! for what is no number.
+//! Floor 7.
+
+use super::{PenSource, Phase, Report};
+use eframe::egui::{PointerButton, pos2};
+use serde_json::Value;
+use std::collections::VecDeque;
+
+/// Reports to be given one by one: the first comes down, the others move.
+pub struct RecordedPen {
+    reports: VecDeque<Report>,
+}
+
+impl RecordedPen {
+    pub fn of(lines: &str) -> Self {
+        let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+        let report = |(i, line): (usize, &str)| {
+            let value: Value = serde_json::from_str(line).expect("a list of numbers");
+            Report {
+                phase: if i == 0 { Phase::Down(PointerButton::Primary) } else { Phase::Move },
+                at: pos2(number(&value[0]) as f32, number(&value[1]) as f32),
+                pressure: (!value[2].is_null()).then(|| number(&value[2]) as f32),
+                tilt: (0.0, 0.0),
+                secs: number(&value[3]),
+                is_eraser: false,
+            }
+        };
+        Self { reports: lines.lines().enumerate().map(report).collect() }
+    }
+}
+
+impl PenSource for RecordedPen {
+    fn next(&mut self) -> Option<Report> {
+        self.reports.pop_front()
+    }
+}
