@@ -138,13 +138,10 @@ impl Diff<'_> {
     fn drawn(&mut self, layer: LayerId, old: &Live<StrokeList>, new: &Live<StrokeList>) -> bool {
         let seen = if self.sees_normals(layer) { self.document.scene_of(layer) } else { None };
         let scene = seen.unwrap_or_else(|| self.scene.clone());
-        let canvas = self.scene.size.rect();
+        let (same, canvas) = (old.same_tiles(new, &scene), self.scene.size.rect());
         let differing = differing(&old.params().strokes, &new.params().strokes);
         let tiles = differing.flat_map(|stroke| TileAt::covering(stroke.bounds(&scene).intersect(canvas)));
-        let tiles: BTreeSet<TileAt> = tiles.collect();
-        let differs = |at: &TileAt| !old.same_tile(new, &scene, *at);
-        let tiles = tiles.into_iter().filter(differs).collect();
-        self.tiles(tiles)
+        self.tiles(tiles.filter(|&at| !same(at)).collect())
     }
     fn stroke_bounds(&self, layer: LayerId, stroke: &Stroke) -> Rect {
         // Bounds hold for one surface; normal layers put another in its place.

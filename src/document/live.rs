@@ -81,17 +81,16 @@ impl<T> Live<T> {
         *next.lock() = Some((scene.clone(), Arc::new(cells)));
         next
     }
-    /// A tile is known to look the same in both on this scene: rendered, and the very same pixels.
-    pub fn same_tile(&self, other: &Self, scene: &Scene, at: TileAt) -> bool {
-        let tile = |live: &Self| {
+    /// Whether a tile is known to look the same in both on this scene: rendered, and the very same pixels.
+    pub fn same_tiles(&self, other: &Self, scene: &Scene) -> impl Fn(TileAt) -> bool {
+        let rendered = |live: &Self| {
             let seen = live.lock();
-            let (_, cells) = seen.as_ref().filter(|(on, _)| on.is_same(scene))?;
-            cells.cell(at)?.get().cloned()
+            seen.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, cells)| cells.clone())
         };
-        match (tile(self), tile(other)) {
-            (Some(Some(a)), Some(Some(b))) => Arc::ptr_eq(&a, &b),
-            (Some(None), Some(None)) => true,
-            _ => false,
+        let both = rendered(self).zip(rendered(other));
+        move |at| {
+            let tile = |cells: &Cells| cells.cell(at)?.get().map(|tile| tile.as_ref().map(Arc::as_ptr));
+            both.as_ref().and_then(|(a, b)| Some(tile(a)? == tile(b)?)).unwrap_or(false)
         }
     }
     /// A tile of the layer on a scene, rendered by `render` unless it has been.
@@ -144,10 +143,11 @@ mod tests {
         live.tile(&scene, left, blank);
         live.tile(&scene, right, blank);
         let next = live.with_tiles(2, &scene, [(right, None), (TileAt::new(9, 9), None)]);
-        assert!(next.same_tile(&live, &scene, left) && !next.same_tile(&live, &scene, right));
+        let same = next.same_tiles(&live, &scene);
+        assert!(same(left) && !same(right) && !same(TileAt::new(9, 9)));
         assert!(next.tile(&scene, right, || unreachable!()).is_none());
         let elsewhere = Scene { size: Size::new(128, 65), surface: None };
-        assert!(!next.same_tile(&live, &elsewhere, left), "on another canvas nothing is known");
+        assert!(!next.same_tiles(&live, &elsewhere)(left), "on another canvas nothing is known");
     }
     #[test]
     fn new_parameters_keep_the_tiles_they_do_not_touch() {

@@ -8,7 +8,7 @@ pub use reduced::Reduced;
 use super::kept::Kept;
 use super::{Content, DetailSource, Document, Group, Layer, Live, MaskKind, PixelLayer, StrokeList};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
-use crate::paint::{Brush, Sample, Stroke};
+use crate::paint::{Sample, Stabilizer, Stroke};
 use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
 use crate::shading::{Features, LightKind};
 use crate::surface::{Anchor, SurfaceError};
@@ -120,7 +120,14 @@ impl Scale {
         }
     }
     fn stroke(&self, stroke: &Stroke) -> Stroke {
-        let brush = Brush { size: stroke.brush().size * self.length, ..stroke.brush().clone() };
+        let mut brush = stroke.brush().clone();
+        brush.size *= self.length;
+        match &mut brush.stabilizer {
+            Stabilizer::None => {}
+            Stabilizer::String { length_px } => *length_px *= self.length,
+            // What is left after ten px of a way that is so much longer now.
+            Stabilizer::Average { weight } => *weight = weight.max(0.0).powf(1.0 / self.length),
+        }
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
         Stroke::new(brush, stroke.operator(), stroke.color(), samples)
     }

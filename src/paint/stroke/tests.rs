@@ -333,3 +333,63 @@ fn every_dab_has_its_own_colour_where_the_brush_varies_it() {
     colors.dedup();
     assert!(colors.len() > 4, "{colors:?}");
 }
+
+/// D of a dab by MATH 2, written out again: q + L Σ …, or q + f_p (q − q_0), of the ball's own n̄ and z.
+fn moved_by_math(operator: Operator, q: Vec2, anchor: Vec2) -> Option<Vec2> {
+    let over = |q: Vec2| {
+        // The pixel that holds q, as the maps do.
+        let p = (q.floor() + 0.5 - SIZE.center()) / 62.0;
+        let nz = (1.0 - p.length_squared()).max(0.0).sqrt().max(0.02);
+        (p.length() < 1.0).then(|| (p / (p.length_squared() + nz * nz).sqrt(), 1.0 - (1.0 - p.length_squared()).sqrt()))
+    };
+    let ((n, z), (n0, z0)) = (over(q)?, over(anchor)?);
+    Some(match operator {
+        Operator::Normal { alpha, beta, .. } => {
+            let u = n.distance(n0);
+            let f = alpha * u / ((-beta).exp() + u * (1.0 - (-beta).exp()));
+            q + 150.0 * f * (n - n0)
+        }
+        Operator::Depth { gamma } => {
+            let (u, e) = (z - z0, gamma.exp());
+            q + 2.0 * u * (e - 1.0) / ((e + 1.0) - u * (e - 1.0)) * (q - anchor)
+        }
+        _ => q,
+    })
+}
+#[test]
+fn driven_dabs_on_a_ball_lie_where_math_puts_them() {
+    let steeper =
+        |property| Dynamics::none().with(property, crate::paint::Input::Slope, crate::paint::Curve::Share(1.0));
+    for (operator, property) in [
+        (Operator::Normal { alpha: 0.9, beta: 1.2, detail: 0.0 }, Property::Alpha),
+        (Operator::Depth { gamma: 2.5 }, Property::Gamma),
+    ] {
+        let at = vec2(100.3, 50.7);
+        let brush = Brush { size: 34.0, hardness: 1.0, dynamics: steeper(property), ..Brush::default() };
+        let grid = one(white(brush, operator, vec![Sample::at(at)]), &ball());
+        // 1 − n_z at the dab's pixel scales α and γ.
+        let p = (at.floor() + 0.5 - SIZE.center()) / 62.0;
+        let slope = 1.0 - (1.0 - p.length_squared()).sqrt();
+        let driven = match operator {
+            Operator::Normal { alpha, beta, detail } => Operator::Normal { alpha: alpha * slope, beta, detail },
+            Operator::Depth { gamma } => Operator::Depth { gamma: gamma * slope },
+            other => other,
+        };
+        let (mut inside, mut outside) = (0, 0);
+        for (x, y) in (0..SIZE.height as i32).flat_map(|y| (0..SIZE.width as i32).map(move |x| (x, y))) {
+            let q = vec2(x as f32 + 0.5, y as f32 + 0.5);
+            // At the silhouette depth falls so steeply that a pixel spans more than the dab.
+            let Some(d) = moved_by_math(driven, q, at).filter(|_| q.distance(SIZE.center()) < 58.0) else { continue };
+            let (distance, alpha) = (d.distance(at), grid.pixel(x, y)[3]);
+            // Away from the rim, by what a pixel spans there.
+            if distance < 14.0 {
+                assert_eq!(alpha, 255, "{operator:?} ({x}, {y}): {distance}");
+                inside += 1;
+            } else if distance > 22.0 {
+                assert_eq!(alpha, 0, "{operator:?} ({x}, {y}): {distance}");
+                outside += 1;
+            }
+        }
+        assert!(inside > 150 && outside > 1000, "{inside}, {outside}");
+    }
+}
