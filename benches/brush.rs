@@ -12,7 +12,7 @@ use rilievo::math::{Size, Vec2, hash, srgb::Color, vec2, vec3};
 use rilievo::paint::{Brush, Sample, Stroke, stroke};
 use rilievo::raster::{Plane, Tile, TileAt, TileGrid};
 use rilievo::surface::{Maps, Operator, Scene, Surface};
-use rilievo::tools::{self, Context, Outcome, Pen, Symmetry, ToolKind};
+use rilievo::tools::{self, Context, Outcome, Pen, ToolKind};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
@@ -178,17 +178,8 @@ fn on_wave(i: usize) -> Pen {
 /// ms from a frame's events to its flattened tiles: painted, found, made ready, flattened.
 fn frame_times(document: &Document, layer: usize, operator: Operator) -> Vec<[f64; 4]> {
     let brush = Brush { size: 128.0, ..Brush::default() };
-    let context = Context {
-        document,
-        layer: Some(document.layers[layer].id),
-        brush: &brush,
-        color: Color::BLACK,
-        second_color: Color::WHITE,
-        operator,
-        px_per_pt: 1.0,
-        last_end: None,
-        symmetry: Symmetry::None,
-    };
+    let layer = Some(document.layers[layer].id);
+    let context = Context { layer, operator, ..Context::new(document, &brush) };
     let (gesture, _) = tools::press(ToolKind::Brush, &context, on_wave(0));
     let mut gesture = gesture.expect("the layer takes paint");
     let progress = Progress::default();
