@@ -1,8 +1,17 @@
-//! The real program, killed while it saves: the file is the old one or the new one, and opens.
+//! The real program, killed while it saves: the file is the old one or the new one, and opens. Killed while it paints: no
+//! finished stroke is lost.
 #![cfg(target_os = "linux")]
 
+use rilievo::document::{Document, Progress, flatten};
+use rilievo::io::fs::{Disk, Fs};
+use rilievo::io::{Budget, recipe, recovery};
+use rilievo::math::hash::mix;
+use rilievo::session::{Session, is_same};
+use std::fmt::Write;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 use std::time::Duration;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_rilievo");
@@ -35,15 +44,15 @@ fn check(folder: &Path, target: &str, may_be: &[&str], what: &str) {
     };
     let is = |name: &&&str| std::fs::read(folder.join(name)).is_ok_and(|known| known == bytes);
     assert!(may_be.iter().filter(is).count() > 0, "{what}: {} bytes that are neither", bytes.len());
-    let info = Command::new(PROGRAM).args(["info", "--json", target]).current_dir(folder).output().unwrap();
-    let json: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
-    assert_eq!(json["documents"][0]["whole"], true, "{what}");
+    let opened = rilievo::io::open(&folder.join(target), &Budget::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    assert!(opened.is_whole && opened.notes.is_empty(), "{what}: {:?}", opened.notes);
 }
-/// Runs a conversion of the new recipe that is killed at the `n`th call of each kind; whether it lived.
-fn killed_at(folder: &Path, target: &str, n: usize) -> Option<bool> {
-    let inject = format!("inject={CALLS}:signal=KILL:when={n}");
+/// Runs a conversion of the new recipe in which the `n`th call of each of these kinds is killed (`signal=KILL`) or fails
+/// (`error=ENOSPC`); what it said and whether it ended well. `None` where nothing can be traced.
+fn injected(folder: &Path, target: &str, calls: &str, what: &str, n: usize) -> Option<(String, bool)> {
+    let inject = format!("inject={calls}:{what}:when={n}");
     let run = Command::new("strace")
-        .args(["-f", "-o", "/dev/null", "-e", &format!("trace={CALLS}"), "-e", &inject, PROGRAM])
+        .args(["-f", "-o", "/dev/null", "-e", &format!("trace={calls}"), "-e", &inject, PROGRAM])
         .args(["convert", "new.json", target, "--threads", "1"])
         .current_dir(folder)
         .stderr(Stdio::piped())
@@ -51,7 +60,7 @@ fn killed_at(folder: &Path, target: &str, n: usize) -> Option<bool> {
         .ok()?;
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
     let is_refused = said.contains("ptrace") || said.contains("PTRACE");
-    (!is_refused).then_some(run.status.success())
+    (!is_refused).then_some((said, run.status.success()))
 }
 
 #[test]
@@ -66,8 +75,9 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
             }
         }
     };
-    // A new file; over an old one; over one with an older version kept; through a link.
-    for scenario in 0..4 {
+    // A new file; over an old one; over one with an older version kept; through a link; beside what a killed save left; where
+    // the old file may be read and not written.
+    for scenario in 0..6 {
         let mut n = 1;
         loop {
             clean();
@@ -82,7 +92,16 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
                 std::os::unix::fs::symlink("t.ora", at("link.ora")).unwrap();
                 target = "link.ora";
             }
-            let Some(lived) = killed_at(folder.path(), target, n) else {
+            if scenario == 5 {
+                let mut permissions = std::fs::metadata(at("t.ora")).unwrap().permissions();
+                permissions.set_readonly(true);
+                std::fs::set_permissions(at("t.ora"), permissions).unwrap();
+            }
+            if scenario == 4 {
+                std::fs::write(at(".rilievo-1-1.part"), "left").unwrap();
+                std::fs::write(at(".rilievo-1-1.old"), "left").unwrap();
+            }
+            let Some((_, lived)) = injected(folder.path(), target, CALLS, "signal=KILL", n) else {
                 return eprintln!("skipped: strace is not installed, or may not trace here");
             };
             let before = if scenario == 0 { "" } else { "old.ora" };
@@ -97,9 +116,31 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
     }
 }
 #[test]
-fn killed_at_any_time_it_leaves_the_old_file_or_the_new_one() {
+fn a_full_or_failing_disk_costs_a_sentence_and_not_the_old_file() {
     let folder = folder();
-    let rounds = std::env::var("RILIEVO_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(60);
+    let target = folder.path().join("t.ora");
+    let mut failed = 0;
+    for calls in ["write", "fsync", "rename,renameat2", "link,linkat"] {
+        for error in ["error=ENOSPC", "error=EIO", "error=EDQUOT"] {
+            for n in 1..12 {
+                std::fs::copy(folder.path().join("old.ora"), &target).unwrap();
+                let Some((said, well)) = injected(folder.path(), "t.ora", calls, error, n) else {
+                    return eprintln!("skipped: strace is not installed, or may not trace here");
+                };
+                let what = format!("{calls}, {error}, the {n}th: {said}");
+                // The folder is flushed after the new file stands in its place.
+                let may_be: &[&str] = if well { &["new.ora"] } else { &["old.ora", "new.ora"] };
+                check(folder.path(), "t.ora", may_be, &what);
+                assert!(well || calls == "write" || said.contains("t.ora"), "{what}");
+                failed += u32::from(!well);
+            }
+        }
+    }
+    assert!(failed >= 12, "only {failed} failed");
+}
+fn kill_while_saving(rounds: u32) {
+    let folder = folder();
+    let mut old = 0;
     for round in 0..rounds {
         std::fs::copy(folder.path().join("old.ora"), folder.path().join("t.ora")).unwrap();
         let mut child = Command::new(PROGRAM)
@@ -108,9 +149,119 @@ fn killed_at_any_time_it_leaves_the_old_file_or_the_new_one() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_micros(u64::from(rilievo::math::hash::mix(round)) % 60_000));
+        std::thread::sleep(Duration::from_micros(u64::from(mix(round)) % 60_000));
         child.kill().unwrap();
         child.wait().unwrap();
         check(folder.path(), "t.ora", &["old.ora", "new.ora"], &format!("round {round}"));
+        old += u32::from(
+            std::fs::read(folder.path().join("t.ora")).ok() == std::fs::read(folder.path().join("old.ora")).ok(),
+        );
     }
+    eprintln!("{rounds} kills: {old} times the old file, {} times the new one", rounds - old);
+    // What the last one left goes with the next save.
+    convert(folder.path(), "new.json", "t.ora");
+    let parts = std::fs::read_dir(folder.path()).unwrap().flatten();
+    assert_eq!(parts.filter(|entry| entry.file_name().to_string_lossy().starts_with(".rilievo-")).count(), 0);
+}
+#[test]
+fn killed_at_any_time_it_leaves_the_old_file_or_the_new_one() {
+    kill_while_saving(200);
+}
+/// *Long*: see docs/PROJECTS.md.
+#[test]
+#[ignore = "half an hour; run by name"]
+fn long_ten_thousand_kills_while_it_saves() {
+    kill_while_saving(10_000);
+}
+
+const STROKES: u32 = 150;
+
+/// Strokes on a stroke layer and on a paint layer by turns, now and then one of them undone.
+fn story() -> String {
+    let mut story = String::from(r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}"##);
+    story.push_str("\n{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"strokes\"}\n{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}");
+    for i in 0..STROKES {
+        let [x, y, z] = [1, 2, 3].map(|k| mix(i * 3 + k) % 140);
+        write!(
+            story,
+            r#"
+{{"in":"layer","do":"select","layer":"{}"}}
+{{"in":"pointer","do":"press","tool":"brush","pen":[{x},{y}],"px_per_pt":1}}
+{{"in":"pointer","do":"drag","pens":[[{y},{z}],[{z},{x}]]}}
+{{"in":"pointer","do":"release"}}"#,
+            1 + i % 2
+        )
+        .unwrap();
+        if i % 7 == 6 {
+            story.push_str("\n{\"in\":\"edit\",\"do\":\"undo\"}");
+        }
+    }
+    story
+}
+/// What a document is: its parameters and its picture.
+fn fingerprint(document: &Document) -> (String, u32) {
+    let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
+    (recipe::write(document).to_string(), crc32fast::hash(&picture))
+}
+/// The drawing after each step of the story, the first being the empty canvas.
+fn steps(story: &str) -> Vec<(String, u32)> {
+    let (mut steps, mut last): (Vec<_>, Option<Document>) = (Vec::new(), None);
+    let tell = |session: &mut Session| {
+        let now = session.tab().unwrap().document().clone();
+        if !last.as_ref().is_some_and(|last| is_same(last, &now)) {
+            steps.push(fingerprint(&now));
+        }
+        last = Some(now);
+        Ok(())
+    };
+    Session::default().replay_telling(Path::new("story"), story, tell).unwrap();
+    steps
+}
+/// Paints in a process of its own until it is killed. Every step that it told of is there, as it was.
+fn kill_while_painting(rounds: u32) {
+    let folder = tempfile::tempdir().unwrap();
+    let story = story();
+    std::fs::write(folder.path().join("story"), &story).unwrap();
+    let steps = steps(&story);
+    let disk: Arc<dyn Fs> = Arc::new(Disk);
+    for round in 0..rounds {
+        let logs = folder.path().join(format!("logs-{round}"));
+        let mut child = Command::new(PROGRAM)
+            .arg("replay")
+            .arg(folder.path().join("story"))
+            .arg("--recover-in")
+            .arg(&logs)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let wanted = 1 + mix(round) as usize % (STROKES as usize - 20);
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let mut next = || lines.next().and_then(Result::ok);
+        let number = |line: String| line.split(' ').next().unwrap().parse::<usize>().unwrap();
+        let mut told = (0..wanted).map_while(|_| next()).last().map_or(0, number);
+        std::thread::sleep(Duration::from_micros(u64::from(mix(round + 7)) % 3_000));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // What it told of before it died counts too.
+        told = std::iter::from_fn(next).last().map_or(told, number);
+        let mut left = recovery::sessions(&disk, &logs);
+        let recovered = left[0].recover(&Budget::default()).unwrap_or_else(|e| panic!("round {round}: {e}"));
+        let found = fingerprint(&recovered.document);
+        assert!(
+            (told..steps.len().min(told + 3)).any(|n| steps[n] == found),
+            "round {round}: {told} steps were finished; what came back is step {:?}",
+            steps.iter().position(|step| *step == found)
+        );
+        std::fs::remove_dir_all(&logs).unwrap();
+    }
+}
+#[test]
+fn killed_while_painting_it_loses_no_finished_stroke() {
+    kill_while_painting(20);
+}
+/// *Long*: see docs/PROJECTS.md.
+#[test]
+#[ignore = "ten minutes; run by name"]
+fn long_a_thousand_kills_while_it_paints() {
+    kill_while_painting(1_000);
 }

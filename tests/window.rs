@@ -161,3 +161,50 @@ fn the_fill_tool_shows_its_options_and_fills() {
     let Content::Pixels(pixels) = &session(&harness).layer().unwrap().content else { panic!("a paint layer") };
     assert_ne!(pixels.tiles.pixel(3, 3), [0; 4]);
 }
+/// Steps long enough for a thread to finish something small.
+fn wait(harness: &mut Harness<Option<Window>>) {
+    for _ in 0..50 {
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+}
+/// A window that keeps its recovery logs in a folder, after it looked for what is in there.
+fn window_recovering(folder: &std::path::Path) -> Harness<'static, Option<Window>> {
+    let folder = folder.to_owned();
+    let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
+        let window = window.get_or_insert_with(|| {
+            let mut window = Window::new(ui.ctx());
+            window.keep_recovery_in(folder.clone());
+            window
+        });
+        window.show(ui);
+    };
+    let mut harness = Harness::builder().with_size([1280.0, 820.0]).build_ui_state(show, None);
+    wait(&mut harness);
+    harness
+}
+#[test]
+fn after_a_crash_the_window_offers_what_was_unsaved() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window_recovering(folder.path());
+    click(&mut harness, "File");
+    click(&mut harness, "New…");
+    click(&mut harness, "Create");
+    click(&mut harness, "+ Add");
+    click(&mut harness, "Gradient layer");
+    // Dropped without its leave, as a crash would.
+    drop(harness);
+    std::fs::write(folder.path().join("0-broken.log"), "garbage").unwrap();
+    let mut harness = window_recovering(folder.path());
+    harness.get_by_label("Recover unsaved drawings?");
+    harness.get_by_label("Recover Unnamed").click();
+    wait(&mut harness);
+    harness.get_by_label_contains("no whole version");
+    harness.get_by_label("Recover all").click();
+    wait(&mut harness);
+    assert!(harness.query_by_label("Recover unsaved drawings?").is_none());
+    assert_eq!(layers(&harness), ["Background", "Gradient"]);
+    let tab = session(&harness).tab().unwrap();
+    assert!(tab.is_dirty() && tab.file.is_none());
+    assert_eq!(tab.title(), "Untitled 1 (recovered)");
+}

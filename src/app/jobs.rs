@@ -3,10 +3,11 @@
 
 use crate::app::files::Purpose;
 use crate::document::{Document, Progress};
-use crate::io::maps;
 use crate::io::save::Stamp;
+use crate::io::{maps, recovery};
 use crate::raster::Picture;
 use crate::session::Edit;
+use crate::session::autosave::Found;
 use crate::session::storage::{self, Kind, Opened};
 use crate::{Error, Result};
 use eframe::egui;
@@ -22,6 +23,10 @@ pub enum Done {
     IsMap(PathBuf),
     /// Maps were read, for the import dialog.
     Read(Box<Result<maps::Import>>),
+    /// Drawings that an accident left.
+    Lost(Vec<recovery::Session>),
+    /// One of them was brought back.
+    Recovered(Box<Result<Found>>),
     /// A picture was read, to become an image layer.
     Pictured(String, Picture),
     /// The document of a tab was saved; `None` if that was given up.

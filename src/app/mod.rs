@@ -13,6 +13,7 @@ mod keys;
 mod painter;
 mod panels;
 mod pen;
+mod recovery;
 mod sample;
 mod settings;
 mod swatches;
@@ -41,6 +42,9 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
     let start = move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {
         theme::install(&cc.egui_ctx);
         let mut window = Window::remembering(&cc.egui_ctx, settings::file());
+        if let Some(folder) = crate::io::recovery::folder() {
+            window.keep_recovery_in(folder);
+        }
         window.begin(files);
         Ok(Box::new(window))
     };

@@ -1,10 +1,11 @@
 //! `rilievo replay`: what was done in the window, done again without it.
 //! Floor 7.
 
-use crate::Result;
+use super::print;
 use crate::io::Budget;
 use crate::io::files::read_file;
-use crate::session::Session;
+use crate::session::{Autosave, Session, is_same};
+use crate::{Error, Result};
 use std::path::PathBuf;
 
 /// Do what a replay file says, line by line: actions as the window does them, files named as the file names them
@@ -13,9 +14,31 @@ pub struct ReplayArgs {
     /// The replay: one JSON object a line
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    /// Keep recovery logs in this folder as the window does, and print every step once it is in its log
+    #[arg(long, value_name = "FOLDER")]
+    recover_in: Option<PathBuf>,
 }
 
 pub fn run(args: &ReplayArgs) -> Result<()> {
     let text = read_file(&args.file, Budget::default().json_bytes)?;
-    Session::default().replay(&args.file, &String::from_utf8_lossy(&text))
+    let text = String::from_utf8_lossy(&text);
+    let mut session = Session::default();
+    session.autosave = args.recover_in.clone().map(Autosave::new);
+    let (mut steps, mut last) = (0, None);
+    session.replay_telling(&args.file, &text, |session| {
+        let Session { autosave: Some(autosave), tabs, .. } = session else { return Ok(()) };
+        if let Some(trouble) = autosave.follow(tabs) {
+            return Err(Error::unsupported(&args.file, trouble));
+        }
+        let now = session.tab().map(|tab| tab.document().clone());
+        if last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| !is_same(last, now)) {
+            steps += 1;
+            session.autosave.iter().for_each(Autosave::settle);
+            print(&format!("{steps} steps\n"))?;
+        }
+        last = now;
+        Ok(())
+    })?;
+    session.close();
+    Ok(())
 }

@@ -2,6 +2,7 @@
 //! [`Action`]s, so that a replay file, a test and the window do the very same.
 
 pub mod actions;
+pub mod autosave;
 mod path;
 pub mod property;
 pub mod replay;
@@ -10,6 +11,7 @@ mod tab;
 pub mod view;
 
 pub use actions::Action;
+pub use autosave::Autosave;
 pub use path::LayerPath;
 pub use property::Property;
 pub use tab::{Edit, Tab, is_same};
@@ -55,6 +57,8 @@ pub struct Session {
     pub overlay_opacity: f32,
     gesture: Option<Box<dyn Gesture>>,
     last_pen: Option<Vec2>,
+    /// The recovery logs of the open documents, where they are kept.
+    pub autosave: Option<Autosave>,
     /// Sentences for the user, not shown yet.
     pub notes: Vec<String>,
     untitled: usize,
@@ -80,6 +84,7 @@ impl Default for Session {
             overlay_opacity: 0.85,
             gesture: None,
             last_pen: None,
+            autosave: None,
             notes: Vec::new(),
             untitled: 0,
         }
@@ -154,9 +159,32 @@ impl Session {
         self.recent_colors.insert(0, color);
         self.recent_colors.truncate(RECENT);
     }
+    /// Brings the recovery logs up to the documents; called after whatever may have changed them.
+    pub fn keep(&mut self) {
+        let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.tabs));
+        self.notes.extend(trouble);
+    }
+    /// The program ends: see [`Autosave::close`].
+    pub fn close(&mut self) {
+        if let Some(autosave) = &mut self.autosave {
+            autosave.close(&self.tabs);
+        }
+    }
     /// Does what a replay file says, line by line; the first that fails ends it with a sentence.
     pub fn replay(&mut self, file: &Path, text: &str) -> Result<()> {
-        replay::lines::<Action>(file, text)?.iter().try_for_each(|action| action.apply(self))
+        self.replay_telling(file, text, |_| Ok(()))
+    }
+    /// The same, and tells after each line.
+    pub fn replay_telling(
+        &mut self,
+        file: &Path,
+        text: &str,
+        mut tell: impl FnMut(&mut Self) -> Result<()>,
+    ) -> Result<()> {
+        replay::lines::<Action>(file, text)?.iter().try_for_each(|action| {
+            action.apply(self)?;
+            tell(self)
+        })
     }
 }
 

@@ -67,6 +67,7 @@ pub fn kind_of(file: &Path) -> Result<Kind> {
 pub fn open(file: &Path) -> Result<Opened> {
     match kind_of(file)? {
         Kind::Document | Kind::Picture => {
+            io::save::tidy(file);
             let io::Opened { document, notes, is_whole, kind, stamp } = io::open(file, &Budget::default())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let is_project = kind == io::open::Kind::Project;

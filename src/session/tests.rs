@@ -1,5 +1,7 @@
 //! Stories: what a user does, told as the lines of a replay.
 
+mod steps;
+
 use super::actions::{Action, LayerAction};
 use super::replay::Replayed;
 use super::*;

@@ -7,6 +7,7 @@ pub mod import;
 pub mod new;
 pub mod palette;
 pub mod path;
+pub mod recovery;
 pub mod shortcuts;
 pub mod unsaved;
 
@@ -14,6 +15,7 @@ use super::asked::{Asked, WindowAsk};
 use super::files::Purpose;
 use super::keymap::Keymap;
 use crate::document::SurfaceSource;
+use crate::io::recovery::Session as Lost;
 use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
 use std::path::PathBuf;
@@ -24,6 +26,7 @@ pub enum Dialog {
     Export(export::Export),
     Import(Box<import::Import>),
     Path(path::PathDialog),
+    Recovery(recovery::Recovery),
     Unsaved(unsaved::Unsaved),
     Palette(palette::Palette),
     Shortcuts(shortcuts::Shortcuts),
@@ -45,6 +48,10 @@ pub enum Answer {
     /// Save first, then do this.
     SaveThen(Then),
     Ask(WindowAsk),
+    /// Bring these drawings back.
+    Recover(Vec<Lost>),
+    /// The user said that this drawing is to be deleted.
+    Delete(Lost),
 }
 
 /// What follows a question about unsaved work.
@@ -64,6 +71,7 @@ impl Dialog {
                 Dialog::Export(export) => export.show(ui, session),
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),
+                Dialog::Recovery(recovery) => recovery.show(ui),
                 Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
                 Dialog::Palette(palette) => palette.show(ui, session, keymap, asked),
                 Dialog::Shortcuts(shortcuts) => shortcuts.show(ui, keymap),

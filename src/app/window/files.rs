@@ -39,6 +39,8 @@ impl Window {
                     let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };
                     self.dialogs.push(Dialog::Path(path::PathDialog::new(purpose, folder, &name)));
                 }
+                Done::Lost(lost) => self.offer(lost),
+                Done::Recovered(found) => self.take_recovered(*found),
                 Done::Pictured(name, picture) => self.pictured(&name, picture),
                 Done::Saved(saved) => self.saved(ctx, *saved),
                 Done::Edited(edited) => self.edited(*edited),

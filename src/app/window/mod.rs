@@ -29,11 +29,11 @@ pub struct Window {
     canvas: Canvas,
     thumbnails: Thumbnails,
     swatches: Swatches,
-    jobs: Jobs,
+    pub(super) jobs: Jobs,
     /// The last one is shown.
-    dialogs: Vec<Dialog>,
+    pub(super) dialogs: Vec<Dialog>,
     /// Sentences that stay until they are read.
-    messages: Vec<String>,
+    pub(super) messages: Vec<String>,
     settings: Settings,
     keeper: Keeper,
     /// The program was started without a file, so the sample is open.
@@ -104,6 +104,7 @@ impl Window {
         self.show_editing(ui.ctx());
         self.guard_leaving(ui.ctx());
         self.do_asked(ui.ctx(), asked);
+        self.session.keep();
         self.set_title(ui.ctx());
         self.keeper.keep(&self.settings);
     }
@@ -126,6 +127,9 @@ impl Window {
                 let read = move |_: &Progress| Done::Read(Box::new(storage::import(&source)));
                 return self.jobs.start("Reading maps".into(), While::Working, read);
             }
+            // The dialog stays while there are drawings in it.
+            Answer::Recover(lost) => return self.recover(lost),
+            Answer::Delete(lost) => return self.delete(lost),
             _ => drop(self.dialogs.pop()),
         }
         match answer {
@@ -137,7 +141,7 @@ impl Window {
                 self.save();
             }
             Answer::Ask(ask) => asked.ask(ask),
-            Answer::Open | Answer::Close | Answer::Import(_) => {}
+            Answer::Open | Answer::Close | Answer::Import(_) | Answer::Recover(_) | Answer::Delete(_) => {}
         }
     }
     /// Does what was asked for.
@@ -242,6 +246,7 @@ impl eframe::App for Window {
         self.show(ui);
     }
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.session.close();
         if let Err(error) = self.keeper.finish(&self.settings) {
             // The window is gone; whoever started it from a terminal sees it.
             eprintln!("{error}");

@@ -5,11 +5,13 @@ use super::log::{self, Kind};
 use super::state::{self, Known};
 use crate::document::Document;
 use crate::io::fs::{Fs, Handle};
+use crate::io::save::Stamp;
 use crate::{Error, Result};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// A log smaller than this is not worth writing anew.
 const LEAST_COMPACTED: u64 = 16 << 20;
@@ -28,6 +30,8 @@ pub struct Journal {
     fresh_bytes: u64,
     unsynced: bool,
     pub least_compacted: u64,
+    /// Nobody wants the log any more: what is being written need not be finished.
+    pub given_up: Arc<AtomicBool>,
 }
 
 impl Journal {
@@ -44,13 +48,20 @@ impl Journal {
             fresh_bytes: 0,
             unsynced: false,
             least_compacted: LEAST_COMPACTED,
+            given_up: Arc::default(),
         }
     }
-    /// The drawing has another name now; it stands in the log from its next writing anew.
-    pub fn rename(&mut self, title: &str, file: Option<&Path>) {
+    /// The version recorded last is what a file holds, or with no file what the drawing was made as.
+    ///
+    /// A log that could not be written does not tell; then the drawing is offered once more than it need be.
+    pub fn saved(&mut self, title: &str, file: Option<&Path>, stamp: Option<Stamp>) -> Result<()> {
         (self.head["title"], self.head["file"]) = (json!(title), json!(file));
-        // So that it is not forgotten until then.
-        self.handle = None;
+        let stamp = stamp.map(|stamp| json!([stamp.bytes, stamp.crc]));
+        let said = json!({ "title": title, "file": file, "stamp": stamp }).to_string();
+        let mut out = Vec::new();
+        let is_short = log::push(&mut out, Kind::Saved, &[said.as_bytes()]);
+        debug_assert!(is_short, "it has a few hundred bytes");
+        self.append(&out)
     }
     /// Appends a version of the document.
     pub fn record(&mut self, document: &Document) -> Result<()> {
@@ -59,9 +70,16 @@ impl Journal {
             return self.write_anew(document);
         }
         let mut out = Vec::new();
-        state::write(&self.path, document, &mut self.known, &mut out)?;
+        if let Err(error) = state::write(&self.path, document, &mut self.known, &mut out, &self.given_up) {
+            // What it knows no longer is what stands in the log.
+            self.handle = None;
+            return Err(error);
+        }
+        self.append(&out)
+    }
+    fn append(&mut self, out: &[u8]) -> Result<()> {
         let Some(handle) = &mut self.handle else { return Ok(()) };
-        if let Err(e) = handle.write_all(&out) {
+        if let Err(e) = handle.write_all(out) {
             self.handle = None;
             return Err(Error::io(&self.path, e));
         }
@@ -88,7 +106,7 @@ impl Journal {
         let mut out = log::MAGIC.to_vec();
         let is_short = log::push(&mut out, Kind::Head, &[self.head.to_string().as_bytes()]);
         debug_assert!(is_short, "a head has a few hundred bytes");
-        state::write(&self.path, document, &mut known, &mut out)?;
+        state::write(&self.path, document, &mut known, &mut out, &self.given_up)?;
         let part = self.path.with_extension("new");
         // Left by a session of this name that was cut off just here.
         let _ = self.fs.remove(&part);

@@ -1,6 +1,8 @@
 //! The recovery log as bytes: records that can be told from garbage, and the longest run of them that holds.
 //! Floor 5.
 
+use std::io::{BufRead, BufReader, Read};
+
 /// What a log begins with.
 pub const MAGIC: [u8; 8] = *b"RILOG\0\0\x01";
 /// Length, kind and checksum before each payload.
@@ -16,11 +18,13 @@ pub enum Kind {
     Blob = 2,
     /// JSON: the whole document after an edit, its large parts by their keys.
     State = 3,
+    /// JSON: the document as of here is what a file holds, or what it was made as; nothing would be lost.
+    Saved = 4,
 }
 
 impl Kind {
     fn from_byte(byte: u8) -> Option<Self> {
-        [Kind::Head, Kind::Blob, Kind::State].into_iter().find(|kind| *kind as u8 == byte)
+        [Kind::Head, Kind::Blob, Kind::State, Kind::Saved].into_iter().find(|kind| *kind as u8 == byte)
     }
 }
 
@@ -71,6 +75,49 @@ impl<'a> Iterator for Records<'a> {
     }
 }
 
+/// How a log ends, if every byte of it holds: the kind of its last record, and what stood in the last one of kind
+/// [`Kind::Saved`].
+///
+/// Reads piece by piece: a broken log may be long.
+pub fn end(log: &mut dyn Read) -> Option<(Kind, Option<Vec<u8>>)> {
+    let mut log = BufReader::with_capacity(1 << 16, log);
+    let mut magic = [0; MAGIC.len()];
+    log.read_exact(&mut magic).ok().filter(|()| magic == MAGIC)?;
+    let (mut last, mut saved) = (None, None);
+    loop {
+        let mut header = [0; HEADER];
+        match log.fill_buf() {
+            Ok([]) => return last.map(|kind| (kind, saved)),
+            _ => log.read_exact(&mut header).ok()?,
+        }
+        let kind = Kind::from_byte(header[4])?;
+        let length = u32::from_le_bytes(header[..4].try_into().ok()?);
+        let (mut found, mut kept) = (crc32fast::Hasher::new(), Vec::new());
+        found.update(&[kind as u8]);
+        let mut payload = log.by_ref().take(length.into());
+        loop {
+            let piece = payload.fill_buf().ok()?;
+            if piece.is_empty() {
+                break;
+            }
+            found.update(piece);
+            if kind == Kind::Saved && kept.len() < SAVED_BYTES {
+                kept.extend_from_slice(piece);
+            }
+            let n = piece.len();
+            payload.consume(n);
+        }
+        if payload.limit() > 0 || found.finalize().to_le_bytes() != header[5..9] {
+            return None;
+        }
+        last = Some(kind);
+        saved = if kind == Kind::Saved { Some(kept) } else { saved };
+    }
+}
+
+/// What a record of kind [`Kind::Saved`] holds is a name and a few figures.
+const SAVED_BYTES: usize = 1 << 16;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,6 +136,22 @@ mod tests {
         let kinds: Vec<Kind> = records(&log).map(|(kind, _)| kind).collect();
         assert_eq!(kinds, [Kind::Head, Kind::Blob, Kind::State]);
         assert_eq!(records(&log).nth(1).unwrap().1[8..], *b"pixels");
+    }
+    #[test]
+    fn the_end_is_known_only_of_a_log_that_is_whole() {
+        let mut log = log();
+        assert_eq!(end(&mut &log[..]), Some((Kind::State, None)));
+        assert!(push(&mut log, Kind::Saved, &[b"{}"]));
+        assert_eq!(end(&mut &log[..]), Some((Kind::Saved, Some(b"{}".to_vec()))));
+        for n in 0..log.len() {
+            let seen = end(&mut &log[..n]);
+            assert!(seen.is_none_or(|(kind, saved)| kind != Kind::Saved && saved.is_none()), "cut at {n}");
+        }
+        for bit in 0..log.len() * 8 {
+            let mut broken = log.clone();
+            broken[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(end(&mut &broken[..]), None, "bit {bit}");
+        }
     }
     #[test]
     fn a_log_cut_anywhere_or_with_any_bit_flipped_gives_a_prefix() {

@@ -16,13 +16,15 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use sessions::{Recovered, Session, sessions};
+pub use sessions::{Recovered, Session, read, sessions};
 
 use super::fs::{Fs, Lock};
+use super::save::Stamp;
 use crate::document::Document;
 use crate::{Error, Result};
 use journal::Journal;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -36,6 +38,7 @@ const FLUSH_AFTER: Duration = Duration::from_secs(3);
 /// Dropped without [`Recovery::close`], it leaves the log, as a crash does.
 pub struct Recovery {
     tasks: Option<Sender<Task>>,
+    given_up: Arc<AtomicBool>,
     worker: Option<JoinHandle<()>>,
     trouble: Arc<Mutex<Option<String>>>,
     fs: Arc<dyn Fs>,
@@ -45,8 +48,9 @@ pub struct Recovery {
 
 enum Task {
     Record(Document),
-    Rename(String, Option<PathBuf>),
-    Flush(Sender<()>),
+    Saved(String, Option<PathBuf>, Option<Stamp>),
+    /// Tells when all before it is written, `true`: and on the disk.
+    Tell(Sender<()>, bool),
 }
 
 impl Recovery {
@@ -65,12 +69,13 @@ impl Recovery {
         fs.create_folder(folder).map_err(|e| Error::io(folder, e))?;
         let (path, lock) = fresh_session(&*fs, folder)?;
         let journal = Journal::new(fs.clone(), path.clone(), title, file);
+        let given_up = journal.given_up.clone();
         let (tasks, received) = channel();
         let trouble = Arc::default();
         let worker = std::thread::Builder::new().name("recovery".into());
         let told = Arc::clone(&trouble);
         let worker = worker.spawn(move || work(journal, &received, &told)).map_err(|e| Error::io(folder, e))?;
-        let recovery = Self { tasks: Some(tasks), worker: Some(worker), trouble, fs, path, lock: Some(lock) };
+        let recovery = Self { tasks: Some(tasks), given_up, worker: Some(worker), trouble, fs, path, lock: Some(lock) };
         recovery.record(document);
         Ok(recovery)
     }
@@ -78,15 +83,22 @@ impl Recovery {
     pub fn record(&self, document: &Document) {
         self.send(Task::Record(document.clone()));
     }
-    /// The drawing has been saved under a name.
-    pub fn renamed(&self, title: &str, file: Option<&Path>) {
-        self.send(Task::Rename(title.into(), file.map(Path::to_owned)));
+    /// The version recorded last is what a file holds; with no file, what the drawing was made as. Nothing would be lost.
+    pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<Stamp>) {
+        self.send(Task::Saved(title.into(), file.map(Path::to_owned), stamp));
     }
-    /// Waits until all that was recorded is on the disk.
+    /// Waits until all that was recorded is with the system, where neither a crash nor `kill -9` takes it; no longer than
+    /// `patience`. Whether it is.
+    pub fn settle(&self, patience: Duration) -> bool {
+        let (done, is_done) = channel();
+        self.send(Task::Tell(done, false));
+        // The worker tells by letting go, and lets go when it is gone, too.
+        !matches!(is_done.recv_timeout(patience), Err(RecvTimeoutError::Timeout))
+    }
+    /// Waits until all that was recorded is on the disk, where a power cut does not take it.
     pub fn flush(&self) {
         let (done, is_done) = channel();
-        self.send(Task::Flush(done));
-        // An error means that the worker is gone, and waits for nothing.
+        self.send(Task::Tell(done, true));
         let _ = is_done.recv();
     }
     /// Why the last version could not be written, until one can.
@@ -95,6 +107,7 @@ impl Recovery {
     }
     /// Ends the session and deletes its log: the drawing is saved, or its user let it go.
     pub fn close(mut self) -> Result<()> {
+        self.given_up.store(true, Ordering::Relaxed);
         self.stop();
         for ending in ["new", "log", "lock"] {
             let path = self.path.with_extension(ending);
@@ -150,23 +163,36 @@ fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn Lock>)>
     Err(Error::io(folder, std::io::Error::other("no name for a recovery log is free")))
 }
 
-/// Writes versions as they come, and flushes them in time.
+/// Writes versions as they come, and flushes them in time. Of versions that came while one was written only the last counts.
 fn work(mut journal: Journal, tasks: &Receiver<Task>, trouble: &Mutex<Option<String>>) {
     let mut waiting_since: Option<Instant> = None;
+    let mut next = None;
+    let say = |what: Option<Error>| {
+        *trouble.lock().unwrap_or_else(PoisonError::into_inner) = what.map(|error| error.to_string());
+    };
+    // Only a version that is written takes a trouble away.
     let tell = |result: Result<()>| {
-        *trouble.lock().unwrap_or_else(PoisonError::into_inner) = result.err().map(|error| error.to_string());
+        if let Err(error) = result {
+            say(Some(error));
+        }
     };
     loop {
         let patience = waiting_since.map_or(Duration::MAX, |since| FLUSH_AFTER.saturating_sub(since.elapsed()));
-        match tasks.recv_timeout(patience) {
+        match next.take().map_or_else(|| tasks.recv_timeout(patience), Ok) {
             Ok(Task::Record(document)) => {
-                tell(journal.record(&document));
+                next = tasks.try_recv().ok();
+                if matches!(next, Some(Task::Record(_))) {
+                    continue;
+                }
+                say(journal.record(&document).err());
                 waiting_since.get_or_insert_with(Instant::now);
             }
-            Ok(Task::Rename(title, file)) => journal.rename(&title, file.as_deref()),
-            Ok(Task::Flush(done)) => {
-                tell(journal.sync());
-                waiting_since = None;
+            Ok(Task::Saved(title, file, stamp)) => tell(journal.saved(&title, file.as_deref(), stamp)),
+            Ok(Task::Tell(done, flushed)) => {
+                if flushed {
+                    tell(journal.sync());
+                    waiting_since = None;
+                }
                 drop(done);
             }
             Err(RecvTimeoutError::Timeout) => {

@@ -1,14 +1,18 @@
 //! The sessions that ended without being closed: what they left, and how it is brought back.
 //! Floor 5. Nothing here is deleted unasked, and nothing here can keep the program from starting.
 
+use super::log::{self, Kind};
 use super::state::Last;
 use crate::document::Document;
 use crate::io::Budget;
 use crate::io::fs::{Fs, Lock};
+use crate::io::save::Stamp;
 use crate::{Error, Result};
+use serde_json::Value;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// A session that nobody holds any more. While this lives, no other window takes it.
 pub struct Session {
@@ -48,12 +52,32 @@ fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<Session> {
         let _ = handle.take(1 << 16).read_to_end(&mut start);
     }
     let head = Last::of(&start).head.unwrap_or_default();
-    let title = head["title"].as_str().unwrap_or_default().chars().take(200).collect();
-    let file = head["file"].as_str().map(PathBuf::from);
+    let (title, file) = named(&head);
     Some(Session { fs: fs.clone(), path, title, file, has_failed, _lock: lock })
 }
 
+/// What a drawing is called, and where it is kept.
+fn named(head: &Value) -> (String, Option<PathBuf>) {
+    let title = head["title"].as_str().unwrap_or_default().chars().take(200).collect();
+    (title, head["file"].as_str().map(PathBuf::from))
+}
+
+/// The last whole version in the bytes of a log.
+pub fn read(file: &Path, log: &[u8], budget: &Budget) -> Result<Recovered> {
+    let last = Last::of(log);
+    let document = last.document(file, budget)?;
+    let document = document.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
+    let (title, _) = named(&last.head.unwrap_or_default());
+    Ok(Recovered { document, title, versions: last.states })
+}
+
 impl Session {
+    /// When the session was begun, as its name tells.
+    pub fn begun(&self) -> Option<SystemTime> {
+        let name = self.path.file_stem()?.to_str()?;
+        let micros = u64::from_str_radix(name.split('-').next()?, 16).ok()?;
+        UNIX_EPOCH.checked_add(Duration::from_micros(micros))
+    }
     /// The last whole version in the log.
     ///
     /// Leaves a mark while it works: should it bring the program down, `has_failed` says so the next time.
@@ -67,15 +91,26 @@ impl Session {
         self.has_failed = false;
         Ok(recovered)
     }
+    /// Whether the last version is what its file still holds, or what the drawing was made as: then nothing was lost.
+    /// Reads the whole log, piece by piece, and with it what the drawing was called last.
+    pub fn is_safe(&mut self) -> bool {
+        let end = self.fs.open(&self.path).ok().and_then(|mut handle| log::end(&mut handle));
+        let Some((last, Some(saved))) = end else { return false };
+        let Ok(saved) = serde_json::from_slice::<Value>(&saved) else { return false };
+        (self.title, self.file) = named(&saved);
+        let Some(file) = &self.file else { return last == Kind::Saved };
+        let number = |i: usize| saved["stamp"][i].as_u64();
+        let held = number(0).zip(number(1).and_then(|crc| u32::try_from(crc).ok()));
+        let found = self.fs.open(file).and_then(|mut handle| Stamp::read(&mut *handle));
+        let is_held = |found| held.is_none_or(|(bytes, crc)| found == Stamp { bytes, crc });
+        last == Kind::Saved && found.is_ok_and(is_held)
+    }
     fn read(&self, budget: &Budget) -> Result<Recovered> {
         let io = |e| Error::io(&self.path, e);
         let mut log = Vec::new();
         let handle = self.fs.open(&self.path).map_err(io)?;
         handle.take(budget.unpacked_bytes).read_to_end(&mut log).map_err(io)?;
-        let last = Last::of(&log);
-        let document = last.document(&self.path, budget)?;
-        let document = document.ok_or_else(|| Error::decode(&self.path, "it holds no whole version of the drawing"))?;
-        Ok(Recovered { document, title: self.title.clone(), versions: last.states })
+        read(&self.path, &log, budget)
     }
     /// Deletes what the session left. Only when the user says so, or once the drawing is safe in a session of its own.
     pub fn discard(self) -> Result<()> {

@@ -16,6 +16,7 @@ use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a log holds already, by where it lies in memory; kept alive, so that no other thing takes its place.
 #[derive(Default)]
@@ -33,12 +34,20 @@ enum Held {
 }
 
 /// Appends what a document needs and the log does not hold yet, then the document itself.
-pub fn write(file: &Path, document: &Document, known: &mut Known, out: &mut Vec<u8>) -> Result<()> {
+///
+/// Fails, too, once it is given up; after a failure neither `known` nor what was appended is of use.
+pub fn write(
+    file: &Path,
+    document: &Document,
+    known: &mut Known,
+    out: &mut Vec<u8>,
+    given_up: &AtomicBool,
+) -> Result<()> {
     let (pixels, shared) = (BTreeMap::new(), BTreeMap::new());
     let mut assets = Assets::again(std::mem::take(&mut known.made));
     let renamed = assets.rename(file, document, &Painted { pixels: &pixels, shared: &shared })?;
     let bare = Document { layers: renamed.layers.iter().map(without_large_parts).collect(), ..renamed.clone() };
-    let mut writer = Writer { file, known, used: HashMap::new(), out };
+    let mut writer = Writer { file, known, used: HashMap::new(), out, given_up };
     let mut value = recipe::write(&bare);
     writer.layers(&renamed.layers, &mut value)?;
     let mut files = Map::new();
@@ -74,6 +83,7 @@ struct Writer<'a> {
     known: &'a mut Known,
     used: HashMap<usize, (u64, Held)>,
     out: &'a mut Vec<u8>,
+    given_up: &'a AtomicBool,
 }
 
 impl Writer<'_> {
@@ -115,6 +125,9 @@ impl Writer<'_> {
         let key = match self.known.keys.get(&address) {
             Some((key, _)) => *key,
             None => {
+                if self.given_up.load(Ordering::Relaxed) {
+                    return Err(Error::unsupported(self.file, "the drawing was closed meanwhile"));
+                }
                 let key = self.known.next;
                 self.known.next += 1;
                 if !log::push(self.out, Kind::Blob, &[&key.to_le_bytes(), &bytes()?]) {
@@ -138,6 +151,7 @@ fn encode_tile(file: &Path, at: TileAt, tile: &Arc<Tile>) -> Result<Vec<u8>> {
 
 /// The last document in a log; `None` where there is none.
 pub struct Last<'a> {
+    /// Whose drawing it is, as it was told last.
     pub head: Option<Value>,
     /// How many edits the log tells of, the first being the document as it was opened.
     pub states: usize,
@@ -150,7 +164,7 @@ impl<'a> Last<'a> {
         let mut last = Last { head: None, states: 0, state: None, blobs: HashMap::new() };
         for (kind, payload) in log::records(log) {
             match kind {
-                Kind::Head => last.head = serde_json::from_slice(payload).ok(),
+                Kind::Head | Kind::Saved => last.head = serde_json::from_slice(payload).ok().or(last.head),
                 Kind::State => (last.state, last.states) = (Some(payload), last.states + 1),
                 Kind::Blob => {
                     if let Some((key, bytes)) = payload.split_first_chunk() {

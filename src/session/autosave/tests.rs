@@ -1,0 +1,122 @@
+use super::*;
+use crate::session::Session;
+use crate::session::actions::{Action, FileAction};
+
+const STORY: &str = r##"{"in":"file","do":"new","width":90,"height":70,"background":"#ffffff"}
+{"in":"pointer","do":"press","tool":"brush","pen":[20,30],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[60,44],[80,30]]}
+{"in":"pointer","do":"release"}"##;
+
+/// A program that keeps its logs in a folder and painted a stroke.
+fn painted(folder: &Path) -> Session {
+    let mut session = Session { autosave: Some(Autosave::new(folder.into())), ..Session::default() };
+    session.replay(Path::new("story"), STORY).unwrap();
+    session.keep();
+    session
+}
+fn autosave(session: &Session) -> &Autosave {
+    session.autosave.as_ref().unwrap()
+}
+fn crash(session: Session) {
+    autosave(&session).settle();
+    drop(session);
+}
+fn lost(folder: &Path) -> Vec<recovery::Session> {
+    Autosave::new(folder.into()).lost().list()
+}
+fn files(folder: &Path) -> usize {
+    std::fs::read_dir(folder).unwrap().count()
+}
+
+#[test]
+fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
+    let folder = tempfile::tempdir().unwrap();
+    let session = painted(folder.path());
+    assert!(lost(folder.path()).is_empty(), "it still lives");
+    let before = crate::io::recipe::write(session.tab().unwrap().document());
+    crash(session);
+    let left = lost(folder.path()).pop().unwrap();
+    let mut autosave = Autosave::new(folder.path().into());
+    let Found { tab, recovery } = autosave.lost().bring_back(left).unwrap();
+    assert_eq!((tab.title().as_str(), &tab.file), ("Untitled 1 (recovered)", &None));
+    assert!(tab.is_dirty());
+    assert_eq!(crate::io::recipe::write(tab.document()), before);
+    autosave.adopt(&tab, recovery.unwrap());
+    assert!(autosave.follow(std::slice::from_ref(&tab)).is_none());
+    assert!(lost(folder.path()).is_empty(), "now it lives here");
+    // And a second crash takes nothing either.
+    drop(autosave);
+    assert_eq!(lost(folder.path()).len(), 1);
+}
+#[test]
+fn what_is_closed_or_never_was_touched_is_not_offered() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = painted(folder.path());
+    Action::File(FileAction::Close { index: 0 }).apply(&mut session).unwrap();
+    session.keep();
+    assert_eq!(files(folder.path()), 0, "given up by its user");
+    session.replay(Path::new("story"), STORY.lines().next().unwrap()).unwrap();
+    session.keep();
+    crash(session);
+    assert!(files(folder.path()) > 0 && lost(folder.path()).is_empty(), "a new canvas nobody painted on");
+    assert_eq!(files(folder.path()), 0);
+}
+#[test]
+fn what_a_file_holds_is_offered_only_if_the_file_is_another_now() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.ora");
+    let logs = folder.path().join("logs");
+    for is_changed in [false, true] {
+        let mut session = painted(&logs);
+        Action::File(FileAction::Save { file: file.clone() }).apply(&mut session).unwrap();
+        session.keep();
+        crash(session);
+        if is_changed {
+            std::fs::write(&file, "another program's").unwrap();
+        }
+        let left = lost(&logs);
+        assert_eq!(left.len(), usize::from(is_changed));
+        assert!(left.iter().all(|left| left.title == "a.ora" && left.file.as_deref() == Some(&*file)));
+    }
+}
+#[test]
+fn an_edit_after_saving_is_offered() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, logs) = (folder.path().join("a.ora"), folder.path().join("logs"));
+    let mut session = painted(&logs);
+    Action::File(FileAction::Save { file }).apply(&mut session).unwrap();
+    session.keep();
+    session.replay(Path::new("story"), &STORY.lines().skip(1).collect::<Vec<_>>().join("\n")).unwrap();
+    session.keep();
+    crash(session);
+    assert_eq!(lost(&logs).len(), 1);
+}
+#[test]
+fn the_program_ends_as_it_should_and_leaves_only_what_is_unsaved() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = painted(folder.path());
+    session.replay(Path::new("story"), STORY.lines().next().unwrap()).unwrap();
+    let Session { tabs, autosave, .. } = &mut session;
+    autosave.as_mut().unwrap().close(tabs);
+    drop(session);
+    let left = lost(folder.path());
+    assert_eq!(left.len(), 1);
+    assert_eq!(left[0].title, "Untitled 1");
+}
+#[test]
+fn a_folder_that_cannot_be_had_is_told_once_and_tried_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = folder.path().join("logs");
+    std::fs::write(&logs, "in the way").unwrap();
+    let mut session = painted(&logs);
+    assert!(session.notes.iter().any(|note| note.contains("logs") && note.contains("saved")), "{:?}", session.notes);
+    session.notes.clear();
+    session.keep();
+    assert!(session.notes.is_empty());
+    std::fs::remove_file(&logs).unwrap();
+    session.replay(Path::new("story"), &STORY.lines().skip(1).collect::<Vec<_>>().join("\n")).unwrap();
+    session.keep();
+    assert!(session.notes.is_empty());
+    crash(session);
+    assert_eq!(lost(&logs).len(), 1);
+}
