@@ -1,13 +1,15 @@
 //! Saving a document: all or nothing, read back and compared before it counts, the previous version kept.
 //! Floor 5. The bytes are `project`'s. Every step is here for a loss that somebody had (docs/PROJECTS.md).
 
+mod part;
+
 use super::fs::{Disk, Found, Fs, Handle};
 use super::project;
 use crate::document::{Document, Progress};
 use crate::{Error, Result};
+use part::{Part, SPARE, sweep};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
 /// Bytes written or compared between two looks at whether the save is still wanted.
@@ -19,13 +21,25 @@ const FIRST_PAUSE: Duration = Duration::from_millis(10);
 /// What a file held when it was last read or written here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
-    bytes: u64,
-    crc: u32,
+    pub(super) bytes: u64,
+    pub(super) crc: u32,
 }
 
 impl Stamp {
     pub fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, crc: crc32fast::hash(bytes) }
+    }
+    /// Of a file, piece by piece.
+    pub(super) fn read(handle: &mut dyn Handle) -> io::Result<Self> {
+        let (mut buffer, mut hasher, mut bytes) = (vec![0; CHUNK], crc32fast::Hasher::new(), 0);
+        loop {
+            let n = read_some(handle, &mut buffer)?;
+            if n == 0 {
+                return Ok(Self { bytes, crc: hasher.finalize() });
+            }
+            hasher.update(&buffer[..n]);
+            bytes += n as u64;
+        }
     }
 }
 
@@ -58,6 +72,11 @@ pub fn save(document: &Document, file: &Path, over: Over, progress: &Progress) -
     replace(&Disk, file, &bytes, over, progress)
 }
 
+/// Takes away what saves that were killed left beside a file; whatever fails, the next one does it.
+pub fn tidy(file: &Path) {
+    sweep(&Disk, folder_of(file));
+}
+
 /// Half the processors: the other half is for who paints meanwhile.
 fn in_own_threads<T: Send>(file: &Path, work: impl FnOnce() -> T + Send) -> Result<T> {
     let threads = (rayon::current_num_threads() / 2).max(1);
@@ -85,24 +104,19 @@ impl Saving<'_> {
     fn run(&self) -> Result<bool> {
         let target = self.target()?;
         self.check(&target)?;
-        let part = self.fresh_name(&target, "part");
-        let written = self.write_part(&part, &target);
-        match written {
-            Ok(true) => {}
+        sweep(self.fs, folder_of(&target));
+        let failed = |e| self.failed("the drawing could not be written there; choose another place", e);
+        let mut part = Part::create(self.fs, folder_of(&target)).map_err(failed)?;
+        let placed = self.write_part(&mut part, &target).and_then(|is_written| {
+            if is_written {
+                self.place(&part, &target)?;
+            }
+            Ok(is_written)
+        });
+        if !matches!(placed, Ok(true)) {
             // What was begun is taken away; if even that fails, the first failure is the one to tell.
-            Ok(false) => {
-                let _ = self.fs.remove(&part);
-                return Ok(false);
-            }
-            Err(error) => {
-                let _ = self.fs.remove(&part);
-                return Err(error);
-            }
-        }
-        let placed = self.place(&part, &target);
-        if let Err(error) = placed {
-            let _ = self.fs.remove(&part);
-            return Err(error);
+            let _ = self.fs.remove(&part.path);
+            return placed;
         }
         self.flush_folder(&target)?;
         Ok(true)
@@ -144,39 +158,27 @@ impl Saving<'_> {
         }
     }
     fn stamp_of(&self, target: &Path) -> Result<Stamp> {
-        let io = |e| self.failed("it cannot be compared with what was opened", e);
-        let (mut handle, mut buffer) = (self.fs.open(target).map_err(io)?, vec![0; CHUNK]);
-        let (mut hasher, mut bytes) = (crc32fast::Hasher::new(), 0);
-        loop {
-            let n = read_some(&mut *handle, &mut buffer).map_err(io)?;
-            if n == 0 {
-                return Ok(Stamp { bytes, crc: hasher.finalize() });
-            }
-            hasher.update(&buffer[..n]);
-            bytes += n as u64;
-        }
+        let failed = |e| self.failed("it cannot be compared with what was opened", e);
+        Stamp::read(&mut *self.fs.open(target).map_err(failed)?).map_err(failed)
     }
     /// Writes the new file under another name and makes sure of it; whether it was not cancelled meanwhile.
-    fn write_part(&self, part: &Path, target: &Path) -> Result<bool> {
+    fn write_part(&self, part: &mut Part, target: &Path) -> Result<bool> {
         let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
         self.progress.add_total(2 * chunks);
         let failed = |e| self.failed("the drawing could not be written there; choose another place", e);
-        {
-            let mut handle = self.fs.create_new(part).map_err(failed)?;
-            for chunk in self.bytes.chunks(CHUNK) {
-                if self.progress.is_cancelled() {
-                    return Ok(false);
-                }
-                handle.write_all(chunk).map_err(failed)?;
-                self.progress.step();
+        for chunk in self.bytes.chunks(CHUNK) {
+            if self.progress.is_cancelled() {
+                return Ok(false);
             }
-            if self.fs.found(target).map_err(failed)?.is_some() {
-                // A disk without permissions of its own must not keep anybody from saving.
-                let _ = self.fs.copy_permissions(target, part);
-            }
-            handle.sync().map_err(failed)?;
+            part.handle.write_all(chunk).map_err(failed)?;
+            self.progress.step();
         }
-        self.compare(part)
+        if self.fs.found(target).map_err(failed)?.is_some() {
+            // A disk without permissions of its own must not keep anybody from saving.
+            let _ = self.fs.copy_permissions(target, &part.path);
+        }
+        part.handle.sync().map_err(failed)?;
+        self.compare(&part.path)
     }
     /// What was written is read back.
     fn compare(&self, part: &Path) -> Result<bool> {
@@ -202,14 +204,14 @@ impl Saving<'_> {
         }
     }
     /// Keeps the old file as `name~` and puts the new one in its place.
-    fn place(&self, part: &Path, target: &Path) -> Result<()> {
+    fn place(&self, part: &Part, target: &Path) -> Result<()> {
         self.check(target)?;
         if self.fs.found(target).map_err(|e| self.failed("", e))?.is_some() {
-            self.keep(target).map_err(|e| self.failed("the previous version could not be kept beside it", e))?;
+            self.keep(part, target).map_err(|e| self.failed("the previous version could not be kept beside it", e))?;
         }
         let mut pause = FIRST_PAUSE;
         for last in (0..RENAME_TRIES).rev() {
-            match self.fs.rename(part, target) {
+            match self.fs.rename(&part.path, target) {
                 Ok(()) => return Ok(()),
                 Err(e) if last > 0 && matches!(e.kind(), ErrorKind::PermissionDenied | ErrorKind::ResourceBusy) => {
                     self.fs.pause(pause);
@@ -221,8 +223,8 @@ impl Saving<'_> {
         Ok(())
     }
     /// The old file as `name~`: a second name where the disk knows such, else a copy. Never for a moment without one.
-    fn keep(&self, target: &Path) -> io::Result<()> {
-        let spare = self.fresh_name(target, "old");
+    fn keep(&self, part: &Part, target: &Path) -> io::Result<()> {
+        let spare = part.path.with_extension(SPARE);
         if self.fs.link(target, &spare).is_err() {
             let copied = self.copy(target, &spare);
             if copied.is_err() {
@@ -251,17 +253,6 @@ impl Saving<'_> {
                 Err(self.failed("the file was written, but whether it stays after a power cut is unknown", e))
             }
             _ => Ok(()),
-        }
-    }
-    /// A name beside the target that nobody has.
-    fn fresh_name(&self, target: &Path, ending: &str) -> PathBuf {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        loop {
-            let number = NEXT.fetch_add(1, Ordering::Relaxed);
-            let name = folder_of(target).join(format!(".rilievo-{}-{number}.{ending}", std::process::id()));
-            if !matches!(self.fs.found(&name), Ok(Some(_))) {
-                return name;
-            }
         }
     }
     fn failed(&self, what: &str, error: io::Error) -> Error {

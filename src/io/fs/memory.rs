@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
+/// Bits of luck that decide about a file that is not synced.
+const BITS_A_FILE: usize = 10;
+
 #[derive(Clone, Default)]
 struct Inode {
     bytes: Vec<u8>,
@@ -28,7 +31,10 @@ pub struct State {
     synced_names: BTreeMap<PathBuf, usize>,
     pending: Vec<Change>,
     locked: BTreeSet<PathBuf>,
+    /// Files held by a handle.
+    held: BTreeSet<usize>,
     operations: usize,
+    has_no_links: bool,
     /// Fails the operations of these numbers.
     failing: Option<Failure>,
     /// The state before every operation, if they are recorded.
@@ -74,6 +80,10 @@ impl Memory {
     pub fn fail(&self, failure: Failure) {
         self.state().failing = Some(failure);
     }
+    /// From now on a file has one name.
+    pub fn refuse_links(&self) {
+        self.state().has_no_links = true;
+    }
     pub fn heal(&self) {
         self.state().failing = None;
     }
@@ -115,7 +125,7 @@ impl Memory {
         }
     }
     fn handle(&self, inode: usize) -> Box<dyn Handle> {
-        Box::new(Open { memory: self.clone(), inode, at: 0 })
+        Box::new(Open { memory: self.clone(), inode, at: 0, holds: false })
     }
     fn inode(&self, path: &Path) -> io::Result<usize> {
         self.state().names.get(path).copied().ok_or_else(|| io::ErrorKind::NotFound.into())
@@ -137,12 +147,16 @@ fn apply(names: &mut BTreeMap<PathBuf, usize>, change: &Change) {
 }
 
 impl State {
-    /// How many bits [`State::after_power_cut`] can make use of.
-    pub fn doubts(&self) -> usize {
-        self.pending.len() + self.inodes.iter().filter(|i| i.bytes != i.synced).count()
+    /// Values of `luck` that [`State::after_power_cut`] tells apart: all there are, or `most` spread over them.
+    pub fn lucks(&self, most: u64) -> impl Iterator<Item = u64> {
+        let unsynced = self.inodes.iter().filter(|inode| inode.bytes != inode.synced).count();
+        let all = 1u64 << (self.pending.len() + BITS_A_FILE * unsynced).min(63);
+        // An odd step visits every value before one comes again.
+        let step = if all <= most { 1 } else { 0x9e37_79b9_7f4a_7c15 };
+        (0..all.min(most)).map(move |i| i.wrapping_mul(step) % all)
     }
-    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder or one unsynced file; bits
-    /// beyond decide how much of such a file arrived.
+    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; then some about each file that
+    /// is not synced: what arrived of it, and how much.
     pub fn after_power_cut(&self, luck: u64) -> Memory {
         let mut names = self.synced_names.clone();
         let mut bits = luck;
@@ -162,10 +176,13 @@ impl State {
             }
             // All, what was synced, or some of what came after.
             let (synced, all) = (inode.synced.len(), inode.bytes.len());
-            let bytes = match (next(), next()) {
+            let (kind, part) = ((next(), next()), (0..8).fold(0, |n, bit| n | usize::from(next()) << bit));
+            let arrived = &inode.bytes[..synced + (all - synced) * part / 256];
+            let bytes = match kind {
                 (true, true) => inode.bytes.clone(),
-                (true, false) => inode.bytes[..synced + (all - synced) / 2].to_vec(),
-                (false, true) => [&inode.synced[..], &vec![0; all - synced]].concat(),
+                (true, false) => arrived.to_vec(),
+                // Its length is known already, its bytes are not.
+                (false, true) => [arrived, &vec![0; all - arrived.len()]].concat(),
                 (false, false) => inode.synced.clone(),
             };
             Inode { synced: bytes.clone(), bytes }
@@ -180,6 +197,7 @@ struct Open {
     memory: Memory,
     inode: usize,
     at: usize,
+    holds: bool,
 }
 
 impl Read for Open {
@@ -213,6 +231,20 @@ impl Handle for Open {
         let inode = &mut state.inodes[self.inode];
         inode.synced = inode.bytes.clone();
         Ok(())
+    }
+    fn hold(&mut self) -> io::Result<bool> {
+        self.memory.turn()?;
+        let is_free = self.memory.state().held.insert(self.inode);
+        self.holds |= is_free;
+        Ok(self.holds)
+    }
+}
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        if self.holds {
+            self.memory.state().held.remove(&self.inode);
+        }
     }
 }
 
@@ -252,6 +284,9 @@ impl Fs for Memory {
     }
     fn link(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.turn()?;
+        if self.state().has_no_links {
+            return Err(io::ErrorKind::PermissionDenied.into());
+        }
         if self.inode(to).is_ok() {
             return Err(io::ErrorKind::AlreadyExists.into());
         }

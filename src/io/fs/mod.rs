@@ -4,7 +4,7 @@
 #[cfg(test)]
 pub mod memory;
 
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -41,6 +41,8 @@ pub trait Fs: Send + Sync {
 pub trait Handle: Read + Write + Send {
     /// Returns once the file's bytes are on the disk. Never tried again after it failed: the system may have dropped them.
     fn sync(&mut self) -> io::Result<()>;
+    /// Holds the file as long as the handle and the process live; false where another handle holds it.
+    fn hold(&mut self) -> io::Result<bool>;
 }
 
 /// Given up when it is dropped, and by the system when the process dies, however it dies.
@@ -62,6 +64,13 @@ pub struct Disk;
 impl Handle for File {
     fn sync(&mut self) -> io::Result<()> {
         self.sync_all()
+    }
+    fn hold(&mut self) -> io::Result<bool> {
+        match self.try_lock() {
+            Ok(()) => Ok(true),
+            Err(TryLockError::WouldBlock) => Ok(false),
+            Err(TryLockError::Error(e)) => Err(e),
+        }
     }
 }
 
@@ -116,12 +125,8 @@ impl Fs for Disk {
         std::fs::set_permissions(to, std::fs::metadata(from)?.permissions())
     }
     fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn Lock>>> {
-        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
-        match file.try_lock() {
-            Ok(()) => Ok(Some(Box::new(file))),
-            Err(std::fs::TryLockError::WouldBlock) => Ok(None),
-            Err(std::fs::TryLockError::Error(e)) => Err(e),
-        }
+        let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        Ok(if file.hold()? { Some(Box::new(file)) } else { None })
     }
     fn pause(&self, time: Duration) {
         std::thread::sleep(time);

@@ -1,0 +1,91 @@
+//! The new file while it is being written: beside its target, under a name of its own, held so that others know it is in use.
+//! Floor 5.
+
+use crate::io::fs::{Fs, Handle};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+const PREFIX: &str = ".rilievo-";
+const PART: &str = "part";
+/// What the old file is called for a moment, before it becomes `name~`.
+pub const SPARE: &str = "old";
+
+/// `.rilievo-PROCESS-NUMBER.part`, and the handle that holds it.
+pub struct Part {
+    pub path: PathBuf,
+    pub handle: Box<dyn Handle>,
+}
+
+impl Part {
+    /// A new one, empty.
+    pub fn create(fs: &dyn Fs, folder: &Path) -> io::Result<Self> {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        loop {
+            let number = NEXT.fetch_add(1, Ordering::Relaxed);
+            let path = folder.join(format!("{PREFIX}{}-{number}.{PART}", std::process::id()));
+            let mut handle = match fs.create_new(&path) {
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
+                made => made?,
+            };
+            // A disk that cannot hold files is not swept either. One that is swept may have been so before it was held.
+            let is_ours = handle.hold().unwrap_or(true);
+            if is_ours && fs.found(&path)?.is_some() {
+                return Ok(Self { path, handle });
+            }
+        }
+    }
+}
+
+/// Takes away what killed saves left in a folder: files of our names that no process holds. Processes are not asked for by
+/// number, for numbers come again. Whatever fails is left for the next time.
+pub fn sweep(fs: &dyn Fs, folder: &Path) {
+    for path in fs.list(folder).unwrap_or_default().into_iter().filter(|path| is_ours(path)) {
+        let part = path.with_extension(PART);
+        match fs.open(&part) {
+            Ok(mut handle) => {
+                // Removed while it is held, so that nobody takes it for theirs.
+                if handle.hold().unwrap_or(false) {
+                    let _ = fs.remove(&path);
+                }
+            }
+            // An old file under its passing name, and the save that gave it no longer there.
+            Err(e) if e.kind() == io::ErrorKind::NotFound => drop(fs.remove(&path)),
+            Err(_) => {}
+        }
+    }
+}
+
+/// `.rilievo-12-3.part` or `.old`, and nothing else.
+fn is_ours(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_prefix(PREFIX));
+    let Some((numbers, ending)) = name.and_then(|name| name.split_once('.')) else { return false };
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_pair = numbers.split_once('-').is_some_and(|(process, number)| is_number(process) && is_number(number));
+    is_pair && (ending == PART || ending == SPARE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::fs::memory::Memory;
+
+    #[test]
+    fn what_no_process_holds_is_swept_and_nothing_else() {
+        let fs = Memory::with(&[
+            ("/d/.rilievo-1-7.part", b"killed"),
+            ("/d/.rilievo-1-8.part", b"killed later"),
+            ("/d/.rilievo-1-8.old", b"the same"),
+            ("/d/.rilievo-notes.part", b"somebody's"),
+            ("/d/a.part", b"somebody's"),
+        ]);
+        let ours = Part::create(&fs, Path::new("/d")).unwrap();
+        sweep(&fs, Path::new("/d"));
+        sweep(&fs, Path::new("/d"));
+        let name = ours.path.display().to_string();
+        assert_eq!(fs.names(), [&name, "/d/.rilievo-notes.part", "/d/a.part"]);
+        drop(ours);
+        sweep(&fs, Path::new("/d"));
+        assert_eq!(fs.names(), ["/d/.rilievo-notes.part", "/d/a.part"]);
+    }
+}
