@@ -1,46 +1,19 @@
 //! Damaged and lying files: no panic, no allocation beyond what the budget allows.
 
+mod watch;
+
 use rilievo::document::source::{MapSource, SurfaceSource};
 use rilievo::io::{Budget, Files, inspect, maps, picture};
 use rilievo::{Error, Result};
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Remembers the largest block anyone asked for.
-struct Watch;
-
-static LARGEST: AtomicUsize = AtomicUsize::new(0);
 /// The tests watch one allocator: one at a time.
 static TURN: Mutex<()> = Mutex::new(());
 
-// SAFETY: every call is handed to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Watch {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        LARGEST.fetch_max(layout.size(), Ordering::Relaxed);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc_zeroed(layout) }
-    }
-    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        LARGEST.fetch_max(size, Ordering::Relaxed);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.realloc(block, layout, size) }
-    }
-    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.dealloc(block, layout) }
-    }
-}
-
 #[global_allocator]
-static WATCH: Watch = Watch;
+static WATCH: watch::Watch = watch::Watch;
 
 const SIDE: usize = 24;
 
@@ -193,12 +166,12 @@ fn damaged_files_neither_panic_nor_allocate_beyond_the_budget() {
         let mut dice = Dice(0x9e37_79b9_7f4a_7c15 ^ seed.len() as u64);
         for _ in 0..60 {
             let bytes = damage(seed, &mut dice);
-            LARGEST.store(0, Ordering::Relaxed);
+            watch::forget();
             for error in read_all(name, &bytes, &budget) {
                 assert!(error.to_string().contains(name), "{error}");
                 refused += 1;
             }
-            let largest = LARGEST.load(Ordering::Relaxed);
+            let largest = watch::largest();
             assert!(largest <= 64 << 20, "{name}: a block of {largest} bytes");
         }
     }
@@ -217,10 +190,10 @@ fn headers_that_promise_too_much_are_refused_before_anything_is_allocated() {
     exr[window + 8..window + 12].copy_from_slice(&9_999i32.to_le_bytes());
     exr[window + 12..window + 16].copy_from_slice(&9_999i32.to_le_bytes());
     for (name, bytes) in [("bomb.png", png), ("bomb.exr", exr)] {
-        LARGEST.store(0, Ordering::Relaxed);
+        watch::forget();
         let errors = read_all(name, &bytes, &Budget::default());
         assert_eq!(errors.len(), 5, "{name}");
-        assert!(LARGEST.load(Ordering::Relaxed) < 8 << 20, "{name}: {}", LARGEST.load(Ordering::Relaxed));
+        assert!(watch::largest() < 8 << 20, "{name}: {}", watch::largest());
     }
 }
 

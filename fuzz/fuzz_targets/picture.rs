@@ -1,11 +1,12 @@
-//! Any bytes as a picture: decoded or refused, within the budget.
+//! Any bytes to one reader: read or refused, within the budget. The reader is the one that `tests/mutated.rs` runs.
 #![no_main]
 use libfuzzer_sys::fuzz_target;
-use rilievo::io::{Budget, picture};
 use std::path::Path;
 
+#[allow(dead_code)]
+#[path = "../../tests/readers/mod.rs"]
+mod readers;
+
 fuzz_target!(|bytes: &[u8]| {
-    let budget = Budget { area_px: 1 << 20, side_px: 4096, ..Budget::default() };
-    let _ = picture::decode(Path::new("a"), bytes, &budget);
-    let _ = picture::decode_coverage(Path::new("a"), bytes, &budget);
+    let _ = readers::picture(Path::new("a"), bytes);
 });

@@ -1,10 +1,12 @@
-//! Any bytes as a file of this kind: read or refused, within the budget.
+//! Any bytes to one reader: read or refused, within the budget. The reader is the one that `tests/mutated.rs` runs.
 #![no_main]
 use libfuzzer_sys::fuzz_target;
-use rilievo::io::{Budget, project};
 use std::path::Path;
 
+#[allow(dead_code)]
+#[path = "../../tests/readers/mod.rs"]
+mod readers;
+
 fuzz_target!(|bytes: &[u8]| {
-    let budget = Budget { area_px: 1 << 20, document_px: 1 << 22, side_px: 4096, ..Budget::default() };
-    let _ = project::read(Path::new("a"), bytes, &budget);
+    let _ = readers::project(Path::new("a"), bytes);
 });

@@ -1,11 +1,12 @@
-//! Any text as a recipe that may name no file: read or refused.
+//! Any bytes to one reader: read or refused, within the budget. The reader is the one that `tests/mutated.rs` runs.
 #![no_main]
 use libfuzzer_sys::fuzz_target;
-use rilievo::io::recipe::{self, Source};
-use rilievo::io::{Budget, Given};
 use std::path::Path;
 
+#[allow(dead_code)]
+#[path = "../../tests/readers/mod.rs"]
+mod readers;
+
 fuzz_target!(|bytes: &[u8]| {
-    let budget = Budget { area_px: 1 << 20, file_bytes: 0, ..Budget::default() };
-    let _ = recipe::read(bytes, Source { file: Path::new("a"), files: &Given::default(), budget: &budget, onto: None });
+    let _ = readers::recipe(Path::new("a"), bytes);
 });

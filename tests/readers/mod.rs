@@ -1,0 +1,87 @@
+//! Every reader of files on any bytes: what the mutations, the fuzz targets and the replay of their corpus run.
+
+use rilievo::document::source::{MapSource, SurfaceSource};
+use rilievo::io::{Budget, Files, inspect, maps, open::Kind, picture, project, psd, recipe, recovery};
+use rilievo::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// A reader by its name; it must neither panic nor allocate beyond the budget, and fail with a sentence.
+pub type Reader = fn(&Path, &[u8]) -> Result<()>;
+
+/// The readers by the names of their fuzz targets.
+pub const ALL: [(&str, Reader); 6] = [
+    ("project", project),
+    ("psd", psd),
+    ("recipe", recipe),
+    ("picture", picture),
+    ("maps", maps),
+    ("recovery", recovery),
+];
+
+/// Small ceilings, so that a damaged header that asks for more is refused at once.
+pub fn budget() -> Budget {
+    Budget { area_px: 1 << 20, document_px: 1 << 22, side_px: 4096, ..Budget::default() }
+}
+
+/// Every file that is asked for is this one.
+struct One(Vec<u8>);
+
+impl Files for One {
+    fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
+        match self.0.len() as u64 {
+            0 => Err(Error::unsupported(name, "there is no such file")),
+            n if n > budget.file_bytes => Err(Error::too_large(name, "it is")),
+            _ => Ok(self.0.clone()),
+        }
+    }
+    fn path(&self, name: &str) -> PathBuf {
+        name.into()
+    }
+}
+
+pub fn project(file: &Path, bytes: &[u8]) -> Result<()> {
+    project::read(file, bytes, &budget()).map(drop)
+}
+pub fn psd(file: &Path, bytes: &[u8]) -> Result<()> {
+    psd::read(file, bytes, &budget()).map(drop)
+}
+pub fn recipe(file: &Path, bytes: &[u8]) -> Result<()> {
+    let source = recipe::Source { file, files: &One(Vec::new()), budget: &budget(), onto: None };
+    recipe::read(bytes, source).map(drop)
+}
+pub fn picture(file: &Path, bytes: &[u8]) -> Result<()> {
+    let coverage = picture::decode_coverage(file, bytes, &budget());
+    inspect::describe(file, bytes, &budget())?;
+    picture::decode(file, bytes, &budget())?;
+    coverage.map(drop)
+}
+pub fn maps(file: &Path, bytes: &[u8]) -> Result<()> {
+    let name = file.to_string_lossy().into_owned();
+    let files = One(bytes.to_vec());
+    let normal = Some(MapSource { file: name.clone(), ..MapSource::default() });
+    let depth = Some(MapSource { file: name, ..MapSource::default() });
+    let normal = SurfaceSource { normal, ..SurfaceSource::default() };
+    let depth = SurfaceSource { depth, ..SurfaceSource::default() };
+    let tried = [normal, depth].map(|source| maps::import(&source, &files, &budget()));
+    tried.into_iter().try_for_each(|import| {
+        let surface = import?.surface;
+        let is_finite = |plane: &rilievo::raster::Plane<f32>| plane.values().iter().all(|v| v.is_finite());
+        assert!(is_finite(surface.depth_plane()) && surface.normal_planes().iter().all(|plane| is_finite(plane)));
+        Ok(())
+    })
+}
+pub fn recovery(file: &Path, bytes: &[u8]) -> Result<()> {
+    recovery::read(file, bytes, &budget()).map(drop)
+}
+/// With the reader that the program would take.
+#[allow(dead_code)]
+pub fn any(file: &Path, bytes: &[u8]) -> Result<()> {
+    match Kind::of(bytes) {
+        _ if bytes.starts_with(b"RILOG") => recovery(file, bytes),
+        Kind::Project => project(file, bytes),
+        Kind::Psd => psd(file, bytes),
+        Kind::Recipe => recipe(file, bytes),
+        Kind::Picture if file.starts_with("maps") => maps(file, bytes),
+        Kind::Picture => picture(file, bytes),
+    }
+}
