@@ -177,25 +177,29 @@ impl TileGrid {
     }
 }
 
-/// Straight bytes to premultiplied bytes, rounded to nearest.
-pub fn premultiply(straight: &[u8], premultiplied: &mut [u8]) {
-    for (s, p) in straight.chunks_exact(4).zip(premultiplied.chunks_exact_mut(4)) {
-        let a = u32::from(s[3]);
-        for c in 0..3 {
-            p[c] = ((u32::from(s[c]) * a + 127) / 255) as u8;
+crate::widest! {
+    /// Straight bytes to premultiplied bytes, rounded to nearest.
+    pub fn premultiply(straight: &[u8], premultiplied: &mut [u8]) {
+        let (straight, premultiplied) = (straight.as_chunks::<4>().0, premultiplied.as_chunks_mut::<4>().0);
+        for (s, p) in straight.iter().zip(premultiplied) {
+            // The alpha itself as a colour that is whole.
+            let whole = [s[0], s[1], s[2], 255];
+            let a = u32::from(s[3]);
+            *p = whole.map(|c| ((u32::from(c) * a + 127) / 255) as u8);
         }
-        p[3] = s[3];
     }
-}
 
-/// Premultiplied bytes to straight bytes, rounded to nearest; transparent pixels become transparent black.
-pub fn unpremultiply(premultiplied: &[u8], straight: &mut [u8]) {
-    for (p, s) in premultiplied.chunks_exact(4).zip(straight.chunks_exact_mut(4)) {
-        let a = u32::from(p[3]);
-        for c in 0..3 {
-            s[c] = if a == 0 { 0 } else { ((u32::from(p[c]) * 255 + a / 2) / a).min(255) as u8 };
+    /// Premultiplied bytes to straight bytes, rounded to nearest; transparent pixels become transparent black.
+    pub fn unpremultiply(premultiplied: &[u8], straight: &mut [u8]) {
+        let (premultiplied, straight) = (premultiplied.as_chunks::<4>().0, straight.as_chunks_mut::<4>().0);
+        for (p, s) in premultiplied.iter().zip(straight) {
+            let a = i32::from(p[3]);
+            // Of numbers below 2¹⁶ a rounded-down f32 quotient is the whole quotient.
+            let over = a.max(1) as f32;
+            let color = [p[0], p[1], p[2]].map(|c| ((i32::from(c) * 255 + a / 2) as f32 / over) as i32);
+            let held = if a == 0 { 0 } else { 255 };
+            *s = [color[0].min(held) as u8, color[1].min(held) as u8, color[2].min(held) as u8, p[3]];
         }
-        s[3] = p[3];
     }
 }
 
@@ -210,6 +214,22 @@ mod tests {
         let grid = TileGrid::from_straight_rgba(&rgba, w, h, -5, 3);
         assert_eq!(grid.to_straight_rgba(Rect::new(-5, 3, 125, 73)), rgba);
         assert_eq!(grid.pixel(-6, 3), [0; 4]);
+    }
+    #[test]
+    fn straight_and_premultiplied_bytes_are_rounded_to_nearest() {
+        let all: Vec<[u8; 4]> = (0..=255u8).flat_map(|a| (0..=255u8).map(move |c| [c, 255 - c, c / 2, a])).collect();
+        let (mut premultiplied, mut straight) = (vec![0; all.len() * 4], vec![0; all.len() * 4]);
+        premultiply(all.as_flattened(), &mut premultiplied);
+        unpremultiply(all.as_flattened(), &mut straight);
+        for ((of, p), s) in all.iter().zip(premultiplied.as_chunks::<4>().0).zip(straight.as_chunks::<4>().0) {
+            let a = u32::from(of[3]);
+            for c in 0..3 {
+                let v = u32::from(of[c]);
+                assert_eq!(u32::from(p[c]), (v * a + 127) / 255, "{of:?}");
+                assert_eq!(u32::from(s[c]), if a == 0 { 0 } else { ((v * 255 + a / 2) / a).min(255) }, "{of:?}");
+            }
+            assert_eq!((p[3], s[3]), (of[3], of[3]));
+        }
     }
     #[test]
     fn a_moved_grid_holds_the_same_bytes_elsewhere() {

@@ -3,7 +3,7 @@
 
 use super::look::remember;
 use super::manifest::{Manifest, Shown};
-use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, repair, stack};
+use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, pixels, repair, stack};
 use crate::document::kept::Encoded;
 use crate::document::{Document, LayerId};
 use crate::io::recipe::{self, Source, Tiles};
@@ -134,8 +134,12 @@ impl Reading<'_> {
             let area = repair::png_size(&bytes)?.area() as u64;
             let less = |left: u64| left.checked_sub(area);
             left_px.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).ok()?;
-            let picture = picture::decode(Path::new(&key.0), &bytes, self.budget).ok()?;
-            Some((key.clone(), picture::to_tiles(&picture, key.1, key.2)))
+            let quick = pixels::decode_tiles(&bytes, key.1, key.2, self.budget);
+            let slow = || {
+                let picture = picture::decode(Path::new(&key.0), &bytes, self.budget).ok()?;
+                Some(picture::to_tiles(&picture, key.1, key.2))
+            };
+            Some((key.clone(), quick.or_else(slow)?))
         };
         wanted.into_par_iter().filter_map(one).collect()
     }
