@@ -118,9 +118,21 @@ fn exr_texels(file: &Path, exr: &ExrFile) -> Result<Vec<[f32; 4]>> {
         .collect())
 }
 
+/// The profile of sRGB that this program writes. Its encoder would put the present time into it: a file tells no time, and
+/// the same document gives the same bytes.
+pub fn own_srgb() -> Vec<u8> {
+    /// Year, month, day, hour, minute and second, as the header of a profile holds them.
+    const DATE: [u8; 12] = [0x07, 0xd0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
+    let mut profile = ColorProfile::new_srgb().encode().unwrap_or_default();
+    if let Some(date) = profile.get_mut(24..36) {
+        date.copy_from_slice(&DATE);
+    }
+    profile
+}
+
 /// The very profile that this program writes: nothing is to be done.
 pub fn is_own_srgb(icc: &[u8]) -> bool {
-    ColorProfile::new_srgb().encode().is_ok_and(|own| own == icc)
+    own_srgb() == icc
 }
 
 /// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where `through_profile` finds nothing to do.

@@ -53,6 +53,15 @@ pub fn decode_as(data: &mut Cursor, shape: Shape, compression: u16) -> Option<Ve
     }
 }
 
+/// Several channels in one zlib stream, as a merged picture has them.
+pub fn inflate_planes(zlib: &[u8], shape: Shape, count: usize, is_predicted: bool) -> Option<Vec<Vec<u8>>> {
+    let mut values = inflate(zlib, shape.bytes().checked_mul(count)?)?;
+    if is_predicted {
+        undo_prediction(&mut values, shape);
+    }
+    Some(values.chunks_exact(shape.bytes().max(1)).map(|plane| to_bytes(plane, shape)).collect())
+}
+
 /// How long each packed row is.
 pub fn row_lengths(data: &mut Cursor, shape: Shape, rows: usize) -> Option<Vec<usize>> {
     // The table is there before room is made for it.

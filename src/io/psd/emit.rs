@@ -3,6 +3,7 @@
 
 use super::channel::pack;
 use super::{ICC_PROFILE, MAGIC, Mask, OURS, RESOLUTION, Record, Section, VERSION_INFO};
+use crate::io::picture;
 use crate::math::{Rect, Size};
 
 /// What the picture is printed at, unless somebody says otherwise.
@@ -75,7 +76,7 @@ fn resources(ours: &[u8]) -> Vec<u8> {
     unicode(&mut version, "Rilievo");
     long(&mut version, 1);
     let mut out = Vec::new();
-    let profile = moxcms::ColorProfile::new_srgb().encode().unwrap_or_default();
+    let profile = picture::own_srgb();
     for (id, data) in [(RESOLUTION, &resolution[..]), (ICC_PROFILE, &profile), (VERSION_INFO, &version), (OURS, ours)] {
         out.extend(b"8BIM");
         short(&mut out, id);

@@ -66,7 +66,7 @@ impl Lowering {
     }
     fn item(&mut self, file: &Path, item: &Item) -> Result<()> {
         if let Shows::Stack { isolated, items } = &item.shows {
-            self.records.push(Record { name: "</Layer group>".into(), section: Section::End, ..blank() });
+            self.records.push(Record { name: "</Layer group>".into(), section: Section::End, ..Record::default() });
             self.items(file, items)?;
             let blend = if *isolated { key(item.blend) } else { PASS_THROUGH };
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
@@ -108,23 +108,6 @@ fn key(blend: BlendMode) -> [u8; 4] {
     BLENDS.iter().find(|(mode, _)| *mode == blend).map_or(*b"norm", |(_, key)| *key)
 }
 
-fn blank() -> Record {
-    Record {
-        name: String::new(),
-        rect: Rect::EMPTY,
-        blend: *b"norm",
-        opacity: 255,
-        clipped: false,
-        visible: true,
-        lock_alpha: false,
-        lock_all: false,
-        section: Section::Layer,
-        mask: None,
-        rgba: Vec::new(),
-        lost: Vec::new(),
-    }
-}
-
 /// What an item says of itself.
 fn record(item: &Item) -> Record {
     Record {
@@ -136,6 +119,6 @@ fn record(item: &Item) -> Record {
         // Who may change nothing may not change the transparency either.
         lock_alpha: item.lock != Lock::None,
         lock_all: item.lock == Lock::All,
-        ..blank()
+        ..Record::default()
     }
 }

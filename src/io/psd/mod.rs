@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `cursor` | numbers and sections read from bytes, never beyond their end |
 //! | `channel` | planes of bytes, plain, PackBits or ZIP |
-//! | `parse` | a file into records, as they stand in it |
+//! | `parse`, `layers` | a file into its parts and its records, as they stand in it |
 //! | `tree` | records into a document |
 //! | `lower` | a document into records |
 //! | `emit` | records into a file |
@@ -15,6 +15,7 @@
 mod channel;
 mod cursor;
 mod emit;
+mod layers;
 mod lower;
 mod parse;
 #[cfg(test)]
@@ -75,6 +76,26 @@ pub struct Record {
     pub rgba: Vec<u8>,
     /// What the layer has that is not carried.
     pub lost: Vec<&'static str>,
+}
+
+/// A visible layer without a name, without pixels.
+impl Default for Record {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            rect: Rect::EMPTY,
+            blend: *b"norm",
+            opacity: 255,
+            clipped: false,
+            visible: true,
+            lock_alpha: false,
+            lock_all: false,
+            section: Section::Layer,
+            mask: None,
+            rgba: Vec::new(),
+            lost: Vec::new(),
+        }
+    }
 }
 
 /// What a record stands for.

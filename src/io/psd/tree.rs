@@ -77,20 +77,8 @@ fn png(file: &Path, record: &Record) -> Result<crate::raster::Asset> {
 fn layers_of(parsed: &mut Parsed) -> Vec<Record> {
     let mut records = std::mem::take(&mut parsed.records);
     if let (true, Some(rgba)) = (records.is_empty(), parsed.merged.take()) {
-        records.push(Record {
-            name: "Background".into(),
-            rect: parsed.size.rect(),
-            blend: *b"norm",
-            opacity: 255,
-            clipped: false,
-            visible: true,
-            lock_alpha: false,
-            lock_all: false,
-            section: Section::Layer,
-            mask: None,
-            rgba,
-            lost: Vec::new(),
-        });
+        let background = Record { name: "Background".into(), rect: parsed.size.rect(), rgba, ..Record::default() };
+        records.push(background);
     }
     if let Some(icc) = parsed.icc.filter(|icc| !picture::is_own_srgb(icc)) {
         for record in records.iter_mut().filter(|record| !record.rgba.is_empty()) {
