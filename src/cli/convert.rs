@@ -152,6 +152,9 @@ fn covered(document: &Document) -> Option<Rect> {
 /// What was not carried over goes to standard error: it is no failure, but it must not pass unseen.
 pub fn tell(file: &Path, notes: &[String]) {
     for note in notes {
-        eprintln!("rilievo: {}", super::printable(&format!("{}: {note}", file.display())));
+        // A note that passes an error on names its file already.
+        let named = format!("{}", file.display());
+        let sentence = if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
+        eprintln!("rilievo: {}", super::printable(&sentence));
     }
 }

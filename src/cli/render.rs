@@ -106,7 +106,12 @@ fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
     let onto = surface.as_ref().map(|surface| Onto { surface, files: &given });
     let bytes = read_file(&args.document, budget.file_bytes)?;
     let document = match Kind::of(&bytes) {
-        Kind::Recipe => recipe::read(&bytes, Source { file: &args.document, files: &files, budget: &budget, onto })?,
+        Kind::Recipe => {
+            let source = Source { file: &args.document, files: &files, budget: &budget, onto };
+            let (document, notes) = recipe::read_noting(&bytes, source)?;
+            convert::tell(&args.document, &notes);
+            document
+        }
         _ => {
             let opened = open(&args.document, &budget)?;
             convert::tell(&args.document, &opened.notes);

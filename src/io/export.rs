@@ -147,7 +147,7 @@ pub fn encode(file: &Path, format: Format, pixels: &TileGrid, canvas: Size, opti
         lay_on(&mut rgba, background);
     }
     match format {
-        Format::Png => png(&rgba, canvas, options.dots_per_inch).map_err(|e| Error::unsupported(file, e)),
+        Format::Png => png(&rgba, canvas, png::BitDepth::Eight, options).map_err(|e| Error::unsupported(file, e)),
         Format::Jpeg => jpeg(file, &rgba, canvas, options.quality),
         Format::WebP => webp(file, &rgba, canvas),
         Format::Tiff => tiff(file, rgba, canvas),
@@ -183,13 +183,14 @@ fn png_resolution(dots_per_inch: f32) -> png::PixelDimensions {
     png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
 }
 
-fn png(rgba: &[u8], size: Size, dots_per_inch: Option<f32>) -> Result<Vec<u8>, png::EncodingError> {
+/// Straight RGBA of 8 bits, or of 16 with the larger byte first.
+fn png(rgba: &[u8], size: Size, depth: png::BitDepth, options: &Options) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
     encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_depth(depth);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_pixel_dims(dots_per_inch.map(png_resolution));
+    encoder.set_pixel_dims(options.dots_per_inch.map(png_resolution));
     let mut writer = encoder.write_header()?;
     writer.write_image_data(rgba)?;
     writer.finish()?;

@@ -61,10 +61,12 @@ impl Kind {
 pub fn open(file: &Path, budget: &Budget) -> Result<Opened> {
     let bytes = read_file(file, budget.file_bytes)?;
     let kind = Kind::of(&bytes);
-    let whole = |document| Contents { document, notes: Vec::new(), is_whole: true };
+    let whole = |(document, notes)| Contents { document, notes, is_whole: true };
     let Contents { document, notes, is_whole } = match kind {
         Kind::Project => project::read(file, &bytes, budget)?,
-        Kind::Recipe => whole(recipe::read(&bytes, Source { file, files: &Folder::beside(file), budget, onto: None })?),
+        Kind::Recipe => {
+            whole(recipe::read_noting(&bytes, Source { file, files: &Folder::beside(file), budget, onto: None })?)
+        }
         Kind::Psd => psd::read(file, &bytes, budget)?,
         Kind::Picture => single(file, &bytes, budget)?,
     };

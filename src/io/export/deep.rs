@@ -1,7 +1,7 @@
 //! Pictures of more than 8 bits: PNG and TIFF of 16, EXR of half floats, from what was composed without rounding.
 //! Floor 5.
 
-use super::{Format, Options, png_resolution};
+use super::{Format, Options, png};
 use crate::math::{Size, srgb};
 use crate::{Error, Result};
 use image::DynamicImage;
@@ -22,7 +22,10 @@ pub fn encode(file: &Path, format: Format, pixels: &[[f32; 4]], canvas: Size, op
     let under = options.background.map_or([0.0; 4], |color| color.premultiplied());
     let part: Vec<[f32; 4]> = part.map(|&[r, g, b, a]| over([r, g, b, a], under)).collect();
     match format {
-        Format::Png => png(&part, size, options.dots_per_inch).map_err(|e| Error::unsupported(file, e)),
+        Format::Png => {
+            let values: Vec<u8> = part.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
+            png(&values, size, png::BitDepth::Sixteen, options).map_err(|e| Error::unsupported(file, e))
+        }
         Format::Tiff => {
             let values = part.iter().flat_map(straight16).collect();
             let image = image::ImageBuffer::from_raw(size.width, size.height, values);
@@ -45,20 +48,6 @@ fn straight16(&[r, g, b, a]: &[f32; 4]) -> [u16; 4] {
     let to = |v: f32| (v.max(0.0).min(1.0) * 65535.0).round() as u16;
     let straight = |v: f32| if a > 0.0 { to(v / a) } else { 0 };
     [straight(r), straight(g), straight(b), to(a)]
-}
-
-fn png(pixels: &[[f32; 4]], size: Size, dots_per_inch: Option<f32>) -> Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Sixteen);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_pixel_dims(dots_per_inch.map(png_resolution));
-    let mut writer = encoder.write_header()?;
-    let values: Vec<u8> = pixels.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
-    writer.write_image_data(&values)?;
-    writer.finish()?;
-    Ok(bytes)
 }
 
 /// A TIFF of an image, whatever its depth.

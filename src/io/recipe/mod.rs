@@ -75,6 +75,11 @@ pub fn read(text: &[u8], source: Source) -> Result<Document> {
     read_value(&json::parse(source.file, text, source.budget)?, source)
 }
 
+/// The same, with what was found in its maps and could not be carried over, a sentence each.
+pub fn read_noting(text: &[u8], source: Source) -> Result<(Document, Vec<String>)> {
+    read_parts(&json::parse(source.file, text, source.budget)?, source, Tiles::new())
+}
+
 /// Reads a document from JSON that is parsed already.
 pub fn read_value(value: &Value, source: Source) -> Result<Document> {
     read_with_tiles(value, source, Tiles::new())
@@ -82,6 +87,10 @@ pub fn read_value(value: &Value, source: Source) -> Result<Document> {
 
 /// As [`read_value`], with the pixels of some paint layers known already; they were within the budget.
 pub fn read_with_tiles(value: &Value, source: Source, tiles: Tiles) -> Result<Document> {
+    read_parts(value, source, tiles).map(|(document, _)| document)
+}
+
+fn read_parts(value: &Value, source: Source, tiles: Tiles) -> Result<(Document, Vec<String>)> {
     let mut root = Node::root(source.file, value).fields()?;
     check_version(&mut root)?;
     let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
@@ -89,11 +98,11 @@ pub fn read_with_tiles(value: &Value, source: Source, tiles: Tiles) -> Result<Do
     let layers = root.get("layers");
     root.finish()?;
 
-    let Shape { size, surface, files } = shape(canvas, own.as_ref(), source)?;
+    let Shape { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
     let mut reader = Reader { source, size, layers_left: source.budget.layers, pictures: Pictures::knowing(tiles) };
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
-    Ok(Document { size, surface, surface_source, surface_files: Arc::new(files), layers })
+    Ok((Document { size, surface, surface_source, surface_files: Arc::new(files), layers }, notes))
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {
@@ -128,6 +137,7 @@ struct Shape {
     surface: Option<Arc<Surface>>,
     /// The files of its maps.
     files: BTreeMap<String, Asset>,
+    notes: Vec<String>,
 }
 
 /// The canvas's size, where nothing is said that of the document's own maps; and the surface fitted to it.
@@ -146,15 +156,18 @@ fn shape(canvas: Option<Size>, own: Option<&(SurfaceSource, Node)>, source: Sour
         .or(own.as_ref().map(|(import, _)| import.surface.size()))
         .or(other.as_ref().map(|import| import.surface.size()))
         .ok_or_else(|| Error::invalid(source.file, "canvas", no_surface))?;
-    let (surface, files) = match (other, own) {
-        (Some(other), _) => {
-            let surface = fitted(other.surface, size).map_err(|e| Error::unsupported(source.file, e))?;
-            (Some(surface), other.files)
-        }
-        (None, Some((own, node))) => (Some(fitted(own.surface, size).map_err(|e| node.refused(e))?), own.files),
-        (None, None) => (None, BTreeMap::new()),
+    let (import, node) = match (other, own) {
+        (Some(other), _) => (other, None),
+        (None, Some((own, node))) => (own, Some(node)),
+        (None, None) => return Ok(Shape { size, surface: None, files: BTreeMap::new(), notes: Vec::new() }),
     };
-    Ok(Shape { size, surface, files })
+    let maps::Import { surface, findings, files } = import;
+    let refused = |e: SurfaceError| match node {
+        Some(node) => node.refused(e),
+        None => Error::unsupported(source.file, e),
+    };
+    let surface = Some(fitted(surface, size).map_err(refused)?);
+    Ok(Shape { size, surface, files, notes: findings.notes })
 }
 
 fn fitted(map: Surface, canvas: Size) -> std::result::Result<Arc<Surface>, SurfaceError> {
