@@ -3,7 +3,7 @@
 use super::*;
 use crate::document::{LayerMask, Progress, flatten};
 use crate::math::{srgb::Color, vec3};
-use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
+use crate::paint::{Adjust, Brush, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
 use crate::raster::{BlendMode, Outside, Picture};
 use crate::shading::RadianceScaling;
 use crate::surface::{Bend, Maps, Operator, Surface, Weights};
