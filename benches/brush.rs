@@ -29,17 +29,20 @@ const OPERATORS: [(&str, Operator); 4] = [
 ];
 
 /// A ball that nearly fills the canvas, with bumps.
-static SCENE: LazyLock<Scene> = LazyLock::new(|| {
-    let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - SIZE.center()) / 1000.0;
+static SCENE: LazyLock<Scene> = LazyLock::new(|| ball(SIZE));
+
+fn ball(size: Size) -> Scene {
+    let radius = 1000.0 / 2048.0 * size.width as f32;
+    let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - size.center()) / radius;
     let height = |p: Vec2| (1.0 - p.length_squared()).max(0.0).sqrt();
-    let normals = Plane::from_fn(SIZE, |x, y| {
+    let normals = Plane::from_fn(size, |x, y| {
         let p = at(x, y);
         vec3(p.x + 0.05 * (40.0 * p.y).sin(), -p.y + 0.05 * (30.0 * p.x).cos(), height(p).max(0.01))
     });
-    let depth = Plane::from_fn(SIZE, |x, y| 1.0 - height(at(x, y)));
-    let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
-    Scene { size: SIZE, surface: Surface::new(Maps { normals, depth, coverage }).ok().map(Arc::new) }
-});
+    let depth = Plane::from_fn(size, |x, y| 1.0 - height(at(x, y)));
+    let coverage = Plane::from_fn(size, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
+    Scene { size, surface: Surface::new(Maps { normals, depth, coverage }).ok().map(Arc::new) }
+}
 
 /// Where the `i`th dab stands: 14 px further along a circle of 700 px.
 fn on_circle(i: f32) -> Sample {
@@ -130,17 +133,9 @@ fn main() {
     one_of_a_thousand();
 }
 
-/// Waves all over a large canvas.
+/// The same ball on a large canvas.
 const LARGE: Size = Size::new(4096, 4096);
-static WAVES: LazyLock<Arc<Surface>> = LazyLock::new(|| {
-    let normals = Plane::from_fn(LARGE, |x, y| {
-        let (x, y) = (x as f32, y as f32);
-        vec3(0.5 * (x / 97.0).cos() * (y / 131.0).sin(), 0.5 * (x / 89.0).sin() * (y / 113.0).cos(), 1.0)
-    });
-    let depth = Plane::from_fn(LARGE, |x, y| 0.5 + 0.3 * (x as f32 / 97.0).sin() * (y as f32 / 131.0).sin());
-    let maps = Maps { normals, depth, coverage: Plane::filled(LARGE, 255) };
-    Arc::new(Surface::new(maps).expect("maps of one size"))
-});
+static LARGE_SCENE: LazyLock<Scene> = LazyLock::new(|| ball(LARGE));
 
 /// Rows of tiles that the layers of the large document are painted in: where the strokes go.
 const BAND: std::ops::Range<i32> = 26..38;
@@ -161,7 +156,7 @@ fn layers() -> Document {
         let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles };
         Arc::new(Layer::new(format!("paint {i}"), Content::Pixels(pixels)))
     };
-    Document { surface: Some(WAVES.clone()), layers: (0..20).map(layer).collect(), ..Document::empty(LARGE) }
+    Document { surface: LARGE_SCENE.surface.clone(), layers: (0..20).map(layer).collect(), ..Document::empty(LARGE) }
 }
 
 /// Samples a frame at 1,000 a second, and how far apart the hand puts them at 2,000 px a second.
@@ -251,7 +246,8 @@ fn one_of_a_thousand() {
     let list = StrokeList { strokes: (0..1000).map(|i| stroke(i, Vec2::ZERO)).collect() };
     let layer = Layer::new("strokes", Content::Strokes(Live::new(list)));
     let id = layer.id;
-    let document = Document { surface: Some(WAVES.clone()), layers: vec![Arc::new(layer)], ..Document::empty(LARGE) };
+    let document =
+        Document { surface: LARGE_SCENE.surface.clone(), layers: vec![Arc::new(layer)], ..Document::empty(LARGE) };
     let progress = Progress::default();
     let start = Instant::now();
     let prepared = Prepared::new(&document, &progress).expect("nobody cancels");
