@@ -1,19 +1,27 @@
 //! The window, driven by the names of its controls, with no display and no graphics card.
 #![cfg(feature = "window-tests")]
 
+use eframe::egui::{Event, Key, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use rilievo::app::Window;
-use rilievo::document::Content;
+use rilievo::document::{Content, MaskKind};
 use std::path::PathBuf;
 
+type Story = Harness<'static, Option<Window>>;
+
 /// A window of a usual size, with an empty canvas in it.
-fn window() -> Harness<'static, Option<Window>> {
-    let show = |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
-        let window = window.get_or_insert_with(|| Window::new(ui.ctx()));
+fn window() -> Story {
+    window_at(1.0, None)
+}
+/// The same with so many pixels to a point, and the settings of a file.
+fn window_at(pixels_per_point: f32, settings: Option<PathBuf>) -> Story {
+    let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
+        let window = window.get_or_insert_with(|| Window::remembering(ui.ctx(), settings.clone()));
         window.show(ui);
     };
-    let mut harness = Harness::builder().with_size([1280.0, 820.0]).build_ui_state(show, None);
+    let builder = Harness::builder().with_size([1280.0, 820.0]).with_pixels_per_point(pixels_per_point);
+    let mut harness = builder.build_ui_state(show, None);
     harness.step();
     click(&mut harness, "File");
     click(&mut harness, "New…");
@@ -21,17 +29,52 @@ fn window() -> Harness<'static, Option<Window>> {
     harness
 }
 /// The painter's thread asks for frames as it likes, so a fixed number of them is enough.
-fn steps(harness: &mut Harness<Option<Window>>) {
+fn steps(harness: &mut Story) {
     (0..4).for_each(|_| harness.step());
 }
-fn click(harness: &mut Harness<Option<Window>>, label: &str) {
+fn click(harness: &mut Story, label: &str) {
     harness.get_by_label_contains(label).click();
     steps(harness);
 }
-fn session<'a>(harness: &'a Harness<Option<Window>>) -> &'a rilievo::session::Session {
+/// Steps until something is so, as other threads come to it.
+fn until(harness: &mut Story, is_so: impl Fn(&Story) -> bool) {
+    for _ in 0..600 {
+        harness.step();
+        if is_so(harness) {
+            return steps(harness);
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    panic!("it never came to that");
+}
+/// By its whole name.
+fn press(harness: &mut Story, label: &str) {
+    harness.get_by_label(label).click();
+    steps(harness);
+}
+fn key(harness: &mut Story, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    steps(harness);
+}
+fn command(harness: &mut Story, name: &str) {
+    key(harness, Modifiers::COMMAND, Key::K);
+    harness.get_by_label("Command").type_text(name);
+    steps(harness);
+    key(harness, Modifiers::NONE, Key::Enter);
+}
+fn stroke(harness: &mut Story, by: eframe::egui::Vec2) {
+    let middle = harness.get_by_label("Canvas").rect().center();
+    harness.drag_at(middle);
+    steps(harness);
+    harness.hover_at(middle + by);
+    steps(harness);
+    harness.drop_at(middle + by);
+    steps(harness);
+}
+fn session(harness: &Story) -> &rilievo::session::Session {
     &harness.state().as_ref().unwrap().session
 }
-fn layers(harness: &Harness<Option<Window>>) -> Vec<String> {
+fn layers(harness: &Story) -> Vec<String> {
     let document = session(harness).tab().unwrap().document();
     document.layers.iter().map(|layer| layer.name.clone()).collect()
 }
@@ -115,7 +158,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
         harness.drop_at(from + eframe::egui::vec2(120.0, 0.0));
         steps(&mut harness);
     }
-    let heights = |harness: &Harness<Option<Window>>| -> Vec<f32> {
+    let heights = |harness: &Story| -> Vec<f32> {
         let tab = session(harness).tab().unwrap();
         tab.document().strokes(tab.selected.unwrap()).iter().map(|stroke| stroke.samples()[0].at.y).collect()
     };
@@ -160,6 +203,182 @@ fn the_fill_tool_shows_its_options_and_fills() {
     assert_eq!(layers(&harness), ["Background", "Paint"]);
     let Content::Pixels(pixels) = &session(&harness).layer().unwrap().content else { panic!("a paint layer") };
     assert_ne!(pixels.tiles.pixel(3, 3), [0; 4]);
+
+#[test]
+fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
+    let mut harness = window();
+    press(&mut harness, "Properties");
+    press(&mut harness, "Hide all");
+    let masked = |harness: &Story| session(harness).layer().unwrap().mask.clone();
+    let coverage = |harness: &Story| match masked(harness).unwrap().kind {
+        MaskKind::File { coverage, .. } => coverage,
+        _ => panic!("a mask to paint on"),
+    };
+    assert!(session(&harness).tab().unwrap().on_mask && coverage(&harness).values().iter().all(|&v| v == 0));
+    stroke(&mut harness, vec2(60.0, 10.0));
+    assert!(coverage(&harness).values().iter().any(|&v| v > 100), "light paint shows");
+    assert_eq!(layers(&harness), ["Background"], "the stroke went to the mask");
+    press(&mut harness, "Invert mask");
+    press(&mut harness, "Use mask");
+    assert!(masked(&harness).unwrap().invert && masked(&harness).unwrap().disabled);
+    press(&mut harness, "Mask of Background");
+    assert!(!session(&harness).tab().unwrap().on_mask, "the brush paints on the layer again");
+    press(&mut harness, "Delete mask");
+    assert!(masked(&harness).is_none());
+    command(&mut harness, "Paint on mask");
+    assert!(masked(&harness).is_some(), "every command is in the palette");
+}
+#[test]
+fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
+    let mut harness = window();
+    press(&mut harness, "Properties");
+    for (name, shows) in [
+        ("New Phong layer", "Add light at a point"),
+        ("New toon layer", "Tones"),
+        ("New sub-Lambertian layer", "Flatness"),
+        ("New Ashikhmin layer", "Choose environment"),
+        ("New lit-sphere layer", "Choose lit sphere of hollows"),
+        ("New mirror layer", "Choose environment"),
+        ("New glass layer", "Index"),
+        ("New layer lit by an environment", "Reach"),
+        ("New ambient occlusion layer", "Reach"),
+    ] {
+        command(&mut harness, name);
+        assert!(matches!(session(&harness).layer().unwrap().content, Content::Shading(_)), "{name}");
+        assert!(harness.query_all_by_label(shows).count() > 0, "{name} shows {shows}");
+    }
+    command(&mut harness, "New detail normals");
+    assert!(harness.query_all_by_label("Roughness").count() > 0);
+}
+#[test]
+fn pictures_and_maps_are_read_beside_the_window_and_put_where_they_belong() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sky.png");
+    let picture = image::RgbImage::from_fn(64, 32, |x, y| image::Rgb([(x * 4) as u8, (y * 8) as u8, 200]));
+    picture.save(&file).unwrap();
+    let mut harness = window();
+    command(&mut harness, "New mirror layer");
+    press(&mut harness, "Properties");
+    press(&mut harness, "Choose environment");
+    choose(&mut harness, &file);
+    until(&mut harness, |harness| environment(harness).is_some_and(|file| file == "sky.png"));
+    press(&mut harness, "Remove");
+    assert_eq!(environment(&harness), None);
+    harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(file)));
+    harness.step();
+    until(&mut harness, |harness| layers(harness).contains(&"sky".to_owned()));
+}
+/// A file as the system drops it.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+impl eframe::egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+fn environment(harness: &Story) -> Option<String> {
+    match &session(harness).layer().unwrap().content {
+        Content::Shading(live) => live.params().environment.as_ref().map(|environment| environment.file.clone()),
+        _ => None,
+    }
+}
+/// Answers the window's own file dialog.
+fn choose(harness: &mut Story, file: &std::path::Path) {
+    until(harness, |harness| harness.query_by_label("File name").is_some());
+    harness.get_by_label("File name").type_text(&file.to_string_lossy());
+    steps(harness);
+    key(harness, Modifiers::NONE, Key::Enter);
+}
+#[test]
+fn a_key_that_is_taken_is_asked_for_and_then_given() {
+    let mut harness = window();
+    command(&mut harness, "Keyboard shortcuts");
+    harness.get_by_label("Find a shortcut").type_text("radiance");
+    steps(&mut harness);
+    press(&mut harness, "Add a key to New radiance scaling");
+    key(&mut harness, Modifiers::COMMAND, Key::J);
+    harness.get_by_label_contains("belongs to “Duplicate layer”");
+    press(&mut harness, "Give it to “New radiance scaling”");
+    press(&mut harness, "Close");
+    key(&mut harness, Modifiers::COMMAND, Key::J);
+    assert_eq!(layers(&harness), ["Background", "Radiance scaling"]);
+}
+#[test]
+fn what_was_chosen_is_there_the_next_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = folder.path().join("settings.json");
+    let mut harness = window_at(1.0, Some(settings.clone()));
+    command(&mut harness, "Light or dark");
+    command(&mut harness, "Panels on the other side");
+    command(&mut harness, "Layers in a window");
+    press(&mut harness, "History");
+    let is_kept = move |_: &Story| std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("History"));
+    until(&mut harness, is_kept);
+    drop(harness);
+    let harness = window_at(1.0, Some(folder.path().join("settings.json")));
+    let panels = harness.get_by_label("History").rect();
+    assert!(panels.left() < harness.get_by_label("Canvas").rect().left(), "they stand at the left");
+    assert!(!harness.ctx.global_style().visuals.dark_mode);
+}
+#[test]
+fn two_fingers_that_tap_take_a_step_back() {
+    let mut harness = window();
+    click(&mut harness, "+ Add");
+    click(&mut harness, "Fill layer");
+    let middle = harness.get_by_label("Canvas").rect().center();
+    for phase in [TouchPhase::Start, TouchPhase::End] {
+        for finger in [1, 2] {
+            let pos = middle + vec2(40.0 * finger as f32, 0.0);
+            harness.event(touch(finger, phase, pos));
+        }
+        harness.step();
+    }
+    steps(&mut harness);
+    assert_eq!(layers(&harness), ["Background"]);
+}
+fn touch(finger: u64, phase: TouchPhase, pos: Pos2) -> Event {
+    Event::Touch { device_id: TouchDeviceId(0), id: TouchId(finger), phase, pos, force: None }
+}
+#[test]
+fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
+    for pixels_per_point in [1.0, 1.5, 2.0] {
+        let mut harness = window_at(pixels_per_point, None);
+        command(&mut harness, "Actual pixels");
+        let zoom = session(&harness).tab().unwrap().view.unwrap().zoom;
+        assert!((zoom * pixels_per_point - 1.0).abs() < 1e-4, "{zoom}");
+        harness.get_by_label("100 %");
+    }
+}
+#[test]
+fn layers_are_merged_baked_and_flattened_beside_the_window() {
+    let mut harness = window();
+    command(&mut harness, "New gradient layer");
+    command(&mut harness, "Bake layer");
+    until(&mut harness, |harness| matches!(session(harness).layer().unwrap().content, Content::Pixels(_)));
+    command(&mut harness, "Merge down");
+    until(&mut harness, |harness| layers(harness) == ["Background"]);
+    command(&mut harness, "Flatten picture");
+    until(&mut harness, |harness| layers(harness) == ["Picture"]);
+    command(&mut harness, "Undo");
+    assert_eq!(layers(&harness), ["Background"]);
+}
+#[test]
+fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window();
+    command(&mut harness, "Export");
+    harness.get_by_label("Preview of the export");
+    press(&mut harness, "Export…");
+    let (png, ora) = (folder.path().join("out.png"), folder.path().join("out.ora"));
+    choose(&mut harness, &png);
+    until(&mut harness, |_| png.is_file());
+    command(&mut harness, "Save as");
+    choose(&mut harness, &ora);
+    until(&mut harness, |harness| session(harness).tab().unwrap().file.is_some());
+    assert!(ora.is_file() && !session(&harness).tab().unwrap().is_dirty());
 }
 /// Steps long enough for a thread to finish something small.
 fn wait(harness: &mut Harness<Option<Window>>) {

@@ -28,6 +28,7 @@ pub enum WindowAsk {
     NewDialog,
     OpenDialog,
     OpenMapsDialog,
+    ReplaceMapsDialog,
     PlaceDialog,
     /// Opened on a thread of its own.
     Open(PathBuf),

@@ -3,6 +3,7 @@
 
 use super::jobs::{Done, Jobs, While};
 use crate::io::export::Format;
+use crate::session::actions::pictures::Part;
 use crate::session::storage::{DOCUMENTS, PICTURES};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -15,6 +16,8 @@ pub enum Purpose {
     NormalMap,
     DepthMap,
     MaskMap,
+    /// A picture that the selected layer is made of.
+    Part(Part),
     Save,
     Export,
 }
@@ -27,6 +30,7 @@ impl Purpose {
             Purpose::NormalMap => "Normal map",
             Purpose::DepthMap => "Depth map",
             Purpose::MaskMap => "Mask",
+            Purpose::Part(part) => part.title(),
             Purpose::Save => "Save as",
             Purpose::Export => "Export the picture",
         }
@@ -43,7 +47,7 @@ impl Purpose {
                 ("Documents", DOCUMENTS.to_vec()),
                 ("Pictures and maps", pictures()),
             ],
-            Purpose::Place | Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap => {
+            Purpose::Place | Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap | Purpose::Part(_) => {
                 vec![("Pictures", pictures())]
             }
             Purpose::Save => vec![("Documents", DOCUMENTS.to_vec())],

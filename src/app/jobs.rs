@@ -2,12 +2,14 @@
 //! Floor 7.
 
 use crate::app::files::Purpose;
-use crate::document::{Document, Progress};
+use crate::document::{Document, LayerId, Progress};
+use crate::io::maps;
 use crate::io::save::Stamp;
 use crate::io::{maps, recovery};
 use crate::raster::Picture;
 use crate::session::Edit;
 use crate::session::autosave::Found;
+use crate::session::actions::pictures::Read;
 use crate::session::storage::{self, Kind, Opened};
 use crate::{Error, Result};
 use eframe::egui;
@@ -28,7 +30,9 @@ pub enum Done {
     /// One of them was brought back.
     Recovered(Box<Result<Found>>),
     /// A picture was read, to become an image layer.
-    Pictured(String, Picture),
+    Pictured(String, Picture, Where),
+    /// A picture was read that a layer of a tab, by its key, is to be made of.
+    Part(usize, LayerId, Box<Read>),
     /// The document of a tab was saved; `None` if that was given up.
     Saved(Box<Saved>),
     /// An edit of the document of a tab that took long.
@@ -40,6 +44,15 @@ pub enum Done {
     Failed(Error),
     /// A file dialog was answered; `None` where the system has no dialog.
     Chosen(Purpose, Option<PathBuf>),
+}
+
+/// Where a picture is to be pinned to the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Where {
+    /// In the middle of the canvas.
+    Middle,
+    /// Under the pointer, if that is on the canvas.
+    Pointer,
 }
 
 pub struct Saved {

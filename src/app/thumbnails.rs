@@ -3,8 +3,8 @@
 
 use super::jobs;
 use crate::Error;
-use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layer};
-use crate::raster::TileGrid;
+use crate::document::{Content, Document, Layer, LayerId, LayerMask, MaskKind, Progress, flatten_layer};
+use crate::raster::{Plane, TileGrid};
 use crate::surface::Surface;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2, vec2};
 use std::collections::HashMap;
@@ -33,6 +33,8 @@ pub struct Thumbnails {
     made: HashMap<LayerId, TextureHandle>,
     /// Which version of a layer was ordered last.
     ordered: HashMap<LayerId, Weak<Layer>>,
+    /// Of masks that are pictures, each with the one it shows.
+    masks: HashMap<LayerId, (Weak<Plane<u8>>, bool, TextureHandle)>,
     /// What cannot be done here, to be told once.
     pub trouble: Option<Error>,
 }
@@ -59,7 +61,7 @@ impl Thumbnails {
         };
         // Without a thread there are no thumbnails, only icons.
         let trouble = jobs::spawn("thumbnails", work).err();
-        Self { orders, done, made: HashMap::new(), ordered: HashMap::new(), trouble }
+        Self { orders, done, made: HashMap::new(), ordered: HashMap::new(), masks: HashMap::new(), trouble }
     }
     /// Takes what was made.
     pub fn collect(&mut self, ctx: &egui::Context) {
@@ -81,6 +83,28 @@ impl Thumbnails {
             let _ = self.orders.send(Order { layer: layer.clone(), document: alone });
         }
         self.made.get(&layer.id).map(|texture| (texture.id(), vec2(texture.size()[0] as f32, texture.size()[1] as f32)))
+    }
+    /// The mask of a layer, small, as it counts; one that is derived has none.
+    pub fn of_mask(&mut self, ctx: &egui::Context, layer: &Layer) -> Option<(TextureId, Vec2)> {
+        let LayerMask { kind: MaskKind::File { coverage, .. }, invert, .. } = layer.mask.as_ref()? else { return None };
+        let known = self
+            .masks
+            .get(&layer.id)
+            .filter(|(of, inverted, _)| of.as_ptr() == Arc::as_ptr(coverage) && inverted == invert);
+        if known.is_none() {
+            let size = coverage.size();
+            let step = size.width.max(size.height).div_ceil(SIDE).max(1);
+            let (width, height) = (size.width.div_ceil(step) as usize, size.height.div_ceil(step) as usize);
+            let grey = |i: usize| {
+                let at = |v: usize| (v as u32 * step + step / 2) as i32;
+                let v = coverage.clamped(at(i % width), at(i / width));
+                Color32::from_gray(if *invert { 255 - v } else { v })
+            };
+            let image = ColorImage::new([width, height], (0..width * height).map(grey).collect());
+            let texture = ctx.load_texture(format!("mask {:?}", layer.id), image, TextureOptions::LINEAR);
+            self.masks.insert(layer.id, (Arc::downgrade(coverage), *invert, texture));
+        }
+        self.masks.get(&layer.id).map(|(_, _, texture)| (texture.id(), texture.size_vec2()))
     }
 }
 

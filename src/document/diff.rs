@@ -2,7 +2,7 @@
 //! and parameters, never pixels.
 //! Floor 4. Conservative: a tile that is not named is the same; a tile that is named may be.
 
-use super::{Content, Document, Layer, LayerId, Live, StrokeList};
+use super::{Content, Document, Layer, LayerId, Live, StrokeList, mask};
 use crate::math::Rect;
 use crate::paint::{Scene, Stroke};
 use crate::raster::TileAt;
@@ -115,6 +115,14 @@ impl Diff<'_> {
         if self.old.get(&old.id) != self.new.get(&new.id) || !looks_alike(old, new) {
             return self.both(old, new);
         }
+        if let (Some(a), Some(b)) = (&old.mask, &new.mask)
+            && !a.is_same(b)
+        {
+            // Of a mask that is painted on, only some tiles are others.
+            let Some(tiles) = mask::changed_tiles(a, b) else { return self.both(old, new) };
+            let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
+            return self.tiles(tiles) | self.layer(old, &unmasked, beneath);
+        }
         match (&old.content, &new.content) {
             (Content::RadianceScaling(a), Content::RadianceScaling(b)) => {
                 let measures = b.keep_mean || b.reference == Reference::Auto;
@@ -200,7 +208,7 @@ fn differing<'s>(old: &'s [Arc<Stroke>], new: &'s [Arc<Stroke>]) -> impl Iterato
     old[..old.len() - end].iter().chain(&new[..new.len() - end])
 }
 
-/// All but the content, the name and the lock is equal.
+/// All but the content, the name, the lock and what the mask holds is equal.
 fn looks_alike(a: &Layer, b: &Layer) -> bool {
     a.visible == b.visible
         && a.opacity == b.opacity
@@ -210,7 +218,7 @@ fn looks_alike(a: &Layer, b: &Layer) -> bool {
         && a.clip_to_surface == b.clip_to_surface
         && match (&a.mask, &b.mask) {
             (None, None) => true,
-            (Some(a), Some(b)) => a.is_same(b),
+            (Some(_), Some(_)) => true,
             _ => false,
         }
 }

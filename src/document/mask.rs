@@ -1,7 +1,7 @@
 //! A layer's mask: a picture of coverage, or one derived from the surface.
 //! Floor 4.
 
-use super::{Content, prepare::Node};
+use super::{Content, Layer, prepare, prepare::Node};
 use crate::paint::Scene;
 use crate::raster::{Coverage, Plane, TileAt};
 use crate::surface::{Curvature, Surface};
@@ -13,6 +13,8 @@ pub struct LayerMask {
     pub kind: MaskKind,
     /// 1 − the mask.
     pub invert: bool,
+    /// Put aside: the layer shows as if it had none.
+    pub disabled: bool,
 }
 
 #[derive(Clone)]
@@ -87,16 +89,35 @@ fn pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) 
 }
 
 impl LayerMask {
+    /// A mask that counts, as it is.
+    pub fn new(kind: MaskKind) -> Self {
+        Self { kind, invert: false, disabled: false }
+    }
+    /// The same mask as a picture that can be painted on; what it showed it shows. One derived from a surface covers all
+    /// where there is none.
+    pub fn as_picture(&self, layer: &Layer, scene: &Scene) -> LayerMask {
+        let plain = LayerMask { invert: false, disabled: false, ..self.clone() };
+        let curvature = prepare::curvature_of_mask(layer, scene);
+        let cover = |x: usize, y: usize| {
+            let v = plain.at(scene, curvature.as_deref(), x as i32, y as i32);
+            (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8
+        };
+        let coverage = Arc::new(Plane::from_fn(scene.size, cover));
+        LayerMask { kind: MaskKind::File { file: String::new(), coverage }, ..self.clone() }
+    }
     /// Multiplies a coverage by the mask. One derived from a surface changes nothing where there is none.
     fn multiply(&self, coverage: Coverage, scene: &Scene, curvature: Option<&Curvature>, at: TileAt) -> Coverage {
         let needs_surface = !matches!(self.kind, MaskKind::File { .. });
-        if needs_surface && scene.surface.is_none() {
+        if self.disabled || (needs_surface && scene.surface.is_none()) {
             return coverage;
         }
         coverage.times(pixels(at, |x, y| self.at(scene, curvature, x, y)))
     }
     /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived from it.
     pub(super) fn at(&self, scene: &Scene, curvature: Option<&Curvature>, x: i32, y: i32) -> f32 {
+        if self.disabled {
+            return 1.0;
+        }
         let way = |v: f32| if self.invert { 1.0 - v } else { v };
         if let MaskKind::File { coverage, .. } = &self.kind {
             return way(coverage.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0));
@@ -127,13 +148,30 @@ impl LayerMask {
             (Depth { from, to }, Depth { from: f, to: t }) => (from, to) == (f, t),
             _ => false,
         };
-        same_kind && self.invert == other.invert
+        same_kind && self.invert == other.invert && self.disabled == other.disabled
     }
 }
 
 /// Schlick's approximation f0 + (1 − f0)(1 − n_z)^power, `n_z` clamped to `[0, 1]` (SF fig. 12c).
 fn fresnel(nz: f32, f0: f32, power: f32) -> f32 {
     f0 + (1.0 - f0) * (1.0 - nz.max(0.0).min(1.0)).powf(power)
+}
+
+/// The tiles in which two masks differ, where both are pictures of one size that count alike; `None` where they are not.
+pub(super) fn changed_tiles(old: &LayerMask, new: &LayerMask) -> Option<Vec<TileAt>> {
+    let (MaskKind::File { coverage: a, .. }, MaskKind::File { coverage: b, .. }) = (&old.kind, &new.kind) else {
+        return None;
+    };
+    if a.size() != b.size() || old.invert != new.invert || old.disabled != new.disabled {
+        return None;
+    }
+    let canvas = a.size().rect();
+    let differs = |at: &TileAt| {
+        let inside = at.rect().intersect(canvas);
+        let columns = inside.x0 as usize..inside.x1 as usize;
+        (inside.y0 as usize..inside.y1 as usize).any(|y| a.row(y)[columns.clone()] != b.row(y)[columns.clone()])
+    };
+    Some(TileAt::covering(canvas).filter(differs).collect())
 }
 
 /// 0 at `from`, 1 at `to`, clamped; a step where they are the same.

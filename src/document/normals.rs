@@ -184,7 +184,7 @@ mod tests {
     fn opacity_and_mask_weigh_the_strength() {
         let coverage = Plane::from_fn(SIZE, |x, _| if x < 40 { 255 } else { 0 });
         let kind = MaskKind::File { file: "m.png".into(), coverage: Arc::new(coverage) };
-        let layer = Layer { opacity: 0.5, mask: Some(LayerMask { kind, invert: false }), ..normals(1.0) };
+        let layer = Layer { opacity: 0.5, mask: Some(LayerMask::new(kind)), ..normals(1.0) };
         let surface = seen(&layer, &document(vec![]));
         // Half the slope of 0.6 / 0.8.
         let n = surface.normal(10, 10);

@@ -2,7 +2,7 @@
 //! Floor 6.
 
 use super::view::View;
-use crate::document::{Document, History, LayerId};
+use crate::document::{Document, History, LayerId, MaskKind};
 use crate::io::save::Stamp;
 use crate::math::Vec2;
 use std::path::PathBuf;
@@ -37,6 +37,8 @@ pub struct Tab {
     saved: Document,
     /// `None` until the window has shown it once.
     pub view: Option<View>,
+    /// The brush and the eraser change the selected layer's mask, not the layer.
+    pub on_mask: bool,
     /// The one layer that is shown, while it is alone.
     pub solo: Option<LayerId>,
     /// Where the last stroke ended, canvas px.
@@ -64,6 +66,7 @@ impl Tab {
             stamp: None,
             name: name.into(),
             view: None,
+            on_mask: false,
             solo: None,
             last_end: None,
             chosen: None,
@@ -155,7 +158,11 @@ impl Tab {
         self.repair();
     }
     /// A selected layer that is gone gives way to the topmost.
-    fn repair(&mut self) {
+    pub(super) fn repair(&mut self) {
+        let has_mask = |layer: &Arc<crate::document::Layer>| {
+            layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }))
+        };
+        self.on_mask &= self.selected.and_then(|id| self.document().layer(id)).is_some_and(has_mask);
         let document = self.history.present();
         let is_there = |id: LayerId| document.layer(id).is_some();
         if !self.selected.is_some_and(is_there) {

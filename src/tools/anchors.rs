@@ -2,9 +2,9 @@
 //! Floor 5. What anchors do is `surface::deformation`'s.
 
 use super::gradient::{self, End};
-use super::{Begun, Context, GRAB_PT, Gesture, Outcome, Pen};
+use super::{Begun, Context, GRAB_PT, Gesture, Outcome, Pen, lights};
 use crate::document::{Content, Document, Layer, LayerId, Live, Lock};
-use crate::math::Vec2;
+use crate::math::{Size, Vec2};
 use crate::paint::PlacedImage;
 use crate::surface::{Anchor, Deformation, Surface};
 use std::sync::Arc;
@@ -20,25 +20,28 @@ pub enum How {
     Repin,
 }
 
-/// The handles of a layer, canvas px: its anchors, or a gradient's ends.
-pub fn handles(layer: &Layer) -> Vec<Vec2> {
+/// The handles of a layer, canvas px: its anchors, a gradient's ends, or lights.
+pub fn handles(layer: &Layer, canvas: Size) -> Vec<Vec2> {
     match &layer.content {
         Content::Image(live) => live.params().bend.anchors.iter().map(|anchor| anchor.at).collect(),
         Content::Gradient(live) => vec![live.params().from, live.params().to],
+        Content::Shading(live) if !live.params().model.needs_environment() => {
+            lights::handles(&live.params().lights, canvas)
+        }
         _ => Vec::new(),
     }
 }
 
 /// The handle that the pen takes hold of.
-pub fn handle_at(layer: &Layer, at: Vec2, px_per_pt: f32) -> Option<usize> {
-    let near = handles(layer).into_iter().map(|handle| handle.distance(at)).enumerate();
+pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<usize> {
+    let near = handles(layer, canvas).into_iter().map(|handle| handle.distance(at)).enumerate();
     near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= GRAB_PT * px_per_pt).map(|(i, _)| i)
 }
 
 pub fn press(context: &Context, pen: Pen) -> Begun {
     let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != Lock::All);
     let Some(layer) = layer else { return (None, Outcome::Idle) };
-    let taken = handle_at(layer, pen.place(), context.px_per_pt);
+    let taken = handle_at(layer, context.document.size, pen.place(), context.px_per_pt);
     let document = context.document.clone();
     match (&layer.content, taken) {
         (Content::Image(live), None) if !pen.keys.alt => add(document, layer, live.params().clone(), pen),
@@ -70,6 +73,10 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
             let end = if index == 0 { End::From } else { End::To };
             let gradient = live.params().clone();
             gradient::drag_end(document, layer.id, gradient, end)
+        }
+        (Content::Shading(live), Some(index)) => {
+            let (layer, shading) = (layer.id, live.params().clone());
+            (Some(Box::new(lights::Dragged { document, layer, shading, index, moved: false })), Outcome::Idle)
         }
         _ => (None, Outcome::Idle),
     }

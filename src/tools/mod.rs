@@ -8,6 +8,8 @@ pub mod eyedropper;
 pub mod fill;
 pub mod gradient;
 pub mod image;
+pub mod lights;
+pub mod mask;
 pub mod outline;
 pub mod shift;
 pub mod strokes;

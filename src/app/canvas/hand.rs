@@ -5,10 +5,10 @@
 use crate::app::pen::{PenSource, Phase, Reading, Report, Watch, WindowPen};
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
-use crate::session::actions::{HandAction, PointerAction, ViewAction};
+use crate::session::actions::{EditAction, HandAction, PointerAction, ViewAction};
 use crate::session::{Action, Session, View};
 use crate::tools::{Keys, Pen, ToolKind};
-use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Response, Ui};
+use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Response, TouchPhase, Ui};
 
 /// What the pointer is doing between press and release.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -30,6 +30,10 @@ enum Holding {
     },
 }
 
+/// Two fingers that stay no longer, and move no farther, have tapped.
+const TAP_SECS: f64 = 0.35;
+const TAP_PT: f32 = 12.0;
+
 /// What is known between frames.
 #[derive(Default)]
 pub struct Hand {
@@ -38,6 +42,8 @@ pub struct Hand {
     pen: WindowPen,
     /// While a stroke is drawn.
     watch: Option<Watch>,
+    /// Two fingers came down: since when, and how far they moved since, points.
+    tap: Option<(f64, f32)>,
     keys: Modifiers,
     space: bool,
 }
@@ -99,6 +105,9 @@ impl Hand {
         }
         for event in events {
             self.pen.hear(&event, now_secs);
+            if let Event::Touch { phase, pos, .. } = &event {
+                self.touched(*phase, ours(*pos), &mut listening);
+            }
             while let Some(report) = self.pen.next() {
                 match report.phase {
                     Phase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
@@ -127,6 +136,22 @@ impl Hand {
             }
         }
         listening.flush();
+    }
+    /// A finger, or a pen that reports itself as one. Two that come down and go again, without moving, take a step back.
+    fn touched(&mut self, phase: TouchPhase, is_here: bool, listening: &mut Listening) {
+        let touches = self.pen.touches();
+        match phase {
+            TouchPhase::Start => self.tap = (touches == 2 && is_here).then_some((listening.now_secs, 0.0)),
+            TouchPhase::Cancel => self.tap = None,
+            TouchPhase::End if touches == 0 => {
+                let Some((began_secs, moved_pt)) = self.tap.take() else { return };
+                if listening.now_secs - began_secs < TAP_SECS && moved_pt < TAP_PT {
+                    listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
+                    listening.actions.push(Action::Edit(EditAction::Undo {}));
+                }
+            }
+            TouchPhase::End | TouchPhase::Move => {}
+        }
     }
     fn press(&mut self, report: &Report, button: PointerButton, listening: &mut Listening) {
         if self.holding != Holding::Nothing {
@@ -215,6 +240,9 @@ impl Hand {
             listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
         }
         self.holding = Holding::Nothing;
+        if let Some((_, moved_pt)) = &mut self.tap {
+            *moved_pt += by.length() + 100.0 * ((zoom - 1.0).abs() + turn_rad.abs());
+        }
         listening.view(ViewAction::Pan { by: vec2(by.x, by.y) });
         listening.zoom(zoom, about);
         if turn_rad != 0.0 {

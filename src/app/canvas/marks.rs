@@ -96,6 +96,15 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
             painter.line_segment([from, to], Stroke::new(3.0, Color32::from_black_alpha(110)));
             painter.line_segment([from, to], line);
         }
+        Content::Shading(_) => {
+            // From the middle toward each light, as far as it leans.
+            let Some(canvas) = session.shown().map(|document| document.size) else { return };
+            for light in anchors::handles(layer, canvas) {
+                let ends = [to_screen(canvas.center()), to_screen(light)];
+                painter.line_segment(ends, Stroke::new(3.0, Color32::from_black_alpha(90)));
+                painter.line_segment(ends, Stroke::new(1.0, Color32::from_white_alpha(150)));
+            }
+        }
         Content::Image(live) => {
             for anchor in live.params().bend.anchors.iter().filter(|anchor| anchor.at != anchor.source) {
                 let (from, to) = (to_screen(anchor.at), to_screen(anchor.source));
@@ -110,7 +119,8 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
         }
         _ => {}
     }
-    for (i, handle) in anchors::handles(layer).into_iter().enumerate() {
+    let Some(canvas) = session.shown().map(|document| document.size) else { return };
+    for (i, handle) in anchors::handles(layer, canvas).into_iter().enumerate() {
         let at = to_screen(handle);
         painter.circle_filled(at, 7.0, Color32::from_black_alpha(130));
         painter.circle_filled(at, 5.5, anchor_color(i));

@@ -2,8 +2,10 @@
 //! Floor 7.
 
 use super::{Command, Menu, ctrl, ctrl_shift, has_document, has_layer, key, line};
-use crate::app::asked::Asked;
-use crate::document::{Content, Lock};
+use crate::app::asked::{Asked, WindowAsk};
+use crate::app::files::Purpose;
+use crate::document::{Content, Lock, MaskKind};
+use crate::session::actions::pictures::Part;
 use crate::session::actions::{LayerAction, NewLayer};
 use crate::session::{Action, LayerPath, Property, Session};
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
@@ -25,6 +27,9 @@ const fn ctrl_page(key: Key) -> KeyboardShortcut {
 }
 fn is_group(session: &Session) -> bool {
     session.layer().is_some_and(|layer| matches!(layer.content, Content::Group(_)))
+}
+fn has_mask(session: &Session) -> bool {
+    session.layer().is_some_and(|layer| layer.mask.is_some())
 }
 fn is_live(session: &Session) -> bool {
     session.layer().is_some_and(|layer| !matches!(layer.content, Content::Pixels(_) | Content::RadianceScaling(_)))
@@ -64,20 +69,20 @@ pub const COMMANDS: &[Command] = &[
         run: |_, asked| add(asked, NewLayer::Gradient),
     },
     Command {
-        name: "New shading layer",
-        menu: MENU,
-        keys: &[],
-        hint: "A material under lights, on the normals of the surface",
-        can: has_document,
-        run: |_, asked| add(asked, NewLayer::Shading),
-    },
-    Command {
         name: "New radiance scaling",
         menu: MENU,
         keys: &[],
         hint: "Brings out the relief of whatever is painted beneath it",
         can: has_document,
         run: |_, asked| add(asked, NewLayer::RadianceScaling),
+    },
+    Command {
+        name: "New detail normals",
+        menu: MENU,
+        keys: &[],
+        hint: "Grain or a map of normals laid onto the surface, for everything above it",
+        can: has_document,
+        run: |_, asked| add(asked, NewLayer::Normals),
     },
     Command {
         name: "New group",
@@ -160,6 +165,60 @@ pub const COMMANDS: &[Command] = &[
         hint: "All that shows becomes one paint layer",
         can: has_layer,
         run: |_, asked| asked.act(Action::Layer(LayerAction::Flatten {})),
+    },
+    line(MENU),
+    Command {
+        name: "Paint on mask",
+        menu: MENU,
+        keys: &[],
+        hint: "The brush changes the mask of the layer, made if there is none: white shows, black hides. Or the layer again",
+        can: has_layer,
+        run: |session, asked| {
+            let mask = session.layer().and_then(|layer| layer.mask.clone());
+            let is_on = session.tab().is_some_and(|tab| tab.on_mask);
+            with_selected(session, asked, |layer| match mask {
+                Some(mask) if matches!(mask.kind, MaskKind::File { .. }) => LayerAction::OnMask { layer, on: !is_on },
+                _ => LayerAction::PaintMask { layer, hides: false },
+            });
+        },
+    },
+    Command {
+        name: "Mask from a picture…",
+        menu: MENU,
+        keys: &[],
+        hint: "Its light parts show the layer",
+        can: has_layer,
+        run: |_, asked| asked.ask(WindowAsk::Choose(Purpose::Part(Part::Mask))),
+    },
+    Command {
+        name: "Invert mask",
+        menu: MENU,
+        keys: &[],
+        hint: "Show what it hides, and hide what it shows",
+        can: has_mask,
+        run: |session, asked| {
+            let on = session.layer().is_some_and(|layer| layer.mask.as_ref().is_some_and(|mask| !mask.invert));
+            set(session, asked, Property::MaskInverted { on });
+        },
+    },
+    Command {
+        name: "Use mask",
+        menu: MENU,
+        keys: &[],
+        hint: "Put the mask aside, or use it again",
+        can: has_mask,
+        run: |session, asked| {
+            let on = session.layer().is_some_and(|layer| layer.mask.as_ref().is_some_and(|mask| !mask.disabled));
+            set(session, asked, Property::MaskDisabled { on });
+        },
+    },
+    Command {
+        name: "Delete mask",
+        menu: MENU,
+        keys: &[],
+        hint: "The layer shows whole again",
+        can: has_mask,
+        run: |session, asked| set(session, asked, Property::Mask { mask: None }),
     },
     line(MENU),
     Command {

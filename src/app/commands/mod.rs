@@ -7,6 +7,7 @@ mod file;
 mod help;
 mod layer;
 mod paint;
+mod shading;
 mod view;
 
 use super::asked::Asked;
@@ -32,6 +33,8 @@ pub enum Menu {
     File,
     Edit,
     Layer,
+    /// Within the Layer menu.
+    Shading,
     Paint,
     View,
     Help,
@@ -50,9 +53,17 @@ impl Menu {
 
 /// Every command, menu by menu. An empty name is a line between two.
 pub fn all() -> impl Iterator<Item = &'static Command> {
-    [file::COMMANDS, edit::COMMANDS, layer::COMMANDS, paint::COMMANDS, view::COMMANDS, help::COMMANDS]
-        .into_iter()
-        .flatten()
+    [
+        file::COMMANDS,
+        edit::COMMANDS,
+        layer::COMMANDS,
+        shading::COMMANDS,
+        paint::COMMANDS,
+        view::COMMANDS,
+        help::COMMANDS,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// A command by its name.

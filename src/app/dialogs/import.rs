@@ -27,6 +27,8 @@ pub struct Import {
     found: Option<Result<maps::Import>>,
     /// Lit as found, with red, green, and both flipped.
     lit: Vec<TextureHandle>,
+    /// For the document in front, not for a new one.
+    replaces: bool,
 }
 
 /// What each of the four pictures changes: x and y flipped.
@@ -41,6 +43,16 @@ impl Import {
             source = storage::maps_beside(file);
         }
         Self { source, ..Self::default() }
+    }
+    /// To replace the maps of a document, which are shown as they are.
+    pub fn replacing(source: Option<&SurfaceSource>) -> Self {
+        // What came out of a project has no file of its own to be read again.
+        let is_there = |source: &&SurfaceSource| {
+            let normal = source.normal.as_ref().map(|map| &map.file);
+            let file = normal.or(source.depth.as_ref().map(|map| &map.file));
+            file.is_some_and(|file| Path::new(file).is_file())
+        };
+        Self { source: source.filter(is_there).cloned().unwrap_or_default(), replaces: true, ..Self::default() }
     }
     /// A file was chosen for one of the maps.
     pub fn take_file(&mut self, purpose: Purpose, file: PathBuf) {
@@ -65,7 +77,7 @@ impl Import {
     }
     pub fn show(&mut self, ui: &mut Ui) -> Answer {
         ui.set_width(560.0);
-        ui.heading("New document from maps");
+        ui.heading(if self.replaces { "Other maps for this document" } else { "New document from maps" });
         let mut ask = None;
         self.files(ui, &mut ask);
         if let Some(purpose) = ask {
@@ -88,7 +100,7 @@ impl Import {
             Some(Ok(_)) => self.understood(ui),
         }
         let is_ready = !self.is_reading && matches!(self.found, Some(Ok(_)));
-        match buttons(ui, "Create", is_ready) {
+        match buttons(ui, if self.replaces { "Replace" } else { "Create" }, is_ready) {
             Some(true) => self.create(),
             Some(false) => Answer::Close,
             None => Answer::Open,
@@ -208,6 +220,7 @@ impl Import {
     }
     fn create(&mut self) -> Answer {
         match self.found.take() {
+            Some(Ok(import)) if self.replaces => Answer::Replaced(Box::new((self.source.clone(), import))),
             Some(Ok(import)) => Answer::Imported(Box::new(storage::of_import(&self.source, import))),
             _ => Answer::Open,
         }

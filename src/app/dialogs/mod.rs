@@ -15,6 +15,7 @@ use super::asked::{Asked, WindowAsk};
 use super::files::Purpose;
 use super::keymap::Keymap;
 use crate::document::SurfaceSource;
+use crate::io::maps;
 use crate::io::recovery::Session as Lost;
 use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
@@ -43,6 +44,8 @@ pub enum Answer {
     Import(Box<SurfaceSource>),
     /// The document that was made of them.
     Imported(import::Made),
+    /// The maps that the document in front is to have.
+    Replaced(Box<(SurfaceSource, maps::Import)>),
     /// Lose what is not saved, and do this.
     Discard(Then),
     /// Save first, then do this.
@@ -62,13 +65,20 @@ pub enum Then {
 }
 
 impl Dialog {
-    /// Shows the dialog; escape and a click beside it close it.
-    pub fn show(&mut self, ctx: &egui::Context, session: &Session, keymap: &mut Keymap, asked: &mut Asked) -> Answer {
+    /// Shows the dialog; escape and a click beside it close it. `preview`: the picture of the document in front, small.
+    pub fn show(
+        &mut self,
+        ctx: &egui::Context,
+        session: &Session,
+        keymap: &mut Keymap,
+        preview: Option<egui::TextureId>,
+        asked: &mut Asked,
+    ) -> Answer {
         let modal = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
             ui.spacing_mut().item_spacing.y = 7.0;
             match self {
                 Dialog::New(new) => new.show(ui, asked),
-                Dialog::Export(export) => export.show(ui, session),
+                Dialog::Export(export) => export.show(ui, session, preview),
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),
                 Dialog::Recovery(recovery) => recovery.show(ui),

@@ -3,6 +3,7 @@
 
 use super::{Answer, buttons};
 use crate::app::files::Purpose;
+use crate::app::widgets::named;
 use eframe::egui::{Button, ScrollArea, TextEdit, Ui};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -62,6 +63,7 @@ impl PathDialog {
         ui.horizontal(|ui| {
             let label = ui.label("File");
             let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY)).labelled_by(label.id);
+            named(&field, "File name");
             if !std::mem::replace(&mut self.is_begun, true) {
                 field.request_focus();
             }

@@ -4,12 +4,16 @@
 use super::colors;
 use super::properties::Setter;
 use crate::app::widgets::{Changed, Number, check, choice_row, title};
-use crate::math::{Vec3, vec2, vec3};
+use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::session::Property;
-use crate::shading::{FeatureScale, Features, Light, LightKind, Model, RadianceScaling, Scaling, Shading, Term};
+use crate::session::actions::pictures::Part;
+use crate::shading::{
+    Environment, FeatureScale, Features, Light, LightKind, Model, Projection, RadianceScaling, Scaling, Shading, Term,
+};
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
 
-pub fn shading(ui: &mut Ui, shading: &Shading, setter: &mut Setter) {
+/// `canvas`: its sides, px.
+pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut Setter) {
     if let Some(model) = choice_row(ui, "Model", shading.model, &Model::ALL) {
         setter.set(Property::ShadingModel { model }, true);
     }
@@ -42,10 +46,56 @@ pub fn shading(ui: &mut Ui, shading: &Shading, setter: &mut Setter) {
         let number = Number::new("Tones", 2.0..=12.0, "Flat bands of light").decimals(0);
         setter.take(number.row(ui, shading.bands as f32).map(|c| c.map(|to| Property::Bands { to: to as u32 })));
     }
-    if !shading.model.needs_environment() {
-        lights(ui, &shading.lights, setter);
+    if matches!(shading.model, Model::AmbientOcclusion | Model::DiffuseEnvironment) {
+        let number = Number::new("Reach", 0.0..=400.0, "How far away occluders still count, px").decimals(0);
+        setter.take(number.row(ui, shading.occlusion_radius_px).map(|c| c.map(|to| Property::Occlusion { to })));
+    }
+    pictures(ui, shading, setter);
+    if !shading.model.needs_environment() && !matches!(shading.model, Model::LitSphere | Model::AmbientOcclusion) {
+        lights(ui, &shading.lights, canvas, setter);
     }
     features(ui, &shading.features, setter);
+}
+
+/// The environment or the lit spheres, where the model knows them.
+fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut Setter) {
+    let mut picture = |ui: &mut Ui, part: Part, file: Option<&str>, none: &str| {
+        title(ui, part.title());
+        ui.horizontal_wrapped(|ui| {
+            setter.choose(ui, part, "Choose…");
+            match file {
+                None => drop(ui.weak(none)),
+                Some(file) => {
+                    ui.label(file);
+                    if ui.small_button("Remove").clicked() {
+                        setter.set(Property::Without { part }, true);
+                    }
+                }
+            }
+        });
+    };
+    if shading.model.needs_environment() || shading.model == Model::Ashikhmin {
+        let file = shading.environment.as_ref().map(|environment| &*environment.file);
+        let none = if shading.lacks_environment() { "None yet: the layer is black" } else { "None: lit by the lights" };
+        picture(ui, Part::Environment, file, none);
+        if let Some(environment) = &shading.environment {
+            surroundings(ui, environment, setter);
+        }
+    } else if shading.model == Model::LitSphere {
+        picture(ui, Part::Sphere, shading.sphere.as_ref().map(|sphere| &*sphere.file), "Grey clay");
+        picture(ui, Part::ConcaveSphere, shading.sphere_concave.as_ref().map(|sphere| &*sphere.file), "The same");
+    }
+}
+
+fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut Setter) {
+    let Environment { projection, rotation, exposure, .. } = *environment;
+    if let Some(projection) = choice_row(ui, "Lies as", projection, &Projection::ALL) {
+        setter.set(Property::Surrounded { projection, rotation, exposure }, true);
+    }
+    let turn = Number::new("Turn", -180.0..=180.0, "About the vertical axis").degrees().row(ui, rotation);
+    setter.take(turn.map(|c| c.map(|rotation| Property::Surrounded { projection, rotation, exposure })));
+    let stops = Number::new("Exposure", -8.0..=8.0, "In stops").row(ui, exposure);
+    setter.take(stops.map(|c| c.map(|exposure| Property::Surrounded { projection, rotation, exposure })));
 }
 
 fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut Setter, put: fn(Term) -> Property) {
@@ -61,7 +111,7 @@ fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut Setter, put: fn(Term)
     setter.take(changed.map(|c| c.map(|gamma| put(Term { scaling: Scaling::new(term.scaling.alpha, gamma), ..term }))));
 }
 
-fn lights(ui: &mut Ui, lights: &[Light], setter: &mut Setter) {
+fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut Setter) {
     title(ui, "Lights");
     let with = |i: usize, light: Light| {
         let mut lights = lights.to_vec();
@@ -96,14 +146,27 @@ fn lights(ui: &mut Ui, lights: &[Light], setter: &mut Setter) {
                 let label = format!("Light {}", i + 1);
                 let number = Number::new(&label, 0.0..=4.0, "Intensity").row(ui, light.intensity);
                 setter.take(number.map(|c| c.map(|intensity| with(i, Light { intensity, ..*light }))));
+                if let LightKind::Point { position } = light.kind {
+                    let label = format!("Height {}", i + 1);
+                    let height = Number::new(&label, 0.0..=4000.0, "Over the nearest point, px").decimals(0);
+                    let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
+                    let height = height.row(ui, position.z);
+                    setter.take(height.map(|c| c.map(|z| with(i, Light { kind: kind(z), ..*light }))));
+                }
             });
         });
     }
-    if ui.button("Add light").clicked() {
-        let kind = LightKind::Directional { direction: vec3(-0.6, 0.2, 0.5) };
-        let more = lights.iter().copied().chain([Light { kind, intensity: 0.5, ..Light::default() }]);
-        setter.set(Property::Lights { lights: more.collect() }, true);
-    }
+    ui.horizontal_wrapped(|ui| {
+        let far = LightKind::Directional { direction: vec3(-0.6, 0.2, 0.5) };
+        let near = LightKind::Point { position: vec3(canvas.x * 0.3, canvas.y * 0.3, canvas.max_element() * 0.3) };
+        for (text, kind) in [("Add light", far), ("Add light at a point", near)] {
+            if ui.button(text).clicked() {
+                let more = lights.iter().copied().chain([Light { kind, intensity: 0.5, ..Light::default() }]);
+                setter.set(Property::Lights { lights: more.collect() }, true);
+            }
+        }
+    });
+    ui.weak("The anchor tool (A) drags lights on the canvas.");
 }
 
 /// A ball on which a direction is dragged: toward the light, camera space (y up).

@@ -23,6 +23,13 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, asked: &mut Ask
                         continue;
                     }
                     entry(ui, session, &settings.keymap, command, asked);
+                    if command.name == "New gradient layer" {
+                        ui.menu_button("New shading layer", |ui| {
+                            for command in commands::all().filter(|command| command.menu == Menu::Shading) {
+                                entry(ui, session, &settings.keymap, command, asked);
+                            }
+                        });
+                    }
                     if command.name == "Open…" {
                         recent_files(ui, &settings.recent, asked);
                     }

@@ -7,6 +7,7 @@ pub mod colors;
 pub mod fill;
 pub mod history;
 pub mod layers;
+pub mod mask;
 pub mod material;
 pub mod menu;
 pub mod navigator;

@@ -1,17 +1,18 @@
 //! Properties of the selected layer: what it is made of, where it lies, how it bends.
 //! Floor 7. Materials and lights are `material`'s.
 
-use super::{colors, material, options, strokes};
-use crate::app::asked::Asked;
-use crate::app::widgets::{Changed, Number, check, choice_row, title};
-use crate::document::{Content, Layer, MaskKind};
-use crate::math::vec2;
+use super::{colors, mask, material, options, strokes};
+use crate::app::asked::{Asked, WindowAsk};
+use crate::app::files::Purpose;
+use crate::app::widgets::{Changed, Number, check, choice_row, named, title};
+use crate::document::{Content, DetailSource, Layer, NormalLayer};
+use crate::math::{Vec2, vec2};
 use crate::paint::{Adjust, Filter, Gradient, PlacedImage, Placement, Stop};
 use crate::raster::Outside;
 use crate::session::actions::LayerAction;
-use crate::session::property::{DerivedMask, MaskNumbers};
+use crate::session::actions::pictures::Part;
 use crate::session::{Action, LayerPath, Property, Session};
-use crate::surface::Weights;
+use crate::surface::{Grain, Weights};
 use eframe::egui::Ui;
 
 /// Pushes changes of one layer.
@@ -23,6 +24,18 @@ pub struct Setter<'a> {
 impl Setter<'_> {
     pub fn set(&mut self, to: Property, done: bool) {
         self.asked.act(Action::Layer(LayerAction::Set { layer: self.layer.clone(), to, done }));
+    }
+    /// Does something else to the layer.
+    pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
+        self.asked.act(Action::Layer(action(self.layer.clone())));
+    }
+    /// A button that asks for a picture of the layer's.
+    pub fn choose(&mut self, ui: &mut Ui, part: Part, text: &str) {
+        let response = ui.button(text);
+        named(&response, &format!("Choose {}", part.title().to_lowercase()));
+        if response.clicked() {
+            self.asked.ask(WindowAsk::Choose(Purpose::Part(part)));
+        }
     }
     pub fn take(&mut self, changed: Option<Changed<Property>>) {
         if let Some(Changed { to, done }) = changed {
@@ -51,13 +64,12 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         }
         Content::Image(live) => image(ui, live.params(), &mut setter),
         Content::Gradient(live) => gradient(ui, live.params(), &mut setter),
-        Content::Shading(live) => material::shading(ui, live.params(), &mut setter),
-        Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
-        Content::Normals(normals) => {
-            ui.label("Normals combined onto the surface: what stands above sees them.");
-            let number = Number::new("Strength", 0.0..=4.0, "1 is the map as it is");
-            setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
+        Content::Shading(live) => {
+            let canvas = session.shown().map_or(Vec2::ONE, |document| 2.0 * document.size.center());
+            material::shading(ui, live.params(), canvas, &mut setter);
         }
+        Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
+        Content::Normals(normals) => normal_layer(ui, normals, &mut setter),
         Content::Group(group) => {
             let hint = "Blend each layer with what lies beneath the group, as if the group were not there";
             if let Some(on) = check(ui, "Pass through", hint, group.pass_through) {
@@ -66,10 +78,11 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         }
     }
     ui.separator();
-    common(ui, layer, has_surface, &mut setter);
+    let on_mask = session.tab().is_some_and(|tab| tab.on_mask);
+    common(ui, layer, has_surface, on_mask, &mut setter);
 }
 
-fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, setter: &mut Setter) {
+fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: &mut Setter) {
     if has_surface {
         let hint = "Paint nothing outside the surface";
         if let Some(on) = check(ui, "Clip to surface", hint, layer.clip_to_surface) {
@@ -80,85 +93,16 @@ fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, setter: &mut Setter) {
     if let Some(on) = check(ui, "Blend linear light", hint, layer.blend_linear) {
         setter.set(Property::BlendLinear { on }, true);
     }
-    mask(ui, layer, setter);
-}
-
-/// The kinds of mask that a panel makes; a picture's is kept as it is.
-#[derive(Clone, Copy, PartialEq)]
-enum MaskChoice {
-    None,
-    File,
-    Fresnel,
-    Curvature,
-    Depth,
-}
-
-fn mask(ui: &mut Ui, layer: &Layer, setter: &mut Setter) {
-    let current = match layer.mask.as_ref().map(|mask| &mask.kind) {
-        None => MaskChoice::None,
-        Some(MaskKind::File { .. }) => MaskChoice::File,
-        Some(MaskKind::Fresnel { .. }) => MaskChoice::Fresnel,
-        Some(MaskKind::Curvature { .. }) => MaskChoice::Curvature,
-        Some(MaskKind::Depth { .. }) => MaskChoice::Depth,
-    };
-    let all = [
-        (MaskChoice::None, "none"),
-        (MaskChoice::Fresnel, "fresnel"),
-        (MaskChoice::Curvature, "curvature"),
-        (MaskChoice::Depth, "depth"),
-        (MaskChoice::File, "picture"),
-    ];
-    let offered = if current == MaskChoice::File { &all[..] } else { &all[..4] };
-    if let Some(to) = choice_row(ui, "Mask", current, offered) {
-        let numbers = match to {
-            MaskChoice::Fresnel => Some(MaskNumbers::Fresnel { f0: 0.04, power: 5.0 }),
-            MaskChoice::Curvature => Some(MaskNumbers::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 }),
-            MaskChoice::Depth => Some(MaskNumbers::Depth { from: 0.0, to: 1.0 }),
-            MaskChoice::None | MaskChoice::File => None,
-        };
-        setter.set(Property::Mask { mask: numbers.map(DerivedMask) }, true);
-    }
-    let Some(mask) = &layer.mask else { return };
-    if let Some(numbers) = mask_numbers(ui, &mask.kind) {
-        setter.take(Some(numbers.map(|numbers| Property::Mask { mask: Some(DerivedMask(numbers)) })));
-    }
-    if let Some(on) = check(ui, "Invert mask", "Paint where the mask is dark", mask.invert) {
-        setter.set(Property::MaskInverted { on }, true);
-    }
-}
-
-fn mask_numbers(ui: &mut Ui, kind: &MaskKind) -> Option<Changed<MaskNumbers>> {
-    match *kind {
-        MaskKind::File { .. } => None,
-        MaskKind::Fresnel { f0, power } => {
-            let a = Number::new("Facing", 0.0..=1.0, "Coverage where the surface faces you").row(ui, f0);
-            let b = Number::new("Power", 0.2..=10.0, "How near the rim it stays").row(ui, power);
-            a.map(|c| c.map(|f0| MaskNumbers::Fresnel { f0, power }))
-                .or(b.map(|c| c.map(|power| MaskNumbers::Fresnel { f0, power })))
-        }
-        MaskKind::Curvature { scale, blur, from, to } => {
-            let a = Number::new("Scale", 0.0..=40.0, "Features this wide count in full, px").row(ui, scale);
-            let b = Number::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, blur);
-            let c = Number::new("From", -1.0..=1.0, "Curvature where nothing is painted").row(ui, from);
-            let d = Number::new("To", -1.0..=1.0, "Curvature where all is painted").row(ui, to);
-            a.map(|v| v.map(|scale| MaskNumbers::Curvature { scale, blur, from, to }))
-                .or(b.map(|v| v.map(|blur| MaskNumbers::Curvature { scale, blur, from, to })))
-                .or(c.map(|v| v.map(|from| MaskNumbers::Curvature { scale, blur, from, to })))
-                .or(d.map(|v| v.map(|to| MaskNumbers::Curvature { scale, blur, from, to })))
-        }
-        MaskKind::Depth { from, to } => {
-            let a = Number::new("From", 0.0..=1.0, "Depth where nothing is painted").row(ui, from);
-            let b = Number::new("To", 0.0..=1.0, "Depth where all is painted").row(ui, to);
-            a.map(|c| c.map(|from| MaskNumbers::Depth { from, to }))
-                .or(b.map(|c| c.map(|to| MaskNumbers::Depth { from, to })))
-        }
-    }
+    mask::show(ui, layer, on_mask, setter);
 }
 
 const FILTERS: [(Filter, &str); 2] = [(Filter::Antialias, "antialias"), (Filter::Bilinear, "bilinear")];
 
 fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut Setter) {
-    ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
+    ui.horizontal_wrapped(|ui| {
+        ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
+        setter.choose(ui, Part::Image, "Replace…");
+    });
     operator(ui, image.bend.operator, setter);
     placement(ui, image.placement, setter);
     const OUTSIDE: [(Outside, &str); 4] =
@@ -183,6 +127,34 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut Setter) {
     }
     title(ui, "Adjust");
     adjust(ui, image.source.adjust, setter);
+}
+
+/// Detail: noise, or a map of normals.
+fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut Setter) {
+    ui.label("Normals combined onto the surface: what stands above sees them.");
+    let number = Number::new("Strength", 0.0..=4.0, "1 is the map as it is");
+    setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
+    ui.horizontal_wrapped(|ui| {
+        let source = match &normals.source {
+            DetailSource::Map { picture, .. } => format!("{} · {}", picture.file, picture.picture.size),
+            DetailSource::Grain(_) => "Grain, made of noise".into(),
+        };
+        ui.weak(source);
+        setter.choose(ui, Part::Detail, "Normal map…");
+        if matches!(normals.source, DetailSource::Map { .. }) && ui.button("Grain").clicked() {
+            setter.set(Property::Grained { grain: Grain::default() }, true);
+        }
+    });
+    if let DetailSource::Grain(grain) = normals.source {
+        let size = Number::new("Bump size", 1.0..=400.0, "Of the largest bumps, px").logarithmic().decimals(0);
+        let size = size.row(ui, grain.size_px).map(|c| c.map(|size_px| Grain { size_px, ..grain }));
+        let rough = Number::new("Roughness", 0.0..=1.5, "0 is smooth, 1 rough").row(ui, grain.roughness);
+        let stretch = Number::new("Stretch", 0.05..=40.0, "How much longer along x: brushed").logarithmic();
+        let stretch = stretch.row(ui, grain.stretch).map(|c| c.map(|stretch| Grain { stretch, ..grain }));
+        let changed = size.or(rough.map(|c| c.map(|roughness| Grain { roughness, ..grain }))).or(stretch);
+        setter.take(changed.map(|c| c.map(|grain| Property::Grained { grain })));
+    }
+    placement(ui, normals.placement, setter);
 }
 
 fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut Setter) {

@@ -15,8 +15,8 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     };
     let Some(surface) = &document.surface else {
         ui.label("This document has no surface: marks lie flat.");
-        if ui.button("New from maps…").clicked() {
-            asked.ask(WindowAsk::OpenMapsDialog);
+        if ui.button("Give it maps…").clicked() {
+            asked.ask(WindowAsk::ReplaceMapsDialog);
         }
         return;
     };
@@ -51,9 +51,15 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         }
     }
     ui.weak(format!("{} pixels, {:.0} px deep", surface.size(), surface.depth_range_px()));
-    if ui.button("New from maps…").clicked() {
-        asked.ask(WindowAsk::OpenMapsDialog);
-    }
+    ui.horizontal_wrapped(|ui| {
+        let hint = "What is live bends over the new shape: a painting on another object, or in another pose";
+        if ui.button("Replace maps…").on_hover_text(hint).clicked() {
+            asked.ask(WindowAsk::ReplaceMapsDialog);
+        }
+        if ui.button("New from maps…").clicked() {
+            asked.ask(WindowAsk::OpenMapsDialog);
+        }
+    });
 }
 
 fn about(view: View) -> &'static str {

@@ -4,10 +4,11 @@
 use super::Window;
 use crate::app::dialogs::{Dialog, import, path};
 use crate::app::files::{self, Purpose};
-use crate::app::jobs::{Done, While, short};
+use crate::app::jobs::{Done, Where, While, short};
 use crate::math::Vec2;
 use crate::raster::Picture;
 use crate::session::actions::files::{place, read_picture};
+use crate::session::actions::pictures::{self, Part};
 use crate::session::storage;
 use eframe::egui;
 use std::path::{Path, PathBuf};
@@ -41,7 +42,12 @@ impl Window {
                 }
                 Done::Lost(lost) => self.offer(lost),
                 Done::Recovered(found) => self.take_recovered(*found),
-                Done::Pictured(name, picture) => self.pictured(&name, picture),
+                Done::Pictured(name, picture, at) => self.pictured(&name, picture, at),
+                Done::Part(key, layer, read) => {
+                    if let Some(tab) = self.session.tabs.iter_mut().find(|tab| tab.key == key) {
+                        pictures::put(tab, layer, *read);
+                    }
+                }
                 Done::Saved(saved) => self.saved(ctx, *saved),
                 Done::Edited(edited) => self.edited(*edited),
                 Done::Copied(image) => ctx.copy_image(image),
@@ -50,23 +56,37 @@ impl Window {
             }
         }
     }
-    pub(super) fn read_picture(&mut self, file: PathBuf) {
+    pub(super) fn read_picture(&mut self, file: PathBuf, at: Where) {
         self.jobs.start(format!("Reading {}", short(&file)), While::Working, move |_| match read_picture(&file) {
-            Ok((name, picture)) => Done::Pictured(name, picture),
+            Ok((name, picture)) => Done::Pictured(name, picture, at),
             Err(error) => Done::Failed(error),
         });
     }
-    fn pictured(&mut self, name: &str, picture: Picture) {
-        place(&mut self.session, name, picture, self.place_at);
+    /// Reads a picture that the selected layer is to be made of.
+    fn read_part(&mut self, part: Part, file: PathBuf) {
+        let Some((key, layer)) = self.session.tab().and_then(|tab| Some((tab.key, tab.selected?))) else { return };
+        self.jobs.start(format!("Reading {}", short(&file)), While::Working, move |_| {
+            match pictures::read(part, &file) {
+                Ok(read) => Done::Part(key, layer, Box::new(read)),
+                Err(error) => Done::Failed(error),
+            }
+        });
+    }
+    /// A picture becomes a layer. Where it fell is where the pointer is once it was read: while files are dragged the system
+    /// tells nobody where they are.
+    pub(super) fn pictured(&mut self, name: &str, picture: Picture, at: Where) {
+        let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
+        let at = self.canvas.under.filter(|_| at == Where::Pointer).unwrap_or(center);
+        place(&mut self.session, name, picture, at);
     }
     /// A file was chosen in a dialog.
     pub(super) fn chosen(&mut self, purpose: Purpose, file: PathBuf) {
         match purpose {
             Purpose::Open => self.jobs.open(file),
             Purpose::Place => {
-                self.place_at = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
-                self.read_picture(file);
+                self.read_picture(file, Where::Middle);
             }
+            Purpose::Part(part) => self.read_part(part, file),
             Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap => {
                 if let Some(import) = self.import() {
                     import.take_file(purpose, file);

@@ -4,7 +4,7 @@
 use super::Window;
 use crate::app::asked::{Asked, WindowAsk};
 use crate::app::dialogs::{Dialog, Then, unsaved};
-use crate::math::Vec2;
+use crate::app::jobs::Where;
 use crate::session::storage;
 use eframe::egui::{self, ViewportCommand};
 
@@ -50,10 +50,7 @@ impl Window {
             let path = file.path().to_path_buf();
             match storage::kind_of(&path) {
                 Ok(storage::Kind::Picture) if self.session.tab().is_some() => {
-                    let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
-                    let at = self.canvas.under.unwrap_or(center);
-                    self.place_at = at;
-                    self.read_picture(path);
+                    self.read_picture(path, Where::Pointer);
                 }
                 Ok(_) => asked.ask(WindowAsk::Open(path)),
                 Err(error) => self.messages.push(error.to_string()),
@@ -68,9 +65,7 @@ impl Window {
         let size = crate::math::Size::new(image.width as u32, image.height as u32);
         let texels = image.bytes.as_chunks::<4>().0.to_vec();
         if let Some(picture) = crate::raster::Picture::srgb8(size, texels) {
-            let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
-            let at = self.canvas.under.unwrap_or(center);
-            crate::session::actions::files::place(&mut self.session, "pasted.png", picture, at);
+            self.pictured("pasted.png", picture, Where::Pointer);
         }
     }
 }

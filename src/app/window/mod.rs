@@ -9,7 +9,7 @@ mod work;
 
 use super::asked::{Asked, WindowAsk};
 use super::canvas::Canvas;
-use super::dialogs::{Answer, Dialog, Then, export, new, palette, shortcuts};
+use super::dialogs::{Answer, Dialog, Then, export, import, new, palette, shortcuts};
 use super::files::{self as choosing, Purpose};
 use super::jobs::{Done, Jobs, While};
 use super::settings::{Keeper, Settings, Side};
@@ -17,7 +17,6 @@ use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
 use crate::document::Progress;
-use crate::math::Vec2;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session, storage};
 use eframe::egui::{self, Ui, ViewportCommand};
@@ -45,8 +44,6 @@ pub struct Window {
     leaving: bool,
     /// What is to be done once the document is saved.
     after_saving: Option<Then>,
-    /// Where a picture that is being read is to be pinned, canvas px.
-    place_at: Vec2,
 }
 
 impl Window {
@@ -73,7 +70,6 @@ impl Window {
             title: String::new(),
             leaving: false,
             after_saving: None,
-            place_at: Vec2::ZERO,
         }
     }
     /// Opens what the program was started with.
@@ -115,7 +111,10 @@ impl Window {
     }
     fn show_dialog(&mut self, ctx: &egui::Context, asked: &mut Asked) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
-        let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, asked);
+        let size = self.session.shown().map(|document| document.size);
+        let is_seen = matches!(dialog, Dialog::Export(_));
+        let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
+        let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, asked);
         if let Dialog::Export(export) = dialog {
             self.export = export.clone();
         }
@@ -135,6 +134,11 @@ impl Window {
         match answer {
             Answer::Chosen(purpose, file) => self.chosen(purpose, file),
             Answer::Imported(opened) => self.session.adopt(*opened),
+            Answer::Replaced(maps) => {
+                let done = crate::session::actions::files::replace_maps(&mut self.session, &maps.0, maps.1);
+                self.messages.extend(done.err().map(|error| error.to_string()));
+                self.messages.append(&mut self.session.notes);
+            }
             Answer::Discard(then) => self.proceed(ctx, then, true),
             Answer::SaveThen(then) => {
                 self.after_saving = Some(then);
@@ -166,6 +170,11 @@ impl Window {
             WindowAsk::NewDialog => self.dialogs.push(Dialog::New(new::New::default())),
             WindowAsk::OpenDialog => choosing::ask(&mut self.jobs, Purpose::Open, ""),
             WindowAsk::OpenMapsDialog => self.dialogs.push(Dialog::Import(Box::default())),
+            WindowAsk::ReplaceMapsDialog => {
+                let source = self.session.tab().and_then(|tab| tab.document().surface_source.clone());
+                let import = import::Import::replacing(source.as_deref());
+                self.dialogs.push(Dialog::Import(Box::new(import)));
+            }
             WindowAsk::Choose(purpose) => choosing::ask(&mut self.jobs, purpose, ""),
             WindowAsk::PlaceDialog => choosing::ask(&mut self.jobs, Purpose::Place, ""),
             WindowAsk::Open(file) => self.jobs.open(file),

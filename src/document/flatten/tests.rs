@@ -44,7 +44,7 @@ fn half_a_surface() -> Arc<Surface> {
     Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
 }
 fn mask(kind: MaskKind) -> Option<LayerMask> {
-    Some(LayerMask { kind, invert: false })
+    Some(LayerMask::new(kind))
 }
 fn left_mask() -> Option<LayerMask> {
     let coverage = Arc::new(Plane::from_fn(SIZE, |x, _| if x < 50 { 255 } else { 0 }));

@@ -51,7 +51,7 @@ fn document() -> Document {
         with(Layer::new("image", Content::Image(Live::new(image))), |l| l.opacity = 0.8),
         with(Layer::new("gradient", Content::Gradient(Live::new(gradient))), |l| {
             l.blend = BlendMode::SoftLight;
-            l.mask = Some(LayerMask { kind: MaskKind::File { file: "m.png".into(), coverage }, invert: false });
+            l.mask = Some(LayerMask::new(MaskKind::File { file: "m.png".into(), coverage }));
         }),
         with(
             Layer::new("strokes", Content::Strokes(Live::new(StrokeList { strokes: vec![Arc::new(stroke)] }))),

@@ -99,6 +99,9 @@ impl Lowering {
     /// A mask of a picture; derived ones are in the layer's pixels.
     fn mask(&self, mask: &LayerMask) -> Option<Mask> {
         let MaskKind::File { coverage, .. } = &mask.kind else { return None };
+        if mask.disabled {
+            return None;
+        }
         let way = |v: &u8| if mask.invert { 255 - v } else { *v };
         Some(Mask { rect: self.size.rect(), outside: 0, values: coverage.values().iter().map(way).collect() })
     }

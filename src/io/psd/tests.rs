@@ -66,7 +66,7 @@ fn layers_groups_masks_clipping_locks_and_names_are_carried() {
     let masked = document.with_layer(document.layers[0].id, |layer| {
         let coverage = crate::raster::Plane::from_fn(Size::new(40, 30), |x, y| (x * 5 + y) as u8);
         let kind = MaskKind::File { file: String::new(), coverage: Arc::new(coverage) };
-        layer.mask = Some(crate::document::LayerMask { kind, invert: false });
+        layer.mask = Some(crate::document::LayerMask::new(kind));
     });
     let document = masked.unwrap();
     let back = read_back(&without_ours(&written(&document))).document;

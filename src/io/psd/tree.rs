@@ -156,7 +156,7 @@ impl Builder {
             let (x, y) = (x as i32, y as i32);
             if rect.contains(x, y) { value(x, y) } else { mask.outside }
         });
-        LayerMask { kind: MaskKind::File { file: String::new(), coverage: Arc::new(coverage) }, invert: false }
+        LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(coverage) })
     }
     /// Groups that were never closed end with the file.
     fn done(mut self) -> (Vec<Arc<Layer>>, Vec<String>) {

@@ -20,7 +20,7 @@ const DERIVED: [(Derived, &str); 3] =
 impl Reader<'_> {
     pub fn mask(&mut self, node: &Node) -> Result<LayerMask> {
         let mut fields = node.fields()?;
-        let invert = fields.boolean("invert", false)?;
+        let (invert, disabled) = (fields.boolean("invert", false)?, fields.boolean("disabled", false)?);
         let kind = match fields.get("kind") {
             Some(kind) => derived(kind.one_of(&DERIVED)?, &mut fields)?,
             None => {
@@ -29,7 +29,7 @@ impl Reader<'_> {
             }
         };
         fields.finish()?;
-        Ok(LayerMask { kind, invert })
+        Ok(LayerMask { kind, invert, disabled })
     }
 }
 
@@ -84,5 +84,6 @@ pub fn write(mask: &LayerMask) -> Value {
         }
     }
     out.flag("invert", mask.invert, false);
+    out.flag("disabled", mask.disabled, false);
     out.done()
 }

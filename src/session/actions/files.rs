@@ -1,18 +1,19 @@
 //! Documents in and out, and pictures into documents.
 //! Floor 6. Formats are `io`'s.
 
-use crate::Result;
-use crate::document::{Content, Document, Layer, Live, Progress, flatten};
+use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource, flatten};
 use crate::io::export::{Options, Target};
-use crate::io::{Budget, files::read_file, picture};
+use crate::io::{Budget, files::read_file, maps, picture};
 use crate::math::{Size, Vec2, srgb::Color};
 use crate::paint::{Adjust, Filter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::layers::above;
+use crate::session::actions::pictures::{self, Part};
 use crate::session::replay::actions;
 use crate::session::{Session, Tab, storage};
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use crate::tools::brush::free_name;
+use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,6 +30,10 @@ actions! {
         "place" Place { file: PathBuf, at: Vec2 }
         "save" Save { file: PathBuf }
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8 }
+        /// A picture that the selected layer is made of.
+        "use" Use { part: Part, file: PathBuf }
+        /// The document's surface anew, of these maps: what is live bends over it.
+        "replace maps" ReplaceMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
         "tab" Tab { index: usize }
         /// Whether saved or not.
         "close" Close { index: usize }
@@ -75,6 +80,19 @@ impl FileAction {
                     &Options { background: *background, quality: *quality, ..Options::default() },
                     &Progress::default(),
                 )?;
+            }
+            FileAction::Use { part, file } => {
+                let read = pictures::read(*part, file)?;
+                if let Some(tab) = session.tab_mut()
+                    && let Some(layer) = tab.selected
+                {
+                    pictures::put(tab, layer, read);
+                }
+            }
+            FileAction::ReplaceMaps { normal, depth } => {
+                let source = storage::maps_of(normal.as_deref(), depth.as_deref());
+                let import = storage::import(&source)?;
+                replace_maps(session, &source, import)?;
             }
             FileAction::Tab { index } => session.current = (*index).min(session.tabs.len().saturating_sub(1)),
             FileAction::Close { index } => session.close_tab(*index),
@@ -135,6 +153,30 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     }
 }
 
+/// Another surface beneath the layers, as a step; stretched to the canvas, which is said. Fails where a surface of the
+/// canvas's size cannot be made of it.
+pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps::Import) -> Result<()> {
+    let maps::Import { surface, findings, files } = import;
+    let Some(tab) = session.tab_mut() else { return Ok(()) };
+    let (canvas, found) = (tab.document().size, surface.size());
+    let mut notes = findings.notes;
+    let surface = if found == canvas {
+        surface
+    } else {
+        notes.push(format!("The maps have {found} pixels and were stretched to the canvas, {canvas}."));
+        surface.stretched(canvas).map_err(|error| Error::unsupported("maps", error))?
+    };
+    let next = Document {
+        surface: Some(Arc::new(surface)),
+        surface_source: (found == canvas).then(|| Arc::new(source.clone())),
+        surface_files: Arc::new(if found == canvas { files } else { Default::default() }),
+        ..tab.document().clone()
+    };
+    tab.commit("Replace maps", next);
+    session.notes.extend(notes);
+    Ok(())
+}
+
 /// How a dropped picture bends where nothing else is in hand: like a reflection that is still recognised.
 const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
 
@@ -153,7 +195,7 @@ pub fn of_picture(name: &str, picture: Picture) -> Document {
 }
 
 /// A file name that no other picture of the document goes by.
-fn free_file(document: &Document, name: &str) -> String {
+pub(super) fn free_file(document: &Document, name: &str) -> String {
     let taken = |name: &str| {
         document.walk().iter().any(|(_, layer)| match &layer.content {
             Content::Image(live) => live.params().source.file == name,

@@ -2,13 +2,18 @@
 //! Floor 6. The edits themselves are `document::edit`'s.
 
 use super::flattening::no_pixels;
-use crate::document::{Content, Document, Group, Layer, LayerId, Live, Place, Progress, StrokeList};
+use crate::document::{
+    Content, DetailSource, Document, Group, Layer, LayerId, LayerMask, Live, MaskKind, NormalLayer, Place, Progress,
+    StrokeList,
+};
 use crate::math::vec2;
-use crate::paint::{Filter, Gradient, Stop};
+use crate::paint::{Filter, Gradient, Placement, Stop};
+use crate::raster::{Outside, Plane};
 use crate::session::replay::{actions, names};
 use crate::session::tab::Edit;
 use crate::session::{LayerPath, Property, Session, Tab};
 use crate::shading::{Model, RadianceScaling, Shading};
+use crate::surface::Grain;
 use crate::tools::brush::free_name;
 use std::sync::Arc;
 
@@ -21,24 +26,26 @@ pub enum NewLayer {
     Gradient,
     Shading,
     RadianceScaling,
+    Normals,
     Group,
 }
 
 names!(NewLayer, [
     NewLayer::Paint => "paint", NewLayer::Strokes => "strokes", NewLayer::Fill => "fill",
     NewLayer::Gradient => "gradient", NewLayer::Shading => "shading",
-    NewLayer::RadianceScaling => "radiance scaling", NewLayer::Group => "group",
+    NewLayer::RadianceScaling => "radiance scaling", NewLayer::Normals => "normals", NewLayer::Group => "group",
 ]);
 
 impl NewLayer {
     /// Every kind with what it is called.
-    pub const ALL: [(NewLayer, &'static str); 7] = [
+    pub const ALL: [(NewLayer, &'static str); 8] = [
         (NewLayer::Paint, "Paint layer"),
         (NewLayer::Strokes, "Stroke layer"),
         (NewLayer::Fill, "Fill layer"),
         (NewLayer::Gradient, "Gradient layer"),
         (NewLayer::Shading, "Shading layer"),
         (NewLayer::RadianceScaling, "Radiance scaling"),
+        (NewLayer::Normals, "Detail normals"),
         (NewLayer::Group, "Group"),
     ];
 }
@@ -60,6 +67,12 @@ actions! {
         "flatten" Flatten {}
         /// A live layer becomes paint.
         "bake" Bake { layer: LayerPath }
+        /// A shading layer of a model, with the material it begins with.
+        "add shading" AddShading { model: Model }
+        /// A mask to paint on that shows all of the layer, or hides it; one that there is becomes paint as it is.
+        "paint mask" PaintMask { layer: LayerPath, hides: bool }
+        /// The brush changes the mask from now on, or the layer again.
+        "on mask" OnMask { layer: LayerPath, on: bool }
         /// Into a group of its own.
         "group" Group { layer: LayerPath }
         "ungroup" Ungroup { layer: LayerPath }
@@ -89,7 +102,16 @@ impl LayerAction {
         tab.forget_preview();
         let id = |path: &LayerPath| path.find(tab.document()).map(|layer| layer.id);
         match self {
-            LayerAction::Select { layer } => tab.selected = id(layer).or(tab.selected),
+            LayerAction::Select { layer } => {
+                tab.selected = id(layer).or(tab.selected);
+                tab.on_mask = false;
+            }
+            LayerAction::OnMask { layer, on } => {
+                tab.selected = id(layer).or(tab.selected);
+                tab.on_mask = *on;
+                // Only where there is one to paint on.
+                tab.repair();
+            }
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 tab.solo = if tab.solo == id { None } else { id };
@@ -97,6 +119,7 @@ impl LayerAction {
             _ => {
                 if let Some(edit) = self.edit(tab, &in_hand) {
                     tab.take(edit);
+                    tab.on_mask = matches!(self, LayerAction::PaintMask { .. });
                 }
             }
         }
@@ -110,6 +133,24 @@ impl LayerAction {
                 let new = made(*kind, document, in_hand);
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
+            }
+            LayerAction::AddShading { model } => {
+                let content = Content::Shading(Live::new(Shading::new(*model)));
+                let new = Layer::new(free_name(document, &model_name(*model)), content);
+                let id = new.id;
+                ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
+            }
+            LayerAction::PaintMask { layer: path, hides } => {
+                let layer = layer(path)?;
+                let mask = match &layer.mask {
+                    Some(mask) => mask.as_picture(&layer, &document.scene()),
+                    None => {
+                        let coverage = Plane::filled(document.size, if *hides { 0 } else { 255 });
+                        LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(coverage) })
+                    }
+                };
+                let id = layer.id;
+                ("Layer mask", document.with_layer(id, |layer| layer.mask = Some(mask))?, Some(id))
             }
             LayerAction::Delete { layer: path } => {
                 let layer = layer(path)?;
@@ -167,7 +208,10 @@ impl LayerAction {
                 })?;
                 ("Clear layer", next, None)
             }
-            LayerAction::Select { .. } | LayerAction::Solo { .. } | LayerAction::Set { .. } => return None,
+            LayerAction::Select { .. }
+            | LayerAction::Solo { .. }
+            | LayerAction::OnMask { .. }
+            | LayerAction::Set { .. } => return None,
         };
         Some(Edit { label, document, select })
     }
@@ -202,6 +246,13 @@ pub(super) fn sibling(document: &Document, place: Place) -> Option<LayerId> {
     layers.get(place.index).map(|layer| layer.id).or(place.group)
 }
 
+/// “ambient-occlusion” as a layer is called.
+fn model_name(model: Model) -> String {
+    let spaced = model.name().replace('-', " ");
+    let mut letters = spaced.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 fn made(kind: NewLayer, document: &Document, in_hand: &Gradient) -> Layer {
     let size = document.size;
     let (name, content) = match kind {
@@ -218,6 +269,15 @@ fn made(kind: NewLayer, document: &Document, in_hand: &Gradient) -> Layer {
         }
         NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
         NewLayer::RadianceScaling => ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default())),
+        NewLayer::Normals => {
+            let normals = NormalLayer {
+                source: DetailSource::Grain(Grain::default()),
+                placement: Placement { center: size.center(), scale: 1.0, rotation: 0.0 },
+                outside: Outside::Repeat,
+                strength: 0.5,
+            };
+            ("Detail normals", Content::Normals(normals))
+        }
         NewLayer::Group => ("Group", Content::Group(Group::default())),
     };
     Layer::new(free_name(document, name), content)

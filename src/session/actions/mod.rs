@@ -6,6 +6,7 @@ pub mod files;
 mod flattening;
 pub mod hand;
 pub mod layers;
+pub mod pictures;
 pub mod pointer;
 pub mod strokes;
 pub mod views;

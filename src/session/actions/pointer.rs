@@ -5,6 +5,7 @@ use crate::math::vec2;
 use crate::paint::Sample;
 use crate::session::Session;
 use crate::session::replay::{Replayed, actions, record};
+use crate::tools::brush::Purpose;
 use crate::tools::{self, Context, Keys, Outcome, Pen, ToolKind};
 use serde_json::Value;
 
@@ -82,7 +83,11 @@ fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
         fill: session.fill,
         strokes: &strokes,
     };
-    let (gesture, outcome) = tools::press(tool, &context, pen);
+    let (gesture, outcome) = match tool {
+        ToolKind::Brush if tab.on_mask => tools::mask::press(&context, pen, Purpose::Paint),
+        ToolKind::Eraser if tab.on_mask => tools::mask::press(&context, pen, Purpose::Erase),
+        _ => tools::press(tool, &context, pen),
+    };
     session.gesture = gesture;
     session.last_pen = Some(pen.sample.at);
     if matches!(tool, ToolKind::Brush | ToolKind::Fill | ToolKind::Gradient) {

@@ -1,125 +1,20 @@
 //! One property of a layer and its new value: what sliders, boxes and menus of the panels change.
 //! Floor 6.
 
-use super::replay::{actions, names, record};
-use crate::document::{Content, Layer, LayerMask, Live, Lock, MaskKind};
+mod values;
+
+pub use values::{DerivedMask, MaskNumbers};
+
+use super::actions::pictures::Part;
+use super::replay::actions;
+use crate::document::{Content, DetailSource, Layer, Live, Lock};
 use crate::math::{Vec2, Vec3, srgb::Color};
 use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
 use crate::raster::{BlendMode, Outside};
 use crate::shading::scaling::Reference;
-use crate::shading::{FeatureScale, Features, Light, LightKind, Model, RadianceScaling, Scaling, Shading, Term};
-use crate::surface::{Anchor, Operator, Weights};
-
-names!(BlendMode);
-names!(Lock, [Lock::None => "none", Lock::Alpha => "alpha", Lock::All => "all"]);
-names!(Filter, [Filter::Antialias => "antialias", Filter::Bilinear => "bilinear"]);
-names!(Outside, [
-    Outside::None => "none", Outside::Clamp => "clamp", Outside::Repeat => "repeat", Outside::Mirror => "mirror",
-]);
-names!(Model, [
-    Model::Phong => "phong", Model::Toon => "toon", Model::SubLambertian => "sub-lambertian",
-    Model::Ashikhmin => "ashikhmin", Model::DiffuseEnvironment => "diffuse-environment",
-    Model::AmbientOcclusion => "ambient-occlusion", Model::LitSphere => "lit-sphere", Model::Mirror => "mirror",
-    Model::Refraction => "refraction",
-]);
-record!(Placement { center, scale, rotation });
-record!(Adjust { blur, exposure, hue, saturation, brightness, contrast });
-record!(Anchor { at, source });
-record!(Stop { t, color });
-record!(Scaling { alpha, gamma_convex, gamma_concave });
-record!(Term { color, weight, scaling });
-record!(FeatureScale { curvature_scale_px, blur_px, weight });
-record!(Features { scales, lambda });
-record!(Light { kind, color, intensity });
-
-/// How marks follow the surface, as four words with their numbers.
-impl super::replay::Replayed for Operator {
-    fn written(&self) -> serde_json::Value {
-        match *self {
-            Operator::None => serde_json::json!({ "kind": "none" }),
-            Operator::Depth { gamma } => serde_json::json!({ "kind": "depth", "gamma": gamma.written() }),
-            Operator::Normal { alpha, beta, detail } => serde_json::json!({
-                "kind": "normal", "alpha": alpha.written(), "beta": beta.written(), "detail": detail.written(),
-            }),
-            Operator::Reflection { alpha, detail } => serde_json::json!({
-                "kind": "reflection", "alpha": alpha.written(), "detail": detail.written(),
-            }),
-        }
-    }
-    fn read(value: &serde_json::Value) -> Result<Self, String> {
-        let number = |name| super::replay::field::<f32>(value, name);
-        match value.get("kind").and_then(|kind| kind.as_str()) {
-            Some("none") => Ok(Operator::None),
-            Some("depth") => Ok(Operator::Depth { gamma: number("gamma")? }),
-            Some("normal") => {
-                Ok(Operator::Normal { alpha: number("alpha")?, beta: number("beta")?, detail: number("detail")? })
-            }
-            Some("reflection") => Ok(Operator::Reflection { alpha: number("alpha")?, detail: number("detail")? }),
-            _ => Err("must be an operator of a known kind".into()),
-        }
-    }
-}
-
-impl super::replay::Replayed for LightKind {
-    fn written(&self) -> serde_json::Value {
-        match self {
-            LightKind::Directional { direction } => serde_json::json!({ "direction": direction.written() }),
-            LightKind::Point { position } => serde_json::json!({ "position": position.written() }),
-        }
-    }
-    fn read(value: &serde_json::Value) -> Result<Self, String> {
-        match value.get("direction") {
-            Some(direction) => Ok(LightKind::Directional { direction: Vec3::read(direction)? }),
-            None => Ok(LightKind::Point { position: super::replay::field(value, "position")? }),
-        }
-    }
-}
-
-/// Y*: a number, or the largest there is.
-impl super::replay::Replayed for Reference {
-    fn written(&self) -> serde_json::Value {
-        match self {
-            Reference::Auto => "auto".into(),
-            Reference::Value(value) => value.written(),
-        }
-    }
-    fn read(value: &serde_json::Value) -> Result<Self, String> {
-        if value == "auto" { Ok(Reference::Auto) } else { f32::read(value).map(Reference::Value) }
-    }
-}
-
-/// A mask derived from the surface; one that is a picture is kept as it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DerivedMask(pub MaskNumbers);
-
-/// The numbers of a derived mask.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MaskNumbers {
-    Fresnel { f0: f32, power: f32 },
-    Curvature { scale: f32, blur: f32, from: f32, to: f32 },
-    Depth { from: f32, to: f32 },
-}
-
-impl super::replay::Replayed for DerivedMask {
-    fn written(&self) -> serde_json::Value {
-        let (kind, numbers): (&str, Vec<f32>) = match self.0 {
-            MaskNumbers::Fresnel { f0, power } => ("fresnel", vec![f0, power]),
-            MaskNumbers::Curvature { scale, blur, from, to } => ("curvature", vec![scale, blur, from, to]),
-            MaskNumbers::Depth { from, to } => ("depth", vec![from, to]),
-        };
-        serde_json::json!({ "kind": kind, "numbers": numbers.written() })
-    }
-    fn read(value: &serde_json::Value) -> Result<Self, String> {
-        let numbers: Vec<f32> = super::replay::field(value, "numbers")?;
-        let kind = value.get("kind").and_then(|kind| kind.as_str()).unwrap_or_default();
-        Ok(Self(match (kind, &numbers[..]) {
-            ("fresnel", &[f0, power]) => MaskNumbers::Fresnel { f0, power },
-            ("curvature", &[scale, blur, from, to]) => MaskNumbers::Curvature { scale, blur, from, to },
-            ("depth", &[from, to]) => MaskNumbers::Depth { from, to },
-            _ => return Err("must be a mask of a known kind with its numbers".into()),
-        }))
-    }
-}
+use crate::shading::{Features, Light, Model, Projection, RadianceScaling, Scaling, Shading, Term};
+use crate::surface::{Anchor, Grain, Operator, Weights};
+use values::set_mask;
 
 actions! {
     /// A property and its new value.
@@ -146,6 +41,16 @@ actions! {
         /// A mask derived from the surface, or none.
         "mask" Mask { mask: Option<DerivedMask> }
         "mask inverted" MaskInverted { on: bool }
+        /// Put aside, or counting again.
+        "mask disabled" MaskDisabled { on: bool }
+        /// How the environment lies: degrees about the vertical axis, stops.
+        "environment" Surrounded { projection: Projection, rotation: f32, exposure: f32 }
+        /// The layer does without that picture.
+        "without" Without { part: Part }
+        /// How far away occluders still count, px.
+        "occlusion" Occlusion { to: f32 }
+        /// Of a normal layer without a map.
+        "grain" Grained { grain: Grain }
         "model" ShadingModel { model: Model }
         "lights" Lights { lights: Vec<Light> }
         "ambient" Ambient { term: Term }
@@ -188,7 +93,11 @@ impl Property {
             Property::Adjusted { .. } => "Adjust image",
             Property::Stops { .. } => "Gradient stops",
             Property::Ends { .. } => "Gradient ends",
-            Property::Mask { .. } | Property::MaskInverted { .. } => "Layer mask",
+            Property::Mask { .. } | Property::MaskInverted { .. } | Property::MaskDisabled { .. } => "Layer mask",
+            Property::Surrounded { .. } => "Environment",
+            Property::Without { .. } => "Remove picture",
+            Property::Occlusion { .. } => "Material",
+            Property::Grained { .. } => "Detail normals",
             Property::ShadingModel { .. } => "Shading model",
             Property::Lights { .. } => "Lights",
             Property::Ambient { .. } | Property::Diffuse { .. } | Property::Specular { .. } => "Material",
@@ -219,6 +128,11 @@ impl Property {
                     mask.invert = *on;
                 }
             }
+            Property::MaskDisabled { on } => {
+                if let Some(mask) = &mut layer.mask {
+                    mask.disabled = *on;
+                }
+            }
             _ => self.apply_to_content(&mut layer.content),
         }
     }
@@ -238,6 +152,7 @@ impl Property {
                 Property::Strength { to } => normals.strength = to.max(0.0),
                 Property::Place { placement } => normals.placement = *placement,
                 Property::Beyond { outside } => normals.outside = *outside,
+                Property::Grained { grain } => normals.source = DetailSource::Grain(finite(*grain)),
                 _ => {}
             },
             Content::Image(live) => {
@@ -309,6 +224,15 @@ impl Property {
             Property::Anisotropy { nu, nv } => (next.nu, next.nv) = (nu.max(0.0), nv.max(0.0)),
             Property::RefractiveIndex { to } => next.index = to.max(0.01),
             Property::Features { features } => next.features = features.clone(),
+            Property::Occlusion { to } => next.occlusion_radius_px = to.max(0.0).min(2000.0),
+            Property::Surrounded { projection, rotation, exposure } => {
+                let environment = next.environment.as_mut()?;
+                environment.projection = *projection;
+                (environment.rotation, environment.exposure) = (*rotation, exposure.max(-20.0).min(20.0));
+            }
+            Property::Without { part: Part::Environment } => next.environment = None,
+            Property::Without { part: Part::Sphere } => next.sphere = None,
+            Property::Without { part: Part::ConcaveSphere } => next.sphere_concave = None,
             _ => return None,
         }
         Some(next)
@@ -325,14 +249,13 @@ impl Property {
     }
 }
 
-fn set_mask(layer: &mut Layer, mask: Option<DerivedMask>) {
-    let invert = layer.mask.as_ref().is_some_and(|mask| mask.invert);
-    layer.mask = mask.map(|DerivedMask(numbers)| {
-        let kind = match numbers {
-            MaskNumbers::Fresnel { f0, power } => MaskKind::Fresnel { f0, power },
-            MaskNumbers::Curvature { scale, blur, from, to } => MaskKind::Curvature { scale, blur, from, to },
-            MaskNumbers::Depth { from, to } => MaskKind::Depth { from, to },
-        };
-        LayerMask { kind, invert }
-    });
+/// A grain whose numbers are those that a document may hold.
+fn finite(grain: Grain) -> Grain {
+    Grain {
+        size_px: grain.size_px.max(0.1).min(100_000.0),
+        octaves: grain.octaves.clamp(1, 12),
+        roughness: grain.roughness.max(0.0).min(2.0),
+        stretch: grain.stretch.max(0.01).min(1000.0),
+        seed: grain.seed,
+    }
 }

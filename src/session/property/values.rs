@@ -1,0 +1,139 @@
+//! How the values of properties stand in a replay.
+//! Floor 6.
+
+use crate::document::{Layer, LayerMask, Lock, MaskKind};
+use crate::math::Vec3;
+use crate::paint::{Adjust, Filter, Placement, Stop};
+use crate::raster::{BlendMode, Outside};
+use crate::session::replay::{names, record};
+use crate::shading::scaling::Reference;
+use crate::shading::{FeatureScale, Features, Light, LightKind, Model, Projection, Scaling, Term};
+use crate::surface::{Anchor, Grain, Operator};
+
+names!(BlendMode);
+names!(Lock, [Lock::None => "none", Lock::Alpha => "alpha", Lock::All => "all"]);
+names!(Filter, [Filter::Antialias => "antialias", Filter::Bilinear => "bilinear"]);
+names!(Outside, [
+    Outside::None => "none", Outside::Clamp => "clamp", Outside::Repeat => "repeat", Outside::Mirror => "mirror",
+]);
+names!(Model, [
+    Model::Phong => "phong", Model::Toon => "toon", Model::SubLambertian => "sub-lambertian",
+    Model::Ashikhmin => "ashikhmin", Model::DiffuseEnvironment => "diffuse-environment",
+    Model::AmbientOcclusion => "ambient-occlusion", Model::LitSphere => "lit-sphere", Model::Mirror => "mirror",
+    Model::Refraction => "refraction",
+]);
+names!(Projection, [
+    Projection::LatLong => "lat-long", Projection::Angular => "angular", Projection::MirrorBall => "mirror-ball",
+]);
+record!(Grain { size_px, octaves, roughness, stretch, seed });
+record!(Placement { center, scale, rotation });
+record!(Adjust { blur, exposure, hue, saturation, brightness, contrast });
+record!(Anchor { at, source });
+record!(Stop { t, color });
+record!(Scaling { alpha, gamma_convex, gamma_concave });
+record!(Term { color, weight, scaling });
+record!(FeatureScale { curvature_scale_px, blur_px, weight });
+record!(Features { scales, lambda });
+record!(Light { kind, color, intensity });
+
+/// How marks follow the surface, as four words with their numbers.
+impl crate::session::replay::Replayed for Operator {
+    fn written(&self) -> serde_json::Value {
+        match *self {
+            Operator::None => serde_json::json!({ "kind": "none" }),
+            Operator::Depth { gamma } => serde_json::json!({ "kind": "depth", "gamma": gamma.written() }),
+            Operator::Normal { alpha, beta, detail } => serde_json::json!({
+                "kind": "normal", "alpha": alpha.written(), "beta": beta.written(), "detail": detail.written(),
+            }),
+            Operator::Reflection { alpha, detail } => serde_json::json!({
+                "kind": "reflection", "alpha": alpha.written(), "detail": detail.written(),
+            }),
+        }
+    }
+    fn read(value: &serde_json::Value) -> Result<Self, String> {
+        let number = |name| crate::session::replay::field::<f32>(value, name);
+        match value.get("kind").and_then(|kind| kind.as_str()) {
+            Some("none") => Ok(Operator::None),
+            Some("depth") => Ok(Operator::Depth { gamma: number("gamma")? }),
+            Some("normal") => {
+                Ok(Operator::Normal { alpha: number("alpha")?, beta: number("beta")?, detail: number("detail")? })
+            }
+            Some("reflection") => Ok(Operator::Reflection { alpha: number("alpha")?, detail: number("detail")? }),
+            _ => Err("must be an operator of a known kind".into()),
+        }
+    }
+}
+
+impl crate::session::replay::Replayed for LightKind {
+    fn written(&self) -> serde_json::Value {
+        match self {
+            LightKind::Directional { direction } => serde_json::json!({ "direction": direction.written() }),
+            LightKind::Point { position } => serde_json::json!({ "position": position.written() }),
+        }
+    }
+    fn read(value: &serde_json::Value) -> Result<Self, String> {
+        match value.get("direction") {
+            Some(direction) => Ok(LightKind::Directional { direction: Vec3::read(direction)? }),
+            None => Ok(LightKind::Point { position: crate::session::replay::field(value, "position")? }),
+        }
+    }
+}
+
+/// Y*: a number, or the largest there is.
+impl crate::session::replay::Replayed for Reference {
+    fn written(&self) -> serde_json::Value {
+        match self {
+            Reference::Auto => "auto".into(),
+            Reference::Value(value) => value.written(),
+        }
+    }
+    fn read(value: &serde_json::Value) -> Result<Self, String> {
+        if value == "auto" { Ok(Reference::Auto) } else { f32::read(value).map(Reference::Value) }
+    }
+}
+
+/// A mask derived from the surface; one that is a picture is kept as it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DerivedMask(pub MaskNumbers);
+
+/// The numbers of a derived mask.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MaskNumbers {
+    Fresnel { f0: f32, power: f32 },
+    Curvature { scale: f32, blur: f32, from: f32, to: f32 },
+    Depth { from: f32, to: f32 },
+}
+
+impl crate::session::replay::Replayed for DerivedMask {
+    fn written(&self) -> serde_json::Value {
+        let (kind, numbers): (&str, Vec<f32>) = match self.0 {
+            MaskNumbers::Fresnel { f0, power } => ("fresnel", vec![f0, power]),
+            MaskNumbers::Curvature { scale, blur, from, to } => ("curvature", vec![scale, blur, from, to]),
+            MaskNumbers::Depth { from, to } => ("depth", vec![from, to]),
+        };
+        serde_json::json!({ "kind": kind, "numbers": numbers.written() })
+    }
+    fn read(value: &serde_json::Value) -> Result<Self, String> {
+        let numbers: Vec<f32> = crate::session::replay::field(value, "numbers")?;
+        let kind = value.get("kind").and_then(|kind| kind.as_str()).unwrap_or_default();
+        Ok(Self(match (kind, &numbers[..]) {
+            ("fresnel", &[f0, power]) => MaskNumbers::Fresnel { f0, power },
+            ("curvature", &[scale, blur, from, to]) => MaskNumbers::Curvature { scale, blur, from, to },
+            ("depth", &[from, to]) => MaskNumbers::Depth { from, to },
+            _ => return Err("must be a mask of a known kind with its numbers".into()),
+        }))
+    }
+}
+
+/// Gives a layer a derived mask, or none. The way it counts stays.
+pub(super) fn set_mask(layer: &mut Layer, mask: Option<DerivedMask>) {
+    let invert = layer.mask.as_ref().is_some_and(|mask| mask.invert);
+    layer.mask = mask.map(|DerivedMask(numbers)| {
+        let kind = match numbers {
+            MaskNumbers::Fresnel { f0, power } => MaskKind::Fresnel { f0, power },
+            MaskNumbers::Curvature { scale, blur, from, to } => MaskKind::Curvature { scale, blur, from, to },
+            MaskNumbers::Depth { from, to } => MaskKind::Depth { from, to },
+        };
+        LayerMask { invert, ..LayerMask::new(kind) }
+    });
+}

@@ -1,0 +1,217 @@
+//! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the eraser hide it. The strokes are
+//! those of the brush, on a paint layer that holds the mask's greys while the hand moves.
+//! Floor 5. Strokes are `brush`'s.
+
+use super::brush::{self, Purpose};
+use super::{Begun, Context, Gesture, Outcome, Pen};
+use crate::document::{Content, Document, Layer, LayerId, LayerMask, Lock, MaskKind, PixelLayer};
+use crate::math::srgb::{Color, luminance, quantise};
+use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// The pen comes down. Nothing begins where the layer is locked, or has no mask that is a picture.
+pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
+    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != Lock::All);
+    let Some(layer) = layer else { return (None, Outcome::Idle) };
+    let Some(LayerMask { kind: MaskKind::File { coverage, .. }, .. }) = &layer.mask else {
+        return (None, Outcome::Idle);
+    };
+    let Color { r, g, b, a } = context.color;
+    let [r, g, b] = [r, g, b].map(|v| f32::from(v) / 255.0);
+    let grey = quantise(luminance(r, g, b));
+    let shown = greys(coverage);
+    let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: shown.clone() };
+    let sheet = Layer::new("mask", Content::Pixels(pixels));
+    // The strokes bend over what the layer itself sees: the surface with the detail beneath it.
+    let surface = context.document.scene_of(layer.id).map_or(context.document.surface.clone(), |scene| scene.surface);
+    let on_sheet = Context {
+        layer: Some(sheet.id),
+        color: Color { r: grey, g: grey, b: grey, a },
+        document: &Document { surface, layers: vec![Arc::new(sheet)], ..Document::empty(context.document.size) },
+        ..*context
+    };
+    let (Some(stroke), first) = brush::press(&on_sheet, pen, purpose) else { return (None, Outcome::Idle) };
+    let (document, layer, mask) = (context.document.clone(), layer.id, coverage.clone());
+    let mut painting = Painting { document, layer, mask, shown, stroke };
+    let outcome = painting.took(first);
+    (Some(Box::new(painting)), outcome)
+}
+
+/// A stroke in the making.
+struct Painting {
+    document: Document,
+    layer: LayerId,
+    /// The mask with the stroke as far as it is drawn, and the tiles that hold the same.
+    mask: Arc<Plane<u8>>,
+    shown: TileGrid,
+    /// On the sheet of greys.
+    stroke: Box<dyn Gesture>,
+}
+
+impl Painting {
+    /// What the brush did to the sheet, done to the mask.
+    fn took(&mut self, outcome: Outcome) -> Outcome {
+        match outcome {
+            Outcome::Preview(sheet) => self.with(&sheet).map_or(Outcome::Idle, Outcome::Preview),
+            Outcome::Commit { document: sheet, .. } => match self.with(&sheet) {
+                Some(document) => Outcome::Commit { label: "Paint on mask".into(), document, select: Some(self.layer) },
+                None => Outcome::Cancel,
+            },
+            other => other,
+        }
+    }
+    fn with(&mut self, sheet: &Document) -> Option<Document> {
+        let Content::Pixels(pixels) = &sheet.layers.first()?.content else { return None };
+        let mask = Arc::make_mut(&mut self.mask);
+        for at in self.shown.changed_tiles(&pixels.tiles) {
+            put(mask, at, pixels.tiles.tile(at).map(|tile| &**tile));
+        }
+        self.shown = pixels.tiles.clone();
+        let now = self.mask.clone();
+        self.document.with_layer(self.layer, |layer| {
+            if let Some(LayerMask { kind: MaskKind::File { file, coverage }, .. }) = &mut layer.mask {
+                // What was painted here is no longer what the file holds.
+                file.clear();
+                *coverage = now;
+            }
+        })
+    }
+}
+
+impl Gesture for Painting {
+    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+        let outcome = self.stroke.drag(pens);
+        self.took(outcome)
+    }
+    fn release(&mut self) -> Outcome {
+        let outcome = self.stroke.release();
+        self.took(outcome)
+    }
+}
+
+/// A mask as opaque greys; tiles of one grey are one tile.
+fn greys(mask: &Plane<u8>) -> TileGrid {
+    let canvas = mask.size().rect();
+    let mut grid = TileGrid::for_rect(canvas);
+    let mut plain: HashMap<u8, Option<Arc<Tile>>> = HashMap::new();
+    for at in TileAt::covering(canvas) {
+        let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
+        let columns = inside.x0 as usize..inside.x1 as usize;
+        let first = mask.at(columns.start, inside.y0 as usize);
+        let is_plain =
+            (inside.y0..inside.y1).all(|y| mask.row(y as usize)[columns.clone()].iter().all(|&v| v == first));
+        let made = |grey: &dyn Fn(i32, i32) -> u8| {
+            let place = |i: usize| (rect.x0 + (i % TILE) as i32, rect.y0 + (i / TILE) as i32);
+            let pixel = |i: usize| {
+                let (x, y) = place(i);
+                let v = grey(x, y);
+                [v, v, v, 255]
+            };
+            Tile::from_pixels((0..TILE * TILE).flat_map(pixel).collect()).map(Arc::new)
+        };
+        let tile = if is_plain {
+            plain.entry(first).or_insert_with(|| made(&|_, _| first)).clone()
+        } else {
+            made(&|x, y| mask.clamped(x, y))
+        };
+        grid.set(at, tile);
+    }
+    grid
+}
+
+/// The greys of a tile back into the mask; what was erased is black.
+fn put(mask: &mut Plane<u8>, at: TileAt, tile: Option<&Tile>) {
+    let (rect, inside) = (at.rect(), at.rect().intersect(mask.size().rect()));
+    for y in inside.y0..inside.y1 {
+        let to = &mut mask.row_mut(y as usize)[inside.x0 as usize..inside.x1 as usize];
+        let Some(tile) = tile else {
+            to.fill(0);
+            continue;
+        };
+        let from = (y - rect.y0) as usize * TILE;
+        let row = &tile.bytes()[from * 4..(from + inside.width()) * 4];
+        to.iter_mut().zip(row.chunks_exact(4)).for_each(|(to, pixel)| *to = pixel[0]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Content, Layer, Progress, diff, flatten};
+    use crate::math::{Size, vec2};
+    use crate::paint::Brush;
+    use crate::surface::Operator;
+    use crate::tools::symmetry::Symmetry;
+
+    fn masked(value: u8) -> Document {
+        let size = Size::new(200, 130);
+        let kind = MaskKind::File { file: "m.png".into(), coverage: Arc::new(Plane::filled(size, value)) };
+        let fill = Layer::new("fill", Content::Fill(Color { r: 200, g: 10, b: 10, a: 255 }));
+        let layer = Layer { mask: Some(LayerMask::new(kind)), ..fill };
+        Document { layers: vec![Arc::new(layer)], ..Document::empty(size) }
+    }
+    fn drawn(document: &Document, color: Color, purpose: Purpose) -> Document {
+        let (brush, layer) = (Brush { size: 20.0, hardness: 1.0, ..Brush::default() }, Some(document.layers[0].id));
+        let (second_color, operator) = (Color::WHITE, Operator::None);
+        let context = Context {
+            document,
+            layer,
+            brush: &brush,
+            color,
+            second_color,
+            operator,
+            px_per_pt: 1.0,
+            last_end: None,
+            symmetry: Symmetry::default(),
+        };
+        let mut gesture = press(&context, Pen::at(vec2(40.0, 40.0)), purpose).0.unwrap();
+        gesture.drag(&[Pen::at(vec2(90.0, 40.0))]);
+        gesture.drag(&[Pen::at(vec2(120.0, 40.0))]);
+        match gesture.release() {
+            Outcome::Commit { document, .. } => document,
+            _ => panic!("kept"),
+        }
+    }
+    fn alpha(document: &Document, x: i32, y: i32) -> u8 {
+        flatten(document, &Progress::default()).unwrap().pixel(x, y)[3]
+    }
+
+    #[test]
+    fn white_shows_the_layer_and_black_and_the_eraser_hide_it() {
+        let hidden = masked(0);
+        let shown = drawn(&hidden, Color::WHITE, Purpose::Paint);
+        assert_eq!((alpha(&shown, 80, 40), alpha(&shown, 80, 80)), (255, 0));
+        let whole = masked(255);
+        for (color, purpose) in [(Color::BLACK, Purpose::Paint), (Color::WHITE, Purpose::Erase)] {
+            let cut = drawn(&whole, color, purpose);
+            assert_eq!((alpha(&cut, 80, 40), alpha(&cut, 80, 80)), (0, 255));
+        }
+    }
+    #[test]
+    fn only_the_tiles_of_the_stroke_are_drawn_again() {
+        let hidden = masked(0);
+        let changed = diff(&hidden, &drawn(&hidden, Color::WHITE, Purpose::Paint));
+        let expected = [TileAt::new(0, 0), TileAt::new(1, 0), TileAt::new(2, 0)];
+        assert!(!changed.is_empty() && changed.iter().all(|at| expected.contains(at)), "{changed:?}");
+    }
+    #[test]
+    fn a_layer_without_such_a_mask_takes_no_paint() {
+        let mut document = masked(0);
+        document.layers = vec![Arc::new(Layer { mask: None, ..Layer::clone(&document.layers[0]) })];
+        let brush = Brush::default();
+        let (layer, color, operator) = (Some(document.layers[0].id), Color::WHITE, Operator::None);
+        let context = Context {
+            document: &document,
+            layer,
+            brush: &brush,
+            color,
+            second_color: color,
+            operator,
+            px_per_pt: 1.0,
+            last_end: None,
+            symmetry: Symmetry::default(),
+        };
+        assert!(press(&context, Pen::at(vec2(9.0, 9.0)), Purpose::Paint).0.is_none());
+    }
+}
