@@ -2,6 +2,7 @@
 //! that is handed the finished map. `cargo bench --bench engine`; quote ratios from one run, never times from another day.
 
 use rayon::prelude::*;
+use rilievo::document::{Content, Document, Layer, Live, Progress, Reduced, flatten};
 use rilievo::math::{Size, vec2, vec3};
 use rilievo::paint::{Adjust, Filter, PictureSource, PlacedImage, Placement};
 use rilievo::raster::{Outside, Picture, Plane, Tile, TileAt};
@@ -78,6 +79,27 @@ fn bench(bencher: divan::Bencher, case: &str, threads: usize) {
     let (image, pool) = (image(operator, filter, anchors), pool(threads));
     let bencher = bencher.counter(divan::counter::ItemsCount::new(SIZE.area()));
     bencher.bench_local(|| pool.install(|| render(&image)));
+}
+
+/// A picture whose α is dragged, as the window shows it: every pixel, or every second, fourth, eighth a side.
+#[divan::bench(args = [1, 2, 4, 8], sample_count = 9, sample_size = 1)]
+fn dragged(bencher: divan::Bencher, step: u32) {
+    let content = |alpha: f32| {
+        let operator = Operator::Normal { alpha, beta: 0.0, detail: 0.0 };
+        Content::Image(Live::new(image(operator, Filter::Antialias, 1)))
+    };
+    let layers = vec![Arc::new(Layer::new("picture", content(0.5)))];
+    let document = Document { surface: SCENE.surface.clone(), layers, ..Document::empty(SIZE) };
+    let id = document.layers[0].id;
+    let mut reduced = Reduced::new(1.0 / step as f32);
+    // The surface is made small once for all of a drag.
+    reduced.of(&document).expect("a surface that can be made small");
+    let mut alpha = 0.5;
+    bencher.bench_local(|| {
+        alpha += 1e-3;
+        let next = document.with_layer(id, |layer| layer.content = content(alpha)).expect("it has that layer");
+        flatten(&reduced.of(&next).expect("a surface that can be made small"), &Progress::default())
+    });
 }
 
 /// ns per pixel: the median of five renderings.

@@ -67,14 +67,19 @@ pub enum Answer {
     Nowhere,
 }
 
-/// Asks with the system's dialog, on another thread. [`Done::Chosen`] with `None` means that there is none.
-pub fn ask(jobs: &mut Jobs, purpose: Purpose, name: &str) {
+/// Asks with the system's dialog, on another thread. [`Done::Chosen`] with `None` means that there is none, or that the window
+/// is to ask `by_itself`.
+pub fn ask(jobs: &mut Jobs, purpose: Purpose, name: &str, by_itself: bool) {
     let name = name.to_owned();
-    jobs.start(purpose.title().into(), While::Asking, move |_| match system_dialog(purpose, &name) {
+    jobs.start(purpose.title().into(), While::Asking, move |_| match answer(purpose, &name, by_itself) {
         Answer::File(file) => Done::Chosen(purpose, Some(file)),
         Answer::Cancelled => Done::Nothing,
         Answer::Nowhere => Done::Chosen(purpose, None),
     });
+}
+
+fn answer(purpose: Purpose, name: &str, by_itself: bool) -> Answer {
+    if by_itself { Answer::Nowhere } else { system_dialog(purpose, name) }
 }
 
 fn system_dialog(purpose: Purpose, name: &str) -> Answer {

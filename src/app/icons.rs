@@ -1,6 +1,7 @@
 //! Icons, drawn: lines on a grid of 16 × 16, so that they are sharp at any scale and need no font.
 //! Floor 7.
 
+use crate::tools::ToolKind;
 use eframe::egui::{self, Color32, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
 type At = (f32, f32);
@@ -19,16 +20,8 @@ use Part::{Circle, Closed, Dot, Filled, Line};
 /// What an icon stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Icon {
-    Brush,
-    Eraser,
-    Bucket,
-    Gradient,
-    Image,
-    Anchors,
-    Move,
-    Eyedropper,
-    Hand,
-    Zoom,
+    /// A tool, and what is made with it.
+    Tool(ToolKind),
     Shown,
     Hidden,
     Lock,
@@ -36,7 +29,6 @@ pub enum Icon {
     Clip,
     Solo,
     Mask,
-    Strokes,
     Pixels,
     Fill,
     Shading,
@@ -59,33 +51,33 @@ pub enum Icon {
 impl Icon {
     fn parts(self) -> &'static [Part] {
         match self {
-            Icon::Brush => &[
+            Icon::Tool(ToolKind::Brush) => &[
                 Closed(&[(13.5, 1.5), (14.5, 2.5), (8.2, 9.8), (6.2, 7.8)]),
                 Filled(&[(5.4, 8.6), (7.4, 10.6), (6.2, 13.2), (1.8, 14.2), (3.4, 12.4), (3.6, 9.6)]),
             ],
-            Icon::Eraser => &[
+            Icon::Tool(ToolKind::Eraser) => &[
                 Closed(&[(9.0, 2.5), (13.5, 7.0), (7.2, 13.5), (4.6, 13.5), (2.0, 10.8), (2.0, 9.6)]),
                 Line(&[(5.4, 6.2), (9.9, 10.7)]),
                 Line(&[(7.2, 13.5), (14.0, 13.5)]),
             ],
-            Icon::Bucket => &[
+            Icon::Tool(ToolKind::Fill) => &[
                 Closed(&[(7.0, 2.0), (13.0, 8.0), (7.6, 13.4), (6.4, 13.4), (1.6, 8.6), (1.6, 7.4)]),
                 Filled(&[(3.0, 8.2), (12.6, 8.2), (7.4, 13.2), (6.6, 13.2)]),
                 Filled(&[(14.2, 9.6), (15.4, 12.4), (14.8, 13.8), (13.6, 13.8), (13.0, 12.4)]),
             ],
-            Icon::Gradient => &[
+            Icon::Tool(ToolKind::Gradient) => &[
                 Closed(&[(2.0, 3.0), (14.0, 3.0), (14.0, 13.0), (2.0, 13.0)]),
                 Filled(&[(2.0, 3.0), (5.0, 3.0), (5.0, 13.0), (2.0, 13.0)]),
                 Line(&[(6.6, 3.0), (6.6, 13.0)]),
                 Line(&[(8.6, 3.0), (8.6, 13.0)]),
                 Line(&[(11.2, 3.0), (11.2, 13.0)]),
             ],
-            Icon::Image => &[
+            Icon::Tool(ToolKind::Image) => &[
                 Closed(&[(1.5, 3.0), (14.5, 3.0), (14.5, 13.0), (1.5, 13.0)]),
                 Line(&[(1.5, 11.5), (5.5, 7.0), (8.5, 10.5), (10.5, 8.5), (14.5, 12.0)]),
                 Dot((11.0, 5.8), 1.2),
             ],
-            Icon::Anchors => &[
+            Icon::Tool(ToolKind::Anchors) => &[
                 Circle((8.0, 8.0), 2.2),
                 Line(&[(8.0, 1.5), (8.0, 5.8)]),
                 Line(&[(8.0, 10.2), (8.0, 14.5)]),
@@ -93,7 +85,7 @@ impl Icon {
                 Line(&[(10.2, 8.0), (14.5, 8.0)]),
                 Dot((8.0, 8.0), 0.9),
             ],
-            Icon::Move => &[
+            Icon::Tool(ToolKind::Move) => &[
                 Line(&[(8.0, 1.5), (8.0, 14.5)]),
                 Line(&[(1.5, 8.0), (14.5, 8.0)]),
                 Line(&[(6.0, 3.5), (8.0, 1.5), (10.0, 3.5)]),
@@ -101,12 +93,12 @@ impl Icon {
                 Line(&[(3.5, 6.0), (1.5, 8.0), (3.5, 10.0)]),
                 Line(&[(12.5, 6.0), (14.5, 8.0), (12.5, 10.0)]),
             ],
-            Icon::Eyedropper => &[
+            Icon::Tool(ToolKind::Eyedropper) => &[
                 Filled(&[(10.0, 3.6), (12.2, 1.6), (14.4, 3.8), (12.4, 6.0)]),
                 Line(&[(8.6, 4.4), (11.6, 7.4)]),
                 Closed(&[(9.4, 5.6), (10.4, 6.6), (4.6, 12.4), (2.4, 13.6), (3.6, 11.4)]),
             ],
-            Icon::Hand => &[Line(&[
+            Icon::Tool(ToolKind::Hand) => &[Line(&[
                 (4.8, 9.8),
                 (4.8, 4.2),
                 (6.2, 4.2),
@@ -126,7 +118,7 @@ impl Icon {
                 (3.4, 8.4),
                 (4.8, 9.8),
             ])],
-            Icon::Zoom => &[
+            Icon::Tool(ToolKind::Zoom) => &[
                 Circle((6.8, 6.8), 4.6),
                 Line(&[(10.2, 10.2), (14.2, 14.2)]),
                 Line(&[(4.8, 6.8), (8.8, 6.8)]),
@@ -166,7 +158,7 @@ impl Icon {
             ],
             Icon::Solo => &[Circle((8.0, 8.0), 5.5), Dot((8.0, 8.0), 2.4)],
             Icon::Mask => &[Closed(&[(2.0, 3.0), (14.0, 3.0), (14.0, 13.0), (2.0, 13.0)]), Dot((8.0, 8.0), 3.2)],
-            Icon::Strokes => &[
+            Icon::Tool(ToolKind::Strokes) => &[
                 Line(&[(2.0, 11.5), (4.0, 7.0), (6.6, 5.4), (8.6, 7.4), (10.0, 10.0), (12.0, 9.0), (14.0, 4.0)]),
                 Dot((2.0, 11.5), 1.3),
                 Dot((8.6, 7.4), 1.3),

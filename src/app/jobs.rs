@@ -3,13 +3,12 @@
 
 use crate::app::files::Purpose;
 use crate::document::{Document, LayerId, Progress};
-use crate::io::maps;
 use crate::io::save::Stamp;
 use crate::io::{maps, recovery};
 use crate::raster::Picture;
 use crate::session::Edit;
-use crate::session::autosave::Found;
 use crate::session::actions::pictures::Read;
+use crate::session::autosave::Found;
 use crate::session::storage::{self, Kind, Opened};
 use crate::{Error, Result};
 use eframe::egui;

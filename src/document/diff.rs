@@ -216,11 +216,7 @@ fn looks_alike(a: &Layer, b: &Layer) -> bool {
         && a.blend_linear == b.blend_linear
         && a.clip_below == b.clip_below
         && a.clip_to_surface == b.clip_to_surface
-        && match (&a.mask, &b.mask) {
-            (None, None) => true,
-            (Some(_), Some(_)) => true,
-            _ => false,
-        }
+        && a.mask.is_some() == b.mask.is_some()
 }
 
 #[cfg(test)]

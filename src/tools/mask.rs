@@ -141,8 +141,6 @@ mod tests {
     use crate::document::{Content, Layer, Progress, diff, flatten};
     use crate::math::{Size, vec2};
     use crate::paint::Brush;
-    use crate::surface::Operator;
-    use crate::tools::symmetry::Symmetry;
 
     fn masked(value: u8) -> Document {
         let size = Size::new(200, 130);
@@ -153,18 +151,7 @@ mod tests {
     }
     fn drawn(document: &Document, color: Color, purpose: Purpose) -> Document {
         let (brush, layer) = (Brush { size: 20.0, hardness: 1.0, ..Brush::default() }, Some(document.layers[0].id));
-        let (second_color, operator) = (Color::WHITE, Operator::None);
-        let context = Context {
-            document,
-            layer,
-            brush: &brush,
-            color,
-            second_color,
-            operator,
-            px_per_pt: 1.0,
-            last_end: None,
-            symmetry: Symmetry::default(),
-        };
+        let context = Context { layer, color, ..Context::new(document, &brush) };
         let mut gesture = press(&context, Pen::at(vec2(40.0, 40.0)), purpose).0.unwrap();
         gesture.drag(&[Pen::at(vec2(90.0, 40.0))]);
         gesture.drag(&[Pen::at(vec2(120.0, 40.0))]);
@@ -200,18 +187,8 @@ mod tests {
         let mut document = masked(0);
         document.layers = vec![Arc::new(Layer { mask: None, ..Layer::clone(&document.layers[0]) })];
         let brush = Brush::default();
-        let (layer, color, operator) = (Some(document.layers[0].id), Color::WHITE, Operator::None);
-        let context = Context {
-            document: &document,
-            layer,
-            brush: &brush,
-            color,
-            second_color: color,
-            operator,
-            px_per_pt: 1.0,
-            last_end: None,
-            symmetry: Symmetry::default(),
-        };
+        let layer = Some(document.layers[0].id);
+        let context = Context { layer, ..Context::new(&document, &brush) };
         assert!(press(&context, Pen::at(vec2(9.0, 9.0)), Purpose::Paint).0.is_none());
     }
 }

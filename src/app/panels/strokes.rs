@@ -80,7 +80,8 @@ fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], asked
                 act(StrokeAction::Order { layer: layer(), stroke, to: stroke - 1 });
             }
             let hint = "Its brush, operator and colour come into the hand";
-            if icon_button(ui, Icon::Eyedropper, "Take its brush", false).on_hover_text(hint).clicked() {
+            if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Take its brush", false).on_hover_text(hint).clicked()
+            {
                 act(StrokeAction::Take { layer: layer(), stroke });
             }
         }
@@ -96,7 +97,7 @@ fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], asked
         }
         let hint = "Paint them with the brush in hand";
         let restyle = StrokeAction::Restyle { layer: layer(), strokes: strokes(), to: Style::Brush {}, done: true };
-        if icon_button(ui, Icon::Brush, "Give brush in hand", false).on_hover_text(hint).clicked() {
+        if icon_button(ui, Icon::Tool(ToolKind::Brush), "Give brush in hand", false).on_hover_text(hint).clicked() {
             act(restyle);
         }
     });

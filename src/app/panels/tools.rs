@@ -10,28 +10,12 @@ use crate::session::{Action, Session};
 use crate::tools::{ToolKind, ToolRow};
 use eframe::egui::{Ui, vec2};
 
-pub fn icon(tool: ToolKind) -> Icon {
-    match tool {
-        ToolKind::Brush => Icon::Brush,
-        ToolKind::Eraser => Icon::Eraser,
-        ToolKind::Fill => Icon::Bucket,
-        ToolKind::Gradient => Icon::Gradient,
-        ToolKind::Image => Icon::Image,
-        ToolKind::Anchors => Icon::Anchors,
-        ToolKind::Move => Icon::Move,
-        ToolKind::Strokes => Icon::Strokes,
-        ToolKind::Eyedropper => Icon::Eyedropper,
-        ToolKind::Hand => Icon::Hand,
-        ToolKind::Zoom => Icon::Zoom,
-    }
-}
-
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, asked: &mut Asked) {
     ui.vertical_centered(|ui| {
         ui.add_space(2.0);
         const TOOLS: &[ToolRow] = &ToolKind::ALL;
         for row in TOOLS {
-            let response = sized_button(ui, icon(row.kind), row.label, session.tool == row.kind, 32.0);
+            let response = sized_button(ui, Icon::Tool(row.kind), row.label, session.tool == row.kind, 32.0);
             let keys = keymap
                 .of(Keyed::Tool(row))
                 .first()

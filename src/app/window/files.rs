@@ -109,7 +109,10 @@ impl Window {
     }
     pub(super) fn ask_where(&mut self, purpose: Purpose) {
         let name = self.proposed(purpose);
-        files::ask(&mut self.jobs, purpose, &name);
+        self.ask_for(purpose, &name);
+    }
+    pub(super) fn ask_for(&mut self, purpose: Purpose, name: &str) {
+        files::ask(&mut self.jobs, purpose, name, self.asks_itself);
     }
     /// The name a file is proposed to have.
     pub(super) fn proposed(&self, purpose: Purpose) -> String {

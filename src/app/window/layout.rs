@@ -5,6 +5,7 @@ use super::Window;
 use crate::app::asked::Asked;
 use crate::app::panels::{self, Front};
 use crate::app::settings::Side;
+use crate::app::theme::ACCENT;
 use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
 
 /// How wide the panels may be, points.
@@ -32,8 +33,10 @@ impl Window {
         }
         self.show_messages(ui);
         CentralPanel::no_frame().show(ui, |ui| {
+            let area = ui.max_rect();
             self.canvas.show(ui, &self.session, &mut asked.actions);
             self.show_steps(ui);
+            show_hovered(ui, area, self.session.tab().is_some());
         });
     }
     /// The panels that are together.
@@ -44,7 +47,9 @@ impl Window {
             Side::Right => Panel::right("panels right"),
             Side::Apart => {
                 let window = egui::Window::new("Panels").id(Id::unique("panels apart")).constrain(true);
-                let window = window.default_size([self.settings.layout.width_pt, 640.0]).min_size([230.0, 300.0]);
+                let corner = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
+                let window = window.default_pos(corner).min_size([230.0, 300.0]);
+                let window = window.default_size([self.settings.layout.width_pt, 640.0]);
                 return drop(window.show(ui.ctx(), |ui| self.together(ui, asked)));
             }
         };
@@ -111,10 +116,13 @@ impl Window {
     }
     /// The panels in windows of their own; closing one puts it back.
     fn apart(&mut self, ctx: &egui::Context, asked: &mut Asked) {
-        for front in self.settings.layout.apart.clone() {
+        for (i, front) in self.settings.layout.apart.clone().into_iter().enumerate() {
             let mut is_open = true;
+            // Over the canvas, so that none covers where it came from.
+            let corner = ctx.content_rect().center() + egui::vec2(-160.0, -220.0) + egui::Vec2::splat(26.0 * i as f32);
             let window = egui::Window::new(front.name()).id(Id::unique(("panel", front.name())));
-            let window = window.default_size([268.0, 340.0]).min_size([230.0, 160.0]).open(&mut is_open);
+            let window =
+                window.default_size([268.0, 340.0]).min_size([230.0, 160.0]).default_pos(corner).open(&mut is_open);
             let area = |ui: &mut Ui| {
                 let area = egui::ScrollArea::vertical().id_salt(front.name()).auto_shrink([false, false]);
                 area.show(ui, |ui| self.panel(ui, front, asked));
@@ -144,4 +152,18 @@ impl Window {
             self.messages.remove(i);
         }
     }
+}
+
+/// What becomes of files that are held over the window.
+fn show_hovered(ui: &Ui, area: egui::Rect, has_document: bool) {
+    if ui.input(|i| i.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let picture = if has_document { "a picture becomes a layer where it falls" } else { "a picture opens" };
+    let text = format!("Drop: {picture}, maps become a new document, a project opens");
+    let painter = ui.painter_at(area);
+    painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(90));
+    painter.rect_stroke(area.shrink(6.0), 6.0, egui::Stroke::new(2.0, ACCENT), egui::StrokeKind::Inside);
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    painter.text(area.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }

@@ -10,7 +10,7 @@ mod work;
 use super::asked::{Asked, WindowAsk};
 use super::canvas::Canvas;
 use super::dialogs::{Answer, Dialog, Then, export, import, new, palette, shortcuts};
-use super::files::{self as choosing, Purpose};
+use super::files::Purpose;
 use super::jobs::{Done, Jobs, While};
 use super::settings::{Keeper, Settings, Side};
 use super::swatches::Swatches;
@@ -35,6 +35,8 @@ pub struct Window {
     pub(super) messages: Vec<String>,
     settings: Settings,
     keeper: Keeper,
+    /// Not with the dialogs of the system.
+    asks_itself: bool,
     /// The program was started without a file, so the sample is open.
     is_first_start: bool,
     export: export::Export,
@@ -65,12 +67,17 @@ impl Window {
             messages: trouble.into_iter().collect(),
             settings,
             keeper,
+            asks_itself: false,
             is_first_start: false,
             export: export::Export::default(),
             title: String::new(),
             leaving: false,
             after_saving: None,
         }
+    }
+    /// A window that asks for files with its own dialog, whatever the system has.
+    pub fn asking_itself(self) -> Self {
+        Self { asks_itself: true, ..self }
     }
     /// Opens what the program was started with.
     pub fn begin(&mut self, files: Vec<PathBuf>) {
@@ -168,15 +175,15 @@ impl Window {
     fn do_ask(&mut self, ctx: &egui::Context, ask: WindowAsk) {
         match ask {
             WindowAsk::NewDialog => self.dialogs.push(Dialog::New(new::New::default())),
-            WindowAsk::OpenDialog => choosing::ask(&mut self.jobs, Purpose::Open, ""),
+            WindowAsk::OpenDialog => self.ask_for(Purpose::Open, ""),
             WindowAsk::OpenMapsDialog => self.dialogs.push(Dialog::Import(Box::default())),
             WindowAsk::ReplaceMapsDialog => {
                 let source = self.session.tab().and_then(|tab| tab.document().surface_source.clone());
                 let import = import::Import::replacing(source.as_deref());
                 self.dialogs.push(Dialog::Import(Box::new(import)));
             }
-            WindowAsk::Choose(purpose) => choosing::ask(&mut self.jobs, purpose, ""),
-            WindowAsk::PlaceDialog => choosing::ask(&mut self.jobs, Purpose::Place, ""),
+            WindowAsk::Choose(purpose) => self.ask_for(purpose, ""),
+            WindowAsk::PlaceDialog => self.ask_for(Purpose::Place, ""),
             WindowAsk::Open(file) => self.jobs.open(file),
             WindowAsk::OpenSample => self.open_sample(),
             WindowAsk::Save => self.save(),
@@ -193,7 +200,11 @@ impl Window {
             WindowAsk::Palette => self.dialogs.push(Dialog::Palette(palette::Palette::default())),
             WindowAsk::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::Shortcuts::default())),
             WindowAsk::About => self.dialogs.push(Dialog::About),
-            WindowAsk::TogglePanels => self.settings.layout.is_hidden = !self.settings.layout.is_hidden,
+            WindowAsk::TogglePanels => {
+                self.settings.layout.is_hidden = !self.settings.layout.is_hidden;
+                // The tab key that asked for it went on to the next button as well.
+                ctx.memory_mut(|memory| memory.stop_text_input());
+            }
             WindowAsk::OtherSide => self.settings.layout.side = self.settings.layout.side.other(),
             WindowAsk::PanelsApart => {
                 let side = &mut self.settings.layout.side;

@@ -47,9 +47,8 @@ impl Window {
                 ui.set_width(230.0);
                 ui.label(RichText::new("Three steps").strong());
                 for (i, ((name, how, _), is_done)) in STEPS.iter().zip(done).enumerate() {
-                    let mark = if is_done { "\u{2714}".to_owned() } else { format!("{}", i + 1) };
-                    let name = RichText::new(format!("{mark}  {name}"));
-                    ui.label(if is_done { name.weak() } else { name.strong() });
+                    let name = RichText::new(format!("{}  {name}", i + 1));
+                    ui.label(if is_done { name.weak().strikethrough() } else { name.strong() });
                     if !is_done {
                         ui.label(RichText::new(*how).small().weak());
                     }

@@ -13,6 +13,7 @@ use crate::document::{Content, Document, Group, Layer, Lock};
 use crate::raster::BlendMode;
 use crate::session::actions::{LayerAction, NewLayer};
 use crate::session::{Action, LayerPath, Property, Session};
+use crate::tools::ToolKind;
 use eframe::egui::{self, Ui};
 use row::Row;
 use std::sync::Arc;
@@ -21,9 +22,9 @@ pub fn kind_icon(content: &Content) -> (Icon, &'static str) {
     match content {
         Content::Fill(_) => (Icon::Fill, "Fill"),
         Content::Pixels(_) => (Icon::Pixels, "Paint"),
-        Content::Image(_) => (Icon::Image, "Image"),
-        Content::Gradient(_) => (Icon::Gradient, "Gradient"),
-        Content::Strokes(_) => (Icon::Strokes, "Strokes"),
+        Content::Image(_) => (Icon::Tool(ToolKind::Image), "Image"),
+        Content::Gradient(_) => (Icon::Tool(ToolKind::Gradient), "Gradient"),
+        Content::Strokes(_) => (Icon::Tool(ToolKind::Strokes), "Strokes"),
         Content::Shading(_) => (Icon::Shading, "Shading"),
         Content::RadianceScaling(_) => (Icon::Scaling, "Radiance scaling"),
         Content::Normals(_) => (Icon::Normals, "Normals"),
