@@ -1,11 +1,11 @@
 //! The window, driven by the names of its controls, with no display and no graphics card.
 #![cfg(feature = "window-tests")]
 
-use eframe::egui::{Event, Key, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase, vec2};
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use rilievo::app::Window;
-use rilievo::document::{Content, MaskKind};
+use rilievo::document::Content;
 use std::path::PathBuf;
 
 type Story = Harness<'static, Option<Window>>;
@@ -62,15 +62,6 @@ fn command(harness: &mut Story, name: &str) {
     harness.get_by_label("Command").type_text(name);
     steps(harness);
     key(harness, Modifiers::NONE, Key::Enter);
-}
-fn stroke(harness: &mut Story, by: eframe::egui::Vec2) {
-    let middle = harness.get_by_label("Canvas").rect().center();
-    harness.drag_at(middle);
-    steps(harness);
-    harness.hover_at(middle + by);
-    steps(harness);
-    harness.drop_at(middle + by);
-    steps(harness);
 }
 fn session(harness: &Story) -> &rilievo::session::Session {
     &harness.state().as_ref().unwrap().session
@@ -206,30 +197,6 @@ fn the_fill_tool_shows_its_options_and_fills() {
     assert_ne!(pixels.tiles.pixel(3, 3), [0; 4]);
 }
 #[test]
-fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
-    let mut harness = window();
-    press(&mut harness, "Properties");
-    press(&mut harness, "Hide all");
-    let masked = |harness: &Story| session(harness).layer().unwrap().mask.clone();
-    let coverage = |harness: &Story| match masked(harness).unwrap().kind {
-        MaskKind::File { coverage, .. } => coverage,
-        _ => panic!("a mask to paint on"),
-    };
-    assert!(session(&harness).tab().unwrap().on_mask && coverage(&harness).values().iter().all(|&v| v == 0));
-    stroke(&mut harness, vec2(60.0, 10.0));
-    assert!(coverage(&harness).values().iter().any(|&v| v > 100), "light paint shows");
-    assert_eq!(layers(&harness), ["Background"], "the stroke went to the mask");
-    command(&mut harness, "Invert mask");
-    command(&mut harness, "Use mask");
-    assert!(masked(&harness).unwrap().invert && masked(&harness).unwrap().disabled);
-    press(&mut harness, "Mask of Background");
-    assert!(!session(&harness).tab().unwrap().on_mask, "the brush paints on the layer again");
-    command(&mut harness, "Delete mask");
-    assert!(masked(&harness).is_none());
-    command(&mut harness, "Paint on mask");
-    assert!(masked(&harness).is_some(), "every command is in the palette");
-}
-#[test]
 fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
     let mut harness = window();
     press(&mut harness, "Properties");
@@ -296,57 +263,6 @@ fn choose(harness: &mut Story, file: &std::path::Path) {
     key(harness, Modifiers::NONE, Key::Enter);
 }
 #[test]
-fn a_key_that_is_taken_is_asked_for_and_then_given() {
-    let mut harness = window();
-    command(&mut harness, "Keyboard shortcuts");
-    press(&mut harness, "Find a shortcut");
-    harness.get_by_label("Find a shortcut").type_text("radiance");
-    steps(&mut harness);
-    press(&mut harness, "Add a key to New radiance scaling");
-    key(&mut harness, Modifiers::COMMAND, Key::J);
-    harness.get_by_label_contains("belongs to “Duplicate layer”");
-    press(&mut harness, "Give it to “New radiance scaling”");
-    press(&mut harness, "Close");
-    key(&mut harness, Modifiers::COMMAND, Key::J);
-    assert_eq!(layers(&harness), ["Background", "Radiance scaling"]);
-}
-#[test]
-fn what_was_chosen_is_there_the_next_time() {
-    let folder = tempfile::tempdir().unwrap();
-    let settings = folder.path().join("settings.json");
-    let mut harness = window_at(1.0, Some(settings.clone()));
-    command(&mut harness, "Light or dark");
-    command(&mut harness, "Panels on the other side");
-    command(&mut harness, "Layers in a window");
-    press(&mut harness, "History");
-    let is_kept = move |_: &Story| std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("History"));
-    until(&mut harness, is_kept);
-    drop(harness);
-    let harness = window_at(1.0, Some(folder.path().join("settings.json")));
-    let panels = harness.get_by_label("History").rect();
-    assert!(panels.left() < harness.get_by_label("Canvas").rect().left(), "they stand at the left");
-    assert!(!harness.ctx.global_style().visuals.dark_mode);
-}
-#[test]
-fn two_fingers_that_tap_take_a_step_back() {
-    let mut harness = window();
-    click(&mut harness, "+ Add");
-    click(&mut harness, "Fill layer");
-    let middle = harness.get_by_label("Canvas").rect().center();
-    for phase in [TouchPhase::Start, TouchPhase::End] {
-        for finger in [1, 2] {
-            let pos = middle + vec2(40.0 * finger as f32, 0.0);
-            harness.event(touch(finger, phase, pos));
-        }
-        harness.step();
-    }
-    steps(&mut harness);
-    assert_eq!(layers(&harness), ["Background"]);
-}
-fn touch(finger: u64, phase: TouchPhase, pos: Pos2) -> Event {
-    Event::Touch { device_id: TouchDeviceId(0), id: TouchId(finger), phase, pos, force: None }
-}
-#[test]
 fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
     for pixels_per_point in [1.0, 1.5, 2.0] {
         let mut harness = window_at(pixels_per_point, None);
@@ -368,21 +284,6 @@ fn layers_are_merged_baked_and_flattened_beside_the_window() {
     until(&mut harness, |harness| layers(harness) == ["Picture"]);
     command(&mut harness, "Undo");
     assert_eq!(layers(&harness), ["Background"]);
-}
-#[test]
-fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut harness = window();
-    command(&mut harness, "Export");
-    harness.get_by_label("Preview of the export");
-    press(&mut harness, "Export…");
-    let (png, ora) = (folder.path().join("out.png"), folder.path().join("out.ora"));
-    choose(&mut harness, &png);
-    until(&mut harness, |_| png.is_file());
-    command(&mut harness, "Save as");
-    choose(&mut harness, &ora);
-    until(&mut harness, |harness| session(harness).tab().unwrap().file.is_some());
-    assert!(ora.is_file() && !session(&harness).tab().unwrap().is_dirty());
 }
 /// Steps long enough for a thread to finish something small.
 fn wait(harness: &mut Harness<Option<Window>>) {
