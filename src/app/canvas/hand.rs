@@ -119,7 +119,8 @@ impl Hand {
                         self.moved(&report, &mut listening);
                         self.release(&mut listening);
                     }
-                    Phase::Lost => self.release(&mut listening),
+                    Phase::Lost if self.holding == Holding::Drawing => self.release(&mut listening),
+                    Phase::Lost => self.holding = Holding::Nothing,
                 }
             }
             match event {
