@@ -332,3 +332,20 @@ fn after_a_crash_the_window_offers_what_was_unsaved() {
     assert!(tab.is_dirty() && tab.file.is_none());
     assert_eq!(tab.title(), "Untitled 1 (recovered)");
 }
+#[test]
+fn the_brush_is_made_to_smudge_and_says_what_it_needs() {
+    let mut harness = window();
+    harness.get_by_label("Mark").click();
+    steps(&mut harness);
+    harness.get_by_label("Smudge").click();
+    steps(&mut harness);
+    assert!(session(&harness).brush.mark.is_retouching());
+    harness.get_by_label("Length");
+    let canvas = harness.get_by_label("Canvas").rect();
+    harness.drag_at(canvas.center());
+    steps(&mut harness);
+    harness.drop_at(canvas.center());
+    steps(&mut harness);
+    assert_eq!(layers(&harness), ["Background"]);
+    harness.get_by_label_contains("work on paint layers");
+}

@@ -4,6 +4,7 @@
 use super::dynamics::{Dynamics, Input};
 use super::image::PictureSource;
 use crate::raster::BlendMode;
+use crate::surface::Bounded;
 
 /// The settings of a brush. Lengths are canvas px, ratios plain numbers.
 #[derive(Clone)]
@@ -31,12 +32,48 @@ pub struct Brush {
     pub erases: bool,
     /// The stroke shows only where its layer is painted already, whose coverage stays.
     pub keeps_alpha: bool,
+    /// How far the stroke may go.
+    pub bounded: Bounded,
+    /// What the brush does where its footprint lands. Strokes of a stroke layer paint, whatever it says.
+    pub mark: Mark,
     pub tip: Tip,
     /// What calmed the hand. The samples of a stroke are calm already: painting them again does not ask for it.
     pub stabilizer: Stabilizer,
     pub dynamics: Dynamics,
     /// Whatever is random about a stroke follows from it: the same seed and samples paint the same pixels.
     pub seed: u32,
+}
+
+/// What a brush does where its footprint lands. All but paint work on what a paint layer holds.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Mark {
+    #[default]
+    Paint,
+    /// Drags what is there along; `length` in `[0, 1]`, the share of it that is left after a drag of one radius.
+    Smudge { length: f32 },
+    /// Softens what is there; `width` in `[0, 1]`: the standard deviation that a stroke leaves, a ratio of the radius.
+    Blur { width: f32 },
+    /// Copies from elsewhere.
+    Clone {
+        /// From the same distance for every stroke; else every stroke begins at the source point.
+        aligned: bool,
+        /// What the picture shows, not the layer alone.
+        picture: bool,
+    },
+}
+
+impl Mark {
+    /// What a smudge keeps, and how wide a blur is, where it is not said.
+    pub const SMUDGE_LENGTH: f32 = 0.8;
+    pub const BLUR_WIDTH: f32 = 0.3;
+
+    /// It works on what is there.
+    pub fn is_retouching(self) -> bool {
+        self != Mark::Paint
+    }
+    pub fn is_clone(self) -> bool {
+        matches!(self, Mark::Clone { .. })
+    }
 }
 
 /// How far a dab's colour may be from the stroke's, either way; each dab at random.
@@ -85,6 +122,8 @@ impl Default for Brush {
             blend: BlendMode::Normal,
             erases: false,
             keeps_alpha: false,
+            bounded: Bounded::Free,
+            mark: Mark::Paint,
             tip: Tip::Round,
             stabilizer: Stabilizer::None,
             dynamics: Dynamics::default(),

@@ -2,7 +2,7 @@
 //! Floor 3. Not here: dabs from samples (`laying`), one dab on a tile (`dab`).
 
 mod in_hand;
-mod laid;
+pub(super) mod laid;
 
 pub use in_hand::{Ground, InHand};
 
@@ -13,6 +13,7 @@ use super::wash::Manner;
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
+use crate::surface::objects::Part;
 use laid::Laid;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -103,7 +104,13 @@ impl Stroke {
         for dab in laid.on_tile(at) {
             laid.add(&laid.place(*dab, scene), at, &mut wash, scratch);
         }
+        wash.bound_to(&self.part(scene), at);
         wash.lay_over(pixels, self.manner());
+    }
+    /// The part of the canvas that the stroke may touch.
+    fn part(&self, scene: &Scene) -> Part {
+        let start = self.samples.first().map_or(Vec2::ZERO, |sample| sample.at);
+        self.brush.bounded.from(scene.surface.as_ref(), start)
     }
     fn manner(&self) -> Manner {
         Manner::of(&self.brush, self.color)

@@ -5,7 +5,8 @@ use super::brush::Brush;
 use crate::math::srgb::Color;
 use crate::raster::planar::Row;
 use crate::raster::tile::TILE_AREA;
-use crate::raster::{BlendMode, Coverage, Mix, Paint, PlanarTile, TILE};
+use crate::raster::{BlendMode, Coverage, Mix, Paint, PlanarTile, TILE, TileAt};
+use crate::surface::objects::Part;
 
 /// The paint of a stroke, still wet.
 #[derive(Clone)]
@@ -92,6 +93,25 @@ impl Wash {
                         add_colors(stamped.len(), source, paint.ceiling, start % TILE, row);
                     }
                     None => add_stamped(stamped, flow, paint.ceiling, start % TILE, row),
+                }
+            }
+        }
+    }
+    /// Takes away what lies outside of a part of the canvas.
+    pub fn bound_to(&mut self, part: &Part, at: TileAt) {
+        if part.is_whole() {
+            return;
+        }
+        let corner = at.rect();
+        for y in 0..TILE {
+            for x in 0..TILE {
+                let share = part.coverage(corner.x0 + x as i32, corner.y0 + y as i32);
+                match self {
+                    Wash::OneColor(coverage) => coverage[y * TILE + x] *= share,
+                    Wash::Colors(tile) => {
+                        let row = &mut tile.rows_mut()[y];
+                        row.rgb.iter_mut().chain([&mut row.a]).for_each(|plane| plane[x] *= share);
+                    }
                 }
             }
         }

@@ -14,7 +14,7 @@ pub use actions::Action;
 pub use autosave::Autosave;
 pub use path::LayerPath;
 pub use property::Property;
-pub use tab::{Edit, Tab, is_same};
+pub use tab::{CloneSource, Edit, Tab, is_same};
 pub use view::View;
 
 use crate::Result;

@@ -43,8 +43,19 @@ pub struct Tab {
     pub solo: Option<LayerId>,
     /// Where the last stroke ended, canvas px.
     pub last_end: Option<Vec2>,
+    /// Where clone brushes copy from.
+    pub clone_source: Option<CloneSource>,
     /// The strokes chosen, by their places in the layer.
     chosen: Option<(LayerId, Vec<usize>)>,
+}
+
+/// Where clone brushes copy from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CloneSource {
+    /// The point that was set, canvas px.
+    pub at: Vec2,
+    /// From a pixel to what the last stroke copied onto it, px.
+    pub offset: Option<Vec2>,
 }
 
 struct Preview {
@@ -69,6 +80,7 @@ impl Tab {
             on_mask: false,
             solo: None,
             last_end: None,
+            clone_source: None,
             chosen: None,
         }
     }
@@ -140,6 +152,13 @@ impl Tab {
         };
         let count = self.shown().strokes(*layer).len();
         chosen.iter().copied().filter(|&index| index < count).collect()
+    }
+    /// From a pixel to what a clone stroke that begins at `start` copies onto it; `None` before a source was set.
+    pub fn begin_clone(&mut self, start: Vec2, aligned: bool) -> Option<Vec2> {
+        let source = self.clone_source.as_mut()?;
+        let kept = source.offset.filter(|_| aligned);
+        source.offset = Some(kept.unwrap_or(source.at - start));
+        source.offset
     }
     pub fn choose_strokes(&mut self, layer: LayerId, mut strokes: Vec<usize>) {
         strokes.sort_unstable();

@@ -1,11 +1,12 @@
 //! The brush and the eraser: the pen's readings become one stroke, live on a stroke layer, pixels on a paint layer.
 //! Floor 5. Dabs and tiles are `paint`'s.
 
+use super::retouch::{self, Work};
 use super::symmetry::Image;
 use super::{Begun, Context, Gesture, Outcome, Pen};
 use crate::document::{Content, Document, Layer, LayerId, Live, Lock, PixelLayer, Place, StrokeList};
 use crate::math::{Vec2, hash, srgb::Color};
-use crate::paint::{Calm, Ground, InHand, Sample, Scene, Stroke, Tip};
+use crate::paint::{Calm, Ground, InHand, Mark, Sample, Scene, Stroke, Tip};
 use crate::raster::{Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
@@ -18,6 +19,9 @@ pub enum Purpose {
 
 /// The pen comes down with the brush. A selected layer that cannot hold strokes gets a stroke layer above it.
 pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
+    if let Some(refused) = retouch::refused(context, pen, purpose) {
+        return (None, refused);
+    }
     let Some((document, id)) = paintable(context, purpose) else { return (None, Outcome::Idle) };
     let Some(layer) = document.layer(id) else { return (None, Outcome::Idle) };
     let scene = document.scene_of(id).unwrap_or_else(|| document.scene());
@@ -44,6 +48,9 @@ pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
     };
     let is_eraser = purpose == Purpose::Erase;
     let mut brush = context.brush.clone();
+    if is_eraser {
+        brush.mark = Mark::Paint;
+    }
     brush.erases |= is_eraser;
     brush.keeps_alpha |= layer.lock == Lock::Alpha;
     if brush.is_random() {
@@ -54,12 +61,13 @@ pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
     let images = context.symmetry.images(document.size);
     let like = |image: &Image| Stroke::new(image.brush(&brush), context.operator, color, Vec::new());
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
+    let work = retouch::begun(context, &images, pen, layer, &strokes, &scene);
     // With Shift a straight line from where the last stroke ended, its pressure that of this pen.
     let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
     let line = start.flat_map(|last| (0..8).map(move |i| last.lerp(pen.place(), i as f32 / 8.0)));
     let painting = Painting {
         lead: line.map(|at| Sample { at, ..pen.sample }).collect(),
-        in_hand: Some(InHand::new(&strokes, ground, &scene)),
+        in_hand: Some(work.unwrap_or_else(|| Work::Strokes(InHand::new(&strokes, ground, &scene)))),
         calm: Calm::new(brush.stabilizer),
         label: if is_eraser { "Erase" } else { "Brush stroke" },
         document,
@@ -128,7 +136,7 @@ struct Painting {
     scene: Scene,
     target: Target,
     /// `None` once it is finished.
-    in_hand: Option<InHand>,
+    in_hand: Option<Work>,
     images: Vec<Image>,
     calm: Calm,
     /// Samples before the pen's first.
@@ -168,13 +176,13 @@ impl Gesture for Painting {
         let mut samples = std::mem::take(&mut self.lead);
         samples.extend(pens.iter().filter_map(|pen| self.calm.push(pen.sample)));
         let tiles = self.draw(samples);
-        let strokes = self.in_hand.as_ref().map_or(Vec::new(), InHand::strokes);
+        let strokes = self.in_hand.as_ref().map_or(Vec::new(), Work::strokes);
         self.with(strokes, tiles).map_or(Outcome::Idle, Outcome::Preview)
     }
     fn release(&mut self) -> Outcome {
         let rest = self.calm.finish().into_iter().collect();
         let tiles = self.draw(rest);
-        let strokes = self.in_hand.take().map_or(Vec::new(), InHand::finish);
+        let strokes = self.in_hand.take().map_or(Vec::new(), Work::finish);
         let Some(document) = self.with(strokes, tiles) else { return Outcome::Cancel };
         Outcome::Commit { label: self.label.into(), document, select: Some(self.layer) }
     }

@@ -11,6 +11,7 @@ pub mod image;
 pub mod lights;
 pub mod mask;
 pub mod outline;
+mod retouch;
 pub mod shift;
 pub mod strokes;
 pub mod symmetry;
@@ -185,6 +186,8 @@ pub struct Context<'a> {
     pub fill: Fill,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
+    /// From a pixel to what a clone brush copies onto it, px; `None` before that was said.
+    pub clone_offset: Option<Vec2>,
 }
 
 impl<'a> Context<'a> {
@@ -202,6 +205,7 @@ impl<'a> Context<'a> {
             symmetry: Symmetry::None,
             fill: Fill::default(),
             strokes: &[],
+            clone_offset: None,
         }
     }
 }
@@ -220,6 +224,10 @@ pub enum Outcome {
     },
     /// These strokes of the selected layer are chosen from now on.
     Chosen(Vec<usize>),
+    /// Clone brushes copy from here from now on.
+    CloneFrom(Vec2),
+    /// Nothing was begun, for a reason to be told.
+    Refused(&'static str),
     /// A colour was taken.
     Picked(Color),
     /// What was shown is to be forgotten.

@@ -55,7 +55,9 @@ impl Hand {
     }
     /// The tool in hand, or the one a held key lends.
     pub fn tool(&self, session: &Session) -> ToolKind {
-        let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient);
+        // Alt tells a clone brush where to copy from.
+        let clones = session.tool == ToolKind::Brush && session.brush.mark.is_clone();
+        let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient) && !clones;
         match self.holding {
             Holding::Nothing if self.space => ToolKind::Hand,
             Holding::Nothing if self.keys.alt && paints => ToolKind::Eyedropper,

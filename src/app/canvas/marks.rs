@@ -3,10 +3,10 @@
 
 use crate::document::Content;
 use crate::math::{Affine2, Vec2};
-use crate::paint::Stroke as PaintStroke;
+use crate::paint::{Mark as PaintMark, Stroke as PaintStroke};
 use crate::session::Session;
 use crate::tools::{ToolKind, anchors, outline};
-use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2};
+use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use std::sync::Arc;
 
 /// Draws the marks of the tool in hand; `under`: the canvas point under the pointer.
@@ -33,6 +33,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
             {
                 painter.extend(lines.iter().map(|&line| Shape::line_segment(line, stroke)));
             }
+            if tool == ToolKind::Brush {
+                clone_source(painter, session, at, &to_screen);
+            }
             let center = to_screen(at);
             painter.circle_filled(center, 2.2, Color32::from_black_alpha(140));
             painter.circle_filled(center, 1.2, Color32::WHITE);
@@ -42,6 +45,19 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
             painter.circle_stroke(to_screen(at), 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
         }
         _ => {}
+    }
+}
+
+/// A cross where a clone brush would copy from.
+fn clone_source(painter: &Painter, session: &Session, under: Vec2, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let PaintMark::Clone { aligned, .. } = session.brush.mark else { return };
+    let Some(source) = session.tab().and_then(|tab| tab.clone_source) else { return };
+    let offset = source.offset.filter(|_| aligned || session.is_drawing());
+    let at = to_screen(offset.map_or(source.at, |offset| under + offset));
+    for look in [Stroke::new(3.0, Color32::from_black_alpha(140)), Stroke::new(1.2, Color32::WHITE)] {
+        for arm in [vec2(7.0, 0.0), vec2(0.0, 7.0)] {
+            painter.line_segment([at - arm, at + arm], look);
+        }
     }
 }
 

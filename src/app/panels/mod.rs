@@ -8,6 +8,7 @@ pub mod fill;
 pub mod history;
 pub mod layers;
 pub mod mask;
+pub mod marks;
 pub mod material;
 pub mod menu;
 pub mod navigator;

@@ -1,7 +1,7 @@
 //! The bar above the canvas: the operator with its numbers, and the options of the tool in hand.
 //! Floor 7.
 
-use super::fill;
+use super::{fill, marks};
 use crate::app::asked::Asked;
 use crate::app::commands::operators;
 use crate::app::widgets::{Changed, Number};
@@ -148,4 +148,7 @@ fn brush(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     push(opacity.inline(ui, brush.opacity, 60.0).map(|c| HandAction::Opacity { to: c.to }));
     let hardness = Number::new("Hardness", 0.0..=1.0, "How much of the dab is fully covered (Shift with [ and ])");
     push(hardness.inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }));
+    if session.tool == ToolKind::Brush {
+        marks::options(ui, session, asked);
+    }
 }

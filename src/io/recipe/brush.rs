@@ -6,8 +6,9 @@ use crate::Result;
 use crate::io::json::{Fields, Node, Object, object};
 use crate::math::vec2;
 use crate::paint::dynamics::MAX_POINTS;
-use crate::paint::{Brush, Curve, Dynamics, Input, Jitter, Property, Stabilizer, Tip};
+use crate::paint::{Brush, Curve, Dynamics, Input, Jitter, Mark, Property, Stabilizer, Tip};
 use crate::raster::BlendMode;
+use crate::surface::Bounded;
 use serde_json::{Value, json};
 
 /// A brush's fields; what is not said stays as it is in `base`.
@@ -26,6 +27,8 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         blend: fields.one_of("blend", &BlendMode::ALL, base.blend)?,
         erases: fields.boolean("erases", base.erases)?,
         keeps_alpha: fields.boolean("keeps_alpha", base.keeps_alpha)?,
+        bounded: fields.one_of("bounded", &Bounded::ALL, base.bounded)?,
+        mark: fields.get("mark").map_or(Ok(base.mark), |node| mark(&node))?,
         stabilizer: fields.get("stabilizer").map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
         dynamics: fields.get("dynamics").map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics))?,
         seed: fields.get("seed").map_or(Ok(base.seed), |node| seed(&node))?,
@@ -43,6 +46,42 @@ fn jitter(node: &Node, base: Jitter) -> Result<Jitter> {
     };
     fields.finish()?;
     Ok(jitter)
+}
+
+/// `{ "kind": "smudge", "length": 0.8 }`, `{ "kind": "blur", "width": 0.3 }` or `{ "kind": "clone", "aligned": true, "picture":
+/// false }`; `{ "kind": "paint" }` is what is not said.
+fn mark(node: &Node) -> Result<Mark> {
+    const KINDS: [(usize, &str); 4] = [(0, "paint"), (1, "smudge"), (2, "blur"), (3, "clone")];
+    let mut fields = node.fields()?;
+    let mark = match fields.one_of("kind", &KINDS, 0)? {
+        0 => Mark::Paint,
+        1 => Mark::Smudge { length: fields.number("length", Mark::SMUDGE_LENGTH, 0.0..=1.0)? },
+        2 => Mark::Blur { width: fields.number("width", Mark::BLUR_WIDTH, 0.0..=1.0)? },
+        _ => Mark::Clone { aligned: fields.boolean("aligned", true)?, picture: fields.boolean("picture", false)? },
+    };
+    fields.finish()?;
+    Ok(mark)
+}
+
+fn write_mark(mark: Mark) -> Object {
+    let mut out = Object::default();
+    match mark {
+        Mark::Paint => {}
+        Mark::Smudge { length } => {
+            out.set("kind", "smudge".into());
+            out.number("length", length, Mark::SMUDGE_LENGTH);
+        }
+        Mark::Blur { width } => {
+            out.set("kind", "blur".into());
+            out.number("width", width, Mark::BLUR_WIDTH);
+        }
+        Mark::Clone { aligned, picture } => {
+            out.set("kind", "clone".into());
+            out.flag("aligned", aligned, true);
+            out.flag("picture", picture, false);
+        }
+    }
+    out
 }
 
 /// `{ "average": 0.8 }`, `{ "string": 20 }`, or `{}` for none.
@@ -111,6 +150,8 @@ pub fn write_brush(brush: &Brush) -> Object {
     out.word("blend", &BlendMode::ALL, brush.blend, plain.blend);
     out.flag("erases", brush.erases, plain.erases);
     out.flag("keeps_alpha", brush.keeps_alpha, plain.keeps_alpha);
+    out.word("bounded", &Bounded::ALL, brush.bounded, plain.bounded);
+    out.object("mark", write_mark(brush.mark));
     if let Tip::Picture(tip) = &brush.tip {
         out.set("tip", json!({ "file": tip.file }));
     }
@@ -167,7 +208,7 @@ mod tests {
         let text = json!({
             "size": 20, "hardness": 0.25, "opacity": 0.5, "flow": 0.75, "spacing": 0.3, "rotation": 30, "softness": 0.1,
             "scatter": 2, "jitter": { "hue": 20, "saturation": 0.1, "value": 0.2 }, "blend": "multiply", "erases": true,
-            "keeps_alpha": true, "stabilizer": { "string": 25 },
+            "keeps_alpha": true, "bounded": "object", "mark": { "kind": "smudge", "length": 0.5 }, "stabilizer": { "string": 25 },
             "dynamics": {
                 "size": { "pressure": 0.1, "speed": [[0, 1], [1, 0.3]] },
                 "flow": { "pressure": 0, "curvature": [[0, 0], [0.5, 1]] },
@@ -195,6 +236,8 @@ mod tests {
         says(json!({ "dynamics": { "size": { "tilt": [] } } }), "is no curve");
         says(json!({ "dynamics": { "size": { "tilt": [[0, 2]] } } }), "must be between 0 and 1");
         says(json!({ "stabilizer": { "string": 3, "average": 0.5 } }), "must be one of them");
+        says(json!({ "bounded": "objects" }), "must be one of free, surface, object");
+        says(json!({ "mark": { "kind": "blur", "length": 1 } }), "length");
         says(json!({ "seed": -1 }), "seed: is -1");
         says(json!({ "blend": "mulitply" }), "must be one of normal");
     }

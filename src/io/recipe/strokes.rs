@@ -55,6 +55,9 @@ impl Reader<'_> {
     fn stroke(&mut self, node: &Node) -> Result<Stroke> {
         let mut fields = node.fields()?;
         let preset = fields.get("brush").map_or(Ok(Preset::default()), |brush| self.brush(&brush))?;
+        if preset.brush.mark.is_retouching() {
+            return Err(node.refused("has a brush that smudges, blurs or clones; strokes of a stroke layer paint"));
+        }
         let operator = operator(&mut fields)?.unwrap_or(preset.operator);
         let color = fields.color("color", Color::BLACK)?;
         let most = self.source.budget.samples;

@@ -4,7 +4,7 @@
 
 use super::laid::{Laid, tiles_of};
 use super::{Found, Sample, Stroke, pixels};
-use crate::math::{Rect, srgb::Color};
+use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
 use crate::paint::laying::Laying;
@@ -12,6 +12,7 @@ use crate::paint::scene::Scene;
 use crate::paint::wash::{Manner, Wash};
 use crate::raster::{Coverage, Mix, Paint, PlanarTile, Tile, TileAt, TileGrid};
 use crate::surface::Operator;
+use crate::surface::objects::Part;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex};
@@ -128,6 +129,10 @@ impl Hand {
         add(tail, &mut shown);
         Some(shown)
     }
+    fn part(&self, scene: &Scene) -> Part {
+        let start = self.samples.first().map_or(Vec2::ZERO, |sample| sample.at);
+        self.brush.bounded.from(scene.surface.as_ref(), start)
+    }
     /// The stroke as far as it was drawn.
     fn stroke(&self, scene: &Scene) -> Stroke {
         let found = Found { laid: None, bounds: Some((scene.clone(), self.bounds)) };
@@ -169,7 +174,8 @@ impl InHand {
         let paint = |scratch: &mut DabScratch, (at, tile): &mut (TileAt, WetTile)| {
             let mut pixels = ground.pixels(scene, *at, &mut tile.beneath);
             for ((hand, fresh), wash) in hands.iter().zip(&fresh).zip(&mut tile.washes) {
-                if let Some(shown) = hand.shown(fresh, *at, wash, scratch) {
+                if let Some(mut shown) = hand.shown(fresh, *at, wash, scratch) {
+                    shown.bound_to(&hand.part(scene), *at);
                     shown.lay_over(&mut pixels, Manner::of(&hand.brush, hand.color));
                 }
             }

@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// A stroke's dabs, and which of them may touch which tile of a canvas.
-pub(super) struct Laid {
+pub(in crate::paint) struct Laid {
     scene: Scene,
     tip: LaidTip,
     varies_in_color: bool,
@@ -116,7 +116,7 @@ impl Laid {
 }
 
 /// The tiles that a dab may touch.
-pub(super) fn tiles_of(dab: &PlacedDab) -> Vec<TileAt> {
+pub(in crate::paint) fn tiles_of(dab: &PlacedDab) -> Vec<TileAt> {
     let mut tiles = Vec::new();
     dab.reach().for_each_tile(|at| tiles.push(at));
     tiles

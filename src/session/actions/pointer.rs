@@ -2,10 +2,10 @@
 //! Floor 6.
 
 use crate::math::vec2;
-use crate::paint::Sample;
-use crate::session::Session;
+use crate::paint::{Mark, Sample};
 use crate::session::replay::{Replayed, actions, record};
 use crate::tools::brush::Purpose;
+use crate::session::{CloneSource, Session};
 use crate::tools::{self, Context, Keys, Outcome, Pen, ToolKind};
 use serde_json::Value;
 
@@ -68,6 +68,13 @@ impl PointerAction {
 
 fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
     session.drop_gesture();
+    let clones = matches!(tool, ToolKind::Brush) && !pen.keys.alt;
+    let clone_offset = match session.brush.mark {
+        Mark::Clone { aligned, .. } if clones => {
+            session.tab_mut().and_then(|tab| tab.begin_clone(pen.place(), aligned))
+        }
+        _ => None,
+    };
     let Some(tab) = session.tab() else { return };
     let strokes = tab.chosen_strokes();
     let context = Context {
@@ -82,6 +89,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
         symmetry: session.symmetry,
         fill: session.fill,
         strokes: &strokes,
+        clone_offset,
     };
     let (gesture, outcome) = match tool {
         ToolKind::Brush if tab.on_mask => tools::mask::press(&context, pen, Purpose::Paint),
@@ -107,6 +115,8 @@ fn take(session: &mut Session, outcome: Outcome) {
             tab.selected = select.or(tab.selected);
             tab.last_end = end;
         }
+        Outcome::CloneFrom(at) => tab.clone_source = Some(CloneSource { at, offset: None }),
+        Outcome::Refused(why) => session.notes.push(why.into()),
         Outcome::Chosen(strokes) => {
             if let Some(layer) = tab.selected {
                 tab.choose_strokes(layer, strokes);

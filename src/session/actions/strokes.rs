@@ -3,7 +3,7 @@
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color, vec2};
-use crate::paint::{Brush, Stroke};
+use crate::paint::{Brush, Mark, Stroke};
 use crate::session::replay::actions;
 use crate::session::{LayerPath, Session};
 use crate::surface::Operator;
@@ -138,7 +138,7 @@ impl Style {
             Style::Softness { to } => brush.softness = unit(*to),
             Style::Spacing { to } => brush.spacing = to.max(0.01).min(10.0),
             Style::Rotation { to } => brush.rotation = *to,
-            Style::Brush {} => brush = in_hand.clone(),
+            Style::Brush {} => brush = Brush { mark: Mark::Paint, ..in_hand.clone() },
         }
         Stroke::new(brush, operator, color, stroke.samples().to_vec())
     }

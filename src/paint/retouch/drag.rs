@@ -1,0 +1,141 @@
+//! Where smudge and clone take the colour of a pixel from: what a dab drags, or copies, bends as its footprint does.
+//! Floor 3.
+
+use super::Touch;
+use super::wet::{Reader, Wet};
+use crate::math::{Affine2, Mat2, Rect, Vec2, vec2};
+use crate::paint::laying::Dab;
+use crate::paint::patches::Patches;
+use crate::paint::scene::Scene;
+use crate::raster::TileGrid;
+use crate::surface::Deformation;
+use crate::surface::deformation::DeformedRect;
+
+/// A smudge takes no colour from farther than this many steps: where the surface turns away, D hardly moves and its inverse
+/// would reach anywhere.
+const FARTHEST_STEPS: f32 = 3.0;
+
+/// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` where it did not move.
+///
+/// What lay under the dab before lies under this one, at the same place of the image plane relative to its centre. With
+/// F_k(q) = D_k(q) − q_k, a pixel q takes the colour of the point p with F_{k−1}(p) = F_k(q), found by one step of Newton's
+/// method from q:
+///
+/// `p = q − (∂D_{k−1}/∂q)⁻¹ (F_{k−1}(q) − F_k(q))`.
+///
+/// On a flat canvas, and wherever n̄ changes evenly, that is the way the dab went, p = q − (q_k − q_{k−1}).
+///
+/// * `length`: the share of the colour that is still there after a drag of one radius, `[0, 1]`, however many dabs it took.
+pub(super) fn smudged(
+    touch: &Touch,
+    dab: &Dab,
+    before: &Dab,
+    length: f32,
+    wet: &Wet,
+    scene: &Scene,
+) -> Option<Vec<[f32; 4]>> {
+    let step = dab.at - before.at;
+    let length = length.max(0.0).min(1.0);
+    // Comparisons that NaN fails.
+    if !(step.length() > 0.0 && length > 0.0) {
+        return None;
+    }
+    let kept = length.powf(step.length() / dab.radius);
+    let mut field = Field::of(dab, touch.area, scene);
+    let now: Vec<Vec2> = field.points();
+    field.fill(before, scene);
+    let (mut reader, mut own) = (wet.reader(), wet.reader());
+    let canvas = Canvas::of(scene);
+    let mut colors = Vec::with_capacity(now.len());
+    field.for_each(scene, |(x, y), there, jacobian| {
+        let here = vec2(x as f32 + 0.5, y as f32 + 0.5);
+        let gap = (there - before.at) - (now[colors.len()] - dab.at);
+        let dragged = here - solved(jacobian, gap).clamp_length_max(FARTHEST_STEPS * step.length());
+        let (old, new) = (own.pixel(x, y), reader.between(canvas.clamped(dragged)));
+        colors.push(std::array::from_fn(|c| old[c] + (new[c] - old[c]) * kept));
+    });
+    Some(colors)
+}
+
+/// The colours that a clone copies onto the pixels of a touched area, row by row.
+///
+/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab as its footprint does. Where
+/// a pixel covers several of the picture, the mean of a grid of points in the patch under it.
+pub(super) fn cloned(touch: &Touch, dab: &Dab, offset: Vec2, source: &TileGrid, scene: &Scene) -> Vec<[f32; 4]> {
+    /// Points along a side of the grid, at the most.
+    const MOST: f32 = 6.0;
+    let mut field = Field::of(dab, touch.area, scene);
+    let mut reader = Reader::of(source);
+    let mut colors = Vec::with_capacity(touch.area.width() * touch.area.height());
+    field.for_each(scene, |_, there, jacobian| {
+        let sides = jacobian.x_axis.length().max(jacobian.y_axis.length());
+        // Whole pixels copied onto whole pixels stay as they are.
+        let count = (sides - 0.25).ceil().max(1.0).min(MOST) as i32;
+        let mut sum = [0.0; 4];
+        for (i, j) in (0..count).flat_map(|j| (0..count).map(move |i| (i, j))) {
+            let share = |i: i32| (i as f32 + 0.5) / count as f32 - 0.5;
+            let point = reader.between(there + offset + jacobian * vec2(share(i), share(j)));
+            sum = std::array::from_fn(|c| sum[c] + point[c]);
+        }
+        colors.push(sum.map(|v| v / (count * count) as f32));
+    });
+    colors
+}
+
+/// J⁻¹ v, and v where J turns a pixel into next to nothing.
+fn solved(jacobian: Mat2, v: Vec2) -> Vec2 {
+    if jacobian.determinant().abs() > 1e-3 { jacobian.inverse() * v } else { v }
+}
+
+/// The centres of the canvas's pixels, between which there is something to read.
+struct Canvas {
+    last: Vec2,
+}
+
+impl Canvas {
+    fn of(scene: &Scene) -> Self {
+        Self { last: vec2(scene.size.width as f32, scene.size.height as f32) - 0.5 }
+    }
+    fn clamped(&self, at: Vec2) -> Vec2 {
+        at.max(Vec2::splat(0.5)).min(self.last)
+    }
+}
+
+/// D of a dab over an area and the pixels around it.
+struct Field {
+    area: Rect,
+    deformed: DeformedRect,
+    patches: Patches,
+}
+
+impl Field {
+    fn of(dab: &Dab, area: Rect, scene: &Scene) -> Self {
+        let mut field = Self { area, deformed: DeformedRect::default(), patches: Patches::default() };
+        field.fill(dab, scene);
+        field
+    }
+    fn fill(&mut self, dab: &Dab, scene: &Scene) {
+        let deformation = Deformation::of_dab(scene.surface.as_deref(), scene.size, dab.operator, dab.at);
+        deformation.fill(self.area.grown(1), &mut self.deformed);
+    }
+    /// D(q) of every pixel of the area.
+    fn points(&self) -> Vec<Vec2> {
+        let stride = self.area.width() + 2;
+        let rows = 1..=self.area.height();
+        rows.flat_map(|row| (1..=self.area.width()).map(move |column| row * stride + column))
+            .map(|i| vec2(self.deformed.x[i], self.deformed.y[i]))
+            .collect()
+    }
+    /// Every pixel of the area with D(q) and ∂D/∂q, differenced within its piece of surface.
+    fn for_each(&mut self, scene: &Scene, mut visit: impl FnMut((i32, i32), Vec2, Mat2)) {
+        for y in self.area.y0..self.area.y1 {
+            let row = self.patches.row(scene, self.area, y, &self.deformed, Affine2::IDENTITY);
+            let [left, right, up, down] = row.edges;
+            for (i, x) in (self.area.x0..self.area.x1).enumerate() {
+                let edge = |edge: [&[f32]; 2]| vec2(edge[0][i], edge[1][i]);
+                let jacobian = Mat2::from_cols(edge(right) - edge(left), edge(down) - edge(up));
+                visit((x, y), vec2(row.x[i], row.y[i]), jacobian);
+            }
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The pixels of a layer while they are rubbed: f32 where they were touched, the layer's bytes elsewhere.
+//! Floor 3.
+
+use crate::math::{Vec2, vec2};
+use crate::raster::{Coverage, Mix, Paint, PlanarTile, TILE, Tile, TileAt, TileGrid};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A clone shares its tiles until one is set.
+#[derive(Clone)]
+pub(super) struct Wet {
+    base: TileGrid,
+    tiles: HashMap<TileAt, Arc<PlanarTile>>,
+}
+
+impl Wet {
+    pub fn new(base: TileGrid) -> Self {
+        Self { base, tiles: HashMap::new() }
+    }
+    /// A tile to be worked on.
+    pub fn tile(&self, at: TileAt) -> PlanarTile {
+        if let Some(tile) = self.tiles.get(&at) {
+            return PlanarTile::clone(tile);
+        }
+        let mut pixels = PlanarTile::transparent();
+        if let Some(tile) = self.base.tile(at) {
+            pixels.blend(Mix::default(), Paint::Bytes(tile), &Coverage::FULL);
+        }
+        pixels
+    }
+    pub fn set(&mut self, at: TileAt, tile: PlanarTile) {
+        self.tiles.insert(at, Arc::new(tile));
+    }
+    /// A tile as the layer stores it: bytes.
+    pub fn stored(&self, at: TileAt) -> Option<Arc<Tile>> {
+        match self.tiles.get(&at) {
+            Some(tile) => tile.quantised().map(Arc::new),
+            None => self.base.tile(at).cloned(),
+        }
+    }
+    pub fn reader(&self) -> Reader<'_> {
+        Reader { wet: Some(self), base: &self.base, tile: None }
+    }
+}
+
+/// Reads pixels; those of one tile after each other cost no search.
+pub(super) struct Reader<'p> {
+    wet: Option<&'p Wet>,
+    base: &'p TileGrid,
+    tile: Option<(TileAt, Held<'p>)>,
+}
+
+#[derive(Clone, Copy)]
+enum Held<'p> {
+    Nothing,
+    Bytes(&'p Tile),
+    Wet(&'p PlanarTile),
+}
+
+impl<'p> Reader<'p> {
+    pub fn of(base: &'p TileGrid) -> Self {
+        Self { wet: None, base, tile: None }
+    }
+    /// A premultiplied pixel; transparent where there is none.
+    pub fn pixel(&mut self, x: i32, y: i32) -> [f32; 4] {
+        let at = TileAt::of_pixel(x, y);
+        let held = match self.tile {
+            Some((known, held)) if known == at => held,
+            _ => self.hold(at),
+        };
+        let (x, y) = (x.rem_euclid(TILE as i32) as usize, y.rem_euclid(TILE as i32) as usize);
+        match held {
+            Held::Nothing => [0.0; 4],
+            Held::Bytes(tile) => {
+                let bytes = tile.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
+                bytes.map(|b| f32::from(b) / 255.0)
+            }
+            Held::Wet(tile) => tile.rows().get(y).map_or([0.0; 4], |row| row.pixel(x)),
+        }
+    }
+    fn hold(&mut self, at: TileAt) -> Held<'p> {
+        let held = match (self.wet.and_then(|wet| wet.tiles.get(&at)), self.base.tile(at)) {
+            (Some(tile), _) => Held::Wet(tile),
+            (None, Some(tile)) => Held::Bytes(tile),
+            (None, None) => Held::Nothing,
+        };
+        self.tile = Some((at, held));
+        held
+    }
+    /// The colour at a canvas point, between the four pixels around it.
+    pub fn between(&mut self, at: Vec2) -> [f32; 4] {
+        let corner = (at - 0.5).floor();
+        let t = at - 0.5 - corner;
+        let (x, y) = (corner.x as i32, corner.y as i32);
+        let mut sum = [0.0; 4];
+        let weights =
+            [(0, 0, vec2(1.0 - t.x, 1.0 - t.y)), (1, 0, vec2(t.x, 1.0 - t.y)), (0, 1, vec2(1.0 - t.x, t.y)), (1, 1, t)];
+        for (dx, dy, weight) in weights {
+            let weight = weight.x * weight.y;
+            if weight > 0.0 {
+                let pixel = self.pixel(x.saturating_add(dx), y.saturating_add(dy));
+                sum = std::array::from_fn(|c| sum[c] + weight * pixel[c]);
+            }
+        }
+        sum
+    }
+}
