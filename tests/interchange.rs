@@ -144,3 +144,16 @@ fn image_magick_reads_our_merged_picture() {
     let off = worst(&folder.path().join("ours.png"), &made);
     assert!(off <= 2.0, "{off}");
 }
+#[test]
+fn gimp_shows_our_photoshop_files_as_we_do() {
+    let folder = folder();
+    done(folder.path(), &["convert", "a.json", "ours.png"]);
+    done(folder.path(), &["convert", "a.json", "a.psd"]);
+    let script = r#"(let* ((image (car (gimp-file-load RUN-NONINTERACTIVE "a.psd" "a.psd")))
+        (shown (car (gimp-image-merge-visible-layers image CLIP-TO-IMAGE))))
+        (file-png-save RUN-NONINTERACTIVE image shown "gimp.png" "gimp.png" 0 9 0 0 0 0 0))"#;
+    let args = ["-i", "-d", "-f", "-s", "-b", script, "-b", "(gimp-quit 0)"];
+    let Some(made) = other(folder.path(), "gimp-console", &args, "gimp.png") else { return };
+    let off = worst(&folder.path().join("ours.png"), &made);
+    assert!(off <= 3.0, "{off}");
+}

@@ -4,6 +4,7 @@
 use super::jobs::{Done, Jobs, While};
 use crate::io::export::Format;
 use crate::session::actions::pictures::Part;
+use crate::session::brushes::ENDINGS;
 use crate::session::storage::{DOCUMENTS, PICTURES};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -13,6 +14,7 @@ use std::time::{Duration, Instant};
 pub enum Purpose {
     Open,
     Place,
+    Brush,
     NormalMap,
     DepthMap,
     MaskMap,
@@ -27,6 +29,7 @@ impl Purpose {
         match self {
             Purpose::Open => "Open",
             Purpose::Place => "Place an image",
+            Purpose::Brush => "Import a brush",
             Purpose::NormalMap => "Normal map",
             Purpose::DepthMap => "Depth map",
             Purpose::MaskMap => "Mask",
@@ -47,6 +50,7 @@ impl Purpose {
                 ("Documents", DOCUMENTS.to_vec()),
                 ("Pictures and maps", pictures()),
             ],
+            Purpose::Brush => vec![("Brushes", ENDINGS.to_vec())],
             Purpose::Place | Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap | Purpose::Part(_) => {
                 vec![("Pictures", pictures())]
             }

@@ -1,111 +1,71 @@
-//! What a preset paints: one stroke over a ball, bent by the preset's operator.
-//! Floor 7. Painted once, on a thread of its own.
+//! The pictures of the brushes: each painted once, on a thread of its own, when its place in the list is first seen.
+//! Floor 7. What is painted is `session::swatch`'s.
 
 use super::jobs;
 use crate::Error;
-use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
-use crate::io::recipe::{preset_brush, preset_names};
-use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
-use crate::paint::{Brush, Sample, Stroke};
-use crate::raster::Plane;
-use crate::surface::{Maps, Surface};
+use crate::io::recipe::Preset;
+use crate::session::swatch;
 use eframe::egui::{self, ColorImage, TextureHandle, TextureId, TextureOptions};
-use std::collections::HashMap;
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::collections::{HashMap, HashSet};
+use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// The pictures of the presets.
+/// The pictures of the brushes.
 #[derive(Default)]
 pub struct Swatches {
-    coming: Option<Receiver<(&'static str, ColorImage)>>,
+    painter: Option<Painter>,
+    asked: HashSet<String>,
     made: HashMap<String, TextureHandle>,
     /// What cannot be done here, to be told once.
     pub trouble: Option<Error>,
 }
 
-/// Side of a swatch, px, and of the ball's radius in it.
-const SIDE: usize = 128;
-const RADIUS: f32 = 54.0;
+struct Painter {
+    wanted: Sender<Preset>,
+    coming: Receiver<(String, ColorImage)>,
+}
+
+/// Side of a swatch, px.
+const SIDE: u32 = 128;
 
 impl Swatches {
-    /// The picture of a preset, once it is painted.
-    pub fn of(&mut self, ctx: &egui::Context, name: &str) -> Option<TextureId> {
-        let coming = self.coming.get_or_insert_with(|| {
-            let (sender, coming) = channel();
-            let waker = ctx.clone();
-            let work = move || {
-                for name in preset_names() {
-                    if let Some(image) = painted(name)
-                        && sender.send((name, image)).is_ok()
-                    {
-                        waker.request_repaint();
-                    }
-                }
-            };
+    /// The picture of a brush, once it is painted.
+    pub fn of(&mut self, ctx: &egui::Context, preset: &Preset) -> Option<TextureId> {
+        if self.painter.is_none() {
+            let (painter, trouble) = Painter::start(ctx.clone());
             // Without a thread there are no pictures, only names.
-            self.trouble = jobs::spawn("pictures of the brushes", work).err();
-            coming
-        });
-        for (name, image) in coming.try_iter() {
-            self.made.insert(name.into(), ctx.load_texture(name, image, TextureOptions::LINEAR));
+            (self.painter, self.trouble) = (Some(painter), trouble);
         }
-        self.made.get(name).map(TextureHandle::id)
+        let painter = self.painter.as_ref()?;
+        for (key, image) in painter.coming.try_iter() {
+            self.made.insert(key.clone(), ctx.load_texture(key, image, TextureOptions::LINEAR));
+        }
+        if self.asked.insert(preset.key.clone()) {
+            // A painter that is gone paints nothing.
+            let _ = painter.wanted.send(preset.clone());
+        }
+        self.made.get(&preset.key).map(TextureHandle::id)
     }
 }
 
-/// A ball in the middle of a square, facing the viewer.
-pub fn ball(side: usize, radius: f32) -> Option<Surface> {
-    let middle = vec2(side as f32, side as f32) * 0.5;
-    let on = move |x: usize, y: usize| (vec2(x as f32 + 0.5, y as f32 + 0.5) - middle) / radius;
-    let height = |p: Vec2| (1.0 - p.length_squared()).max(0.0).sqrt();
-    let size = Size::new(side as u32, side as u32);
-    // A pixel of soft rim, so that the silhouette is not a staircase.
-    let cover = |p: Vec2| ((1.0 - p.length()) * radius + 0.5).clamp(0.0, 1.0);
-    Surface::new(Maps {
-        normals: Plane::from_fn(size, |x, y| {
-            vec3(on(x, y).x, -on(x, y).y, height(on(x, y)).max(0.02)).normalize_or_zero()
-        }),
-        depth: Plane::from_fn(size, |x, y| 1.0 - height(on(x, y))),
-        coverage: Plane::from_fn(size, |x, y| (cover(on(x, y)) * 255.0 + 0.5) as u8),
-    })
-    .ok()
-}
-
-/// A wave from left to right, lighter at its ends.
-fn wave() -> Vec<Sample> {
-    let at = |i: usize| {
-        let t = i as f32 / 24.0;
-        let (x, y) = (0.2 + 0.6 * t, 0.5 + 0.13 * (t * std::f32::consts::TAU).sin());
-        let pressure = (t * std::f32::consts::PI).sin().max(0.15);
-        Sample { pressure, ..Sample::at(vec2(x, y) * SIDE as f32) }
-    };
-    (0..=24).map(at).collect()
-}
-
-fn painted(name: &str) -> Option<ColorImage> {
-    let (brush, operator) = preset_brush(name)?;
-    let brush = Brush { size: brush.size.clamp(7.0, 38.0), ..brush };
-    let clay = Layer::new("clay", Content::Fill(Color { r: 0x54, g: 0x58, b: 0x60, a: 255 }));
-    let stroke = Arc::new(Stroke::new(brush, operator, Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 }, wave()));
-    let strokes = Layer::new("stroke", Content::Strokes(Live::new(StrokeList { strokes: vec![stroke] })));
-    let mut document = Document::empty(Size::new(SIDE as u32, SIDE as u32));
-    document.surface = Some(Arc::new(ball(SIDE, RADIUS)?));
-    document.layers = vec![Arc::new(clay), Arc::new(strokes)];
-    let grid = flatten(&document, &Progress::default())?;
-    Some(ColorImage::from_rgba_unmultiplied([SIDE, SIDE], &grid.to_straight_rgba(document.size.rect())))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_preset_leaves_a_mark_on_the_ball() {
-        for name in preset_names() {
-            let image = painted(name).unwrap();
-            let clay = egui::Color32::from_rgb(0x54, 0x58, 0x60);
-            let marked = image.pixels.iter().filter(|p| p.a() == 255 && **p != clay).count();
-            assert!(marked > 100, "{name}: {marked}");
-        }
+impl Painter {
+    fn start(waker: egui::Context) -> (Self, Option<Error>) {
+        let ((wanted, orders), (sender, coming)) = (channel::<Preset>(), channel());
+        let work = move || {
+            for preset in orders {
+                if let Some(image) = painted(&preset) {
+                    if sender.send((preset.key, image)).is_err() {
+                        return;
+                    }
+                    waker.request_repaint();
+                }
+            }
+        };
+        let trouble = jobs::spawn("pictures of the brushes", work).err();
+        (Self { wanted, coming }, trouble)
     }
+}
+
+fn painted(preset: &Preset) -> Option<ColorImage> {
+    let pixels = swatch::painted(preset, SIDE)?;
+    Some(ColorImage::from_rgba_unmultiplied([SIDE as usize; 2], &pixels))
 }

@@ -5,6 +5,9 @@
 //!
 //! ```json
 //! { "format": "rilievo-info", "version": 1,
+//!   "brushes": [ { "file": "set.abr", "kind": "Photoshop brushes",
+//!                  "brushes": [ { "name": "Chalk", "tip": "picture", "size": 64, "spacing": 0.25, "pictures": [[64, 40]],
+//!                                 "notes": [] } ] } ],
 //!   "documents": [ { "file": "pot.ora", "kind": "project", "width": 512, "height": 512, "surface": true, "whole": true,
 //!                    "layers": [ { "path": "layers[0]", "name": "ground", "kind": "fill", "visible": true, "opacity": 1,
 //!                                  "blend": "normal" } ], "notes": [] } ],
@@ -23,6 +26,7 @@
 //! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface` can be
 //! pasted into a recipe: it spells what was found.
 
+mod brushes;
 mod documents;
 
 use super::{Limits, print};
@@ -32,6 +36,7 @@ use crate::io::maps::{self, Findings, Import, pairs};
 use crate::io::open::Kind;
 use crate::io::{Files, Given, open, recipe};
 use crate::{Error, Result};
+use brushes::BrushFile;
 use documents::DocumentFile;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -58,6 +63,10 @@ pub fn run(args: &InfoArgs) -> Result<()> {
         for path in &args.files {
             let name = given.add(path);
             let bytes = given.read(&name, &budget);
+            if let Some(found) = bytes.as_ref().ok().and_then(|bytes| BrushFile::of(&name, path, bytes, &budget)) {
+                report.brushes.push(found);
+                continue;
+            }
             if bytes.as_ref().is_ok_and(|bytes| Kind::of(bytes) != Kind::Picture) {
                 report.documents.push(DocumentFile { name, opened: open(path, &budget) });
                 continue;
@@ -76,6 +85,7 @@ pub fn run(args: &InfoArgs) -> Result<()> {
 
 #[derive(Default)]
 struct Report {
+    brushes: Vec<BrushFile>,
     documents: Vec<DocumentFile>,
     files: Vec<File>,
     surfaces: Vec<Surface>,
@@ -159,7 +169,8 @@ impl Report {
         out
     }
     fn first_error(self) -> Option<Error> {
-        let documents = self.documents.into_iter().filter_map(|d| d.opened.err());
+        let brushes = self.brushes.into_iter().filter_map(|b| b.read.err());
+        let documents = brushes.chain(self.documents.into_iter().filter_map(|d| d.opened.err()));
         let files = documents.chain(self.files.into_iter().filter_map(|f| f.described.err()));
         files.chain(self.surfaces.into_iter().filter_map(|s| s.import.err())).next()
     }
@@ -167,6 +178,7 @@ impl Report {
         let value = json!({
             "format": "rilievo-info",
             "version": 1,
+            "brushes": self.brushes.iter().map(BrushFile::json).collect::<Vec<_>>(),
             "documents": self.documents.iter().map(DocumentFile::json).collect::<Vec<_>>(),
             "files": self.files.iter().map(File::json).collect::<Vec<_>>(),
             "surfaces": self.surfaces.iter().map(Surface::json).collect::<Vec<_>>(),
@@ -174,10 +186,11 @@ impl Report {
         format!("{value:#}\n")
     }
     fn text(&self) -> String {
+        let brushes: String = self.brushes.iter().map(BrushFile::text).collect();
         let documents: String = self.documents.iter().map(DocumentFile::text).collect();
         let files: String = self.files.iter().map(File::text).collect();
         let surfaces: String = self.surfaces.iter().map(Surface::text).collect();
-        documents + &files + &surfaces
+        brushes + &documents + &files + &surfaces
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for a misuse of the command line.
 
+mod brush;
 mod convert;
 mod crash;
 mod info;
@@ -32,6 +33,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Brush(brush::BrushArgs),
     Convert(convert::ConvertArgs),
     Info(info::InfoArgs),
     Open(open::OpenArgs),
@@ -53,6 +55,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
         }
     };
     let done = crash::caught(|| match parsed.command {
+        Some(Command::Brush(args)) => brush::run(&args),
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Open(args)) => open::run(args, window),

@@ -1,6 +1,7 @@
 //! Floor 5: files. One module a format; each brings what it reads into the program's own conventions at the door.
 
 pub mod bitmap;
+pub mod brush;
 pub mod budget;
 pub mod export;
 pub mod exr;

@@ -123,9 +123,13 @@ fn exr_texels(file: &Path, exr: &ExrFile) -> Result<Vec<[f32; 4]>> {
 pub fn own_srgb() -> Vec<u8> {
     /// Year, month, day, hour, minute and second, as the header of a profile holds them.
     const DATE: [u8; 12] = [0x07, 0xd0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
+    /// The illuminant of the connection space, which is always D50 and which the encoder leaves out.
+    const D50: [u8; 12] = [0, 0, 0xf6, 0xd6, 0, 1, 0, 0, 0, 0, 0xd3, 0x2d];
     let mut profile = ColorProfile::new_srgb().encode().unwrap_or_default();
-    if let Some(date) = profile.get_mut(24..36) {
-        date.copy_from_slice(&DATE);
+    for (at, value) in [(24, DATE), (68, D50)] {
+        if let Some(place) = profile.get_mut(at..at + value.len()) {
+            place.copy_from_slice(&value);
+        }
     }
     profile
 }

@@ -2,6 +2,7 @@
 
 pub mod fast;
 pub mod hash;
+pub mod noise;
 pub mod rect;
 pub mod simd;
 pub mod srgb;

@@ -2,7 +2,9 @@
 //! Floor 3. Not here: how the hand and the surface drive it (`dynamics`), the dabs themselves (`laying`).
 
 use super::dynamics::{Dynamics, Input};
+use super::grain::{Grain, GrainSource};
 use super::image::PictureSource;
+use super::tip::{Bristles, Hose, Noise};
 use crate::raster::BlendMode;
 use crate::surface::Bounded;
 
@@ -37,6 +39,7 @@ pub struct Brush {
     /// What the brush does where its footprint lands. Strokes of a stroke layer paint, whatever it says.
     pub mark: Mark,
     pub tip: Tip,
+    pub grain: Option<Grain>,
     /// What calmed the hand. The samples of a stroke are calm already: painting them again does not ask for it.
     pub stabilizer: Stabilizer,
     pub dynamics: Dynamics,
@@ -102,9 +105,55 @@ pub enum Stabilizer {
 #[derive(Clone)]
 pub enum Tip {
     Round,
+    /// `ratio`: of the shorter axis to the longer one, which is the diameter and lies along x; `(0, 1]`.
+    Ellipse {
+        ratio: f32,
+    },
+    /// A rectangle; its longer side is the diameter. Hardness and softness are those of each side.
+    Square {
+        ratio: f32,
+    },
+    Bristles(Bristles),
+    Noise(Noise),
     /// A picture whose longer side is the diameter. Opaque and grey throughout, it is coverage, white covering wholly;
     /// any other is a stamp in its own colours.
     Picture(PictureSource),
+    Hose(Hose),
+}
+
+impl Brush {
+    /// The pictures that it is made of: its tip's, then its grain's.
+    pub fn pictures(&self) -> impl Iterator<Item = &PictureSource> {
+        let tip = match &self.tip {
+            Tip::Picture(source) => std::slice::from_ref(source),
+            Tip::Hose(hose) => hose.pictures(),
+            _ => &[],
+        };
+        let grain = self.grain.as_ref().and_then(|grain| match &grain.source {
+            GrainSource::Picture(source) => Some(source),
+            GrainSource::Pattern { .. } => None,
+        });
+        tip.iter().chain(grain)
+    }
+    /// The same brush, each of its pictures in place of another.
+    pub fn with_pictures<E>(
+        &self,
+        mut replace: impl FnMut(&PictureSource) -> Result<PictureSource, E>,
+    ) -> Result<Self, E> {
+        let mut next = self.clone();
+        match &self.tip {
+            Tip::Picture(source) => next.tip = Tip::Picture(replace(source)?),
+            Tip::Hose(hose) => {
+                let pictures = hose.pictures().iter().map(&mut replace).collect::<Result<_, E>>()?;
+                next.tip = Tip::Hose(hose.with_pictures(pictures));
+            }
+            _ => {}
+        }
+        if let Some(Grain { source: GrainSource::Picture(source), .. }) = &mut next.grain {
+            *source = replace(source)?;
+        }
+        Ok(next)
+    }
 }
 
 impl Default for Brush {
@@ -125,6 +174,7 @@ impl Default for Brush {
             bounded: Bounded::Free,
             mark: Mark::Paint,
             tip: Tip::Round,
+            grain: None,
             stabilizer: Stabilizer::None,
             dynamics: Dynamics::default(),
             seed: 0,
@@ -137,6 +187,6 @@ impl Brush {
     pub fn is_random(&self) -> bool {
         let Jitter { hue_degrees, saturation, value } = self.jitter;
         let strays = [self.scatter, hue_degrees, saturation, value].iter().any(|&v| v > 0.0);
-        strays || self.dynamics.follow(Input::Random) || !matches!(self.tip, Tip::Round | Tip::Picture(_))
+        strays || self.dynamics.follow(Input::Random) || matches!(self.tip, Tip::Hose(_))
     }
 }

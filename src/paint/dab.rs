@@ -1,6 +1,10 @@
 //! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch.
 //! Floor 3. Not here: where dabs stand (`laying`), the tips (`profile`, `stamp`), how dabs add up to a stroke (`stroke`).
 
+mod covered;
+
+pub use covered::Footprint;
+
 use super::image::transform;
 use super::laying::Dab;
 use super::patches::Patches;
@@ -39,8 +43,10 @@ pub fn round_extent(dab: &Dab) -> Extent {
 pub struct DabScratch {
     deformed: DeformedRect,
     stamping: Stamping,
-    /// Coverage of a row, for washes of colours.
+    /// Coverage of a row, or of a part of a tile.
     covered: Vec<f32>,
+    /// What a picture tip brings to a part of a tile.
+    stamped: Vec<[u8; 4]>,
 }
 
 /// What reading a picture tip takes.
@@ -60,6 +66,9 @@ impl<'s> PlacedDab<'s> {
         let bent_over = surface.filter(|_| !deformation.is_identity());
         let reach = Reach::new(surface, scene.size, dab.operator, dab.at, extent);
         Self { dab, scene, deformation, bent_over, reach }
+    }
+    pub fn dab(&self) -> &Dab {
+        &self.dab
     }
     pub fn reach(&self) -> &Reach<'s> {
         &self.reach
@@ -145,7 +154,7 @@ fn touched(blocks: &TileBlocks, at: TileAt) -> Rect {
 }
 
 /// The rows of `area`, each from its first to its last touched block.
-fn spans(blocks: &TileBlocks, at: TileAt, area: Rect) -> impl Iterator<Item = Span> {
+fn spans(blocks: &TileBlocks, at: TileAt, area: Rect) -> impl Iterator<Item = Span> + use<> {
     let (blocks, tile, side) = (*blocks, at.rect(), BLOCK as i32);
     (area.y0..area.y1).filter_map(move |y| {
         let bits = blocks[(y - tile.y0) as usize / BLOCK];
@@ -162,8 +171,8 @@ struct Field<'f> {
     d: &'f DeformedRect,
 }
 
-impl Field<'_> {
-    fn around(&self, span: Span) -> Around<'_> {
+impl<'f> Field<'f> {
+    fn around(&self, span: Span) -> Around<'f> {
         let start = |y: i32| (y - self.rect.y0) as usize * self.rect.width() + (span.x - 1 - self.rect.x0) as usize;
         let row = |y: i32| {
             let range = start(y)..start(y) + span.n + 2;
@@ -276,7 +285,7 @@ crate::widest! {
 
 /// The derivative at `here` from those of its two neighbours that are linked; `flat`, the identity's, without any.
 #[inline(always)]
-fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
+pub fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
     let low = if has_before { before } else { here };
     let high = if has_after { after } else { here };
     let mean = if has_before & has_after { 0.5 * (high - low) } else { high - low };

@@ -123,6 +123,7 @@ impl Hand {
     fn take(&mut self, samples: &[Sample], scene: &Scene) {
         let Some(first) = samples.first() else { return };
         let bounded = self.brush.bounded;
+        self.laid.begin(&self.brush, samples);
         self.part.get_or_insert_with(|| bounded.from(scene.surface.as_ref(), first.at));
         let mut dabs = Vec::new();
         samples.iter().for_each(|sample| self.laying.push(sample, &mut dabs));
@@ -166,7 +167,8 @@ impl Hand {
     /// What a dab covers of a tile; `None` where it covers nothing.
     fn touch(&self, placed: &PlacedDab, at: TileAt, scratch: &mut DabScratch, scene: &Scene) -> Option<Touch> {
         let mut wash = Wash::one_color();
-        self.laid.add(placed, at, &mut wash, scratch);
+        let grain = self.laid.grain(at);
+        self.laid.add(placed, at, grain.as_deref(), &mut wash, scratch);
         let mut coverage: Box<[f32; TILE_AREA]> = Box::new([0.0; TILE_AREA]);
         coverage.copy_from_slice(wash.coverage(0, TILE_AREA));
         let opacity = self.brush.opacity.max(0.0).min(1.0);

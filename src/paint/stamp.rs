@@ -22,12 +22,19 @@ pub struct Stamp {
 #[derive(Default)]
 pub struct Stamps {
     made: Mutex<Vec<(u32, Arc<Stamp>)>>,
+    grains: Mutex<Vec<([u32; 2], Arc<Texture>)>>,
 }
 
-/// Stamps kept for one picture: more softnesses than one brush has.
-const KEPT: usize = 8;
+/// Stamps kept for one picture: the steps of one brush whose softness changes, and a few of others.
+const KEPT: usize = STEPS as usize + 8;
+/// Softnesses in between are mixed of the two nearest of these steps, which nobody can tell from the true blur.
+const STEPS: u32 = 12;
 
 impl Stamps {
+    /// What was made of the picture as grain, by its levels.
+    pub fn grains(&self) -> &Mutex<Vec<([u32; 2], Arc<Texture>)>> {
+        &self.grains
+    }
     /// The stamp of a picture with a softness in `[0, 1]`.
     pub fn of(source: &PictureSource, softness: f32) -> Arc<Stamp> {
         let lock = || source.stamps().made.lock().unwrap_or_else(PoisonError::into_inner);
@@ -44,6 +51,46 @@ impl Stamps {
         }
         made.push((key, stamp.clone()));
         stamp
+    }
+}
+
+/// The stamps of a tip, sharp to blurred.
+pub enum Softened {
+    /// Every dab has the brush's own softness.
+    One(Arc<Stamp>),
+    /// From softness 0 to 1 at even steps.
+    Steps(Vec<Arc<Stamp>>),
+}
+
+impl Softened {
+    /// `is_driven`: dabs differ in softness.
+    pub fn of(source: &PictureSource, softness: f32, is_driven: bool) -> Self {
+        if is_driven {
+            let steps = (0..=STEPS).map(|step| Stamps::of(source, step as f32 / STEPS as f32));
+            return Softened::Steps(steps.collect());
+        }
+        Softened::One(Stamps::of(source, softness.max(0.0).min(1.0)))
+    }
+    /// The stamp next below a softness, and the one above with its share where the dab lies between them.
+    pub fn at(&self, softness: f32) -> (&Stamp, Option<(&Stamp, f32)>) {
+        match self {
+            Softened::One(stamp) => (stamp, None),
+            Softened::Steps(stamps) => {
+                let place = softness.max(0.0).min(1.0) * STEPS as f32;
+                let below = (place as usize).min(stamps.len().saturating_sub(2));
+                let share = place - below as f32;
+                let above = stamps.get(below + 1).filter(|_| share > 0.0);
+                (&stamps[below], above.map(|above| (&**above, share)))
+            }
+        }
+    }
+    pub fn is_colored(&self) -> bool {
+        self.at(0.0).0.is_colored
+    }
+    /// How far a dab reaches with the widest of its stamps.
+    pub fn extent(&self, dab: &Dab) -> Extent {
+        let (below, above) = self.at(dab.softness);
+        above.map_or(below, |(above, _)| above).extent(dab)
     }
 }
 

@@ -101,8 +101,9 @@ impl Stroke {
     fn paint(&self, scene: &Scene, at: TileAt, pixels: &mut PlanarTile, scratch: &mut DabScratch) {
         let laid = self.laid(scene);
         let mut wash = laid.wash();
+        let grain = laid.grain(at);
         for dab in laid.on_tile(at) {
-            laid.add(&laid.place(*dab, scene), at, &mut wash, scratch);
+            laid.add(&laid.place(*dab, scene), at, grain.as_deref(), &mut wash, scratch);
         }
         wash.bound_to(&self.part(scene), at);
         wash.lay_over(pixels, self.manner());

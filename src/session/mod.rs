@@ -3,10 +3,12 @@
 
 pub mod actions;
 pub mod autosave;
+pub mod brushes;
 mod path;
 pub mod property;
 pub mod replay;
 pub mod storage;
+pub mod swatch;
 mod tab;
 pub mod view;
 
@@ -19,7 +21,7 @@ pub use view::View;
 
 use crate::Result;
 use crate::document::{Document, Layer};
-use crate::io::recipe::preset_brush;
+use crate::io::recipe::{Preset, presets};
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
@@ -37,7 +39,9 @@ pub struct Session {
     /// The one in front, if any.
     pub current: usize,
     pub tool: ToolKind,
-    /// The name of the brush in hand among those that come with the program.
+    /// Brushes to choose from: the program's own, then those brought in, none twice by its key.
+    pub presets: Vec<Preset>,
+    /// The key of the brush in hand among them.
     pub preset: String,
     pub brush: Brush,
     pub color: Color,
@@ -67,12 +71,15 @@ pub struct Session {
 impl Default for Session {
     fn default() -> Self {
         let preset = "soft-round";
+        let presets: Vec<Preset> = presets().collect();
+        let brush = presets.iter().find(|known| known.key == preset).map(|known| known.brush.clone());
         Self {
             tabs: Vec::new(),
             current: 0,
             tool: ToolKind::default(),
+            presets,
             preset: preset.into(),
-            brush: preset_brush(preset).map(|(brush, _)| brush).unwrap_or_default(),
+            brush: brush.unwrap_or_default(),
             color: Color { r: 0xe8, g: 0xe4, b: 0xda, a: 255 },
             second_color: Color { r: 0x1c, g: 0x20, b: 0x26, a: 255 },
             recent_colors: Vec::new(),
@@ -143,6 +150,16 @@ impl Session {
     pub fn untitled(&mut self) -> String {
         self.untitled += 1;
         format!("Untitled {}", self.untitled)
+    }
+    /// Takes a brush to hand by its key. One made for an operator brings it; one that is not leaves what is in hand.
+    pub fn take_preset(&mut self, key: &str) {
+        let Some(preset) = self.presets.iter().find(|preset| preset.key == key) else { return };
+        if preset.operator != Operator::None {
+            self.operator = preset.operator;
+        }
+        self.brush = preset.brush.clone();
+        self.preset = preset.key.clone();
+        self.tool = ToolKind::Brush;
     }
     /// What was begun is forgotten, and what it showed with it.
     pub fn drop_gesture(&mut self) {

@@ -108,7 +108,7 @@ impl Hand {
         for event in events {
             self.pen.hear(&event, now_secs);
             if let Event::Touch { phase, pos, .. } = &event {
-                self.touched(*phase, ours(*pos), &mut listening);
+                self.touched(*phase, ours(*pos), now_secs, &mut listening);
             }
             while let Some(report) = self.pen.next() {
                 match report.phase {
@@ -141,14 +141,14 @@ impl Hand {
         listening.flush();
     }
     /// A finger, or a pen that reports itself as one. Two that come down and go again, without moving, take a step back.
-    fn touched(&mut self, phase: TouchPhase, is_here: bool, listening: &mut Listening) {
+    fn touched(&mut self, phase: TouchPhase, is_here: bool, now_secs: f64, listening: &mut Listening) {
         let touches = self.pen.touches();
         match phase {
-            TouchPhase::Start => self.tap = (touches == 2 && is_here).then_some((listening.now_secs, 0.0)),
+            TouchPhase::Start => self.tap = (touches == 2 && is_here).then_some((now_secs, 0.0)),
             TouchPhase::Cancel => self.tap = None,
             TouchPhase::End if touches == 0 => {
                 let Some((began_secs, moved_pt)) = self.tap.take() else { return };
-                if listening.now_secs - began_secs < TAP_SECS && moved_pt < TAP_PT {
+                if now_secs - began_secs < TAP_SECS && moved_pt < TAP_PT {
                     listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
                     listening.actions.push(Action::Edit(EditAction::Undo {}));
                 }

@@ -1,50 +1,83 @@
-//! The brushes: presets, each shown painted on a ball, and the numbers of the one in hand.
+//! The brushes: presets in groups, each shown painted on a ball, and the numbers of the one in hand.
 //! Floor 7.
 
-use crate::app::asked::Asked;
+use crate::app::asked::{Asked, WindowAsk};
+use crate::app::files::Purpose;
 use crate::app::swatches::Swatches;
-use crate::app::widgets::{Number, sentence, title};
-use crate::io::recipe::preset_names;
+use crate::app::widgets::{Number, named, title};
+use crate::io::recipe::{Group, Preset};
 use crate::paint::Property;
 use crate::session::actions::HandAction;
 use crate::session::actions::hand::SIZES;
+use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
-use eframe::egui::{self, Color32, Rect, Sense, StrokeKind, Ui, pos2, vec2};
+use eframe::egui::text::{LayoutJob, TextWrapping};
+use eframe::egui::{self, Color32, Id, Rect, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
-        for name in preset_names() {
-            if preset(ui, name, session.preset == name, swatches) {
-                asked.act(Action::Hand(HandAction::Preset { name: name.into() }));
-            }
+    let search = search(ui, asked);
+    for (group, name) in Group::ALL {
+        let presets = session.presets.iter().filter(|preset| preset.group == group && is_found(preset, &search));
+        let presets: Vec<&Preset> = presets.collect();
+        if presets.is_empty() {
+            continue;
         }
-    });
+        title(ui, name);
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
+            for known in presets {
+                if preset(ui, known, session.preset == known.key, swatches) {
+                    asked.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
+                }
+            }
+        });
+    }
     ui.add_space(4.0);
     title(ui, "Brush in hand");
     numbers(ui, session, asked);
 }
 
+/// The row above the list; what is searched for.
+fn search(ui: &mut Ui, asked: &mut Asked) -> String {
+    let id = Id::unique("brush search");
+    let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(ui.available_width() - 74.0);
+        named(&ui.add(field), "Search brushes");
+        let import = ui
+            .button("Import…")
+            .on_hover_text("Brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), or a preset (.json)");
+        named(&import, "Import a brush…");
+        if import.clicked() {
+            asked.ask(WindowAsk::Choose(Purpose::Brush));
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, search.clone()));
+    search
+}
+
 /// One preset; whether it was chosen.
-fn preset(ui: &mut Ui, name: &str, is_on: bool, swatches: &mut Swatches) -> bool {
+fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) -> bool {
     let (rect, response) = ui.allocate_exact_size(vec2(72.0, 84.0), Sense::click());
-    let label = sentence(name);
+    let label = &preset.name;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}")));
+    if !ui.is_rect_visible(rect) {
+        return response.clicked();
+    }
     let look = ui.style().interact_selectable(&response, is_on);
     ui.painter().rect(rect, 5.0, look.weak_bg_fill, look.bg_stroke, StrokeKind::Inside);
     let at = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(64.0, 62.0));
-    if let Some(texture) = swatches.of(ui.ctx(), name) {
+    if let Some(texture) = swatches.of(ui.ctx(), preset) {
         ui.painter().image(texture, at, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
-    ui.painter().text(
-        pos2(rect.center().x, rect.bottom() - 4.0),
-        egui::Align2::CENTER_BOTTOM,
-        &label,
-        font,
-        look.text_color(),
-    );
-    response.on_hover_text(label).clicked()
+    let mut job = LayoutJob::simple_singleline(label.clone(), font, look.text_color());
+    // A long name ends in an ellipsis; the tooltip has it whole.
+    job.wrap = TextWrapping::truncate_at_width(rect.width() - 4.0);
+    let text = ui.fonts_mut(|fonts| fonts.layout_job(job));
+    let place = pos2(rect.center().x - 0.5 * text.size().x, rect.bottom() - 3.0 - text.size().y);
+    ui.painter().galley(place, text, look.text_color());
+    response.on_hover_text(format!("{label}\n{}", preset.about)).clicked()
 }
 
 fn numbers(ui: &mut Ui, session: &Session, asked: &mut Asked) {

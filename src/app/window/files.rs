@@ -86,6 +86,9 @@ impl Window {
             Purpose::Place => {
                 self.read_picture(file, Where::Middle);
             }
+            Purpose::Brush => {
+                self.apply(&crate::session::Action::File(crate::session::actions::FileAction::ImportBrush { file }));
+            }
             Purpose::Part(part) => self.read_part(part, file),
             Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap => {
                 if let Some(import) = self.import() {

@@ -9,7 +9,7 @@ use crate::document::source::{
 };
 use crate::document::{Content, DetailSource, Document, Group, Layer, LayerId, Live, MaskKind, StrokeList};
 use crate::io::exr;
-use crate::paint::{PictureSource, Stroke, Tip};
+use crate::paint::{PictureSource, Stroke};
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane};
 use crate::surface::Surface;
@@ -114,9 +114,14 @@ impl Assets {
         Ok(next)
     }
     fn stroke(&mut self, file: &Path, stroke: &Arc<Stroke>) -> Result<Arc<Stroke>> {
-        let mut brush = stroke.brush().clone();
-        let Tip::Picture(source) = &mut brush.tip else { return Ok(stroke.clone()) };
-        self.source(file, source)?;
+        if stroke.brush().pictures().next().is_none() {
+            return Ok(stroke.clone());
+        }
+        let brush = stroke.brush().with_pictures(|source| {
+            let mut source = source.clone();
+            self.source(file, &mut source)?;
+            Ok(source)
+        })?;
         Ok(Arc::new(Stroke::new(brush, stroke.operator(), stroke.color(), stroke.samples().to_vec())))
     }
     fn source(&mut self, file: &Path, source: &mut PictureSource) -> Result<()> {

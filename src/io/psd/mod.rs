@@ -12,8 +12,8 @@
 //!
 //! Ours hold a private resource with the document itself, so that live layers come back live.
 
-mod channel;
-mod cursor;
+pub(super) mod channel;
+pub(super) mod cursor;
 mod emit;
 mod layers;
 mod lower;

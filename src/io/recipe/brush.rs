@@ -2,11 +2,12 @@
 //! Floor 5. Not here: strokes and presets (`strokes`).
 
 use super::images::TURNS;
+use super::tips;
 use crate::Result;
 use crate::io::json::{Fields, Node, Object, object};
 use crate::math::vec2;
 use crate::paint::dynamics::MAX_POINTS;
-use crate::paint::{Brush, Curve, Dynamics, Input, Jitter, Mark, Property, Stabilizer, Tip};
+use crate::paint::{Brush, Curve, Dynamics, Input, Jitter, Mark, Property, Stabilizer};
 use crate::raster::BlendMode;
 use crate::surface::Bounded;
 use serde_json::{Value, json};
@@ -33,6 +34,7 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         dynamics: fields.get("dynamics").map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics))?,
         seed: fields.get("seed").map_or(Ok(base.seed), |node| seed(&node))?,
         tip: base.tip,
+        grain: base.grain,
     })
 }
 
@@ -152,9 +154,8 @@ pub fn write_brush(brush: &Brush) -> Object {
     out.flag("keeps_alpha", brush.keeps_alpha, plain.keeps_alpha);
     out.word("bounded", &Bounded::ALL, brush.bounded, plain.bounded);
     out.object("mark", write_mark(brush.mark));
-    if let Tip::Picture(tip) = &brush.tip {
-        out.set("tip", json!({ "file": tip.file }));
-    }
+    tips::write_tip(&mut out, &brush.tip);
+    tips::write_grain(&mut out, brush.grain.as_ref());
     match brush.stabilizer {
         Stabilizer::None => {}
         Stabilizer::Average { weight } => out.set("stabilizer", json!({ "average": object::number(weight) })),

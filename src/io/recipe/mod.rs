@@ -7,7 +7,10 @@
 //! | `surface` | normal map, depth map, mask and their conventions |
 //! | `layers` | what every layer has, and fills, pixels and groups |
 //! | `images` | placed images, gradients, normal layers: operator, anchors, placement |
-//! | `strokes` | strokes, brushes, presets |
+//! | `strokes` | strokes |
+//! | `brush` | the numbers of a brush, its dynamics |
+//! | `tips` | a brush's tip and its grain |
+//! | `presets` | the brushes that come with the program, and those in files of their own |
 //! | `shading` | shading layers, radiance scaling |
 //! | `masks` | layer masks |
 //! | `pictures` | the files that layers name, each decoded once |
@@ -19,11 +22,14 @@ mod masks;
 mod names;
 mod normals;
 mod pictures;
+mod presets;
 mod shading;
 mod strokes;
 pub mod surface;
+mod tips;
 
-pub use strokes::{preset_brush, preset_names, write_stroke};
+pub use presets::{Group, Preset, load_preset, preset, preset_brush, preset_names, presets, write_preset};
+pub use strokes::write_stroke;
 
 use super::json::{self, Fields, Node, Object};
 use super::{Budget, Files, Folder, files, maps};

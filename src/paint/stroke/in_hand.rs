@@ -9,6 +9,7 @@ use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
 use crate::paint::laying::Laying;
 use crate::paint::scene::Scene;
+use crate::paint::tip::GrainTile;
 use crate::paint::wash::{Manner, Wash};
 use crate::raster::{Coverage, Mix, Paint, PlanarTile, Tile, TileAt, TileGrid};
 use crate::surface::Operator;
@@ -56,6 +57,8 @@ struct WetTile {
     beneath: Option<PlanarTile>,
     /// The settled dabs of each stroke in hand.
     washes: Vec<Option<Wash>>,
+    /// What their grains leave.
+    grains: Vec<Option<Box<GrainTile>>>,
 }
 
 /// What a batch of samples adds to one stroke.
@@ -84,6 +87,7 @@ impl Hand {
     /// Lays what the samples settle, and the tail behind it.
     fn take<'s>(&mut self, samples: &[Sample], scene: &'s Scene) -> Fresh<'s> {
         self.samples.extend_from_slice(samples);
+        self.laid.begin(&self.brush, &self.samples);
         let mut dabs = Vec::new();
         samples.iter().for_each(|sample| self.laying.push(sample, &mut dabs));
         let settled = dabs.len();
@@ -113,11 +117,20 @@ impl Hand {
         fresh
     }
     /// The wash of a tile as it is to be seen: with the tail. What is settled is added to `wash` for good.
-    fn shown(&self, fresh: &Fresh, at: TileAt, wash: &mut Option<Wash>, scratch: &mut DabScratch) -> Option<Wash> {
+    fn shown(
+        &self,
+        fresh: &Fresh,
+        at: TileAt,
+        (wash, grain): (&mut Option<Wash>, &mut Option<Box<GrainTile>>),
+        scratch: &mut DabScratch,
+    ) -> Option<Wash> {
         let here = fresh.tiles.get(&at).map_or(&[][..], Vec::as_slice);
         let (settled, tail) = here.split_at(here.partition_point(|&i| i < fresh.settled));
+        if grain.is_none() && !here.is_empty() {
+            *grain = self.laid.grain(at);
+        }
         let mut add = |dabs: &[usize], wash: &mut Wash| {
-            dabs.iter().for_each(|&i| self.laid.add(&fresh.dabs[i], at, wash, scratch));
+            dabs.iter().for_each(|&i| self.laid.add(&fresh.dabs[i], at, grain.as_deref(), wash, scratch));
         };
         if !settled.is_empty() {
             add(settled, wash.get_or_insert_with(|| self.laid.wash()));
@@ -169,12 +182,17 @@ impl InHand {
         changed.extend(fresh.iter().flat_map(|fresh| fresh.tiles.keys()));
         changed.sort_unstable();
         changed.dedup();
-        let dry = || WetTile { beneath: None, washes: hands.iter().map(|_| None).collect() };
+        let dry = || WetTile {
+            beneath: None,
+            washes: hands.iter().map(|_| None).collect(),
+            grains: hands.iter().map(|_| None).collect(),
+        };
         let mut wet: Vec<_> = changed.iter().map(|at| (*at, tiles.remove(at).unwrap_or_else(dry))).collect();
         let paint = |scratch: &mut DabScratch, (at, tile): &mut (TileAt, WetTile)| {
             let mut pixels = ground.pixels(scene, *at, &mut tile.beneath);
-            for ((hand, fresh), wash) in hands.iter().zip(&fresh).zip(&mut tile.washes) {
-                if let Some(mut shown) = hand.shown(fresh, *at, wash, scratch) {
+            let kept = tile.washes.iter_mut().zip(&mut tile.grains);
+            for ((hand, fresh), kept) in hands.iter().zip(&fresh).zip(kept) {
+                if let Some(mut shown) = hand.shown(fresh, *at, kept, scratch) {
                     shown.bound_to(&hand.part(scene), *at);
                     shown.lay_over(&mut pixels, Manner::of(&hand.brush, hand.color));
                 }
@@ -220,8 +238,9 @@ impl Ground {
 mod tests {
     use super::*;
     use crate::math::{Size, Vec2, hash, vec2, vec3};
+    use crate::paint::grain::{Grain, Lies};
     use crate::paint::stroke::render_tile;
-    use crate::paint::{Curve, Dynamics, Input, Jitter, Property};
+    use crate::paint::{Curve, Dynamics, Input, Jitter, Property, Tip};
     use crate::raster::{BlendMode, Plane};
     use crate::surface::{Maps, Surface};
     use proptest::prelude::*;
@@ -247,12 +266,14 @@ mod tests {
     }
     fn brushes() -> Vec<Brush> {
         let dynamics = Dynamics::default().with(Property::Size, Input::Speed, Curve::Share(0.8));
+        let grain = Grain { size_px: 9.0, lies: Lies::Surface { gamma: 1.0 }, ..Grain::default() };
         let plain = Brush { size: 34.0, dynamics, ..Brush::default() };
         vec![
             plain.clone(),
             Brush { scatter: 0.6, jitter: Jitter { hue_degrees: 90.0, ..Jitter::default() }, ..plain.clone() },
             Brush { blend: BlendMode::Multiply, opacity: 0.6, ..plain.clone() },
-            Brush { erases: true, ..plain },
+            Brush { erases: true, ..plain.clone() },
+            Brush { grain: Some(grain), tip: Tip::Square { ratio: 0.4 }, ..plain },
         ]
     }
 

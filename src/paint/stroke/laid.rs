@@ -3,44 +3,28 @@
 
 use super::Stroke;
 use crate::math::Rect;
-use crate::paint::brush::{Brush, Tip};
-use crate::paint::dab::{DabScratch, PlacedDab, round_extent};
+use crate::paint::brush::Brush;
+use crate::paint::dab::{DabScratch, PlacedDab};
+use crate::paint::grain::LaidGrain;
 use crate::paint::laying::{self, Dab};
 use crate::paint::scene::Scene;
-use crate::paint::stamp::{Stamp, Stamps};
+use crate::paint::stroke::Sample;
 use crate::paint::tint;
+use crate::paint::tip::{GrainTile, LaidTip};
 use crate::paint::wash::Wash;
 use crate::raster::TileAt;
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::Arc;
 
 /// A stroke's dabs, and which of them may touch which tile of a canvas.
 pub(in crate::paint) struct Laid {
     scene: Scene,
     tip: LaidTip,
+    /// Once it is known where the stroke begins.
+    grain: Option<LaidGrain>,
     varies_in_color: bool,
     dabs: Vec<Dab>,
     tiles: HashMap<TileAt, Vec<Range<u32>>>,
-}
-
-/// A brush's tip, made ready.
-#[derive(Clone)]
-enum LaidTip {
-    Round,
-    Stamp(Arc<Stamp>),
-}
-
-impl LaidTip {
-    fn of(brush: &Brush) -> Self {
-        match &brush.tip {
-            Tip::Round => Self::Round,
-            Tip::Picture(source) => Self::Stamp(Stamps::of(source, brush.softness.max(0.0).min(1.0))),
-        }
-    }
-    fn brings_colors(&self) -> bool {
-        matches!(self, Self::Stamp(stamp) if stamp.is_colored)
-    }
 }
 
 /// Dabs this near in the stroke's order share a run even if those between them miss the tile.
@@ -54,6 +38,7 @@ impl Laid {
         Self {
             scene: scene.clone(),
             tip: LaidTip::of(brush),
+            grain: None,
             varies_in_color: tint::varies(brush),
             dabs: Vec::new(),
             tiles: HashMap::new(),
@@ -61,11 +46,24 @@ impl Laid {
     }
     pub fn of(stroke: &Stroke, scene: &Scene) -> Self {
         let mut laid = Self::empty(&stroke.brush, scene);
+        laid.begin(&stroke.brush, &stroke.samples);
         for dab in laying::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene) {
             let tiles = tiles_of(&laid.place(dab, scene));
             laid.push(dab, &tiles);
         }
         laid
+    }
+    /// Anchors the grain, if there is any, where the stroke begins; later samples change nothing.
+    pub fn begin(&mut self, brush: &Brush, samples: &[Sample]) {
+        let start = samples.iter().map(|sample| sample.at).find(|at| at.is_finite());
+        let grain = brush.grain.as_ref().filter(|grain| grain.strength > 0.0 && self.grain.is_none());
+        if let Some((grain, start)) = grain.zip(start) {
+            self.grain = Some(LaidGrain::new(grain, start));
+        }
+    }
+    /// What the grain leaves of each pixel of a tile.
+    pub fn grain(&self, at: TileAt) -> Option<Box<GrainTile>> {
+        self.grain.as_ref().map(|grain| grain.tile(&self.scene, at))
     }
     /// Adds a dab that may touch these tiles.
     pub fn push(&mut self, dab: Dab, tiles: &[TileAt]) {
@@ -96,22 +94,22 @@ impl Laid {
         runs.flat_map(|run| &self.dabs[run.start as usize..run.end as usize])
     }
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
-        let extent = match &self.tip {
-            LaidTip::Round => round_extent(&dab),
-            LaidTip::Stamp(stamp) => stamp.extent(&dab),
-        };
-        PlacedDab::new(dab, scene, extent)
+        self.tip.place(dab, scene)
     }
     /// What the stroke's dabs add up in, dry.
     pub fn wash(&self) -> Wash {
         if self.varies_in_color || self.tip.brings_colors() { Wash::colors() } else { Wash::one_color() }
     }
-    /// Adds a dab to a tile.
-    pub fn add(&self, dab: &PlacedDab, at: TileAt, wash: &mut Wash, scratch: &mut DabScratch) {
-        match &self.tip {
-            LaidTip::Round => dab.add_round(at, wash, scratch),
-            LaidTip::Stamp(stamp) => dab.add_stamp(stamp, at, wash, scratch),
-        }
+    /// Adds a dab to a tile. `grain`: this tile's.
+    pub fn add(
+        &self,
+        dab: &PlacedDab,
+        at: TileAt,
+        grain: Option<&GrainTile>,
+        wash: &mut Wash,
+        scratch: &mut DabScratch,
+    ) {
+        self.tip.add(dab, at, grain, wash, scratch);
     }
 }
 

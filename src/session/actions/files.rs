@@ -10,7 +10,7 @@ use crate::raster::{Outside, Picture};
 use crate::session::actions::layers::above;
 use crate::session::actions::pictures::{self, Part};
 use crate::session::replay::actions;
-use crate::session::{Session, Tab, storage};
+use crate::session::{Session, Tab, brushes, storage};
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use crate::tools::brush::free_name;
 use crate::{Error, Result};
@@ -28,6 +28,8 @@ actions! {
         "open maps" OpenMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
         /// A picture as an image layer, pinned to the surface at a canvas point.
         "place" Place { file: PathBuf, at: Vec2 }
+        /// The brushes of a file join those to choose from.
+        "import brush" ImportBrush { file: PathBuf }
         "save" Save { file: PathBuf }
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8 }
         /// A picture that the selected layer is made of.
@@ -61,6 +63,7 @@ impl FileAction {
                 let (name, picture) = read_picture(file)?;
                 place(session, &name, picture, *at);
             }
+            FileAction::ImportBrush { file } => brushes::import(session, file)?,
             FileAction::Save { file } => {
                 let Some(tab) = session.tab() else { return Ok(()) };
                 let document = tab.document().clone();

@@ -1,7 +1,6 @@
 //! What the hand holds: tool, brush, colours, operator.
 //! Floor 6.
 
-use crate::io::recipe::preset_brush;
 use crate::math::srgb::Color;
 use crate::paint::Property;
 use crate::paint::{Fill, Mark};
@@ -64,7 +63,7 @@ actions! {
     /// Nothing here changes a document.
     HandAction {
         "tool" Tool { tool: ToolKind }
-        /// One of the brushes that come with the program.
+        /// One of the brushes to choose from, by its key.
         "preset" Preset { name: String }
         /// Diameter, px.
         "size" Size { to: f32 }
@@ -104,17 +103,7 @@ impl HandAction {
                 session.drop_gesture();
                 session.tool = *tool;
             }
-            HandAction::Preset { name } => {
-                if let Some((brush, operator)) = preset_brush(name) {
-                    // A brush made for an operator brings it; one that is not leaves what is in hand.
-                    if operator != Operator::None {
-                        session.operator = operator;
-                    }
-                    session.brush = brush;
-                    session.preset.clone_from(name);
-                    session.tool = ToolKind::Brush;
-                }
-            }
+            HandAction::Preset { name } => session.take_preset(name),
             HandAction::Size { to } => brush.size = to.max(SIZES[0]).min(SIZES[1]),
             HandAction::Hardness { to } => brush.hardness = unit(*to),
             HandAction::Opacity { to } => brush.opacity = unit(*to),

@@ -4,8 +4,8 @@
 use crate::math::vec2;
 use crate::paint::{Mark, Sample};
 use crate::session::replay::{Replayed, actions, record};
-use crate::tools::brush::Purpose;
 use crate::session::{CloneSource, Session};
+use crate::tools::brush::Purpose;
 use crate::tools::{self, Context, Keys, Outcome, Pen, ToolKind};
 use serde_json::Value;
 

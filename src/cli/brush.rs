@@ -1,0 +1,70 @@
+//! `rilievo brush`: brushes of other programs as files of this one, and pictures of what a brush paints.
+//! Floor 7.
+
+use super::Limits;
+use crate::io::export::{Options, Target};
+use crate::io::recipe::{Preset, preset};
+use crate::io::{brush, picture};
+use crate::math::Size;
+use crate::raster::Picture;
+use crate::session::{brushes, swatch};
+use crate::{Error, Result};
+use std::path::{Path, PathBuf};
+
+/// Convert brushes of GIMP, MyPaint and Photoshop, or show what a brush paints
+///
+/// FROM is a .gbr, .gih, .myb or .abr, a preset's .json, or the name of a brush that comes with the program.
+#[derive(clap::Args)]
+pub struct BrushArgs {
+    /// The brush, or the collection of brushes, to read
+    #[arg(value_name = "FROM")]
+    from: PathBuf,
+    /// A .json to write the brush to, its pictures beside it; or a .png of a stroke over a ball. Of a collection each brush
+    /// goes to a file of its own, numbered
+    #[arg(value_name = "TO")]
+    to: PathBuf,
+    /// Side of the picture, in pixels
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(16..=4096))]
+    side: u32,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+pub fn run(args: &BrushArgs) -> Result<()> {
+    args.limits.install(|| {
+        let built_in = args.from.to_str().and_then(preset).filter(|_| !args.from.exists());
+        let brushes = match built_in {
+            Some(preset) => vec![(preset, Vec::new())],
+            None => brushes::read(&args.from, &args.limits.budget())?,
+        };
+        let count = brushes.len();
+        for (i, (preset, notes)) in brushes.into_iter().enumerate() {
+            notes.iter().for_each(|note| eprintln!("{}: {note}", preset.name));
+            let to = if count == 1 { args.to.clone() } else { numbered(&args.to, i + 1) };
+            write(&args.from, &to, preset, args.side)?;
+        }
+        Ok(())
+    })
+}
+
+/// `set.json` as `set-3.json`.
+fn numbered(file: &Path, number: usize) -> PathBuf {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = file.extension().unwrap_or_default().to_string_lossy();
+    file.with_file_name(format!("{stem}-{number}.{ending}"))
+}
+
+fn write(from: &Path, to: &Path, preset: Preset, side: u32) -> Result<()> {
+    let ending = to.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if ending == "json" {
+        if to == from {
+            return Err(Error::unsupported(to, "it is read by this very command; write to another file"));
+        }
+        return brush::write(to, &preset);
+    }
+    let target = Target::new(to, &[from.to_owned()])?;
+    let none = || Error::unsupported(to, "the brush cannot be shown");
+    let (pixels, size) = (swatch::painted(&preset, side).ok_or_else(none)?, Size::new(side, side));
+    let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;
+    target.write(&picture::to_tiles(&picture, 0, 0), size, &Options::default())
+}

@@ -1,0 +1,80 @@
+//! What `rilievo info` says of brushes of other programs: how they would be painted with here, and what is left behind.
+//! Floor 7.
+
+use crate::Result;
+use crate::io::Budget;
+use crate::io::brush::{self, Imported, Kind};
+use crate::paint::{Brush, Tip};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// A file of brushes, or one that should be.
+pub struct BrushFile {
+    name: String,
+    kind: Kind,
+    pub read: Result<Vec<Imported>>,
+}
+
+impl BrushFile {
+    /// `None` where the file is of another kind.
+    pub fn of(name: &str, path: &Path, bytes: &[u8], budget: &Budget) -> Option<Self> {
+        let kind = Kind::of(path, bytes)?;
+        Some(Self { name: name.to_owned(), kind, read: brush::read(path, bytes, budget) })
+    }
+    pub fn json(&self) -> Value {
+        let brushes = match &self.read {
+            Ok(brushes) => brushes,
+            Err(e) => return json!({ "file": self.name, "error": e.to_string() }),
+        };
+        let one = |Imported { name, brush, notes }: &Imported| {
+            json!({
+                "name": name, "tip": tip(&brush.tip), "size": brush.size, "spacing": brush.spacing, "notes": notes,
+                "pictures": brush.pictures().map(|p| [p.picture.size.width, p.picture.size.height]).collect::<Vec<_>>(),
+            })
+        };
+        json!({ "file": self.name, "kind": self.kind.name(), "brushes": brushes.iter().map(one).collect::<Vec<_>>() })
+    }
+    pub fn text(&self) -> String {
+        let brushes = match &self.read {
+            Ok(brushes) => brushes,
+            Err(e) => return format!("{e}\n"),
+        };
+        let mut out = format!("{}: {}, {}\n", self.name, self.kind.name(), counted(brushes.len(), "brush", "brushes"));
+        for Imported { name, brush, notes } in brushes {
+            out += &format!("  {name}: {}\n", looks(brush));
+            notes.iter().for_each(|note| out += &format!("    {note}\n"));
+        }
+        out
+    }
+}
+
+fn looks(brush: &Brush) -> String {
+    let drives = brush.dynamics.drives().len();
+    let pictures: Vec<String> = brush.pictures().take(1).map(|p| format!(" of {} px", p.picture.size)).collect();
+    let count = brush.pictures().count();
+    let several = if count > 1 { format!(", {}", counted(count, "picture", "pictures")) } else { String::new() };
+    format!(
+        "{}{}{several}, {:.4} px across, a dab every {:.0} % of it, {}",
+        tip(&brush.tip),
+        pictures.concat(),
+        (brush.size * 10.0).round() / 10.0,
+        brush.spacing * 100.0,
+        counted(drives, "curve", "curves"),
+    )
+}
+
+fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+fn tip(tip: &Tip) -> &'static str {
+    match tip {
+        Tip::Round => "round",
+        Tip::Ellipse { .. } => "ellipse",
+        Tip::Square { .. } => "square",
+        Tip::Bristles(_) => "bristles",
+        Tip::Noise(_) => "noise",
+        Tip::Picture(_) => "picture",
+        Tip::Hose(_) => "hose",
+    }
+}

@@ -1,0 +1,202 @@
+//! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later; computed round ones of the old versions.
+//! Floor 5. Of their settings only spacing, and what shapes a computed tip, is taken.
+
+use super::{Imported, Tips};
+use crate::io::Budget;
+use crate::io::psd::channel::{Shape, decode_as};
+use crate::io::psd::cursor::Cursor;
+use crate::math::Size;
+use crate::paint::{Brush, Tip};
+use crate::raster::Picture;
+use crate::{Error, Result};
+use std::path::Path;
+
+/// More tips than any collection was seen to have.
+const MOST: usize = 4096;
+/// Photoshop's own, where the file does not say.
+const SPACING: f32 = 0.25;
+
+/// Every brush of a collection. One that is damaged is left out and told of in the notes of the first that is not.
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Imported>> {
+    let mut cursor = Cursor::new(bytes);
+    let cut = || Error::decode(file, "the collection is cut short");
+    let (version, second) = (cursor.u16().ok_or_else(cut)?, cursor.u16().ok_or_else(cut)?);
+    let mut reading = Reading { file, budget, used_px: 0, tips: Tips::default(), brushes: Vec::new(), damaged: 0 };
+    match version {
+        1 | 2 => reading.old(&mut cursor, version, usize::from(second))?,
+        6 | 7 | 9 | 10 => reading.samples(&mut cursor, second)?,
+        _ => return Err(Error::unsupported(file, format!("version {version} of Photoshop's brushes"))),
+    }
+    let Reading { mut brushes, damaged, .. } = reading;
+    let Some(first) = brushes.first_mut() else {
+        let reason = if damaged > 0 { "its brushes are damaged" } else { "it holds no sampled tips" };
+        return Err(Error::decode(file, reason));
+    };
+    if damaged > 0 {
+        first.notes.push(format!("{damaged} damaged brushes of the collection were left out"));
+    }
+    Ok(brushes)
+}
+
+/// A collection being read.
+struct Reading<'a> {
+    file: &'a Path,
+    budget: &'a Budget,
+    used_px: u64,
+    tips: Tips,
+    brushes: Vec<Imported>,
+    damaged: usize,
+}
+
+impl Reading<'_> {
+    /// Versions 1 and 2: a count, then records that say their kind and length.
+    fn old(&mut self, cursor: &mut Cursor, version: u16, count: usize) -> Result<()> {
+        for _ in 0..count.min(MOST) {
+            let Some((kind, record)) = cursor.u16().zip(cursor.section(false)) else {
+                self.damaged += 1;
+                break;
+            };
+            match kind {
+                1 => self.computed(record),
+                2 => self.old_sample(record, version)?,
+                _ => self.damaged += 1,
+            }
+        }
+        Ok(())
+    }
+    /// A round or elliptic tip made of numbers.
+    fn computed(&mut self, mut record: Cursor) {
+        let mut number = || {
+            let value = record.i16()?;
+            Some(f32::from(value))
+        };
+        let Some(_) = number().zip(number()) else { return self.damaged += 1 };
+        let Some(values) = (0..5).map(|_| number()).collect::<Option<Vec<f32>>>() else { return self.damaged += 1 };
+        let [spacing, diameter, roundness, angle, hardness] = values[..] else { return self.damaged += 1 };
+        let ratio = (roundness / 100.0).clamp(0.05, 1.0);
+        let tip = if ratio < 1.0 { Tip::Ellipse { ratio } } else { Tip::Round };
+        let brush = Brush {
+            size: diameter.clamp(1.0, 5000.0),
+            hardness: (hardness / 100.0).clamp(0.0, 1.0),
+            spacing: (spacing / 100.0).clamp(0.01, 10.0),
+            rotation: angle.clamp(-180.0, 180.0),
+            tip,
+            ..Brush::default()
+        };
+        let name = format!("Round {diameter}");
+        self.brushes.push(Imported { name, brush, notes: Vec::new() });
+    }
+    fn old_sample(&mut self, mut record: Cursor, version: u16) -> Result<()> {
+        let Some((spacing, name)) = old_header(&mut record, version) else {
+            self.damaged += 1;
+            return Ok(());
+        };
+        self.sample(&mut record, name, spacing)
+    }
+    /// Versions 6 and later: blocks, of which one holds all sampled tips.
+    fn samples(&mut self, cursor: &mut Cursor, subversion: u16) -> Result<()> {
+        // A key of 37 letters, and then what no document tells.
+        let unknown = match subversion {
+            1 => 47,
+            2 => 301,
+            _ => {
+                let reason = format!("subversion {subversion} of Photoshop's brushes");
+                return Err(Error::unsupported(self.file, reason));
+            }
+        };
+        let Some(mut block) = sampled_block(cursor) else { return Ok(()) };
+        while !block.rest().is_empty() && self.brushes.len() < MOST {
+            let Some(mut record) = padded_section(&mut block) else {
+                self.damaged += 1;
+                break;
+            };
+            if record.take(unknown).is_none() {
+                self.damaged += 1;
+                continue;
+            }
+            self.sample(&mut record, None, SPACING)?;
+        }
+        Ok(())
+    }
+    /// Bounds, depth, compression, values: 0 is bare, the largest covers wholly.
+    fn sample(&mut self, record: &mut Cursor, name: Option<String>, spacing: f32) -> Result<()> {
+        let header = record.rect().zip(record.u16()).zip(record.u8());
+        let Some(((bounds, bits), compression)) = header.filter(|((_, bits), _)| [8, 16].contains(bits)) else {
+            self.damaged += 1;
+            return Ok(());
+        };
+        let side = |from: i32, to: i32| u64::try_from(i64::from(to) - i64::from(from)).unwrap_or(0);
+        let (width, height) = (side(bounds.x0, bounds.x1), side(bounds.y0, bounds.y1));
+        if width == 0 || height == 0 {
+            self.damaged += 1;
+            return Ok(());
+        }
+        let size = self.budget.size(self.file, width, height)?;
+        self.used_px += size.area() as u64;
+        if self.used_px > self.budget.document_px {
+            let reason = format!("its tips hold more than {} pixels together", self.budget.document_px);
+            return Err(Error::too_large(self.file, reason));
+        }
+        match sampled(record, size, bits, compression) {
+            Some(picture) => {
+                let name = name.filter(|n| !n.is_empty()).unwrap_or_else(|| self.next_name());
+                let tip = self.tips.add(self.file, picture, &name);
+                self.brushes.push(Imported::stamp(name, tip, spacing));
+            }
+            None => self.damaged += 1,
+        }
+        Ok(())
+    }
+    /// Tips of later versions have names only in a part that is not read.
+    fn next_name(&self) -> String {
+        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
+        format!("{stem} {}", self.brushes.len() + 1)
+    }
+}
+
+/// What stands before the pixels of a tip of versions 1 and 2: its spacing, and its name.
+fn old_header(record: &mut Cursor, version: u16) -> Option<(f32, Option<String>)> {
+    record.u32()?;
+    let spacing = f32::from(record.u16()?.clamp(1, 1000)) / 100.0;
+    let name = if version == 2 { Some(utf16(record)?) } else { None };
+    // Antialiasing, and the bounds in 16 bits: they stand again in 32.
+    record.take(1 + 8)?;
+    Some((spacing, name))
+}
+
+/// A count of letters, then so many of two bytes, the last a NUL.
+fn utf16(record: &mut Cursor) -> Option<String> {
+    let count = usize::try_from(record.u32()?).ok()?;
+    let letters = record.take(count.checked_mul(2)?)?;
+    let letters: Vec<u16> = letters.as_chunks().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
+    let text = String::from_utf16_lossy(&letters);
+    Some(text.trim_end_matches('\0').trim().chars().filter(|c| !c.is_control()).collect())
+}
+
+/// The block of sampled tips among the others.
+fn sampled_block<'a>(cursor: &mut Cursor<'a>) -> Option<Cursor<'a>> {
+    loop {
+        // Some programs fill blocks up to four bytes, some do not.
+        let padding = (0..4).find(|n| cursor.rest().get(*n..n + 4) == Some(b"8BIM"))?;
+        cursor.take(padding + 4)?;
+        let (key, block) = cursor.key().zip(cursor.section(false))?;
+        if key == *b"samp" {
+            return Some(block);
+        }
+    }
+}
+
+/// A section filled up to four bytes; the filling of the last may be missing.
+fn padded_section<'a>(block: &mut Cursor<'a>) -> Option<Cursor<'a>> {
+    let section = block.section(false)?;
+    let filling = section.rest().len().next_multiple_of(4) - section.rest().len();
+    block.take(filling.min(block.rest().len()))?;
+    Some(section)
+}
+
+fn sampled(record: &mut Cursor, size: Size, bits: u16, compression: u8) -> Option<Picture> {
+    let shape = Shape { width: size.width as usize, height: size.height as usize, bits, large: false };
+    // Of Photoshop's channels a tip knows only plain rows and run lengths.
+    let values = (compression < 2).then(|| decode_as(record, shape, u16::from(compression)))??;
+    Picture::srgb8(size, values.into_iter().map(|v| [v, v, v, 255]).collect())
+}

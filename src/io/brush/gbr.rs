@@ -1,0 +1,122 @@
+//! GIMP's brushes, versions 1 to 3: a picture of coverage or of colours, a name, a spacing.
+//! Floor 5.
+
+use super::{Imported, Tips, text_of};
+use crate::io::Budget;
+use crate::io::psd::cursor::Cursor;
+use crate::math::Size;
+use crate::raster::Picture;
+use crate::{Error, Result};
+use std::path::Path;
+
+/// One brush of a file.
+pub struct Stamp {
+    pub name: String,
+    pub picture: Picture,
+    /// Of the longer side; GIMP's own default where the file is older than spacings.
+    pub spacing: f32,
+}
+
+const MAGIC: [u8; 4] = *b"GIMP";
+/// A pattern that may follow a grey brush and gives it colours: what was done before brushes had any.
+const PATTERN: [u8; 4] = *b"GPAT";
+const SPACING: f32 = 0.25;
+
+pub fn is_gbr(bytes: &[u8]) -> bool {
+    bytes.get(20..24) == Some(&MAGIC)
+}
+
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Imported> {
+    let mut cursor = Cursor::new(bytes);
+    let stamp = next(file, &mut cursor, budget)?;
+    let mut tips = Tips::default();
+    let tip = tips.add(file, stamp.picture, &stamp.name);
+    Ok(Imported::stamp(stamp.name, tip, stamp.spacing))
+}
+
+/// The brush at the cursor, which then stands behind it.
+pub fn next(file: &Path, cursor: &mut Cursor, budget: &Budget) -> Result<Stamp> {
+    let cut = || Error::decode(file, "the brush is cut short");
+    let start = cursor.rest().len();
+    let mut number = || cursor.u32().ok_or_else(cut);
+    let [header, version, width, height, kind] = [number()?, number()?, number()?, number()?, number()?];
+    let spacing = match version {
+        1 => SPACING,
+        2 | 3 => {
+            if cursor.key().ok_or_else(cut)? != MAGIC {
+                return Err(Error::decode(file, "it does not begin like a GIMP brush"));
+            }
+            // Per cent; the wildest brushes stand ten of their sizes apart.
+            cursor.u32().ok_or_else(cut)?.clamp(1, 1000) as f32 / 100.0
+        }
+        _ => return Err(Error::unsupported(file, format!("version {version} of GIMP's brushes"))),
+    };
+    let size = budget.size(file, u64::from(width), u64::from(height))?;
+    let name = (header as usize).checked_sub(start - cursor.rest().len()).and_then(|n| cursor.take(n));
+    let name = text_of(name.ok_or_else(cut)?);
+    let depth = Depth::of(version, kind).ok_or_else(|| {
+        Error::unsupported(file, format!("a GIMP brush of version {version} with {kind} bytes a pixel"))
+    })?;
+    let texels = texels(cursor.take(size.area() * depth.bytes()).ok_or_else(cut)?, depth);
+    let texels = colored(cursor, size, &texels).unwrap_or(texels);
+    let picture = Picture::srgb8(size, texels).ok_or_else(cut)?;
+    Ok(Stamp { name, picture, spacing })
+}
+
+/// How a pixel is stored.
+#[derive(Clone, Copy, PartialEq)]
+enum Depth {
+    /// A byte of coverage.
+    Grey,
+    /// Straight colours.
+    Rgba,
+    /// The upper half of a 32-bit float: CinePaint's.
+    Half,
+}
+
+impl Depth {
+    fn of(version: u32, kind: u32) -> Option<Self> {
+        match (version, kind) {
+            (1 | 2, 1) => Some(Depth::Grey),
+            (1 | 2, 4) => Some(Depth::Rgba),
+            (3, 18) => Some(Depth::Half),
+            _ => None,
+        }
+    }
+    fn bytes(self) -> usize {
+        match self {
+            Depth::Grey => 1,
+            Depth::Half => 2,
+            Depth::Rgba => 4,
+        }
+    }
+}
+
+/// Coverage becomes an opaque grey, which is how tips tell it from colours.
+fn texels(bytes: &[u8], depth: Depth) -> Vec<[u8; 4]> {
+    let grey = |v: u8| [v, v, v, 255];
+    match depth {
+        Depth::Grey => bytes.iter().map(|&v| grey(v)).collect(),
+        Depth::Rgba => bytes.as_chunks().0.to_vec(),
+        Depth::Half => {
+            let value = |&[high, low]: &[u8; 2]| f32::from_be_bytes([high, low, 0, 0]);
+            let byte = |v: f32| (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8;
+            bytes.as_chunks().0.iter().map(|half| grey(byte(value(half)))).collect()
+        }
+    }
+}
+
+/// A grey brush in the colours of the pattern at the cursor, if a pattern of its size stands there.
+fn colored(cursor: &mut Cursor, size: Size, coverage: &[[u8; 4]]) -> Option<Vec<[u8; 4]>> {
+    let mut ahead = *cursor;
+    let start = ahead.rest().len();
+    let [header, _, width, height, channels] = [ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?];
+    if ahead.key()? != PATTERN || (width, height, channels) != (size.width, size.height, 3) {
+        return None;
+    }
+    ahead.take((header as usize).checked_sub(start - ahead.rest().len())?)?;
+    let colors = ahead.take(size.area() * 3)?;
+    *cursor = ahead;
+    let (colors, _) = colors.as_chunks::<3>();
+    Some(colors.iter().zip(coverage).map(|(&[r, g, b], &[a, ..])| [r, g, b, a]).collect())
+}

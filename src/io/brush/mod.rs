@@ -1,0 +1,142 @@
+//! Brushes of other programs: their files become brushes of this one, with notes of what has no counterpart here.
+//! Floor 5.
+//!
+//! | file | |
+//! |---|---|
+//! | `gbr` | GIMP's brushes: one picture |
+//! | `gih` | GIMP's image hoses: several pictures and the rule that chooses |
+//! | `myb` | MyPaint's brushes: numbers and curves |
+//! | `abr` | Photoshop's collections: sampled tips |
+//! | `write` | a brush as a preset's file of this program |
+
+mod abr;
+mod gbr;
+mod gih;
+mod myb;
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub use write::write;
+
+use super::Budget;
+use crate::paint::tip::Hose;
+use crate::paint::{Adjust, Brush, PictureSource, Tip};
+use crate::raster::Picture;
+use crate::{Error, Result};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A brush that was read from another program's file.
+#[derive(Clone)]
+pub struct Imported {
+    /// As it is called there; not empty.
+    pub name: String,
+    pub brush: Brush,
+    /// Sentences about what could not be carried over, without full stops.
+    pub notes: Vec<String>,
+}
+
+/// Whose file it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    GimpBrush,
+    GimpHose,
+    MyPaint,
+    Photoshop,
+}
+
+/// Endings of the files that hold brushes.
+pub const ENDINGS: [(&str, Kind); 4] =
+    [("gbr", Kind::GimpBrush), ("gih", Kind::GimpHose), ("myb", Kind::MyPaint), ("abr", Kind::Photoshop)];
+
+impl Kind {
+    /// By the content where that tells, else by the ending: most of these formats begin with nothing but numbers.
+    pub fn of(file: &Path, bytes: &[u8]) -> Option<Self> {
+        if gbr::is_gbr(bytes) {
+            return Some(Kind::GimpBrush);
+        }
+        let ending = file.extension()?.to_string_lossy().to_lowercase();
+        ENDINGS.iter().find(|(known, _)| *known == ending).map(|(_, kind)| *kind)
+    }
+    /// What such a file is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::GimpBrush => "GIMP brush",
+            Kind::GimpHose => "GIMP image hose",
+            Kind::MyPaint => "MyPaint brush",
+            Kind::Photoshop => "Photoshop brushes",
+        }
+    }
+}
+
+/// The brushes of a file, in its order; at least one. Fails with a sentence where the file is of none of these formats,
+/// damaged beyond use, or larger than the budget allows.
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Imported>> {
+    match Kind::of(file, bytes) {
+        Some(Kind::GimpBrush) => gbr::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(Kind::GimpHose) => gih::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(Kind::MyPaint) => myb::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(Kind::Photoshop) => abr::read(file, bytes, budget),
+        None => Err(Error::unsupported(file, "it ends in none of .gbr, .gih, .myb and .abr")),
+    }
+}
+
+impl Imported {
+    /// A brush that stamps one picture as large as it is. `spacing`: of the longer side.
+    fn stamp(name: String, tip: PictureSource, spacing: f32) -> Self {
+        let size = tip.picture.size.longer_side();
+        Self::with_tip(name, Tip::Picture(tip), size, spacing)
+    }
+    fn hose(name: String, hose: Hose, spacing: f32) -> Self {
+        let size = hose.pictures().iter().map(|source| source.picture.size.longer_side()).fold(1.0, f32::max);
+        Self::with_tip(name, Tip::Hose(hose), size, spacing)
+    }
+    fn with_tip(name: String, tip: Tip, size: f32, spacing: f32) -> Self {
+        let brush = Brush { size, spacing: spacing.max(0.01).min(10.0), tip, ..Brush::default() };
+        let name = if name.is_empty() { "Brush".to_owned() } else { name };
+        Self { name, brush, notes: Vec::new() }
+    }
+}
+
+/// Names for the pictures of tips: each once, plain letters only, so that every system can hold such a file.
+#[derive(Default)]
+struct Tips {
+    taken: BTreeSet<String>,
+}
+
+impl Tips {
+    /// `name`: of the brush; where it has no letters of use the file's own stands in.
+    fn add(&mut self, file: &Path, picture: Picture, name: &str) -> PictureSource {
+        let of_file = || plain(&file.file_stem().unwrap_or_default().to_string_lossy());
+        let stem = Some(plain(name)).filter(|n| !n.is_empty()).unwrap_or_else(of_file);
+        let stem = if stem.is_empty() { "tip".to_owned() } else { stem };
+        let numbered = |n: usize| if n == 1 { format!("{stem}.png") } else { format!("{stem}-{n}.png") };
+        let free = (1..).map(numbered).find(|name| !self.taken.contains(name)).unwrap_or_default();
+        self.taken.insert(free.clone());
+        PictureSource::new(free, picture, Adjust::default())
+    }
+}
+
+/// A name in small letters and hyphens, at most 60.
+pub fn plain(name: &str) -> String {
+    let mut out = String::new();
+    for c in name.chars().take(60) {
+        match c {
+            c if c.is_ascii_alphanumeric() => out.push(c.to_ascii_lowercase()),
+            _ if !out.is_empty() && !out.ends_with('-') => out.push('-'),
+            _ => {}
+        }
+    }
+    out.trim_end_matches('-').to_owned()
+}
+
+/// Text up to its NUL, without what a terminal would act on; Latin letters where it is not UTF-8.
+fn text_of(bytes: &[u8]) -> String {
+    let bytes = bytes.split(|b| *b == 0).next().unwrap_or_default();
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
+    };
+    text.trim().chars().filter(|c| !c.is_control()).take(200).collect()
+}

@@ -1,0 +1,255 @@
+//! Brushes of other programs, built byte by byte as their documents say; and the same ones damaged.
+
+use super::*;
+use crate::math::hash;
+use crate::paint::dynamics::{Input, Property};
+use crate::paint::tip::Select;
+use crate::raster::picture::Texels;
+
+fn budget() -> Budget {
+    Budget::default()
+}
+fn only(file: &str, bytes: &[u8]) -> Imported {
+    let mut brushes = read(Path::new(file), bytes, &budget()).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(brushes.len(), 1);
+    brushes.remove(0)
+}
+fn said(file: &str, bytes: &[u8]) -> String {
+    read(Path::new(file), bytes, &budget()).map(|_| ()).unwrap_err().to_string()
+}
+fn texels(source: &PictureSource) -> Vec<[u8; 4]> {
+    match &source.picture.texels {
+        Texels::Srgb8(texels) => texels.to_vec(),
+        Texels::Linear(_) => panic!("tips hold bytes"),
+    }
+}
+/// The pictures of its tip.
+fn tips(imported: &Imported) -> Vec<PictureSource> {
+    imported.brush.pictures().cloned().collect()
+}
+fn words(numbers: &[u32]) -> Vec<u8> {
+    numbers.iter().flat_map(|n| n.to_be_bytes()).collect()
+}
+
+/// A GIMP brush of version 2.
+fn gbr(name: &str, width: u32, height: u32, bytes: u32, spacing: u32, pixels: &[u8]) -> Vec<u8> {
+    let header = words(&[28 + name.len() as u32 + 1, 2, width, height, bytes]);
+    [&header[..], b"GIMP", &words(&[spacing]), name.as_bytes(), &[0], pixels].concat()
+}
+fn ramp(n: usize) -> Vec<u8> {
+    (0..n).map(|i| (i * 7) as u8).collect()
+}
+
+#[test]
+fn a_grey_gimp_brush_is_coverage_as_large_as_it_is() {
+    let brush = only("b.gbr", &gbr("Round Fuzzy", 3, 2, 1, 20, &[0, 10, 20, 30, 40, 255]));
+    assert_eq!(brush.name, "Round Fuzzy");
+    assert_eq!((brush.brush.size, brush.brush.spacing), (3.0, 0.2));
+    let tip = &tips(&brush)[0];
+    assert_eq!(tip.file, "round-fuzzy.png");
+    assert_eq!(texels(tip)[..3], [[0, 0, 0, 255], [10, 10, 10, 255], [20, 20, 20, 255]]);
+    assert!(brush.notes.is_empty());
+}
+#[test]
+fn colours_and_older_and_newer_versions_are_read_too() {
+    let colored = only("b.gbr", &gbr("Pepper", 1, 2, 4, 100, &[1, 2, 3, 4, 5, 6, 7, 8]));
+    assert_eq!(texels(&tips(&colored)[0]), [[1, 2, 3, 4], [5, 6, 7, 8]]);
+    let first = [&words(&[20 + 4, 1, 2, 1, 1])[..], b"Old\0", &[9, 200]].concat();
+    let first = only("b.gbr", &first);
+    assert_eq!((first.name.as_str(), first.brush.spacing), ("Old", 0.25));
+    assert_eq!(texels(&tips(&first)[0]), [[9, 9, 9, 255], [200, 200, 200, 255]]);
+    // CinePaint's: the upper halves of the floats 0.5 and 1.
+    let half = [&words(&[28 + 2, 3, 2, 1, 18])[..], b"GIMP", &words(&[30]), b"C\0", &[0x3f, 0x00, 0x3f, 0x80]].concat();
+    assert_eq!(texels(&tips(&only("b.gbr", &half))[0]), [[128, 128, 128, 255], [255, 255, 255, 255]]);
+}
+#[test]
+fn a_grey_brush_before_a_pattern_takes_its_colours() {
+    let brush = gbr("P", 2, 1, 1, 10, &[100, 200]);
+    let pattern = [&words(&[24 + 2, 1, 2, 1, 3])[..], b"GPAT", b"x\0", &[1, 2, 3, 4, 5, 6]].concat();
+    let both = [brush, pattern].concat();
+    assert_eq!(texels(&tips(&only("b.gpb.gbr", &both))[0]), [[1, 2, 3, 100], [4, 5, 6, 200]]);
+}
+
+fn gih() -> Vec<u8> {
+    let cells: Vec<u8> = (0..4u8).flat_map(|i| gbr("cell", 4, 4, 1, 50, &[i * 60; 16])).collect();
+    let text = "Leaves\n4 ncells:4 cellwidth:4 cellheight:4 step:20 dim:2 cols:1 rows:1 placement:constant \
+                rank0:2 sel0:angular rank1:2 sel1:random\n";
+    [text.as_bytes(), &cells].concat()
+}
+
+#[test]
+fn a_hose_keeps_its_pictures_and_its_rule() {
+    let brush = only("b.gih", &gih());
+    assert_eq!((brush.name.as_str(), brush.brush.spacing, brush.brush.size), ("Leaves", 0.5, 4.0));
+    let Tip::Hose(hose) = &brush.brush.tip else { panic!("a hose") };
+    let ranks: Vec<_> = hose.ranks().iter().map(|rank| (rank.count, rank.select)).collect();
+    assert_eq!(ranks, [(2, Select::Angular), (2, Select::Random)]);
+    assert_eq!(hose.pictures()[3].file, "leaves-4.png");
+    assert_eq!(texels(&hose.pictures()[2])[0], [120, 120, 120, 255]);
+    let bare = [b"x\n2\n".to_vec(), gbr("a", 1, 1, 1, 9, &[1]), gbr("b", 1, 1, 1, 9, &[2])].concat();
+    let Tip::Hose(hose) = only("b.gih", &bare).brush.tip else { panic!("a hose") };
+    assert_eq!((hose.ranks()[0].count, hose.ranks()[0].select), (2, Select::Incremental));
+}
+
+const MYB: &str = r#"{ "version": 3, "group": "", "settings": {
+    "radius_logarithmic": { "base_value": 2.3, "inputs": { "pressure": [[0, -0.5], [1, 0.5]] } },
+    "hardness": { "base_value": 0.5, "inputs": {} },
+    "opaque": { "base_value": 1.0, "inputs": {} },
+    "opaque_multiply": { "base_value": 0, "inputs": { "pressure": [[0, 0], [0.5, 0.1], [1, 1]] } },
+    "dabs_per_actual_radius": { "base_value": 4, "inputs": {} },
+    "dabs_per_basic_radius": { "base_value": 1, "inputs": {} },
+    "offset_by_random": { "base_value": 0.4, "inputs": {} },
+    "elliptical_dab_ratio": { "base_value": 4, "inputs": {} },
+    "elliptical_dab_angle": { "base_value": 90, "inputs": {} },
+    "change_color_h": { "base_value": 0, "inputs": { "random": [[0, -0.1], [1, 0.1]] } },
+    "slow_tracking": { "base_value": 1.5, "inputs": {} },
+    "smudge": { "base_value": 0.7, "inputs": {} } } }"#;
+
+#[test]
+fn a_mypaint_brush_becomes_numbers_and_curves_and_tells_what_it_could_not() {
+    let Imported { name, brush, notes } = only("ink blot.myb", MYB.as_bytes());
+    assert_eq!(name, "ink blot");
+    let size = |pressure: f32| brush.size * brush.dynamics.curve(Property::Size, Input::Pressure).unwrap().at(pressure);
+    for (pressure, log) in [(0.0f32, 1.8f32), (0.5, 2.3), (1.0, 2.8)] {
+        assert!((size(pressure) / (2.0 * log.exp()) - 1.0).abs() < 0.01, "{pressure}: {}", size(pressure));
+    }
+    let flow = |pressure: f32| brush.dynamics.curve(Property::Flow, Input::Pressure).unwrap().at(pressure);
+    assert!((flow(0.5) - 0.1).abs() < 0.01 && flow(1.0) == 1.0 && brush.flow == 1.0);
+    assert_eq!(brush.spacing, 0.1);
+    assert_eq!(brush.scatter, 0.4);
+    assert!((brush.hardness - 0.414).abs() < 0.01);
+    assert!(matches!(brush.tip, Tip::Ellipse { ratio } if ratio == 0.25));
+    assert_eq!(brush.rotation, 270.0, "upright");
+    assert!((brush.jitter.hue_degrees - 36.0).abs() < 0.1);
+    assert_eq!(notes, ["“smudge” has no counterpart"]);
+}
+#[test]
+fn a_mypaint_brush_of_another_version_is_named() {
+    assert!(said("b.myb", b"radius_logarithmic 1.2\nversion 2\n").contains("versions before 3"));
+    assert!(said("b.myb", br#"{ "version": 4, "settings": {} }"#).contains("version 4"));
+    assert!(said("b.myb", br#"{ "version": 3 }"#).contains("no settings"));
+}
+
+/// A tip of a collection from its bounds on: 8 or 16 bits, plain or packed.
+fn tip(width: u32, height: u32, bits: u16, packed: bool, values: &[u8]) -> Vec<u8> {
+    let mut out = words(&[0, 0, height, width]);
+    out.extend(bits.to_be_bytes());
+    out.push(u8::from(packed));
+    if packed {
+        let row = width as usize * usize::from(bits / 8);
+        // Runs of literals.
+        let rows: Vec<Vec<u8>> = values.chunks(row).map(|r| [&[r.len() as u8 - 1], r].concat()).collect();
+        rows.iter().for_each(|r| out.extend((r.len() as u16).to_be_bytes()));
+        rows.iter().for_each(|r| out.extend(r));
+    } else {
+        out.extend(values);
+    }
+    out
+}
+/// A collection of version 2: one computed tip, one sampled.
+fn old_abr() -> Vec<u8> {
+    let numbers = |n: &[u16]| -> Vec<u8> { n.iter().flat_map(|n| n.to_be_bytes()).collect() };
+    let computed = [words(&[0]), numbers(&[25, 40, 50, 30, 80])].concat();
+    let name: Vec<u8> = "Chalk\0".encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let head = [words(&[0]), numbers(&[15]), words(&[6]), name, vec![1], vec![0; 8]].concat();
+    let sampled = [head, tip(3, 2, 8, true, &[0, 50, 100, 150, 200, 255])].concat();
+    let record = |kind: u16, record: Vec<u8>| [numbers(&[kind]), words(&[record.len() as u32]), record].concat();
+    [numbers(&[2, 2]), record(1, computed), record(2, sampled)].concat()
+}
+/// A collection of version 6 with two sampled tips.
+fn new_abr(subversion: u16) -> Vec<u8> {
+    let unknown = vec![b'k'; if subversion == 1 { 47 } else { 301 }];
+    let record = |tip: Vec<u8>| {
+        let length = unknown.len() + tip.len();
+        let filling = vec![0; length.next_multiple_of(4) - length];
+        [words(&[length as u32]), unknown.clone(), tip, filling].concat()
+    };
+    let deep: Vec<u8> = [0u16, 257 * 100, 65535].iter().flat_map(|v| v.to_be_bytes()).collect();
+    let tips = [record(tip(4, 3, 8, false, &ramp(12))), record(tip(3, 1, 16, true, &deep))].concat();
+    let block = |key: &[u8; 4], data: &[u8]| [b"8BIM", &key[..], &words(&[data.len() as u32]), data].concat();
+    [&[0, 6][..], &subversion.to_be_bytes(), &block(b"patt", &[1, 2, 3, 4]), &block(b"samp", &tips)].concat()
+}
+
+#[test]
+fn photoshop_tips_of_every_version_are_read() {
+    let old = read(Path::new("set.abr"), &old_abr(), &budget()).unwrap();
+    assert_eq!(old.len(), 2);
+    let round = &old[0].brush;
+    assert!(matches!(round.tip, Tip::Ellipse { ratio } if ratio == 0.5));
+    assert_eq!((round.size, round.hardness, round.rotation, round.spacing), (40.0, 0.8, 30.0, 0.25));
+    assert_eq!((old[1].name.as_str(), old[1].brush.spacing), ("Chalk", 0.15));
+    assert_eq!(texels(&tips(&old[1])[0])[5], [255; 4]);
+    for subversion in [1, 2] {
+        let new = read(Path::new("set.abr"), &new_abr(subversion), &budget()).unwrap();
+        assert_eq!(new.len(), 2);
+        assert_eq!((new[0].name.as_str(), new[0].brush.size), ("set 1", 4.0));
+        assert_eq!(texels(&tips(&new[0])[0])[11], [77, 77, 77, 255]);
+        let deep: Vec<u8> = texels(&tips(&new[1])[0]).iter().map(|t| t[0]).collect();
+        assert_eq!(deep, [0, 100, 255]);
+    }
+}
+#[test]
+fn what_is_no_brush_gets_a_sentence() {
+    for (file, bytes, part) in [
+        ("b.txt", &b"hello"[..], "ends in none of"),
+        ("b.gbr", b"", "cut short"),
+        ("b.gbr", &gbr("n", 3, 2, 1, 20, &[0; 5]), "cut short"),
+        ("b.gbr", &gbr("n", 3, 2, 7, 20, &[0; 42]), "7 bytes a pixel"),
+        ("b.gbr", &gbr("n", 60_000, 60_000, 1, 20, &[]), "too large"),
+        ("b.gbr", &gbr("n", 0, 5, 1, 20, &[]), "no pixels"),
+        ("b.gih", b"name\nmany\n", "how many pictures"),
+        ("b.gih", b"name\n999999 x\n", "may have 1024"),
+        ("b.abr", &[0, 3, 0, 1], "version 3"),
+        ("b.abr", &[0, 6, 0, 9], "subversion 9"),
+        ("b.abr", &[0, 6, 0, 2], "no sampled tips"),
+    ] {
+        assert!(said(file, bytes).contains(part), "{file}: {}", said(file, bytes));
+    }
+}
+#[test]
+fn a_damaged_tip_is_left_out_and_the_others_stay() {
+    let mut bytes = new_abr(1);
+    // The first tip's compression is unknown.
+    let at = bytes.windows(4).position(|w| w == b"samp").unwrap() + 8 + 4 + 47 + 18;
+    bytes[at] = 9;
+    let left = read(Path::new("set.abr"), &bytes, &budget()).unwrap();
+    assert_eq!(left.len(), 1);
+    assert_eq!(left[0].notes, ["1 damaged brushes of the collection were left out"]);
+}
+#[test]
+fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
+    let files = [
+        ("a.gbr", gbr("n", 9, 7, 1, 20, &ramp(63))),
+        ("a.gih", gih()),
+        ("a.myb", MYB.into()),
+        ("a.abr", old_abr()),
+        ("b.abr", new_abr(2)),
+    ];
+    let small = Budget { side_px: 4096, area_px: 1 << 20, document_px: 1 << 22, ..Budget::default() };
+    for (seed, (file, whole)) in files.into_iter().enumerate() {
+        for round in 0..3000u32 {
+            let chance = |what: u32| hash::mix(hash::mix(seed as u32 * 7919 + round) ^ hash::mix(what));
+            let mut bytes = whole.clone();
+            for change in 0..1 + chance(0) % 4 {
+                let at = chance(10 + change) as usize % bytes.len();
+                match chance(20 + change) % 4 {
+                    0 => bytes[at] = chance(30 + change) as u8,
+                    1 => bytes[at] = [0, 255, 127, 128][chance(40 + change) as usize % 4],
+                    2 => bytes.truncate(at.max(1)),
+                    _ => drop(bytes.remove(at)),
+                }
+                if bytes.is_empty() {
+                    bytes.push(0);
+                }
+            }
+            for Imported { name, brush, .. } in read(Path::new(file), &bytes, &small).into_iter().flatten() {
+                assert!(!name.is_empty());
+                let numbers = [brush.size, brush.hardness, brush.flow, brush.spacing, brush.rotation, brush.scatter];
+                assert!(numbers.iter().all(|v| v.is_finite()), "{file}, round {round}");
+                assert!(
+                    brush.size > 0.0 && (0.01..=10.0).contains(&brush.spacing) && (0.0..=1.0).contains(&brush.flow)
+                );
+            }
+        }
+    }
+}

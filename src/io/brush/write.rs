@@ -1,0 +1,45 @@
+//! A brush as a file of this program: a preset's JSON, its pictures beside it.
+//! Floor 5.
+
+use crate::document::Progress;
+use crate::io::fs::Disk;
+use crate::io::project::pixels;
+use crate::io::recipe::{Preset, write_preset};
+use crate::io::{Over, exr, save};
+use crate::paint::PictureSource;
+use crate::raster::Asset;
+use crate::raster::picture::Texels;
+use crate::{Error, Result};
+use std::path::Path;
+
+/// Writes a preset to `file`; its pictures become `STEM.png`, `STEM-2.png` … in the same folder.
+///
+/// The pictures first, so that a preset that is there is whole.
+pub fn write(file: &Path, preset: &Preset) -> Result<()> {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let mut number = 0;
+    let brush = preset.brush.with_pictures(|source| {
+        number += 1;
+        let (bytes, ending) = encoded(file, source)?;
+        let name = if number == 1 { format!("{stem}.{ending}") } else { format!("{stem}-{number}.{ending}") };
+        replace(&file.with_file_name(&name), bytes.bytes())?;
+        Ok::<_, Error>(PictureSource::new(name, source.picture.clone(), source.adjust))
+    })?;
+    let value = write_preset(&Preset { brush, ..preset.clone() });
+    let text = serde_json::to_string_pretty(&value).map_err(|e| Error::unsupported(file, e))? + "\n";
+    replace(file, text.as_bytes())
+}
+
+/// Without loss: bytes as PNG, light as EXR.
+fn encoded(file: &Path, source: &PictureSource) -> Result<(Asset, &'static str)> {
+    let picture = &source.picture;
+    match &picture.texels {
+        Texels::Srgb8(texels) => pixels::encode_texels(file, texels, picture.size).map(|png| (png, "png")),
+        Texels::Linear(texels) => exr::encode_light(file, picture.size, texels).map(|exr| (exr.into(), "exr")),
+    }
+}
+
+fn replace(file: &Path, bytes: &[u8]) -> Result<()> {
+    // Nothing here cancels.
+    save::replace(&Disk, file, bytes, Over::Anything, &Progress::default()).map(|_| ())
+}

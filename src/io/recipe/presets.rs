@@ -1,0 +1,233 @@
+//! Presets: brushes with a name, a group and a sentence. Those in `brushes/` are built into the program.
+//! Floor 5. To add one: a file there and a line here. The file has the fields of a stroke, and what a list shows.
+
+use super::brush::{settings, write_brush};
+use super::images::{operator, write_operator};
+use super::pictures::Pictures;
+use super::{Source, tips};
+use crate::Result;
+use crate::io::json::{self, Node, Object, object};
+use crate::io::{Budget, Files, Folder, files};
+use crate::math::srgb::Color;
+use crate::paint::{Adjust, Brush, PictureSource};
+use crate::surface::Operator;
+use serde_json::Value;
+use std::path::Path;
+
+macro_rules! table {
+    ($($key:literal),* $(,)?) => {
+        [$(($key, include_str!(concat!("../../../brushes/", $key, ".json")))),*]
+    };
+}
+
+/// Every preset: its key and its file, in the order of the list.
+const PRESETS: &[(&str, &str)] = &table![
+    "pencil-hb",
+    "pencil-2b",
+    "pencil-mechanical",
+    "charcoal",
+    "chalk",
+    "pastel",
+    "hatching",
+    "ink",
+    "technical-pen",
+    "brush-pen",
+    "calligraphy",
+    "marker",
+    "dry-ink",
+    "soft-round",
+    "hard-round",
+    "gouache",
+    "oil-bristle",
+    "oil-flat",
+    "palette-knife",
+    "dry-brush",
+    "sponge",
+    "airbrush",
+    "watercolour-wash",
+    "watercolour-pool",
+    "wet-ink",
+    "spatter",
+    "eraser-soft",
+    "highlight-velvet",
+    "highlight-satin",
+    "highlight-gloss",
+    "highlight-chrome",
+    "brushed-metal",
+    "rim-light",
+    "fresnel-glaze",
+    "refracted-light",
+    "cast-shadow",
+    "hollow-shadow",
+    "decal",
+    "scales",
+    "fabric-weave",
+    "dots",
+    "dust",
+    "edge-wear",
+    "moss",
+    "rust",
+];
+
+/// A brush that can be chosen by name.
+#[derive(Clone)]
+pub struct Preset {
+    /// What recipes call it: small letters and hyphens.
+    pub key: String,
+    /// What people call it.
+    pub name: String,
+    pub group: Group,
+    /// One sentence.
+    pub about: String,
+    /// The colour it is shown in; choosing it changes no colour.
+    pub color: Color,
+    pub brush: Brush,
+    /// What it is meant to be bent by.
+    pub operator: Operator,
+}
+
+/// Where a preset stands in the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Group {
+    Drawing,
+    Inking,
+    Painting,
+    WetAndDry,
+    Light,
+    Surface,
+    /// Of files of the user's own.
+    #[default]
+    Imported,
+}
+
+impl Group {
+    /// Every group with its name, in the order of the list.
+    pub const ALL: [(Group, &'static str); 7] = [
+        (Group::Drawing, "Drawing"),
+        (Group::Inking, "Inking"),
+        (Group::Painting, "Painting"),
+        (Group::WetAndDry, "Wet and dry"),
+        (Group::Light, "Light"),
+        (Group::Surface, "Surface"),
+        (Group::Imported, "Imported"),
+    ];
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, name)| name)
+    }
+}
+
+/// The colour of a preset that says none: a warm white.
+const SHOWN: Color = Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 };
+
+/// The keys of the brushes that come with the program.
+pub fn preset_names() -> impl Iterator<Item = &'static str> {
+    PRESETS.iter().map(|(key, _)| *key)
+}
+
+/// Every brush that comes with the program, in the order of the list.
+pub fn presets() -> impl Iterator<Item = Preset> {
+    preset_names().filter_map(preset)
+}
+
+/// A brush that comes with the program.
+pub fn preset(key: &str) -> Option<Preset> {
+    let (_, text) = PRESETS.iter().find(|(known, _)| *known == key)?;
+    built_in(key, text).ok()
+}
+
+/// A brush that comes with the program, and the operator it is meant for.
+pub fn preset_brush(key: &str) -> Option<(Brush, Operator)> {
+    preset(key).map(|preset| (preset.brush, preset.operator))
+}
+
+/// The preset that a field names.
+pub(super) fn named(key: &Node) -> Result<(Brush, Operator)> {
+    let wanted = key.text()?;
+    let Some((_, text)) = PRESETS.iter().find(|(known, _)| *known == wanted) else {
+        let names: Vec<_> = preset_names().collect();
+        return Err(key.refused(format!("is “{wanted}”; the presets are {}", names.join(", "))));
+    };
+    let preset = built_in(wanted, text).map_err(|e| key.led_to(e))?;
+    Ok((preset.brush, preset.operator))
+}
+
+fn built_in(key: &str, text: &str) -> Result<Preset> {
+    let mut none = |node: &Node| Err(node.refused("is a file; the brushes of the program have none"));
+    read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
+}
+
+/// A preset in a file of its own; its pictures lie beside it.
+pub fn load_preset(file: &Path, budget: &Budget) -> Result<Preset> {
+    let text = files::read_file(file, budget.json_bytes)?;
+    let folder = Folder::beside(file);
+    let source = Source { file, files: &folder as &dyn Files, budget, onto: None };
+    let mut pictures = Pictures::default();
+    let mut picture = |node: &Node| pictures.source(source, node, Adjust::default());
+    let key = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    read(file, &key, &text, budget, &mut picture)
+}
+
+/// `{ "name", "group", "about", "color", "brush": { … }, "operator": { … } }`.
+fn read(
+    file: &Path,
+    key: &str,
+    text: &[u8],
+    budget: &Budget,
+    picture: &mut dyn FnMut(&Node) -> Result<PictureSource>,
+) -> Result<Preset> {
+    let value = json::parse(file, text, budget)?;
+    let mut root = Node::root(file, &value).fields()?;
+    let mut text = |name| root.get(name).map_or(Ok(String::new()), |node| node.text().map(str::to_owned));
+    let (name, about) = (text("name")?, text("about")?);
+    let name = if name.is_empty() { key.to_owned() } else { name };
+    let group = root.one_of("group", &Group::ALL, Group::Imported)?;
+    let color = root.color("color", SHOWN)?;
+    let operator = operator(&mut root)?.unwrap_or_default();
+    let mut fields = root.required("brush")?.fields()?;
+    let mut brush = settings(&mut fields, Brush::default())?;
+    tips::read(&mut fields, &mut brush, picture)?;
+    fields.finish()?;
+    root.finish()?;
+    Ok(Preset { key: key.to_owned(), name, group, about, color, brush, operator })
+}
+
+/// A preset as [`load_preset`] reads it back. Its pictures are named, not written.
+pub fn write_preset(preset: &Preset) -> Value {
+    let mut out = Object::default();
+    out.set("name", preset.name.as_str().into());
+    out.word("group", &Group::ALL, preset.group, Group::Imported);
+    out.text("about", &preset.about, "");
+    if preset.color != SHOWN {
+        out.set("color", object::color(preset.color));
+    }
+    out.set("brush", write_brush(&preset.brush).done());
+    out.object("operator", write_operator(preset.operator));
+    out.done()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_preset_reads_and_has_a_name_a_group_and_a_sentence() {
+        for (key, text) in PRESETS {
+            let preset = built_in(key, text).unwrap_or_else(|e| panic!("{key}: {e}"));
+            assert!(!preset.name.is_empty() && preset.group != Group::Imported, "{key}");
+            assert!(preset.about.ends_with('.') && preset.about.len() > 20, "{key}");
+            assert_eq!(*key, crate::io::brush::plain(key));
+            assert_eq!(built_in(key, &write_preset(&preset).to_string()).map(|p| p.name).ok(), Some(preset.name));
+        }
+        let mut groups: Vec<Group> = presets().map(|preset| preset.group).collect();
+        assert!(groups.is_sorted(), "a group's presets stand together");
+        groups.dedup();
+        assert_eq!(groups.len(), Group::ALL.len() - 1);
+    }
+    #[test]
+    fn there_are_thirty_presets_and_more_and_no_two_share_a_name() {
+        let mut names: Vec<String> = presets().map(|preset| preset.name).collect();
+        assert!(names.len() >= 30);
+        names.sort();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+}

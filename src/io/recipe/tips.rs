@@ -1,0 +1,263 @@
+//! A brush's tip and its grain. Read and written.
+//! Floor 5. Not here: the numbers of a brush (`brush`).
+
+use super::images::TURNS;
+use crate::Result;
+use crate::io::json::{Fields, Node, Object, object};
+use crate::paint::grain::{Grain, GrainSource, Lies};
+use crate::paint::pattern::Pattern;
+use crate::paint::tip::{Bristles, Hose, Noise, Rank, Select};
+use crate::paint::{Brush, PictureSource, Tip};
+use serde_json::{Value, json};
+
+/// Pictures of one hose.
+const MAX_PICTURES: usize = 1024;
+/// Ranks of one hose, GIMP's own ceiling.
+const MAX_RANKS: usize = 4;
+
+/// Reads the picture that a field names.
+pub type ReadPicture<'a> = dyn FnMut(&Node) -> Result<PictureSource> + 'a;
+
+/// The kinds of tips that are made, not drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Round,
+    Ellipse,
+    Square,
+    Bristles,
+    Noise,
+    Picture,
+    Hose,
+}
+
+const KINDS: [(Kind, &str); 7] = [
+    (Kind::Round, "round"),
+    (Kind::Ellipse, "ellipse"),
+    (Kind::Square, "square"),
+    (Kind::Bristles, "bristles"),
+    (Kind::Noise, "noise"),
+    (Kind::Picture, "picture"),
+    (Kind::Hose, "hose"),
+];
+const LIES: [(bool, &str); 2] = [(false, "canvas"), (true, "surface")];
+
+/// The fields `tip` and `grain`; where they are absent the brush keeps what it has.
+pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut ReadPicture) -> Result<()> {
+    if let Some(node) = fields.get("tip") {
+        brush.tip = tip(&node, picture)?;
+    }
+    if let Some(node) = fields.get("grain") {
+        brush.grain = Some(grain(&node, picture)?);
+    }
+    Ok(())
+}
+
+/// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files": […], "ranks": […] }` and so on.
+fn tip(node: &Node, picture: &mut ReadPicture) -> Result<Tip> {
+    let mut fields = node.fields()?;
+    let kind = match fields.get("kind") {
+        Some(kind) => kind.one_of(&KINDS)?,
+        None => Kind::Picture,
+    };
+    let tip = match kind {
+        Kind::Round => Tip::Round,
+        Kind::Ellipse => Tip::Ellipse { ratio: fields.number("ratio", 0.5, 0.01..=1.0)? },
+        Kind::Square => Tip::Square { ratio: fields.number("ratio", 1.0, 0.01..=1.0)? },
+        Kind::Bristles => {
+            let plain = Bristles::default();
+            let count = whole(&mut fields, "count", plain.count, 1..=1000)?;
+            Tip::Bristles(Bristles { count, seed: whole(&mut fields, "seed", plain.seed, 0..=i64::from(u32::MAX))? })
+        }
+        Kind::Noise => {
+            let plain = Noise::default();
+            let cells = whole(&mut fields, "cells", plain.cells, 1..=200)?;
+            let density = fields.number("density", plain.density, 0.0..=1.0)?;
+            let seed = whole(&mut fields, "seed", plain.seed, 0..=i64::from(u32::MAX))?;
+            Tip::Noise(Noise { cells, density, seed })
+        }
+        Kind::Picture => Tip::Picture(picture(&fields.required("file")?)?),
+        Kind::Hose => Tip::Hose(hose(&mut fields, picture)?),
+    };
+    fields.finish()?;
+    Ok(tip)
+}
+
+fn whole(fields: &mut Fields, name: &'static str, default: u32, range: std::ops::RangeInclusive<i64>) -> Result<u32> {
+    fields.get(name).map_or(Ok(default), |node| node.integer(range).map(|n| n as u32))
+}
+
+fn hose(fields: &mut Fields, picture: &mut ReadPicture) -> Result<Hose> {
+    let files = fields.required("files")?;
+    let pictures = files.list(MAX_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
+    if pictures.is_empty() {
+        return Err(files.refused("is empty; a hose has at least one picture"));
+    }
+    let ranks = match fields.get("ranks") {
+        Some(node) => node.list(MAX_RANKS)?.iter().map(rank).collect::<Result<_>>()?,
+        None => vec![Rank { count: pictures.len() as u32, select: Select::default() }],
+    };
+    Ok(Hose::new(pictures, ranks))
+}
+
+fn rank(node: &Node) -> Result<Rank> {
+    let mut fields = node.fields()?;
+    let count = fields.required("count")?.integer(1..=MAX_PICTURES as i64)? as u32;
+    let select = fields.one_of("select", &Select::ALL, Select::default())?;
+    fields.finish()?;
+    Ok(Rank { count, select })
+}
+
+/// `{ "kind": "paper", "size": 6, … }` or `{ "file": "canvas.png", "size": 200, … }`.
+fn grain(node: &Node, picture: &mut ReadPicture) -> Result<Grain> {
+    let plain = Grain::default();
+    let mut fields = node.fields()?;
+    let seed = whole(&mut fields, "seed", 0, 0..=i64::from(u32::MAX))?;
+    let pattern = fields.one_of("kind", &Pattern::ALL, Pattern::default())?;
+    let source = match fields.get("file") {
+        Some(file) => GrainSource::Picture(picture(&file)?),
+        None => GrainSource::Pattern { pattern, seed },
+    };
+    let levels = fields.get("levels").map_or(Ok(plain.levels), |node| {
+        let levels = node.numbers(2, 2, -4.0..=4.0)?;
+        if levels[0] >= levels[1] {
+            return Err(node.refused("must hold the lower level first"));
+        }
+        Ok([levels[0], levels[1]])
+    })?;
+    let gamma = fields.number("gamma", 1.0, 0.0..=8.0)?;
+    let on_surface = fields.one_of("lies", &LIES, false)?;
+    let grain = Grain {
+        source,
+        size_px: fields.number("size", plain.size_px, 0.5..=20_000.0)?,
+        rotation: fields.number("rotation", plain.rotation, TURNS)?,
+        strength: fields.number("strength", plain.strength, 0.0..=1.0)?,
+        levels,
+        lies: if on_surface { Lies::Surface { gamma } } else { Lies::Canvas },
+    };
+    fields.finish()?;
+    Ok(grain)
+}
+
+pub fn write_tip(out: &mut Object, tip: &Tip) {
+    let mut written = Object::default();
+    let mut kind = |word: &str| written.set("kind", word.into());
+    match tip {
+        Tip::Round => {}
+        Tip::Ellipse { ratio } => {
+            kind("ellipse");
+            written.number("ratio", *ratio, 0.5);
+        }
+        Tip::Square { ratio } => {
+            kind("square");
+            written.number("ratio", *ratio, 1.0);
+        }
+        Tip::Bristles(Bristles { count, seed }) => {
+            kind("bristles");
+            written.set("count", (*count).into());
+            written.set("seed", (*seed).into());
+        }
+        Tip::Noise(Noise { cells, density, seed }) => {
+            kind("noise");
+            written.set("cells", (*cells).into());
+            written.number("density", *density, 0.5);
+            written.set("seed", (*seed).into());
+        }
+        Tip::Picture(source) => written.set("file", source.file.as_str().into()),
+        Tip::Hose(hose) => {
+            kind("hose");
+            written.set("files", hose.pictures().iter().map(|source| source.file.as_str()).collect());
+            written.set("ranks", hose.ranks().iter().map(write_rank).collect());
+        }
+    }
+    out.object("tip", written);
+}
+
+fn write_rank(rank: &Rank) -> Value {
+    let word = Select::ALL.iter().find(|(select, _)| *select == rank.select).map_or("incremental", |(_, word)| word);
+    json!({ "count": rank.count, "select": word })
+}
+
+pub fn write_grain(out: &mut Object, grain: Option<&Grain>) {
+    let Some(grain) = grain else { return };
+    let plain = Grain::default();
+    let mut written = Object::default();
+    match &grain.source {
+        GrainSource::Pattern { pattern, seed } => {
+            let word = Pattern::ALL.iter().find(|(known, _)| known == pattern).map_or("paper", |(_, word)| word);
+            written.set("kind", word.into());
+            if *seed != 0 {
+                written.set("seed", (*seed).into());
+            }
+        }
+        GrainSource::Picture(source) => written.set("file", source.file.as_str().into()),
+    }
+    written.number("size", grain.size_px, plain.size_px);
+    written.number("rotation", grain.rotation, plain.rotation);
+    written.number("strength", grain.strength, plain.strength);
+    if grain.levels != plain.levels {
+        written.set("levels", grain.levels.map(object::number).to_vec().into());
+    }
+    if let Lies::Surface { gamma } = grain.lies {
+        written.set("lies", "surface".into());
+        written.number("gamma", gamma, 1.0);
+    }
+    out.object("grain", written);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Size;
+    use crate::paint::Adjust;
+    use crate::raster::Picture;
+    use std::path::Path;
+
+    fn read_brush(value: &Value) -> Result<Brush> {
+        let mut fields = Node::root(Path::new("r.json"), value).fields()?;
+        let mut brush = Brush::default();
+        let mut picture = |node: &Node| {
+            let picture = Picture::srgb8(Size::new(1, 1), vec![[255; 4]]).unwrap();
+            Ok(PictureSource::new(node.text()?.into(), picture, Adjust::default()))
+        };
+        read(&mut fields, &mut brush, &mut picture)?;
+        fields.finish()?;
+        Ok(brush)
+    }
+
+    #[test]
+    fn every_tip_and_grain_is_written_as_it_was_read() {
+        for text in [
+            json!({}),
+            json!({ "tip": { "file": "leaf.png" } }),
+            json!({ "tip": { "kind": "ellipse", "ratio": 0.25 } }),
+            json!({ "tip": { "kind": "square" } }),
+            json!({ "tip": { "kind": "bristles", "count": 9, "seed": 4 } }),
+            json!({ "tip": { "kind": "noise", "cells": 7, "density": 0.25, "seed": 1 } }),
+            json!({ "tip": { "kind": "hose", "files": ["a.png", "b.png"],
+                             "ranks": [{ "count": 2, "select": "angular" }] } }),
+            json!({ "grain": { "kind": "weave", "seed": 3, "size": 20, "rotation": 45, "strength": 0.5, "levels": [0.25, 0.75],
+                               "lies": "surface", "gamma": 2 } }),
+            json!({ "grain": { "file": "canvas.png", "size": 200 } }),
+        ] {
+            let brush = read_brush(&text).unwrap();
+            let mut out = Object::default();
+            write_tip(&mut out, &brush.tip);
+            write_grain(&mut out, brush.grain.as_ref());
+            assert_eq!(out.done(), text);
+        }
+    }
+    #[test]
+    fn what_cannot_be_is_refused_in_a_sentence() {
+        let says = |value: Value, what: &str| {
+            let said = read_brush(&value).err().map(|e| e.to_string()).unwrap_or_default();
+            assert!(said.contains(what), "{said}");
+        };
+        says(json!({ "tip": { "kind": "elipse" } }), "tip.kind: is “elipse”; it must be one of round, ellipse");
+        says(json!({ "tip": { "kind": "ellipse", "ratio": 2 } }), "tip.ratio: is 2");
+        says(json!({ "tip": {} }), "tip.file: is missing");
+        says(json!({ "tip": { "kind": "round", "ratio": 1 } }), "tip.ratio: is unknown");
+        says(json!({ "tip": { "kind": "hose", "files": [] } }), "tip.files: is empty");
+        says(json!({ "grain": { "levels": [0.5, 0.5] } }), "grain.levels: must hold the lower level first");
+        says(json!({ "grain": { "lies": "floor" } }), "must be one of canvas, surface");
+    }
+}

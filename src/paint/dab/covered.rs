@@ -1,0 +1,199 @@
+//! A dab of any footprint, evaluated row by row as coverage before it is laid: where a texture or a grain has its say.
+//! Floor 3. Not here: the plain round tip (`dab`), which adds its coverage as it finds it.
+
+use super::{Around, DabScratch, Field, PlacedDab, RoundTip, Span, bent_row, flat_row, spans, touched};
+use crate::math::{Affine2, Mat2, Rect};
+use crate::paint::image::transform;
+use crate::paint::profile::RoundProfile;
+use crate::paint::stamp::{Softened, Stamp};
+use crate::paint::tip::{GrainTile, Shape, shape};
+use crate::paint::wash::Wash;
+use crate::raster::{Outside, TILE, TileAt};
+use crate::surface::deformation::DeformedRect;
+use crate::surface::reach::TileBlocks;
+
+/// What a dab covers.
+#[derive(Clone, Copy)]
+pub enum Footprint<'t> {
+    Round,
+    Shape(Shape),
+    /// A round tip times a picture of its own coverage.
+    Textured(&'t Softened),
+}
+
+/// The part of a tile that a dab may touch.
+#[derive(Clone, Copy)]
+struct Part {
+    at: TileAt,
+    blocks: TileBlocks,
+    area: Rect,
+}
+
+impl Part {
+    fn spans(&self) -> impl Iterator<Item = Span> + use<> {
+        spans(&self.blocks, self.at, self.area)
+    }
+    /// Where a span lies among the pixels of the area, row by row.
+    fn range(&self, span: Span) -> std::ops::Range<usize> {
+        let start = (span.y - self.area.y0) as usize * self.area.width() + (span.x - self.area.x0) as usize;
+        start..start + span.n
+    }
+    fn pixels(&self) -> usize {
+        self.area.width() * self.area.height()
+    }
+}
+
+impl PlacedDab<'_> {
+    fn part(&self, at: TileAt) -> Part {
+        let blocks = self.reach.blocks(at);
+        Part { at, blocks, area: touched(&blocks, at).intersect(self.scene.size.rect()) }
+    }
+    /// Adds a dab to a tile: its flow times its footprint times what the grain leaves.
+    pub fn add_covered(
+        &self,
+        footprint: Footprint,
+        grain: Option<&GrainTile>,
+        at: TileAt,
+        wash: &mut Wash,
+        scratch: &mut DabScratch,
+    ) {
+        let part = self.part(at);
+        if part.area.is_empty() {
+            return;
+        }
+        self.deformation.fill(part.area.grown(1), &mut scratch.deformed);
+        let mut covered = std::mem::take(&mut scratch.covered);
+        covered.clear();
+        covered.resize(part.pixels(), 0.0);
+        match footprint {
+            Footprint::Shape(shape) => self.cover_shape(shape, &part, &mut scratch.deformed, &mut covered),
+            Footprint::Round => self.cover_round(&part, &scratch.deformed, &mut covered),
+            Footprint::Textured(stamps) => {
+                self.cover_round(&part, &scratch.deformed, &mut covered);
+                self.read(stamps, &part, scratch);
+                covered.iter_mut().zip(&scratch.stamped).for_each(|(c, s)| *c *= f32::from(s[3]) / 255.0);
+            }
+        }
+        for span in part.spans() {
+            let row = &mut covered[part.range(span)];
+            if let Some(grain) = grain {
+                row.iter_mut().zip(&grain[span.start_in(at)..]).for_each(|(c, g)| *c *= g);
+            }
+            wash.cover(span.start_in(at), row, self.paint(Some(self.dab.color)));
+        }
+        scratch.covered = covered;
+    }
+    /// Adds a picture tip to a tile at the dab's own softness, times what the grain leaves.
+    pub fn add_softened(
+        &self,
+        stamps: &Softened,
+        grain: Option<&GrainTile>,
+        at: TileAt,
+        wash: &mut Wash,
+        scratch: &mut DabScratch,
+    ) {
+        if let (Softened::One(stamp), None) = (stamps, grain) {
+            return self.add_stamp(stamp, at, wash, scratch);
+        }
+        let part = self.part(at);
+        if part.area.is_empty() {
+            return;
+        }
+        self.deformation.fill(part.area.grown(1), &mut scratch.deformed);
+        self.read(stamps, &part, scratch);
+        let paint = self.paint((!stamps.is_colored()).then_some(self.dab.color));
+        for span in part.spans() {
+            let row = &mut scratch.stamped[part.range(span)];
+            if let Some(grain) = grain {
+                for (texel, factor) in row.iter_mut().zip(&grain[span.start_in(at)..]) {
+                    *texel = texel.map(|v| (f32::from(v) * factor + 0.5) as u8);
+                }
+            }
+            wash.stamp(span.start_in(at), row, paint);
+        }
+    }
+    /// The round tip over a part; D over it and the pixels around it is in `deformed`.
+    fn cover_round(&self, part: &Part, deformed: &DeformedRect, covered: &mut [f32]) {
+        let tip = RoundTip { flow: 1.0, ceiling: 1.0, ..RoundTip::new(&self.dab) };
+        let field = self.bent_over.map(|surface| Field { surface, rect: part.area.grown(1), d: deformed });
+        for span in part.spans() {
+            let out = &mut covered[part.range(span)];
+            match &field {
+                Some(field) => bent_row(field.around(span), &tip, out),
+                None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, out),
+            }
+        }
+    }
+    /// An ellipse or a square over a part; `deformed` becomes tip space.
+    fn cover_shape(&self, shape: Shape, part: &Part, deformed: &mut DeformedRect, covered: &mut [f32]) {
+        let tip_from_canvas = shape.tip_from_canvas(&self.dab);
+        transform(tip_from_canvas, &mut deformed.x, &mut deformed.y);
+        let profile = RoundProfile::new(self.dab.hardness, self.dab.softness);
+        for span in part.spans() {
+            let around = self.around(span, part.area.grown(1), deformed, tip_from_canvas.matrix2);
+            shape.row(&profile, around, &mut covered[part.range(span)]);
+        }
+    }
+    fn around<'f>(&'f self, span: Span, rect: Rect, d: &'f DeformedRect, flat: Mat2) -> shape::Around<'f> {
+        /// Where D is the identity nothing need be differenced.
+        const UNLINKED: [u8; TILE] = [0; TILE];
+        match self.bent_over {
+            Some(surface) => {
+                let Around { above, row, below, linked } = Field { surface, rect, d }.around(span);
+                shape::Around { above, row, below, linked, flat }
+            }
+            None => {
+                let row = |y: i32| {
+                    let start = (y - rect.y0) as usize * rect.width() + (span.x - 1 - rect.x0) as usize;
+                    (&d.x[start..start + span.n + 2], &d.y[start..start + span.n + 2])
+                };
+                shape::Around {
+                    above: row(span.y - 1),
+                    row: row(span.y),
+                    below: row(span.y + 1),
+                    linked: &UNLINKED[..span.n.min(TILE)],
+                    flat,
+                }
+            }
+        }
+    }
+    /// The picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed` becomes texels.
+    fn read(&self, stamps: &Softened, part: &Part, scratch: &mut DabScratch) {
+        let (stamp, above) = stamps.at(self.dab.softness);
+        scratch.stamped.clear();
+        scratch.stamped.resize(part.pixels(), [0; 4]);
+        let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
+        self.read_stamp(stamp, texels_from_canvas, part, scratch, |_, read| read);
+        if let Some((above, share)) = above {
+            let next = above.texels_from_canvas(&self.dab) * texels_from_canvas.inverse();
+            let mix =
+                |known: u8, read: u8| (f32::from(known) + (f32::from(read) - f32::from(known)) * share + 0.5) as u8;
+            let mixed = |known: [u8; 4], read: [u8; 4]| std::array::from_fn(|c| mix(known[c], read[c]));
+            self.read_stamp(above, next, part, scratch, mixed);
+        }
+    }
+    /// `map`: to this stamp's texels from what is in `scratch.deformed`. `mix`: what was there with what is read.
+    fn read_stamp(
+        &self,
+        stamp: &Stamp,
+        map: Affine2,
+        part: &Part,
+        scratch: &mut DabScratch,
+        mix: impl Fn([u8; 4], [u8; 4]) -> [u8; 4],
+    ) {
+        let DabScratch { deformed, stamping, stamped, .. } = scratch;
+        transform(map, &mut deformed.x, &mut deformed.y);
+        let antialias = stamping.antialias.get_or_insert_default();
+        let row = &mut stamping.row;
+        row.resize(part.area.width(), [0; 4]);
+        let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
+        for span in part.spans() {
+            let patches = stamping.patches.row(self.scene, part.area, span.y, deformed, texels_from_canvas);
+            antialias.row(stamp.texture(), patches, Outside::None, row);
+            let from = (span.x - part.area.x0) as usize;
+            for (known, read) in stamped[part.range(span)].iter_mut().zip(&row[from..]) {
+                *known = mix(*known, *read);
+            }
+        }
+    }
+}

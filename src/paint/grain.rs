@@ -1,0 +1,275 @@
+//! Grain: a texture that takes paint away from a stroke where the canvas, or the surface, has its valleys.
+//! Floor 3. Patterns are `pattern`'s; where the surface carries the grain is the operator D_p's.
+//!
+//! ```text
+//! F′(q) = F(q) · (1 − k (1 − G(P⁻¹(T(q)))))      T(q) = q            grain on the canvas
+//!                                               T(q) = D_p(q; q_s)  grain on the surface
+//! ```
+//!
+//! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) = q_s, so that the grain
+//! there is the canvas's own, nearer parts show it larger and farther ones smaller. G repeats without end.
+
+use super::image::{PictureSource, transform};
+use super::patches::Patches;
+use super::pattern::Pattern;
+use super::scene::Scene;
+use super::tip::texture::grey;
+use crate::math::{Affine2, Vec2};
+use crate::raster::sampler::Antialias;
+use crate::raster::tile::TILE_AREA;
+use crate::raster::{Outside, Plane, TILE, Texture, TileAt};
+use crate::surface::Operator;
+use crate::surface::deformation::{Deformation, DeformedRect};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A brush's grain.
+#[derive(Clone)]
+pub struct Grain {
+    pub source: GrainSource,
+    /// Size of one feature of a pattern, or of a picture's longer side; canvas px, `> 0`.
+    pub size_px: f32,
+    /// Counter-clockwise as seen, degrees.
+    pub rotation: f32,
+    /// k, `[0, 1]`: 0 paints as if there were none.
+    pub strength: f32,
+    /// Greys up to the first take no paint, from the second on all; of `[0, 1]`, the first below the second.
+    pub levels: [f32; 2],
+    pub lies: Lies,
+}
+
+/// What the grain is.
+#[derive(Clone)]
+pub enum GrainSource {
+    Pattern {
+        pattern: Pattern,
+        seed: u32,
+    },
+    /// Its luminance times its alpha.
+    Picture(PictureSource),
+}
+
+/// What carries the grain.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Lies {
+    /// The flat canvas.
+    #[default]
+    Canvas,
+    /// The shape, through D_p.
+    Surface { gamma: f32 },
+}
+
+impl Default for Grain {
+    fn default() -> Self {
+        Self {
+            source: GrainSource::Pattern { pattern: Pattern::default(), seed: 0 },
+            size_px: 6.0,
+            rotation: 0.0,
+            strength: 1.0,
+            levels: [0.0, 1.0],
+            lies: Lies::default(),
+        }
+    }
+}
+
+/// The grain under one stroke.
+pub struct LaidGrain {
+    texture: Arc<Texture>,
+    texels_from_canvas: Affine2,
+    operator: Operator,
+    /// q_s.
+    start: Vec2,
+    strength: f32,
+}
+
+impl LaidGrain {
+    /// `start`: where the stroke begins, canvas px.
+    pub fn new(grain: &Grain, start: Vec2) -> Self {
+        let texture = grain.texture();
+        let texels = match grain.source {
+            GrainSource::Pattern { .. } => Pattern::SIDE as f32 / Pattern::CELLS as f32,
+            GrainSource::Picture(_) => texture.size().longer_side(),
+        };
+        // Comparisons that NaN fails give a pattern of one pixel.
+        let texels_per_px = Vec2::splat(texels / grain.size_px.max(0.01));
+        let turn = if grain.rotation.is_finite() { grain.rotation.to_radians() } else { 0.0 };
+        let operator = match grain.lies {
+            Lies::Canvas => Operator::None,
+            Lies::Surface { gamma } => Operator::Depth { gamma },
+        };
+        Self {
+            texture,
+            texels_from_canvas: Affine2::from_scale(texels_per_px) * Affine2::from_angle(turn),
+            operator,
+            start,
+            strength: grain.strength.max(0.0).min(1.0),
+        }
+    }
+    /// The factors of F over a tile, row by row, in `[0, 1]`; 1 beyond the canvas.
+    pub fn tile(&self, scene: &Scene, at: TileAt) -> Box<[f32; TILE_AREA]> {
+        let mut out = Box::new([1.0; TILE_AREA]);
+        let area = at.rect().intersect(scene.size.rect());
+        if area.is_empty() {
+            return out;
+        }
+        let (mut deformed, mut patches) = (DeformedRect::default(), Patches::default());
+        let (mut antialias, mut row) = (Antialias::default(), vec![[0; 4]; area.width()]);
+        let deformation = Deformation::of_dab(scene.surface.as_deref(), scene.size, self.operator, self.start);
+        deformation.fill(area.grown(1), &mut deformed);
+        transform(self.texels_from_canvas, &mut deformed.x, &mut deformed.y);
+        let from = (area.x0 - at.rect().x0) as usize;
+        for y in area.y0..area.y1 {
+            let patches = patches.row(scene, area, y, &deformed, self.texels_from_canvas);
+            antialias.row(&self.texture, patches, Outside::Repeat, &mut row);
+            let start = (y - at.rect().y0) as usize * TILE + from;
+            for (factor, texel) in out[start..].iter_mut().zip(&row) {
+                *factor = factor_of(self.strength, f32::from(texel[3]) / 255.0);
+            }
+        }
+        out
+    }
+}
+
+/// 1 − k (1 − G): what grain leaves of a dab's coverage. `strength` k and `grey` G in `[0, 1]`.
+pub fn factor_of(strength: f32, grey: f32) -> f32 {
+    1.0 - strength * (1.0 - grey)
+}
+
+/// Textures kept: more grains than one painting has.
+const KEPT: usize = 16;
+static MADE: Mutex<Vec<(PatternKey, Arc<Texture>)>> = Mutex::new(Vec::new());
+
+/// Which pattern, its seed, its levels.
+type PatternKey = (Pattern, u32, [u32; 2]);
+
+impl Grain {
+    /// G, its levels applied: every channel holds it.
+    fn texture(&self) -> Arc<Texture> {
+        let levels = self.levels.map(f32::to_bits);
+        match &self.source {
+            GrainSource::Pattern { pattern, seed } => {
+                let make = || of_greys(&pattern.plane(*seed), self.levels);
+                kept(&MADE, KEPT, (*pattern, *seed, levels), make)
+            }
+            GrainSource::Picture(source) => {
+                let make = || of_greys(&luminance(source.texture()), self.levels);
+                kept(source.stamps().grains(), KEPT, levels, make)
+            }
+        }
+    }
+}
+
+/// What was made under a key, or is made now.
+pub fn kept<K: PartialEq, V>(made: &Mutex<Vec<(K, Arc<V>)>>, most: usize, key: K, make: impl FnOnce() -> V) -> Arc<V> {
+    let lock = || made.lock().unwrap_or_else(PoisonError::into_inner);
+    let find = |made: &[(K, Arc<V>)]| made.iter().find(|(known, _)| *known == key).map(|(_, value)| value.clone());
+    if let Some(value) = find(&lock()) {
+        return value;
+    }
+    // Unlocked: two threads may both make it, and make the same.
+    let value = Arc::new(make());
+    let mut made = lock();
+    if let Some(value) = find(&made) {
+        return value;
+    }
+    if made.len() >= most {
+        made.remove(0);
+    }
+    made.push((key, value.clone()));
+    value
+}
+
+fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
+    let span = (high - low).max(1.0 / 256.0);
+    let mut picture = grey(&plane.map(|v| (v - low) / span));
+    // Every channel the grey, premultiplied already: what is read is alpha.
+    if let crate::raster::picture::Texels::Srgb8(texels) = &picture.texels {
+        let greys: Vec<[u8; 4]> = texels.iter().map(|&[v, ..]| [255, 255, 255, v]).collect();
+        picture.texels = crate::raster::picture::Texels::Srgb8(greys.into());
+    }
+    Texture::new(&picture)
+}
+
+/// Of premultiplied texels: light on a transparent ground is as dark as none.
+fn luminance(texture: &Texture) -> Plane<f32> {
+    let level = &texture.levels()[0];
+    let grey =
+        |&[r, g, b, _]: &[u8; 4]| (0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)) / 255.0;
+    let values = level.texels.iter().map(grey).collect();
+    Plane::from_values(level.size, values).unwrap_or_else(|| Plane::filled(level.size, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, vec2, vec3};
+    use crate::surface::{Maps, Surface};
+
+    const SIZE: Size = Size::new(128, 128);
+
+    /// A ramp that comes nearer from left to right.
+    fn ramp() -> Scene {
+        let maps = Maps {
+            normals: Plane::from_fn(SIZE, |_, _| vec3(0.0, 0.0, 1.0)),
+            depth: Plane::from_fn(SIZE, |x, _| 1.0 - x as f32 / 127.0),
+            coverage: Plane::from_fn(SIZE, |_, _| 255),
+        };
+        Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
+    }
+    fn row(grain: &Grain, scene: &Scene, y: usize) -> Vec<f32> {
+        let laid = LaidGrain::new(grain, vec2(64.0, 64.0));
+        let tiles = [0, 1].map(|col| laid.tile(scene, TileAt::new(col, (y / TILE) as i32)));
+        tiles.iter().flat_map(|tile| tile[y % TILE * TILE..][..TILE].to_vec()).collect()
+    }
+    fn lines(lies: Lies) -> Grain {
+        let source = GrainSource::Pattern { pattern: Pattern::Lines, seed: 0 };
+        Grain { source, size_px: 8.0, rotation: 90.0, levels: [0.4, 0.6], lies, ..Grain::default() }
+    }
+    /// How often a row crosses from bare to covered within a part of it.
+    fn crossings(row: &[f32]) -> usize {
+        row.windows(2).filter(|pair| pair[0] < 0.5 && pair[1] >= 0.5).count()
+    }
+
+    #[test]
+    fn strength_says_how_much_the_valleys_take_away() {
+        assert_eq!(factor_of(0.0, 0.0), 1.0);
+        assert_eq!(factor_of(1.0, 0.25), 0.25);
+        assert_eq!(factor_of(0.5, 0.0), 0.5);
+        let flat = Scene { size: SIZE, surface: None };
+        let weak = Grain { strength: 0.5, ..lines(Lies::Canvas) };
+        assert!(row(&weak, &flat, 10).iter().all(|f| (0.499..=1.0).contains(f)));
+    }
+    #[test]
+    fn a_feature_of_a_pattern_is_as_large_as_the_grain_says_and_repeats() {
+        let flat = Scene { size: SIZE, surface: None };
+        assert!((15..=17).contains(&crossings(&row(&lines(Lies::Canvas), &flat, 64))));
+        let coarse = Grain { size_px: 32.0, ..lines(Lies::Canvas) };
+        assert!((3..=5).contains(&crossings(&row(&coarse, &flat, 64))));
+    }
+    #[test]
+    fn on_the_surface_grain_is_larger_where_the_shape_comes_near() {
+        let row = row(&lines(Lies::Surface { gamma: 1.5 }), &ramp(), 64);
+        let (far, near) = (crossings(&row[..60]), crossings(&row[68..]));
+        assert!(far > near + 1, "{far} lines on the far half, {near} on the near one");
+    }
+    #[test]
+    fn on_a_flat_surface_and_where_the_stroke_begins_it_is_the_canvas_s() {
+        let laid = |lies| LaidGrain::new(&lines(lies), vec2(20.5, 20.5)).tile(&ramp(), TileAt::new(0, 0));
+        let (canvas, surface) = (laid(Lies::Canvas), laid(Lies::Surface { gamma: 2.0 }));
+        let start = 20 * TILE + 20;
+        assert!((canvas[start] - surface[start]).abs() < 0.02);
+        let flat = Scene { size: SIZE, surface: None };
+        let [a, b] = [Lies::Canvas, Lies::Surface { gamma: 2.0 }].map(|lies| row(&lines(lies), &flat, 30));
+        assert_eq!(a, b);
+    }
+    #[test]
+    fn what_is_not_a_number_still_gives_factors() {
+        let bad = Grain {
+            size_px: f32::NAN,
+            rotation: f32::INFINITY,
+            strength: f32::NAN,
+            levels: [0.5, 0.5],
+            ..Grain::default()
+        };
+        assert!(row(&bad, &ramp(), 3).iter().all(|f| (0.0..=1.0).contains(f)));
+    }
+}

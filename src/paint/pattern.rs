@@ -1,0 +1,221 @@
+//! Patterns: greys made by formulas, for tips and for grain.
+//! Floor 3. The same bytes every time; nothing here is drawn by hand or shipped as a file.
+
+use crate::math::{Size, Vec2, hash, noise, vec2};
+use crate::raster::Plane;
+use std::f32::consts::{PI, TAU};
+
+/// A pattern that repeats, for grain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Pattern {
+    /// The tooth of a rough paper: noise of several octaves.
+    #[default]
+    Paper,
+    /// Threads over and under each other.
+    Weave,
+    /// Rows of overlapping scales, each lighter toward its rim.
+    Scales,
+    /// Parallel lines, soft across: levels choose how wide.
+    Lines,
+    /// Dots in a square grid: levels choose how large.
+    Dots,
+}
+
+impl Pattern {
+    /// Every pattern with its name in files.
+    pub const ALL: [(Pattern, &'static str); 5] = [
+        (Pattern::Paper, "paper"),
+        (Pattern::Weave, "weave"),
+        (Pattern::Scales, "scales"),
+        (Pattern::Lines, "lines"),
+        (Pattern::Dots, "dots"),
+    ];
+    /// Features along the side of the square that repeats.
+    pub const CELLS: u32 = 16;
+    /// Side of that square, texels.
+    pub const SIDE: u32 = 512;
+
+    /// Greys in `[0, 1]`; opposite sides meet. Of paper each grey takes the same area, so that a level is a share of it.
+    pub fn plane(self, seed: u32) -> Plane<f32> {
+        let cells = Self::CELLS as f32;
+        let side = Size::new(Self::SIDE, Self::SIDE);
+        let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5) / Self::SIDE as f32;
+        let raw = Plane::from_fn(side, |x, y| match self {
+            Pattern::Paper => noise::octaves(at(x, y), Self::CELLS, 4, 0.6, seed),
+            Pattern::Weave => weave(at(x, y) * cells, seed),
+            Pattern::Scales => scales(at(x, y) * cells),
+            Pattern::Lines => line(at(x, y) * cells, seed),
+            Pattern::Dots => 1.0 - ((at(x, y) * cells).fract_gl() - 0.5).length() * std::f32::consts::SQRT_2,
+        });
+        if self == Pattern::Paper { equalised(&raw) } else { raw.map(|v| v.max(0.0).min(1.0)) }
+    }
+}
+
+/// Threads a cell wide: in turn one along x, one along y lies above.
+fn weave(p: Vec2, seed: u32) -> f32 {
+    let (cell, within) = (p.floor(), p.fract_gl() - 0.5);
+    let is_over = (cell.x + cell.y).rem_euclid(2.0) < 1.0;
+    let (across, along) = if is_over { (within.y, within.x) } else { (within.x, within.y) };
+    // A thread's round back, dipping where it goes under the next; each thread a little different, its fibres fine lines.
+    let back = (1.0 - (across / 0.46).powi(2)).max(0.0).sqrt();
+    let dip = (PI * along).cos().max(0.0).powf(0.6);
+    let thread = if is_over { vec2(0.0, cell.y) } else { vec2(1.0, cell.x) };
+    let own = hash::unit(seed, thread.x as u32, thread.y as u32);
+    let fibre = 0.5 + 0.5 * (TAU * 4.0 * across + TAU * along).sin();
+    back * (0.25 + 0.75 * dip) * (0.78 + 0.14 * own + 0.08 * fibre)
+}
+
+/// Rows half a cell high, every other shifted by half a cell: each scale is a disc that covers the ones above it.
+fn scales(p: Vec2) -> f32 {
+    let row = (p.y * 2.0).floor();
+    // The lower rows lie beneath: of the discs over a point the topmost is that of the highest row.
+    for above in (0..3).rev() {
+        let row = row - above as f32;
+        let shift = if row.rem_euclid(2.0) < 1.0 { 0.5 } else { 0.0 };
+        let center = vec2((p.x - shift).floor() + shift + 0.5, row * 0.5);
+        let r = (p - center).length() / 0.56;
+        if r < 1.0 && p.y >= center.y {
+            // Dark where it comes from under its neighbour, bright toward the rim, a thin dark edge.
+            let rim = smoothstep(1.0, 0.9, r);
+            return rim * (0.25 + 0.75 * smoothstep(0.2, 0.85, r));
+        }
+    }
+    0.0
+}
+
+/// A triangle wave across y, its lines wavering a little.
+fn line(p: Vec2, seed: u32) -> f32 {
+    let sway = noise::gradient(p * vec2(0.25, 0.5), Pattern::CELLS / 4, seed) * 0.12;
+    1.0 - (2.0 * (p.y + sway).rem_euclid(1.0) - 1.0).abs()
+}
+
+/// From 0 at `from` to 1 at `to`, which may be the lower one.
+fn smoothstep(from: f32, to: f32, v: f32) -> f32 {
+    let t = ((v - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Each value by its rank: all greys take the same area.
+fn equalised(plane: &Plane<f32>) -> Plane<f32> {
+    let mut order: Vec<u32> = (0..plane.values().len() as u32).collect();
+    order.sort_by(|&a, &b| plane.values()[a as usize].total_cmp(&plane.values()[b as usize]));
+    let per_rank = 1.0 / order.len().max(1) as f32;
+    let mut out = Plane::filled(plane.size(), 0.0);
+    for (rank, at) in order.into_iter().enumerate() {
+        out.values_mut()[at as usize] = (rank as f32 + 0.5) * per_rank;
+    }
+    out
+}
+
+/// The ends of a brush's hairs, spread over the disc that touches the square's sides: greys in `[0, 1]`.
+///
+/// * `count`: of hairs, `≥ 1`.
+/// * `side`: of the square, texels.
+pub fn bristles(count: u32, seed: u32, side: u32) -> Plane<f32> {
+    let size = Size::new(side.max(1), side.max(1));
+    let mut plane = Plane::filled(size, 0.0);
+    let half = 0.5 * size.longer_side();
+    let count = count.max(1);
+    for i in 0..count {
+        let chance = |what: u32| hash::unit(seed, i, what);
+        // A sunflower's seeds, each moved a little: even, without rows.
+        let r = ((i as f32 + 0.2 + 0.6 * chance(0)) / count as f32).sqrt();
+        let (sin, cos) = (i as f32 * GOLDEN_ANGLE + 0.5 * chance(1)).sin_cos();
+        let radius = (0.55 + 0.65 * chance(2)) / (count as f32).sqrt();
+        // Within the disc whole.
+        let center = vec2(cos, sin) * r * (1.0 - radius).max(0.0);
+        hair(&mut plane, center * half + half, radius * half, 0.35 + 0.65 * chance(3));
+    }
+    plane
+}
+
+/// The angle between one seed of a sunflower and the next.
+const GOLDEN_ANGLE: f32 = 2.399_963_2;
+
+/// Lays one hair's end over the others: round, soft, the denser one showing.
+fn hair(plane: &mut Plane<f32>, center: Vec2, radius: f32, density: f32) {
+    let (low, high) = ((center - radius).floor().max(Vec2::ZERO), (center + radius).ceil());
+    for y in low.y as usize..(high.y as usize).min(plane.height()) {
+        for x in low.x as usize..(high.x as usize).min(plane.width()) {
+            let r = (vec2(x as f32, y as f32) + 0.5 - center).length() / radius;
+            let value = density * smoothstep(1.0, 0.45, r);
+            if value > plane.at(x, y) {
+                plane.set(x, y, value);
+            }
+        }
+    }
+}
+
+/// Specks that cover a share of a square: greys in `[0, 1]`, mostly 0 and 1.
+///
+/// * `cells`: specks along a side, `≥ 1`.
+/// * `density`: the share covered, `[0, 1]`.
+pub fn specks(cells: u32, density: f32, seed: u32, side: u32) -> Plane<f32> {
+    let size = Size::new(side.max(1), side.max(1));
+    let per_side = 1.0 / size.longer_side();
+    let raw = Plane::from_fn(size, |x, y| {
+        noise::octaves((vec2(x as f32, y as f32) + 0.5) * per_side, cells.max(1), 3, 0.5, seed)
+    });
+    let bare = 1.0 - density;
+    equalised(&raw).map(|v| smoothstep(bare - 0.08, bare + 0.08, v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pattern_is_made_of_greys_light_and_dark_and_repeats_without_seams() {
+        for (pattern, name) in Pattern::ALL {
+            let plane = pattern.plane(3);
+            let (low, high) = plane.values().iter().fold((1.0f32, 0.0f32), |(a, b), &v| (a.min(v), b.max(v)));
+            assert!((0.0..0.3).contains(&low) && (0.7..=1.0).contains(&high), "{name}: {low} to {high}");
+            // Across the seam neighbours differ as they do within.
+            let last = Pattern::SIDE as usize - 1;
+            let jump = |a: usize, b: usize| {
+                (0..=last)
+                    .map(|i| (plane.at(a, i) - plane.at(b, i)).abs() + (plane.at(i, a) - plane.at(i, b)).abs())
+                    .sum()
+            };
+            let (seam, within): (f32, f32) = (jump(0, last), jump(31, 32).max(jump(32, 33)).max(jump(95, 96)));
+            assert!(seam <= 1.5 * within + 2.0, "{name}: {seam} at the seam, {within} within");
+        }
+    }
+    #[test]
+    fn every_grey_of_paper_takes_the_same_area() {
+        let plane = Pattern::Paper.plane(0);
+        for level in [0.1f32, 0.4, 0.8] {
+            let below = plane.values().iter().filter(|v| **v < level).count() as f32 / plane.values().len() as f32;
+            assert!((below - level).abs() < 0.001, "{below} below {level}");
+        }
+    }
+    #[test]
+    fn bristles_lie_within_the_disc_and_more_of_them_are_finer() {
+        let covered = |count: u32| {
+            let plane = bristles(count, 1, 128);
+            for y in 0..128 {
+                for x in 0..128 {
+                    let r = (vec2(x as f32, y as f32) + 0.5 - 64.0).length();
+                    assert!(r <= 65.0 || plane.at(x, y) == 0.0, "({x}, {y}) of {count}");
+                }
+            }
+            plane.values().iter().filter(|v| **v > 0.1).count()
+        };
+        let edges = |count: u32| {
+            let plane = bristles(count, 1, 128);
+            let rows = (0..128).flat_map(|y| (1..128).map(move |x| (x, y)));
+            rows.filter(|&(x, y)| (plane.at(x, y) > 0.2) != (plane.at(x - 1, y) > 0.2)).count()
+        };
+        assert!(covered(12) > 2000 && covered(80) > 2000);
+        assert!(edges(80) > edges(12));
+        assert_eq!(bristles(40, 9, 64).values(), bristles(40, 9, 64).values());
+    }
+    #[test]
+    fn specks_cover_their_share() {
+        for density in [0.2f32, 0.5, 0.8] {
+            let plane = specks(12, density, 4, 128);
+            let mean = plane.values().iter().sum::<f32>() / plane.values().len() as f32;
+            assert!((mean - density).abs() < 0.02, "{mean} for {density}");
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Hoses: tips of several pictures, of which each dab takes one.
+//! Floor 3. The rules are those of GIMP's image hoses, so that theirs paint here as they do there.
+
+use crate::math::hash;
+use crate::paint::dynamics::Readings;
+use crate::paint::image::PictureSource;
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+/// A tip of several pictures, in one or more ranks: with ranks of 4 and 2, the first says which four pairs of pictures,
+/// the second which of the pair.
+#[derive(Clone)]
+pub struct Hose {
+    pictures: Arc<[PictureSource]>,
+    ranks: Arc<[Rank]>,
+}
+
+/// A row of choices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rank {
+    /// How many there are, `≥ 1`.
+    pub count: u32,
+    pub select: Select,
+}
+
+/// What chooses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Select {
+    /// One after the other.
+    #[default]
+    Incremental,
+    Random,
+    /// Where the stroke is heading: the first is up, the others follow clockwise.
+    Angular,
+    Pressure,
+    Speed,
+    TiltX,
+    TiltY,
+}
+
+impl Select {
+    /// Every rule with its name in files, GIMP's own.
+    pub const ALL: [(Select, &'static str); 7] = [
+        (Select::Incremental, "incremental"),
+        (Select::Random, "random"),
+        (Select::Angular, "angular"),
+        (Select::Pressure, "pressure"),
+        (Select::Speed, "velocity"),
+        (Select::TiltX, "xtilt"),
+        (Select::TiltY, "ytilt"),
+    ];
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known)| *known == name).map(|(select, _)| *select)
+    }
+}
+
+/// What is known of a dab when its picture is chosen.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Moment {
+    /// Its number in the stroke.
+    pub number: u32,
+    pub readings: Readings,
+}
+
+impl Hose {
+    /// What stands beyond the product of the ranks is never chosen. Without pictures nothing is painted.
+    pub fn new(pictures: Vec<PictureSource>, ranks: Vec<Rank>) -> Self {
+        Self { pictures: pictures.into(), ranks: ranks.into() }
+    }
+    pub fn pictures(&self) -> &[PictureSource] {
+        &self.pictures
+    }
+    pub fn ranks(&self) -> &[Rank] {
+        &self.ranks
+    }
+    /// The same choice among other pictures.
+    pub fn with_pictures(&self, pictures: Vec<PictureSource>) -> Self {
+        Self { pictures: pictures.into(), ranks: self.ranks.clone() }
+    }
+    /// The index of a dab's picture, below the number of pictures where there are any.
+    pub fn choose(&self, moment: &Moment) -> usize {
+        let mut stride = self.ranks.iter().fold(1usize, |n, rank| n.saturating_mul(rank.count.max(1) as usize));
+        let mut index = 0usize;
+        for (place, rank) in (0..).zip(self.ranks.iter()) {
+            let count = rank.count.max(1);
+            stride /= count as usize;
+            let step = rank.select.step(count, moment, place);
+            index = index.saturating_add(step.min(count - 1) as usize * stride.max(1));
+        }
+        index.min(self.pictures.len().saturating_sub(1))
+    }
+    /// The longer side of a picture as a share of the longest one's: the diameter belongs to that.
+    pub fn share(&self, index: usize) -> f32 {
+        let side = |source: &PictureSource| source.picture.size.longer_side();
+        let longest = self.pictures.iter().map(side).fold(1.0, f32::max);
+        self.pictures.get(index).map_or(1.0, |source| side(source) / longest)
+    }
+}
+
+impl Select {
+    /// Which of `count` a dab takes; `place`: the rank's own, so that two random ranks differ.
+    fn step(self, count: u32, moment: &Moment, place: u32) -> u32 {
+        // Comparisons turn NaN into the first.
+        let of_unit = |v: f32, n: u32| (v.max(0.0).min(1.0) * n as f32).round() as u32;
+        let Readings { pressure, speed, direction, tilt, tilt_direction, seed, .. } = moment.readings;
+        let (lean_up, lean_right) = (tilt_direction * TAU).sin_cos();
+        match self {
+            Select::Incremental => moment.number % count,
+            Select::Random => ((hash::unit(seed, place, 4) * count as f32) as u32).min(count - 1),
+            Select::Angular => of_unit((0.25 - direction).rem_euclid(1.0), count) % count,
+            Select::Pressure => of_unit(pressure, count - 1),
+            Select::Speed => of_unit(speed, count - 1),
+            Select::TiltX => of_unit(0.5 + 0.5 * tilt * lean_right, count - 1),
+            Select::TiltY => of_unit(0.5 - 0.5 * tilt * lean_up, count - 1),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Size;
+    use crate::paint::Adjust;
+    use crate::raster::Picture;
+
+    fn hose(ranks: &[(u32, Select)]) -> Hose {
+        let count: u32 = ranks.iter().map(|(count, _)| count).product();
+        let picture = |i: u32| {
+            let side = 8 + 8 * (i % 2);
+            let picture = Picture::srgb8(Size::new(side, side), vec![[255; 4]; (side * side) as usize]).unwrap();
+            PictureSource::new(format!("{i}.png"), picture, Adjust::default())
+        };
+        let ranks = ranks.iter().map(|&(count, select)| Rank { count, select }).collect();
+        Hose::new((0..count).map(picture).collect(), ranks)
+    }
+
+    fn moment(readings: Readings) -> Moment {
+        Moment { number: 0, readings }
+    }
+
+    #[test]
+    fn pictures_follow_one_after_the_other_and_begin_again() {
+        let hose = hose(&[(3, Select::Incremental)]);
+        let chosen: Vec<_> = (0..7).map(|number| hose.choose(&Moment { number, ..Moment::default() })).collect();
+        assert_eq!(chosen, [0, 1, 2, 0, 1, 2, 0]);
+    }
+    #[test]
+    fn the_first_picture_of_a_direction_is_up_and_the_others_follow_clockwise() {
+        let hose = hose(&[(4, Select::Angular)]);
+        let chosen = |direction| hose.choose(&moment(Readings { direction, ..Readings::default() }));
+        let (up, right, down, left) = (0.25, 0.0, 0.75, 0.5);
+        assert_eq!([up, right, down, left].map(chosen), [0, 1, 2, 3]);
+        assert_eq!(chosen(0.27), 0, "a little to the left of up is nearest to up");
+    }
+    #[test]
+    fn ranks_multiply_and_the_first_strides_over_the_others() {
+        let hose = hose(&[(4, Select::Angular), (2, Select::Pressure)]);
+        let down = |pressure| moment(Readings { direction: 0.75, pressure, ..Readings::default() });
+        assert_eq!(hose.choose(&down(1.0)), 5);
+        assert_eq!(hose.choose(&down(0.2)), 4);
+    }
+    #[test]
+    fn chance_takes_every_picture_and_the_same_one_for_the_same_dab() {
+        let hose = hose(&[(5, Select::Random)]);
+        let chosen = |seed| hose.choose(&moment(Readings { seed, ..Readings::default() }));
+        let mut seen = [0; 5];
+        (0..500).for_each(|seed| seen[chosen(seed)] += 1);
+        assert!(seen.iter().all(|n| (60..140).contains(n)), "{seen:?}");
+        assert_eq!(chosen(77), chosen(77));
+    }
+    #[test]
+    fn what_is_not_a_number_and_what_has_no_pictures_is_no_trouble() {
+        let all = Select::ALL.map(|(select, _)| (3, select));
+        let nan = f32::NAN;
+        let readings = Readings {
+            pressure: nan,
+            direction: nan,
+            speed: f32::INFINITY,
+            tilt: nan,
+            tilt_direction: -1e30,
+            ..Readings::default()
+        };
+        let moment = Moment { number: 7, readings };
+        assert!(hose(&all[..3]).choose(&moment) < 27);
+        assert!(hose(&all[3..]).choose(&moment) < 81);
+        assert_eq!(Hose::new(Vec::new(), Vec::new()).choose(&moment), 0);
+        let huge = vec![Rank { count: u32::MAX, select: Select::Pressure }; 4];
+        assert_eq!(Hose::new(Vec::new(), huge).choose(&moment), 0);
+    }
+    #[test]
+    fn smaller_pictures_stay_smaller() {
+        let hose = hose(&[(2, Select::Incremental)]);
+        assert_eq!((hose.share(0), hose.share(1), hose.share(9)), (0.5, 1.0, 1.0));
+    }
+}
