@@ -39,7 +39,9 @@ const BEND: Operator = Operator::Normal { alpha: 0.3, beta: 0.0, detail: 0.0 };
 /// D of a dab at `center` by that operator, as the paper writes it: L is the longer side.
 fn bent(q: Vec2, center: Vec2) -> Vec2 {
     let pixel_of_center = center.floor() + 0.5;
-    q + 0.3 * 200.0 * (nbar(q) - nbar(pixel_of_center))
+    let turn = nbar(q) - nbar(pixel_of_center);
+    // f_n(u) = α u at β = 0 (SF eq. 14).
+    q + 200.0 * 0.3 * turn.length() * turn
 }
 fn brush(mark: Mark) -> Brush {
     Brush { size: 30.0, hardness: 1.0, spacing: 0.1, mark, ..Brush::default() }
@@ -79,7 +81,7 @@ fn a_smudge_drags_paint_along_and_touches_nothing_else() {
     assert!(pixel[3] > 240 && pixel[0].abs_diff(200) < 12, "{pixel:?}");
     assert_eq!((dragged.pixel(100, 90), dragged.pixel(30, 90)), ([0; 4], [200, 30, 10, 255]));
     let short = rubbed(
-        brush(Mark::Smudge { length: 0.2 }),
+        brush(Mark::Smudge { length: 0.02 }),
         Operator::None,
         &[vec2(45.0, 70.0), vec2(110.0, 70.0)],
         Vec2::ZERO,
