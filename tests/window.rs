@@ -285,14 +285,18 @@ fn layers_are_merged_baked_and_flattened_beside_the_window() {
     command(&mut harness, "Undo");
     assert_eq!(layers(&harness), ["Background"]);
 }
-/// Steps long enough for a thread to finish something small.
-fn wait(harness: &mut Harness<Option<Window>>) {
-    for _ in 0..50 {
+/// Steps until something holds that a thread brings about.
+fn wait_until(harness: &mut Harness<Option<Window>>, holds: impl Fn(&Harness<Option<Window>>) -> bool) {
+    for _ in 0..3000 {
         harness.step();
+        if holds(harness) {
+            return;
+        }
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
+    panic!("waited in vain");
 }
-/// A window that keeps its recovery logs in a folder, after it looked for what is in there.
+/// A window that keeps its recovery logs in a folder.
 fn window_recovering(folder: &std::path::Path) -> Harness<'static, Option<Window>> {
     let folder = folder.to_owned();
     let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
@@ -304,7 +308,7 @@ fn window_recovering(folder: &std::path::Path) -> Harness<'static, Option<Window
         window.show(ui);
     };
     let mut harness = Harness::builder().with_size([1280.0, 820.0]).build_ui_state(show, None);
-    wait(&mut harness);
+    harness.step();
     harness
 }
 #[test]
@@ -320,12 +324,11 @@ fn after_a_crash_the_window_offers_what_was_unsaved() {
     drop(harness);
     std::fs::write(folder.path().join("0-broken.log"), "garbage").unwrap();
     let mut harness = window_recovering(folder.path());
-    harness.get_by_label("Recover unsaved drawings?");
+    wait_until(&mut harness, |harness| harness.query_by_label("Recover unsaved drawings?").is_some());
     harness.get_by_label("Recover Unnamed").click();
-    wait(&mut harness);
-    harness.get_by_label_contains("no whole version");
+    wait_until(&mut harness, |harness| harness.query_by_label_contains("no whole version").is_some());
     harness.get_by_label("Recover all").click();
-    wait(&mut harness);
+    wait_until(&mut harness, |harness| session(harness).tab().is_some());
     assert!(harness.query_by_label("Recover unsaved drawings?").is_none());
     assert_eq!(layers(&harness), ["Background", "Gradient"]);
     let tab = session(&harness).tab().unwrap();

@@ -50,10 +50,10 @@ pub fn recipe(file: &Path, bytes: &[u8]) -> Result<()> {
     recipe::read(bytes, source).map(drop)
 }
 pub fn picture(file: &Path, bytes: &[u8]) -> Result<()> {
-    let coverage = picture::decode_coverage(file, bytes, &budget());
-    inspect::describe(file, bytes, &budget())?;
-    picture::decode(file, bytes, &budget())?;
-    coverage.map(drop)
+    // Not every picture is a mask, and not every one has something to tell.
+    let _ = picture::decode_coverage(file, bytes, &budget());
+    let _ = inspect::describe(file, bytes, &budget());
+    picture::decode(file, bytes, &budget()).map(drop)
 }
 pub fn maps(file: &Path, bytes: &[u8]) -> Result<()> {
     let name = file.to_string_lossy().into_owned();
@@ -62,13 +62,15 @@ pub fn maps(file: &Path, bytes: &[u8]) -> Result<()> {
     let depth = Some(MapSource { file: name, ..MapSource::default() });
     let normal = SurfaceSource { normal, ..SurfaceSource::default() };
     let depth = SurfaceSource { depth, ..SurfaceSource::default() };
-    let tried = [normal, depth].map(|source| maps::import(&source, &files, &budget()));
-    tried.into_iter().try_for_each(|import| {
-        let surface = import?.surface;
+    let tried = [normal, depth].map(|source| {
+        let surface = maps::import(&source, &files, &budget())?.surface;
         let is_finite = |plane: &rilievo::raster::Plane<f32>| plane.values().iter().all(|v| v.is_finite());
         assert!(is_finite(surface.depth_plane()) && surface.normal_planes().iter().all(|plane| is_finite(plane)));
         Ok(())
-    })
+    });
+    // A file may be the one and not the other.
+    let [as_normals, as_depth] = tried;
+    as_normals.or(as_depth)
 }
 pub fn recovery(file: &Path, bytes: &[u8]) -> Result<()> {
     recovery::read(file, bytes, &budget()).map(drop)

@@ -168,7 +168,7 @@ fn documents() -> Vec<Seed> {
         { "name": "photo", "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "normal" },
           "mask": { "kind": "fresnel" } },
         { "name": "relief", "kind": "radiance-scaling", "alpha": 0.3 } ] });
-    let nested = json!({ "canvas": { "width": 9, "height": 9 }, "layers": [
+    let nested = json!({ "canvas": { "width": 21, "height": 17 }, "layers": [
         { "name": "out", "kind": "group", "pass_through": true, "layers": [
             { "name": "in", "kind": "group", "blend": "screen", "mask": { "file": "p.png" }, "layers": [
                 { "name": "deep ü", "kind": "pixels", "file": "p.png", "blend": "color-burn" } ] } ] },
