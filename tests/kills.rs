@@ -12,7 +12,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_rilievo");
 /// What saving asks of the system.
@@ -121,8 +121,8 @@ fn a_full_or_failing_disk_costs_a_sentence_and_not_the_old_file() {
     let target = folder.path().join("t.ora");
     let mut failed = 0;
     for calls in ["write", "fsync", "rename,renameat2", "link,linkat"] {
-        for error in ["error=ENOSPC", "error=EIO", "error=EDQUOT"] {
-            for n in 1..12 {
+        for error in ["error=ENOSPC", "error=EIO"] {
+            for n in 1..8 {
                 std::fs::copy(folder.path().join("old.ora"), &target).unwrap();
                 let Some((said, well)) = injected(folder.path(), "t.ora", calls, error, n) else {
                     return eprintln!("skipped: strace is not installed, or may not trace here");
@@ -136,10 +136,14 @@ fn a_full_or_failing_disk_costs_a_sentence_and_not_the_old_file() {
             }
         }
     }
-    assert!(failed >= 12, "only {failed} failed");
+    assert!(failed >= 8, "only {failed} failed");
 }
 fn kill_while_saving(rounds: u32) {
     let folder = folder();
+    // Kills are spread over somewhat more than a whole run takes here.
+    let begun = Instant::now();
+    convert(folder.path(), "new.json", "t.ora");
+    let whole_micros = begun.elapsed().as_micros() as u64 * 5 / 4;
     let mut old = 0;
     for round in 0..rounds {
         std::fs::copy(folder.path().join("old.ora"), folder.path().join("t.ora")).unwrap();
@@ -149,7 +153,7 @@ fn kill_while_saving(rounds: u32) {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_micros(u64::from(mix(round)) % 60_000));
+        std::thread::sleep(Duration::from_micros(u64::from(mix(round)) % whole_micros.max(1)));
         child.kill().unwrap();
         child.wait().unwrap();
         check(folder.path(), "t.ora", &["old.ora", "new.ora"], &format!("round {round}"));
@@ -174,7 +178,7 @@ fn long_ten_thousand_kills_while_it_saves() {
     kill_while_saving(10_000);
 }
 
-const STROKES: u32 = 150;
+const STROKES: u32 = 70;
 
 /// Strokes on a stroke layer and on a paint layer by turns, now and then one of them undone.
 fn story() -> String {
