@@ -183,7 +183,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
 fn the_fill_tool_shows_its_options_and_fills() {
     let mut harness = window();
     click(&mut harness, "Fill");
-    harness.get_by_label("Close gaps");
+    assert_ne!(harness.query_all_by_label("Close gaps").count(), 0);
     harness.get_by_label("This layer only").click();
     steps(&mut harness);
     assert!(session(&harness).fill.layer_alone);
@@ -343,7 +343,7 @@ fn the_brush_is_made_to_smudge_and_says_what_it_needs() {
     harness.get_by_label("Smudge").click();
     steps(&mut harness);
     assert!(session(&harness).brush.mark.is_retouching());
-    harness.get_by_label("Length");
+    assert_ne!(harness.query_all_by_label("Length").count(), 0);
     let canvas = harness.get_by_label("Canvas").rect();
     harness.drag_at(canvas.center());
     steps(&mut harness);
