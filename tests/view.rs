@@ -95,8 +95,7 @@ fn a_folder_gets_every_view_and_a_file_the_sheet() {
     let mut names: Vec<String> =
         fs::read_dir(desk.path("all")).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    let all =
-        "curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask normals weights";
+    let all = "curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask normals objects weights";
     let mut expected: Vec<String> = all.split(' ').map(|name| format!("{name}.png")).collect();
     expected.sort();
     assert_eq!(names, expected);

@@ -76,25 +76,27 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
         let output = Output::of(&args.to)?;
         let target = Target::new(&args.to, std::slice::from_ref(&args.from))?;
         let Opened { document, notes, .. } = open(&args.from, &args.limits.budget())?;
-        tell(&args.from, &notes);
         let document = render::scaled(&args.from, args.scale, &args.limits, document)?;
         match output {
             Output::Project => {
                 // Nothing here cancels, so it is always saved.
-                progress::shown(|progress| save(&document, &args.to, Over::Anything, progress)).map(drop)
+                progress::shown(|progress| save(&document, &args.to, Over::Anything, progress))?;
             }
             Output::Psd => {
                 let written = progress::shown(|progress| psd::write(&args.to, &document, progress))?;
                 // As above.
                 let Some(written) = written else { return Ok(()) };
+                target.replace(&written.bytes)?;
                 tell(&args.to, &written.notes);
-                target.replace(&written.bytes)
             }
             Output::Picture(format) => {
                 render::refuse_incomplete(&args.from, &document)?;
-                picture(args, &document, format, &target)
+                picture(args, &document, format, &target)?;
             }
         }
+        // Beside an error they would only hide it.
+        tell(&args.from, &notes);
+        Ok(())
     })
 }
 

@@ -78,7 +78,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     // A misspelt ending is told before the work, not after it.
     Format::of(&args.output)?;
     args.limits.install(|| {
-        let (document, inputs) = load(args)?;
+        let Loaded { document, notes, inputs } = load(args)?;
         refuse_incomplete(&args.document, &document)?;
         let target = Target::new(&args.output, &inputs)?;
         let document = scaled(&args.document, args.scale, &args.limits, document)?;
@@ -92,12 +92,21 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             &pixels,
             document.size,
             &Options { background: args.background, quality: args.quality, ..Options::default() },
-        )
+        )?;
+        // Beside an error they would only hide it.
+        convert::tell(&args.document, &notes);
+        Ok(())
     })
 }
 
-/// The document and every file it was made from.
-fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
+struct Loaded {
+    document: Document,
+    notes: Vec<String>,
+    /// Every file it was made from.
+    inputs: Vec<PathBuf>,
+}
+
+fn load(args: &RenderArgs) -> Result<Loaded> {
     let budget = args.limits.budget();
     let files = Noted::new(Folder::beside(&args.document));
     let mut given = Given::default();
@@ -105,25 +114,23 @@ fn load(args: &RenderArgs) -> Result<(Document, Vec<PathBuf>)> {
     let given = Noted::new(given);
     let onto = surface.as_ref().map(|surface| Onto { surface, files: &given });
     let bytes = read_file(&args.document, budget.file_bytes)?;
-    let document = match Kind::of(&bytes) {
+    let (document, notes) = match Kind::of(&bytes) {
         Kind::Recipe => {
             let source = Source { file: &args.document, files: &files, budget: &budget, onto };
-            let (document, notes) = recipe::read_noting(&bytes, source)?;
-            convert::tell(&args.document, &notes);
-            document
+            recipe::read_noting(&bytes, source)?
         }
         _ => {
             let opened = open(&args.document, &budget)?;
-            convert::tell(&args.document, &opened.notes);
-            onto.map_or(Ok(opened.document.clone()), |onto| {
+            let document = onto.map_or(Ok(opened.document.clone()), |onto| {
                 recipe::put_onto(&opened.document, &args.document, onto, &budget)
-            })?
+            })?;
+            (document, opened.notes)
         }
     };
     let mut inputs = vec![args.document.clone()];
     inputs.extend(files.read_paths());
     inputs.extend(given.read_paths());
-    Ok((document, inputs))
+    Ok(Loaded { document, notes, inputs })
 }
 
 /// Layers that would paint black for want of what they show: better a sentence.
