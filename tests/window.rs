@@ -286,7 +286,7 @@ fn layers_are_merged_baked_and_flattened_beside_the_window() {
     assert_eq!(layers(&harness), ["Background"]);
 }
 /// Steps until something holds that a thread brings about.
-fn wait_until(harness: &mut Harness<Option<Window>>, holds: impl Fn(&Harness<Option<Window>>) -> bool) {
+fn wait_until(harness: &mut Story, holds: impl Fn(&Story) -> bool) {
     for _ in 0..3000 {
         harness.step();
         if holds(harness) {
