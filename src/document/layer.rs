@@ -86,6 +86,23 @@ pub enum Content {
     Group(Group),
 }
 
+impl Content {
+    /// The kind of layer, as documents call it.
+    pub fn kind_name(&self) -> &'static str {
+        match self {
+            Content::Fill(_) => "fill",
+            Content::Pixels(_) => "pixels",
+            Content::Image(_) => "image",
+            Content::Gradient(_) => "gradient",
+            Content::Strokes(_) => "strokes",
+            Content::Shading(_) => "shading",
+            Content::RadianceScaling(_) => "radiance-scaling",
+            Content::Normals(_) => "normals",
+            Content::Group(_) => "group",
+        }
+    }
+}
+
 /// A paint layer.
 #[derive(Clone)]
 pub struct PixelLayer {

@@ -225,21 +225,12 @@ fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
 }
 
 fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
-    use exr::prelude::*;
-    let width = size.width as usize;
-    let channels = SpecificChannels::rgba(|at: Vec2<usize>| {
-        let i = (at.y() * width + at.x()) * 4;
-        let a = f32::from(rgba[i + 3]) / 255.0;
-        let light = |c: u8| f16::from_f32(srgb::decode_u8(c) * a);
-        (light(rgba[i]), light(rgba[i + 1]), light(rgba[i + 2]), f16::from_f32(a))
-    });
-    // Lines in order: the bytes do not depend on which thread is done first.
-    let encoding =
-        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let layer = Layer::new((width, size.height as usize), LayerAttributes::default(), encoding, channels);
-    let mut bytes = Cursor::new(Vec::new());
-    Image::from_layer(layer).write().to_buffered(&mut bytes)?;
-    Ok(bytes.into_inner())
+    deep::exr(size, |i| {
+        let [r, g, b, a] = std::array::from_fn(|c| rgba[4 * i + c]);
+        let alpha = f32::from(a) / 255.0;
+        let light = |c: u8| srgb::decode_u8(c) * alpha;
+        [light(r), light(g), light(b), alpha]
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use crate::Result;
-use crate::document::{Content, Layer};
+use crate::document::Layer;
 use crate::io::Opened;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ impl DocumentFile {
         };
         let layer = |(path, layer): (String, &Arc<Layer>)| {
             json!({
-                "path": path, "name": layer.name, "kind": kind(layer), "visible": layer.visible,
+                "path": path, "name": layer.name, "kind": layer.content.kind_name(), "visible": layer.visible,
                 "opacity": f64::from(layer.opacity), "blend": layer.blend.name(),
             })
         };
@@ -58,24 +58,10 @@ impl DocumentFile {
             let hidden = if layer.visible { "" } else { ", hidden" };
             let (blend, percent) = (layer.blend.name(), layer.opacity * 100.0);
             let indent = "  ".repeat(depth + 1);
-            out += &format!("{indent}“{}”: {}, {blend}, {percent:.0} %{hidden}\n", layer.name, kind(layer));
+            out +=
+                &format!("{indent}“{}”: {}, {blend}, {percent:.0} %{hidden}\n", layer.name, layer.content.kind_name());
         }
         opened.notes.iter().for_each(|note| out += &format!("  {note}\n"));
         out
-    }
-}
-
-/// The layer's kind, as documents call it.
-fn kind(layer: &Layer) -> &'static str {
-    match &layer.content {
-        Content::Fill(_) => "fill",
-        Content::Pixels(_) => "pixels",
-        Content::Image(_) => "image",
-        Content::Gradient(_) => "gradient",
-        Content::Strokes(_) => "strokes",
-        Content::Shading(_) => "shading",
-        Content::RadianceScaling(_) => "radiance-scaling",
-        Content::Normals(_) => "normals",
-        Content::Group(_) => "group",
     }
 }

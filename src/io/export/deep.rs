@@ -31,7 +31,7 @@ pub fn encode(file: &Path, format: Format, pixels: &[[f32; 4]], canvas: Size, op
             let image = image::ImageBuffer::from_raw(size.width, size.height, values);
             tiff(file, image.map(DynamicImage::ImageRgba16))
         }
-        Format::Exr => exr(&part, size).map_err(|e| Error::unsupported(file, e)),
+        Format::Exr => exr(size, |i| light(&part[i])).map_err(|e| Error::unsupported(file, e)),
         Format::Jpeg | Format::WebP => {
             Err(Error::unsupported(file, "this format has 8 bits a channel; PNG, TIFF and EXR have more"))
         }
@@ -58,11 +58,14 @@ pub(super) fn tiff(file: &Path, image: Option<DynamicImage>) -> Result<Vec<u8>> 
     Ok(bytes.into_inner())
 }
 
-fn exr(pixels: &[[f32; 4]], size: Size) -> Result<Vec<u8>, exr::error::Error> {
+/// A half-float EXR of a picture, one part.
+///
+/// `light`: of the pixel with a number, row by row: linear, multiplied by alpha.
+pub(super) fn exr(size: Size, light: impl Fn(usize) -> [f32; 4] + Sync) -> Result<Vec<u8>, exr::error::Error> {
     use exr::prelude::*;
     let width = size.width as usize;
     let channels = SpecificChannels::rgba(|at: Vec2<usize>| {
-        let [r, g, b, a] = light(&pixels[at.y() * width + at.x()]).map(f16::from_f32);
+        let [r, g, b, a] = light(at.y() * width + at.x()).map(f16::from_f32);
         (r, g, b, a)
     });
     // Lines in order: the bytes do not depend on which thread is done first.

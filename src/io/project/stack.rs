@@ -86,14 +86,8 @@ fn write_layer(common: &str, kind: &str, picture: Option<&(String, Encoded)>) ->
 /// What a layer is beside its pixels; empty where its pixels are all.
 fn kind(content: &Content) -> &'static str {
     match content {
-        Content::Fill(_) => "fill",
-        Content::Image(_) => "image",
-        Content::Gradient(_) => "gradient",
-        Content::Strokes(_) => "strokes",
-        Content::Shading(_) => "shading",
-        Content::RadianceScaling(_) => "radiance-scaling",
-        Content::Normals(_) => "normals",
         Content::Pixels(_) | Content::Group(_) => "",
+        _ => content.kind_name(),
     }
 }
 
