@@ -5,6 +5,7 @@ mod asked;
 mod canvas;
 mod commands;
 mod dialogs;
+mod event_loop;
 mod files;
 mod icons;
 mod jobs;
@@ -26,7 +27,9 @@ pub use window::Window;
 
 use crate::{Error, Result};
 use eframe::egui;
+use std::cell::Cell;
 use std::path::PathBuf;
+use std::rc::Rc;
 
 /// Opens the window with these files, or with the sample where there are none; returns when it is closed.
 ///
@@ -39,22 +42,27 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         .with_min_inner_size([720.0, 480.0])
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions { viewport, ..Default::default() };
+    let (tablet, is_open) = (pen::SharedTablet::default(), Rc::new(Cell::new(false)));
+    let (pen, opened) = (tablet.clone(), is_open.clone());
     let start = move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {
+        opened.set(true);
         theme::install(&cc.egui_ctx);
         let mut window = Window::remembering(&cc.egui_ctx, settings::file());
+        window.draw_on(pen);
         if let Some(folder) = crate::io::recovery::folder() {
             window.keep_recovery_in(folder);
         }
         window.begin(files);
         Ok(Box::new(window))
     };
-    eframe::run_native("rilievo", options, Box::new(start)).map_err(|error| {
-        // Only what is wrong, not where the windowing library found it.
-        let said = error.to_string();
-        let wrong = said.rsplit(": ").next().unwrap_or(&said).trim_end_matches(['.', ')']);
-        Error::unsupported(
-            "display",
-            format!("no window can be opened here ({wrong}); “rilievo render” paints without one"),
-        )
-    })
+    let wrong = match event_loop::run(options, tablet, Box::new(start)) {
+        Ok(()) if is_open.get() => return Ok(()),
+        // The windowing library keeps what was wrong to itself.
+        Ok(()) => "the display has no OpenGL to draw with".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    // Only what is wrong, not where the windowing library found it.
+    let wrong = wrong.rsplit(": ").next().unwrap_or(&wrong).trim_end_matches(['.', ')']);
+    let told = format!("no window can be opened here ({wrong}); “rilievo render” paints without one");
+    Err(Error::unsupported("display", told))
 }

@@ -26,17 +26,17 @@ pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
     let Some(layer) = document.layer(id) else { return (None, Outcome::Idle) };
     let scene = document.scene_of(id).unwrap_or_else(|| document.scene());
     let (target, ground) = match (&layer.content, purpose) {
-        (Content::Strokes(list), Purpose::Paint) => {
+        (Content::Strokes(list), Purpose::Erase) if pen.keys.ctrl => {
+            let taken =
+                TakenAway { document: context.document.clone(), layer: id, list: list.clone(), gone: Vec::new() };
+            return begin(taken, pen);
+        }
+        (Content::Strokes(list), _) => {
             let strokes = list.params().strokes.clone();
             // Of an empty layer everything is known.
             let blank = TileAt::covering(scene.size.rect()).filter(|_| strokes.is_empty()).map(|at| (at, None));
             let shown = list.with_tiles(list.params().clone(), &scene, blank);
             (Target::Strokes { beneath: strokes.clone(), shown }, Ground::Strokes(strokes))
-        }
-        (Content::Strokes(list), Purpose::Erase) => {
-            let taken =
-                TakenAway { document: context.document.clone(), layer: id, list: list.clone(), gone: Vec::new() };
-            return begin(taken, pen);
         }
         (Content::Pixels(pixels), _) => {
             let mut shown = pixels.tiles.clone();
@@ -89,7 +89,10 @@ fn paintable(context: &Context, purpose: Purpose) -> Option<(Document, LayerId)>
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));
     if let Some(layer) = selected {
-        let holds = matches!(layer.content, Content::Strokes(_) | Content::Pixels(_));
+        let holds = match &layer.content {
+            Content::Strokes(list) => purpose == Purpose::Paint || !list.params().strokes.is_empty(),
+            content => matches!(content, Content::Pixels(_)),
+        };
         if layer.lock == Lock::All {
             return None;
         }
@@ -188,7 +191,7 @@ impl Gesture for Painting {
     }
 }
 
-/// The eraser on a stroke layer: a stroke that is touched is gone.
+/// The eraser with Ctrl on a stroke layer: a stroke that is touched is gone.
 struct TakenAway {
     document: Document,
     layer: LayerId,
@@ -252,7 +255,7 @@ mod tests {
     use crate::math::{Size, vec2};
     use crate::paint::{Brush, Stabilizer};
     use crate::surface::Operator;
-    use crate::tools::Symmetry;
+    use crate::tools::{Keys, Symmetry};
 
     fn context<'a>(document: &'a Document, layer: Option<LayerId>, brush: &'a Brush) -> Context<'a> {
         Context { layer, ..Context::new(document, brush) }
@@ -335,14 +338,30 @@ mod tests {
         assert!(press(&context(&locked, Some(id), &brush), Pen::at(LINE[0]), Purpose::Paint).0.is_none());
     }
     #[test]
-    fn the_eraser_takes_whole_strokes_from_a_stroke_layer() {
+    fn the_eraser_with_ctrl_takes_whole_strokes_from_a_stroke_layer() {
         let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
         let (one, id) = drawn(&context(&empty, None, &brush), Purpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
         let (two, _) = drawn(&context(&one, id, &brush), Purpose::Paint, &[vec2(10.0, 90.0), vec2(90.0, 90.0)]);
-        let (left, _) = drawn(&context(&two, id, &brush), Purpose::Erase, &[vec2(50.0, 91.0)]);
+        let ctrl = Pen { keys: Keys { ctrl: true, ..Keys::default() }, ..Pen::at(vec2(50.0, 91.0)) };
+        let (gesture, _) = press(&context(&two, id, &brush), ctrl, Purpose::Erase);
+        let Outcome::Commit { document: left, .. } = gesture.unwrap().release() else { panic!("one is gone") };
         let Content::Strokes(list) = &left.layers[0].content else { panic!("a stroke layer") };
         assert_eq!(list.params().strokes.len(), 1);
         assert_eq!(list.params().strokes[0].samples()[0].at.y, 20.0);
+    }
+    #[test]
+    fn the_eraser_lays_a_stroke_that_takes_paint_away_where_there_are_strokes() {
+        let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
+        let (one, id) = drawn(&context(&empty, None, &brush), Purpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
+        let (cut, _) = drawn(&context(&one, id, &brush), Purpose::Erase, &[vec2(50.0, 5.0), vec2(50.0, 60.0)]);
+        let Content::Strokes(list) = &cut.layers[0].content else { panic!("a stroke layer") };
+        let erases: Vec<bool> = list.params().strokes.iter().map(|stroke| stroke.brush().erases).collect();
+        assert_eq!(erases, [false, true]);
+        let (none, id) = (one.with_layer(one.layers[0].id, |layer| layer.content = blank()).unwrap(), id.unwrap());
+        assert!(press(&context(&none, Some(id), &brush), Pen::at(LINE[0]), Purpose::Erase).0.is_none());
+    }
+    fn blank() -> Content {
+        Content::Strokes(Live::new(StrokeList::default()))
     }
     #[test]
     fn mirror_images_are_strokes_of_their_own() {

@@ -67,7 +67,7 @@ impl ToolKind {
             name: "eraser",
             label: "Eraser",
             key: 'E',
-            hint: "Erase with the brush in hand; on a stroke layer, take away the strokes you touch",
+            hint: "Erase with the brush in hand; on a stroke layer, Ctrl takes away whole strokes that you touch",
         },
         ToolRow {
             kind: ToolKind::Fill,

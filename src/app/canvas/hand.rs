@@ -2,7 +2,7 @@
 //! the pointer stands when a frame is drawn.
 //! Floor 7.
 
-use crate::app::pen::{PenSource, Phase, Reading, Report, Watch, WindowPen};
+use crate::app::pen::{PenSource, Phase, Reading, Report, SharedTablet, Watch, WindowPen};
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
 use crate::session::actions::{EditAction, HandAction, PointerAction, ViewAction};
@@ -49,6 +49,10 @@ pub struct Hand {
 }
 
 impl Hand {
+    /// The tablet that the window's pointer may belong to.
+    pub fn draw_on(&mut self, tablet: SharedTablet) {
+        self.pen.on(tablet);
+    }
     /// The view is being moved: nothing is painted, and no cursor of the brush is shown.
     pub fn is_looking(&self) -> bool {
         matches!(self.holding, Holding::Panning | Holding::Zooming { .. } | Holding::Turning) || self.space
@@ -106,7 +110,7 @@ impl Hand {
             );
         }
         for event in events {
-            self.pen.hear(&event, now_secs);
+            self.pen.hear(&event, ui.ctx().pixels_per_point(), now_secs);
             if let Event::Touch { phase, pos, .. } = &event {
                 self.touched(*phase, ours(*pos), now_secs, &mut listening);
             }
@@ -138,6 +142,7 @@ impl Hand {
                 _ => {}
             }
         }
+        self.pen.settle();
         listening.flush();
     }
     /// A finger, or a pen that reports itself as one. Two that come down and go again, without moving, take a step back.

@@ -12,6 +12,7 @@ pub use marks::color32;
 pub use overlay::loaded;
 
 use super::painter::{Painter, Wanted};
+use super::pen::SharedTablet;
 use super::theme;
 use crate::Error;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
@@ -85,6 +86,10 @@ impl Canvas {
             is_busy: false,
             trouble,
         }
+    }
+    /// The tablet that the window's pointer may belong to.
+    pub fn draw_on(&mut self, tablet: SharedTablet) {
+        self.hand.draw_on(tablet);
     }
     /// Draws the canvas and pushes what the pen does to it.
     pub fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

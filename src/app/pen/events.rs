@@ -1,7 +1,9 @@
-//! The window's own events as a pen: a mouse, or a touch with the force that it reports (pens on Windows, phones and the web).
+//! The window's own events as a pen: a mouse, a touch with the force that it reports (pens on Windows, phones and the web), or
+//! a pointer whose tablet tells pressure and tilt beside it (pens on X11).
 //! Floor 7.
 
-use super::{PenSource, Phase, Report};
+use super::tablet::Held;
+use super::{PenSource, Phase, Report, SharedTablet};
 use eframe::egui::{Event, Pos2, TouchPhase};
 use std::collections::VecDeque;
 
@@ -14,11 +16,19 @@ pub struct WindowPen {
     force: Option<f32>,
     /// Fingers and pens on the glass.
     touches: usize,
+    tablet: Option<SharedTablet>,
+    /// What the tablet told last.
+    held: Held,
+    is_down: bool,
 }
 
 impl WindowPen {
-    /// Hears an event of a frame; what the pen did comes out as reports.
-    pub fn hear(&mut self, event: &Event, now_secs: f64) {
+    /// The tablet that pointer and buttons may belong to.
+    pub fn on(&mut self, tablet: SharedTablet) {
+        self.tablet = Some(tablet);
+    }
+    /// Hears an event of a frame, in which a point has so many px; what the pen did comes out as reports.
+    pub fn hear(&mut self, event: &Event, px_per_pt: f32, now_secs: f64) {
         let phase = match *event {
             Event::Touch { phase, force, .. } => {
                 match phase {
@@ -31,26 +41,42 @@ impl WindowPen {
                 (phase == TouchPhase::Cancel).then_some(Phase::Lost)
             }
             Event::PointerMoved(at) => {
-                self.at = at;
+                self.moved(at, px_per_pt, now_secs);
                 Some(Phase::Move)
             }
             Event::PointerButton { pos, button, pressed, .. } => {
                 self.at = pos;
+                self.is_down = pressed;
                 Some(if pressed { Phase::Down(button) } else { Phase::Up })
             }
             // A mouse's button goes up elsewhere when the window loses the keyboard, and nobody tells.
             Event::WindowFocused(false) => Some(Phase::Lost),
             _ => None,
         };
-        let report = |phase| Report {
-            phase,
-            at: self.at,
-            pressure: self.force,
-            tilt: (0.0, 0.0),
-            secs: now_secs,
-            is_eraser: false,
-        };
-        self.reports.extend(phase.map(report));
+        let report = phase.map(|phase| self.report(phase, now_secs));
+        self.reports.extend(report);
+    }
+    /// All events of a frame are heard.
+    pub fn settle(&mut self) {
+        if let Some(tablet) = &self.tablet {
+            tablet.borrow_mut().settle();
+        }
+    }
+    fn moved(&mut self, at: Pos2, px_per_pt: f32, now_secs: f64) {
+        let at_px = [at.x * px_per_pt, at.y * px_per_pt].map(f64::from);
+        if let Some(held) = self.tablet.as_ref().and_then(|tablet| tablet.borrow_mut().take(at_px)) {
+            // Another device took the pointer: what the first one drew ends where it was.
+            if self.is_down && held.device != self.held.device {
+                self.is_down = false;
+                self.reports.push_back(self.report(Phase::Lost, now_secs));
+            }
+            self.held = held;
+        }
+        self.at = at;
+    }
+    fn report(&self, phase: Phase, secs: f64) -> Report {
+        let Held { pressure, tilt, is_eraser, .. } = self.held;
+        Report { phase, at: self.at, pressure: self.force.or(pressure), tilt, secs, is_eraser }
     }
     /// How many fingers and pens are on the glass: two or more look, they do not paint.
     pub fn touches(&self) -> usize {
@@ -66,6 +92,7 @@ impl PenSource for WindowPen {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Axes, Axis, Reads};
     use super::*;
     use eframe::egui::{Modifiers, PointerButton, TouchDeviceId, TouchId, pos2};
 
@@ -74,7 +101,7 @@ mod tests {
     }
     fn reports(events: &[Event]) -> Vec<(Phase, Option<f32>)> {
         let mut pen = WindowPen::default();
-        events.iter().for_each(|event| pen.hear(event, 0.0));
+        events.iter().for_each(|event| pen.hear(event, 1.0, 0.0));
         std::iter::from_fn(|| pen.next()).map(|report| (report.phase, report.pressure)).collect()
     }
     fn button(pressed: bool) -> Event {
@@ -100,5 +127,34 @@ mod tests {
         let events = [touch(TouchPhase::Start, Some(1.0)), button(true), touch(TouchPhase::Cancel, None)];
         assert_eq!(reports(&events).last(), Some(&(Phase::Lost, None)));
         assert_eq!(reports(&[button(true)]), [(Phase::Down(PointerButton::Primary), None)]);
+    }
+    #[test]
+    fn a_tablets_pressure_is_that_of_its_motion_at_any_scale_of_the_screen() {
+        let tablet = SharedTablet::default();
+        let axes = Axis::new(2, Reads::Pressure, (0.0, 1000.0), 0.0);
+        tablet.borrow_mut().follow(Axes { device: 7, axes: axes.into_iter().collect(), is_eraser: true });
+        let mut pen = WindowPen::default();
+        pen.on(tablet.clone());
+        for (at_px, pressure) in [([33.25, 10.5], 250.0), ([36.0, 12.0], 500.0)] {
+            tablet.borrow_mut().moved(at_px);
+            tablet.borrow_mut().axis(2, pressure);
+        }
+        pen.hear(&Event::PointerMoved(pos2(33.25 / 1.5, 7.0)), 1.5, 0.0);
+        pen.hear(&Event::PointerMoved(pos2(24.0, 8.0)), 1.5, 0.0);
+        let reports: Vec<_> = std::iter::from_fn(|| pen.next()).map(|r| (r.pressure, r.is_eraser)).collect();
+        assert_eq!(reports, [(Some(0.25), true), (Some(0.5), true)]);
+    }
+    #[test]
+    fn another_device_that_takes_the_pointer_ends_the_stroke() {
+        let tablet = SharedTablet::default();
+        let mut pen = WindowPen::default();
+        pen.on(tablet.clone());
+        pen.hear(&button(true), 1.0, 0.0);
+        tablet.borrow_mut().follow(Axes { device: 8, ..Axes::default() });
+        tablet.borrow_mut().moved([50.0, 60.0]);
+        pen.hear(&Event::PointerMoved(pos2(50.0, 60.0)), 1.0, 0.0);
+        let reports: Vec<_> = std::iter::from_fn(|| pen.next()).map(|r| (r.phase, r.at)).collect();
+        let (down, up_to) = (Phase::Down(PointerButton::Primary), pos2(3.0, 4.0));
+        assert_eq!(reports, [(down, up_to), (Phase::Lost, up_to), (Phase::Move, pos2(50.0, 60.0))]);
     }
 }

@@ -1,18 +1,23 @@
 //! The pen as a platform reports it, whichever that is: a [`PenSource`] says what the pen did, [`Watch`] makes good readings of
 //! it and ends a stroke whose pen went bad.
-//! Floor 7. Sources: `events`, the window's own (mouse, touch with its force, pens that come as touch); `recorded`, for tests.
+//! Floor 7. Sources: `events`, the window's own (mouse, touch with its force, pens that come as touch, pens that come as a
+//! pointer with a `tablet`'s axes); `recorded`, for tests. What the axes mean is told by a platform's [`Devices`]: `x11`.
 //! Not here: what the reports do (`canvas::hand`).
 
 mod events;
 #[cfg(test)]
 mod recorded;
+mod tablet;
 mod watch;
+#[cfg(all(unix, not(target_os = "macos")))]
+mod x11;
 
 use eframe::egui::{PointerButton, Pos2};
 
 pub use events::WindowPen;
 #[cfg(test)]
 pub use recorded::RecordedPen;
+pub use tablet::{Axes, Axis, Reads, SharedTablet};
 pub use watch::{Reading, Watch};
 
 /// One report.
@@ -47,4 +52,23 @@ pub enum Phase {
 pub trait PenSource {
     /// The next report; `None` while there is none.
     fn next(&mut self) -> Option<Report>;
+}
+
+/// Whatever knows which pen moves the pointer.
+pub trait Devices {
+    /// The axes of the device that moves the pointer now, where they are not those it last told.
+    fn change(&mut self) -> Option<Axes>;
+}
+
+/// What the platform of the window knows of pens beyond its events; `None` where that is all there is.
+#[cfg(all(unix, not(target_os = "macos")))]
+pub fn devices<T>(events: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn Devices>> {
+    let is_x11 = winit::platform::x11::EventLoopExtX11::is_x11(events);
+    let server = is_x11.then(x11::Server::connect).flatten()?;
+    Some(Box::new(server))
+}
+/// What the platform of the window knows of pens beyond its events.
+#[cfg(not(all(unix, not(target_os = "macos"))))]
+pub fn devices<T>(_: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn Devices>> {
+    None
 }

@@ -12,6 +12,7 @@ use super::canvas::Canvas;
 use super::dialogs::{Answer, Dialog, Then, export, import, new, palette, shortcuts};
 use super::files::Purpose;
 use super::jobs::{Done, Jobs, While};
+use super::pen::SharedTablet;
 use super::settings::{Keeper, Settings, Side};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
@@ -78,6 +79,10 @@ impl Window {
     /// A window that asks for files with its own dialog, whatever the system has.
     pub fn asking_itself(self) -> Self {
         Self { asks_itself: true, ..self }
+    }
+    /// The tablet that the pointer may belong to.
+    pub fn draw_on(&mut self, tablet: SharedTablet) {
+        self.canvas.draw_on(tablet);
     }
     /// Opens what the program was started with.
     pub fn begin(&mut self, files: Vec<PathBuf>) {

@@ -1,0 +1,187 @@
+//! A pen that moves the pointer as a mouse does and tells its pressure and tilt on axes of its own: what it held at each motion.
+//! Floor 7. Which axes those are is [`Devices`](super::Devices)' to say.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+/// Heard by the event loop, read by the window, both on one thread.
+pub type SharedTablet = Rc<RefCell<Tablet>>;
+
+/// Motions kept for a window that does not read them: more than a second of the fastest pen.
+const MOST_MOTIONS: usize = 4096;
+/// Places that the window rounded to points and back are the same within this, px.
+const SAME_PX: f64 = 0.02;
+
+/// How far pens tell their tilt.
+const FARTHEST_DEGREES: f64 = 60.0;
+
+/// What one axis of a device tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reads {
+    Pressure,
+    /// Degrees from upright, to the right.
+    TiltX,
+    /// Degrees from upright, down.
+    TiltY,
+}
+
+/// One axis of a device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    pub number: u32,
+    pub reads: Reads,
+    pub range: (f64, f64),
+    /// When the device was found.
+    pub value: f64,
+}
+
+impl Axis {
+    /// `None` where the device tells a range that nothing lies in.
+    pub fn new(number: u32, reads: Reads, range: (f64, f64), value: f64) -> Option<Self> {
+        (range.1 > range.0).then_some(Self { number, reads, range, value })
+    }
+    /// Of the range, `[0, 1]`. What is no number stays so, and ends the stroke it comes in.
+    fn ratio(&self, value: f64) -> f64 {
+        ((value - self.range.0) / (self.range.1 - self.range.0)).clamp(0.0, 1.0)
+    }
+    /// The common drivers tell degrees; any other range is taken to go from one side to the other.
+    fn degrees(&self, value: f64) -> f64 {
+        let is_degrees = self.range.0 < 0.0 && self.range.0 >= -90.0 && self.range.1 <= 90.0;
+        if is_degrees { value.clamp(-90.0, 90.0) } else { (2.0 * self.ratio(value) - 1.0) * FARTHEST_DEGREES }
+    }
+}
+
+/// The axes of one device that are a pen's; a mouse has none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axes {
+    /// Which device, by the platform's count.
+    pub device: u32,
+    pub axes: Vec<Axis>,
+    /// The device is the other end of a pen.
+    pub is_eraser: bool,
+}
+
+/// What a pen held at one motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Held {
+    pub device: u32,
+    /// `[0, 1]`; `None` of a mouse.
+    pub pressure: Option<f32>,
+    /// Degrees from upright, right and down positive, `[-90, 90]`.
+    pub tilt: (f32, f32),
+    pub is_eraser: bool,
+}
+
+/// What the pen held at each motion of the pointer that the window has not yet read.
+#[derive(Debug, Default)]
+pub struct Tablet {
+    axes: Axes,
+    held: Held,
+    /// Where, px, and what was held there.
+    motions: VecDeque<([f64; 2], Held)>,
+}
+
+impl Tablet {
+    /// Another device moves the pointer from now on.
+    pub fn follow(&mut self, axes: Axes) {
+        self.held = Held { device: axes.device, is_eraser: axes.is_eraser, ..Held::default() };
+        self.axes = axes;
+        for axis in self.axes.axes.clone() {
+            self.read(&axis, axis.value);
+        }
+    }
+    /// The pointer moved to a place of the window, px; its axes follow.
+    pub fn moved(&mut self, at_px: [f64; 2]) {
+        if self.motions.len() == MOST_MOTIONS {
+            self.motions.pop_front();
+        }
+        self.motions.push_back((at_px, self.held));
+    }
+    /// An axis of the motion that was told last.
+    pub fn axis(&mut self, number: u32, value: f64) {
+        if let Some(axis) = self.axes.axes.iter().find(|axis| axis.number == number).copied() {
+            self.read(&axis, value);
+        }
+        if let Some((_, held)) = self.motions.back_mut() {
+            *held = self.held;
+        }
+    }
+    fn read(&mut self, axis: &Axis, value: f64) {
+        match axis.reads {
+            Reads::Pressure => self.held.pressure = Some(axis.ratio(value) as f32),
+            Reads::TiltX => self.held.tilt.0 = axis.degrees(value) as f32,
+            Reads::TiltY => self.held.tilt.1 = axis.degrees(value) as f32,
+        }
+    }
+    /// What was held at the window's next motion, which went to this place, px; `None` where no device told of it.
+    pub fn take(&mut self, at_px: [f64; 2]) -> Option<Held> {
+        let is_here = |at: [f64; 2]| (at[0] - at_px[0]).abs() < SAME_PX && (at[1] - at_px[1]).abs() < SAME_PX;
+        let found = self.motions.iter().position(|&(at, _)| is_here(at))?;
+        self.motions.drain(..=found).next_back().map(|(_, held)| held)
+    }
+    /// The window has read all that came.
+    pub fn settle(&mut self) {
+        self.motions.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pen() -> Tablet {
+        let axis = |number, reads, range| Axis::new(number, reads, range, 0.0);
+        let axes = [
+            axis(2, Reads::Pressure, (0.0, 2000.0)),
+            axis(3, Reads::TiltX, (-64.0, 63.0)),
+            axis(4, Reads::TiltY, (0.0, 100.0)),
+            axis(5, Reads::Pressure, (7.0, 7.0)),
+        ];
+        let mut tablet = Tablet::default();
+        tablet.follow(Axes { device: 9, axes: axes.into_iter().flatten().collect(), is_eraser: false });
+        tablet
+    }
+
+    #[test]
+    fn each_motion_keeps_what_the_axes_told_after_it() {
+        let mut pen = pen();
+        for (x, pressure) in [(1.0, 500.0), (2.0, 1000.0), (3.0, 3000.0)] {
+            pen.moved([x, 0.0]);
+            pen.axis(2, pressure);
+        }
+        pen.axis(3, 30.0);
+        pen.axis(4, 75.0);
+        let pressure = |held: Option<Held>| held.and_then(|held| held.pressure);
+        assert_eq!(pressure(pen.take([1.0, 0.0])), Some(0.25));
+        // The window put two motions together: the second is what it read.
+        let last = pen.take([3.0, 0.001]).unwrap();
+        assert_eq!((last.pressure, last.tilt, last.device), (Some(1.0), (30.0, 30.0), 9));
+        assert_eq!(pen.take([2.0, 0.0]), None);
+    }
+    #[test]
+    fn a_mouse_has_no_pressure_after_a_pen_had() {
+        let mut tablet = pen();
+        tablet.follow(Axes::default());
+        tablet.moved([5.0, 5.0]);
+        // A wheel's axis is nobody's.
+        tablet.axis(3, 120.0);
+        assert_eq!(tablet.take([5.0, 5.0]), Some(Held::default()));
+    }
+    #[test]
+    fn what_is_no_number_stays_none_and_an_empty_range_is_no_axis() {
+        let mut pen = pen();
+        pen.moved([0.0, 0.0]);
+        pen.axis(2, f64::NAN);
+        assert!(pen.take([0.0, 0.0]).unwrap().pressure.unwrap().is_nan());
+        assert_eq!(Axis::new(1, Reads::Pressure, (f64::NAN, 1.0), 0.0), None);
+    }
+    #[test]
+    fn motions_that_nobody_reads_do_not_pile_up() {
+        let mut pen = pen();
+        (0..10_000).for_each(|i| pen.moved([f64::from(i), 0.0]));
+        assert_eq!(pen.motions.len(), MOST_MOTIONS);
+        pen.settle();
+        assert_eq!(pen.take([9_999.0, 0.0]), None);
+    }
+}
