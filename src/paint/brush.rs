@@ -5,6 +5,7 @@ use super::dynamics::{Dynamics, Input};
 use super::grain::{Grain, GrainSource};
 use super::image::PictureSource;
 use super::tip::{Bristles, Hose, Noise};
+use crate::math::{Mat2, Vec2};
 use crate::raster::BlendMode;
 use crate::surface::Bounded;
 
@@ -23,6 +24,8 @@ pub struct Brush {
     pub spacing: f32,
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
+    /// How symmetry turned the stroke.
+    pub facing: Facing,
     /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
     pub softness: f32,
     /// How far a dab may stand from the stroke, a ratio of its diameter, `[0, 10]`.
@@ -45,6 +48,38 @@ pub struct Brush {
     pub dynamics: Dynamics,
     /// Whatever is random about a stroke follows from it: the same seed and samples paint the same pixels.
     pub seed: u32,
+}
+
+/// The frame that a stroke was drawn in, as it lies on the canvas: mirrored first, turned then. What turns or scatters a dab does
+/// so within it, so that the images of one stroke are images dab by dab.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Facing {
+    /// Counter-clockwise as seen, degrees.
+    pub turn: f32,
+    /// Left and right are exchanged.
+    pub is_mirrored: bool,
+}
+
+impl Facing {
+    /// Of an orthogonal map of the canvas, y down.
+    pub fn of(map: Mat2) -> Self {
+        let is_mirrored = map.determinant() < 0.0;
+        let across = if is_mirrored { -map.x_axis } else { map.x_axis };
+        Self { turn: (-across.y).atan2(across.x).to_degrees(), is_mirrored }
+    }
+    /// The map that it is: canvas from the stroke's frame.
+    pub fn map(self) -> Mat2 {
+        let mirror = Mat2::from_diagonal(Vec2::new(if self.is_mirrored { -1.0 } else { 1.0 }, 1.0));
+        // Counter-clockwise as seen is clockwise where y goes down.
+        Mat2::from_angle(-self.turn_rad()) * mirror
+    }
+    /// How far a footprint is turned that is turned so far within the frame; mirrored, it is then mirrored left to right.
+    pub fn rotation_rad(self, within_rad: f32) -> f32 {
+        if self.is_mirrored { self.turn_rad() - within_rad } else { self.turn_rad() + within_rad }
+    }
+    fn turn_rad(self) -> f32 {
+        if self.turn.is_finite() { self.turn.to_radians() } else { 0.0 }
+    }
 }
 
 /// What a brush does where its footprint lands. All but paint work on what a paint layer holds.
@@ -165,6 +200,7 @@ impl Default for Brush {
             flow: 1.0,
             spacing: 0.1,
             rotation: 0.0,
+            facing: Facing::default(),
             softness: 0.0,
             scatter: 0.0,
             jitter: Jitter::default(),

@@ -7,7 +7,7 @@ use super::dynamics::{FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, Read
 use super::scene::Scene;
 use super::stroke::Sample;
 use super::tint;
-use crate::math::{Vec2, hash, srgb::Color};
+use crate::math::{Mat2, Vec2, hash, srgb::Color};
 use crate::surface::{Curvature, Operator};
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -38,6 +38,8 @@ pub struct Dab {
     pub radius: f32,
     /// Counter-clockwise as seen.
     pub rotation_rad: f32,
+    /// The footprint is exchanged left to right, as it lies in its own frame.
+    pub is_mirrored: bool,
     /// See [`Brush::hardness`], [`Brush::softness`].
     pub hardness: f32,
     pub softness: f32,
@@ -62,6 +64,7 @@ impl Dab {
             at,
             radius,
             rotation_rad: 0.0,
+            is_mirrored: false,
             hardness: 1.0,
             softness: 0.0,
             flow: 1.0,
@@ -81,6 +84,8 @@ struct Rules {
     operator: Operator,
     color: Color,
     scene: Scene,
+    /// Canvas from the frame that the stroke was drawn in.
+    facing: Mat2,
     /// Where something follows it.
     curvature: Option<Arc<Curvature>>,
     reads_surface: bool,
@@ -116,6 +121,7 @@ impl Rules {
             operator,
             color,
             scene: scene.clone(),
+            facing: brush.facing.map(),
             curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
             varies_in_color: tint::varies(brush),
@@ -123,11 +129,12 @@ impl Rules {
     }
     fn readings(&self, place: Place, direction: Vec2, travelled_px: f64, number: u32) -> Readings {
         let unit = |v: f32| v.max(0.0).min(1.0);
+        let in_frame = |v: Vec2| self.facing.transpose() * v;
         let readings = Readings {
             pressure: place.pressure,
             tilt: unit(place.tilt.length() / 90.0),
-            tilt_direction: turns_of(place.tilt),
-            direction: turns_of(direction),
+            tilt_direction: turns_of(in_frame(place.tilt)),
+            direction: turns_of(in_frame(direction)),
             speed: unit(place.px_per_sec / (FAST_LENGTHS_PER_SEC * self.scene.size.longer_side())),
             distance: unit(travelled_px as f32 / (FAR_DIAMETERS * self.brush.size)),
             seed: hash::mix(self.brush.seed ^ hash::mix(number.wrapping_add(0x9e37_79b9))),
@@ -168,7 +175,7 @@ impl Rules {
         }
         let (turn, share) = (hash::unit(readings.seed, 0, 3), hash::unit(readings.seed, 1, 3));
         // The root spreads them evenly over the disc.
-        at + farthest * share.sqrt() * Vec2::from_angle(TAU * turn)
+        at + self.facing * (farthest * share.sqrt() * Vec2::from_angle(TAU * turn))
     }
     /// The dab of a place; `None` where nothing would be seen.
     fn dab(&self, place: Vec2, readings: Readings, number: u32) -> Option<Dab> {
@@ -189,7 +196,8 @@ impl Rules {
         is_seen.then(|| Dab {
             at,
             radius: radius.max(PIXEL_RADIUS_PX),
-            rotation_rad: rotation_rad + TAU * dynamics.turns(Property::Rotation, &readings),
+            rotation_rad: brush.facing.rotation_rad(rotation_rad + TAU * dynamics.turns(Property::Rotation, &readings)),
+            is_mirrored: brush.facing.is_mirrored,
             hardness: unit(driven(brush.hardness, Property::Hardness)),
             softness: unit(driven(brush.softness, Property::Softness)),
             flow: unit(flow),

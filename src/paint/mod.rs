@@ -26,7 +26,7 @@ pub mod tip;
 mod wash;
 
 pub use adjust::Adjust;
-pub use brush::{Brush, Jitter, Mark, Stabilizer, Tip};
+pub use brush::{Brush, Facing, Jitter, Mark, Stabilizer, Tip};
 pub use calm::Calm;
 pub use dynamics::{Curve, Drive, Dynamics, Input, Property, Readings};
 pub use fill::Fill;

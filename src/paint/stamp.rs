@@ -122,7 +122,9 @@ impl Stamp {
     pub fn texels_from_canvas(&self, dab: &Dab) -> Affine2 {
         let texels_per_px = Vec2::splat(self.texels_per_radius / dab.radius);
         // Counter-clockwise as seen is clockwise in y-down coordinates, so the inverse turns by +rotation.
+        let mirror = Vec2::new(if dab.is_mirrored { -1.0 } else { 1.0 }, 1.0);
         Affine2::from_translation(self.texture.size().center())
+            * Affine2::from_scale(mirror)
             * Affine2::from_scale_angle_translation(texels_per_px, dab.rotation_rad, Vec2::ZERO)
             * Affine2::from_translation(-dab.at)
     }

@@ -7,7 +7,7 @@ use crate::Result;
 use crate::io::json::{Fields, Node, Object, object};
 use crate::math::vec2;
 use crate::paint::dynamics::MAX_POINTS;
-use crate::paint::{Brush, Curve, Dynamics, Input, Jitter, Mark, Property, Stabilizer};
+use crate::paint::{Brush, Curve, Dynamics, Facing, Input, Jitter, Mark, Property, Stabilizer};
 use crate::raster::BlendMode;
 use crate::surface::Bounded;
 use serde_json::{Value, json};
@@ -22,6 +22,7 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         // A hundredth of the diameter is as good as a line; less only costs time.
         spacing: fields.number("spacing", base.spacing, 0.01..=100.0)?,
         rotation: fields.number("rotation", base.rotation, TURNS)?,
+        facing: fields.get("facing").map_or(Ok(base.facing), |node| facing(&node))?,
         softness: fields.number("softness", base.softness, 0.0..=1.0)?,
         scatter: fields.number("scatter", base.scatter, 0.0..=10.0)?,
         jitter: fields.get("jitter").map_or(Ok(base.jitter), |node| jitter(&node, base.jitter))?,
@@ -36,6 +37,14 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         tip: base.tip,
         grain: base.grain,
     })
+}
+
+/// `{ "turn": 0, "mirrored": false }`: how symmetry turned the stroke, degrees counter-clockwise as seen.
+fn facing(node: &Node) -> Result<Facing> {
+    let mut fields = node.fields()?;
+    let facing = Facing { turn: fields.number("turn", 0.0, TURNS)?, is_mirrored: fields.boolean("mirrored", false)? };
+    fields.finish()?;
+    Ok(facing)
 }
 
 /// `{ "hue": 0, "saturation": 0, "value": 0 }`: how far a dab's colour may be from the stroke's, hue in degrees.
@@ -142,6 +151,10 @@ pub fn write_brush(brush: &Brush) -> Object {
     out.number("flow", brush.flow, plain.flow);
     out.number("spacing", brush.spacing, plain.spacing);
     out.number("rotation", brush.rotation, plain.rotation);
+    let mut facing = Object::default();
+    facing.number("turn", brush.facing.turn, 0.0);
+    facing.flag("mirrored", brush.facing.is_mirrored, false);
+    out.object("facing", facing);
     out.number("softness", brush.softness, plain.softness);
     out.number("scatter", brush.scatter, plain.scatter);
     let mut jitter = Object::default();
