@@ -60,7 +60,7 @@ fn write(from: &Path, to: &Path, preset: Preset, side: u32) -> Result<()> {
         if to == from {
             return Err(Error::unsupported(to, "it is read by this very command; write to another file"));
         }
-        return brush::write(to, &preset);
+        return brush::write(to, &preset).map(drop);
     }
     let target = Target::new(to, &[from.to_owned()])?;
     let none = || Error::unsupported(to, "the brush cannot be shown");

@@ -1,25 +1,30 @@
-//! The brushes to choose from: those of the program, and those of files that were brought in.
-//! Floor 6. Formats are `io`'s.
+//! The brushes to choose from: those of the program, and the user's own, which were brought in from files or kept from the hand.
+//! Floor 6. Formats are `io`'s. The user's own lie in a folder, where there is one, a preset's file each.
 
 use super::Session;
-use crate::Result;
 use crate::io::brush::{self, Imported, plain};
 use crate::io::recipe::{Group, Preset, load_preset};
-use crate::io::{Budget, files::read_file};
+use crate::io::{Budget, files::read_file, picture};
 use crate::math::srgb::Color;
+use crate::paint::{Adjust, Brush, PictureSource, Tip};
 use crate::surface::Operator;
-use std::path::Path;
+use crate::{Error, Result};
+use std::path::{Path, PathBuf};
 
-/// Endings of the files that brushes come from.
-pub const ENDINGS: [&str; 5] = ["gbr", "gih", "myb", "abr", "json"];
+/// Endings of the files that brushes come from: five of brushes, then pictures.
+pub const ENDINGS: [&str; 12] =
+    ["gbr", "gih", "myb", "abr", "json", "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp"];
 
-/// Reads the brushes of a file: another program's, or a preset's own. At least one.
+/// Reads the brushes of a file: another program's, a preset's own, or a picture as a tip. At least one.
 pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(Preset, Vec<String>)>> {
     let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if ending == "json" {
         return load_preset(file, budget).map(|preset| vec![(preset, Vec::new())]);
     }
     let bytes = read_file(file, budget.file_bytes)?;
+    if ENDINGS[5..].contains(&ending.as_str()) {
+        return picture_tip(file, &bytes, budget).map(|preset| vec![(preset, Vec::new())]);
+    }
     let brushes = brush::read(file, &bytes, budget)?;
     Ok(brushes.into_iter().map(|imported| preset_of(file, imported)).collect())
 }
@@ -36,17 +41,81 @@ fn preset_of(file: &Path, imported: Imported) -> (Preset, Vec<String>) {
 /// The brushes of a file join the list, and the first of them goes to hand.
 pub fn import(session: &mut Session, file: &Path) -> Result<()> {
     let mut first = None;
-    for (mut preset, notes) in read(file, &Budget::default())? {
-        preset.key = free_key(session, &preset.key);
-        preset.group = Group::Imported;
+    for (preset, notes) in read(file, &Budget::default())? {
         session.notes.extend(notes.iter().map(|note| format!("{}: {note}.", preset.name)));
-        first.get_or_insert(preset.key.clone());
-        session.presets.push(preset);
+        let key = add(session, preset)?;
+        first.get_or_insert(key);
     }
     if let Some(key) = first {
         session.take_preset(&key);
     }
     Ok(())
+}
+
+/// The brush in hand joins the list under a name.
+pub fn keep(session: &mut Session, name: &str) -> Result<()> {
+    let name: String = name.trim().chars().filter(|c| !c.is_control()).take(80).collect();
+    let name = if name.is_empty() { "My brush".to_owned() } else { name };
+    let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
+    let (brush, color, operator) = (session.brush.clone(), session.color, session.operator);
+    let preset = Preset { key, name, group: Group::Imported, about: String::new(), color, brush, operator };
+    session.preset = add(session, preset)?;
+    Ok(())
+}
+
+/// A brush joins the list and the folder; the key that it got.
+fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
+    preset.key = free_key(session, &preset.key);
+    preset.group = Group::Imported;
+    if let Some(folder) = &session.brush_folder {
+        std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
+        preset = brush::write(&file_of(folder, &preset.key), &preset)?;
+    }
+    let key = preset.key.clone();
+    session.presets.push(preset);
+    Ok(key)
+}
+
+/// One of the user's own brushes leaves the list and the folder. Its pictures go with it.
+pub fn remove(session: &mut Session, key: &str) -> Result<()> {
+    let is_it = |preset: &Preset| preset.key == key && preset.group == Group::Imported;
+    let Some(at) = session.presets.iter().position(is_it) else { return Ok(()) };
+    if let Some(folder) = &session.brush_folder {
+        brush::remove(&file_of(folder, key), &session.presets[at])?;
+    }
+    session.presets.remove(at);
+    Ok(())
+}
+
+fn file_of(folder: &Path, key: &str) -> PathBuf {
+    folder.join(format!("{key}.json"))
+}
+
+/// The user's own brushes as they lie in a folder, by name, and a sentence for each that cannot be read.
+pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
+    // A folder that is not there yet holds none.
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut files: Vec<PathBuf> = entries.filter(|file| file.extension().is_some_and(|e| e == "json")).collect();
+    files.sort();
+    let (mut presets, mut notes) = (Vec::new(), Vec::new());
+    for file in files {
+        match load_preset(&file, &Budget::default()) {
+            Ok(preset) => presets.push(Preset { group: Group::Imported, ..preset }),
+            Err(error) => notes.push(error.to_string()),
+        }
+    }
+    (presets, notes)
+}
+
+/// A picture as a brush that stamps it.
+fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Preset> {
+    let picture = picture::decode(file, bytes, budget)?;
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let tip = PictureSource::new(format!("{}.png", plain(&stem)), picture, Adjust::default());
+    let size = tip.picture.size.longer_side();
+    let brush = Brush { size, spacing: 0.25, tip: Tip::Picture(tip), ..Brush::default() };
+    let imported = Imported { name: stem, brush, notes: Vec::new() };
+    Ok(preset_of(file, imported).0)
 }
 
 /// A key that no other brush has.
@@ -106,5 +175,54 @@ mod tests {
         assert!(found("pencil") >= 3 && found("PENCIL") == found("pencil"));
         assert!(found("light highlight") >= 3);
         assert_eq!(found("no brush is called so"), 0);
+    }
+    #[test]
+    fn the_users_own_brushes_lie_in_their_folder_from_one_run_to_the_next_until_they_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, own) = (folder.path().join("pen.gbr"), folder.path().join("brushes"));
+        std::fs::write(&file, gbr()).unwrap();
+        let mut session = Session { brush_folder: Some(own.clone()), ..Session::default() };
+        import(&mut session, &file).unwrap();
+        session.brush.spacing = 0.7;
+        Action::File(FileAction::KeepBrush { name: " Wide pen ".into() }).apply(&mut session).unwrap();
+        assert_eq!(session.preset, "wide-pen");
+        let (presets, notes) = kept(&own);
+        let told = |preset: &Preset| (preset.key.clone(), preset.brush.spacing, preset.brush.pictures().count());
+        let told: Vec<_> = presets.iter().map(told).collect();
+        assert_eq!((told, notes), (vec![("pen".into(), 0.4, 1), ("wide-pen".into(), 0.7, 1)], Vec::new()));
+        for name in ["pen", "wide-pen", "ink", "nobody"] {
+            Action::File(FileAction::RemoveBrush { name: name.into() }).apply(&mut session).unwrap();
+        }
+        assert_eq!(std::fs::read_dir(&own).unwrap().count(), 0, "nothing is left of them");
+        assert!(session.presets.iter().any(|preset| preset.key == "ink"), "the program's own stay");
+    }
+    #[test]
+    fn a_picture_becomes_a_tip_and_a_broken_file_of_the_folder_is_told_of() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("Leaf 3.png");
+        image::RgbaImage::from_pixel(20, 30, image::Rgba([9, 200, 9, 128])).save(&file).unwrap();
+        let mut session = Session::default();
+        import(&mut session, &file).unwrap();
+        assert_eq!((session.preset.as_str(), session.brush.size), ("leaf-3", 30.0));
+        std::fs::write(folder.path().join("broken.json"), "{").unwrap();
+        let (presets, notes) = kept(folder.path());
+        assert!(presets.is_empty() && notes.len() == 1 && notes[0].contains("broken.json"), "{notes:?}");
+    }
+    #[test]
+    fn the_brush_in_hand_is_changed_by_what_a_recipe_would_say_and_keeps_its_pictures() {
+        use crate::io::recipe::written_brush;
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("pen.gbr");
+        std::fs::write(&file, gbr()).unwrap();
+        let mut session = Session::default();
+        import(&mut session, &file).unwrap();
+        let scattered = Brush { scatter: 2.0, ..session.brush.clone() };
+        Action::Hand(HandAction::Brush { brush: written_brush(&scattered) }).apply(&mut session).unwrap();
+        assert_eq!((session.brush.scatter, session.brush.spacing), (2.0, 0.4));
+        assert!(matches!(session.brush.tip, Tip::Picture(_)));
+        let unknown = serde_json::json!({ "tip": { "file": "else.png" } });
+        Action::Hand(HandAction::Brush { brush: unknown }).apply(&mut session).unwrap();
+        assert!(session.notes[0].contains("tip.file: is “else.png”"), "{:?}", session.notes);
+        assert_eq!(session.brush.scatter, 2.0);
     }
 }

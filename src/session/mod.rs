@@ -26,7 +26,7 @@ use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
 use crate::tools::{Gesture, Symmetry, ToolKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use storage::Opened;
 
@@ -63,6 +63,8 @@ pub struct Session {
     last_pen: Option<Vec2>,
     /// The recovery logs of the open documents, where they are kept.
     pub autosave: Option<Autosave>,
+    /// Where the user's own brushes are kept, where they are.
+    pub brush_folder: Option<PathBuf>,
     /// Sentences for the user, not shown yet.
     pub notes: Vec<String>,
     untitled: usize,
@@ -92,6 +94,7 @@ impl Default for Session {
             gesture: None,
             last_pen: None,
             autosave: None,
+            brush_folder: None,
             notes: Vec::new(),
             untitled: 0,
         }

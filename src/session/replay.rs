@@ -60,6 +60,16 @@ impl Replayed for String {
     }
 }
 
+/// Whatever has a form of its own in files.
+impl Replayed for Value {
+    fn written(&self) -> Value {
+        self.clone()
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        if value.is_null() { Err("must be there".into()) } else { Ok(value.clone()) }
+    }
+}
+
 impl Replayed for PathBuf {
     fn written(&self) -> Value {
         self.to_string_lossy().into()

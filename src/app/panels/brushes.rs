@@ -1,18 +1,19 @@
 //! The brushes: presets in groups, each shown painted on a ball, and the numbers of the one in hand.
 //! Floor 7.
 
+use super::brush;
 use crate::app::asked::{Asked, WindowAsk};
 use crate::app::files::Purpose;
 use crate::app::swatches::Swatches;
 use crate::app::widgets::{Number, named, title};
 use crate::io::recipe::{Group, Preset};
 use crate::paint::Property;
-use crate::session::actions::HandAction;
 use crate::session::actions::hand::SIZES;
+use crate::session::actions::{FileAction, HandAction};
 use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
 use eframe::egui::text::{LayoutJob, TextWrapping};
-use eframe::egui::{self, Color32, Id, Rect, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
+use eframe::egui::{self, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
     let search = search(ui, asked);
@@ -26,8 +27,17 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
             for known in presets {
-                if preset(ui, known, session.preset == known.key, swatches) {
+                let response = preset(ui, known, session.preset == known.key, swatches);
+                if response.clicked() {
                     asked.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
+                }
+                if known.group == Group::Imported {
+                    response.context_menu(|ui| {
+                        if ui.button("Remove brush").clicked() {
+                            asked.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
+                            ui.close();
+                        }
+                    });
                 }
             }
         });
@@ -35,6 +45,24 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut
     ui.add_space(4.0);
     title(ui, "Brush in hand");
     numbers(ui, session, asked);
+    brush::show(ui, session, asked);
+    keep(ui, asked);
+}
+
+/// The brush in hand under a name of its own.
+fn keep(ui: &mut Ui, asked: &mut Asked) {
+    let id = Id::unique("brush name");
+    let mut name = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let field = TextEdit::singleline(&mut name).hint_text("Name").desired_width(ui.available_width() - 96.0);
+        named(&ui.add(field), "Name of the brush to keep");
+        let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Keep brush"));
+        if button.on_hover_text("The brush as it is now joins the list").clicked() {
+            asked.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, name));
 }
 
 /// The row above the list; what is searched for.
@@ -44,9 +72,9 @@ fn search(ui: &mut Ui, asked: &mut Asked) -> String {
     ui.horizontal(|ui| {
         let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(ui.available_width() - 74.0);
         named(&ui.add(field), "Search brushes");
-        let import = ui
-            .button("Import…")
-            .on_hover_text("Brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), or a preset (.json)");
+        let import = ui.button("Import…").on_hover_text(
+            "Brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), a preset (.json), or a picture as a tip",
+        );
         named(&import, "Import a brush…");
         if import.clicked() {
             asked.ask(WindowAsk::Choose(Purpose::Brush));
@@ -56,13 +84,13 @@ fn search(ui: &mut Ui, asked: &mut Asked) -> String {
     search
 }
 
-/// One preset; whether it was chosen.
-fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) -> bool {
+/// One preset.
+fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) -> Response {
     let (rect, response) = ui.allocate_exact_size(vec2(72.0, 84.0), Sense::click());
     let label = &preset.name;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}")));
     if !ui.is_rect_visible(rect) {
-        return response.clicked();
+        return response;
     }
     let look = ui.style().interact_selectable(&response, is_on);
     ui.painter().rect(rect, 5.0, look.weak_bg_fill, look.bg_stroke, StrokeKind::Inside);
@@ -77,7 +105,7 @@ fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) ->
     let text = ui.fonts_mut(|fonts| fonts.layout_job(job));
     let place = pos2(rect.center().x - 0.5 * text.size().x, rect.bottom() - 3.0 - text.size().y);
     ui.painter().galley(place, text, look.text_color());
-    response.on_hover_text(format!("{label}\n{}", preset.about)).clicked()
+    response.on_hover_text(format!("{label}\n{}", preset.about))
 }
 
 fn numbers(ui: &mut Ui, session: &Session, asked: &mut Asked) {

@@ -2,8 +2,10 @@
 //! typed) is egui's to keep.
 //! Floor 7.
 
+mod brush;
 pub mod brushes;
 pub mod colors;
+mod curve;
 pub mod fill;
 pub mod history;
 pub mod layers;

@@ -17,7 +17,7 @@ mod myb;
 mod tests;
 mod write;
 
-pub use write::write;
+pub use write::{remove, write};
 
 use super::Budget;
 use crate::paint::tip::Hose;

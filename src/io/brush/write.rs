@@ -12,22 +12,37 @@ use crate::raster::picture::Texels;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Writes a preset to `file`; its pictures become `STEM.png`, `STEM-2.png` … in the same folder.
+/// Writes a preset to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder. The preset with these names.
 ///
 /// The pictures first, so that a preset that is there is whole.
-pub fn write(file: &Path, preset: &Preset) -> Result<()> {
+pub fn write(file: &Path, preset: &Preset) -> Result<Preset> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut number = 0;
     let brush = preset.brush.with_pictures(|source| {
         number += 1;
         let (bytes, ending) = encoded(file, source)?;
-        let name = if number == 1 { format!("{stem}.{ending}") } else { format!("{stem}-{number}.{ending}") };
+        let name = if number == 1 { format!("{stem}.{ending}") } else { format!("{stem}.{number}.{ending}") };
         replace(&file.with_file_name(&name), bytes.bytes())?;
         Ok::<_, Error>(PictureSource::new(name, source.picture.clone(), source.adjust))
     })?;
-    let value = write_preset(&Preset { brush, ..preset.clone() });
-    let text = serde_json::to_string_pretty(&value).map_err(|e| Error::unsupported(file, e))? + "\n";
-    replace(file, text.as_bytes())
+    let written = Preset { brush, ..preset.clone() };
+    let text = serde_json::to_string_pretty(&write_preset(&written)).map_err(|e| Error::unsupported(file, e))? + "\n";
+    replace(file, text.as_bytes())?;
+    Ok(written)
+}
+
+/// Takes a preset's file away, and the pictures beside it that it names. What is gone already is no failure.
+pub fn remove(file: &Path, preset: &Preset) -> Result<()> {
+    let beside = preset.brush.pictures().map(|source| Path::new(&source.file));
+    let beside = beside.filter(|name| name.file_name() == Some(name.as_os_str())).map(|name| file.with_file_name(name));
+    // The preset first: what is left then is named by nobody.
+    for file in std::iter::once(file.to_owned()).chain(beside) {
+        match std::fs::remove_file(&file) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(file, error)),
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Without loss: bytes as PNG, light as EXR.

@@ -28,7 +28,9 @@ mod strokes;
 pub mod surface;
 mod tips;
 
-pub use presets::{Group, Preset, load_preset, preset, preset_brush, preset_names, presets, write_preset};
+pub use presets::{
+    Group, Preset, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset, written_brush,
+};
 pub use strokes::write_stroke;
 
 use super::json::{self, Fields, Node, Object};

@@ -109,7 +109,7 @@ impl Group {
         (Group::WetAndDry, "Wet and dry"),
         (Group::Light, "Light"),
         (Group::Surface, "Surface"),
-        (Group::Imported, "Imported"),
+        (Group::Imported, "Your own"),
     ];
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, name)| name)
@@ -154,6 +154,27 @@ pub(super) fn named(key: &Node) -> Result<(Brush, Operator)> {
 fn built_in(key: &str, text: &str) -> Result<Preset> {
     let mut none = |node: &Node| Err(node.refused("is a file; the brushes of the program have none"));
     read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
+}
+
+/// A brush as [`written_brush`] writes it, its pictures those of `like`: what a value can only name is had already.
+///
+/// Fails with a sentence that names the field.
+pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
+    let mut fields = Node::root(Path::new("brush"), value).fields()?;
+    let mut brush = settings(&mut fields, Brush::default())?;
+    let mut picture = |node: &Node| {
+        let named = node.text()?;
+        let found = like.pictures().find(|source| source.file == named).cloned();
+        found.ok_or_else(|| node.refused(format!("is “{named}”; the brush in hand has no such picture")))
+    };
+    tips::read(&mut fields, &mut brush, &mut picture)?;
+    fields.finish()?;
+    Ok(brush)
+}
+
+/// All that a brush is beyond the plain one, its pictures by their names.
+pub fn written_brush(brush: &Brush) -> Value {
+    write_brush(brush).done()
 }
 
 /// A preset in a file of its own; its pictures lie beside it.

@@ -30,6 +30,10 @@ actions! {
         "place" Place { file: PathBuf, at: Vec2 }
         /// The brushes of a file join those to choose from.
         "import brush" ImportBrush { file: PathBuf }
+        /// The brush in hand joins them under a name.
+        "keep brush" KeepBrush { name: String }
+        /// One of the user's own, by its key, is gone.
+        "remove brush" RemoveBrush { name: String }
         "save" Save { file: PathBuf }
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8 }
         /// A picture that the selected layer is made of.
@@ -64,6 +68,8 @@ impl FileAction {
                 place(session, &name, picture, *at);
             }
             FileAction::ImportBrush { file } => brushes::import(session, file)?,
+            FileAction::KeepBrush { name } => brushes::keep(session, name)?,
+            FileAction::RemoveBrush { name } => brushes::remove(session, name)?,
             FileAction::Save { file } => {
                 let Some(tab) = session.tab() else { return Ok(()) };
                 let document = tab.document().clone();

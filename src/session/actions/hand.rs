@@ -1,6 +1,7 @@
 //! What the hand holds: tool, brush, colours, operator.
 //! Floor 6.
 
+use crate::io::recipe::read_brush;
 use crate::math::srgb::Color;
 use crate::paint::Property;
 use crate::paint::{Fill, Mark};
@@ -65,6 +66,8 @@ actions! {
         "tool" Tool { tool: ToolKind }
         /// One of the brushes to choose from, by its key.
         "preset" Preset { name: String }
+        /// The whole brush as recipes have it; it may name the pictures of the one in hand.
+        "brush" Brush { brush: Value }
         /// Diameter, px.
         "size" Size { to: f32 }
         "hardness" Hardness { to: f32 }
@@ -104,6 +107,10 @@ impl HandAction {
                 session.tool = *tool;
             }
             HandAction::Preset { name } => session.take_preset(name),
+            HandAction::Brush { brush: wanted } => match read_brush(wanted, brush) {
+                Ok(read) => *brush = read,
+                Err(error) => session.notes.push(error.to_string()),
+            },
             HandAction::Size { to } => brush.size = to.max(SIZES[0]).min(SIZES[1]),
             HandAction::Hardness { to } => brush.hardness = unit(*to),
             HandAction::Opacity { to } => brush.opacity = unit(*to),
