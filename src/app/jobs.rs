@@ -3,6 +3,7 @@
 
 use crate::app::files::Purpose;
 use crate::document::{Document, LayerId, Progress};
+use crate::io::recipe::Preset;
 use crate::io::save::Stamp;
 use crate::io::{maps, recovery};
 use crate::raster::Picture;
@@ -38,6 +39,8 @@ pub enum Done {
     Edited(Box<Edited>),
     /// The finished picture, for the clipboard.
     Copied(egui::ColorImage),
+    /// The user's own brushes, and what cannot be read of them.
+    Brushes(Vec<Preset>, Vec<String>),
     /// Nothing is left to be done, as when a job was given up.
     Nothing,
     Failed(Error),

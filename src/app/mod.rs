@@ -52,6 +52,9 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         if let Some(folder) = crate::io::recovery::folder() {
             window.keep_recovery_in(folder);
         }
+        if let Some(folder) = settings::brushes() {
+            window.keep_brushes_in(folder);
+        }
         window.begin(files);
         Ok(Box::new(window))
     };

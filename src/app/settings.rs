@@ -142,6 +142,13 @@ pub fn file() -> Option<PathBuf> {
     Some(base.config_dir().join("rilievo").join("settings.json"))
 }
 
+/// Where the user's own brushes lie: `rilievo/brushes` in the user's folder for data.
+pub fn brushes() -> Option<PathBuf> {
+    use etcetera::BaseStrategy;
+    let base = etcetera::choose_base_strategy().ok()?;
+    Some(base.data_dir().join("rilievo").join("brushes"))
+}
+
 /// Keeps the file as the settings are.
 pub struct Keeper {
     file: Option<PathBuf>,

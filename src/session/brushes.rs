@@ -107,6 +107,18 @@ pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
     (presets, notes)
 }
 
+/// Brushes of the folder join the list, each under the name of its file.
+pub fn adopt(session: &mut Session, presets: Vec<Preset>) {
+    for preset in presets {
+        if free_key(session, &preset.key) == preset.key {
+            session.presets.push(preset);
+        } else {
+            let key = &preset.key;
+            session.notes.push(format!("{key}.json: a brush is called so already; the file wants another name."));
+        }
+    }
+}
+
 /// A picture as a brush that stamps it.
 fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Preset> {
     let picture = picture::decode(file, bytes, budget)?;
@@ -207,6 +219,10 @@ mod tests {
         std::fs::write(folder.path().join("broken.json"), "{").unwrap();
         let (presets, notes) = kept(folder.path());
         assert!(presets.is_empty() && notes.len() == 1 && notes[0].contains("broken.json"), "{notes:?}");
+        let ink = session.presets.iter().find(|preset| preset.key == "ink").cloned().unwrap();
+        let known = session.presets.len();
+        adopt(&mut session, vec![ink.clone(), Preset { key: "my-ink".into(), ..ink }]);
+        assert_eq!((session.presets.len(), session.notes.len()), (known + 1, 1));
     }
     #[test]
     fn the_brush_in_hand_is_changed_by_what_a_recipe_would_say_and_keeps_its_pictures() {

@@ -1,6 +1,8 @@
 //! What a brush paints: one stroke over a ball, bent as the brush is meant to be.
 //! Floor 6. Pictures only; keeping them is the window's business.
 
+mod retouched;
+
 use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
 use crate::io::recipe::Preset;
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
@@ -34,6 +36,10 @@ pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     let side = size.width.min(size.height) as f32;
     let Preset { operator, brush, .. } = preset;
     let ground = if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
+    if brush.mark.is_retouching() {
+        let drawn = retouched::drawn(preset, surface, side / NATURAL_SIDE, SLATE)?;
+        return Some(flatten(&drawn, &Progress::default())?.to_straight_rgba(size.rect()));
+    }
     let brush = scaled(brush, side / NATURAL_SIDE, side);
     let blend = brush.blend;
     // An eraser is shown by what it takes away.

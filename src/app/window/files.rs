@@ -9,7 +9,7 @@ use crate::math::Vec2;
 use crate::raster::Picture;
 use crate::session::actions::files::{place, read_picture};
 use crate::session::actions::pictures::{self, Part};
-use crate::session::storage;
+use crate::session::{brushes, storage};
 use eframe::egui;
 use std::path::{Path, PathBuf};
 
@@ -42,6 +42,10 @@ impl Window {
                 }
                 Done::Lost(lost) => self.offer(lost),
                 Done::Recovered(found) => self.take_recovered(*found),
+                Done::Brushes(presets, notes) => {
+                    brushes::adopt(&mut self.session, presets);
+                    self.messages.extend(notes);
+                }
                 Done::Pictured(name, picture, at) => self.pictured(&name, picture, at),
                 Done::Part(key, layer, read) => {
                     if let Some(tab) = self.session.tabs.iter_mut().find(|tab| tab.key == key) {
@@ -55,6 +59,14 @@ impl Window {
                 Done::Nothing => {}
             }
         }
+    }
+    /// The user's own brushes are kept here from now on; those that are there join the list.
+    pub fn keep_brushes_in(&mut self, folder: PathBuf) {
+        self.session.brush_folder = Some(folder.clone());
+        self.jobs.start("Reading brushes".into(), While::Working, move |_| {
+            let (presets, notes) = brushes::kept(&folder);
+            Done::Brushes(presets, notes)
+        });
     }
     pub(super) fn read_picture(&mut self, file: PathBuf, at: Where) {
         self.jobs.start(format!("Reading {}", short(&file)), While::Working, move |_| match read_picture(&file) {

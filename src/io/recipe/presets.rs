@@ -67,6 +67,10 @@ const PRESETS: &[(&str, &str)] = &table![
     "edge-wear",
     "moss",
     "rust",
+    "smudge",
+    "blender",
+    "soften",
+    "clone-stamp",
 ];
 
 /// A brush that can be chosen by name.
@@ -95,20 +99,22 @@ pub enum Group {
     WetAndDry,
     Light,
     Surface,
-    /// Of files of the user's own.
+    Retouch,
+    /// The user's own.
     #[default]
     Imported,
 }
 
 impl Group {
     /// Every group with its name, in the order of the list.
-    pub const ALL: [(Group, &'static str); 7] = [
+    pub const ALL: [(Group, &'static str); 8] = [
         (Group::Drawing, "Drawing"),
         (Group::Inking, "Inking"),
         (Group::Painting, "Painting"),
         (Group::WetAndDry, "Wet and dry"),
         (Group::Light, "Light"),
         (Group::Surface, "Surface"),
+        (Group::Retouch, "Retouch"),
         (Group::Imported, "Your own"),
     ];
     pub fn name(self) -> &'static str {

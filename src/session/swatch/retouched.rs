@@ -1,0 +1,58 @@
+//! What a brush does that works on paint: bands of colour over the surface, and one stroke across them.
+//! Floor 6.
+
+use super::{clay, scaled, wave};
+use crate::document::{Content, Document, Layer, Live, PixelLayer};
+use crate::io::recipe::Preset;
+use crate::math::{Size, Vec2, srgb::Color, vec2};
+use crate::raster::TileGrid;
+use crate::surface::Surface;
+use crate::tools::{Context, Keys, Outcome, Pen, brush};
+use std::sync::Arc;
+
+/// Bands across the side of the picture.
+const BANDS: f32 = 5.0;
+/// The colours of the bands, one after the other.
+const COLORS: [[u8; 4]; 3] = [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
+
+/// The document once the stroke is drawn; `None` where nothing came of it.
+pub fn drawn(preset: &Preset, surface: Arc<Surface>, scale: f32, ground: Color) -> Option<Document> {
+    let size = surface.size();
+    let side = size.width.min(size.height) as f32;
+    let paint = PixelLayer { tiles: bands(size, side), file: String::new(), x: 0, y: 0 };
+    let layers = [
+        Layer::new("ground", Content::Gradient(Live::new(clay(ground, size)))),
+        Layer::new("paint", Content::Pixels(paint)),
+    ];
+    let layer = layers[1].id;
+    let layers = layers.into_iter().map(Arc::new).collect();
+    let document = Document { surface: Some(surface), layers, ..Document::empty(size) };
+    let brush = scaled(&preset.brush, scale, side);
+    let context = Context {
+        layer: Some(layer),
+        operator: preset.operator,
+        // From the band beside.
+        clone_offset: Some(vec2(side / BANDS, 0.0)),
+        ..Context::new(&document, &brush)
+    };
+    let pens: Vec<Pen> = wave(size).into_iter().map(|sample| Pen { sample, keys: Keys::default() }).collect();
+    let (gesture, _) = brush::press(&context, *pens.first()?, brush::Purpose::Paint);
+    let mut gesture = gesture?;
+    gesture.drag(&pens[1..]);
+    match gesture.release() {
+        Outcome::Commit { document, .. } => Some(document),
+        _ => None,
+    }
+}
+
+/// Bands that fall to the right.
+fn bands(size: Size, side: f32) -> TileGrid {
+    let color = |p: Vec2| {
+        let band = ((p.x + 0.35 * p.y) / side * BANDS).max(0.0) as usize;
+        COLORS[band % COLORS.len()]
+    };
+    let rows = 0..size.height;
+    let texels = rows.flat_map(|y| (0..size.width).flat_map(move |x| color(vec2(x as f32, y as f32))));
+    let texels: Vec<u8> = texels.collect();
+    TileGrid::from_straight_rgba(&texels, size.width as usize, size.height as usize, 0, 0)
+}
