@@ -140,28 +140,34 @@ fn a_full_or_failing_disk_costs_a_sentence_and_not_the_old_file() {
 }
 fn kill_while_saving(rounds: u32) {
     let folder = folder();
-    // Kills are spread over somewhat more than a whole run takes here.
+    let at = |name: &str| folder.path().join(name);
     let begun = Instant::now();
     convert(folder.path(), "new.json", "t.ora");
-    let whole_micros = begun.elapsed().as_micros() as u64 * 5 / 4;
-    let mut old = 0;
+    // Kills are spread evenly over a span that grows where one came before the renaming and shrinks where one came after: so
+    // about as many come before as after, however long a save takes here at the time.
+    let mut span_secs = begun.elapsed().as_secs_f64() * 1.5;
+    let mut new = 0;
     for round in 0..rounds {
-        std::fs::copy(folder.path().join("old.ora"), folder.path().join("t.ora")).unwrap();
+        std::fs::copy(at("old.ora"), at("t.ora")).unwrap();
         let mut child = Command::new(PROGRAM)
             .args(["convert", "new.json", "t.ora"])
             .current_dir(folder.path())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_micros(u64::from(mix(round)) % whole_micros.max(1)));
+        std::thread::sleep(Duration::from_secs_f64(f64::from(mix(round)) / f64::from(u32::MAX) * span_secs));
         child.kill().unwrap();
         child.wait().unwrap();
         check(folder.path(), "t.ora", &["old.ora", "new.ora"], &format!("round {round}"));
-        old += u32::from(
-            std::fs::read(folder.path().join("t.ora")).ok() == std::fs::read(folder.path().join("old.ora")).ok(),
-        );
+        let is_new = std::fs::read(at("t.ora")).unwrap() == std::fs::read(at("new.ora")).unwrap();
+        span_secs *= if is_new { 0.95 } else { 1.0 / 0.95 };
+        new += u32::from(is_new);
     }
-    eprintln!("{rounds} kills: {old} times the old file, {} times the new one", rounds - old);
+    eprintln!("{rounds} kills: {} times the old file, {new} times the new one", rounds - new);
+    assert!(
+        (rounds / 20..rounds - rounds / 20).contains(&new),
+        "the kills came too early or too late: {new} of {rounds}"
+    );
     // What the last one left goes with the next save.
     convert(folder.path(), "new.json", "t.ora");
     let parts = std::fs::read_dir(folder.path()).unwrap().flatten();

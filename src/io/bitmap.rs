@@ -1,6 +1,8 @@
 //! Files of rows of numbers: PNG, JPEG, WebP, TIFF, BMP, TGA and Radiance HDR, decoded within a budget.
 //! Floor 5. Not here: what the numbers mean (`picture`, `maps`), EXR (`exr`).
 
+mod tiff;
+
 use super::Budget;
 use crate::{Error, Result, math::Size};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
@@ -58,6 +60,9 @@ fn decode_as(
         return Err(Error::decode(file, "the JPEG data ends before its end marker; the file is cut short"));
     }
     let decoded = catch_unwind(AssertUnwindSafe(|| {
+        if format == ImageFormat::Tiff {
+            return tiff::decode(file, bytes, budget);
+        }
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         reader.limits(limits(budget));
         let mut decoder = reader.into_decoder().map_err(|e| failure(file, name, &e))?;
@@ -79,7 +84,9 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
         return Err(Error::decode(file, "the file is empty"));
     }
     let is_tga = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("tga"));
+    let is_big_tiff = bytes.starts_with(b"II+\0") || bytes.starts_with(b"MM\0+");
     let found = match image::guess_format(bytes) {
+        _ if is_big_tiff => ImageFormat::Tiff,
         Ok(format) => format,
         Err(_) if is_tga => ImageFormat::Tga,
         Err(_) => return Err(Error::decode(file, format!("the file does not begin like a {READABLE} picture"))),

@@ -179,6 +179,9 @@ fn guarded<T>(file: &Path, what: &str, step: impl FnOnce() -> exr::error::Result
     match catch_unwind(AssertUnwindSafe(step)) {
         Ok(Ok(value)) => Ok(value),
         Ok(Err(exr::error::Error::NotSupported(reason))) => Err(Error::unsupported(file, format!("EXR: {reason}"))),
+        Ok(Err(exr::error::Error::Invalid(reason))) if reason.contains("compression attribute") => {
+            Err(Error::unsupported(file, "the EXR is compressed in a way that is not known here"))
+        }
         Ok(Err(error)) => Err(Error::decode(file, format!("the EXR {what} is damaged or cut short ({error})"))),
         Err(_) => Err(Error::decode(file, format!("the EXR {what} is damaged"))),
     }

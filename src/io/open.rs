@@ -73,14 +73,30 @@ pub fn open(file: &Path, budget: &Budget) -> Result<Opened> {
     Ok(Opened { document, notes, is_whole, kind, stamp: Stamp::of(&bytes) })
 }
 
-/// A picture as a document of its size.
+/// A picture as a document of its size; an EXR of several layers with all of them.
 fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
-    let picture = picture::decode(file, bytes, budget)?;
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    let tiles = picture::to_tiles(&picture, 0, 0);
-    let layer = Layer::new(name, Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
-    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(picture.size) };
-    Ok(Contents { document, notes: Vec::new(), is_whole: true })
+    let mut stored = picture::layers(file, bytes, budget)?;
+    let (several, has_whole) = (!stored.is_empty(), stored.iter().any(|layer| layer.is_whole));
+    if !several {
+        let picture = picture::decode(file, bytes, budget)?;
+        stored.push(picture::Layer { name: String::new(), picture, is_whole: true });
+    }
+    let size = stored[0].picture.size;
+    let layer = |stored: picture::Layer| {
+        let tiles = picture::to_tiles(&stored.picture, 0, 0);
+        let name = if stored.name.is_empty() { name.clone().into_owned() } else { stored.name };
+        let content = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+        Arc::new(Layer { visible: stored.is_whole || !has_whole, ..Layer::new(name, content) })
+    };
+    let layers = stored.into_iter().map(layer).collect();
+    let notes = match (several, has_whole) {
+        (false, _) => None,
+        (true, true) => Some("its layers are hidden beside the whole picture, which the file holds too"),
+        (true, false) => Some("an EXR does not tell how its layers lie on each other: they stand as in the file"),
+    };
+    let notes = notes.map(str::to_owned).into_iter().collect();
+    Ok(Contents { document: Document { layers, ..Document::empty(size) }, notes, is_whole: true })
 }
 
 #[cfg(test)]

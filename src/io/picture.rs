@@ -1,6 +1,10 @@
 //! Pictures to paint with: any readable file as sRGB bytes or linear light, in its upright position.
 //! Floor 5. Not here: normal, depth and mask maps, which are data and whose colour tags are ignored (`maps`).
 
+mod light;
+
+pub use light::{Layer, layers};
+
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};
 use crate::raster::grid::unpremultiply;
@@ -20,7 +24,7 @@ use std::path::Path;
 /// The picture keeps `bytes`, so that a project can store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let is_exr = ExrFile::is_exr(bytes);
-    let picture = if is_exr { decode_exr(file, bytes, budget) } else { decode_bitmap(file, bytes, budget) }?;
+    let picture = if is_exr { light::decode(file, bytes, budget) } else { decode_bitmap(file, bytes, budget) }?;
     Ok(Picture { encoded: Some(Asset::from(bytes.to_vec())), ..picture })
 }
 
@@ -30,7 +34,9 @@ fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> 
     let size = Size::new(bitmap.image.width(), bitmap.image.height());
     let picture = match &bitmap.image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            Picture::linear(size, bitmap.image.to_rgba32f().into_raw().as_chunks().0.to_vec())
+            let texels = bitmap.image.to_rgba32f().into_raw().as_chunks().0.to_vec();
+            let profiled = bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
+            Picture::linear(size, profiled.unwrap_or(texels))
         }
         image => {
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
@@ -59,7 +65,7 @@ pub fn decode_coverage(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Pla
     let plane = if ExrFile::is_exr(bytes) {
         let exr = ExrFile::open(file, bytes, budget)?;
         let size = exr.size();
-        let texels = exr_texels(file, &exr)?;
+        let texels = light::texels(file, &exr)?;
         Plane::from_values(size, texels.iter().map(|&t| coverage(t)).collect())
     } else {
         let mut bitmap = bitmap::decode(file, bytes, budget)?;
@@ -75,49 +81,6 @@ fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
     srgb::quantise(srgb::luminance(r, g, b) * a)
 }
 
-fn decode_exr(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
-    let exr = ExrFile::open(file, bytes, budget)?;
-    let mut texels = exr_texels(file, &exr)?;
-    // EXR's alpha is associated: colours are stored multiplied by it.
-    for [r, g, b, a] in &mut texels {
-        if *a > 0.0 && *a < 1.0 {
-            [r, g, b].into_iter().for_each(|c| *c /= *a);
-        }
-    }
-    Picture::linear(exr.size(), texels).ok_or_else(|| Error::decode(file, "the picture has no pixels"))
-}
-
-/// The colour layer of an EXR as stored, alpha 1 where it has none: the unnamed one, else one called colour or beauty,
-/// else the first with R, G and B, else a lone grey channel.
-fn exr_texels(file: &Path, exr: &ExrFile) -> Result<Vec<[f32; 4]>> {
-    let rank = |name: &str| {
-        let last = name.rsplit('.').next().unwrap_or("").to_lowercase();
-        let known = ["", "combined", "beauty", "rgba", "rgb", "color", "colour"];
-        known.iter().position(|k| *k == last).unwrap_or(known.len())
-    };
-    let colour = |pass: &&super::exr::Pass| pass.letters("rgb").is_some();
-    let grey = |pass: &&super::exr::Pass| pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1;
-    let passes = exr.passes();
-    let chosen = passes.iter().filter(colour).min_by_key(|p| rank(&p.name));
-    let Some(pass) = chosen.or_else(|| passes.iter().filter(grey).min_by_key(|p| rank(&p.name))) else {
-        let names: Vec<&str> = passes.iter().map(|p| p.name.as_str()).collect();
-        let reason = format!("no layer of this EXR has R, G and B; it has {}", names.join(", "));
-        return Err(Error::unsupported(file, reason));
-    };
-    let rgb = pass.letters("rgb").or(pass.letters("y").map(|y| vec![y[0]; 3]));
-    let rgb = rgb.unwrap_or_else(|| vec![pass.channels[0]; 3]);
-    let alpha = pass.letters("a").filter(|a| a[0] != rgb[0]);
-    let wanted: Vec<usize> = rgb.iter().chain(alpha.iter().flatten()).copied().collect();
-    let planes = exr.read(&wanted)?;
-    let finite = |v: f32| if v.is_finite() { v } else { v.max(0.0).min(65504.0) };
-    Ok((0..exr.size().area())
-        .map(|i| {
-            let at = |c: usize| planes.get(c).map_or(1.0, |p| finite(p.values()[i]));
-            [at(0), at(1), at(2), at(3)]
-        })
-        .collect())
-}
-
 /// The profile of sRGB that this program writes. Its encoder would put the present time into it: a file tells no time, and
 /// the same document gives the same bytes.
 pub fn own_srgb() -> Vec<u8> {
@@ -131,7 +94,24 @@ pub fn own_srgb() -> Vec<u8> {
             place.copy_from_slice(&value);
         }
     }
-    profile
+    aligned(&profile).unwrap_or(profile)
+}
+
+/// A profile with each of its parts at a multiple of four bytes, which the encoder forgets and readers complain of.
+fn aligned(profile: &[u8]) -> Option<Vec<u8>> {
+    let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?) as usize);
+    let table = 132 + 12 * number(128)?;
+    let mut out = profile.get(..table)?.to_vec();
+    for entry in (132..table).step_by(12) {
+        let (start, length) = (number(entry + 4)?, number(entry + 8)?);
+        let moved = out.len() as u32;
+        out[entry + 4..entry + 8].copy_from_slice(&moved.to_be_bytes());
+        out.extend(profile.get(start..)?.get(..length)?);
+        out.resize(out.len().next_multiple_of(4), 0);
+    }
+    let size = out.len() as u32;
+    out[..4].copy_from_slice(&size.to_be_bytes());
+    Some(out)
 }
 
 /// The very profile that this program writes: nothing is to be done.
@@ -140,9 +120,16 @@ pub fn is_own_srgb(icc: &[u8]) -> bool {
 }
 
 /// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where `through_profile` finds nothing to do.
-pub fn to_srgb(size: Size, rgba: Vec<u8>, icc: &[u8]) -> Vec<u8> {
+///
+/// * `is_grey`: red, green and blue are equal, and the profile is one of grey.
+pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> {
     let Some(image) = image::RgbaImage::from_raw(size.width, size.height, rgba) else { return Vec::new() };
-    let image = DynamicImage::ImageRgba8(image);
+    let image = if is_grey {
+        let two = image.pixels().flat_map(|pixel| [pixel[0], pixel[3]]).collect();
+        image::ImageBuffer::from_raw(size.width, size.height, two).map(DynamicImage::ImageLumaA8).unwrap_or_default()
+    } else {
+        DynamicImage::ImageRgba8(image)
+    };
     match through_profile(&image, icc) {
         Some(texels) => texels.into_flattened(),
         None => image.into_rgba8().into_raw(),
@@ -181,6 +168,41 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u8; 4]>> {
     });
     moved.then_some(())?;
     Some(run(&source)?.as_chunks::<4>().0.iter().map(|t| t.map(byte)).collect())
+}
+
+/// Linear light of float texels in the colours of an ICC profile; beyond white it is clipped.
+///
+/// `None` where the profile's light is sRGB's and linear (so that such files keep what is beyond white), or cannot be used.
+fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]>> {
+    let profile = ColorProfile::new_from_slice(icc).ok()?;
+    let layout = match profile.color_space {
+        DataColorSpace::Rgb => Layout::Rgba,
+        DataColorSpace::Gray => Layout::GrayAlpha,
+        _ => return None,
+    };
+    let options = TransformOptions::default();
+    let transform = profile.create_transform_f32(layout, &ColorProfile::new_srgb(), Layout::Rgba, options).ok()?;
+    let run = |texels: &[[f32; 4]]| -> Option<Vec<[f32; 4]>> {
+        let bounded = |v: f32| v.max(0.0).min(1.0);
+        let source: Vec<f32> = match layout {
+            Layout::Rgba => texels.iter().flat_map(|texel| texel.map(bounded)).collect(),
+            _ => texels.iter().flat_map(|texel| [bounded(texel[0]), bounded(texel[3])]).collect(),
+        };
+        let mut out = vec![0.0; texels.len() * 4];
+        transform.transform(&source, &mut out).ok()?;
+        let light =
+            |[r, g, b, a]: [f32; 4]| [srgb::decode(bounded(r)), srgb::decode(bounded(g)), srgb::decode(bounded(b)), a];
+        Some(out.as_chunks().0.iter().map(|texel| light(*texel)).collect())
+    };
+    let probe: Vec<[f32; 4]> =
+        probe(Layout::Rgba).as_chunks().0.iter().map(|t: &[u16; 4]| t.map(|v| f32::from(v) / 65535.0)).collect();
+    let probe: Vec<[f32; 4]> = match layout {
+        Layout::Rgba => probe,
+        _ => probe.into_iter().map(|[r, _, _, a]| [r, r, r, a]).collect(),
+    };
+    let differs = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).any(|c| (a[c] - b[c]).abs() > 2e-3);
+    run(&probe)?.iter().zip(&probe).any(differs).then_some(())?;
+    run(texels)
 }
 
 /// Colours spread over the cube (or the ramp), opaque.
@@ -253,6 +275,16 @@ mod tests {
             let said = decode(Path::new(name), bytes, &Budget::default()).unwrap_err().to_string();
             assert!(said.contains(part), "{said}");
         }
+    }
+    #[test]
+    fn our_own_profile_is_one_that_strict_readers_take() {
+        let profile = own_srgb();
+        let number = |at: usize| u32::from_be_bytes(*profile[at..].first_chunk().unwrap()) as usize;
+        assert_eq!(number(0), profile.len());
+        let places = (0..number(128)).map(|i| number(132 + 12 * i + 4));
+        assert!(places.into_iter().all(|at| at % 4 == 0 && at < profile.len()));
+        assert!(ColorProfile::new_from_slice(&profile).unwrap().description.is_some());
+        assert!(through_profile(&opaque(), &profile).is_none());
     }
     #[test]
     fn a_wide_profile_is_applied_and_srgb_changes_nothing() {

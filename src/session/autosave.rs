@@ -17,6 +17,10 @@ use std::time::Duration;
 /// How long an edit waits for being written: so long a dab may take. The record of a stroke takes a fraction of it; one of
 /// a large drawing goes on by itself.
 const PATIENCE: Duration = Duration::from_millis(8);
+/// How long a program that was killed may take to die: one with many threads on a busy computer still holds its logs when it
+/// is started again.
+const DYING: Duration = Duration::from_secs(5);
+const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
 /// The logs of the open documents.
 pub struct Autosave {
@@ -149,7 +153,19 @@ pub struct Found {
 
 impl Lost {
     /// The drawings to offer, oldest first. Logs of which a file holds the very last version are deleted.
+    ///
+    /// Where there are none it looks again for some seconds as long as other processes hold logs: one may be just dying.
     pub fn list(&self) -> Vec<recovery::Session> {
+        for _ in 0..DYING.as_millis() / LOOK_AGAIN.as_millis() {
+            let lost = self.list_now();
+            if !lost.is_empty() || recovery::held_by_others(&self.fs, &self.folder) == 0 {
+                return lost;
+            }
+            self.fs.pause(LOOK_AGAIN);
+        }
+        self.list_now()
+    }
+    fn list_now(&self) -> Vec<recovery::Session> {
         let mut lost = Vec::new();
         for mut session in recovery::sessions(&self.fs, &self.folder) {
             // One that failed is not so much as read unasked.

@@ -2,7 +2,8 @@
 //! Floor 5.
 
 use super::Channel;
-use exr::meta::{MetaData, attribute::SampleType};
+use exr::meta::MetaData;
+use exr::meta::attribute::{SampleType, Text};
 
 /// The names after the last dot that tell a channel from its siblings, with their letter.
 const SUFFIXES: [(&str, char); 15] = [
@@ -47,16 +48,21 @@ impl Pass {
     }
 }
 
+/// The crate takes each byte for a letter; programs write UTF-8.
+fn text(name: &Text) -> String {
+    String::from_utf8_lossy(name.bytes()).into_owned()
+}
+
 /// Every channel of every part. A part's name leads a channel's where the channel alone has no layer, or where two parts
 /// have a channel of that name.
 pub fn channels(meta: &MetaData) -> Vec<Channel> {
     let several = meta.headers.len() > 1;
-    let all = || meta.headers.iter().flat_map(|h| h.channels.list.iter().map(|c| c.name.to_string()));
+    let all = || meta.headers.iter().flat_map(|h| h.channels.list.iter().map(|c| text(&c.name)));
     let mut out = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
-        let part_name = header.own_attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
+        let part_name = header.own_attributes.layer_name.as_ref().map(text).unwrap_or_default();
         for (index, channel) in header.channels.list.iter().enumerate() {
-            let own = channel.name.to_string();
+            let own = text(&channel.name);
             let ambiguous = several && (!own.contains('.') || all().filter(|n| *n == own).count() > 1);
             let name = if ambiguous && !part_name.is_empty() { format!("{part_name}.{own}") } else { own };
             let kind = match channel.sample_type {

@@ -92,7 +92,7 @@ impl<'a> Archive<'a> {
             Ok(Some(Ok(None))) => {
                 Err(Error::too_large(self.path(name), format!("the entry has more than {most} bytes")))
             }
-            Ok(Some(Err(e))) => Err(Error::decode(self.path(name), format!("the entry is damaged ({e})"))),
+            Ok(Some(Err(e))) => Err(Error::decode(self.path(name), format!("the entry cannot be unpacked ({e})"))),
             Ok(None) | Err(_) => Err(Error::decode(self.path(name), "the entry is damaged")),
         }
     }

@@ -5,7 +5,7 @@
 use super::MERGED;
 use super::manifest::Manifest;
 use super::open::Reading;
-use super::repair::{layer_mut, name_of};
+use super::repair::{layer_mut, name_of, png_size};
 use super::stack::{self, Element, ElementShows, Stack};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};
 use crate::io::picture;
@@ -18,28 +18,40 @@ use std::sync::Arc;
 
 /// A document of what any program sees.
 pub fn document(reading: &mut Reading, stack: Stack) -> Result<Document> {
+    let size = size(reading, &stack)?;
     let mut reader = Foreign { reading, used_px: 0, live: None };
     let layers = reader.layers(stack.layers)?;
-    Ok(Document { layers, ..Document::empty(stack.size) })
+    Ok(Document { layers, ..Document::empty(size) })
+}
+
+/// The canvas's size as `stack.xml` tells it, else as the merged picture shows it.
+fn size(reading: &Reading, stack: &Stack) -> Result<Size> {
+    if let Some(size) = stack.size {
+        return Ok(size);
+    }
+    let merged = reading.archive.bytes(MERGED, reading.budget.file_bytes).ok().and_then(|bytes| png_size(&bytes));
+    let merged = merged.ok_or_else(|| Error::decode(reading.file, "stack.xml: <image> has no width and height"))?;
+    reading.budget.size(reading.file, merged.width.into(), merged.height.into())
 }
 
 /// A document that another program saved but left our entries in: its layers are those of `stack.xml`, and those whose
 /// pictures it left alone are as we saved them.
 pub fn restored(reading: &mut Reading, text: &[u8], value: &Value, manifest: &Manifest) -> Result<Document> {
     let stack = stack::read(reading.file, text, reading.budget)?;
+    let size = size(reading, &stack)?;
     reading.note("the layers were changed by another program");
     // The surface alone: the layers are taken one by one.
     let mut base = value.clone();
     base["layers"] = json!([]);
-    base["canvas"] = json!({ "width": stack.size.width, "height": stack.size.height });
+    let canvas = json!({ "width": size.width, "height": size.height });
+    base["canvas"] = canvas.clone();
     let base = reading.read_value(&base).or_else(|error| {
         reading.lost(format!("the surface is lost: {error}"));
-        Ok::<_, Error>(Document::empty(stack.size))
+        Ok::<_, Error>(Document::empty(size))
     })?;
-    let canvas = json!({ "width": stack.size.width, "height": stack.size.height });
     let mut reader = Foreign { reading, used_px: 0, live: Some(Saved { value: value.clone(), canvas, manifest }) };
     let layers = reader.layers(stack.layers)?;
-    Ok(Document { layers, size: stack.size, ..base })
+    Ok(Document { layers, size, ..base })
 }
 
 /// Nothing tells the layers any more: each picture that can be read becomes one, else the merged picture.
@@ -85,10 +97,20 @@ struct Foreign<'a, 'b> {
 
 impl Foreign<'_, '_> {
     fn layers(&mut self, elements: Vec<Element>) -> Result<Vec<Arc<Layer>>> {
-        elements.into_iter().map(|element| self.layer(element).map(Arc::new)).collect()
+        let mut layers = Vec::new();
+        for element in elements {
+            let is_atop = element.is_atop;
+            let layer = self.layer(element)?;
+            let clip_below = is_atop && !layers.is_empty();
+            if clip_below {
+                layers = as_one_base(layers);
+            }
+            layers.push(Arc::new(Layer { clip_below, ..layer }));
+        }
+        Ok(layers)
     }
     fn layer(&mut self, element: Element) -> Result<Layer> {
-        let Element { mut layer, shows, kind, unknown_op } = element;
+        let Element { mut layer, shows, kind, unknown_op, .. } = element;
         if let Some(op) = unknown_op {
             self.reading.note(format!("“{}” is blended by “{op}” elsewhere; here it is blended normally", layer.name));
         }
@@ -100,7 +122,7 @@ impl Foreign<'_, '_> {
             ElementShows::Picture { src, x, y } => {
                 if let Some(live) = self.live(&src, x, y) {
                     let Layer { name, visible, opacity, blend, .. } = layer;
-                    return Ok(Layer { name, visible, opacity, blend, clip_below: false, ..live });
+                    return Ok(Layer { name, visible, opacity, blend, ..live });
                 }
                 if !kind.is_empty() {
                     self.reading.note(became_pixels(&layer.name, &kind));
@@ -145,6 +167,19 @@ impl Foreign<'_, '_> {
         }
         Ok(PixelLayer { tiles: picture::to_tiles(&decoded, x, y), file: src, x, y })
     }
+}
+
+/// What lies beneath a layer that keeps to all of it, so that it may be clipped to one: the layers as they are if the lowest
+/// is the only one not clipped itself, else a group of them.
+fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
+    let is_set_apart = |layer: &Layer| !matches!(&layer.content, Content::Group(group) if group.pass_through);
+    let is_base = |(i, layer): (usize, &Arc<Layer>)| (i == 0) != layer.clip_below && (i > 0 || is_set_apart(layer));
+    if layers.iter().enumerate().all(is_base) {
+        return layers;
+    }
+    let name = layers.last().map_or_else(String::new, |layer| format!("{} and beneath", layer.name));
+    let group = Content::Group(Group { layers, pass_through: false });
+    vec![Arc::new(Layer { clip_to_surface: false, ..Layer::new(name, group) })]
 }
 
 fn became_pixels(name: &str, kind: &str) -> String {

@@ -201,3 +201,23 @@ fn an_empty_document_and_an_empty_layer_come_back() {
         Document { layers: vec![Arc::new(layer), Arc::new(Layer::new("f", Content::Fill(Color::WHITE)))], ..empty };
     assert_same(&one, &read_back(&written(&one)).document);
 }
+#[test]
+fn a_layer_that_keeps_to_what_is_beneath_is_clipped_to_all_of_it() {
+    let stack = r#"<image w="4" h="4"><stack>
+        <layer name="atop" src="data/c.png" composite-op="svg:src-atop"/>
+        <layer name="b" src="data/b.png"/><layer name="a" src="data/a.png"/></stack></image>"#;
+    let dots = |x: u32, y: u32, rgb: [u8; 3]| {
+        png(4, 4, move |px, py| if (px, py) == (x, y) { [rgb[0], rgb[1], rgb[2], 255] } else { [0; 4] })
+    };
+    let entries = [
+        (STACK.to_owned(), stack.into()),
+        ("data/a.png".to_owned(), dots(0, 0, [255, 0, 0])),
+        ("data/b.png".to_owned(), dots(1, 1, [0, 255, 0])),
+        ("data/c.png".to_owned(), png(4, 4, |_, _| [0, 0, 255, 255])),
+    ];
+    let back = read_back(&packed(&entries));
+    assert_eq!(back.notes, [""; 0]);
+    let seen = flatten(&back.document, &Progress::default()).unwrap();
+    let pixels = [(0, 0), (1, 1), (2, 2)].map(|(x, y)| seen.pixel(x, y));
+    assert_eq!(pixels, [[0, 0, 255, 255], [0, 0, 255, 255], [0; 4]]);
+}

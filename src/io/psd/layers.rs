@@ -170,14 +170,20 @@ impl<'a> Layers<'a> {
             return Err(Error::decode(self.file, format!("“{name}” lies {x0}, {y0} pixels away from the canvas")));
         }
         let size = self.budget.size(self.file, (x1 - x0) as u64, (y1 - y0) as u64)?;
-        self.used_px += size.area() as u64;
+        self.spend(size.area() as u64)?;
+        Ok(Some(rect))
+    }
+    fn spend(&mut self, px: u64) -> Result<()> {
+        self.used_px += px;
         if self.used_px > self.budget.document_px {
             let reason = format!("its layers hold more than {} pixels together", self.budget.document_px);
             return Err(Error::too_large(self.file, reason));
         }
-        Ok(Some(rect))
+        Ok(())
     }
     fn mask(&mut self, name: &str, data: &mut Cursor, rect: Rect, outside: u8) -> Result<Option<Mask>> {
+        // Here it will cover the canvas, a byte a pixel, however small it is in the file.
+        self.spend(self.header.size.area() as u64 / 4)?;
         let Some(rect) = self.affordable(name, rect)? else {
             return Ok(Some(Mask { rect: Rect::EMPTY, outside, values: Vec::new() }));
         };

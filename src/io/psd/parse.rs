@@ -14,6 +14,7 @@ use std::path::Path;
 pub struct Parsed<'a> {
     pub size: Size,
     pub is_deep: bool,
+    pub is_grey: bool,
     pub icc: Option<&'a [u8]>,
     /// Our own resource.
     pub ours: Option<&'a [u8]>,
@@ -31,7 +32,9 @@ pub struct Header {
     pub size: Size,
     pub channels: u16,
     pub bits: u16,
+    /// One channel of colour: grey, or numbers of colours.
     pub is_grey: bool,
+    is_indexed: bool,
 }
 
 /// Reads a file. Damaged layers are told and left out; fails where there is nothing to give back.
@@ -39,12 +42,13 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let cut = || Error::decode(file, "the file is cut short");
     let mut rest = Cursor::new(bytes);
     let header = header(file, &mut rest, budget)?;
-    rest.section(false).ok_or_else(cut)?;
+    let table = rest.section(false).ok_or_else(cut)?;
     let resources = rest.section(false).ok_or_else(cut)?;
     let (icc, ours) = (resource(resources, ICC_PROFILE), resource(resources, OURS));
     let mut parsed = Parsed {
         size: header.size,
         is_deep: header.bits > 8,
+        is_grey: header.is_grey,
         icc,
         ours,
         records: Vec::new(),
@@ -63,10 +67,24 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     if rest.take(length).is_some() {
         parsed.merged = merged(&mut rest, &header, alpha_is_ours || parsed.records.is_empty());
     }
+    if let (true, Some(rgba)) = (header.is_indexed, &mut parsed.merged) {
+        looked_up(rgba, table.rest());
+        parsed.is_grey = false;
+    }
     if parsed.merged.is_none() && parsed.records.is_empty() {
         return Err(Error::decode(file, "it holds no layers, and its picture is damaged or cut short"));
     }
     Ok(parsed)
+}
+
+/// Numbers of colours to the colours: the table holds all reds, all greens, all blues.
+fn looked_up(rgba: &mut [u8], table: &[u8]) {
+    let count = table.len() / 3;
+    for pixel in rgba.as_chunks_mut::<4>().0 {
+        let number = usize::from(pixel[0]);
+        let colour = |c: usize| table.get(c * count + number).filter(|_| number < count).copied().unwrap_or(0);
+        [pixel[0], pixel[1], pixel[2]] = [colour(0), colour(1), colour(2)];
+    }
 }
 
 fn header(file: &Path, rest: &mut Cursor, budget: &Budget) -> Result<Header> {
@@ -83,18 +101,19 @@ fn header(file: &Path, rest: &mut Cursor, budget: &Budget) -> Result<Header> {
     }
     let size = budget.size(file, width.into(), height.into())?;
     let modes = ["bitmap", "grey", "indexed", "RGB", "CMYK", "", "", "multichannel", "duotone", "Lab"];
-    if ![1, 3].contains(&mode) {
+    // A duotone is grey to everybody but its printer.
+    if ![1, 2, 3, 8].contains(&mode) {
         let name = modes.get(usize::from(mode)).copied().unwrap_or("unknown");
-        return Err(Error::unsupported(file, format!("its colours are {name}; RGB and grey can be read")));
+        return Err(Error::unsupported(file, format!("its colours are {name}; RGB, grey and indexed can be read")));
     }
     if ![8, 16].contains(&bits) {
         return Err(Error::unsupported(file, format!("it has {bits} bits a channel; 8 and 16 can be read")));
     }
-    let is_grey = mode == 1;
+    let is_grey = mode != 3;
     if channels < if is_grey { 1 } else { 3 } || channels > 56 {
         return Err(Error::decode(file, format!("it has {channels} channels")));
     }
-    Ok(Header { large: version == 2, size, channels, bits, is_grey })
+    Ok(Header { large: version == 2, size, channels, bits, is_grey, is_indexed: mode == 2 })
 }
 
 /// The data of a resource.

@@ -159,3 +159,36 @@ fn groups_that_are_never_closed_or_never_opened_lose_no_layer() {
         assert_eq!(back.walk().iter().filter(|(_, layer)| layer.name == "p").count(), 3);
     }
 }
+#[test]
+fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
+    let mark = |section| Record { name: "g".into(), section, ..Record::default() };
+    let leaf = Record { name: "leaf".into(), ..Record::default() };
+    let deep: Vec<Record> = [vec![mark(Section::End); 100], vec![leaf], vec![mark(Section::Group); 100]].concat();
+    let size = Size::new(4, 4);
+    let back = read_back(&emit::emit(size, &deep, &[0; 64], &[]));
+    assert!(back.notes.iter().any(|note| note.contains("nested too deep")), "{:?}", back.notes);
+    let depth = |path: &str| path.split('.').count();
+    let walk = back.document.walk();
+    assert_eq!(walk.iter().map(|(path, _)| depth(path)).max(), Some(Budget::default().group_depth + 1));
+    assert!(walk.iter().any(|(_, layer)| layer.name == "leaf"));
+    // Each covers the canvas once it is read, though it takes no room in the file.
+    let mask = Some(Mask { rect: Rect::EMPTY, outside: 9, values: Vec::new() });
+    let masked = vec![Record { mask, ..Record::default() }; 50];
+    let bytes = emit::emit(size, &masked, &[0; 64], &[]);
+    let budget = Budget { document_px: 100, ..Budget::default() };
+    let said = read(Path::new("a.psd"), &bytes, &budget).err().unwrap().to_string();
+    assert!(said.contains("hold more than 100 pixels"), "{said}");
+}
+#[test]
+fn numbers_of_colours_become_colours() {
+    let mut bytes = b"8BPS\0\x01\0\0\0\0\0\0\0\x01\0\0\0\x01\0\0\0\x02\0\x08\0\x02\0\0\x03\0".to_vec();
+    let mut table = [0; 768];
+    (table[7], table[256 + 7], table[512 + 7]) = (10, 20, 30);
+    bytes.extend(table);
+    // No resources, no layers; plain.
+    bytes.extend([0; 8]);
+    bytes.extend([0, 0, 7, 0]);
+    let back = read_back(&bytes);
+    let seen = flatten(&back.document, &Progress::default()).unwrap();
+    assert_eq!([seen.pixel(0, 0), seen.pixel(1, 0)], [[10, 20, 30, 255], [0, 0, 0, 255]]);
+}

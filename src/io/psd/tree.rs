@@ -34,7 +34,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
         notes.push("its 16 bits a channel became 8".into());
     }
     let records = layers_of(&mut parsed);
-    let mut builder = Builder { size: parsed.size, open: vec![Vec::new()], notes };
+    let mut builder = Builder { size: parsed.size, deepest: budget.group_depth, open: vec![Vec::new()], notes };
     records.into_iter().for_each(|record| builder.add(record));
     let (layers, notes) = builder.done();
     let document = Document { layers, ..Document::empty(parsed.size) };
@@ -83,7 +83,7 @@ fn layers_of(parsed: &mut Parsed) -> Vec<Record> {
     if let Some(icc) = parsed.icc.filter(|icc| !picture::is_own_srgb(icc)) {
         for record in records.iter_mut().filter(|record| !record.rgba.is_empty()) {
             let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
-            record.rgba = picture::to_srgb(size, std::mem::take(&mut record.rgba), icc);
+            record.rgba = picture::to_srgb(size, std::mem::take(&mut record.rgba), parsed.is_grey, icc);
         }
     }
     records
@@ -92,6 +92,8 @@ fn layers_of(parsed: &mut Parsed) -> Vec<Record> {
 /// Layers gathered bottom first, each open group a list of its own.
 struct Builder {
     size: Size,
+    /// Groups may lie within each other so many times.
+    deepest: usize,
     open: Vec<Vec<Arc<Layer>>>,
     notes: Vec<String>,
 }
@@ -106,6 +108,11 @@ impl Builder {
             Section::Group => {
                 // Without a beginning, a group holds nothing.
                 let layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
+                if self.open.len() > self.deepest {
+                    self.notes
+                        .push(format!("“{}” is nested too deep: its layers stand in the group around it", record.name));
+                    return self.open.last_mut().map_or((), |list| list.extend(layers));
+                }
                 let group = Group { layers, pass_through: record.blend == PASS_THROUGH };
                 self.layer(record, Content::Group(group))
             }

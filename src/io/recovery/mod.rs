@@ -16,7 +16,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use sessions::{Recovered, Session, read, sessions};
+pub use sessions::{Recovered, Session, held_by_others, read, sessions};
 
 use super::fs::{Fs, Lock};
 use super::save::Stamp;

@@ -42,6 +42,16 @@ pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<Session> {
     logs.filter_map(|path| session(fs, path)).collect()
 }
 
+/// How many sessions below a folder other processes hold: those of open windows, and for a moment those of one that was
+/// killed, whose locks the system takes back only when the last of its threads has ended.
+pub fn held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
+    let ours = format!("-{}-", std::process::id());
+    let is_log = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "log");
+    let is_theirs = |path: &&PathBuf| path.file_name().is_some_and(|name| !name.to_string_lossy().contains(&ours));
+    let is_held = |path: &&PathBuf| matches!(fs.lock(&path.with_extension("lock")), Ok(None));
+    fs.list(folder).unwrap_or_default().iter().filter(is_log).filter(is_theirs).filter(is_held).count()
+}
+
 /// `None` while its own process, or another window, holds it.
 fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<Session> {
     let lock = fs.lock(&path.with_extension("lock")).ok()??;

@@ -49,6 +49,23 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     assert_eq!(lost(folder.path()).len(), 1);
 }
 #[test]
+fn a_program_that_is_just_dying_is_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    crash(painted(folder.path()));
+    for entry in std::fs::read_dir(folder.path()).unwrap().flatten() {
+        // As if another process had written it.
+        let ending = entry.path().extension().unwrap().to_owned();
+        std::fs::rename(entry.path(), folder.path().join("0-1-0").with_extension(ending)).unwrap();
+    }
+    let lock = Disk.lock(&folder.path().join("0-1-0.lock")).unwrap().unwrap();
+    let dying = std::thread::spawn(move || {
+        Disk.pause(3 * LOOK_AGAIN);
+        drop(lock);
+    });
+    assert_eq!(lost(folder.path()).len(), 1);
+    dying.join().unwrap();
+}
+#[test]
 fn what_is_closed_or_never_was_touched_is_not_offered() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = painted(folder.path());

@@ -1,0 +1,273 @@
+//! TIFF as scanners, renderers and painting programs store it: grey, palettes, RGB, YCbCr and CMYK, with and without alpha, 1
+//! to 64 bits, integers and floats, in planes or pixel by pixel.
+//! Floor 5. Strips, tiles and compressions are the `tiff` crate's; `image` reads only part of what that decodes.
+
+mod sample;
+
+use super::{Bitmap, plausible};
+use crate::io::Budget;
+use crate::math::Size;
+use crate::{Error, Result};
+use image::{DynamicImage, metadata::Orientation};
+use sample::Sample;
+use std::io::Cursor;
+use std::path::Path;
+use tiff::decoder::{BufferLayoutPreference, Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError};
+
+/// What the samples of a pixel stand for, those beyond the colours apart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Meaning {
+    Grey,
+    /// Grey, 0 being white.
+    Ink,
+    Palette,
+    Rgb,
+    Cmyk,
+    YCbCr,
+}
+
+impl Meaning {
+    /// Of the tag's value; `None` for colours that are not read here.
+    fn of(photometric: u16) -> Option<Self> {
+        Some(match photometric {
+            0 => Meaning::Ink,
+            1 => Meaning::Grey,
+            2 => Meaning::Rgb,
+            3 => Meaning::Palette,
+            5 => Meaning::Cmyk,
+            6 => Meaning::YCbCr,
+            _ => return None,
+        })
+    }
+    fn colours(self) -> usize {
+        match self {
+            Meaning::Grey | Meaning::Ink | Meaning::Palette => 1,
+            Meaning::Rgb | Meaning::YCbCr => 3,
+            Meaning::Cmyk => 4,
+        }
+    }
+}
+
+/// What the sample behind the colours is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Alpha {
+    None,
+    Straight,
+    /// The colours are multiplied by it.
+    Associated,
+}
+
+/// Decodes the first picture of a TIFF.
+pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
+    let entry = photometric(bytes);
+    let entry =
+        entry.ok_or_else(|| Error::decode(file, "the TIFF does not tell its colours; it is damaged or cut short"))?;
+    let meaning = Meaning::of(entry.value);
+    let others = "its colours are neither grey, indexed, RGB, YCbCr nor CMYK";
+    let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
+    // The crate reads no palettes and no white 0 with alpha, but would as grey. Their meaning is told here.
+    let as_grey = match meaning {
+        Meaning::Palette | Meaning::Ink => Some(entry.with_value(bytes, 1)),
+        _ => None,
+    };
+    let failed = |e: TiffError| failure(file, &e);
+    let most = usize::try_from(budget.area_px.saturating_mul(16)).unwrap_or(usize::MAX);
+    let mut limits = Limits::default();
+    (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (most, most);
+    let cursor = Cursor::new(as_grey.as_deref().unwrap_or(bytes));
+    let mut decoder = Decoder::new(cursor).map_err(failed)?.with_limits(limits);
+    let (width, height) = decoder.dimensions().map_err(failed)?;
+    let size = budget.size(file, width.into(), height.into())?;
+    let color = decoder.colortype().map_err(failed)?;
+    let promised = size.area() as u64 * samples(color) as u64 * u64::from(color.bit_depth()).div_ceil(8);
+    plausible(file, size, promised, bytes.len())?;
+    let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
+    let alpha = match extra.first() {
+        _ if samples(color) <= meaning.colours() => Alpha::None,
+        Some(1) => Alpha::Associated,
+        Some(2) => Alpha::Straight,
+        None if meaning == Meaning::Rgb => Alpha::Straight,
+        _ => Alpha::None,
+    };
+    let map = decoder.find_tag_unsigned_vec::<u16>(Tag::ColorMap).ok().flatten().unwrap_or_default();
+    let icc = decoder.get_tag_u8_vec(Tag::IccProfile).ok();
+    let turned = decoder.find_tag_unsigned::<u8>(Tag::Orientation).ok().flatten().and_then(Orientation::from_exif);
+    let mut values = DecodingResult::U8(Vec::new());
+    let layout = decoder.read_image_to_buffer(&mut values).map_err(failed)?;
+    let stored = Stored { size, samples: samples(color), bits: color.bit_depth(), layout, meaning, alpha, map };
+    let image = stored.image(values).map_err(|reason| Error::unsupported(file, reason))?;
+    let orientation = turned.unwrap_or(Orientation::NoTransforms);
+    Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
+}
+
+/// How many samples the crate gives a pixel.
+fn samples(color: ColorType) -> usize {
+    match color {
+        ColorType::Gray(_) | ColorType::Palette(_) => 1,
+        ColorType::GrayA(_) => 2,
+        ColorType::RGB(_) | ColorType::YCbCr(_) | ColorType::Lab(_) => 3,
+        ColorType::RGBA(_) | ColorType::CMYK(_) => 4,
+        ColorType::CMYKA(_) => 5,
+        ColorType::Multiband { num_samples, .. } => num_samples.into(),
+        _ => 0,
+    }
+}
+
+fn failure(file: &Path, error: &TiffError) -> Error {
+    match error {
+        TiffError::LimitsExceeded => {
+            Error::too_large(file, "the TIFF asks for more memory than allowed (raise it with --max-pixels)")
+        }
+        TiffError::UnsupportedError(e) => Error::unsupported(file, format!("TIFF: {e}")),
+        e => Error::decode(file, format!("the TIFF data is damaged or cut short ({e})")),
+    }
+}
+
+/// Where the tag that tells the colours' meaning has its value.
+struct Photometric {
+    at: usize,
+    is_little: bool,
+    value: u16,
+}
+
+impl Photometric {
+    /// The file with another value.
+    fn with_value(&self, bytes: &[u8], value: u16) -> Vec<u8> {
+        let mut out = bytes.to_vec();
+        let value = if self.is_little { value.to_le_bytes() } else { value.to_be_bytes() };
+        if let Some(place) = out.get_mut(self.at..self.at + 2) {
+            place.copy_from_slice(&value);
+        }
+        out
+    }
+}
+
+/// Finds that tag in the first directory of a TIFF or BigTIFF.
+fn photometric(bytes: &[u8]) -> Option<Photometric> {
+    const TAG: u64 = 262;
+    let is_little = bytes.starts_with(b"II");
+    let number = |at: usize, length: usize| {
+        let digits = bytes.get(at..at.checked_add(length)?)?.iter();
+        let push = |sum: u64, digit: &u8| sum << 8 | u64::from(*digit);
+        Some(if is_little { digits.rev().fold(0, push) } else { digits.fold(0, push) })
+    };
+    // Lengths of an address, of the number of entries, of an entry, and where in an entry its value stands.
+    let (address_at, address, count, entry, value) =
+        if number(2, 2)? == 43 { (8, 8, 8, 20, 12) } else { (4, 4, 2, 12, 8) };
+    let directory = usize::try_from(number(address_at, address)?).ok()?;
+    let entries = usize::try_from(number(directory, count)?).ok()?.min(4096);
+    let first = directory.checked_add(count)?;
+    let found = (0..entries).map(|i| first.saturating_add(i * entry)).find(|at| number(*at, 2) == Some(TAG))?;
+    let at = found.checked_add(value)?;
+    Some(Photometric { at, is_little, value: number(at, 2)? as u16 })
+}
+
+/// How the samples lie, and what they mean.
+struct Stored {
+    size: Size,
+    samples: usize,
+    bits: u8,
+    layout: BufferLayoutPreference,
+    meaning: Meaning,
+    alpha: Alpha,
+    /// Of a palette: all reds, all greens, all blues.
+    map: Vec<u16>,
+}
+
+type Refused = &'static str;
+
+impl Stored {
+    fn image(&self, values: DecodingResult) -> Result<DynamicImage, Refused> {
+        use DecodingResult::{F16, F32, F64, U8, U16, U32, U64};
+        match values {
+            U8(v) if self.bits < 8 => self.picture(self.unpacked(&v)),
+            U8(v) => self.picture(v),
+            U16(v) => self.picture(v),
+            U32(v) => self.picture(v.into_iter().map(|v| (v >> 16) as u16).collect()),
+            U64(v) => self.picture(v.into_iter().map(|v| (v >> 48) as u16).collect()),
+            F16(v) => self.picture(v.into_iter().map(f32::from).collect()),
+            F32(v) => self.picture(v),
+            F64(v) => self.picture(v.into_iter().map(|v| v as f32).collect()),
+            _ => Err("the samples of this TIFF have a sign; those of a picture have none"),
+        }
+    }
+    /// Samples of less than a byte, which share bytes: a byte each, stretched to its range unless they are numbers of colours.
+    fn unpacked(&self, packed: &[u8]) -> Vec<u8> {
+        let bits = usize::from(self.bits);
+        let most = (1u32 << bits) - 1;
+        let in_row = self.size.width as usize * if self.layout.planes > 1 { 1 } else { self.samples };
+        let stride = self.layout.row_stride.map_or(1, usize::from);
+        let value = |row: &[u8], i: usize| {
+            let byte = row.get(i * bits / 8).copied().unwrap_or(0);
+            let value = u32::from(byte) >> (8 - bits - i * bits % 8) & most;
+            if self.meaning == Meaning::Palette { value as u8 } else { (value * 255 / most) as u8 }
+        };
+        packed.chunks(stride).flat_map(|row| (0..in_row).map(move |i| value(row, i))).collect()
+    }
+    fn picture<T: Sample>(&self, values: Vec<T>) -> Result<DynamicImage, Refused> {
+        let pixels = self.gathered(&values).ok_or("this TIFF holds fewer samples than it promises")?;
+        drop(values);
+        let channels = self.channels();
+        match self.meaning {
+            Meaning::Palette => self.looked_up(&pixels),
+            Meaning::YCbCr => T::rgb_of_ycbcr(pixels).and_then(|rgb| T::image(self.size, channels, rgb)),
+            Meaning::Cmyk => T::image(self.size, channels - 1, self.printed(pixels)),
+            Meaning::Grey | Meaning::Ink | Meaning::Rgb => T::image(self.size, channels, self.straight(pixels)),
+        }
+        .ok_or("this TIFF stores its colours in a way that is not read")
+    }
+    fn channels(&self) -> usize {
+        self.meaning.colours() + usize::from(self.alpha != Alpha::None)
+    }
+    /// The colours and the alpha of each pixel in turn, further samples left out; `None` where there are too few.
+    fn gathered<T: Sample>(&self, values: &[T]) -> Option<Vec<T>> {
+        let (area, channels) = (self.size.area(), self.channels());
+        let values = values.get(..area.checked_mul(self.samples)?)?;
+        let at = |i: usize, c: usize| if self.layout.planes > 1 { c * area + i } else { i * self.samples + c };
+        (channels <= self.samples).then(|| {
+            (0..area).flat_map(|i| (0..channels).map(move |c| (i, c))).map(|(i, c)| values[at(i, c)]).collect()
+        })
+    }
+    /// Light, not ink, and not multiplied by alpha.
+    fn straight<T: Sample>(&self, mut pixels: Vec<T>) -> Vec<T> {
+        for pixel in pixels.chunks_exact_mut(self.channels()) {
+            let (colours, alpha) = pixel.split_at_mut(self.meaning.colours());
+            for colour in colours {
+                if self.meaning == Meaning::Ink {
+                    *colour = colour.inverted();
+                }
+                if let (Alpha::Associated, Some(alpha)) = (self.alpha, alpha.first()) {
+                    *colour = colour.divided(*alpha);
+                }
+            }
+        }
+        pixels
+    }
+    /// RGB of cyan, magenta, yellow and black, as if they were printed by an ideal press.
+    fn printed<T: Sample>(&self, pixels: Vec<T>) -> Vec<T> {
+        let rgb = |pixel: &[T]| {
+            let [c, m, y] = [pixel[0], pixel[1], pixel[2]].map(|ink| ink.inverted().times(pixel[3].inverted()));
+            [Some(c), Some(m), Some(y), pixel.get(4).copied()]
+        };
+        self.straight(pixels).chunks_exact(self.channels()).flat_map(rgb).flatten().collect()
+    }
+    /// The colours that a palette's numbers stand for.
+    fn looked_up<T: Sample>(&self, pixels: &[T]) -> Option<DynamicImage> {
+        let count = self.map.len() / 3;
+        // Some programs wrote bytes where 16 bits are meant.
+        let shift = if self.map.iter().any(|v| *v > 255) { 8 } else { 0 };
+        let colour = |i: usize, c: usize| self.map.get(c * count + i.min(count - 1)).map_or(0, |v| (v >> shift) as u8);
+        let rgba = |pixel: &[T]| {
+            let (index, alpha) = (pixel[0].index(), pixel.get(1).map_or(255, |a| a.index().min(255) as u8));
+            [colour(index, 0), colour(index, 1), colour(index, 2), alpha]
+        };
+        let out =
+            pixels.chunks_exact(self.channels()).flat_map(|pixel| rgba(pixel).into_iter().take(self.channels() + 2));
+        (count > 0).then(|| u8::image(self.size, self.channels() + 2, out.collect())).flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests;
