@@ -46,6 +46,22 @@ impl Symmetry {
         };
         turns.into_iter().map(|turn| Image { center: canvas.center(), turn }).collect()
     }
+    /// The lines across which strokes repeat, or that part the turns; canvas px, as far as the canvas's corners.
+    pub fn axes(self, canvas: Size) -> Vec<[Vec2; 2]> {
+        let (middle, reach) = (canvas.center(), canvas.center().length());
+        let across = |direction: Vec2| [middle - direction * canvas.center(), middle + direction * canvas.center()];
+        match self {
+            Symmetry::None => Vec::new(),
+            Symmetry::Vertical => vec![across(Vec2::Y)],
+            Symmetry::Horizontal => vec![across(Vec2::X)],
+            Symmetry::Both => vec![across(Vec2::Y), across(Vec2::X)],
+            Symmetry::Radial(n) => {
+                let n = n.clamp(1, MOST_ROUND);
+                let ray = |i: u32| Vec2::from_angle(std::f32::consts::TAU * (i as f32 / n as f32 - 0.25));
+                (0..n).map(|i| [middle, middle + ray(i) * reach]).collect()
+            }
+        }
+    }
 }
 
 impl Image {
@@ -87,6 +103,15 @@ mod tests {
         let quarter = places(Symmetry::Radial(4));
         assert_eq!(quarter, [vec2(120.0, 40.0), vec2(110.0, 70.0), vec2(80.0, 60.0), vec2(90.0, 30.0)]);
         assert_eq!(Symmetry::Radial(u32::MAX).images(CANVAS).len(), MOST_ROUND as usize);
+    }
+    #[test]
+    fn axes_run_through_the_middle_and_part_the_images() {
+        assert_eq!(Symmetry::None.axes(CANVAS).len(), 0);
+        assert_eq!(Symmetry::Vertical.axes(CANVAS), [[vec2(100.0, 0.0), vec2(100.0, 100.0)]]);
+        assert_eq!(Symmetry::Both.axes(CANVAS)[1], [vec2(0.0, 50.0), vec2(200.0, 50.0)]);
+        let rays = Symmetry::Radial(5).axes(CANVAS);
+        assert!(rays.len() == 5 && rays.iter().all(|ray| ray[0] == vec2(100.0, 50.0)));
+        assert!((rays[0][1].x - 100.0).abs() < 1e-3 && rays[0][1].y < 0.0, "the first goes up");
     }
     #[test]
     fn the_pen_leans_the_other_way_in_a_mirror() {

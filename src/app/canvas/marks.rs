@@ -18,6 +18,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     if matches!(tool, ToolKind::Anchors | ToolKind::Gradient | ToolKind::Image) {
         handles(painter, session, &to_screen);
     }
+    if matches!(tool, ToolKind::Brush | ToolKind::Eraser) {
+        axes(painter, session, &to_screen);
+    }
     if tool == ToolKind::Strokes {
         chosen(painter, session, &to_screen);
     }
@@ -45,6 +48,17 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
             painter.circle_stroke(to_screen(at), 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
         }
         _ => {}
+    }
+}
+
+/// What strokes repeat about.
+fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let Some(document) = session.shown() else { return };
+    for axis in session.symmetry.axes(document.size) {
+        let ends = axis.map(to_screen);
+        painter.line_segment(ends, Stroke::new(2.2, Color32::from_black_alpha(70)));
+        let dashes = Stroke::new(1.0, Color32::from_rgb(120, 200, 255));
+        painter.extend(Shape::dashed_line(&ends, dashes, 6.0, 5.0));
     }
 }
 

@@ -16,6 +16,23 @@ use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{self, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
+    let id = Id::unique("brush in hand");
+    let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
+        ui.selectable_value(&mut edits, true, "Brush in hand").on_hover_text("Change the brush you paint with");
+    });
+    ui.data_mut(|data| data.insert_temp(id, edits));
+    if edits {
+        numbers(ui, session, asked);
+        brush::show(ui, session, asked);
+        keep(ui, asked);
+    } else {
+        presets(ui, session, swatches, asked);
+    }
+}
+
+fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
     let search = search(ui, asked);
     for (group, name) in Group::ALL {
         let presets = session.presets.iter().filter(|preset| preset.group == group && is_found(preset, &search));
@@ -32,21 +49,21 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut
                     asked.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
                 }
                 if known.group == Group::Imported {
-                    response.context_menu(|ui| {
-                        if ui.button("Remove brush").clicked() {
-                            asked.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
-                            ui.close();
-                        }
-                    });
+                    remove(&response, known, asked);
                 }
             }
         });
     }
-    ui.add_space(4.0);
-    title(ui, "Brush in hand");
-    numbers(ui, session, asked);
-    brush::show(ui, session, asked);
-    keep(ui, asked);
+}
+
+/// A right click on a brush of the user's own.
+fn remove(response: &Response, known: &Preset, asked: &mut Asked) {
+    response.context_menu(|ui| {
+        if ui.button("Remove brush").clicked() {
+            asked.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
+            ui.close();
+        }
+    });
 }
 
 /// The brush in hand under a name of its own.
