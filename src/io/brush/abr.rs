@@ -1,5 +1,8 @@
-//! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later; computed round ones of the old versions.
-//! Floor 5. Of their settings only spacing, and what shapes a computed tip, is taken.
+//! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later, and computed round ones.
+//! Floor 5. Of their settings only name, spacing, size, turn, and what shapes a computed tip, are taken.
+
+mod descriptor;
+mod presets;
 
 use super::{Imported, Tips};
 use crate::io::Budget;
@@ -21,10 +24,11 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Imported>>
     let mut cursor = Cursor::new(bytes);
     let cut = || Error::decode(file, "the collection is cut short");
     let (version, second) = (cursor.u16().ok_or_else(cut)?, cursor.u16().ok_or_else(cut)?);
-    let mut reading = Reading { file, budget, used_px: 0, tips: Tips::default(), brushes: Vec::new(), damaged: 0 };
+    let mut reading =
+        Reading { file, budget, used_px: 0, tips: Tips::default(), brushes: Vec::new(), keys: Vec::new(), damaged: 0 };
     match version {
         1 | 2 => reading.old(&mut cursor, version, usize::from(second))?,
-        6 | 7 | 9 | 10 => reading.samples(&mut cursor, second)?,
+        6 | 7 | 9 | 10 => reading.new(&mut cursor, second)?,
         _ => return Err(Error::unsupported(file, format!("version {version} of Photoshop's brushes"))),
     }
     let Reading { mut brushes, damaged, .. } = reading;
@@ -45,6 +49,8 @@ struct Reading<'a> {
     used_px: u64,
     tips: Tips,
     brushes: Vec<Imported>,
+    /// What the sampled tips among them are called by, where the version has that.
+    keys: Vec<(String, usize)>,
     damaged: usize,
 }
 
@@ -93,10 +99,10 @@ impl Reading<'_> {
         };
         self.sample(&mut record, name, spacing)
     }
-    /// Versions 6 and later: blocks, of which one holds all sampled tips.
-    fn samples(&mut self, cursor: &mut Cursor, subversion: u16) -> Result<()> {
+    /// Versions 6 and later: blocks, of which one holds all sampled tips and another says what they are called.
+    fn new(&mut self, cursor: &mut Cursor, subversion: u16) -> Result<()> {
         // A key of 37 letters, and then what no document tells.
-        let unknown = match subversion {
+        let before = match subversion {
             1 => 47,
             2 => 301,
             _ => {
@@ -104,19 +110,53 @@ impl Reading<'_> {
                 return Err(Error::unsupported(self.file, reason));
             }
         };
-        let Some(mut block) = sampled_block(cursor) else { return Ok(()) };
+        let mut said = Vec::new();
+        while let Some((key, block)) = next_block(cursor) {
+            match &key {
+                b"samp" => self.samples(block, before)?,
+                b"desc" => said = presets::read(block),
+                _ => {}
+            }
+        }
+        self.call(said);
+        Ok(())
+    }
+    fn samples(&mut self, mut block: Cursor, before: usize) -> Result<()> {
         while !block.rest().is_empty() && self.brushes.len() < MOST {
             let Some(mut record) = padded_section(&mut block) else {
                 self.damaged += 1;
                 break;
             };
-            if record.take(unknown).is_none() {
+            let Some(head) = record.take(before) else {
                 self.damaged += 1;
                 continue;
-            }
+            };
+            let (index, key) = (self.brushes.len(), Cursor::new(head).pascal(1).map(super::text_of));
             self.sample(&mut record, None, SPACING)?;
+            if let Some(key) = key.filter(|key| !key.is_empty() && self.brushes.len() > index) {
+                self.keys.push((key, index));
+            }
         }
         Ok(())
+    }
+    /// Brushes by the names they have in the collection, in its order; tips that nobody names come last.
+    fn call(&mut self, said: Vec<presets::Said>) {
+        let tips = std::mem::take(&mut self.brushes);
+        let mut is_called = vec![false; tips.len()];
+        for said in said {
+            let at = said.sample.as_ref().map(|key| self.keys.iter().find(|(known, _)| known == key).map(|(_, i)| *i));
+            match at {
+                // Its tip is damaged, or elsewhere.
+                Some(None) => {}
+                Some(Some(i)) => {
+                    is_called[i] = true;
+                    self.brushes.push(said.brush(tips.get(i)));
+                }
+                None => self.brushes.push(said.brush(None)),
+            }
+        }
+        let rest = tips.into_iter().zip(is_called).filter(|(_, is_called)| !is_called);
+        self.brushes.extend(rest.map(|(tip, _)| tip));
     }
     /// Bounds, depth, compression, values: 0 is bare, the largest covers wholly.
     fn sample(&mut self, record: &mut Cursor, name: Option<String>, spacing: f32) -> Result<()> {
@@ -147,7 +187,7 @@ impl Reading<'_> {
         }
         Ok(())
     }
-    /// Tips of later versions have names only in a part that is not read.
+    /// Of a tip that the file does not name.
     fn next_name(&self) -> String {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
         format!("{stem} {}", self.brushes.len() + 1)
@@ -173,17 +213,12 @@ fn utf16(record: &mut Cursor) -> Option<String> {
     Some(text.trim_end_matches('\0').trim().chars().filter(|c| !c.is_control()).collect())
 }
 
-/// The block of sampled tips among the others.
-fn sampled_block<'a>(cursor: &mut Cursor<'a>) -> Option<Cursor<'a>> {
-    loop {
-        // Some programs fill blocks up to four bytes, some do not.
-        let padding = (0..4).find(|n| cursor.rest().get(*n..n + 4) == Some(b"8BIM"))?;
-        cursor.take(padding + 4)?;
-        let (key, block) = cursor.key().zip(cursor.section(false))?;
-        if key == *b"samp" {
-            return Some(block);
-        }
-    }
+/// The next block and its key.
+fn next_block<'a>(cursor: &mut Cursor<'a>) -> Option<([u8; 4], Cursor<'a>)> {
+    // Some programs fill blocks up to four bytes, some do not.
+    let padding = (0..4).find(|n| cursor.rest().get(*n..n + 4) == Some(b"8BIM"))?;
+    cursor.take(padding + 4)?;
+    cursor.key().zip(cursor.section(false))
 }
 
 /// A section filled up to four bytes; the filling of the last may be missing.

@@ -188,6 +188,48 @@ fn photoshop_tips_of_every_version_are_read() {
         assert_eq!(deep, [0, 100, 255]);
     }
 }
+/// The same, its second tip called “Reed” by a description, and a computed brush beside it.
+fn named_abr() -> Vec<u8> {
+    let text = |t: &str| {
+        let letters: Vec<u8> = t.encode_utf16().chain([0]).flat_map(u16::to_be_bytes).collect();
+        [words(&[t.len() as u32 + 1]), letters].concat()
+    };
+    let named = |name: &str, kind: &str, value: Vec<u8>| {
+        let length = if name.len() == 4 { 0 } else { name.len() as u32 };
+        [words(&[length]), name.into(), kind.into(), value].concat()
+    };
+    let percent = |name, v: f64| named(name, "UntF", [&b"#Prc"[..], &v.to_be_bytes()].concat());
+    let object = |values: &[Vec<u8>]| {
+        [text(""), words(&[0]), b"null".to_vec(), words(&[values.len() as u32]), values.concat()].concat()
+    };
+    let preset = |name: &str, brush: &[Vec<u8>]| {
+        let fields = [
+            named("Nm  ", "TEXT", text(name)),
+            named("Brsh", "Objc", object(brush)),
+            named("useScatter", "bool", vec![1]),
+        ];
+        [b"Objc".to_vec(), object(&fields)].concat()
+    };
+    let sampled = [percent("Dmtr", 30.0), percent("Spcn", 40.0), named("sampledData", "TEXT", text("second"))];
+    let computed = [percent("Dmtr", 12.0), percent("Hrdn", 50.0), percent("Rndn", 100.0)];
+    let list = [words(&[2]), preset("Reed", &sampled), preset("Dot", &computed)].concat();
+    let description = [words(&[16]), object(&[named("Brsh", "VlLs", list)])].concat();
+    let mut bytes = new_abr(1);
+    // The second tip's key, a length and its letters, stands behind the length of its record.
+    let first = bytes.windows(4).position(|w| w == b"samp").unwrap() + 8;
+    let length = u32::from_be_bytes(bytes[first..first + 4].try_into().unwrap()) as usize;
+    let key = first + 4 + length.next_multiple_of(4) + 4;
+    bytes[key..key + 7].copy_from_slice(b"\x06second");
+    [bytes, b"8BIMdesc".to_vec(), words(&[description.len() as u32]), description].concat()
+}
+#[test]
+fn later_photoshop_brushes_have_their_names_sizes_and_spacings() {
+    let read = read(Path::new("set.abr"), &named_abr(), &budget()).unwrap();
+    let told: Vec<_> = read.iter().map(|b| (b.name.as_str(), b.brush.size, b.brush.spacing)).collect();
+    assert_eq!(told, [("Reed", 30.0, 0.4), ("Dot", 12.0, 0.25), ("set 1", 4.0, 0.25)]);
+    assert_eq!(texels(&tips(&read[0])[0])[2], [255; 4], "the second tip's");
+    assert_eq!((read[1].brush.hardness, read[0].notes[0].as_str()), (0.5, "scattering not taken from Photoshop"));
+}
 #[test]
 fn what_is_no_brush_gets_a_sentence() {
     for (file, bytes, part) in [
@@ -224,6 +266,7 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
         ("a.myb", MYB.into()),
         ("a.abr", old_abr()),
         ("b.abr", new_abr(2)),
+        ("c.abr", named_abr()),
     ];
     let small = Budget { side_px: 4096, area_px: 1 << 20, document_px: 1 << 22, ..Budget::default() };
     for (seed, (file, whole)) in files.into_iter().enumerate() {

@@ -1,0 +1,81 @@
+//! What later versions of Photoshop say of their brushes beside the tips: names, sizes, spacings.
+//! Floor 5.
+
+use super::descriptor::{self, Object};
+use super::{MOST, SPACING};
+use crate::io::brush::Imported;
+use crate::io::psd::cursor::Cursor;
+use crate::paint::{Brush, Tip};
+
+/// What is switched on in a brush and not taken from it.
+const LEFT_OUT: [(&str, &str); 7] = [
+    ("useTipDynamics", "shape dynamics"),
+    ("useScatter", "scattering"),
+    ("useTexture", "texture"),
+    ("useColorDynamics", "colour dynamics"),
+    ("usePaintDynamics", "transfer"),
+    ("Wtdg", "wet edges"),
+    ("Nose", "noise"),
+];
+
+/// One brush of a collection.
+pub struct Said {
+    name: String,
+    /// The key of its sampled tip; `None` of a computed one.
+    pub sample: Option<String>,
+    diameter_px: Option<f32>,
+    spacing: f32,
+    rotation: f32,
+    roundness: f32,
+    hardness: f32,
+    notes: Vec<String>,
+}
+
+/// The brushes that a block of descriptions names, in its order; none where it is not understood.
+pub fn read(block: Cursor) -> Vec<Said> {
+    let mut block = block;
+    let Some(root) = descriptor::read(&mut block) else { return Vec::new() };
+    root.objects("Brsh").filter_map(said).take(MOST).collect()
+}
+
+fn said(preset: &Object) -> Option<Said> {
+    let brush = preset.object("Brsh")?;
+    let text = |object: &Object, name: &str| object.text(name).map(str::to_owned).filter(|text| !text.is_empty());
+    let percent = |name: &str, plain: f32| brush.number(name).map_or(plain, |v| v / 100.0);
+    let left_out: Vec<&str> = LEFT_OUT.iter().filter(|(key, _)| preset.flag(key)).map(|(_, word)| *word).collect();
+    let note = format!("{} not taken from Photoshop", left_out.join(", "));
+    Some(Said {
+        name: text(preset, "Nm  ").or(text(brush, "Nm  ")).unwrap_or_default(),
+        sample: text(brush, "sampledData"),
+        diameter_px: brush.number("Dmtr"),
+        spacing: percent("Spcn", SPACING),
+        rotation: brush.number("Angl").unwrap_or(0.0),
+        roundness: percent("Rndn", 1.0),
+        hardness: percent("Hrdn", 1.0),
+        notes: if left_out.is_empty() { Vec::new() } else { vec![note] },
+    })
+}
+
+impl Said {
+    /// The brush, on its sampled tip where it has one.
+    pub fn brush(self, tip: Option<&Imported>) -> Imported {
+        let ratio = self.roundness.max(0.05).min(1.0);
+        let plain = tip.map(|imported| imported.brush.clone());
+        let is_sampled = plain.is_some();
+        let computed = if ratio < 1.0 { Tip::Ellipse { ratio } } else { Tip::Round };
+        let plain = plain.unwrap_or(Brush { tip: computed, ..Brush::default() });
+        let brush = Brush {
+            size: self.diameter_px.unwrap_or(plain.size).max(1.0).min(5000.0),
+            spacing: self.spacing.max(0.01).min(10.0),
+            rotation: self.rotation.max(-180.0).min(180.0),
+            hardness: if is_sampled { plain.hardness } else { self.hardness.max(0.0).min(1.0) },
+            ..plain
+        };
+        let mut notes = self.notes;
+        if is_sampled && ratio < 1.0 {
+            notes.push(format!("its tip is squeezed to {:.0} % there", 100.0 * ratio));
+        }
+        let name = if self.name.is_empty() { tip.map_or("Brush".into(), |tip| tip.name.clone()) } else { self.name };
+        Imported { name, brush, notes }
+    }
+}
