@@ -44,15 +44,29 @@ pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px
     blurred(size, pixels, sigma_px, Beyond::Border)
 }
 
+/// Blurs pixels by a Gaussian of a variance, px²; beyond the border there is nothing, so that sums lose weight: a weight among the
+/// values gives it back. Returns them unchanged as [`gaussian_pixels`] does.
+pub fn spread_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], variance: f32) -> Vec<[f32; N]> {
+    /// Narrower Gaussians are too narrow to be sampled: three pixels of their very variance stand for them.
+    const SAMPLED: f32 = 0.64;
+    if variance > 0.0 && variance < SAMPLED && pixels.len() == size.area() && N > 0 {
+        return passed(size, pixels, &Filter::Taps(vec![1.0 - variance, 0.5 * variance]), Beyond::Nothing);
+    }
+    blurred(size, pixels, variance.max(0.0).sqrt(), Beyond::Nothing)
+}
+
 fn blurred<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32, beyond: Beyond) -> Vec<[f32; N]> {
     if sigma_px.is_nan() || sigma_px <= 0.0 || pixels.len() != size.area() || N == 0 {
         return pixels.to_vec();
     }
-    let filter = Filter::new(sigma_px.min(4.0 * size.longer_side().max(1.0)));
+    passed(size, pixels, &Filter::new(sigma_px.min(4.0 * size.longer_side().max(1.0))), beyond)
+}
+
+fn passed<const N: usize>(size: Size, pixels: &[[f32; N]], filter: &Filter, beyond: Beyond) -> Vec<[f32; N]> {
     let (w, h) = (size.width as usize, size.height as usize);
     // Each pass blurs down the columns and lays the result on its side.
-    let sideways = down_columns(pixels, w, h, &filter, beyond);
-    down_columns(&sideways, h, w, &filter, beyond)
+    let sideways = down_columns(pixels, w, h, filter, beyond);
+    down_columns(&sideways, h, w, filter, beyond)
 }
 
 /// Floats filtered side by side: a cache line, two AVX registers.
@@ -263,6 +277,21 @@ mod tests {
         let mut plane = Plane::filled(size, 0.0);
         plane.set(size.width as usize / 2, size.height as usize / 2, 1.0);
         plane
+    }
+    #[test]
+    fn what_is_spread_keeps_its_sum_and_has_the_variance_asked_for() {
+        let size = Size::new(121, 121);
+        for variance in [0.1f32, 0.5, 0.7, 4.0, 30.0, 200.0] {
+            let mut point = vec![[0.0f32; 2]; size.area()];
+            point[60 * 121 + 60] = [1.0, 2.0];
+            let spread = spread_pixels(size, &point, variance);
+            let sum: f32 = spread.iter().map(|p| p[0]).sum();
+            let wide: f32 = spread.iter().enumerate().map(|(i, p)| p[1] * ((i % 121) as f32 - 60.0).powi(2)).sum();
+            assert!((sum - 1.0).abs() < 5e-3, "{variance}: {sum}");
+            assert!((0.5 * wide / variance - 1.0).abs() < 0.06, "{variance}: {}", 0.5 * wide);
+        }
+        let same = vec![[0.5f32]; size.area()];
+        assert_eq!(spread_pixels(size, &same, f32::NAN), same);
     }
     #[test]
     fn a_point_spreads_to_a_gaussian_of_either_kind() {

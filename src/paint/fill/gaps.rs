@@ -66,18 +66,47 @@ impl<'a> Rooms<'a> {
     }
     /// The pixels from the tops downward, those of one level in their order.
     fn rise(&mut self) {
-        let width = self.pixels.width();
+        let width = self.pixels.width().max(1);
+        // Tops stand first, and need not be sorted.
+        self.stand_tops(width);
         let mut of_level: Vec<Vec<u32>> = vec![Vec::new(); usize::from(self.top) + 1];
         for (i, (&p, &level)) in self.pixels.values().iter().zip(self.levels.values()).enumerate() {
             if p != 0 && level < self.top {
                 of_level[usize::from(level)].push(i as u32);
-            } else if p != 0 {
-                // Tops stand first, and need not be sorted.
-                self.stand(i, width);
             }
         }
         for i in of_level.into_iter().rev().flatten() {
             self.stand(i as usize, width);
+        }
+    }
+    fn is_top(&self, i: usize) -> bool {
+        self.pixels.values()[i] != 0 && self.level(i) >= self.top
+    }
+    /// The tops, a run of a row at a time: most of what is inside is as far from its border as counts. Those that touch are one
+    /// hill, whose root is its first pixel.
+    fn stand_tops(&mut self, width: usize) {
+        let count = self.parent.len();
+        let mut i = 0;
+        while i < count {
+            if !self.is_top(i) {
+                i += 1;
+                continue;
+            }
+            let (first, row_end) = (i, i - i % width + width);
+            while i < row_end && self.is_top(i) {
+                self.parent[i] = first as u32;
+                i += 1;
+            }
+            // Of the row above, once for each of its runs.
+            let mut was_top = false;
+            for above in first.saturating_sub(width)..i.saturating_sub(width) {
+                let is_top = self.parent[above] != NONE;
+                if is_top && !was_top {
+                    let (a, b) = (self.top_of(above), self.top_of(first));
+                    self.parent[a.max(b)] = a.min(b) as u32;
+                }
+                was_top = is_top;
+            }
         }
     }
     /// A pixel joins the highest hill beside it, and makes one of hills that are one room.

@@ -144,6 +144,17 @@ fn a_blurred_edge_is_as_soft_as_said_whatever_the_spacing() {
     }
 }
 #[test]
+fn what_a_blur_makes_of_one_colour_is_that_colour_up_to_the_canvas_s_edge() {
+    for (color, size) in [([200, 90, 30, 255], 24.0), ([10, 220, 130, 100], 400.0)] {
+        let even = layer(|_, _| color);
+        let brush = Brush { size, ..brush(Mark::Blur { width: 1.0 }) };
+        let blurred = rubbed(brush, Operator::None, &[vec2(-5.0, 3.0), vec2(80.0, 70.0)], Vec2::ZERO, &even, &FLAT);
+        for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
+            assert_eq!(blurred.pixel(x, y), even.pixel(x, y), "({x}, {y}) at {size}");
+        }
+    }
+}
+#[test]
 fn a_mark_bounded_to_an_object_neither_leaves_it_nor_takes_from_others() {
     let scene = plates();
     let two = layer(|x, _| if x < 100 { [255, 0, 0, 255] } else { [0, 0, 255, 255] });
