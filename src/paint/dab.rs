@@ -1,9 +1,12 @@
 //! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch.
-//! Floor 3. Not here: where dabs stand (`laying`), the tips (`profile`, `stamp`), how dabs add up to a stroke (`stroke`).
+//! Floor 3. Not here: where dabs stand (`laying`), the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up
+//! to a stroke (`stroke`).
 
 mod covered;
+mod round;
 
 pub use covered::Footprint;
+pub use round::slope;
 
 use super::image::transform;
 use super::laying::Dab;
@@ -12,12 +15,14 @@ use super::profile::RoundProfile;
 use super::scene::Scene;
 use super::stamp::Stamp;
 use super::wash::{DabPaint, Wash};
-use crate::math::{Rect, Vec2, srgb::Color};
+use crate::math::{Rect, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
+use crate::surface::Surface;
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::reach::{BLOCK, Extent, Reach, TileBlocks};
-use crate::surface::{Surface, links};
+use round::{RoundTip, Row, bent_row, flat_row};
+use std::ops::Range;
 
 /// One dab on the canvas it is painted on.
 pub struct PlacedDab<'s> {
@@ -43,6 +48,7 @@ pub fn round_extent(dab: &Dab) -> Extent {
 pub struct DabScratch {
     deformed: DeformedRect,
     stamping: Stamping,
+    row: Row,
     /// Coverage of a row, or of a part of a tile.
     covered: Vec<f32>,
     /// What a picture tip brings to a part of a tile.
@@ -73,6 +79,15 @@ impl<'s> PlacedDab<'s> {
     pub fn reach(&self) -> &Reach<'s> {
         &self.reach
     }
+    /// D over the touched blocks of an area of a tile and the pixels around them, in rows of the area grown by one.
+    fn fill_touched(&self, blocks: &TileBlocks, at: TileAt, area: Rect, deformed: &mut DeformedRect) {
+        let touched = |y: i32| if (area.y0..area.y1).contains(&y) { row_of(blocks, at, y) } else { 0 };
+        let columns = |y: i32| {
+            let columns = columns(touched(y - 1) | touched(y) | touched(y + 1), at);
+            columns.start - 1..columns.end + 1
+        };
+        self.deformation.fill_spans(area.grown(1), columns, deformed);
+    }
     /// What it brings of the stroke's colours; `None`: a stamp's own.
     fn paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
@@ -82,14 +97,14 @@ impl<'s> PlacedDab<'s> {
         let blocks = self.reach.blocks(at);
         let area = touched(&blocks, at).intersect(self.scene.size.rect());
         let mut tip = RoundTip::new(&self.dab);
-        let DabScratch { deformed, covered, .. } = scratch;
+        let DabScratch { deformed, covered, row, .. } = scratch;
         let field = self.bent_over.map(|surface| {
-            self.deformation.fill(area.grown(1), deformed);
+            self.fill_touched(&blocks, at, area, deformed);
             Field { surface, rect: area.grown(1), d: deformed }
         });
-        let add = |span: Span, tip: &RoundTip, out: &mut [f32]| match &field {
-            Some(field) => bent_row(field.around(span), tip, out),
-            None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, out),
+        let mut add = |span: Span, tip: &RoundTip, out: &mut [f32]| match &field {
+            Some(field) => bent_row(field.around(span), tip, row, out),
+            None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
         if wash.is_one_color() {
             for span in spans(&blocks, at, area) {
@@ -153,14 +168,25 @@ fn touched(blocks: &TileBlocks, at: TileAt) -> Rect {
     })
 }
 
+/// Which blocks of a row of pixels of a tile are touched.
+fn row_of(blocks: &TileBlocks, at: TileAt, y: i32) -> u8 {
+    blocks[(y - at.rect().y0) as usize / BLOCK]
+}
+
+/// The columns of a tile from the first of some blocks to the last; none where there are no blocks.
+fn columns(bits: u8, at: TileAt) -> Range<i32> {
+    let (x0, side) = (at.rect().x0, BLOCK as i32);
+    let last = 8 - bits.leading_zeros() as i32;
+    x0 + (bits.trailing_zeros() as i32).min(last) * side..x0 + last * side
+}
+
 /// The rows of `area`, each from its first to its last touched block.
 fn spans(blocks: &TileBlocks, at: TileAt, area: Rect) -> impl Iterator<Item = Span> + use<> {
-    let (blocks, tile, side) = (*blocks, at.rect(), BLOCK as i32);
+    let blocks = *blocks;
     (area.y0..area.y1).filter_map(move |y| {
-        let bits = blocks[(y - tile.y0) as usize / BLOCK];
-        let x0 = (tile.x0 + bits.trailing_zeros() as i32 * side).max(area.x0);
-        let x1 = (tile.x0 + (8 - bits.leading_zeros() as i32) * side).min(area.x1);
-        (bits != 0 && x0 < x1).then(|| Span { x: x0, y, n: (x1 - x0) as usize })
+        let columns = columns(row_of(&blocks, at, y), at);
+        let (x0, x1) = (columns.start.max(area.x0), columns.end.min(area.x1));
+        (x0 < x1).then(|| Span { x: x0, y, n: (x1 - x0) as usize })
     })
 }
 
@@ -191,103 +217,4 @@ struct Around<'f> {
     below: (&'f [f32], &'f [f32]),
     /// Which neighbours continue the surface, one a pixel of the span.
     linked: &'f [u8],
-}
-
-/// A round dab made ready for the rows.
-#[derive(Clone, Copy)]
-struct RoundTip {
-    at: Vec2,
-    per_radius: f32,
-    profile: RoundProfile,
-    flow: f32,
-    ceiling: f32,
-}
-
-impl RoundTip {
-    fn new(dab: &Dab) -> Self {
-        let profile = RoundProfile::new(dab.hardness, dab.softness);
-        Self { at: dab.at, per_radius: 1.0 / dab.radius, profile, flow: dab.flow, ceiling: dab.ceiling }
-    }
-    /// Adds the coverage of one pixel.
-    ///
-    /// * `distance_squared`: from the centre to D(q), image-plane px².
-    /// * `width_squared`: of the pixel along that line, px²; what is not a number adds nothing.
-    #[inline(always)]
-    fn add(&self, coverage: &mut f32, distance_squared: f32, width_squared: f32) {
-        let per_radius = self.per_radius;
-        let r = distance_squared.sqrt() * per_radius;
-        let f = self.flow * self.profile.mean(r, width_squared * per_radius * per_radius);
-        // Comparisons turn NaN into nothing, and rounding must not leave the range.
-        let f = if f > 0.0 { f } else { 0.0 };
-        let f = if f < 1.0 { f } else { 1.0 };
-        let room = self.ceiling - *coverage;
-        *coverage += f * if room > 0.0 { room } else { 0.0 };
-    }
-    /// Adds a pixel at (x, y) from the centre in the image plane, J's columns `across` and `along`.
-    ///
-    /// Its width toward the centre is |Jᵀ p|, p the unit vector from the centre to it.
-    #[inline(always)]
-    fn add_bent(&self, coverage: &mut f32, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) {
-        // At the very centre there is no direction; the pixel beside it tells how wide this one is as well as any.
-        let distance_squared = x * x + y * y + 1e-12;
-        let (a, b) = (across.0 * x + across.1 * y, along.0 * x + along.1 * y);
-        self.add(coverage, distance_squared, (a * a + b * b) / distance_squared);
-    }
-}
-
-/// A pixel all of whose neighbours continue its surface.
-const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
-
-fn bent_row(d: Around, tip: &RoundTip, coverage: &mut [f32]) {
-    if d.linked.iter().all(|&bits| bits == INSIDE) { inside_row(d, tip, coverage) } else { rim_row(d, tip, coverage) }
-}
-
-crate::widest! {
-    /// Where D is the identity; (x, y) is the centre of the first pixel.
-    fn flat_row(x: f32, y: f32, tip: &RoundTip, coverage: &mut [f32]) {
-        let dy = y - tip.at.y;
-        for (i, a) in coverage.iter_mut().enumerate() {
-            // Through i32: AVX2 converts no 64-bit integers.
-            let dx = x + i as i32 as f32 - tip.at.x;
-            tip.add(a, dx * dx + dy * dy, 1.0);
-        }
-    }
-    /// Within one piece of surface: J by central differences.
-    fn inside_row(d: Around, tip: &RoundTip, coverage: &mut [f32]) {
-        let n = coverage.len();
-        let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
-        let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
-        let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
-        for i in 0..n {
-            let from_center = (cx[i + 1] - tip.at.x, cy[i + 1] - tip.at.y);
-            let across = (0.5 * (cx[i + 2] - cx[i]), 0.5 * (cy[i + 2] - cy[i]));
-            let along = (0.5 * (bx[i + 1] - ax[i + 1]), 0.5 * (by[i + 1] - ay[i + 1]));
-            tip.add_bent(&mut coverage[i], from_center, across, along);
-        }
-    }
-    /// Along a silhouette, a depth jump or outside: J from linked neighbours only.
-    fn rim_row(d: Around, tip: &RoundTip, coverage: &mut [f32]) {
-        let n = coverage.len();
-        let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
-        let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
-        let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
-        let linked = &d.linked[..n];
-        for i in 0..n {
-            let (x, y) = (cx[i + 1], cy[i + 1]);
-            let has = |bit: u8| linked[i] & bit != 0;
-            let (l, r, u, d) = (has(links::LEFT), has(links::RIGHT), has(links::UP), has(links::DOWN));
-            let across = (slope(l, r, cx[i], x, cx[i + 2], 1.0), slope(l, r, cy[i], y, cy[i + 2], 0.0));
-            let along = (slope(u, d, ax[i + 1], x, bx[i + 1], 0.0), slope(u, d, ay[i + 1], y, by[i + 1], 1.0));
-            tip.add_bent(&mut coverage[i], (x - tip.at.x, y - tip.at.y), across, along);
-        }
-    }
-}
-
-/// The derivative at `here` from those of its two neighbours that are linked; `flat`, the identity's, without any.
-#[inline(always)]
-pub fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
-    let low = if has_before { before } else { here };
-    let high = if has_after { after } else { here };
-    let mean = if has_before & has_after { 0.5 * (high - low) } else { high - low };
-    if has_before | has_after { mean } else { flat }
 }

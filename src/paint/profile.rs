@@ -45,6 +45,25 @@ impl RoundProfile {
         // The integral is odd, since the profile continues evenly beyond the centre.
         (self.integral(outer) - self.integral(inner.abs()).copysign(inner)) / width
     }
+    /// Between which distances coverage falls from 1 to 0 before the box; the first may lie below 0.
+    pub fn falloff(&self) -> (f32, f32) {
+        (self.end - self.length, self.end)
+    }
+    /// [`RoundProfile::mean`] where the box lies within the falloff: the mean of a cubic over a width is its value in the middle
+    /// and a 24th of its curvature times the width's square. So no width need be known, only its square.
+    #[inline(always)]
+    pub fn mean_in_falloff(&self, r: f32, width_squared: f32) -> f32 {
+        let v = (self.end - r) * self.per_length;
+        let half_squared = 0.25 * (self.blur_squared + width_squared) * (self.per_length * self.per_length);
+        v * v * (3.0 - 2.0 * v) + (1.0 - 2.0 * v) * half_squared
+    }
+    /// Bounds half the width of the box, `½ √(blur² + w²)`, from above by `a + b w²`, w² the square of a pixel's width: the root's
+    /// tangent, close around the width `usual`. In radii; gives (a, b).
+    pub fn half_width_bound(&self, usual: f32) -> (f32, f32) {
+        let at = (self.blur_squared + usual * usual).max(Self::NARROW * Self::NARROW);
+        let slope = 0.25 / at.sqrt();
+        (slope * (self.blur_squared + at) + 0.5 * Self::NARROW, slope)
+    }
     /// ∫ from 0 to x ≥ 0 of the profile before the box.
     #[inline(always)]
     fn integral(&self, x: f32) -> f32 {
@@ -95,6 +114,29 @@ mod tests {
                     .sum();
                 assert!((f64::from(tip.mean(r, width * width)) - sum / f64::from(n)).abs() < 1e-3);
             }
+        }
+    }
+    #[test]
+    fn within_the_falloff_the_mean_needs_no_width() {
+        for (hardness, softness) in [(0.0, 0.0), (0.3, 0.4), (0.6, 0.1)] {
+            let tip = RoundProfile::new(hardness, softness);
+            let (start, end) = tip.falloff();
+            for (share, width) in [(0.5, 0.02f32), (0.5, 0.05), (0.3, 0.02), (0.8, 0.03)] {
+                let r = start + share * (end - start);
+                let (a, b) = (tip.mean_in_falloff(r, width * width), tip.mean(r, width * width));
+                assert!((a - b).abs() < 2e-4, "hardness {hardness}, softness {softness}, at {r}: {a}, not {b}");
+            }
+        }
+    }
+    #[test]
+    fn the_bound_of_the_box_is_above_it_and_close_where_it_is_usual() {
+        for softness in [0.0, 0.2, 1.0] {
+            let tip = RoundProfile::new(0.4, softness);
+            let (a, b) = tip.half_width_bound(0.05);
+            for width in [0.0f32, 0.01, 0.05, 0.3, 4.0, 100.0] {
+                assert!(a + b * width * width >= 0.5 * softness.hypot(width), "softness {softness}, width {width}");
+            }
+            assert!(a + b * 0.05 * 0.05 < 0.5 * softness.hypot(0.05) + 0.001);
         }
     }
     #[test]

@@ -180,8 +180,9 @@ fn mixed(p: [f32; 4], f: f32, source: [f32; 3], ceiling: f32) -> [f32; 4] {
     let over = |c: usize| p[c] * (1.0 - f) + source[c];
     let a_over = p[3] * (1.0 - f) + f;
     let a = raised(p[3], f, ceiling);
-    let share = if ceiling < 1.0 && a_over > 0.0 && a < a_over { a / a_over } else { 1.0 };
-    [over(0) * share, over(1) * share, over(2) * share, a_over * share]
+    let (part, whole) = if ceiling < 1.0 && a_over > 0.0 && a < a_over { (a, a_over) } else { (1.0, 1.0) };
+    // Multiplied first: what is as much as the coverage stays so to the bit, however often dabs mix.
+    [over(0), over(1), over(2), a_over].map(|v| v * part / whole)
 }
 
 crate::widest! {

@@ -52,6 +52,10 @@ impl<T: Join> Pyramid<T> {
         }
         Self { levels }
     }
+    /// The smallest blocks.
+    pub(super) fn leaves(&self) -> Option<&Plane<T>> {
+        self.levels.first()
+    }
     pub(super) fn at(&self, block: Block) -> Option<T> {
         self.levels.get(block.level)?.get(block.col, block.row)
     }

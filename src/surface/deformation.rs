@@ -7,6 +7,7 @@ mod fill;
 use super::operator::{Operator, Reading, Slopes, outer};
 use super::{Anchor, Bend, Curvature, Surface, Weights, links};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A map from canvas points to image-plane points, ready to be evaluated.
@@ -116,11 +117,15 @@ impl<'a> Deformation<'a> {
     /// D at every pixel centre of `rect`, which may reach beyond the canvas; within 10⁻⁴ px of [`Deformation::at`] on
     /// canvases up to 1024 px, and to f32's precision beyond.
     pub fn fill(&self, rect: Rect, out: &mut DeformedRect) {
+        self.fill_spans(rect, |_| rect.x0..rect.x1, out);
+    }
+    /// The same in some columns of each row of `rect`; what `out` holds elsewhere is anything.
+    pub fn fill_spans(&self, rect: Rect, columns: impl Fn(i32) -> Range<i32>, out: &mut DeformedRect) {
         let n = rect.width() * rect.height();
         out.rect = Some(rect);
         out.x.resize(n, 0.0);
         out.y.resize(n, 0.0);
-        fill::fill(self, rect, &mut out.x, &mut out.y);
+        fill::fill(self, rect, columns, &mut out.x, &mut out.y);
     }
 
     fn anchors(&self) -> Vec<Anchor> {

@@ -1,6 +1,8 @@
 //! Bounded support: which blocks of the canvas one anchored operator can bring near its anchor, found by interval
 //! arithmetic on D_p, D_n and D_r over the maps' pyramids, without looking at pixels.
-//! Floor 2. It says what may be touched, never what is: pixels are `deformation`'s.
+//! Floor 2. `blocks` judges the blocks of a tile side by side. It says what may be touched, never what is: pixels are `deformation`'s.
+
+mod blocks;
 
 use super::Surface;
 pub use super::bounds::{BLOCK, TILE_BLOCKS};
@@ -22,6 +24,16 @@ pub struct Extent {
     pub radius_px: f32,
     /// What the filter adds: this many pixels, each as long as D makes it there.
     pub filter_px: f32,
+}
+
+impl Extent {
+    /// Written so that a value that is not a number may be held: leaving out is what must be proven.
+    #[inline(always)]
+    #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN is not beyond")]
+    fn may_hold(self, image: Image) -> bool {
+        let limit = self.radius_px + self.filter_px * image.pixel + ROUNDING_PX;
+        !(image.near > limit + 1e-5 * image.near)
+    }
 }
 
 /// The blocks in which one anchored operator brings the image plane within an extent of the anchor.
@@ -64,12 +76,14 @@ struct Stretch {
 
 impl Stretch {
     /// Factor of a relative normal of length u, without detail.
+    #[inline(always)]
     fn factor(self, u: f32) -> f32 {
         let curved = |softness| second_order::offset_factor_of_softness(u, self.alpha_px, softness);
         self.softness.map_or(self.alpha_px, curved)
     }
     /// The range of one component of the offset, exact but for the detail: it grows with the component itself and, in
     /// magnitude, with the other one, which `across` bounds in magnitude.
+    #[inline(always)]
     fn range(self, (low, high): (f32, f32), across: (f32, f32)) -> (f32, f32) {
         let offset = |v: f32, across: f32| self.factor(vec2(v, across).length()) * v;
         let (a, b) = if self.alpha_px >= 0.0 { (low, high) } else { (high, low) };
@@ -82,6 +96,7 @@ impl Stretch {
     }
     /// The most by which the offset changes per change of the normal, up to a relative normal of length u; and, with
     /// detail, per px by the change of curvature alone.
+    #[inline(always)]
     fn steepness(self, u: f32) -> (f32, f32) {
         let curved = |softness| second_order::offset_factor_slope_of_softness(u, self.alpha_px, softness);
         let slope = self.softness.map_or(0.0, curved);
@@ -110,12 +125,18 @@ impl<'s> Reach<'s> {
     }
     /// The blocks of a tile that may be touched.
     pub fn blocks(&self, at: TileAt) -> TileBlocks {
-        let mut blocks = TileBlocks::default();
-        self.descend(Block { level: TILE_LEVEL, col: at.col, row: at.row }, 0, &mut |b| {
-            let within = |i: i32| i.rem_euclid(TILE_BLOCKS as i32) as usize;
-            blocks[within(b.row)] |= 1 << within(b.col);
-        });
-        blocks
+        match self.judge(Block { level: TILE_LEVEL, col: at.col, row: at.row }) {
+            Touch::Nowhere => TileBlocks::default(),
+            Touch::Everywhere => self.on_canvas(at),
+            Touch::Perhaps => blocks::judged(self, at),
+        }
+    }
+    /// The blocks of a tile that hold pixels.
+    fn on_canvas(&self, at: TileAt) -> TileBlocks {
+        let all = level_size(self.size, 0);
+        let there = |first: i32, all: u32| (all as i32 - first * TILE_BLOCKS as i32).clamp(0, TILE_BLOCKS as i32);
+        let (columns, rows) = (there(at.col, all.width), there(at.row, all.height) as usize);
+        std::array::from_fn(|row| if row < rows { ((1u16 << columns) - 1) as u8 } else { 0 })
     }
     fn descend(&self, block: Block, to: usize, visit: &mut impl FnMut(Block)) {
         match self.judge(block) {
@@ -142,17 +163,15 @@ impl<'s> Reach<'s> {
         }
         let low = vec2(rect.x0 as f32, rect.y0 as f32) + 0.5 - self.at;
         let high = vec2(rect.x1 as f32, rect.y1 as f32) - 0.5 - self.at;
-        let flat = Image { near: distance_to_box(low, high), far: low.abs().max(high.abs()).length(), pixel: 1.0 };
+        let flat = Image::flat(low, high);
         let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(Cover { some: false, all: false });
         let outside = if cover.all { None } else { Some(flat) };
         let inside = if cover.some { Some(self.flow.image(block, (low, high), flat)) } else { None };
         let parts = [outside, inside].into_iter().flatten().map(|image| self.touch(image));
         parts.reduce(|a, b| if a == b { a } else { Touch::Perhaps }).unwrap_or(Touch::Nowhere)
     }
-    /// Written so that a value that is not a number may be touched: leaving out is what must be proven.
     fn touch(&self, image: Image) -> Touch {
-        let limit = self.extent.radius_px + self.extent.filter_px * image.pixel + ROUNDING_PX;
-        if image.near > limit + 1e-5 * image.near {
+        if !self.extent.may_hold(image) {
             Touch::Nowhere
         } else if image.far < self.extent.radius_px {
             Touch::Everywhere
@@ -184,28 +203,45 @@ impl Flow<'_> {
         const ANYWHERE: Image = Image { near: 0.0, far: f32::INFINITY, pixel: f32::INFINITY };
         match self {
             Flow::Still => flat,
-            Flow::Depth { pyramid, z, rate } => {
-                let Some(span) = pyramid.at(block) else { return ANYWHERE };
-                let scale = |u| 1.0 + first_order::scale_factor_of_rate(u, *rate);
-                let (nearest, farthest) = (span.low - z, span.high - z);
-                // One px more: the differences' neighbours.
-                let steepest = first_order::scale_factor_slope_of_rate(farthest, *rate) * span.slope;
-                let pixel = scale(farthest) + (flat.far + 1.0) * steepest;
-                Image { near: scale(nearest) * flat.near, far: scale(farthest) * flat.far, pixel }
-            }
+            Flow::Depth { pyramid, z, rate } => pyramid.at(block).map_or(ANYWHERE, |span| flat.scaled(span, *z, *rate)),
             Flow::Turn { pyramid, turn, stretch } => {
-                let Some(span) = pyramid.at(block) else { return ANYWHERE };
-                let (a, b) = (span.low - *turn, span.high - *turn);
-                let across_x = (interval_distance(a.x, b.x), a.x.abs().max(b.x.abs()));
-                let across_y = (interval_distance(a.y, b.y), a.y.abs().max(b.y.abs()));
-                let (x0, x1) = stretch.range((a.x, b.x), across_y);
-                let (y0, y1) = stretch.range((a.y, b.y), across_x);
-                let (low, high) = (low + vec2(x0, y0), high + vec2(x1, y1));
-                let (steepness, by_curvature) = stretch.steepness(vec2(across_x.1, across_y.1).length());
-                let pixel = 1.0 + steepness * span.slope + by_curvature;
-                Image { near: distance_to_box(low, high), far: low.abs().max(high.abs()).length(), pixel }
+                pyramid.at(block).map_or(ANYWHERE, |span| stretch.image(span, *turn, (low, high)))
             }
         }
+    }
+}
+
+impl Image {
+    /// Where D is the identity: pixels between two corners relative to the anchor.
+    #[inline(always)]
+    fn flat(low: Vec2, high: Vec2) -> Self {
+        Self { near: distance_to_box(low, high), far: low.abs().max(high.abs()).length(), pixel: 1.0 }
+    }
+    /// What D_p makes of a flat block whose depths span so much, the anchor's being `z`.
+    #[inline(always)]
+    fn scaled(self, span: DepthSpan, z: f32, rate: f32) -> Self {
+        let scale = |u| 1.0 + first_order::scale_factor_of_rate(u, rate);
+        let (nearest, farthest) = (span.low - z, span.high - z);
+        // One px more: the differences' neighbours.
+        let steepest = first_order::scale_factor_slope_of_rate(farthest, rate) * span.slope;
+        let pixel = scale(farthest) + (self.far + 1.0) * steepest;
+        Self { near: scale(nearest) * self.near, far: scale(farthest) * self.far, pixel }
+    }
+}
+
+impl Stretch {
+    /// What D_n or D_r makes of a block between two corners whose n̄ or r̄ spans so much, the anchor's being `turn`.
+    #[inline(always)]
+    fn image(self, span: TurnSpan, turn: Vec2, (low, high): (Vec2, Vec2)) -> Image {
+        let (a, b) = (span.low - turn, span.high - turn);
+        let across_x = (interval_distance(a.x, b.x), a.x.abs().max(b.x.abs()));
+        let across_y = (interval_distance(a.y, b.y), a.y.abs().max(b.y.abs()));
+        let (x0, x1) = self.range((a.x, b.x), across_y);
+        let (y0, y1) = self.range((a.y, b.y), across_x);
+        let (low, high) = (low + vec2(x0, y0), high + vec2(x1, y1));
+        let (steepness, by_curvature) = self.steepness(vec2(across_x.1, across_y.1).length());
+        let pixel = 1.0 + steepness * span.slope + by_curvature;
+        Image { pixel, ..Image::flat(low, high) }
     }
 }
 
@@ -236,11 +272,13 @@ impl<'s> Flow<'s> {
 }
 
 /// From 0 to the nearest value of an interval.
+#[inline(always)]
 fn interval_distance(low: f32, high: f32) -> f32 {
     low.max(-high).max(0.0)
 }
 
 /// From the origin to the nearest point of a box.
+#[inline(always)]
 fn distance_to_box(low: Vec2, high: Vec2) -> f32 {
     vec2(interval_distance(low.x, high.x), interval_distance(low.y, high.y)).length()
 }

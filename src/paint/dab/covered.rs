@@ -1,7 +1,8 @@
 //! A dab of any footprint, evaluated row by row as coverage before it is laid: where a texture or a grain has its say.
 //! Floor 3. Not here: the plain round tip (`dab`), which adds its coverage as it finds it.
 
-use super::{Around, DabScratch, Field, PlacedDab, RoundTip, Span, bent_row, flat_row, spans, touched};
+use super::round::{RoundTip, bent_row, flat_row};
+use super::{Around, DabScratch, Field, PlacedDab, Span, spans, touched};
 use crate::math::{Affine2, Mat2, Rect};
 use crate::paint::image::transform;
 use crate::paint::profile::RoundProfile;
@@ -67,9 +68,9 @@ impl PlacedDab<'_> {
         covered.resize(part.pixels(), 0.0);
         match footprint {
             Footprint::Shape(shape) => self.cover_shape(shape, &part, &mut scratch.deformed, &mut covered),
-            Footprint::Round => self.cover_round(&part, &scratch.deformed, &mut covered),
+            Footprint::Round => self.cover_round(&part, scratch, &mut covered),
             Footprint::Textured(stamps) => {
-                self.cover_round(&part, &scratch.deformed, &mut covered);
+                self.cover_round(&part, scratch, &mut covered);
                 self.read(stamps, &part, scratch);
                 covered.iter_mut().zip(&scratch.stamped).for_each(|(c, s)| *c *= f32::from(s[3]) / 255.0);
             }
@@ -112,15 +113,16 @@ impl PlacedDab<'_> {
             wash.stamp(span.start_in(at), row, paint);
         }
     }
-    /// The round tip over a part; D over it and the pixels around it is in `deformed`.
-    fn cover_round(&self, part: &Part, deformed: &DeformedRect, covered: &mut [f32]) {
-        let tip = RoundTip { flow: 1.0, ceiling: 1.0, ..RoundTip::new(&self.dab) };
+    /// The round tip over a part; D over it and the pixels around it is in `scratch.deformed`.
+    fn cover_round(&self, part: &Part, scratch: &mut DabScratch, covered: &mut [f32]) {
+        let DabScratch { deformed, row, .. } = scratch;
+        let tip = RoundTip::plain(&self.dab);
         let field = self.bent_over.map(|surface| Field { surface, rect: part.area.grown(1), d: deformed });
         for span in part.spans() {
             let out = &mut covered[part.range(span)];
             match &field {
-                Some(field) => bent_row(field.around(span), &tip, out),
-                None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, out),
+                Some(field) => bent_row(field.around(span), &tip, row, out),
+                None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, row, out),
             }
         }
     }

@@ -1,17 +1,32 @@
 //! D over whole rows: the fast twin of `Deformation::at`, in plain loops that the compiler vectorises.
 //! Floor 2. Operator kind and number of anchors are chosen once a row, outside the pixel loops.
 
+mod kernels;
+
 use super::{Deformation, Pin};
 use crate::math::{Rect, simd::prefetch};
 use crate::raster::Plane;
+use crate::surface::Surface;
 use crate::surface::anchor::{Weights, segment_slope};
 use crate::surface::operator::{Operator, first_order, reflection, second_order};
+use kernels::{
+    DepthKernel, MirrorKernel, NormalKernel, Span, add_mean, coverage_gain, depth_add, depth_one, inverse_powers,
+    inverse_squares, mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, segment_weights, still_add,
+    still_one,
+};
+use std::ops::Range;
 
 /// Pixels in flight: the scratch rows of a span (3.5 KiB) stay in the first-level cache.
 const SPAN: usize = 128;
 
-/// Fills `out_x`, `out_y` (one value per pixel of `rect`) with D.
-pub(super) fn fill(deformation: &Deformation, rect: Rect, out_x: &mut [f32], out_y: &mut [f32]) {
+/// Fills `out_x`, `out_y` (one value per pixel of `rect`) with D, in the given columns of each row.
+pub(super) fn fill(
+    deformation: &Deformation,
+    rect: Rect,
+    columns: impl Fn(i32) -> Range<i32>,
+    out_x: &mut [f32],
+    out_y: &mut [f32],
+) {
     let width = rect.width();
     if width == 0 {
         return;
@@ -29,8 +44,9 @@ pub(super) fn fill(deformation: &Deformation, rect: Rect, out_x: &mut [f32], out
     let mut scratch = Scratch::default();
     let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
     for (y, (row_x, row_y)) in (rect.y0..).zip(rows) {
-        let mut x = rect.x0;
-        while x < rect.x1 {
+        let columns = columns(y);
+        let (mut x, stop) = (columns.start.max(rect.x0), columns.end.min(rect.x1));
+        while x < stop {
             // A span lies wholly inside the maps' columns or wholly outside.
             let inside = map.contains(x, y);
             let end = if inside {
@@ -38,9 +54,9 @@ pub(super) fn fill(deformation: &Deformation, rect: Rect, out_x: &mut [f32], out
             } else if x < map.x0 {
                 map.x0
             } else {
-                rect.x1
+                stop
             };
-            let n = (end.min(rect.x1) - x).min(SPAN as i32) as usize;
+            let n = (end.min(stop) - x).min(SPAN as i32) as usize;
             let at = (x - rect.x0) as usize;
             let maps = inside.then_some(MapSpan { x: x as usize, y: y as usize, n });
             if inside && y + 1 < map.y1 {
@@ -95,6 +111,8 @@ impl Default for Scratch {
 }
 
 const NOTHING: [f32; SPAN] = [0.0; SPAN];
+/// The gain where all is surface.
+const WHOLE: [f32; SPAN] = [1.0; SPAN];
 
 /// What stays the same over all pixels.
 struct Plan<'d> {
@@ -166,19 +184,30 @@ impl<'d> Plan<'d> {
             Kernel::Mirror(_) => [nbar_x, nbar_y, nz].into_iter().for_each(|p| prefetch(span.of(p))),
         }
     }
+    /// 0 outside the surface, 1 + μκ on it; `scratch` as long as the span.
+    fn gains<'s>(&self, surface: &Surface, span: MapSpan, scratch: &'s mut [f32]) -> &'s [f32] {
+        let coverage = span.of(surface.coverage_plane());
+        let is_detailed = self.deformation.curvature.is_some();
+        if !is_detailed && coverage.iter().fold(u8::MAX, |least, &c| least.min(c)) > 0 {
+            return &WHOLE[..span.n];
+        }
+        coverage_gain(coverage, scratch);
+        if is_detailed {
+            for (x, gain) in (span.x..).zip(&mut *scratch) {
+                *gain *= self.deformation.detail_gain(x, span.y);
+            }
+        }
+        scratch
+    }
     /// D over a span whose first pixel has its centre at (x, y); `maps` is `None` beyond the maps.
     fn span(&self, maps: Option<MapSpan>, x: f32, y: f32, scratch: &mut Scratch, out_x: &mut [f32], out_y: &mut [f32]) {
         let n = out_x.len();
         let Scratch { mirrored, gain, weight, weight_sum, nearest, moved } = scratch;
         let surface = self.deformation.surface;
         let (mut a, mut b) = (&NOTHING[..n], &NOTHING[..n]);
-        gain[..n].fill(0.0);
+        let mut gains = &NOTHING[..n];
         if let (Some(span), Some(surface)) = (maps, surface) {
-            coverage_gain(span.of(surface.coverage_plane()), &mut gain[..n]);
-            if self.deformation.curvature.is_some() {
-                let pixels = (span.x..).zip(&mut gain[..n]);
-                pixels.for_each(|(x, gain)| *gain *= self.deformation.detail_gain(x, span.y));
-            }
+            gains = self.gains(surface, span, &mut gain[..n]);
             let [nbar_x, nbar_y, nz] = surface.normal_planes().map(|p| span.of(p));
             match self.kernel {
                 Kernel::Still => {}
@@ -191,7 +220,7 @@ impl<'d> Plan<'d> {
                 }
             }
         }
-        let span = Span { x, y, a, b, gain: &gain[..n] };
+        let span = Span { x, y, a, b, gain: gains };
         if let [pin] = &self.pins[..] {
             return match self.kernel {
                 Kernel::Still => still_one(span, pin, out_x, out_y),
@@ -229,217 +258,3 @@ impl<'d> Plan<'d> {
         add_mean(span, moved_x, moved_y, weight_sum, out_x, out_y);
     }
 }
-
-/// The pixels of a row: centre of the first, and what the maps hold.
-#[derive(Clone, Copy)]
-struct Span<'s> {
-    x: f32,
-    y: f32,
-    a: &'s [f32],
-    b: &'s [f32],
-    gain: &'s [f32],
-}
-
-/// offset_i of one pixel: (q − q_i, its two map values, the anchor) → canvas px.
-trait Offset: Copy {
-    fn offset(self, from_x: f32, from_y: f32, a: f32, b: f32, pin: &FastPin) -> (f32, f32);
-}
-
-#[derive(Clone, Copy)]
-struct StillKernel;
-#[derive(Clone, Copy)]
-struct DepthKernel {
-    rate: f32,
-}
-#[derive(Clone, Copy)]
-struct NormalKernel {
-    alpha_px: f32,
-    softness: f32,
-}
-#[derive(Clone, Copy)]
-struct MirrorKernel {
-    alpha_px: f32,
-}
-
-impl Offset for StillKernel {
-    #[inline(always)]
-    fn offset(self, _: f32, _: f32, _: f32, _: f32, _: &FastPin) -> (f32, f32) {
-        (0.0, 0.0)
-    }
-}
-impl Offset for DepthKernel {
-    #[inline(always)]
-    fn offset(self, from_x: f32, from_y: f32, z: f32, _: f32, pin: &FastPin) -> (f32, f32) {
-        let f = first_order::scale_factor_of_rate(z - pin.a, self.rate);
-        (f * from_x, f * from_y)
-    }
-}
-impl Offset for NormalKernel {
-    #[inline(always)]
-    fn offset(self, _: f32, _: f32, nbar_x: f32, nbar_y: f32, pin: &FastPin) -> (f32, f32) {
-        let (dx, dy) = (nbar_x - pin.a, nbar_y - pin.b);
-        let f = second_order::offset_factor_of_softness((dx * dx + dy * dy).sqrt(), self.alpha_px, self.softness);
-        (f * dx, f * dy)
-    }
-}
-impl Offset for MirrorKernel {
-    #[inline(always)]
-    fn offset(self, _: f32, _: f32, mirrored_x: f32, mirrored_y: f32, pin: &FastPin) -> (f32, f32) {
-        (self.alpha_px * (mirrored_x - pin.a), self.alpha_px * (mirrored_y - pin.b))
-    }
-}
-
-/// D with a single anchor, whose weight is 1.
-#[inline(always)]
-fn one(span: Span, pin: &FastPin, kernel: impl Offset, out_x: &mut [f32], out_y: &mut [f32]) {
-    let n = out_x.len();
-    let (a, b, gain, out_y) = (&span.a[..n], &span.b[..n], &span.gain[..n], &mut out_y[..n]);
-    for k in 0..n {
-        let (x, y) = (span.x + k as i32 as f32, span.y);
-        let (dx, dy) = kernel.offset(x - pin.x, y - pin.y, a[k], b[k], pin);
-        out_x[k] = x + (gain[k] * dx + pin.move_x);
-        out_y[k] = y + (gain[k] * dy + pin.move_y);
-    }
-}
-
-/// Adds one of several anchors: `moved += w (offset + s − q_i)`.
-#[inline(always)]
-fn add(span: Span, pin: &FastPin, kernel: impl Offset, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
-    let n = moved_x.len();
-    let (a, b, gain, weight) = (&span.a[..n], &span.b[..n], &span.gain[..n], &weight[..n]);
-    let moved_y = &mut moved_y[..n];
-    for k in 0..n {
-        let (x, y) = (span.x + k as i32 as f32, span.y);
-        let (dx, dy) = kernel.offset(x - pin.x, y - pin.y, a[k], b[k], pin);
-        moved_x[k] += weight[k] * (gain[k] * dx + pin.move_x);
-        moved_y[k] += weight[k] * (gain[k] * dy + pin.move_y);
-    }
-}
-
-/// Squared distance below which a pixel stands at an anchor: smaller ones no f32 canvas coordinate tells apart.
-const AT_ANCHOR: f32 = 1e-12;
-
-#[inline(always)]
-fn distance_squared(span: Span, pin: &FastPin, k: usize) -> f32 {
-    let (dx, dy) = (span.x + k as i32 as f32 - pin.x, span.y - pin.y);
-    dx * dx + dy * dy
-}
-
-crate::widest! {
-    fn still_one(span: Span, pin: &FastPin, out_x: &mut [f32], out_y: &mut [f32]) {
-        one(span, pin, StillKernel, out_x, out_y)
-    }
-    fn depth_one(span: Span, pin: &FastPin, kernel: DepthKernel, out_x: &mut [f32], out_y: &mut [f32]) {
-        one(span, pin, kernel, out_x, out_y)
-    }
-    fn normal_one(span: Span, pin: &FastPin, kernel: NormalKernel, out_x: &mut [f32], out_y: &mut [f32]) {
-        one(span, pin, kernel, out_x, out_y)
-    }
-    fn mirror_one(span: Span, pin: &FastPin, kernel: MirrorKernel, out_x: &mut [f32], out_y: &mut [f32]) {
-        one(span, pin, kernel, out_x, out_y)
-    }
-    fn still_add(span: Span, pin: &FastPin, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
-        add(span, pin, StillKernel, weight, moved_x, moved_y)
-    }
-    fn depth_add(span: Span, pin: &FastPin, kernel: DepthKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
-        add(span, pin, kernel, weight, moved_x, moved_y)
-    }
-    fn normal_add(span: Span, pin: &FastPin, kernel: NormalKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
-        add(span, pin, kernel, weight, moved_x, moved_y)
-    }
-    fn mirror_add(span: Span, pin: &FastPin, kernel: MirrorKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
-        add(span, pin, kernel, weight, moved_x, moved_y)
-    }
-    /// 1 on the surface, 0 outside.
-    fn coverage_gain(coverage: &[u8], gain: &mut [f32]) {
-        for (g, &c) in gain.iter_mut().zip(coverage) {
-            *g = if c > 0 { 1.0 } else { 0.0 };
-        }
-    }
-    /// Shepard's weight at power 2, not yet made to add up to 1.
-    fn inverse_squares(span: Span, pin: &FastPin, weight: &mut [f32], weight_sum: &mut [f32]) {
-        for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
-            *w = 1.0 / distance_squared(span, pin, k).max(AT_ANCHOR);
-            *sum += *w;
-        }
-    }
-    fn nearer(span: Span, pin: &FastPin, nearest: &mut [f32]) {
-        for (k, d) in nearest.iter_mut().enumerate() {
-            *d = d.min(distance_squared(span, pin, k).max(AT_ANCHOR));
-        }
-    }
-    /// The weight along the segment of anchor `i`, whose first anchor is `first`.
-    fn segment_weights(
-        span: Span,
-        first: &FastPin,
-        slope: [f32; 2],
-        i: usize,
-        weight: &mut [f32],
-        weight_sum: &mut [f32],
-    ) {
-        // w_i = offset + factor · along: 1 − t, t, then nothing.
-        let (offset, factor) = match i {
-            0 => (1.0, -1.0),
-            1 => (0.0, 1.0),
-            _ => (0.0, 0.0),
-        };
-        for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
-            let along = (span.x + k as i32 as f32 - first.x) * slope[0] + (span.y - first.y) * slope[1];
-            *w = offset + factor * along.max(0.0).min(1.0);
-            *sum += *w;
-        }
-    }
-    /// D = q + Σ w (…) / Σ w; q where there is no weight at all.
-    fn add_mean(span: Span, moved_x: &[f32], moved_y: &[f32], weight_sum: &[f32], out_x: &mut [f32], out_y: &mut [f32]) {
-        let n = out_x.len();
-        let (moved_x, moved_y, weight_sum, out_y) = (&moved_x[..n], &moved_y[..n], &weight_sum[..n], &mut out_y[..n]);
-        for k in 0..n {
-            let share = if weight_sum[k] > 0.0 { 1.0 / weight_sum[k] } else { 0.0 };
-            out_x[k] = span.x + k as i32 as f32 + moved_x[k] * share;
-            out_y[k] = span.y + moved_y[k] * share;
-        }
-    }
-    /// r̄ over a row: `reflection::mirrored` with a polynomial for the arc tangent.
-    fn mirror_row(nbar_x: &[f32], nbar_y: &[f32], nz: &[f32], out_x: &mut [f32], out_y: &mut [f32]) {
-        let n = out_x.len();
-        let (nbar_x, nbar_y, nz, out_y) = (&nbar_x[..n], &nbar_y[..n], &nz[..n], &mut out_y[..n]);
-        for k in 0..n {
-            let length = (nbar_x[k] * nbar_x[k] + nbar_y[k] * nbar_y[k]).sqrt();
-            let factor = std::f32::consts::FRAC_2_PI * half_plane_angle(length, nz[k]) / length.max(1e-20);
-            out_x[k] = nbar_x[k] * factor;
-            out_y[k] = nbar_y[k] * factor;
-        }
-    }
-}
-
-/// Shepard's weight at any power, relative to the nearest anchor's. `powf` is a call: this one stays scalar.
-fn inverse_powers(span: Span, pin: &FastPin, power: f32, nearest: &[f32], weight: &mut [f32], weight_sum: &mut [f32]) {
-    for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
-        *w = (nearest[k] / distance_squared(span, pin, k).max(AT_ANCHOR)).powf(0.5 * power);
-        *sum += *w;
-    }
-}
-
-/// atan2(y, x) for `y ≥ 0`, (x, y) not both 0; within 10⁻⁶.
-#[inline(always)]
-fn half_plane_angle(y: f32, x: f32) -> f32 {
-    let (low, high) = (y.min(x.abs()), y.max(x.abs()));
-    let t = low / high.max(1e-20);
-    let s = t * t;
-    let mut angle = t * ATAN.iter().rev().fold(0.0, |sum, c| sum * s + c);
-    angle = if y > x.abs() { std::f32::consts::FRAC_PI_2 - angle } else { angle };
-    if x < 0.0 { std::f32::consts::PI - angle } else { angle }
-}
-
-/// atan(t)/t as a polynomial of t² over [0, 1]: a least-squares fit at Chebyshev nodes, within 3·10⁻⁸.
-const ATAN: [f32; 9] = [
-    0.999_999_98,
-    -0.333_330_67,
-    0.199_924_84,
-    -0.142_025_7,
-    0.106_367_54,
-    -0.074_954_45,
-    0.042_587_61,
-    -0.016_005_03,
-    0.002_834_064,
-];

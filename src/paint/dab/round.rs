@@ -1,0 +1,237 @@
+//! The round tip over rows of pixels, which are looked at no closer than each of their zones needs.
+//! Floor 3. The profile is `profile`'s, D is `surface`'s.
+
+use super::Around;
+use crate::math::Vec2;
+use crate::paint::laying::Dab;
+use crate::paint::profile::RoundProfile;
+use crate::raster::TILE;
+use crate::surface::links;
+
+/// Pixels that are judged together. Rows of blocks are whole multiples of them.
+const CHUNK: usize = 8;
+
+/// A round dab made ready for the rows.
+#[derive(Clone, Copy)]
+pub(super) struct RoundTip {
+    at: Vec2,
+    per_radius: f32,
+    profile: RoundProfile,
+    /// Between which radii coverage falls off, and what bounds half the width of the profile's box.
+    falloff: (f32, f32),
+    half_width: (f32, f32),
+    pub(super) flow: f32,
+    pub(super) ceiling: f32,
+}
+
+/// What is known of a row's pixels before their coverage.
+pub(super) struct Row {
+    /// Distance from the dab's centre in the image plane, in radii.
+    r: [f32; TILE],
+    /// |Jᵀ p|², p from the centre to the pixel: the pixel's width toward the centre times r, squared; radii to the fourth.
+    toward: [f32; TILE],
+    zones: [u32; TILE],
+}
+
+/// Where a pixel's box lies wholly, as bits; none where it lies in several zones, or nowhere that is a number.
+const BEYOND: u32 = 1;
+const WITHIN: u32 = 2;
+const FALLOFF: u32 = 4;
+
+/// Added to squared distances, px²: at the very centre there is no direction toward it.
+const AT_CENTER: f32 = 1e-12;
+
+impl Default for Row {
+    fn default() -> Self {
+        Self { r: [0.0; TILE], toward: [0.0; TILE], zones: [0; TILE] }
+    }
+}
+
+impl RoundTip {
+    pub(super) fn new(dab: &Dab) -> Self {
+        let profile = RoundProfile::new(dab.hardness, dab.softness);
+        let per_radius = 1.0 / dab.radius;
+        Self {
+            at: dab.at,
+            per_radius,
+            profile,
+            falloff: profile.falloff(),
+            half_width: profile.half_width_bound(per_radius),
+            flow: dab.flow,
+            ceiling: dab.ceiling,
+        }
+    }
+    /// The same footprint, of which coverage itself is asked.
+    pub(super) fn plain(dab: &Dab) -> Self {
+        Self { flow: 1.0, ceiling: 1.0, ..Self::new(dab) }
+    }
+    /// The zone of a pixel at distance r whose width's square is at most `widest`, both in radii.
+    #[inline(always)]
+    fn zone(&self, r: f32, widest: f32) -> u32 {
+        let (start, end) = self.falloff;
+        let half = self.half_width.0 + self.half_width.1 * widest;
+        let (inner, outer) = (r - half, r + half);
+        // The profile's even continuation through the centre is no part of the falloff.
+        let first = if start > 0.0 { start } else { 0.0 };
+        let beyond = if inner > end { BEYOND } else { 0 };
+        let within = if outer < start { WITHIN } else { 0 };
+        let falls = if (inner > first) & (outer < end) { FALLOFF } else { 0 };
+        beyond | within | falls
+    }
+    /// A pixel at p from the centre, J's columns `across` and `along`; canvas px. Gives r, |Jᵀ p|² and the zone.
+    #[inline(always)]
+    fn judge(&self, p: (f32, f32), across: (f32, f32), along: (f32, f32)) -> (f32, f32, u32) {
+        let square = self.per_radius * self.per_radius;
+        let r = (p.0 * p.0 + p.1 * p.1 + AT_CENTER).sqrt() * self.per_radius;
+        let (a, b) = (across.0 * p.0 + across.1 * p.1, along.0 * p.0 + along.1 * p.1);
+        // J's norm bounds the width in any direction.
+        let across = across.0 * across.0 + across.1 * across.1;
+        let widest = (across + (along.0 * along.0 + along.1 * along.1)) * square;
+        (r, (a * a + b * b) * square * square, self.zone(r, widest))
+    }
+    /// a ← a + f (c − a), f = flow · F, up to the ceiling c.
+    #[inline(always)]
+    fn raise(&self, coverage: &mut f32, mean: f32) {
+        let f = self.flow * mean;
+        // Comparisons turn NaN into nothing, and rounding must not leave the range.
+        let f = if f > 0.0 { f } else { 0.0 };
+        let f = if f < 1.0 { f } else { 1.0 };
+        let room = self.ceiling - *coverage;
+        *coverage += f * if room > 0.0 { room } else { 0.0 };
+    }
+    /// Adds to a judged row, chunks of one zone at a time: only where a pixel's box lies across a zone's border does its mean take
+    /// a root and a division more, beyond the rim it takes nothing.
+    #[inline(always)]
+    fn add(&self, row: &Row, coverage: &mut [f32]) {
+        let n = coverage.len().min(TILE);
+        let mut start = 0;
+        while start < n {
+            let zone = zone_of(&row.zones, start, n);
+            let mut end = start + CHUNK;
+            while end < n && zone_of(&row.zones, end, n) == zone {
+                end += CHUNK;
+            }
+            let end = end.min(n);
+            let (r, toward, part) = (&row.r[start..end], &row.toward[start..end], &mut coverage[start..end]);
+            match zone {
+                BEYOND => {}
+                WITHIN => add_within(*self, part),
+                FALLOFF => add_falloff(*self, r, toward, part),
+                _ => add_rim(*self, r, toward, part),
+            }
+            start = end;
+        }
+    }
+}
+
+#[inline(always)]
+fn add_within(tip: RoundTip, coverage: &mut [f32]) {
+    for a in coverage {
+        tip.raise(a, 1.0);
+    }
+}
+
+#[inline(always)]
+fn add_falloff(tip: RoundTip, r: &[f32], toward: &[f32], coverage: &mut [f32]) {
+    for ((a, r), toward) in coverage.iter_mut().zip(r).zip(toward) {
+        tip.raise(a, tip.profile.mean_in_falloff(*r, toward / (r * r)));
+    }
+}
+
+#[inline(always)]
+fn add_rim(tip: RoundTip, r: &[f32], toward: &[f32], coverage: &mut [f32]) {
+    for ((a, r), toward) in coverage.iter_mut().zip(r).zip(toward) {
+        tip.raise(a, tip.profile.mean(*r, toward / (r * r)));
+    }
+}
+
+/// The zone that a chunk's pixels share.
+#[inline(always)]
+fn zone_of(zones: &[u32; TILE], start: usize, end: usize) -> u32 {
+    match zones[start..].first_chunk::<CHUNK>() {
+        Some(chunk) if start + CHUNK <= end => chunk.iter().fold(u32::MAX, |all, zone| all & zone),
+        _ => zones[start..end].iter().fold(u32::MAX, |all, zone| all & zone),
+    }
+}
+
+/// A pixel all of whose neighbours continue its surface.
+const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
+
+crate::widest! {
+    /// Where D is the identity; (x, y) is the centre of the first pixel.
+    pub(super) fn flat_row(x: f32, y: f32, tip: &RoundTip, row: &mut Row, coverage: &mut [f32]) {
+        let n = coverage.len().min(TILE);
+        let dy = y - tip.at.y;
+        let pixel = tip.per_radius * tip.per_radius;
+        let (r, toward, zones) = (&mut row.r[..n], &mut row.toward[..n], &mut row.zones[..n]);
+        for i in 0..n {
+            // Through i32: AVX2 converts no 64-bit integers.
+            let dx = x + i as i32 as f32 - tip.at.x;
+            let r_squared = (dx * dx + dy * dy + AT_CENTER) * pixel;
+            (r[i], toward[i]) = (r_squared.sqrt(), pixel * r_squared);
+            zones[i] = tip.zone(r[i], pixel);
+        }
+        tip.add(row, coverage);
+    }
+    /// Bent: J by differences within each pixel's piece of surface.
+    pub(super) fn bent_row(d: Around, tip: &RoundTip, row: &mut Row, coverage: &mut [f32]) {
+        let n = coverage.len().min(TILE);
+        if are_inside(&d.linked[..n]) {
+            judge_inside(d, n, tip, row);
+        } else {
+            judge_rim(d, n, tip, row);
+        }
+        tip.add(row, coverage);
+    }
+}
+
+/// Eight pixels a word: rows are short.
+#[inline(always)]
+fn are_inside(linked: &[u8]) -> bool {
+    let (words, rest) = linked.as_chunks::<8>();
+    let all = words.iter().fold(u64::MAX, |all, word| all & u64::from_ne_bytes(*word));
+    let inside = u64::from_ne_bytes([INSIDE; 8]);
+    all & inside == inside && rest.iter().all(|bits| bits & INSIDE == INSIDE)
+}
+
+/// Within one piece of surface: J by central differences.
+#[inline(always)]
+fn judge_inside(d: Around, n: usize, tip: &RoundTip, row: &mut Row) {
+    let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
+    let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
+    let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
+    let (r, toward, zones) = (&mut row.r[..n], &mut row.toward[..n], &mut row.zones[..n]);
+    for i in 0..n {
+        let p = (cx[i + 1] - tip.at.x, cy[i + 1] - tip.at.y);
+        let across = (0.5 * (cx[i + 2] - cx[i]), 0.5 * (cy[i + 2] - cy[i]));
+        let along = (0.5 * (bx[i + 1] - ax[i + 1]), 0.5 * (by[i + 1] - ay[i + 1]));
+        (r[i], toward[i], zones[i]) = tip.judge(p, across, along);
+    }
+}
+
+/// Along a silhouette, a depth jump or outside: J from linked neighbours only.
+#[inline(always)]
+fn judge_rim(d: Around, n: usize, tip: &RoundTip, row: &mut Row) {
+    let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
+    let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
+    let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
+    let linked = &d.linked[..n];
+    let (r, toward, zones) = (&mut row.r[..n], &mut row.toward[..n], &mut row.zones[..n]);
+    for i in 0..n {
+        let (x, y) = (cx[i + 1], cy[i + 1]);
+        let has = |bit: u8| linked[i] & bit != 0;
+        let (left, right, up, down) = (has(links::LEFT), has(links::RIGHT), has(links::UP), has(links::DOWN));
+        let across = (slope(left, right, cx[i], x, cx[i + 2], 1.0), slope(left, right, cy[i], y, cy[i + 2], 0.0));
+        let along = (slope(up, down, ax[i + 1], x, bx[i + 1], 0.0), slope(up, down, ay[i + 1], y, by[i + 1], 1.0));
+        (r[i], toward[i], zones[i]) = tip.judge((x - tip.at.x, y - tip.at.y), across, along);
+    }
+}
+
+/// The derivative at `here` from those of its two neighbours that are linked; `flat`, the identity's, without any.
+#[inline(always)]
+pub fn slope(has_before: bool, has_after: bool, before: f32, here: f32, after: f32, flat: f32) -> f32 {
+    let low = if has_before { before } else { here };
+    let high = if has_after { after } else { here };
+    let mean = if has_before & has_after { 0.5 * (high - low) } else { high - low };
+    if has_before | has_after { mean } else { flat }
+}
