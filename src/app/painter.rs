@@ -61,6 +61,8 @@ const PASS: Duration = Duration::from_millis(150);
 const FRAME: Duration = Duration::from_millis(30);
 /// The hand rests when nothing newer came for so long: then the whole picture is painted.
 const REST: Duration = Duration::from_millis(180);
+/// Nothing was wanted for so long: time to get ready for the next drag.
+const PAUSE: Duration = Duration::from_millis(600);
 /// Canvas pixels to a pixel of the smallest picture.
 const COARSEST: u32 = 8;
 
@@ -105,6 +107,8 @@ struct Work {
     is_drafting: bool,
     /// The hand rested on this document: it is painted whole, however long that takes.
     is_resting: bool,
+    /// All of this document is small already, ready for a drag.
+    is_prepared: bool,
 }
 
 /// A smaller picture, for as long as a drag lasts and the next ones.
@@ -146,6 +150,7 @@ fn work(shared: &Shared, sender: &Sender<Painted>, done: &dyn Fn()) -> Option<()
 impl Work {
     /// Waits for something to do; the document that is newly wanted, if any. `None` once the window is gone.
     fn wait(&mut self, shared: &Shared) -> Option<Option<Wanted>> {
+        let mut pause = PAUSE;
         let mut wanted = lock(&shared.wanted);
         loop {
             if *lock(&shared.closed) {
@@ -154,23 +159,44 @@ impl Work {
             if wanted.is_some() || (!self.is_drafting && self.has_more()) {
                 return Some(wanted.take());
             }
-            if self.is_drafting {
-                let (next, waited) = shared.wake.wait_timeout(wanted, REST).unwrap_or_else(PoisonError::into_inner);
-                wanted = next;
-                (self.is_drafting, self.is_resting) = (!waited.timed_out(), waited.timed_out());
-            } else {
+            let rest = if self.is_drafting { Some(REST) } else { self.is_slow().then_some(pause) };
+            let Some(rest) = rest else {
                 wanted = shared.wake.wait(wanted).unwrap_or_else(PoisonError::into_inner);
+                continue;
+            };
+            let (next, waited) = shared.wake.wait_timeout(wanted, rest).unwrap_or_else(PoisonError::into_inner);
+            wanted = next;
+            if self.is_drafting {
+                (self.is_drafting, self.is_resting) = (!waited.timed_out(), waited.timed_out());
+            } else if waited.timed_out() {
+                drop(wanted);
+                self.prepare();
+                // The next part at once.
+                pause = Duration::ZERO;
+                wanted = lock(&shared.wanted);
             }
         }
+    }
+    /// A drag will want a smaller picture, and some of it is still to be made.
+    fn is_slow(&self) -> bool {
+        !self.is_prepared && self.whole.slowest() > FRAME
+    }
+    /// Makes some of the document small before a drag needs it: all of a large one would hold the first frame up.
+    fn prepare(&mut self) {
+        let step = step_for(self.whole.slowest());
+        let Some(wanted) = &self.wanted else { return self.is_prepared = true };
+        let draft = self.draft.get_or_insert_with(|| Draft::new(step));
+        self.is_prepared = !draft.reduced.prepare(&wanted.document);
     }
     fn take_up(&mut self, next: Wanted) {
         if self.wanted.as_ref().is_none_or(|old| old.picture != next.picture) {
             (self.whole, self.draft) = (Pass::default(), None);
         }
         self.whole.take_up(next.document.clone());
-        let was_quick = self.draft.as_ref().is_none_or(Draft::would_be_quick_in_whole_pixels);
+        let was_quick =
+            self.draft.as_ref().is_none_or(|draft| draft.is_unused() || draft.would_be_quick_in_whole_pixels());
         self.is_drafting = next.is_dragged && !was_quick;
-        (self.wanted, self.is_resting) = (Some(next), false);
+        (self.wanted, self.is_resting, self.is_prepared) = (Some(next), false, false);
         if self.is_drafting {
             self.redraft();
         }
@@ -213,7 +239,9 @@ impl Work {
         let done = self.whole.paint(visible, if is_dragged { FEW } else { BATCH })?;
         if is_dragged && !self.is_resting && !done.is_settled && done.took > FRAME {
             let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
-            if self.draft.as_ref().is_none_or(|draft| draft.step != step) {
+            // One that was prepared will do where it is small enough.
+            let does = |draft: &Draft| draft.step == step || (draft.is_unused() && draft.step > step);
+            if !self.draft.as_ref().is_some_and(does) {
                 self.draft = Some(Draft::new(step));
             }
             self.is_drafting = true;
@@ -247,6 +275,10 @@ impl Draft {
     /// Its passes take longer than they should, though there is a coarser one. The first made everything small.
     fn is_slow(&self) -> bool {
         self.step < COARSEST && self.pass.passes() > 1 && self.pass.took() > FRAME.mul_f32(1.6)
+    }
+    /// It was prepared, and no drag has used it.
+    fn is_unused(&self) -> bool {
+        self.pass.passes() == 0
     }
     fn would_be_quick_in_whole_pixels(&self) -> bool {
         self.pass.passes() > 1 && self.pass.took() * self.step * self.step < FRAME

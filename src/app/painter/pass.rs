@@ -21,6 +21,8 @@ pub struct Pass {
     /// Documents taken up, and how long the last one that was settled took.
     passes: u32,
     took: Duration,
+    /// The longest that one took.
+    slowest: Duration,
     /// Tiles painted of this document.
     painted: usize,
 }
@@ -69,6 +71,10 @@ impl Pass {
     pub fn took(&self) -> Duration {
         self.took
     }
+    /// The longest that a document took.
+    pub fn slowest(&self) -> Duration {
+        self.slowest
+    }
     /// Paints at most so many tiles, those in sight first; `None` where nothing is left.
     pub fn paint(&mut self, visible: Rect, most: usize) -> Option<Batch> {
         let document = self.document.as_ref()?;
@@ -92,7 +98,7 @@ impl Pass {
         let left = self.dirty.iter().filter(|at| in_sight(at)).count();
         let took = self.begun.map_or(Duration::ZERO, |begun| begun.elapsed());
         if left == 0 {
-            self.took = took;
+            (self.took, self.slowest) = (took, self.slowest.max(took));
         }
         Some(Batch { tiles, is_settled: left == 0, took, painted: self.painted, left })
     }

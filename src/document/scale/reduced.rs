@@ -30,6 +30,24 @@ impl Reduced {
         self.layers = layers;
         Ok(Document { size: scale.to, surface, layers: small, ..document.clone() })
     }
+    /// Makes one more part of the document small, so that [`Reduced::of`] finds it made; whether there was one. With this a
+    /// thread that has nothing better to do gets ready in steps, none of which takes long.
+    pub fn prepare(&mut self, document: &Document) -> bool {
+        let Some(scale) = Scale::of(document.size, self.factor) else { return false };
+        if let Some(surface) = &document.surface
+            && self.surface.as_ref().is_none_or(|(known, _)| known.as_ptr() != Arc::as_ptr(surface))
+        {
+            return self.surface(surface, &scale).is_ok();
+        }
+        // Groups are hollow: they cost nothing once what is in them is known.
+        let is_new = |layer: &&Arc<Layer>| {
+            let known = self.layers.get(&layer.id).is_some_and(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
+            !known && !matches!(layer.content, Content::Group(_))
+        };
+        let Some(layer) = document.walk().into_iter().map(|(_, layer)| layer).find(is_new) else { return false };
+        self.layers.insert(layer.id, (Arc::downgrade(layer), Arc::new(scale.layer(layer))));
+        true
+    }
     fn surface(&mut self, surface: &Arc<Surface>, scale: &Scale) -> Result<Arc<Surface>, SurfaceError> {
         if let Some((known, small)) = &self.surface
             && known.as_ptr() == Arc::as_ptr(surface)
@@ -102,5 +120,19 @@ mod tests {
             (flatten(&second, &Progress::default()), flatten(&changed.scaled(0.5).unwrap(), &Progress::default()));
         let area = second.size.rect();
         assert!(ours.unwrap().to_straight_rgba(area) == whole.unwrap().to_straight_rgba(area));
+    }
+    #[test]
+    fn what_was_prepared_part_by_part_is_not_made_again() {
+        let document = Document {
+            layers: vec![Arc::new(fill("beneath", 40)), Arc::new(fill("above", 90))],
+            ..Document::empty(Size::new(300, 200))
+        };
+        let mut reduced = Reduced::new(0.5);
+        assert!(reduced.prepare(&document) && reduced.prepare(&document) && !reduced.prepare(&document));
+        let made: Vec<_> = document.layers.iter().map(|layer| reduced.layers[&layer.id].1.clone()).collect();
+        let small = reduced.of(&document).unwrap();
+        assert!(small.layers.iter().zip(&made).all(|(a, b)| Arc::ptr_eq(a, b)));
+        let changed = document.with_layer(document.layers[1].id, |layer| layer.opacity = 0.5).unwrap();
+        assert!(reduced.prepare(&changed) && !reduced.prepare(&changed), "only the layer that changed");
     }
 }
