@@ -54,6 +54,9 @@ pub enum WindowAsk {
     /// A panel into a window of its own, or back.
     Float(Front),
     ToggleTheme,
+    ResizeInterface {
+        is_larger: bool,
+    },
     Scale(f32),
     FullScreen,
 }

@@ -1,44 +1,57 @@
 //! Long work, each piece on a thread of its own with a bar of progress and a way to give it up, so that the window never waits.
 //! Floor 7.
 
+use crate::app::clipboard::{Clipboard, Pasted};
 use crate::app::files::Purpose;
-use crate::document::{Document, LayerId, Progress};
+use crate::document::{Document, LayerId, Progress, SurfaceSource};
 use crate::io::recipe::Preset;
 use crate::io::save::Stamp;
 use crate::io::{maps, recovery};
 use crate::raster::Picture;
 use crate::session::Edit;
-use crate::session::actions::pictures::Read;
+use crate::session::actions::LayerAction;
+use crate::session::actions::files::read_picture;
+use crate::session::actions::pictures::{Part, Read};
 use crate::session::autosave::Found;
-use crate::session::storage::{self, Kind, Opened};
+use crate::session::storage::{self, Kind, Opened, Sorted};
 use crate::{Error, Result};
 use eframe::egui;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 /// What a job came to; done by the window when it arrives.
 pub enum Done {
-    Opened(Box<Result<Opened>>),
-    /// The file holds a map: its conventions are to be seen first.
-    IsMap(PathBuf),
+    /// A document, of this file if it is of one.
+    Opened(Option<PathBuf>, Box<Result<Opened>>),
+    /// Maps of an object: their conventions are to be seen first.
+    AreMaps(Box<SurfaceSource>),
+    /// The file is to be opened as a document of its own.
+    IsDocument(PathBuf),
+    /// The file is to be read, to become an image layer.
+    IsPicture(PathBuf, Where),
+    /// A job came to several things.
+    Several(Vec<Done>),
+    /// It went well, and whoever waits is told so.
+    Said(String),
     /// Maps were read, for the import dialog.
     Read(Box<Result<maps::Import>>),
     /// Drawings that an accident left.
     Lost(Vec<recovery::Session>),
     /// One of them was brought back.
     Recovered(Box<Result<Found>>),
-    /// A picture was read, to become an image layer.
-    Pictured(String, Picture, Where),
-    /// A picture was read that a layer of a tab, by its key, is to be made of.
-    Part(usize, LayerId, Box<Read>),
+    /// A picture was read from a file, to become an image layer.
+    Pictured(PathBuf, String, Picture, Where),
+    /// A picture was read that a layer of a tab is to be made of.
+    Part(Box<PartRead>),
     /// The document of a tab was saved; `None` if that was given up.
     Saved(Box<Saved>),
     /// An edit of the document of a tab that took long.
     Edited(Box<Edited>),
-    /// The finished picture, for the clipboard.
-    Copied(egui::ColorImage),
+    /// The finished picture is in the clipboard, as long as this is kept.
+    Copied(Clipboard),
+    Pasted(Pasted),
     /// The user's own brushes, and what cannot be read of them.
     Brushes(Vec<Preset>, Vec<String>),
     /// Nothing is left to be done, as when a job was given up.
@@ -46,6 +59,15 @@ pub enum Done {
     Failed(Error),
     /// A file dialog was answered; `None` where the system has no dialog.
     Chosen(Purpose, Option<PathBuf>),
+}
+
+pub struct PartRead {
+    /// By its key.
+    pub tab: usize,
+    pub layer: LayerId,
+    pub part: Part,
+    pub file: PathBuf,
+    pub read: Read,
 }
 
 /// Where a picture is to be pinned to the surface.
@@ -69,6 +91,7 @@ pub struct Saved {
 pub struct Edited {
     /// By its key.
     pub tab: usize,
+    pub action: LayerAction,
     /// What was edited.
     pub from: Document,
     pub edit: Edit,
@@ -114,12 +137,13 @@ pub struct Jobs {
     ctx: egui::Context,
     next: usize,
     pub under_way: Vec<UnderWay>,
+    said: Option<(String, Instant)>,
 }
 
 impl Jobs {
     pub fn new(ctx: &egui::Context) -> Self {
         let (sender, done) = channel();
-        Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new() }
+        Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new(), said: None }
     }
     /// Runs a job; `name` is shown while it lasts.
     pub fn start(&mut self, name: String, kind: While, work: impl FnOnce(&Progress) -> Done + Send + 'static) {
@@ -138,12 +162,50 @@ impl Jobs {
         }
         self.under_way.push(UnderWay { key, name, progress, kind, since: Instant::now() });
     }
-    pub fn open(&mut self, file: PathBuf) {
-        let name = format!("Opening {}", short(&file));
-        self.start(name, While::Working, move |_| match storage::kind_of(&file) {
-            Ok(Kind::Normals | Kind::Depth) => Done::IsMap(file),
-            _ => Done::Opened(Box::new(storage::open(&file))),
+    /// Opens files that came together. `at`: where pictures become layers, if they do; else they open as documents.
+    pub fn open(&mut self, files: Vec<PathBuf>, at: Option<Where>) {
+        let name = match &files[..] {
+            [file] => format!("Opening {}", short(file)),
+            files => format!("Opening {} files", files.len()),
+        };
+        self.start(name, While::Working, move |_| {
+            let (mut known, mut done) = (Vec::new(), Vec::new());
+            for file in files {
+                match storage::kind_of(&file) {
+                    Ok(kind) => known.push((file, kind)),
+                    Err(error) => done.push(Done::Failed(error)),
+                }
+            }
+            let Sorted { objects, others } = storage::sorted(known);
+            done.extend(objects.into_iter().map(|source| Done::AreMaps(Box::new(source))));
+            done.extend(others.into_iter().map(|(file, kind)| match at.filter(|_| kind == Kind::Picture) {
+                Some(at) => Done::IsPicture(file, at),
+                None => Done::IsDocument(file),
+            }));
+            Done::Several(done)
         });
+    }
+    pub fn read_document(&mut self, file: PathBuf) {
+        let name = format!("Opening {}", short(&file));
+        self.start(name, While::Working, move |_| {
+            let opened = storage::open(&file);
+            Done::Opened(Some(file), Box::new(opened))
+        });
+    }
+    pub fn read_picture(&mut self, file: PathBuf, at: Where) {
+        self.start(format!("Reading {}", short(&file)), While::Working, move |_| match read_picture(&file) {
+            Ok((name, picture)) => Done::Pictured(file, name, picture, at),
+            Err(error) => Done::Failed(error),
+        });
+    }
+    /// Tells that something went well, for a while.
+    pub fn say(&mut self, sentence: String) {
+        self.said = Some((sentence, Instant::now()));
+    }
+    /// What went well a moment ago.
+    pub fn said(&self) -> Option<&str> {
+        let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < TOLD)?;
+        Some(sentence)
     }
     /// What was finished since the last call. What was given up comes to nothing, unless it was done already.
     pub fn finished(&mut self) -> Vec<Done> {
@@ -163,8 +225,11 @@ impl Jobs {
     }
 }
 
+/// How long a sentence about something that went well stays.
+const TOLD: Duration = Duration::from_secs(8);
+
 /// A file's own name, for a line in which a whole path has no room.
-pub fn short(file: &std::path::Path) -> String {
+pub fn short(file: &Path) -> String {
     file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
 }
 

@@ -3,7 +3,7 @@
 
 use super::commands::{self, Command};
 use crate::tools::{ToolKind, ToolRow};
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ impl Keyed {
     /// Everything that keys can be given to, tools first.
     pub fn all() -> impl Iterator<Item = Keyed> {
         const TOOLS: &[ToolRow] = &ToolKind::ALL;
-        let commands = commands::all().filter(|command| !command.name.is_empty()).map(Keyed::Command);
+        let commands = commands::all().map(Keyed::Command);
         TOOLS.iter().map(Keyed::Tool).chain(commands)
     }
     pub fn name(self) -> &'static str {
@@ -101,6 +101,16 @@ impl Keymap {
         };
         let chosen = value.iter().filter(|(name, _)| known(name));
         Self { chosen: chosen.filter_map(|(name, list)| Some((name.clone(), keys(list)?))).collect() }
+    }
+}
+
+/// A key as people read it: “Ctrl+[”, in the system's words for what is held.
+pub fn shown(ctx: &Context, keys: KeyboardShortcut) -> String {
+    let (text, key) = (ctx.format_shortcut(&keys), keys.logical_key);
+    // The toolkit writes “OpenBracket”; its arrows are in no font that everyone has.
+    match text.strip_suffix(key.name()) {
+        Some(held) if key.symbol_or_name().is_ascii() => format!("{held}{}", key.symbol_or_name()),
+        _ => text,
     }
 }
 

@@ -1,7 +1,7 @@
 //! The keyboard: commands and tools by their keys.
 //! Floor 7. Which keys those are is `keymap`'s.
 
-use super::asked::{Asked, WindowAsk};
+use super::asked::Asked;
 use super::keymap::{Keyed, Keymap};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
@@ -31,10 +31,5 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, asked: &mut Ask
                 Keyed::Tool(row) => asked.act(Action::Hand(HandAction::Tool { tool: row.kind })),
             }
         }
-    }
-    // The system turns these keys into events of their own.
-    let pasted = ctx.input(|i| i.events.iter().any(|event| matches!(event, Event::Paste(_) | Event::PasteImage(_))));
-    if pasted {
-        asked.ask(WindowAsk::Paste);
     }
 }

@@ -3,6 +3,7 @@
 
 mod asked;
 mod canvas;
+mod clipboard;
 mod commands;
 mod dialogs;
 mod event_loop;
@@ -11,6 +12,7 @@ mod icons;
 mod jobs;
 mod keymap;
 mod keys;
+mod memory;
 mod painter;
 mod panels;
 mod pen;
@@ -41,7 +43,8 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         .with_inner_size([1280.0, 820.0])
         .with_min_inner_size([720.0, 480.0])
         .with_drag_and_drop(true);
-    let options = eframe::NativeOptions { viewport, ..Default::default() };
+    // Its keys come as keys: see `clipboard`.
+    let options = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
     let (tablet, is_open) = (pen::SharedTablet::default(), Rc::new(Cell::new(false)));
     let (pen, opened) = (tablet.clone(), is_open.clone());
     let start = move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {

@@ -26,6 +26,8 @@ pub struct Settings {
     /// Newest first.
     pub recent: Vec<PathBuf>,
     pub is_light: bool,
+    /// How large the interface is, if that was chosen.
+    pub scale: Option<f32>,
     pub layout: Layout,
     pub keymap: Keymap,
     /// The three steps of a first start were seen to the end, or put away.
@@ -81,6 +83,7 @@ impl Settings {
         json!({
             "recent": recent,
             "light": self.is_light,
+            "scale": self.scale,
             "hint done": self.is_hint_done,
             "panels": {
                 "side": side, "hidden": is_hidden, "front": front.name(), "apart": apart,
@@ -111,7 +114,8 @@ impl Settings {
         };
         let recent = texts(value.get("recent")).into_iter().take(RECENT).map(PathBuf::from).collect();
         let keymap = Keymap::from_json(object("keys"));
-        Self { recent, is_light: flag(value, "light"), layout, keymap, is_hint_done: flag(value, "hint done") }
+        let scale = value.get("scale").and_then(Value::as_f64).map(|scale| (scale as f32).max(0.5).min(4.0));
+        Self { recent, is_light: flag(value, "light"), scale, layout, keymap, is_hint_done: flag(value, "hint done") }
     }
     /// Reads a settings file; none is an empty one. Fails where it is not JSON, or not to be read.
     pub fn read(file: &Path) -> Result<Self> {

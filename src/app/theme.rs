@@ -51,6 +51,8 @@ pub fn install(ctx: &egui::Context) {
     ctx.style_mut_of(Theme::Dark, |style| dress(style, Visuals::dark(), &DARK));
     ctx.style_mut_of(Theme::Light, |style| dress(style, Visuals::light(), &LIGHT));
     ctx.set_theme(Theme::Dark);
+    // Its keys zoom the picture here.
+    ctx.options_mut(|options| options.zoom_with_keyboard = false);
 }
 
 fn dress(style: &mut Style, mut visuals: Visuals, greys: &Greys) {

@@ -3,7 +3,7 @@
 
 use super::canvas::color32;
 use crate::math::srgb::Color;
-use eframe::egui::{self, DragValue, ProgressBar, Response, RichText, Slider, Ui, vec2};
+use eframe::egui::{self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, Ui, vec2};
 use std::ops::RangeInclusive;
 
 /// A value that a widget gave: shown only, or to be kept.
@@ -52,6 +52,9 @@ impl<'a> Number<'a> {
     pub fn degrees(self) -> Self {
         Self { suffix: "°", decimals: 0, ..self }
     }
+    pub fn percent(self) -> Self {
+        Self { suffix: " %", decimals: 0, ..self }
+    }
     pub fn decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
     }
@@ -81,11 +84,20 @@ impl<'a> Number<'a> {
     }
     /// A slider in a bar among others, its name before it.
     pub fn inline(self, ui: &mut Ui, value: f32, width_pt: f32) -> Option<Changed<f32>> {
+        /// Of the number after the slider: four digits and a unit.
+        const NUMBER_PT: f32 = 56.0;
         let mut to = value;
-        let label = ui.label(self.label);
-        ui.spacing_mut().slider_width = width_pt;
-        let response = ui.add(self.slider(&mut to)).labelled_by(label.id);
-        change(&response.on_hover_text(self.hint), to)
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let name_pt = ui.painter().layout_no_wrap(self.label.into(), font, egui::Color32::WHITE).size().x;
+        let room =
+            vec2(name_pt + width_pt + NUMBER_PT + 2.0 * ui.spacing().item_spacing.x, ui.spacing().interact_size.y);
+        // A bar that wraps takes it to the next row whole.
+        let inner = ui.allocate_ui_with_layout(room, Layout::left_to_right(Align::Center), |ui| {
+            let label = ui.label(self.label);
+            ui.spacing_mut().slider_width = width_pt;
+            ui.add(self.slider(&mut to)).labelled_by(label.id)
+        });
+        change(&inner.inner.on_hover_text(self.hint), to)
     }
     /// A number alone, to be dragged or typed.
     pub fn field(self, ui: &mut Ui, value: f32) -> Option<Changed<f32>> {
@@ -151,6 +163,14 @@ pub fn sentence(word: &str) -> String {
 pub fn check(ui: &mut Ui, label: &str, hint: &str, on: bool) -> Option<bool> {
     let mut to = on;
     ui.checkbox(&mut to, label).on_hover_text(hint).changed().then_some(to)
+}
+
+/// A list in a dialog, as tall as what is in it, up to `most_pt` and what the window has room for.
+pub fn list(ui: &Ui, most_pt: f32) -> ScrollArea {
+    /// What a dialog has above and below its list.
+    const AROUND_PT: f32 = 210.0;
+    let height = (ui.ctx().content_rect().height() - AROUND_PT).max(120.0).min(most_pt);
+    ScrollArea::vertical().max_height(height).min_scrolled_height(height)
 }
 
 /// The title of a part of a panel.

@@ -4,11 +4,13 @@
 use super::Tab;
 use crate::Result;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
-use crate::document::{Content, Document, Layer, Progress};
+use crate::document::{Content, Document, Layer, Live, Progress};
 use crate::io::maps::pairs::{self, Part};
 use crate::io::save::Stamp;
 use crate::io::{self, Budget, Given, Over, files::read_file, inspect, maps};
-use crate::math::srgb::Color;
+use crate::math::{Size, Vec2, srgb::Color};
+use crate::paint::{Filter, Gradient, Stop};
+use crate::surface::Operator;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -97,10 +99,9 @@ pub fn import(source: &SurfaceSource) -> Result<maps::Import> {
 }
 
 /// The maps that belong to a file by their names: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its folder.
-pub fn maps_beside(file: &Path) -> SurfaceSource {
+pub fn maps_beside(file: &Path, kind: Kind) -> SurfaceSource {
     let part = pairs::part_of(file);
-    let is_depth = matches!(kind_of(file), Ok(Kind::Depth));
-    let mut source = if is_depth { maps_of(None, Some(file)) } else { maps_of(Some(file), None) };
+    let mut source = if kind == Kind::Depth { maps_of(None, Some(file)) } else { maps_of(Some(file), None) };
     let Some((name, _)) = part else { return source };
     let beside = file.parent().and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
     let mut others: Vec<PathBuf> =
@@ -124,6 +125,44 @@ pub fn maps_beside(file: &Path) -> SurfaceSource {
     source
 }
 
+/// Files that came together, sorted: the maps of each object, and what is opened by itself, in their order.
+#[derive(Debug, Default, PartialEq)]
+pub struct Sorted {
+    pub objects: Vec<SurfaceSource>,
+    pub others: Vec<(PathBuf, Kind)>,
+}
+
+/// Sorts files of known kinds. A normal map, a depth map and a mask that come together are one object's, whatever they are
+/// called; a second normal map begins another object. What is missing is looked for beside each file (see [`maps_beside`]).
+pub fn sorted(files: Vec<(PathBuf, Kind)>) -> Sorted {
+    let mut sorted = Sorted::default();
+    let text = |file: &Path| file.to_string_lossy().into_owned();
+    let map = |file: &Path| Some(MapSource { file: text(file), ..MapSource::default() });
+    let (maps, others): (Vec<_>, Vec<_>) =
+        files.into_iter().partition(|(_, kind)| matches!(kind, Kind::Normals | Kind::Depth));
+    // Normals first: depth joins them.
+    let (normals, depths): (Vec<_>, Vec<_>) = maps.into_iter().partition(|(_, kind)| *kind == Kind::Normals);
+    sorted.objects.extend(normals.iter().map(|(file, _)| maps_beside(file, Kind::Normals)));
+    for (file, _) in depths {
+        let is_taken = |source: &SurfaceSource| source.depth.as_ref().is_some_and(|map| map.file == text(&file));
+        if sorted.objects.iter().any(is_taken) {
+            continue;
+        }
+        match sorted.objects.iter_mut().find(|source| source.depth.is_none()) {
+            Some(source) => source.depth = map(&file),
+            None => sorted.objects.push(maps_beside(&file, Kind::Depth)),
+        }
+    }
+    for (file, kind) in others {
+        let is_mask = pairs::part_of(&file).is_some_and(|(_, part)| part == Part::Mask);
+        match sorted.objects.iter_mut().find(|_| is_mask && kind == Kind::Picture) {
+            Some(source) => source.mask = Some(MaskSource::File { file: text(&file), channel: None, invert: false }),
+            None => sorted.others.push((file, kind)),
+        }
+    }
+    sorted
+}
+
 /// A new document on a surface, with a plain ground to paint on.
 pub fn open_maps(source: &SurfaceSource) -> Result<Opened> {
     Ok(of_import(source, import(source)?))
@@ -134,7 +173,7 @@ pub fn of_import(source: &SurfaceSource, import: maps::Import) -> Opened {
     let maps::Import { surface, findings, files } = import;
     let size = surface.size();
     let ground = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Fill(GROUND)) };
-    let clay = Layer::new("Base", Content::Fill(CLAY));
+    let clay = Layer::new("Base", Content::Gradient(Live::new(clay(size))));
     let document = Document {
         surface: Some(Arc::new(surface)),
         surface_source: Some(Arc::new(source.clone())),
@@ -148,7 +187,20 @@ pub fn of_import(source: &SurfaceSource, import: maps::Import) -> Opened {
 }
 
 const GROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
-const CLAY: Color = Color { r: 0x8f, g: 0x8a, b: 0x84, a: 255 };
+
+/// What a new surface is covered with: light to dark from above left, bent by the normals, so that the shape is seen before
+/// the first stroke.
+fn clay(size: Size) -> Gradient {
+    let side = Vec2::new(size.width as f32, size.height as f32);
+    let stop = |t: f32, [r, g, b]: [u8; 3]| Stop { t, color: Color { r, g, b, a: 255 } };
+    Gradient {
+        from: side * Vec2::new(0.30, 0.22),
+        to: side * Vec2::new(0.66, 0.78),
+        stops: vec![stop(0.0, [0xc9, 0xc3, 0xbb]), stop(0.55, [0x84, 0x7d, 0x76]), stop(1.0, [0x3a, 0x36, 0x34])],
+        operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
+        filter: Filter::Antialias,
+    }
+}
 
 /// Saves a document as a project. `stamp`: of the file as it was last read or written here, if it was.
 /// `None` if it was given up.

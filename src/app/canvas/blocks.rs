@@ -35,7 +35,10 @@ impl Blocks {
         for at in tiles {
             let block = (at.rect().x0.div_euclid(BLOCK), at.rect().y0.div_euclid(BLOCK));
             let area = changed.entry(block).or_insert(Rect::EMPTY);
-            *area = area.union(at.rect());
+            // One pixel more, where the canvas ends within the block: see `image`.
+            let Rect { x0, y0, x1, y1 } = at.rect();
+            let reached = Rect::new(x0, y0, x1 + 1, y1 + 1).intersect(block_rect(block));
+            *area = area.union(if x1 < size.width as i32 && y1 < size.height as i32 { at.rect() } else { reached });
         }
         for (block, area) in changed {
             let options = self.options();
@@ -43,10 +46,10 @@ impl Blocks {
             match self.textures.get_mut(&block) {
                 Some(texture) => {
                     let at = [(area.x0 - whole.x0) as usize, (area.y0 - whole.y0) as usize];
-                    texture.set_partial(at, image(grid, area), options);
+                    texture.set_partial(at, image(grid, area, size), options);
                 }
                 None if !whole.intersect(size.rect()).is_empty() => {
-                    let texture = ctx.load_texture(format!("canvas {block:?}"), image(grid, whole), options);
+                    let texture = ctx.load_texture(format!("canvas {block:?}"), image(grid, whole, size), options);
                     self.textures.insert(block, texture);
                 }
                 None => {}
@@ -55,15 +58,13 @@ impl Blocks {
     }
     /// Pixels as squares, or smooth. The filter belongs to the texture, so one pixel of each is sent again.
     pub fn set_sharp(&mut self, sharp: bool, grid: &TileGrid) {
-        if self.sharp == sharp {
-            return;
-        }
+        let Some(size) = self.size.filter(|_| self.sharp != sharp) else { return };
         self.sharp = sharp;
         let options = self.options();
         for (&block, texture) in &mut self.textures {
             let whole = block_rect(block);
             let tile = Rect::new(whole.x0, whole.y0, whole.x0 + 1, whole.y0 + 1);
-            texture.set_partial([0, 0], image(grid, tile), options);
+            texture.set_partial([0, 0], image(grid, tile, size), options);
         }
     }
     fn options(&self) -> TextureOptions {
@@ -111,8 +112,9 @@ fn block_rect((col, row): (i32, i32)) -> Rect {
     Rect::new(col * BLOCK, row * BLOCK, (col + 1) * BLOCK, (row + 1) * BLOCK)
 }
 
-/// Premultiplied pixels of a rectangle, as the graphics card takes them.
-fn image(grid: &TileGrid, rect: Rect) -> ColorImage {
+/// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right and lower edge its last
+/// pixels are repeated once, so that smoothing mixes nothing foreign into the rim.
+fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
     let (width, height) = (rect.width(), rect.height());
     let mut pixels = vec![Color32::TRANSPARENT; width * height];
     for at in TileAt::covering(rect) {
@@ -127,5 +129,27 @@ fn image(grid: &TileGrid, rect: Rect) -> ColorImage {
             }
         }
     }
+    let within = |end: i32, begin: i32, n: usize| usize::try_from(end - begin).ok().filter(|&at| at > 0 && at < n);
+    if let Some(x) = within(canvas.width as i32, rect.x0, width) {
+        (0..height).for_each(|y| pixels[y * width + x] = pixels[y * width + x - 1]);
+    }
+    if let Some(y) = within(canvas.height as i32, rect.y0, height) {
+        pixels.copy_within((y - 1) * width..y * width, y * width);
+    }
     ColorImage::new([width, height], pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rim_of_the_canvas_is_repeated_once_beyond_it() {
+        let canvas = Size::new(3, 2);
+        let bytes: Vec<u8> = (0..6u8).flat_map(|i| [i * 40, 9, 9, 255]).collect();
+        let grid = TileGrid::from_straight_rgba(&bytes, 3, 2, 0, 0);
+        let image = image(&grid, Rect::new(0, 0, 5, 4), canvas);
+        let reds: Vec<u8> = image.pixels.iter().map(|pixel| pixel.r()).collect();
+        assert_eq!(reds, [0, 40, 80, 80, 0, 120, 160, 200, 200, 0, 120, 160, 200, 200, 0, 0, 0, 0, 0, 0]);
+    }
 }

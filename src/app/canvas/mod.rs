@@ -98,7 +98,7 @@ impl Canvas {
         self.area_pt = vec2(rect.width(), rect.height());
         let dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(rect, 0.0, theme::SURROUND[usize::from(!dark)]);
-        let Some(tab) = session.tab() else { return };
+        let Some(tab) = session.tab() else { return invite(ui, rect) };
         let Some(view) = tab.view else {
             // The first time it is seen, it is seen whole.
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
@@ -236,4 +236,11 @@ fn seen(view: &View, area: egui::Rect) -> Rect {
     let low = at.iter().fold(Vec2::INFINITY, |low, p| low.min(*p));
     let high = at.iter().fold(Vec2::NEG_INFINITY, |high, p| high.max(*p));
     Rect::new(low.x.floor() as i32, low.y.floor() as i32, high.x.ceil() as i32, high.y.ceil() as i32)
+}
+
+/// What an empty window says.
+fn invite(ui: &Ui, area: egui::Rect) {
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    let text = "Drop a picture, a normal map or a project here, or open one from the File menu";
+    ui.painter().text(area.center(), egui::Align2::CENTER_CENTER, text, font, ui.visuals().weak_text_color());
 }

@@ -1,35 +1,14 @@
 //! The Help menu.
 //! Floor 7.
 
-use super::{Command, Menu, always, line};
+use super::{Command, LINE, always, row};
 use crate::app::asked::WindowAsk;
 
-const MENU: Menu = Menu::Help;
-
 pub const COMMANDS: &[Command] = &[
-    Command {
-        name: "Open the sample",
-        menu: MENU,
-        keys: &[],
-        hint: "A ball with everything on it, to try things out",
-        can: always,
-        run: |_, asked| asked.ask(WindowAsk::OpenSample),
-    },
-    Command {
-        name: "Keyboard shortcuts…",
-        menu: MENU,
-        keys: &[],
-        hint: "Every command and its keys",
-        can: always,
-        run: |_, asked| asked.ask(WindowAsk::Shortcuts),
-    },
-    line(MENU),
-    Command {
-        name: "About Rilievo…",
-        menu: MENU,
-        keys: &[],
-        hint: "What this program is",
-        can: always,
-        run: |_, asked| asked.ask(WindowAsk::About),
-    },
+    row("Open the sample", &[], "A ball with everything on it, to try things out", always, |_, asked| {
+        asked.ask(WindowAsk::OpenSample)
+    }),
+    row("Keyboard shortcuts…", &[], "Every command and its keys", always, |_, asked| asked.ask(WindowAsk::Shortcuts)),
+    LINE,
+    row("About Rilievo…", &[], "What this program is", always, |_, asked| asked.ask(WindowAsk::About)),
 ];

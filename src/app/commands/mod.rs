@@ -11,59 +11,65 @@ mod shading;
 mod view;
 
 use super::asked::Asked;
+use super::settings::Settings;
 use crate::session::Session;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A command.
 pub struct Command {
-    /// As menus show it; `…` where a dialog follows.
+    /// As menus show it; `…` where a dialog follows. Empty is a line between two.
     pub name: &'static str,
-    pub menu: Menu,
     /// The first is shown.
     pub keys: &'static [KeyboardShortcut],
     /// What it does, in a sentence.
     pub hint: &'static str,
     pub can: fn(&Session) -> bool,
     pub run: fn(&Session, &mut Asked),
+    /// Of one that switches something on and off: whether it is on.
+    pub is_on: Option<fn(&Session, &Settings) -> bool>,
 }
 
-/// Where a command stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Menu {
-    File,
-    Edit,
-    Layer,
-    /// Within the Layer menu.
-    Shading,
-    Paint,
-    View,
-    Help,
+/// A command by all that it always has: name, keys, hint, when it can be done, what it does.
+const fn row(
+    name: &'static str,
+    keys: &'static [KeyboardShortcut],
+    hint: &'static str,
+    can: fn(&Session) -> bool,
+    run: fn(&Session, &mut Asked),
+) -> Command {
+    Command { name, keys, hint, can, run, is_on: None }
 }
 
-impl Menu {
-    pub const ALL: [(Menu, &'static str); 6] = [
-        (Menu::File, "File"),
-        (Menu::Edit, "Edit"),
-        (Menu::Layer, "Layer"),
-        (Menu::Paint, "Paint"),
-        (Menu::View, "View"),
-        (Menu::Help, "Help"),
-    ];
+impl Command {
+    /// Marked in the menu while this is so.
+    const fn ticked(self, is_on: fn(&Session, &Settings) -> bool) -> Self {
+        Self { is_on: Some(is_on), ..self }
+    }
+    pub const fn is_line(&self) -> bool {
+        self.name.is_empty()
+    }
 }
 
-/// Every command, menu by menu. An empty name is a line between two.
+/// A line between two commands of a menu.
+const LINE: Command = row("", &[], "", always, |_, _| {});
+
+/// The menus and what is in them.
+pub const MENUS: [(&str, &[Command]); 6] = [
+    ("File", file::COMMANDS),
+    ("Edit", edit::COMMANDS),
+    ("Layer", layer::COMMANDS),
+    ("Paint", paint::COMMANDS),
+    ("View", view::COMMANDS),
+    ("Help", help::COMMANDS),
+];
+/// A menu within Layer.
+pub const SHADING: &[Command] = shading::COMMANDS;
+
+/// Every command, menu by menu.
 pub fn all() -> impl Iterator<Item = &'static Command> {
-    [
-        file::COMMANDS,
-        edit::COMMANDS,
-        layer::COMMANDS,
-        shading::COMMANDS,
-        paint::COMMANDS,
-        view::COMMANDS,
-        help::COMMANDS,
-    ]
-    .into_iter()
-    .flatten()
+    const EVERY: [(&str, &[Command]); 6] = MENUS;
+    let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
+    menus.chain(SHADING).filter(|command| !command.is_line())
 }
 
 /// A command by its name.
@@ -76,11 +82,6 @@ pub fn operators() -> [(&'static str, crate::surface::Operator, &'static str); 4
     paint::OPERATORS
 }
 
-/// A line between two commands of a menu.
-const fn line(menu: Menu) -> Command {
-    Command { name: "", menu, keys: &[], hint: "", can: always, run: |_, _| {} }
-}
-
 const fn key(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::NONE, key)
 }
@@ -89,6 +90,9 @@ const fn ctrl(key: Key) -> KeyboardShortcut {
 }
 const fn shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+const fn ctrl_alt(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::ALT), key)
 }
 const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
@@ -112,7 +116,7 @@ mod tests {
     #[test]
     fn no_two_commands_share_a_key_or_a_name() {
         let (mut keys, mut names) = (HashMap::new(), HashMap::new());
-        for command in all().filter(|command| !command.name.is_empty()) {
+        for command in all() {
             assert_eq!(names.insert(command.name, ()), None, "{} twice", command.name);
             assert!(!command.hint.is_empty(), "{} says nothing", command.name);
             for key in command.keys {

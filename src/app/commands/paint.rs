@@ -1,14 +1,13 @@
 //! The Paint menu: what is in hand.
 //! Floor 7.
 
-use super::{Command, Menu, always, key, line, shift};
+use super::{Command, LINE, always, key, row, shift};
 use crate::app::asked::Asked;
+use crate::app::panels::options;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
 use eframe::egui::Key;
-
-const MENU: Menu = Menu::Paint;
 
 /// The operators as the tool bar offers them, each with the numbers it begins with.
 pub const OPERATORS: [(&str, Operator, &str); 4] = [
@@ -36,86 +35,48 @@ fn resize(session: &Session, asked: &mut Asked, factor: f32) {
 }
 
 pub const COMMANDS: &[Command] = &[
-    Command {
-        name: "Larger brush",
-        menu: MENU,
-        keys: &[key(Key::CloseBracket)],
-        hint: "Or drag with the right button on the canvas",
-        can: always,
-        run: |session, asked| resize(session, asked, 1.2),
-    },
-    Command {
-        name: "Smaller brush",
-        menu: MENU,
-        keys: &[key(Key::OpenBracket)],
-        hint: "Or drag with the right button on the canvas",
-        can: always,
-        run: |session, asked| resize(session, asked, 1.0 / 1.2),
-    },
-    Command {
-        name: "Harder brush",
-        menu: MENU,
-        keys: &[shift(Key::CloseBracket)],
-        hint: "A sharper rim",
-        can: always,
-        run: |session, asked| hand(asked, HandAction::Hardness { to: session.brush.hardness + 0.1 }),
-    },
-    Command {
-        name: "Softer brush",
-        menu: MENU,
-        keys: &[shift(Key::OpenBracket)],
-        hint: "A smoother rim",
-        can: always,
-        run: |session, asked| hand(asked, HandAction::Hardness { to: session.brush.hardness - 0.1 }),
-    },
-    line(MENU),
-    Command {
-        name: "Swap colours",
-        menu: MENU,
-        keys: &[key(Key::X)],
-        hint: "The second colour to the front",
-        can: always,
-        run: |_, asked| hand(asked, HandAction::SwapColors {}),
-    },
-    Command {
-        name: "Default colours",
-        menu: MENU,
-        keys: &[key(Key::D)],
-        hint: "Black in front of white",
-        can: always,
-        run: |_, asked| hand(asked, HandAction::DefaultColors {}),
-    },
-    line(MENU),
-    Command {
-        name: "Operator: flat",
-        menu: MENU,
-        keys: &[key(Key::F1)],
-        hint: OPERATORS[0].2,
-        can: always,
-        run: |_, asked| hand(asked, HandAction::Operator { operator: OPERATORS[0].1 }),
-    },
-    Command {
-        name: "Operator: texture",
-        menu: MENU,
-        keys: &[key(Key::F2)],
-        hint: OPERATORS[1].2,
-        can: always,
-        run: |_, asked| hand(asked, HandAction::Operator { operator: OPERATORS[1].1 }),
-    },
-    Command {
-        name: "Operator: shading",
-        menu: MENU,
-        keys: &[key(Key::F3)],
-        hint: OPERATORS[2].2,
-        can: always,
-        run: |_, asked| hand(asked, HandAction::Operator { operator: OPERATORS[2].1 }),
-    },
-    Command {
-        name: "Operator: reflection",
-        menu: MENU,
-        keys: &[key(Key::F4)],
-        hint: OPERATORS[3].2,
-        can: always,
-        run: |_, asked| hand(asked, HandAction::Operator { operator: OPERATORS[3].1 }),
-    },
+    row(
+        "Larger brush",
+        &[key(Key::CloseBracket)],
+        "Or drag with the right button on the canvas",
+        always,
+        |session, asked| resize(session, asked, 1.2),
+    ),
+    row(
+        "Smaller brush",
+        &[key(Key::OpenBracket)],
+        "Or drag with the right button on the canvas",
+        always,
+        |session, asked| resize(session, asked, 1.0 / 1.2),
+    ),
+    row("Harder brush", &[shift(Key::CloseBracket)], "A sharper rim", always, |session, asked| {
+        hand(asked, HandAction::Hardness { to: session.brush.hardness + 0.1 })
+    }),
+    row("Softer brush", &[shift(Key::OpenBracket)], "A smoother rim", always, |session, asked| {
+        hand(asked, HandAction::Hardness { to: session.brush.hardness - 0.1 })
+    }),
+    LINE,
+    row("Swap colours", &[key(Key::X)], "The second colour to the front", always, |_, asked| {
+        hand(asked, HandAction::SwapColors {})
+    }),
+    row("Default colours", &[key(Key::D)], "Black in front of white", always, |_, asked| {
+        hand(asked, HandAction::DefaultColors {})
+    }),
+    LINE,
+    row("Operator: flat", &[key(Key::F1)], OPERATORS[0].2, always, |session, asked| {
+        options::give(session, asked, OPERATORS[0].1)
+    })
+    .ticked(|session, _| options::has(session, OPERATORS[0].1)),
+    row("Operator: texture", &[key(Key::F2)], OPERATORS[1].2, always, |session, asked| {
+        options::give(session, asked, OPERATORS[1].1)
+    })
+    .ticked(|session, _| options::has(session, OPERATORS[1].1)),
+    row("Operator: shading", &[key(Key::F3)], OPERATORS[2].2, always, |session, asked| {
+        options::give(session, asked, OPERATORS[2].1)
+    })
+    .ticked(|session, _| options::has(session, OPERATORS[2].1)),
+    row("Operator: reflection", &[key(Key::F4)], OPERATORS[3].2, always, |session, asked| {
+        options::give(session, asked, OPERATORS[3].1)
+    })
+    .ticked(|session, _| options::has(session, OPERATORS[3].1)),
 ];

@@ -1,7 +1,7 @@
 //! What this program is.
 //! Floor 7.
 
-use super::Answer;
+use super::{Answer, close};
 use eframe::egui::Ui;
 
 pub fn about(ui: &mut Ui) -> Answer {
@@ -10,5 +10,5 @@ pub fn about(ui: &mut Ui) -> Answer {
     ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));
     ui.label("Paint on the picture of a shape: brushes, gradients and photos bend over its normals and depth.");
     ui.weak("It computes what “Surface Flows for Image-based Shading Design” (2012) and “Radiance Scaling for Versatile Surface Enhancement” (2010) define.");
-    if ui.button("Close").clicked() { Answer::Close } else { Answer::Open }
+    close(ui)
 }

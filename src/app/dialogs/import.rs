@@ -36,12 +36,8 @@ const FLIPS: [(&str, bool, bool); 4] =
     [("As it is", false, false), ("Flip red", true, false), ("Flip green", false, true), ("Flip both", true, true)];
 
 impl Import {
-    /// With the files that are known, and those that belong to them by their names.
-    pub fn of(file: Option<&Path>) -> Self {
-        let mut source = SurfaceSource::default();
-        if let Some(file) = file {
-            source = storage::maps_beside(file);
-        }
+    /// With the files that are known.
+    pub fn of(source: SurfaceSource) -> Self {
         Self { source, ..Self::default() }
     }
     /// To replace the maps of a document, which are shown as they are.
@@ -61,13 +57,20 @@ impl Import {
             Purpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
             Purpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
             // The first file brings those that belong to it.
-            _ if self.source == SurfaceSource::default() => self.source = storage::maps_beside(Path::new(&file)),
+            _ if self.source == SurfaceSource::default() => {
+                self.source = storage::maps_beside(Path::new(&file), storage::Kind::Normals);
+            }
             _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
         }
     }
     /// The maps were read.
     pub fn take(&mut self, ctx: &Context, found: Result<maps::Import>) {
         self.is_reading = false;
+        // A flat border is background, unless the user says otherwise; then everything is read once more.
+        let is_first = self.found.is_none() && self.source.mask.is_none();
+        if is_first && found.as_ref().is_ok_and(|import| import.findings.flat_border > 0.0) {
+            self.source.mask = Some(MaskSource::Flat);
+        }
         self.lit.clear();
         if let Ok(import) = &found {
             let pictures = FLIPS.iter().filter_map(|&(name, x, y)| loaded(ctx, name, &lit(&import.surface, x, y)?));
@@ -163,6 +166,13 @@ impl Import {
             && let Some(near) = choice_row(ui, "Near is", map.convention.near, Near::ALL)
         {
             map.convention.near = near;
+        }
+        let is_flat_out = self.source.mask == Some(MaskSource::Flat);
+        let has_border = matches!(&self.found, Some(Ok(import)) if import.findings.flat_border > 0.0);
+        if (is_flat_out || has_border)
+            && let Some(out) = choice_row(ui, "Flat border", is_flat_out, &[(true, "left out"), (false, "surface")])
+        {
+            self.source.mask = out.then_some(MaskSource::Flat);
         }
         let Some(Ok(maps::Import { surface, findings, .. })) = &self.found else { return };
         ui.weak(format!("{} pixels, about {:.0} px deep", surface.size(), surface.depth_range_px()));

@@ -92,6 +92,15 @@ impl Dialog {
     }
 }
 
+/// The button at the foot of a dialog that only shows something.
+fn close(ui: &mut Ui) -> Answer {
+    ui.add_space(4.0);
+    let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let right = egui::Layout::right_to_left(egui::Align::Center);
+    let closed = ui.allocate_ui_with_layout(row, right, |ui| ui.button("Close").clicked()).inner;
+    if closed { Answer::Close } else { Answer::Open }
+}
+
 /// The two buttons at a dialog's foot, the affirmative one last; true for it, false for the other.
 fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
     let mut answer = None;

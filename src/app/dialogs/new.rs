@@ -31,9 +31,19 @@ impl New {
     pub fn show(&mut self, ui: &mut Ui, asked: &mut Asked) -> Answer {
         ui.set_width(340.0);
         ui.heading("New document");
-        ui.label("To paint on an object, begin with its normal map, depth map or both:");
-        if ui.button("From maps…").clicked() {
-            return Answer::Ask(WindowAsk::OpenMapsDialog);
+        ui.label("To paint on an object, begin with its normal map, depth map or both. Or begin with a picture.");
+        let mut begins = None;
+        ui.horizontal(|ui| {
+            if ui.button("From maps…").clicked() {
+                begins = Some(WindowAsk::OpenMapsDialog);
+            }
+            if ui.button("From a picture…").on_hover_text("As large as the picture, which is its first layer").clicked()
+            {
+                begins = Some(WindowAsk::OpenDialog);
+            }
+        });
+        if let Some(begins) = begins {
+            return Answer::Ask(begins);
         }
         ui.separator();
         ui.label("An empty canvas");

@@ -4,10 +4,10 @@
 use super::Answer;
 use crate::app::asked::Asked;
 use crate::app::commands::{self, Command};
-use crate::app::keymap::Keymap;
-use crate::app::widgets::named;
+use crate::app::keymap::{Keymap, shown};
+use crate::app::widgets::{list, named};
 use crate::session::Session;
-use eframe::egui::{Button, Key, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Button, Key, TextEdit, Ui};
 
 #[derive(Default)]
 pub struct Palette {
@@ -26,8 +26,11 @@ impl Palette {
         if field.changed() {
             self.at = 0;
         }
-        let found: Vec<&'static Command> =
+        let mut found: Vec<&'static Command> =
             commands::all().filter(|command| matches(command.name, &self.typed)).collect();
+        // What begins with it first; all else as in the menus.
+        let typed = self.typed.trim().to_lowercase();
+        found.sort_by_key(|command| !command.name.to_lowercase().starts_with(&typed));
         let (up, down, enter) =
             ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter)));
         if down {
@@ -38,11 +41,11 @@ impl Palette {
         }
         self.at = self.at.min(found.len().saturating_sub(1));
         let mut chosen = enter.then(|| found.get(self.at)).flatten().copied();
-        ScrollArea::vertical().max_height(300.0).auto_shrink([false, true]).show(ui, |ui| {
+        list(ui, 360.0).auto_shrink([false, true]).show(ui, |ui| {
             for (i, command) in found.iter().enumerate() {
                 let mut button = Button::selectable(i == self.at, command.name);
                 if let Some(keys) = keymap.first(command) {
-                    button = button.shortcut_text(ui.ctx().format_shortcut(&keys));
+                    button = button.shortcut_text(shown(ui.ctx(), keys));
                 }
                 let response = ui.add_enabled((command.can)(session), button.min_size([400.0, 0.0].into()));
                 if (up || down) && i == self.at {
@@ -66,5 +69,5 @@ impl Palette {
 /// Every word typed begins or stands in the name.
 fn matches(name: &str, typed: &str) -> bool {
     let name = name.to_lowercase();
-    !name.is_empty() && typed.to_lowercase().split_whitespace().all(|word| name.contains(word))
+    typed.to_lowercase().split_whitespace().all(|word| name.contains(word))
 }

@@ -3,8 +3,9 @@
 
 use super::{Answer, buttons};
 use crate::app::files::Purpose;
-use crate::app::widgets::named;
-use eframe::egui::{Button, ScrollArea, TextEdit, Ui};
+use crate::app::widgets::{list, named};
+use crate::session::storage;
+use eframe::egui::{Button, TextEdit, Ui};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,8 @@ pub struct PathDialog {
     listed: Listed,
     /// The name has been given the keyboard once.
     is_begun: bool,
+    /// The file that is there already, once that was said.
+    replaces: Option<PathBuf>,
 }
 
 /// What is in the folder that is shown.
@@ -28,7 +31,7 @@ struct Listed {
 
 impl PathDialog {
     pub fn new(purpose: Purpose, folder: PathBuf, name: &str) -> Self {
-        Self { purpose, folder, name: name.into(), listed: Listed::default(), is_begun: false }
+        Self { purpose, folder, name: name.into(), listed: Listed::default(), is_begun: false, replaces: None }
     }
     pub fn show(&mut self, ui: &mut Ui) -> Answer {
         ui.set_width(460.0);
@@ -44,7 +47,7 @@ impl PathDialog {
             ui.label(self.folder.display().to_string());
         });
         let mut chosen = None;
-        ScrollArea::vertical().max_height(260.0).auto_shrink([false, false]).show(ui, |ui| {
+        list(ui, 320.0).auto_shrink([false, false]).show(ui, |ui| {
             for folder in &self.listed.folders {
                 if ui.add(Button::new(format!("{folder}/")).frame(false)).clicked() {
                     self.folder = self.listed.folder.join(folder);
@@ -71,13 +74,32 @@ impl PathDialog {
         // A whole path replaces the folder.
         let typed = self.folder.join(self.name.trim());
         let can = !self.name.trim().is_empty() && (self.purpose.is_saving() || typed.is_file());
-        let yes = if self.purpose.is_saving() { "Save" } else { "Open" };
+        let is_warned = self.replaces.as_ref() == Some(&typed);
+        if is_warned {
+            ui.colored_label(ui.visuals().warn_fg_color, "There is such a file already.");
+        }
+        let yes = match self.purpose.is_saving() {
+            true if is_warned => "Replace",
+            true => "Save",
+            false => "Open",
+        };
         match (buttons(ui, yes, can), chosen) {
-            (_, Some(file)) => Answer::Chosen(self.purpose, file),
-            (Some(true), None) => Answer::Chosen(self.purpose, typed),
+            (_, Some(file)) => self.choose(file),
+            (Some(true), None) => self.choose(typed),
             (Some(false), None) => Answer::Close,
             (None, None) => Answer::Open,
         }
+    }
+    /// A file that would be lost is asked for twice.
+    fn choose(&mut self, file: PathBuf) -> Answer {
+        let named = if self.purpose == Purpose::Save { storage::with_ending(file.clone()) } else { file.clone() };
+        if self.purpose.is_saving() && named.is_file() && self.replaces.as_ref() != Some(&file) {
+            self.name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            self.folder = file.parent().map_or_else(|| self.folder.clone(), Path::to_owned);
+            self.replaces = Some(file);
+            return Answer::Open;
+        }
+        Answer::Chosen(self.purpose, file)
     }
 }
 

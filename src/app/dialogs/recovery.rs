@@ -2,8 +2,9 @@
 //! Floor 7.
 
 use super::Answer;
+use crate::app::widgets::list;
 use crate::io::recovery::Session as Lost;
-use eframe::egui::{RichText, ScrollArea, Ui};
+use eframe::egui::{RichText, Ui};
 use std::time::{Duration, SystemTime};
 
 pub struct Recovery {
@@ -24,7 +25,7 @@ impl Recovery {
         ui.heading("Recover unsaved drawings?");
         ui.label("Rilievo ended unexpectedly. What is recovered opens as a new drawing; no file is replaced.");
         let (mut recover, mut delete) = (None, None);
-        ScrollArea::vertical().max_height(260.0).show(ui, |ui| {
+        list(ui, 320.0).show(ui, |ui| {
             for (i, (lost, is_asked)) in self.lost.iter_mut().enumerate() {
                 ui.separator();
                 let title = if lost.title.is_empty() { "Unnamed" } else { &lost.title };

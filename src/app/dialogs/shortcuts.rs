@@ -1,10 +1,10 @@
 //! The keys: every command and tool with its own, each to be changed; what already has a key is said before it is taken.
 //! Floor 7.
 
-use super::Answer;
-use crate::app::keymap::{Keyed, Keymap};
-use crate::app::widgets::named;
-use eframe::egui::{Event, Grid, Key, KeyboardShortcut, Modifiers, RichText, ScrollArea, TextEdit, Ui};
+use super::{Answer, close};
+use crate::app::keymap::{Keyed, Keymap, shown};
+use crate::app::widgets::{list, named};
+use eframe::egui::{Event, Grid, Key, KeyboardShortcut, Modifiers, RichText, TextEdit, Ui};
 
 #[derive(Default)]
 pub struct Shortcuts {
@@ -41,7 +41,7 @@ impl Shortcuts {
         self.ask(ui, keymap);
         let wanted = self.filter.to_lowercase();
         let shown = |name: &str| name.to_lowercase().contains(&wanted);
-        ScrollArea::vertical().max_height(400.0).auto_shrink([false, false]).show(ui, |ui| {
+        list(ui, 460.0).auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
                 for keyed in Keyed::all().filter(|keyed| shown(keyed.name())) {
                     ui.label(keyed.name()).on_hover_text(keyed.hint());
@@ -55,14 +55,14 @@ impl Shortcuts {
                 }
             });
         });
-        if ui.button("Close").clicked() { Answer::Close } else { Answer::Open }
+        close(ui)
     }
     /// The keys of one thing, and what is done to them.
     fn keys(&mut self, ui: &mut Ui, keymap: &mut Keymap, keyed: Keyed) {
         let name = keyed.name();
         let keys = keymap.of(keyed);
         for &one in &keys {
-            let text = ui.ctx().format_shortcut(&one);
+            let text = shown(ui.ctx(), one);
             let response = ui.button(RichText::new(&text).monospace()).on_hover_text("Click to take it away");
             named(&response, &format!("{text} of {name}"));
             if response.clicked() {
@@ -116,7 +116,7 @@ impl Shortcuts {
         let Some(keyed) = keyed(name) else { return };
         let Some(other) = keymap.conflict(keys, keyed) else { return self.conflict = None };
         ui.horizontal_wrapped(|ui| {
-            let text = format!("{} belongs to “{}”.", ui.ctx().format_shortcut(&keys), other.name());
+            let text = format!("{} belongs to “{}”.", shown(ui.ctx(), keys), other.name());
             ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
             if ui.button(format!("Give it to “{name}”")).clicked() {
                 keymap.take(keys, keyed);

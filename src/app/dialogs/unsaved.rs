@@ -1,7 +1,7 @@
 //! “Save changes?”, before anything is lost.
 //! Floor 7.
 
-use super::{Answer, Then};
+use super::{Answer, Then, buttons};
 use crate::session::Session;
 use eframe::egui::Ui;
 
@@ -18,18 +18,12 @@ impl Unsaved {
         ui.heading(format!("Save the changes to “{title}”?"));
         ui.label("What is not saved is lost when the document is closed.");
         ui.add_space(4.0);
-        let mut answer = Answer::Open;
-        ui.horizontal(|ui| {
-            if ui.button("Save").clicked() {
-                answer = Answer::SaveThen(self.then);
-            }
-            if ui.button("Do not save").clicked() {
-                answer = Answer::Discard(self.then);
-            }
-            if ui.button("Cancel").clicked() {
-                answer = Answer::Close;
-            }
-        });
-        answer
+        ui.horizontal(|ui| match (ui.button("Do not save").clicked(), buttons(ui, "Save", true)) {
+            (true, _) => Answer::Discard(self.then),
+            (_, Some(true)) => Answer::SaveThen(self.then),
+            (_, Some(false)) => Answer::Close,
+            (_, None) => Answer::Open,
+        })
+        .inner
     }
 }

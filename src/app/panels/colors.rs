@@ -13,16 +13,22 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     if let Some(changed) = picker(ui, "Colour in hand", session.color) {
         asked.act(Action::Hand(HandAction::Color { color: changed.to }));
     }
+    let recent = session.recent_colors.iter().enumerate();
+    swatches(ui, "Recent", recent.map(|(i, &color)| (format!("Recent colour {}", i + 1), color)), asked);
+    let palette = PALETTE.iter().map(|&[r, g, b]| ("Palette".to_owned(), Color { r, g, b, a: 255 }));
+    swatches(ui, "Palette", palette, asked);
+}
+
+/// Colours to be taken to hand by a click.
+fn swatches(ui: &mut Ui, name: &str, colors: impl ExactSizeIterator<Item = (String, Color)>, asked: &mut Asked) {
+    if colors.len() == 0 {
+        return;
+    }
+    ui.weak(name);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
-        for (i, &color) in session.recent_colors.iter().enumerate() {
-            if swatch(ui, &format!("Recent colour {}", i + 1), color, vec2(18.0, 18.0)).clicked() {
-                asked.act(Action::Hand(HandAction::Color { color }));
-            }
-        }
-        for color in PALETTE {
-            let color = Color { r: color[0], g: color[1], b: color[2], a: 255 };
-            if swatch(ui, "Palette", color, vec2(18.0, 18.0)).clicked() {
+        for (label, color) in colors {
+            if swatch(ui, &label, color, vec2(18.0, 18.0)).clicked() {
                 asked.act(Action::Hand(HandAction::Color { color }));
             }
         }
@@ -94,14 +100,13 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> 
             put(ui, changed.to, changed.done);
         }
     });
-    ui.horizontal(|ui| {
-        if let Some(to) = hex(ui, color) {
-            out = Some(Changed { to, done: true });
-        }
-        let numbers = [(0, "Hue", 360.0), (1, "Saturation", 100.0), (2, "Value", 100.0)];
-        for (i, name, scale) in numbers {
-            let field = Number::new(name, 0.0..=scale, name).decimals(0);
-            if let Some(changed) = field.field(ui, now[i] * scale) {
+    // The salt tells the picker of the panel from one that is open beside it.
+    egui::Grid::new(("numbers", label)).num_columns(6).min_col_width(0.0).spacing([5.0, 4.0]).show(ui, |ui| {
+        for (i, (letter, name, scale)) in
+            [("H", "Hue", 360.0), ("S", "Saturation", 100.0), ("V", "Value", 100.0)].into_iter().enumerate()
+        {
+            ui.weak(letter);
+            if let Some(changed) = Number::new(name, 0.0..=scale, name).decimals(0).field(ui, now[i] * scale) {
                 let mut hsv = now;
                 hsv[i] = changed.to / scale;
                 let to = srgb(hsv, color.a);
@@ -109,16 +114,23 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> 
                 out = Some(Changed { to, done: changed.done });
             }
         }
-    });
-    ui.horizontal(|ui| {
-        for (i, name) in ["Red", "Green", "Blue"].into_iter().enumerate() {
-            let bytes = [color.r, color.g, color.b];
+        ui.end_row();
+        let bytes = [color.r, color.g, color.b];
+        for (i, (letter, name)) in [("R", "Red"), ("G", "Green"), ("B", "Blue")].into_iter().enumerate() {
+            ui.weak(letter);
             if let Some(changed) = Number::new(name, 0.0..=255.0, name).decimals(0).field(ui, f32::from(bytes[i])) {
                 let mut next = bytes;
                 next[i] = changed.to as u8;
                 let [r, g, b] = next;
                 out = Some(Changed { to: Color { r, g, b, a: color.a }, done: changed.done });
             }
+        }
+        ui.end_row();
+    });
+    ui.horizontal(|ui| {
+        ui.weak("Hex");
+        if let Some(to) = hex(ui, color) {
+            out = Some(Changed { to, done: true });
         }
     });
     out
@@ -189,7 +201,7 @@ fn hex(ui: &mut Ui, color: Color) -> Option<Color> {
     let id = Id::unique("hex colour");
     let shown = Color { a: 255, ..color }.to_string();
     let mut text = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_else(|| shown.clone());
-    let response = ui.add(TextEdit::singleline(&mut text).desired_width(58.0).char_limit(9));
+    let response = ui.add(TextEdit::singleline(&mut text).desired_width(74.0).char_limit(9));
     named(&response, "Hex colour");
     if response.has_focus() {
         ui.data_mut(|data| data.insert_temp(id, text));

@@ -2,9 +2,9 @@
 //! Floor 7.
 
 use crate::app::asked::{Asked, WindowAsk};
-use crate::app::commands::{self, Command, Menu};
+use crate::app::commands::{Command, MENUS, SHADING};
 use crate::app::icons::{Icon, sized_button};
-use crate::app::keymap::Keymap;
+use crate::app::keymap::shown;
 use crate::app::settings::Settings;
 use crate::session::actions::FileAction;
 use crate::session::{Action, Session};
@@ -14,35 +14,36 @@ use std::path::PathBuf;
 /// The menus, made from the commands.
 pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, asked: &mut Asked) {
     egui::MenuBar::new().ui(ui, |ui| {
-        for (menu, title) in Menu::ALL {
+        for (title, commands) in MENUS {
             ui.menu_button(title, |ui| {
                 ui.set_min_width(220.0);
-                for command in commands::all().filter(|command| command.menu == menu) {
-                    if command.name.is_empty() {
-                        ui.separator();
-                        continue;
+                // A low window scrolls what does not fit.
+                let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 12.0;
+                egui::ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
+                    for command in commands {
+                        entry(ui, session, settings, command, asked);
+                        match command.name {
+                            "New gradient layer" => drop(ui.menu_button("New shading layer", |ui| {
+                                SHADING.iter().for_each(|command| entry(ui, session, settings, command, asked));
+                            })),
+                            "Open…" => recent_files(ui, &settings.recent, asked),
+                            _ => {}
+                        }
                     }
-                    entry(ui, session, &settings.keymap, command, asked);
-                    if command.name == "New gradient layer" {
-                        ui.menu_button("New shading layer", |ui| {
-                            for command in commands::all().filter(|command| command.menu == Menu::Shading) {
-                                entry(ui, session, &settings.keymap, command, asked);
-                            }
-                        });
-                    }
-                    if command.name == "Open…" {
-                        recent_files(ui, &settings.recent, asked);
-                    }
-                }
+                });
             });
         }
     });
 }
 
-fn entry(ui: &mut Ui, session: &Session, keymap: &Keymap, command: &'static Command, asked: &mut Asked) {
-    let mut button = Button::new(command.name);
-    if let Some(keys) = keymap.first(command) {
-        button = button.shortcut_text(ui.ctx().format_shortcut(&keys));
+fn entry(ui: &mut Ui, session: &Session, settings: &Settings, command: &'static Command, asked: &mut Asked) {
+    if command.is_line() {
+        return drop(ui.separator());
+    }
+    let is_on = command.is_on.is_some_and(|is_on| is_on(session, settings));
+    let mut button = Button::selectable(is_on, command.name);
+    if let Some(keys) = settings.keymap.first(command) {
+        button = button.shortcut_text(shown(ui.ctx(), keys));
     }
     let response = ui.add_enabled((command.can)(session), button);
     if response.on_hover_text(command.hint).clicked() {

@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, asked: &mut Ask
         return;
     };
     let (size, Some(view)) = (tab.document().size, tab.view) else { return };
-    let room = egui::vec2(ui.available_width(), 150.0);
+    let room = egui::vec2(ui.available_width() - 4.0, 180.0);
     let scale = (room.x / size.width as f32).min(room.y / size.height as f32);
     let side = egui::vec2(size.width as f32, size.height as f32) * scale;
     ui.vertical_centered(|ui| {
@@ -33,9 +33,12 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, asked: &mut Ask
             rect.min + egui::vec2(p.x, p.y)
         };
         let frame = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-        let painter = ui.painter_at(rect);
-        painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(3.0, Color32::from_black_alpha(120))));
-        painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(1.4, Color32::WHITE)));
+        // Where all is in sight there is nothing to frame.
+        if !Rect::from_points(&frame).contains_rect(rect.shrink(1.0)) {
+            let painter = ui.painter_at(rect);
+            painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(3.0, Color32::from_black_alpha(120))));
+            painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(1.4, Color32::WHITE)));
+        }
         if let Some(pos) = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on()) {
             let at = (pos - rect.min) / scale;
             asked.act(Action::View(ViewAction::LookAt { center: vec2(at.x, at.y) }));
@@ -43,9 +46,11 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, asked: &mut Ask
     });
     ui.horizontal(|ui| {
         let per_point = ui.ctx().pixels_per_point();
-        let zoom = Number::new("Zoom", ZOOMS[0]..=ZOOMS[1], "Screen pixels to a pixel of the canvas").logarithmic();
-        if let Some(changed) = zoom.inline(ui, view.zoom * per_point, 90.0) {
-            asked.act(Action::View(ViewAction::ZoomTo { zoom: changed.to / per_point }));
+        let [least, most] = ZOOMS.map(|zoom| zoom * 100.0);
+        let zoom =
+            Number::new("Zoom", least..=most, "Screen pixels to a hundred of the canvas").percent().logarithmic();
+        if let Some(changed) = zoom.inline(ui, view.zoom * per_point * 100.0, 90.0) {
+            asked.act(Action::View(ViewAction::ZoomTo { zoom: changed.to / (100.0 * per_point) }));
         }
     });
     ui.horizontal(|ui| {

@@ -32,6 +32,16 @@ fn whose(session: &Session) -> (Whose, Operator) {
     }
 }
 
+/// The bar shows this operator, whatever its numbers.
+pub fn has(session: &Session, operator: Operator) -> bool {
+    std::mem::discriminant(&whose(session).1) == std::mem::discriminant(&operator)
+}
+
+/// Another operator for what the bar shows.
+pub fn give(session: &Session, asked: &mut Asked, operator: Operator) {
+    set(asked, &whose(session).0, Changed { to: operator, done: true });
+}
+
 fn set(asked: &mut Asked, whose: &Whose, operator: Changed<Operator>) {
     let Changed { to, done } = operator;
     asked.act(match whose {
@@ -55,9 +65,9 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         };
         ui.label(RichText::new(about).weak());
         for (label, begins, hint) in operators() {
-            let is_on = std::mem::discriminant(&operator) == std::mem::discriminant(&begins);
+            let is_on = has(session, begins);
             if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
-                set(asked, &whose, Changed { to: begins, done: true });
+                give(session, asked, begins);
             }
         }
         ui.add_space(6.0);

@@ -1,15 +1,16 @@
-//! The line at the bottom: zoom, the place under the pointer with what the maps hold there, how long the last redraw took, and
-//! what the tool in hand does.
+//! The line at the bottom: zoom, the place under the pointer with what the maps hold there, memory, how long the last redraw
+//! took, and what the tool in hand does.
 //! Floor 7.
 
 use crate::app::asked::{Asked, WindowAsk};
 use crate::app::canvas::Canvas;
 use crate::app::jobs::{Jobs, While};
+use crate::app::memory::{Memory, spoken};
 use crate::app::widgets::bar;
 use crate::session::Session;
 use eframe::egui::{self, Button, RichText, Ui};
 
-pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, memory: &mut Memory, asked: &mut Asked) {
     ui.horizontal(|ui| {
         for job in jobs.under_way.iter().filter(|job| job.kind == While::Working && job.is_long()) {
             ui.label(&job.name);
@@ -37,6 +38,11 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, asked:
         }
         ui.weak(document.size.to_string());
         ui.separator();
+        if let Some(said) = jobs.said() {
+            ui.label(said);
+            ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
+            ui.separator();
+        }
         if let Some(at) = canvas.under {
             let (x, y) = (at.x.floor().max(0.0) as usize, at.y.floor().max(0.0) as usize);
             ui.label(RichText::new(format!("{x}, {y}")).monospace());
@@ -53,6 +59,9 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, asked:
             let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
             let text = if canvas.is_busy { RichText::new("Painting…").weak() } else { RichText::new(took).weak() };
             ui.label(text).on_hover_text("How long the last redraw took");
+            if let Some(bytes) = memory.bytes() {
+                ui.weak(spoken(bytes)).on_hover_text("Memory that the program holds");
+            }
             if document.surface.is_none() {
                 ui.weak("No surface: marks lie flat");
             }

@@ -3,7 +3,7 @@
 
 use crate::app::asked::Asked;
 use crate::app::icons::{Icon, icon_button, sized_button};
-use crate::app::keymap::{Keyed, Keymap};
+use crate::app::keymap::{Keyed, Keymap, shown};
 use crate::app::widgets::swatch;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, asked: &mut Asked) 
             let keys = keymap
                 .of(Keyed::Tool(row))
                 .first()
-                .map_or_else(String::new, |keys| format!(" ({})", ui.ctx().format_shortcut(keys)));
+                .map_or_else(String::new, |&keys| format!(" ({})", shown(ui.ctx(), keys)));
             if response.on_hover_text(format!("{}{keys}\n{}", row.label, row.hint)).clicked() {
                 asked.act(Action::Hand(HandAction::Tool { tool: row.kind }));
             }

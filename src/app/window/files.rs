@@ -2,12 +2,15 @@
 //! Floor 7.
 
 use super::Window;
+use crate::app::clipboard::Pasted;
 use crate::app::dialogs::{Dialog, import, path};
 use crate::app::files::{self, Purpose};
-use crate::app::jobs::{Done, Where, While, short};
+use crate::app::jobs::{Done, PartRead, Where, While, short};
 use crate::math::Vec2;
 use crate::raster::Picture;
-use crate::session::actions::files::{place, read_picture};
+use crate::session::Action;
+use crate::session::actions::FileAction;
+use crate::session::actions::files::place;
 use crate::session::actions::pictures::{self, Part};
 use crate::session::{brushes, storage};
 use eframe::egui;
@@ -16,48 +19,65 @@ use std::path::{Path, PathBuf};
 impl Window {
     pub(super) fn finish_jobs(&mut self, ctx: &egui::Context) {
         for done in self.jobs.finished() {
-            match done {
-                Done::Opened(opened) => match *opened {
-                    Ok(opened) => {
-                        self.recent_is(opened.tab.file.clone());
-                        self.session.adopt(opened);
-                        self.messages.append(&mut self.session.notes);
+            self.finish(ctx, done);
+        }
+    }
+    fn finish(&mut self, ctx: &egui::Context, done: Done) {
+        match done {
+            Done::Several(several) => several.into_iter().for_each(|done| self.finish(ctx, done)),
+            Done::Opened(file, opened) => match *opened {
+                Ok(opened) => {
+                    self.recent_is(opened.tab.file.clone());
+                    self.session.adopt(opened);
+                    if let Some(file) = file {
+                        self.did(|| Action::File(FileAction::Open { file }));
                     }
-                    Err(error) => self.messages.push(error.to_string()),
-                },
-                Done::IsMap(file) => {
-                    let import = import::Import::of(Some(&file));
-                    self.dialogs.push(Dialog::Import(Box::new(import)));
+                    self.messages.append(&mut self.session.notes);
                 }
-                Done::Read(found) => {
-                    if let Some(import) = self.import() {
-                        import.take(ctx, *found);
-                    }
+                Err(error) => self.messages.push(error.to_string()),
+            },
+            Done::IsDocument(file) => self.jobs.read_document(file),
+            Done::IsPicture(file, at) => self.jobs.read_picture(file, at),
+            Done::AreMaps(source) => self.dialogs.push(Dialog::Import(Box::new(import::Import::of(*source)))),
+            Done::Read(found) => {
+                if let Some(import) = self.import() {
+                    import.take(ctx, *found);
                 }
-                Done::Chosen(purpose, Some(file)) => self.chosen(purpose, file),
-                Done::Chosen(purpose, None) => {
-                    let folder = self.folder();
-                    let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };
-                    self.dialogs.push(Dialog::Path(path::PathDialog::new(purpose, folder, &name)));
-                }
-                Done::Lost(lost) => self.offer(lost),
-                Done::Recovered(found) => self.take_recovered(*found),
-                Done::Brushes(presets, notes) => {
-                    brushes::adopt(&mut self.session, presets);
-                    self.messages.extend(notes);
-                }
-                Done::Pictured(name, picture, at) => self.pictured(&name, picture, at),
-                Done::Part(key, layer, read) => {
-                    if let Some(tab) = self.session.tabs.iter_mut().find(|tab| tab.key == key) {
-                        pictures::put(tab, layer, *read);
-                    }
-                }
-                Done::Saved(saved) => self.saved(ctx, *saved),
-                Done::Edited(edited) => self.edited(*edited),
-                Done::Copied(image) => ctx.copy_image(image),
-                Done::Failed(error) => self.messages.push(error.to_string()),
-                Done::Nothing => {}
             }
+            Done::Chosen(purpose, Some(file)) => self.chosen(purpose, file),
+            Done::Chosen(purpose, None) => {
+                let folder = self.folder();
+                let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };
+                self.dialogs.push(Dialog::Path(path::PathDialog::new(purpose, folder, &name)));
+            }
+            Done::Lost(lost) => self.offer(lost),
+            Done::Recovered(found) => self.take_recovered(*found),
+            Done::Brushes(presets, notes) => {
+                brushes::adopt(&mut self.session, presets);
+                self.messages.extend(notes);
+            }
+            Done::Pictured(file, name, picture, at) => {
+                let at = self.pictured(&name, picture, at);
+                self.did(|| Action::File(FileAction::Place { file, at }));
+            }
+            Done::Part(read) => {
+                let PartRead { tab, layer, part, file, read } = *read;
+                if let Some(tab) = self.session.tabs.iter_mut().find(|other| other.key == tab) {
+                    pictures::put(tab, layer, read);
+                    self.did(|| Action::File(FileAction::Use { part, file }));
+                }
+            }
+            Done::Saved(saved) => self.saved(ctx, *saved),
+            Done::Edited(edited) => self.edited(*edited),
+            Done::Pasted(Pasted::Picture(picture)) => drop(self.pictured("pasted.png", picture, Where::Pointer)),
+            Done::Pasted(Pasted::Files(files)) => self.take_files(files),
+            Done::Copied(clipboard) => {
+                self.clipboard = Some(clipboard);
+                self.jobs.say("The picture is in the clipboard".into());
+            }
+            Done::Said(sentence) => self.jobs.say(sentence),
+            Done::Failed(error) => self.messages.push(error.to_string()),
+            Done::Nothing => {}
         }
     }
     /// The user's own brushes are kept here from now on; those that are there join the list.
@@ -68,38 +88,33 @@ impl Window {
             Done::Brushes(presets, notes)
         });
     }
-    pub(super) fn read_picture(&mut self, file: PathBuf, at: Where) {
-        self.jobs.start(format!("Reading {}", short(&file)), While::Working, move |_| match read_picture(&file) {
-            Ok((name, picture)) => Done::Pictured(name, picture, at),
-            Err(error) => Done::Failed(error),
-        });
-    }
     /// Reads a picture that the selected layer is to be made of.
     fn read_part(&mut self, part: Part, file: PathBuf) {
-        let Some((key, layer)) = self.session.tab().and_then(|tab| Some((tab.key, tab.selected?))) else { return };
+        let Some((tab, layer)) = self.session.tab().and_then(|tab| Some((tab.key, tab.selected?))) else { return };
         self.jobs.start(format!("Reading {}", short(&file)), While::Working, move |_| {
             match pictures::read(part, &file) {
-                Ok(read) => Done::Part(key, layer, Box::new(read)),
+                Ok(read) => Done::Part(Box::new(PartRead { tab, layer, part, file, read })),
                 Err(error) => Done::Failed(error),
             }
         });
     }
     /// A picture becomes a layer. Where it fell is where the pointer is once it was read: while files are dragged the system
-    /// tells nobody where they are.
-    pub(super) fn pictured(&mut self, name: &str, picture: Picture, at: Where) {
+    /// tells nobody where they are. Returns the place.
+    pub(super) fn pictured(&mut self, name: &str, picture: Picture, at: Where) -> Vec2 {
         let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
         let at = self.canvas.under.filter(|_| at == Where::Pointer).unwrap_or(center);
         place(&mut self.session, name, picture, at);
+        at
     }
     /// A file was chosen in a dialog.
     pub(super) fn chosen(&mut self, purpose: Purpose, file: PathBuf) {
         match purpose {
-            Purpose::Open => self.jobs.open(file),
+            Purpose::Open => self.jobs.open(vec![file], None),
             Purpose::Place => {
-                self.read_picture(file, Where::Middle);
+                self.jobs.read_picture(file, Where::Middle);
             }
             Purpose::Brush => {
-                self.apply(&crate::session::Action::File(crate::session::actions::FileAction::ImportBrush { file }));
+                self.apply(&Action::File(FileAction::ImportBrush { file }));
             }
             Purpose::Part(part) => self.read_part(part, file),
             Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap => {

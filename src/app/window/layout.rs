@@ -6,6 +6,7 @@ use crate::app::asked::Asked;
 use crate::app::panels::{self, Front};
 use crate::app::settings::Side;
 use crate::app::theme::ACCENT;
+use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
 
 /// How wide the panels may be, points.
@@ -18,12 +19,14 @@ impl Window {
         Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, asked));
         if !self.settings.layout.is_hidden {
             Panel::top("options").frame(bar(ui)).show(ui, |ui| panels::options::show(ui, &self.session, asked));
-            Panel::bottom("status")
-                .frame(bar(ui))
-                .show(ui, |ui| panels::status::show(ui, &self.session, &self.canvas, &self.jobs, asked));
+            Panel::bottom("status").frame(bar(ui)).show(ui, |ui| {
+                panels::status::show(ui, &self.session, &self.canvas, &self.jobs, &mut self.memory, asked)
+            });
             let keymap = &self.settings.keymap;
             Panel::left("tools").exact_size(44.0).resizable(false).frame(bar(ui)).show(ui, |ui| {
-                panels::tools::show(ui, &self.session, keymap, asked);
+                // A low window scrolls them.
+                let area = egui::ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+                area.show(ui, |ui| panels::tools::show(ui, &self.session, keymap, asked));
             });
             self.side(ui, asked);
             self.apart(ui.ctx(), asked);
@@ -69,7 +72,9 @@ impl Window {
         let has_layers = !apart.contains(&Front::Layers);
         if let Some(front) = front {
             if has_layers {
-                let above = Panel::top("front").resizable(true).default_size(330.0).size_range(140.0..=640.0);
+                let above = Panel::top("front").resizable(true).default_size(352.0).size_range(140.0..=640.0);
+                // At the same left as the layers beneath.
+                let above = above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
                 above.show(ui, |ui| self.fronted(ui, &strip, front, asked));
             } else {
                 self.fronted(ui, &strip, front, asked);
@@ -137,19 +142,24 @@ impl Window {
         if self.messages.is_empty() {
             return;
         }
-        let mut read = None;
+        let (mut read, mut all_read) = (None, false);
+        let room = ui.ctx().content_rect().height() * 0.25;
         Panel::top("messages").show(ui, |ui| {
-            for (i, message) in self.messages.iter().enumerate() {
-                ui.horizontal_wrapped(|ui| {
-                    if ui.button("Dismiss").clicked() {
-                        read = Some(i);
-                    }
-                    ui.label(RichText::new(message).color(ui.visuals().warn_fg_color));
-                });
-            }
+            egui::ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
+                for (i, message) in self.messages.iter().enumerate() {
+                    ui.horizontal_wrapped(|ui| {
+                        if ui.button("Dismiss").clicked() {
+                            read = Some(i);
+                        }
+                        ui.label(RichText::new(message).color(ui.visuals().warn_fg_color));
+                    });
+                }
+            });
+            all_read = self.messages.len() > 2 && ui.button("All read").clicked();
         });
-        if let Some(i) = read {
-            self.messages.remove(i);
+        read.map(|i| self.messages.remove(i));
+        if all_read {
+            self.messages.clear();
         }
     }
 }

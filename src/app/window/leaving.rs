@@ -1,12 +1,13 @@
-//! Saving, closing and leaving, and what comes in by other doors: dropped files and the clipboard.
+//! Closing and leaving, and what comes in by other doors: dropped files.
 //! Floor 7.
 
 use super::Window;
-use crate::app::asked::{Asked, WindowAsk};
 use crate::app::dialogs::{Dialog, Then, unsaved};
 use crate::app::jobs::Where;
-use crate::session::storage;
+use crate::session::Action;
+use crate::session::actions::FileAction;
 use eframe::egui::{self, ViewportCommand};
+use std::path::PathBuf;
 
 impl Window {
     pub(super) fn close(&mut self, ctx: &egui::Context, tab: usize) {
@@ -20,7 +21,7 @@ impl Window {
     /// After the question about unsaved work. `discarding`: the tab asked about is given up.
     pub(super) fn proceed(&mut self, ctx: &egui::Context, then: Then, discarding: bool) {
         match then {
-            Then::Close(tab) => self.session.close_tab(tab),
+            Then::Close(index) => self.apply(&Action::File(FileAction::Close { index })),
             Then::Quit => {
                 if discarding {
                     self.session.close_tab(self.session.current);
@@ -44,28 +45,13 @@ impl Window {
         }
     }
     /// Files dropped on the window: pictures go where they fall, all else is opened.
-    pub(super) fn take_dropped(&mut self, ctx: &egui::Context, asked: &mut Asked) {
-        let dropped = ctx.input(|i| i.raw.dropped_files.clone());
-        for file in dropped {
-            let path = file.path().to_path_buf();
-            match storage::kind_of(&path) {
-                Ok(storage::Kind::Picture) if self.session.tab().is_some() => {
-                    self.read_picture(path, Where::Pointer);
-                }
-                Ok(_) => asked.ask(WindowAsk::Open(path)),
-                Err(error) => self.messages.push(error.to_string()),
-            }
+    pub(super) fn take_dropped(&mut self, ctx: &egui::Context) {
+        let dropped: Vec<_> = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
+        if !dropped.is_empty() {
+            self.take_files(dropped);
         }
     }
-    pub(super) fn paste(&mut self) {
-        let pasted = arboard::Clipboard::new().and_then(|mut clipboard| clipboard.get_image());
-        let Ok(image) = pasted else {
-            return self.messages.push("There is no picture in the clipboard.".into());
-        };
-        let size = crate::math::Size::new(image.width as u32, image.height as u32);
-        let texels = image.bytes.as_chunks::<4>().0.to_vec();
-        if let Some(picture) = crate::raster::Picture::srgb8(size, texels) {
-            self.pictured("pasted.png", picture, Where::Pointer);
-        }
+    pub(super) fn take_files(&mut self, files: Vec<PathBuf>) {
+        self.jobs.open(files, self.session.tab().map(|_| Where::Pointer));
     }
 }

@@ -2,6 +2,7 @@
 //! Floor 7. `layout` says where the panels stand, `files` and `leaving` hold what files ask for.
 
 mod files;
+mod interface;
 mod layout;
 mod leaving;
 mod steps;
@@ -9,9 +10,11 @@ mod work;
 
 use super::asked::{Asked, WindowAsk};
 use super::canvas::Canvas;
+use super::clipboard::{self, Clipboard};
 use super::dialogs::{Answer, Dialog, Then, export, import, new, palette, shortcuts};
 use super::files::Purpose;
 use super::jobs::{Done, Jobs, While};
+use super::memory::Memory;
 use super::pen::SharedTablet;
 use super::settings::{Keeper, Settings, Side};
 use super::swatches::Swatches;
@@ -19,6 +22,7 @@ use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
 use crate::document::Progress;
 use crate::session::actions::ViewAction;
+use crate::session::replay::Replayed;
 use crate::session::{Action, Session, storage};
 use eframe::egui::{self, Ui, ViewportCommand};
 use std::path::PathBuf;
@@ -43,10 +47,17 @@ pub struct Window {
     export: export::Export,
     /// What the file dialog of the system is asked for with this name.
     title: String,
+    /// The look that is remembered was put on.
+    is_dressed: bool,
     /// The user agreed to leave.
     leaving: bool,
     /// What is to be done once the document is saved.
     after_saving: Option<Then>,
+    memory: Memory,
+    /// What was copied last; kept, so that it stays in the system's clipboard.
+    clipboard: Option<Clipboard>,
+    /// What was done, while that is written down.
+    recorded: Option<Vec<Action>>,
 }
 
 impl Window {
@@ -72,13 +83,32 @@ impl Window {
             is_first_start: false,
             export: export::Export::default(),
             title: String::new(),
+            is_dressed: false,
             leaving: false,
             after_saving: None,
+            memory: Memory::default(),
+            clipboard: None,
+            recorded: None,
         }
     }
     /// A window that asks for files with its own dialog, whatever the system has.
     pub fn asking_itself(self) -> Self {
         Self { asks_itself: true, ..self }
+    }
+    /// A window that writes down what is done, see [`Window::recorded`].
+    pub fn recording(self) -> Self {
+        Self { recorded: Some(Vec::new()), ..self }
+    }
+    /// What was done, as a replay file: one line an action. Documents made with corrected maps, pasted pictures and recovered
+    /// drawings come from no file alone, and are not in it.
+    pub fn recorded(&self) -> String {
+        self.recorded.iter().flatten().map(|action| format!("{}\n", action.written())).collect()
+    }
+    /// Writes down what was done.
+    fn did(&mut self, action: impl FnOnce() -> Action) {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.push(action());
+        }
     }
     /// The tablet that the pointer may belong to.
     pub fn draw_on(&mut self, tablet: SharedTablet) {
@@ -90,23 +120,24 @@ impl Window {
         if files.is_empty() {
             self.open_sample();
         }
-        for file in files {
-            self.jobs.open(file);
+        if !files.is_empty() {
+            self.jobs.open(files, None);
         }
     }
     fn open_sample(&mut self) {
-        self.jobs.start("Opening the sample".into(), While::Working, |_| Done::Opened(Box::new(sample::open())));
+        self.jobs.start("Opening the sample".into(), While::Working, |_| Done::Opened(None, Box::new(sample::open())));
     }
     /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
         let mut asked = Asked::default();
+        self.dress(ui.ctx());
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
         self.thumbnails.collect(ui.ctx());
         if self.dialogs.is_empty() && self.jobs.editing().is_none() {
             keys::listen(ui.ctx(), &self.session, &self.settings.keymap, &mut asked);
         }
-        self.take_dropped(ui.ctx(), &mut asked);
+        self.take_dropped(ui.ctx());
         self.lay_out(ui, &mut asked);
         self.show_dialog(ui.ctx(), &mut asked);
         self.show_editing(ui.ctx());
@@ -168,9 +199,7 @@ impl Window {
             if (is_editing && !matches!(action, Action::View(_))) || self.begin_edit(&action) {
                 continue;
             }
-            if let Err(error) = action.apply(&mut self.session) {
-                self.messages.push(error.to_string());
-            }
+            self.apply(&action);
         }
         self.messages.append(&mut self.session.notes);
         for ask in asked.window {
@@ -189,7 +218,7 @@ impl Window {
             }
             WindowAsk::Choose(purpose) => self.ask_for(purpose, ""),
             WindowAsk::PlaceDialog => self.ask_for(Purpose::Place, ""),
-            WindowAsk::Open(file) => self.jobs.open(file),
+            WindowAsk::Open(file) => self.jobs.open(vec![file], None),
             WindowAsk::OpenSample => self.open_sample(),
             WindowAsk::Save => self.save(),
             WindowAsk::SaveAs => self.ask_where(Purpose::Save),
@@ -219,10 +248,8 @@ impl Window {
                 let apart = &mut self.settings.layout.apart;
                 if apart.contains(&front) { apart.retain(|other| *other != front) } else { apart.push(front) }
             }
-            WindowAsk::ToggleTheme => {
-                self.settings.is_light = !self.settings.is_light;
-                ctx.set_theme(if self.settings.is_light { egui::Theme::Light } else { egui::Theme::Dark });
-            }
+            WindowAsk::ToggleTheme => self.toggle_theme(ctx),
+            WindowAsk::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),
             WindowAsk::Scale(scale) => self.scale(ctx, scale),
             WindowAsk::FullScreen => {
                 let is_full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
@@ -230,12 +257,12 @@ impl Window {
             }
         }
     }
-    fn apply(&mut self, action: &Action) -> bool {
-        let done = action.apply(&mut self.session);
-        let is_done = done.is_ok();
-        self.messages.extend(done.err().map(|error| error.to_string()));
+    fn apply(&mut self, action: &Action) {
+        match action.apply(&mut self.session) {
+            Ok(()) => self.did(|| action.clone()),
+            Err(error) => self.messages.push(error.to_string()),
+        }
         self.messages.append(&mut self.session.notes);
-        is_done
     }
     /// 0 fits the canvas; 1 is a pixel of the canvas to one of the screen.
     fn scale(&mut self, ctx: &egui::Context, scale: f32) {
@@ -256,6 +283,12 @@ impl Window {
             self.title = title;
         }
     }
+    /// The menus' titles, and the commands of each.
+    pub fn menus() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
+        let names = |commands: &[commands::Command]| commands.iter().map(|command| command.name).collect::<Vec<_>>();
+        let menus = commands::MENUS.map(|(title, commands)| (title, names(commands)));
+        menus.into_iter().map(|(title, names)| (title, names.into_iter().filter(|name| !name.is_empty()).collect()))
+    }
     /// Runs a command by its name, as a menu would.
     pub fn command(&mut self, ctx: &egui::Context, name: &str) {
         let mut asked = Asked::default();
@@ -269,6 +302,10 @@ impl Window {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
+        self.clipboard = clipboard::take_text(ui.ctx()).or(self.clipboard.take());
+    }
+    fn raw_input_hook(&mut self, ctx: &egui::Context, raw: &mut egui::RawInput) {
+        clipboard::hear(ctx, &mut raw.events);
     }
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
         self.session.close();

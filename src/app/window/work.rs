@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use super::Window;
+use crate::app::clipboard;
 use crate::app::files::Purpose;
 use crate::app::jobs::{Done, Edited, Saved, While, short};
 use crate::app::widgets::bar;
@@ -38,6 +39,7 @@ impl Window {
                 if let Some(tab) = self.session.tabs.iter_mut().find(|other| other.key == tab) {
                     tab.mark_saved(document, file.clone(), stamp);
                 }
+                self.jobs.say(format!("Saved {}", file.display()));
                 self.recent_is(Some(file));
                 if let Some(then) = then {
                     self.proceed(ctx, then, false);
@@ -53,7 +55,8 @@ impl Window {
             Options { background: self.export.background, quality: self.export.quality, ..Options::default() };
         self.jobs.start(format!("Exporting {}", short(&file)), While::Working, move |progress| {
             match files::export(&document, &file, &options, progress) {
-                Ok(()) => Done::Nothing,
+                Ok(()) if progress.is_cancelled() => Done::Nothing,
+                Ok(()) => Done::Said(format!("Exported {}", file.display())),
                 Err(error) => Done::Failed(error),
             }
         });
@@ -62,9 +65,16 @@ impl Window {
         let Some(document) = self.session.shown().cloned() else { return };
         self.jobs.start("Copying the picture".into(), While::Working, move |progress| {
             let Some(tiles) = flatten(&document, progress) else { return Done::Nothing };
-            let size = [document.size.width as usize, document.size.height as usize];
-            let rgba = tiles.to_straight_rgba(document.size.rect());
-            Done::Copied(egui::ColorImage::from_rgba_unmultiplied(size, &rgba))
+            match clipboard::put(document.size, &tiles.to_straight_rgba(document.size.rect())) {
+                Ok(clipboard) => Done::Copied(clipboard),
+                Err(error) => Done::Failed(error),
+            }
+        });
+    }
+    pub(super) fn paste(&mut self) {
+        self.jobs.start("Pasting".into(), While::Working, |_| match clipboard::pasted() {
+            Ok(pasted) => Done::Pasted(pasted),
+            Err(error) => Done::Failed(error),
         });
     }
     /// Whether an action takes long, and was begun on a thread instead.
@@ -76,17 +86,18 @@ impl Window {
         tab.forget_preview();
         let (key, from, action) = (tab.key, tab.document().clone(), LayerAction::clone(action));
         self.jobs.start(name.into(), While::Editing, move |progress| match action.flattened(&from, progress) {
-            Some(edit) => Done::Edited(Box::new(Edited { tab: key, from, edit })),
+            Some(edit) => Done::Edited(Box::new(Edited { tab: key, action, from, edit })),
             None => Done::Nothing,
         });
         true
     }
     pub(super) fn edited(&mut self, edited: Edited) {
-        let Edited { tab, from, edit } = edited;
+        let Edited { tab, action, from, edit } = edited;
         let Some(tab) = self.session.tabs.iter_mut().find(|other| other.key == tab) else { return };
         // Nothing else is done meanwhile; what was done all the same must not be lost.
         if crate::session::is_same(tab.document(), &from) {
             tab.take(edit);
+            self.did(|| Action::Layer(action));
         }
     }
     /// What is done while nothing else may be, once it takes long.

@@ -46,6 +46,8 @@ pub struct Findings {
     pub depth: Option<DepthConvention>,
     /// Planar depth (in the file's unit) at z = 0 and z = 1, so that anchors keep their meaning when maps are replaced.
     pub depth_range: Option<(f32, f32)>,
+    /// The share of pixels, joined to the border, that look like background and are taken for surface.
+    pub flat_border: f32,
 }
 
 impl Findings {

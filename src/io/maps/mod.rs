@@ -346,6 +346,7 @@ fn report_mask(normal: Option<&Stored>, depth: Option<&depth::Raw>, coverage: &P
     let flat = not_flat(normal).values().iter().filter(|c| **c == 0).count();
     let share = flat as f32 / coverage.values().len() as f32;
     if share > 0.02 && share < 1.0 {
+        findings.flat_border = share;
         findings.note(format!(
             "{:.0} % of the normal map, joined to its border, is of one value and looks like background; it is taken for surface. A mask file or \"mask\": {{\"from\": \"flat\"}} would take it out",
             share * 100.0

@@ -1,0 +1,86 @@
+//! The system's clipboard: pictures in and out, and texts for the fields that are typed in.
+//! Floor 7. The toolkit's own needs more than this to speak to the system, so its keys and texts come and go through here.
+
+use crate::math::Size;
+use crate::raster::Picture;
+use crate::{Error, Result};
+pub use arboard::Clipboard;
+use arboard::ImageData;
+use eframe::egui::{Context, Event, Key, Modifiers, OutputCommand};
+use std::path::PathBuf;
+
+/// What was found in the clipboard to be pasted.
+pub enum Pasted {
+    Picture(Picture),
+    /// Copied in a file manager.
+    Files(Vec<PathBuf>),
+}
+
+fn open() -> Result<Clipboard> {
+    Clipboard::new().map_err(|error| Error::unsupported("clipboard", error))
+}
+
+/// The picture in the clipboard, or the files; fails where there are none. Takes as long as the program that owns them.
+pub fn pasted() -> Result<Pasted> {
+    let mut clipboard = open()?;
+    if let Ok(image) = clipboard.get_image() {
+        let size = Size::new(image.width as u32, image.height as u32);
+        let picture = Picture::srgb8(size, image.bytes.as_chunks::<4>().0.to_vec());
+        return picture.map(Pasted::Picture).ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"));
+    }
+    let files = clipboard.get().file_list().ok().filter(|files| !files.is_empty());
+    files.map(Pasted::Files).ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
+}
+
+/// Puts a picture of straight RGBA into the clipboard. It stays there as long as what is returned is kept.
+pub fn put(size: Size, rgba: &[u8]) -> Result<Clipboard> {
+    let mut clipboard = open()?;
+    let image = ImageData { width: size.width as usize, height: size.height as usize, bytes: rgba.into() };
+    clipboard.set_image(image).map_err(|error| Error::unsupported("clipboard", error))?;
+    Ok(clipboard)
+}
+
+/// While a text is typed: the keys that cut, copy and paste become what they mean.
+pub fn hear(ctx: &Context, events: &mut [Event]) {
+    if !ctx.egui_wants_keyboard_input() {
+        return;
+    }
+    for event in events {
+        let Event::Key {
+            key, pressed: true, modifiers: Modifiers { command: true, shift: false, alt: false, .. }, ..
+        } = event
+        else {
+            continue;
+        };
+        let meant = match key {
+            Key::C => Some(Event::Copy),
+            Key::X => Some(Event::Cut),
+            Key::V => open().and_then(|mut clipboard| text(&mut clipboard)).ok().map(Event::Paste),
+            _ => None,
+        };
+        if let Some(meant) = meant {
+            *event = meant;
+        }
+    }
+}
+
+fn text(clipboard: &mut Clipboard) -> Result<String> {
+    clipboard.get_text().map_err(|error| Error::unsupported("clipboard", error))
+}
+
+/// Puts the text that a field gave to the clipboard there; what is returned is to be kept.
+pub fn take_text(ctx: &Context) -> Option<Clipboard> {
+    let mut copied = None;
+    ctx.output_mut(|output| {
+        output.commands.retain(|command| match command {
+            OutputCommand::CopyText(text) => {
+                copied = Some(text.clone());
+                false
+            }
+            _ => true,
+        });
+    });
+    let (text, mut clipboard) = (copied?, open().ok()?);
+    clipboard.set_text(text).ok()?;
+    Some(clipboard)
+}

@@ -1,0 +1,51 @@
+//! How much memory the program holds, for the status bar.
+//! Floor 7. Asked of the system; where it tells nothing, nothing is shown.
+
+use std::time::{Duration, Instant};
+
+/// Between two looks.
+const PAUSE: Duration = Duration::from_secs(1);
+
+#[derive(Default)]
+pub struct Memory {
+    seen: Option<(Instant, Option<u64>)>,
+}
+
+impl Memory {
+    /// Bytes held a moment ago.
+    pub fn bytes(&mut self) -> Option<u64> {
+        match self.seen {
+            Some((since, bytes)) if since.elapsed() < PAUSE => bytes,
+            _ => {
+                let bytes = std::fs::read_to_string("/proc/self/status").ok().and_then(|text| resident(&text));
+                self.seen = Some((Instant::now(), bytes));
+                bytes
+            }
+        }
+    }
+}
+
+/// The resident set in a Linux status file.
+fn resident(status: &str) -> Option<u64> {
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kib.checked_mul(1024)
+}
+
+/// Bytes as people read them: “312 MB”, “1.4 GB”.
+pub fn spoken(bytes: u64) -> String {
+    let mb = bytes as f64 / 1e6;
+    if mb < 1000.0 { format!("{mb:.0} MB") } else { format!("{:.1} GB", mb / 1000.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_read_and_spoken() {
+        assert_eq!(resident("Name:\tx\nVmRSS:\t    2048 kB\n"), Some(2 << 20));
+        assert_eq!(resident("VmRSS: many kB"), None);
+        assert_eq!([900_000_000, 1_440_000_000].map(spoken), ["900 MB", "1.4 GB"]);
+    }
+}

@@ -1,0 +1,47 @@
+//! How the window looks: light or dark, and how large its controls are.
+//! Floor 7. The colours themselves are `theme`'s.
+
+use super::Window;
+use eframe::egui::{self, Theme};
+
+/// Sizes of the interface to choose from; 1 is what the system asks for.
+const SCALES: [f32; 10] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0];
+/// A screen so many points high that the system did not scale is likely dense.
+const DENSE_PT: f32 = 1800.0;
+
+impl Window {
+    /// The look that is remembered, or one that fits the screen.
+    pub(super) fn dress(&mut self, ctx: &egui::Context) {
+        if std::mem::replace(&mut self.is_dressed, true) {
+            return;
+        }
+        let screen = ctx.input(|i| i.viewport().monitor_size);
+        let fitting = if screen.is_some_and(|size| size.y >= DENSE_PT) { 1.5 } else { 1.0 };
+        self.show_at(ctx, self.settings.scale.unwrap_or(fitting));
+    }
+    pub(super) fn toggle_theme(&mut self, ctx: &egui::Context) {
+        self.settings.is_light = !self.settings.is_light;
+        ctx.set_theme(if self.settings.is_light { Theme::Light } else { Theme::Dark });
+    }
+    /// The next larger or smaller size, remembered from now on.
+    pub(super) fn resize_interface(&mut self, ctx: &egui::Context, is_larger: bool) {
+        let now = ctx.zoom_factor();
+        let next = if is_larger {
+            SCALES.into_iter().find(|&scale| scale > now + 0.01)
+        } else {
+            SCALES.into_iter().rev().find(|&scale| scale < now - 0.01)
+        };
+        if let Some(next) = next {
+            self.settings.scale = Some(next);
+            self.show_at(ctx, next);
+        }
+    }
+    /// The picture stays as large as it is: only what is around it changes.
+    fn show_at(&mut self, ctx: &egui::Context, scale: f32) {
+        let kept = ctx.zoom_factor() / scale;
+        ctx.set_zoom_factor(scale);
+        for view in self.session.tabs.iter_mut().filter_map(|tab| tab.view.as_mut()) {
+            view.zoom *= kept;
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Documents made, opened, exported, saved and closed.
+
+use super::{choose, click, command, drop_files, layers, press, session, steps, stroke, until, window, window_of};
+use eframe::egui::{Key, Modifiers, vec2};
+use egui_kittest::kittest::Queryable;
+use rilievo::app::Window;
+use std::path::{Path, PathBuf};
+
+#[test]
+fn closing_with_unsaved_work_asks_first() {
+    let mut harness = window();
+    click(&mut harness, "+ Add");
+    click(&mut harness, "Fill layer");
+    click(&mut harness, "File");
+    harness.get_by_label_contains("Close Ctrl").click();
+    steps(&mut harness);
+    harness.get_by_label("Do not save").click();
+    steps(&mut harness);
+    assert!(session(&harness).tab().is_none());
+}
+#[test]
+fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
+    let mut harness = window();
+    harness.state_mut().as_mut().unwrap().begin(vec![PathBuf::from("no such picture.png")]);
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    steps(&mut harness);
+    harness.get_by_label_contains("no such picture.png");
+    click(&mut harness, "Dismiss");
+    assert!(harness.query_by_label_contains("no such picture.png").is_none());
+}
+#[test]
+fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = window();
+    command(&mut harness, "Export");
+    harness.get_by_label("Preview of the export");
+    press(&mut harness, "Export…");
+    let (png, ora) = (folder.path().join("out.png"), folder.path().join("out.ora"));
+    choose(&mut harness, &png);
+    until(&mut harness, |_| png.is_file());
+    command(&mut harness, "Save as");
+    choose(&mut harness, &ora);
+    until(&mut harness, |harness| session(harness).tab().unwrap().file.is_some());
+    assert!(ora.is_file() && !session(&harness).tab().unwrap().is_dirty());
+}
+#[test]
+fn quitting_asks_for_each_document_with_unsaved_work_and_saves_it_where_it_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("kept.ora");
+    let mut harness = window();
+    stroke(&mut harness, vec2(40.0, 10.0));
+    command(&mut harness, "Close");
+    harness.get_by_label_contains("Save the changes to “Untitled 1”?");
+    press(&mut harness, "Cancel");
+    assert!(session(&harness).tab().is_some_and(|tab| tab.is_dirty()));
+    command(&mut harness, "Close");
+    press(&mut harness, "Save");
+    choose(&mut harness, &file);
+    until(&mut harness, |harness| session(harness).tab().is_none());
+    harness.state_mut().as_mut().unwrap().begin(vec![file]);
+    until(&mut harness, |harness| session(harness).tab().is_some());
+    assert_eq!(layers(&harness), ["Background", "Strokes"]);
+    assert!(!session(&harness).tab().unwrap().is_dirty());
+}
+#[test]
+fn several_documents_stand_in_tabs_and_the_next_one_comes_to_the_front() {
+    let mut harness = window();
+    command(&mut harness, "New…");
+    press(&mut harness, "1920 × 1080");
+    press(&mut harness, "Dark");
+    press(&mut harness, "Create");
+    assert_eq!((session(&harness).tabs.len(), session(&harness).current), (2, 1));
+    command(&mut harness, "Next document");
+    assert_eq!(session(&harness).current, 0);
+    press(&mut harness, "Untitled 2");
+    assert_eq!(session(&harness).tab().unwrap().document().size.width, 1920);
+    press(&mut harness, "Close Untitled 1");
+    assert_eq!(session(&harness).tabs.len(), 1);
+}
+/// Whether something of this name is there, perhaps a control beside its name.
+fn shows(harness: &super::Story, label: &str) -> bool {
+    harness.query_all_by_label(label).count() > 0
+}
+/// Makes a document of the maps, as soon as they are read as the dialog says.
+fn create(harness: &mut super::Story) {
+    for _ in 0..300 {
+        super::key(harness, Modifiers::NONE, Key::Enter);
+        if session(harness).tabs.len() == 2 {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    panic!("the maps were never read");
+}
+/// A ball's normals and depth, as 8-bit pictures with a flat border.
+fn ball(folder: &Path) -> [PathBuf; 2] {
+    let files = ["shape.png", "far.png"].map(|name| folder.join(name));
+    let at = |x: u32, y: u32| {
+        let (x, y) = ((x as f32 - 47.5) / 40.0, (y as f32 - 47.5) / 40.0);
+        let z = 1.0 - x * x - y * y;
+        if z > 0.0 { [x, -y, z.sqrt()] } else { [0.0, 0.0, 1.0] }
+    };
+    let byte = |v: f32| (v * 127.5 + 128.0) as u8;
+    image::RgbImage::from_fn(96, 96, |x, y| image::Rgb(at(x, y).map(byte))).save(&files[0]).unwrap();
+    let depth = |x: u32, y: u32| if at(x, y) == [0.0, 0.0, 1.0] { 255 } else { 200 - (at(x, y)[2] * 150.0) as u8 };
+    image::GrayImage::from_fn(96, 96, |x, y| image::Luma([depth(x, y)])).save(&files[1]).unwrap();
+    files
+}
+#[test]
+fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let [normals, _] = ball(folder.path());
+    let mut harness = window();
+    drop_files(&mut harness, &[&normals]);
+    until(&mut harness, |harness| shows(harness, "Flip green"));
+    // The flat border was taken for background, and that can be taken back.
+    until(&mut harness, |harness| shows(harness, "Flat border"));
+    harness.get_all_by_label("Flip green").next().unwrap().click();
+    steps(&mut harness);
+    until(&mut harness, |harness| shows(harness, "Flip green"));
+    press(&mut harness, "What was found");
+    create(&mut harness);
+    let tab = session(&harness).tab().unwrap();
+    let surface = tab.document().surface.clone().unwrap();
+    assert_eq!((surface.coverage(2, 2), surface.coverage(48, 48)), (0, 255));
+    assert!(surface.normal(48, 20).y < 0.0, "the upper half looks down now");
+}
+#[test]
+fn maps_that_are_dropped_together_are_one_objects() {
+    let folder = tempfile::tempdir().unwrap();
+    let [normals, depth] = ball(folder.path());
+    let depth_named = folder.path().join("other_depth.png");
+    std::fs::rename(depth, &depth_named).unwrap();
+    let mut harness = window();
+    drop_files(&mut harness, &[&depth_named, &normals]);
+    until(&mut harness, |harness| shows(harness, "Near is"));
+    for name in ["shape.png", "other_depth.png"] {
+        harness.get_by_label(name);
+    }
+    create(&mut harness);
+    assert!(harness.query_by_label("Create").is_none(), "there was one dialog");
+    assert_eq!(session(&harness).tabs.len(), 2);
+}
+#[test]
+fn the_first_start_opens_a_sample_with_three_steps_that_can_be_put_away() {
+    let mut harness = window_of(1.0, |ctx| {
+        let mut window = Window::new(ctx);
+        window.begin(Vec::new());
+        window
+    });
+    until(&mut harness, |harness| harness.query_by_label("Three steps").is_some());
+    assert_eq!(layers(&harness), ["Background", "Base"]);
+    press(&mut harness, "Not now");
+    assert!(harness.query_by_label("Three steps").is_none());
+    key_is_free(&mut harness);
+}
+/// With the hint gone, keys reach the canvas as ever.
+fn key_is_free(harness: &mut super::Story) {
+    super::key(harness, Modifiers::NONE, Key::E);
+    assert_eq!(session(harness).tool, rilievo::tools::ToolKind::Eraser);
+}
+#[test]
+fn a_file_that_is_there_already_is_replaced_only_when_that_is_said_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("there.png");
+    std::fs::write(&file, "something else").unwrap();
+    let mut harness = window();
+    command(&mut harness, "Export…");
+    press(&mut harness, "Export…");
+    choose(&mut harness, &file);
+    harness.get_by_label_contains("such a file already");
+    assert_eq!(std::fs::read(&file).unwrap(), b"something else");
+    press(&mut harness, "Replace");
+    until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
+    assert_ne!(std::fs::read(&file).unwrap(), b"something else");
+}

@@ -1,0 +1,94 @@
+//! Menus, keys, the palette of commands, and what the window remembers.
+
+use super::{Story, command, key, layers, press, session, steps, until, window, window_at};
+use eframe::egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use rilievo::app::Window;
+
+#[test]
+fn a_key_that_is_taken_is_asked_for_and_then_given() {
+    let mut harness = window();
+    command(&mut harness, "Keyboard shortcuts");
+    press(&mut harness, "Find a shortcut");
+    harness.get_by_label("Find a shortcut").type_text("radiance");
+    steps(&mut harness);
+    press(&mut harness, "Add a key to New radiance scaling");
+    key(&mut harness, Modifiers::COMMAND, Key::J);
+    harness.get_by_label_contains("belongs to “Duplicate layer”");
+    press(&mut harness, "Give it to “New radiance scaling”");
+    press(&mut harness, "Close");
+    key(&mut harness, Modifiers::COMMAND, Key::J);
+    assert_eq!(layers(&harness), ["Background", "Radiance scaling"]);
+}
+#[test]
+fn what_was_chosen_is_there_the_next_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let settings = folder.path().join("settings.json");
+    let mut harness = window_at(1.0, Some(settings.clone()));
+    command(&mut harness, "Light or dark");
+    command(&mut harness, "Panels on the other side");
+    command(&mut harness, "Layers in a window");
+    press(&mut harness, "History");
+    let is_kept = move |_: &Story| std::fs::read_to_string(&settings).is_ok_and(|text| text.contains("History"));
+    until(&mut harness, is_kept);
+    drop(harness);
+    let harness = window_at(1.0, Some(folder.path().join("settings.json")));
+    let panels = harness.get_by_label("History").rect();
+    assert!(panels.left() < harness.get_by_label("Canvas").rect().left(), "they stand at the left");
+    assert!(!harness.ctx.global_style().visuals.dark_mode);
+}
+#[test]
+fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
+    for pixels_per_point in [1.0, 1.5, 2.0] {
+        let mut harness = window_at(pixels_per_point, None);
+        command(&mut harness, "Actual pixels");
+        let zoom = session(&harness).tab().unwrap().view.unwrap().zoom;
+        assert!((zoom * pixels_per_point - 1.0).abs() < 1e-4, "{zoom}");
+        harness.get_by_label("100 %");
+    }
+}
+#[test]
+fn every_command_stands_in_its_menu() {
+    let mut harness = window();
+    for (title, commands) in Window::menus() {
+        press(&mut harness, title);
+        for name in commands {
+            assert!(harness.query_all_by_label_contains(name).count() > 0, "{name} in {title}");
+        }
+        key(&mut harness, Modifiers::NONE, Key::Escape);
+    }
+}
+#[test]
+fn every_command_is_done_by_its_name() {
+    let mut harness = window();
+    command(&mut harness, "New gradient layer");
+    let names: Vec<&str> = Window::menus().flat_map(|(_, names)| names).filter(|name| *name != "Close").collect();
+    assert!(names.len() > 60);
+    for name in names {
+        command(&mut harness, name);
+        // Whatever dialog it opened goes again.
+        (0..2).for_each(|_| key(&mut harness, Modifiers::NONE, Key::Escape));
+        assert!(session(&harness).tab().is_some(), "{name}");
+    }
+    command(&mut harness, "Close");
+    press(&mut harness, "Do not save");
+}
+#[test]
+fn the_interface_is_made_larger_and_the_picture_stays_as_it_is() {
+    let mut harness = window();
+    let zoom = |harness: &Story| session(harness).tab().unwrap().view.unwrap().zoom * harness.ctx.pixels_per_point();
+    let before = zoom(&harness);
+    command(&mut harness, "Larger interface");
+    assert!(harness.ctx.zoom_factor() > 1.05 && (zoom(&harness) / before - 1.0).abs() < 1e-3);
+    command(&mut harness, "Smaller interface");
+    assert!((harness.ctx.zoom_factor() - 1.0).abs() < 1e-3);
+}
+#[test]
+fn the_palette_puts_what_begins_with_the_words_first() {
+    let mut harness = window();
+    command(&mut harness, "operator: shading");
+    assert!(matches!(session(&harness).operator, rilievo::surface::Operator::Normal { .. }));
+    command(&mut harness, "lock");
+    assert_eq!(session(&harness).layer().unwrap().lock, rilievo::document::Lock::Alpha, "not “Clip” or “Block”");
+    assert_eq!(layers(&harness), ["Background"]);
+}

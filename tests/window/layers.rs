@@ -1,0 +1,57 @@
+//! Layers and their masks, by the buttons of their panel and the commands of their menu.
+
+use super::{Story, click, command, layers, press, session, steps, stroke, until, window};
+use eframe::egui::vec2;
+use egui_kittest::kittest::Queryable;
+use rilievo::document::{Content, MaskKind};
+
+#[test]
+fn layers_are_added_hidden_and_deleted_by_their_buttons() {
+    let mut harness = window();
+    click(&mut harness, "+ Add");
+    click(&mut harness, "Gradient layer");
+    assert_eq!(layers(&harness), ["Background", "Gradient"]);
+    harness.get_by_label("Show Gradient").click();
+    steps(&mut harness);
+    assert!(!session(&harness).layer().unwrap().visible);
+    harness.get_by_label("Delete layer").click();
+    steps(&mut harness);
+    assert_eq!(layers(&harness), ["Background"]);
+}
+#[test]
+fn layers_are_merged_baked_and_flattened_beside_the_window() {
+    let mut harness = window();
+    command(&mut harness, "New gradient layer");
+    command(&mut harness, "Bake layer");
+    until(&mut harness, |harness| matches!(session(harness).layer().unwrap().content, Content::Pixels(_)));
+    command(&mut harness, "Merge down");
+    until(&mut harness, |harness| layers(harness) == ["Background"]);
+    command(&mut harness, "Flatten picture");
+    until(&mut harness, |harness| layers(harness) == ["Picture"]);
+    command(&mut harness, "Undo");
+    assert_eq!(layers(&harness), ["Background"]);
+}
+#[test]
+fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
+    let mut harness = window();
+    press(&mut harness, "Properties");
+    press(&mut harness, "Hide all");
+    let masked = |harness: &Story| session(harness).layer().unwrap().mask.clone();
+    let coverage = |harness: &Story| match masked(harness).unwrap().kind {
+        MaskKind::File { coverage, .. } => coverage,
+        _ => panic!("a mask to paint on"),
+    };
+    assert!(session(&harness).tab().unwrap().on_mask && coverage(&harness).values().iter().all(|&v| v == 0));
+    stroke(&mut harness, vec2(60.0, 10.0));
+    assert!(coverage(&harness).values().iter().any(|&v| v > 100), "light paint shows");
+    assert_eq!(layers(&harness), ["Background"], "the stroke went to the mask");
+    command(&mut harness, "Invert mask");
+    command(&mut harness, "Use mask");
+    assert!(masked(&harness).unwrap().invert && masked(&harness).unwrap().disabled);
+    press(&mut harness, "Mask of Background");
+    assert!(!session(&harness).tab().unwrap().on_mask, "the brush paints on the layer again");
+    command(&mut harness, "Delete mask");
+    assert!(masked(&harness).is_none());
+    command(&mut harness, "Paint on mask");
+    assert!(masked(&harness).is_some(), "every command is in the palette");
+}

@@ -1,0 +1,51 @@
+//! Shading layers, and the pictures that they are made of.
+
+use super::{Story, choose, command, drop_files, layers, press, session, until, window};
+use egui_kittest::kittest::Queryable;
+use rilievo::document::Content;
+
+#[test]
+fn every_shading_model_is_made_from_the_menu_and_shows_its_properties() {
+    let mut harness = window();
+    press(&mut harness, "Properties");
+    for (name, shows) in [
+        ("New Phong layer", "Add light at a point"),
+        ("New toon layer", "Tones"),
+        ("New sub-Lambertian layer", "Flatness"),
+        ("New Ashikhmin layer", "Choose environment"),
+        ("New lit-sphere layer", "Choose lit sphere of hollows"),
+        ("New mirror layer", "Choose environment"),
+        ("New glass layer", "Index"),
+        ("New layer lit by an environment", "Reach"),
+        ("New ambient occlusion layer", "Reach"),
+    ] {
+        command(&mut harness, name);
+        assert!(matches!(session(&harness).layer().unwrap().content, Content::Shading(_)), "{name}");
+        assert!(harness.query_all_by_label(shows).count() > 0, "{name} shows {shows}");
+    }
+    command(&mut harness, "New detail normals");
+    assert!(harness.query_all_by_label("Roughness").count() > 0);
+}
+fn environment(harness: &Story) -> Option<String> {
+    match &session(harness).layer().unwrap().content {
+        Content::Shading(live) => live.params().environment.as_ref().map(|environment| environment.file.clone()),
+        _ => None,
+    }
+}
+#[test]
+fn pictures_and_maps_are_read_beside_the_window_and_put_where_they_belong() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sky.png");
+    let picture = image::RgbImage::from_fn(64, 32, |x, y| image::Rgb([(x * 4) as u8, (y * 8) as u8, 20]));
+    picture.save(&file).unwrap();
+    let mut harness = window();
+    command(&mut harness, "New mirror layer");
+    press(&mut harness, "Properties");
+    press(&mut harness, "Choose environment");
+    choose(&mut harness, &file);
+    until(&mut harness, |harness| environment(harness).is_some_and(|file| file == "sky.png"));
+    press(&mut harness, "Remove");
+    assert_eq!(environment(&harness), None);
+    drop_files(&mut harness, &[&file]);
+    until(&mut harness, |harness| layers(harness).contains(&"sky".to_owned()));
+}
