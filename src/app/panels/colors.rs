@@ -138,7 +138,7 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> 
 
 /// Saturation to the right, value upward.
 fn square(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Changed<[f32; 3]>> {
-    let (rect, response) = ui.allocate_exact_size(vec2(side, side * 0.72), Sense::click_and_drag());
+    let (rect, response) = ui.allocate_exact_size(vec2(side, side * 0.62), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColorWell, true, label));
     let mut mesh = Mesh::default();
     const CELLS: u32 = 8;
@@ -158,7 +158,7 @@ fn square(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Ch
 
 /// The hues from top to bottom.
 fn hues(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Changed<[f32; 3]>> {
-    let (rect, response) = ui.allocate_exact_size(vec2(18.0, side * 0.72), Sense::click_and_drag());
+    let (rect, response) = ui.allocate_exact_size(vec2(18.0, side * 0.62), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, format!("Hue of {label}")));
     let mut mesh = Mesh::default();
     const CELLS: u32 = 24;

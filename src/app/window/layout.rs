@@ -72,7 +72,7 @@ impl Window {
         let has_layers = !apart.contains(&Front::Layers);
         if let Some(front) = front {
             if has_layers {
-                let above = Panel::top("front").resizable(true).default_size(352.0).size_range(140.0..=640.0);
+                let above = Panel::top("front").resizable(true).default_size(372.0).size_range(140.0..=640.0);
                 // At the same left as the layers beneath.
                 let above = above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
                 above.show(ui, |ui| self.fronted(ui, &strip, front, asked));
