@@ -72,6 +72,10 @@ impl<'a> ExrFile<'a> {
     pub fn passes(&self) -> &[Pass] {
         &self.passes
     }
+    /// How many pictures the file says it holds, each of its own layers.
+    pub fn parts(&self) -> usize {
+        self.meta.headers.len()
+    }
     /// What the pixels are compressed with, for people.
     pub fn compression(&self) -> String {
         self.meta.headers.first().map_or_else(String::new, |h| h.compression.to_string())

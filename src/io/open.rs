@@ -92,7 +92,7 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
     let layers = stored.into_iter().map(layer).collect();
     let notes = match (several, has_whole) {
         (false, _) => None,
-        (true, true) => Some("its layers are hidden beside the whole picture, which the file holds too"),
+        (true, true) => Some("its other layers are hidden beside the whole picture"),
         (true, false) => Some("an EXR does not tell how its layers lie on each other: they stand as in the file"),
     };
     let notes = notes.map(str::to_owned).into_iter().collect();
@@ -103,6 +103,25 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
 mod tests {
     use super::*;
 
+    #[test]
+    fn an_exr_of_several_layers_opens_with_all_of_them() {
+        use crate::io::exr::encode_channels;
+        let file = Path::new("a.exr");
+        let opened = |names: &[&'static str]| {
+            let light = |layer: &'static str| ["R", "G", "B"].map(|c| (format!("{layer}{c}"), vec![0.5f32; 4]));
+            let channels: Vec<(String, Vec<f32>)> = names.iter().flat_map(|name| light(name)).collect();
+            let channels = channels.iter().map(|(name, values)| (name.as_str(), values.clone())).collect();
+            let bytes = encode_channels(file, crate::math::Size::new(2, 2), channels).unwrap();
+            single(file, &bytes, &Budget::default()).unwrap()
+        };
+        let shown = |contents: &Contents| -> Vec<(String, bool)> {
+            contents.document.layers.iter().map(|layer| (layer.name.clone(), layer.visible)).collect()
+        };
+        let alone = opened(&["diffuse."]);
+        assert_eq!((shown(&alone), alone.notes.len()), (vec![("a".into(), true)], 0));
+        assert_eq!(shown(&opened(&["b.", "c."])), [("b".into(), true), ("c".into(), true)]);
+        assert_eq!(shown(&opened(&["", "c."])), [("a".into(), true), ("c".into(), false)]);
+    }
     #[test]
     fn what_a_file_is_shows_in_its_first_bytes() {
         assert_eq!(Kind::of(b"PK\x03\x04rest"), Kind::Project);

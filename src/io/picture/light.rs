@@ -21,7 +21,7 @@ pub struct Layer {
     /// Empty for the channels without a layer.
     pub name: String,
     pub picture: Picture,
-    /// It shows all the others.
+    /// It is the picture to show; mostly it shows all the others.
     pub is_whole: bool,
 }
 
@@ -44,7 +44,8 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Layer>> 
         return Err(Error::too_large(file, reason));
     }
     let whole = passes.iter().enumerate().filter(|(_, p)| rank(p) < WHOLE.len()).min_by_key(|(_, p)| rank(p));
-    let whole = whole.map(|(i, _)| i);
+    // Of several parts, such as the views of two eyes, the first is the one to show.
+    let whole = whole.map(|(i, _)| i).or((exr.parts() > 1).then_some(0));
     let one = |(i, pass): (usize, &&Pass)| {
         let picture = picture(file, &exr, texels_of(&exr, pass)?)?;
         Ok(Layer { name: pass.name.clone(), picture, is_whole: whole == Some(i) })
