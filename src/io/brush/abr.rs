@@ -28,7 +28,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Imported>>
         Reading { file, budget, used_px: 0, tips: Tips::default(), brushes: Vec::new(), keys: Vec::new(), damaged: 0 };
     match version {
         1 | 2 => reading.old(&mut cursor, version, usize::from(second))?,
-        6 | 7 | 9 | 10 => reading.new(&mut cursor, second)?,
+        6 | 7 | 9 | 10 => reading.later(&mut cursor, second)?,
         _ => return Err(Error::unsupported(file, format!("version {version} of Photoshop's brushes"))),
     }
     let Reading { mut brushes, damaged, .. } = reading;
@@ -100,7 +100,7 @@ impl Reading<'_> {
         self.sample(&mut record, name, spacing)
     }
     /// Versions 6 and later: blocks, of which one holds all sampled tips and another says what they are called.
-    fn new(&mut self, cursor: &mut Cursor, subversion: u16) -> Result<()> {
+    fn later(&mut self, cursor: &mut Cursor, subversion: u16) -> Result<()> {
         // A key of 37 letters, and then what no document tells.
         let before = match subversion {
             1 => 47,
