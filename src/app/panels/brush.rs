@@ -215,7 +215,7 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
                 }
             });
         });
-        let bent = curve::show(ui, &label, shape, 64.0);
+        let bent = curve::show(ui, &format!("Curve of {}", label.to_lowercase()), shape, 64.0);
         to = bent.map(|bent| brush.dynamics.with(*property, *input, bent)).or(to.take());
     }
     let menu = ui.menu_button("+ Let something follow…", |ui| {

@@ -83,6 +83,10 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let color = decoder.colortype().map_err(failed)?;
     let promised = size.area() as u64 * samples(color) as u64 * u64::from(color.bit_depth()).div_ceil(8);
     plausible(file, size, promised, bytes.len())?;
+    let compression = decoder.find_tag_unsigned::<u16>(Tag::Compression).ok().flatten();
+    if compression == Some(JPEG) && claims_more(bytes, size) {
+        return Err(Error::too_large(file, "a JPEG within the TIFF claims more pixels than the picture has"));
+    }
     let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
     let alpha = match extra.first() {
         _ if samples(color) <= meaning.colours() => Alpha::None,
@@ -100,6 +104,23 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let image = stored.image(values).map_err(|reason| Error::unsupported(file, reason))?;
     let orientation = turned.unwrap_or(Orientation::NoTransforms);
     Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
+}
+
+/// The compression that is a JPEG in each strip or tile.
+const JPEG: u16 = 7;
+/// Pixels of a JPEG within that are always allowed for: tiles may be larger than the picture.
+const TILE_PX: u64 = 1 << 22;
+
+/// A JPEG within says that it is larger than the whole: its decoder would make room for that before it looks.
+fn claims_more(bytes: &[u8], size: Size) -> bool {
+    let most = TILE_PX.max(size.area() as u64);
+    // The header of a frame: its mark, a length for 1 to 4 components, 8 bits, height, width. Nothing coded holds such a mark.
+    bytes.windows(9).any(|header| match *header {
+        [0xff, 0xc0..=0xc2, 0, 11 | 14 | 17 | 20, 8, h1, h0, w1, w0] => {
+            u64::from(u16::from_be_bytes([h1, h0])) * u64::from(u16::from_be_bytes([w1, w0])) > most
+        }
+        _ => false,
+    })
 }
 
 /// How many samples the crate gives a pixel.

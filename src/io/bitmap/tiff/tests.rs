@@ -93,3 +93,15 @@ fn what_has_signs_or_is_cut_short_gets_a_sentence() {
     let tags: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[32]), (SAMPLES, &[1]), (FORMAT, FLOATS)];
     assert!(said(&file(false, [200, 100], tags, &[0; 8])).contains("a.tif"));
 }
+#[test]
+fn a_jpeg_within_that_claims_more_than_the_picture_is_told_by_its_header() {
+    let header = |height: u16, width: u16| {
+        let [h, w] = [height.to_be_bytes(), width.to_be_bytes()];
+        [&[9, 9, 0xff, 0xc0, 0, 17, 8][..], &h, &w, &[3]].concat()
+    };
+    let size = Size::new(64, 64);
+    assert!(claims_more(&header(16_384, 16_384), size));
+    assert!(!claims_more(&header(512, 512), size), "a tile");
+    assert!(!claims_more(&header(4_000, 4_000), Size::new(4_000, 8_000)), "a strip");
+    assert!(!claims_more(&[0xff, 0xc0, 0], size));
+}
