@@ -1,0 +1,174 @@
+//! What a frame of the window costs while the hand moves: α and an anchor of an image layer dragged, at every size that the
+//! window may show them in; a brush's events until their tiles are flattened; getting a large document ready for a drag.
+//! `cargo bench --bench frame`. Peers: the frame rates asked for, 16 ms a drag and 8 ms a brush; and a copy of the picture.
+
+use rilievo::document::{Content, Document, Layer, Live, PixelLayer, Prepared, Progress, Reduced, diff, flatten};
+use rilievo::math::srgb::Color;
+use rilievo::math::{Size, Vec2, hash, vec2, vec3};
+use rilievo::paint::{Adjust, Brush, Filter, PictureSource, PlacedImage, Placement, Sample};
+use rilievo::raster::{Outside, Picture, Plane, Tile, TileAt, TileGrid};
+use rilievo::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
+use rilievo::tools::{self, Context, Outcome, Pen, ToolKind};
+use std::sync::Arc;
+use std::time::Instant;
+
+const HD: Size = Size::new(1920, 1080);
+const SQUARE: Size = Size::new(2048, 2048);
+const LARGE: Size = Size::new(4096, 4096);
+const D_N: Operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
+
+/// A ball as large as the canvas allows.
+fn ball(size: Size) -> Scene {
+    let (middle, radius) = (size.center(), 0.46 * size.width.min(size.height) as f32);
+    let at = |x: usize, y: usize| (vec2(x as f32 + 0.5, y as f32 + 0.5) - middle) / radius;
+    let normals = Plane::from_fn(size, |x, y| {
+        let q = at(x, y);
+        let z = (1.0 - q.length_squared()).max(0.0).sqrt();
+        if z > 0.0 { vec3(q.x, -q.y, z) } else { vec3(0.0, 0.0, 1.0) }
+    });
+    let depth = Plane::from_fn(size, |x, y| 1.0 - (1.0 - at(x, y).length_squared()).max(0.0).sqrt());
+    let maps = Maps { normals, depth, coverage: Plane::filled(size, 255) };
+    Scene { size, surface: Surface::new(maps).ok().map(Arc::new) }
+}
+
+fn photo(size: Size) -> PictureSource {
+    let texel = |i: u32, j: u32| [i as u8, j as u8, (i ^ j) as u8, 255];
+    let texels = (0..size.height).flat_map(|j| (0..size.width).map(move |i| texel(i, j))).collect();
+    PictureSource::new("xor".into(), Picture::srgb8(size, texels).expect("one texel a pixel"), Adjust::default())
+}
+
+fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Content {
+    Content::Image(Live::new(PlacedImage {
+        source: source.clone(),
+        placement: Placement::covering(size),
+        outside: Outside::Mirror,
+        bend: Bend {
+            operator: Operator::Normal { alpha, beta: 0.0, detail: 0.0 },
+            anchors: anchors.iter().map(|&at| Anchor::fixed(at)).collect(),
+            weights: Weights::default(),
+        },
+        filter: Filter::Antialias,
+    }))
+}
+
+/// ms of each frame of a drag, a pixel to `step` × `step` of the canvas.
+fn drag(size: Size, step: u32, content: impl Fn(f32) -> Content) -> Vec<f64> {
+    let ground = Layer::new("ground", Content::Fill(Color { r: 90, g: 90, b: 90, a: 255 }));
+    let layers = vec![Arc::new(ground), Arc::new(Layer::new("photo", content(0.0)))];
+    let document = Document { surface: ball(size).surface, layers, ..Document::empty(size) };
+    let id = document.layers[1].id;
+    let mut reduced = Reduced::new(1.0 / step as f32);
+    let progress = Progress::default();
+    reduced.of(&document).expect("a surface that can be made small");
+    let frame = |i: u32| {
+        let next = document.with_layer(id, |layer| layer.content = content(i as f32 * 1e-3))?;
+        let start = Instant::now();
+        divan::black_box(flatten(&reduced.of(&next).ok()?, &progress));
+        Some(start.elapsed().as_secs_f64() * 1e3)
+    };
+    (1..40).filter_map(frame).collect()
+}
+
+/// Half-transparent paint layers, every tile its own.
+fn painted(size: Size, count: u32) -> Vec<Arc<Layer>> {
+    let layer = |i: u32| {
+        let mut tiles = TileGrid::default();
+        tiles.reserve(size.rect());
+        for (k, at) in TileAt::covering(size.rect()).enumerate() {
+            let a = 64 + (hash::mix(i << 20 ^ k as u32) & 127) as u8;
+            let bytes = [a / 2, a / 3, a, a].repeat(64 * 64);
+            tiles.set(at, Tile::from_bytes(bytes).map(Arc::new));
+        }
+        let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles };
+        Arc::new(Layer::new(format!("paint {i}"), Content::Pixels(pixels)))
+    };
+    (0..count).map(layer).collect()
+}
+
+/// ms from a frame's events (16 samples, 2 px apart) to its flattened tiles: D_n, radius 64.
+fn strokes() -> Vec<f64> {
+    let document = Document { surface: ball(SQUARE).surface, layers: painted(SQUARE, 10), ..Document::empty(SQUARE) };
+    let brush = Brush { size: 128.0, ..Brush::default() };
+    let layer = Some(document.layers[5].id);
+    let pen = |i: usize| {
+        let x = 260.0 + 2.0 * i as f32;
+        let at = vec2(x, 1024.0 + 120.0 * (x / 150.0).sin());
+        let sample = Sample { time_secs: i as f32 / 1000.0, ..Sample::at(at) };
+        Pen { sample, ..Pen::at(Vec2::ZERO) }
+    };
+    let context = Context { layer, operator: D_N, ..Context::new(&document, &brush) };
+    let (gesture, _) = tools::press(ToolKind::Brush, &context, pen(0));
+    let mut gesture = gesture.expect("the layer takes paint");
+    let progress = Progress::default();
+    let all = Prepared::new(&document, &progress).expect("nobody cancels");
+    let mut picture = all.flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress).expect("nobody cancels");
+    let mut shown = document.clone();
+    let frame = |frame: usize| {
+        let pens: Vec<Pen> = (1..=16).map(|i| pen(frame * 16 + i)).collect();
+        let start = Instant::now();
+        let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
+        let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
+        picture = Prepared::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
+        shown = next;
+        Some(start.elapsed().as_secs_f64() * 1e3)
+    };
+    (0..44).map_while(frame).collect()
+}
+
+/// ms to make 20 layers of 4096² small: all at once, and the longest of the parts that are made one by one.
+fn first_small(step: u32) -> [f64; 2] {
+    let document = Document { surface: ball(LARGE).surface, layers: painted(LARGE, 20), ..Document::empty(LARGE) };
+    let timed = |work: &mut dyn FnMut() -> bool| {
+        let start = Instant::now();
+        let more = divan::black_box(work());
+        (start.elapsed().as_secs_f64() * 1e3, more)
+    };
+    let mut at_once = Reduced::new(1.0 / step as f32);
+    let all = timed(&mut || at_once.of(&document).is_ok()).0;
+    let mut parts = Reduced::new(1.0 / step as f32);
+    let mut longest: f64 = 0.0;
+    loop {
+        let (ms, more) = timed(&mut || parts.prepare(&document));
+        longest = longest.max(ms);
+        if !more {
+            return [all, longest];
+        }
+    }
+}
+
+/// Least, middle, and what nine of ten stay within.
+fn row(name: &str, mut ms: Vec<f64>) {
+    ms.sort_by(f64::total_cmp);
+    let at = |share: f64| ms.get((ms.len() as f64 * share) as usize).copied().unwrap_or(f64::NAN);
+    println!("{name:56} {:8.2} {:8.2} {:8.2}", at(0.0), at(0.5), at(0.9));
+}
+
+fn main() {
+    if std::env::args().any(|arg| arg == "--test" || arg == "--list") {
+        return;
+    }
+    println!("ms a frame{:46} {:>8} {:>8} {:>8}", "", "least", "middle", "9 of 10");
+    for size in [HD, SQUARE, LARGE] {
+        let (source, middle) = (photo(HD), size.center());
+        for step in [1, 2, 4, 8] {
+            let alpha = |t: f32| image(&source, size, 0.4 + t, &[middle]);
+            row(&format!("α of an image, {size}, one pixel in {step} × {step}"), drag(size, step, alpha));
+            if size == HD {
+                let anchor = |t: f32| image(&source, size, 0.5, &[middle, middle + vec2(300.0 + 900.0 * t, 120.0)]);
+                row(&format!("an anchor of two, {size}, one pixel in {step} × {step}"), drag(size, step, anchor));
+            }
+        }
+    }
+    let copied = Picture::srgb8(HD, vec![[9; 4]; HD.area()]).expect("one texel a pixel");
+    let copy = || {
+        let start = Instant::now();
+        divan::black_box(copied.texels.clone());
+        start.elapsed().as_secs_f64() * 1e3
+    };
+    row(&format!("a copy of {HD}"), (0..20).map(|_| copy()).collect());
+    row("brush: D_n, radius 64, 2048² of 10 layers", strokes());
+    for step in [2, 4, 8] {
+        let [all, longest] = first_small(step);
+        println!("20 layers of 4096² made small, {step}: {all:.1} ms at once, {longest:.1} at most in parts");
+    }
+}
