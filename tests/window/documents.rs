@@ -174,3 +174,14 @@ fn a_file_that_is_there_already_is_replaced_only_when_that_is_said_twice() {
     until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
     assert_ne!(std::fs::read(&file).unwrap(), b"something else");
 }
+#[test]
+fn a_smaller_document_comes_to_the_front_under_a_pointer_over_a_larger_one() {
+    let mut harness = window();
+    let canvas = harness.get_by_label("Canvas").rect();
+    harness.hover_at(canvas.center() + vec2(0.0, 0.44 * canvas.height()));
+    steps(&mut harness);
+    let small = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_normals/bronze_muse.json");
+    drop_files(&mut harness, &[&small]);
+    until(&mut harness, |harness| session(harness).tabs.len() == 2);
+    assert!(session(&harness).shown().is_some_and(|document| document.surface.is_some()));
+}

@@ -7,6 +7,7 @@ use crate::app::canvas::Canvas;
 use crate::app::jobs::{Jobs, While};
 use crate::app::memory::{Memory, spoken};
 use crate::app::widgets::bar;
+use crate::math::Vec2;
 use crate::session::Session;
 use eframe::egui::{self, Button, RichText, Ui};
 
@@ -43,8 +44,10 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, memory
             ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
             ui.separator();
         }
-        if let Some(at) = canvas.under {
-            let (x, y) = (at.x.floor().max(0.0) as usize, at.y.floor().max(0.0) as usize);
+        // The canvas is drawn after this line: what it knows may be of the document that was in front before.
+        let is_here = |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
+        if let Some(at) = canvas.under.filter(is_here) {
+            let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);
             ui.label(RichText::new(format!("{x}, {y}")).monospace());
             if let Some(surface) = document.surface.as_deref().filter(|s| s.coverage(x, y) > 0) {
                 let n = surface.normal(x, y);
