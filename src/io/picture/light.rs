@@ -27,7 +27,7 @@ pub struct Layer {
 
 /// Every layer of colours of an EXR, in the file's order; none where there are not several.
 ///
-/// Fails as [`decode`] does, and where all of them together are beyond the budget.
+/// Fails as [`decode`](super::decode) does, and where all of them together are beyond the budget.
 pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Layer>> {
     if !ExrFile::is_exr(bytes) {
         return Ok(Vec::new());
