@@ -12,7 +12,7 @@ use rilievo::math::{Size, Vec2, hash, srgb::Color, vec2, vec3};
 use rilievo::paint::{Brush, Sample, Stroke, stroke};
 use rilievo::raster::{Plane, Tile, TileAt, TileGrid};
 use rilievo::surface::{Maps, Operator, Scene, Surface};
-use rilievo::tools::{self, Context, Outcome, Pen, ToolKind};
+use rilievo_program::tools::{self, Context, Outcome, Pen, ToolKind};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;

@@ -8,7 +8,7 @@ use rilievo::math::{Size, Vec2, hash, vec2, vec3};
 use rilievo::paint::{Adjust, Brush, Filter, PictureSource, PlacedImage, Placement, Sample};
 use rilievo::raster::{Outside, Picture, Plane, Tile, TileAt, TileGrid};
 use rilievo::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
-use rilievo::tools::{self, Context, Outcome, Pen, ToolKind};
+use rilievo_program::tools::{self, Context, Outcome, Pen, ToolKind};
 use std::sync::Arc;
 use std::time::Instant;
 

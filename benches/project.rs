@@ -9,7 +9,7 @@ use rilievo::document::{Content, Document, Layer, PixelLayer, Progress};
 use rilievo::io::{Budget, project};
 use rilievo::math::{Size, hash};
 use rilievo::raster::TileGrid;
-use rilievo::session::{Autosave, Session, Tab};
+use rilievo_program::session::{Autosave, Session, Tab};
 use std::io::{Cursor, Read};
 use std::path::Path;
 use std::sync::LazyLock;

@@ -1,10 +1,11 @@
-//! The program's door: hands the arguments to [`rilievo::cli`], and the window where there is one, and returns its exit code.
+//! The program's door: hands the arguments to the command line, and the window where there is one, and returns its
+//! exit code.
 
-use rilievo::cli::{self, OpenWindow};
+use rilievo_program::cli::{self, OpenWindow};
 use std::process::ExitCode;
 
 #[cfg(feature = "gui")]
-const WINDOW: Option<OpenWindow> = Some(rilievo::app::run);
+const WINDOW: Option<OpenWindow> = Some(rilievo_window::run);
 #[cfg(not(feature = "gui"))]
 const WINDOW: Option<OpenWindow> = None;
 

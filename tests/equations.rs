@@ -43,8 +43,9 @@ fn every_equation_points_at_a_function_and_a_test() {
 #[test]
 fn a_row_that_points_nowhere_is_found() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let row = "| eq. 0 | `src/math/srgb.rs` `there_is_no_such_function` | `every_byte_survives_decode_and_encode` |";
+    let row =
+        "| eq. 0 | `src/engine/math/srgb.rs` `there_is_no_such_function` | `every_byte_survives_decode_and_encode` |";
     assert!(fault(root, row).is_some_and(|f| f.contains("there_is_no_such_function")));
-    let row = "| eq. 0 | `src/math/srgb.rs` `decode` | `every_byte_survives_decode_and_encode` |";
+    let row = "| eq. 0 | `src/engine/math/srgb.rs` `decode` | `every_byte_survives_decode_and_encode` |";
     assert_eq!(fault(root, row), None);
 }

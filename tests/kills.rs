@@ -6,7 +6,7 @@ use rilievo::document::{Document, Progress, flatten};
 use rilievo::io::fs::{Disk, Fs};
 use rilievo::io::{Budget, recipe, recovery};
 use rilievo::math::hash::mix;
-use rilievo::session::{Session, is_same};
+use rilievo_program::session::{Session, is_same};
 use std::fmt::Write;
 use std::io::{BufRead, BufReader};
 use std::path::Path;

@@ -236,7 +236,7 @@ fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::{Budget, picture};
+    use crate::{Budget, picture};
 
     fn checker() -> (TileGrid, Size) {
         let size = Size::new(70, 3);

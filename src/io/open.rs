@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn an_exr_of_several_layers_opens_with_all_of_them() {
-        use crate::io::exr::encode_channels;
+        use crate::exr::encode_channels;
         let file = Path::new("a.exr");
         let opened = |names: &[&'static str]| {
             let light = |layer: &'static str| ["R", "G", "B"].map(|c| (format!("{layer}{c}"), vec![0.5f32; 4]));

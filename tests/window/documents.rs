@@ -3,7 +3,7 @@
 use super::{choose, click, command, drop_files, layers, press, session, steps, stroke, until, window, window_of};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo::app::Window;
+use rilievo_window::Window;
 use std::path::{Path, PathBuf};
 
 #[test]
@@ -157,7 +157,7 @@ fn the_first_start_opens_a_sample_with_three_steps_that_can_be_put_away() {
 /// With the hint gone, keys reach the canvas as ever.
 fn key_is_free(harness: &mut super::Story) {
     super::key(harness, Modifiers::NONE, Key::E);
-    assert_eq!(session(harness).tool, rilievo::tools::ToolKind::Eraser);
+    assert_eq!(session(harness).tool, rilievo_program::tools::ToolKind::Eraser);
 }
 #[test]
 fn a_file_that_is_there_already_is_replaced_only_when_that_is_said_twice() {

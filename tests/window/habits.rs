@@ -3,7 +3,7 @@
 use super::{Story, command, key, layers, press, session, steps, until, window, window_at};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use rilievo::app::Window;
+use rilievo_window::Window;
 
 #[test]
 fn a_key_that_is_taken_is_asked_for_and_then_given() {

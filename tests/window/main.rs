@@ -14,7 +14,7 @@ mod replayed;
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use rilievo::app::Window;
+use rilievo_window::Window;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -127,7 +127,7 @@ fn drop_files(harness: &mut Story, files: &[&Path]) {
     }
     harness.step();
 }
-fn session(harness: &Story) -> &rilievo::session::Session {
+fn session(harness: &Story) -> &rilievo_program::session::Session {
     &harness.state().as_ref().unwrap().session
 }
 fn layers(harness: &Story) -> Vec<String> {

@@ -42,7 +42,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     harness.get_by_label("Properties").click();
     steps(&mut harness);
     click(&mut harness, "Stroke 1 ·");
-    assert_eq!(session(&harness).tool, rilievo::tools::ToolKind::Strokes);
+    assert_eq!(session(&harness).tool, rilievo_program::tools::ToolKind::Strokes);
     assert_eq!(session(&harness).tab().unwrap().chosen_strokes(), [0]);
     harness.get_by_label("Stroke up").click();
     steps(&mut harness);
@@ -152,5 +152,5 @@ fn keys_that_other_painting_programs_taught_do_the_same_here() {
     key(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
     assert_eq!(layers(&harness), ["Background", "Strokes"]);
     command(&mut harness, "Move, scale and turn");
-    assert_eq!(session(&harness).tool, rilievo::tools::ToolKind::Move);
+    assert_eq!(session(&harness).tool, rilievo_program::tools::ToolKind::Move);
 }

@@ -2,7 +2,7 @@
 
 use super::{Story, click, layers, session, until, window_of};
 use egui_kittest::kittest::Queryable;
-use rilievo::app::Window;
+use rilievo_window::Window;
 use std::path::Path;
 
 /// A window that keeps its recovery logs in a folder.

@@ -3,9 +3,9 @@
 use super::{Story, click, command, drag, drop_files, key, layers, press, session, steps, until, window_of};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo::app::Window;
 use rilievo::document::{Document, Progress, flatten};
-use rilievo::session::{Session, storage};
+use rilievo_program::session::{Session, storage};
+use rilievo_window::Window;
 use std::io::Read;
 use std::path::Path;
 

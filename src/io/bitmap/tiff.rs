@@ -5,7 +5,7 @@
 mod sample;
 
 use super::{Bitmap, plausible};
-use crate::io::Budget;
+use crate::Budget;
 use crate::math::Size;
 use crate::{Error, Result};
 use image::{DynamicImage, metadata::Orientation};

@@ -5,11 +5,11 @@ mod descriptor;
 mod presets;
 
 use super::{Imported, Tips};
-use crate::io::Budget;
-use crate::io::psd::channel::{Shape, decode_as};
-use crate::io::psd::cursor::Cursor;
+use crate::Budget;
 use crate::math::Size;
 use crate::paint::{Brush, Tip};
+use crate::psd::channel::{Shape, decode_as};
+use crate::psd::cursor::Cursor;
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;

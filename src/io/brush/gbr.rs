@@ -2,9 +2,9 @@
 //! Floor 5.
 
 use super::{Imported, Tips, text_of};
-use crate::io::Budget;
-use crate::io::psd::cursor::Cursor;
+use crate::Budget;
 use crate::math::Size;
+use crate::psd::cursor::Cursor;
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;

@@ -2,9 +2,9 @@
 //! Floor 5.
 
 use super::{Imported, Tips, gbr, text_of};
-use crate::io::Budget;
-use crate::io::psd::cursor::Cursor;
+use crate::Budget;
 use crate::paint::tip::{Hose, Rank, Select};
+use crate::psd::cursor::Cursor;
 use crate::{Error, Result};
 use std::path::Path;
 

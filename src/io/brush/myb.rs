@@ -4,8 +4,8 @@
 mod curves;
 
 use super::Imported;
-use crate::io::Budget;
-use crate::io::json;
+use crate::Budget;
+use crate::json;
 use crate::paint::brush::Stabilizer;
 use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
 use crate::paint::{Brush, Tip};

@@ -2,14 +2,14 @@
 //! Floor 5.
 
 use crate::document::Progress;
-use crate::io::fs::Disk;
-use crate::io::project::pixels;
-use crate::io::recipe::{Preset, write_preset};
-use crate::io::{Over, exr, save};
+use crate::fs::Disk;
 use crate::paint::PictureSource;
+use crate::project::pixels;
 use crate::raster::Asset;
 use crate::raster::picture::Texels;
+use crate::recipe::{Preset, write_preset};
 use crate::{Error, Result};
+use crate::{Over, exr, save};
 use std::path::Path;
 
 /// Writes a preset to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder. The preset with these names.

@@ -86,8 +86,8 @@ pub(super) fn light(&[r, g, b, a]: &[f32; 4]) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::{Budget, picture};
     use crate::math::Rect;
+    use crate::{Budget, picture};
 
     /// A ramp finer than bytes.
     fn ramp() -> (Vec<[f32; 4]>, Size) {

@@ -3,8 +3,8 @@
 
 use super::deep::light;
 use crate::document::{Content, Document, Progress, flatten, flatten_layer};
-use crate::io::project::Cancellable;
 use crate::math::Size;
+use crate::project::Cancellable;
 use crate::raster::TileGrid;
 use crate::{Error, Result};
 use exr::prelude::*;
@@ -76,7 +76,7 @@ fn written(size: Size, channels: Vec<AnyChannel<FlatSamples>>) -> Result<Vec<u8>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::{Budget, exr::ExrFile, project::sample::everything};
+    use crate::{Budget, exr::ExrFile, project::sample::everything};
 
     #[test]
     fn every_visible_layer_and_the_surface_have_channels() {

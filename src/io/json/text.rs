@@ -1,7 +1,7 @@
 //! JSON text to values: bounded in size, nesting and count before anything is built, and no key given twice.
 //! Floor 5.
 
-use crate::io::Budget;
+use crate::Budget;
 use crate::{Error, Result};
 use serde_json::Value;
 use std::{collections::HashSet, path::Path};

@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use super::stored::Role;
-use crate::io::exr::{ExrFile, Pass};
+use crate::exr::{ExrFile, Pass};
 use crate::{Error, Result};
 use std::path::Path;
 

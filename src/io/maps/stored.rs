@@ -2,9 +2,9 @@
 //! Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
 
 use super::layers;
-use crate::io::{Budget, bitmap, exr::ExrFile};
 use crate::math::Size;
 use crate::raster::Plane;
+use crate::{Budget, bitmap, exr::ExrFile};
 use crate::{Error, Result};
 use image::DynamicImage;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Pictures in EXR files: which of a file's layers is the picture, and all of them as layers.
 //! Floor 5.
 
-use crate::io::Budget;
-use crate::io::exr::{ExrFile, Pass};
+use crate::Budget;
+use crate::exr::{ExrFile, Pass};
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;

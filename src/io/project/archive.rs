@@ -1,7 +1,7 @@
 //! A zip read within a budget: its names checked, its bytes counted, its entries found even where its table of contents is lost.
 //! Floor 5. What the entries mean is the other files' here; nothing is ever unpacked to the disk.
 
-use crate::io::{Budget, Files, files};
+use crate::{Budget, Files, files};
 use crate::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read};
@@ -188,7 +188,7 @@ fn header(bytes: &[u8]) -> Option<(String, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::project::packer::Packer;
+    use crate::project::packer::Packer;
 
     fn packed() -> Vec<u8> {
         let mut packer = Packer::default();

@@ -8,7 +8,7 @@ use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };
 use crate::document::{Content, DetailSource, Document, Group, Layer, LayerId, Live, MaskKind, StrokeList};
-use crate::io::exr;
+use crate::exr;
 use crate::paint::{PictureSource, Stroke};
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane};
@@ -296,7 +296,7 @@ mod tests {
         let long = "x".repeat(300) + ".png";
         for name in ["a b?.png", "..", ".hidden", "", "C:\\a\\b.exr", "é.png", "a/", &long] {
             let plain = plain_name(name);
-            assert!(crate::io::files::refusal(&plain).is_none(), "{name} became {plain}");
+            assert!(crate::files::refusal(&plain).is_none(), "{name} became {plain}");
             assert_eq!(plain_name(&plain), plain);
         }
         assert_eq!(with_ending("a.png", "x", "png"), "a.png");

@@ -6,10 +6,10 @@ use super::manifest::{Manifest, Shown};
 use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, pixels, repair, stack};
 use crate::document::kept::Encoded;
 use crate::document::{Document, LayerId};
-use crate::io::recipe::{self, Source, Tiles};
-use crate::io::{Budget, json, picture};
 use crate::math::Size;
 use crate::raster::Asset;
+use crate::recipe::{self, Source, Tiles};
+use crate::{Budget, json, picture};
 use crate::{Error, Result};
 use rayon::prelude::*;
 use serde_json::Value;
@@ -87,7 +87,7 @@ impl Reading<'_> {
         json::parse(&self.archive_path(name), &text, self.budget)
     }
     pub fn archive_path(&self, name: &str) -> std::path::PathBuf {
-        use crate::io::Files;
+        use crate::Files;
         self.archive.path(name)
     }
     fn manifest(&mut self) -> Option<Manifest> {

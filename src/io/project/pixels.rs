@@ -1,8 +1,8 @@
 //! Pixels as a project stores them: 8-bit sRGB PNGs with straight alpha, each decoded again and compared before it is trusted.
 //! Floor 5. Which pixels are stored is `look`'s.
 
+use crate::Budget;
 use crate::document::kept::Encoded;
-use crate::io::Budget;
 use crate::math::{Rect, Size};
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};
@@ -122,7 +122,7 @@ fn painted_of(at: TileAt, tile: &Tile) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::picture;
+    use crate::picture;
 
     #[test]
     fn premultiplied_pixels_come_back_as_they_were() {

@@ -1,8 +1,8 @@
 //! Documents for tests: every kind of layer, small.
 
 use crate::document::Document;
-use crate::io::recipe::{self, Source};
-use crate::io::{Budget, Files};
+use crate::recipe::{self, Source};
+use crate::{Budget, Files};
 use crate::{Error, Result};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

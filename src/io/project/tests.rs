@@ -2,8 +2,8 @@ mod damage;
 
 use super::sample::{assert_same, everything, png};
 use super::*;
+use crate::Budget;
 use crate::document::{Content, Layer, MaskKind};
-use crate::io::Budget;
 use crate::math::srgb::Color;
 use std::sync::Arc;
 

@@ -3,8 +3,8 @@
 
 use super::channel::pack;
 use super::{ICC_PROFILE, MAGIC, Mask, OURS, RESOLUTION, Record, Section, VERSION_INFO};
-use crate::io::picture;
 use crate::math::{Rect, Size};
+use crate::picture;
 
 /// What the picture is printed at, unless somebody says otherwise.
 const DOTS_PER_INCH: u32 = 72;

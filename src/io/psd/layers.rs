@@ -5,7 +5,7 @@ use super::channel::{self, Shape};
 use super::cursor::Cursor;
 use super::parse::{Header, interleaved};
 use super::{Mask, Record, Section};
-use crate::io::Budget;
+use crate::Budget;
 use crate::math::Rect;
 use crate::{Error, Result};
 use std::path::Path;

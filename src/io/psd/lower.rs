@@ -4,10 +4,10 @@
 use super::{BLENDS, Mask, PASS_THROUGH, Record, Section, emit, signature};
 use crate::document::kept::Encoded;
 use crate::document::{Content, Document, LayerId, LayerMask, Lock, MaskKind, Progress, flatten};
-use crate::io::project::look::{self, Cancellable};
-use crate::io::project::plan::{Item, Shows, Words, plan};
-use crate::io::project::{self, pixels};
 use crate::math::{Rect, Size};
+use crate::project::look::{self, Cancellable};
+use crate::project::plan::{Item, Shows, Words, plan};
+use crate::project::{self, pixels};
 use crate::raster::BlendMode;
 use crate::{Error, Result};
 use std::collections::BTreeMap;

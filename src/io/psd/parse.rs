@@ -5,7 +5,7 @@ use super::channel::{self, Shape};
 use super::cursor::Cursor;
 use super::layers::{Layers, block};
 use super::{ICC_PROFILE, MAGIC, OURS, Record};
-use crate::io::Budget;
+use crate::Budget;
 use crate::math::Size;
 use crate::{Error, Result};
 use std::path::Path;

@@ -1,9 +1,9 @@
 use super::*;
+use crate::Budget;
 use crate::document::{Content, Document, Group, Layer, MaskKind, PixelLayer, Progress, flatten};
-use crate::io::Budget;
-use crate::io::project::Contents;
-use crate::io::project::sample::{assert_same, everything, files, read as read_recipe};
 use crate::math::Size;
+use crate::project::Contents;
+use crate::project::sample::{assert_same, everything, files, read as read_recipe};
 use crate::raster::TileGrid;
 use serde_json::json;
 use std::path::Path;

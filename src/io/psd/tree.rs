@@ -4,13 +4,13 @@
 use super::parse::{Parsed, parse};
 use super::{BLENDS, Mask, PASS_THROUGH, Record, Section, signature};
 use crate::document::{Content, Document, Group, Layer, LayerMask, Lock, MaskKind, PixelLayer};
-use crate::io::project::archive::Archive;
-use crate::io::project::manifest::Manifest;
-use crate::io::project::packer::Packer;
-use crate::io::project::{self, Contents, pixels};
-use crate::io::{Budget, picture};
 use crate::math::Size;
+use crate::project::archive::Archive;
+use crate::project::manifest::Manifest;
+use crate::project::packer::Packer;
+use crate::project::{self, Contents, pixels};
 use crate::raster::{BlendMode, Plane, TileGrid};
+use crate::{Budget, picture};
 use crate::{Error, Result};
 use std::path::Path;
 use std::sync::Arc;

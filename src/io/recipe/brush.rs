@@ -4,7 +4,7 @@
 use super::images::TURNS;
 use super::tips;
 use crate::Result;
-use crate::io::json::{Fields, Node, Object, object};
+use crate::json::{Fields, Node, Object, object};
 use crate::math::vec2;
 use crate::paint::dynamics::MAX_POINTS;
 use crate::paint::{Brush, Curve, Dynamics, Facing, Input, Jitter, Mark, Property, Stabilizer};

@@ -5,7 +5,7 @@
 use super::Reader;
 use super::names::{FILTERS, OUTSIDES};
 use crate::Result;
-use crate::io::json::{Fields, Node, Object, object};
+use crate::json::{Fields, Node, Object, object};
 use crate::math::{Size, Vec2, srgb::Color, vec2};
 use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
 use crate::raster::Outside;

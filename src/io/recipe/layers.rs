@@ -5,7 +5,7 @@ use super::Reader;
 use super::names::{BLEND_SPACES, LOCKS, name_of};
 use super::{images, masks, normals, shading, strokes};
 use crate::document::{Content, Group, Layer, Live, Lock, PixelLayer};
-use crate::io::json::{Fields, Node, Object, object};
+use crate::json::{Fields, Node, Object, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
 use crate::raster::{BlendMode, TileGrid};

@@ -4,7 +4,7 @@
 use super::Reader;
 use crate::Result;
 use crate::document::{LayerMask, MaskKind};
-use crate::io::json::{Fields, Node, Object};
+use crate::json::{Fields, Node, Object};
 use serde_json::Value;
 
 #[derive(Clone, Copy)]

@@ -7,7 +7,7 @@ use super::names::OUTSIDES;
 use super::surface::{normal_convention, write_normal_convention};
 use crate::Result;
 use crate::document::{DetailSource, NormalLayer, source::NormalConvention};
-use crate::io::json::{Fields, Node, Object};
+use crate::json::{Fields, Node, Object};
 use crate::math::Size;
 use crate::raster::Outside;
 use crate::surface::Grain;

@@ -3,14 +3,14 @@
 
 use super::Source;
 use crate::document::source::NormalConvention;
-use crate::io::json::Node;
-use crate::io::maps::detail;
-use crate::io::{files, picture};
+use crate::json::Node;
+use crate::maps::detail;
 use crate::math::{Size, Vec3};
 use crate::paint::{Adjust, PictureSource};
 use crate::raster::{Picture, Plane, TileGrid, blur};
 use crate::surface::DetailMap;
 use crate::{Error, Result};
+use crate::{files, picture};
 use std::{collections::HashMap, sync::Arc};
 
 /// The pixels of paint layers by file and corner.

@@ -1,77 +1,19 @@
 //! Presets: brushes with a name, a group and a sentence. Those in `brushes/` are built into the program.
-//! Floor 5. To add one: a file there and a line here. The file has the fields of a stroke, and what a list shows.
+//! Floor 5. The file has the fields of a stroke, and what a list shows.
 
 use super::brush::{settings, write_brush};
 use super::images::{operator, write_operator};
 use super::pictures::Pictures;
 use super::{Source, tips};
 use crate::Result;
-use crate::io::json::{self, Node, Object, object};
-use crate::io::{Budget, Files, Folder, files};
+use crate::json::{self, Node, Object, object};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, PictureSource};
 use crate::surface::Operator;
+use crate::{Budget, Files, Folder, files};
+use rilievo_brushes::BRUSHES;
 use serde_json::Value;
 use std::path::Path;
-
-macro_rules! table {
-    ($($key:literal),* $(,)?) => {
-        [$(($key, include_str!(concat!("../../../brushes/", $key, ".json")))),*]
-    };
-}
-
-/// Every preset: its key and its file, in the order of the list.
-const PRESETS: &[(&str, &str)] = &table![
-    "pencil-hb",
-    "pencil-2b",
-    "pencil-mechanical",
-    "charcoal",
-    "chalk",
-    "pastel",
-    "hatching",
-    "ink",
-    "technical-pen",
-    "brush-pen",
-    "calligraphy",
-    "marker",
-    "dry-ink",
-    "soft-round",
-    "hard-round",
-    "gouache",
-    "oil-bristle",
-    "oil-flat",
-    "palette-knife",
-    "dry-brush",
-    "sponge",
-    "airbrush",
-    "watercolour-wash",
-    "watercolour-pool",
-    "wet-ink",
-    "spatter",
-    "eraser-soft",
-    "highlight-velvet",
-    "highlight-satin",
-    "highlight-gloss",
-    "highlight-chrome",
-    "brushed-metal",
-    "rim-light",
-    "fresnel-glaze",
-    "refracted-light",
-    "cast-shadow",
-    "hollow-shadow",
-    "decal",
-    "scales",
-    "fabric-weave",
-    "dots",
-    "dust",
-    "edge-wear",
-    "moss",
-    "rust",
-    "smudge",
-    "blender",
-    "soften",
-    "clone-stamp",
-];
 
 /// A brush that can be chosen by name.
 #[derive(Clone)]
@@ -127,7 +69,7 @@ const SHOWN: Color = Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 };
 
 /// The keys of the brushes that come with the program.
 pub fn preset_names() -> impl Iterator<Item = &'static str> {
-    PRESETS.iter().map(|(key, _)| *key)
+    BRUSHES.iter().map(|(key, _)| *key)
 }
 
 /// Every brush that comes with the program, in the order of the list.
@@ -137,7 +79,7 @@ pub fn presets() -> impl Iterator<Item = Preset> {
 
 /// A brush that comes with the program.
 pub fn preset(key: &str) -> Option<Preset> {
-    let (_, text) = PRESETS.iter().find(|(known, _)| *known == key)?;
+    let (_, text) = BRUSHES.iter().find(|(known, _)| *known == key)?;
     built_in(key, text).ok()
 }
 
@@ -149,7 +91,7 @@ pub fn preset_brush(key: &str) -> Option<(Brush, Operator)> {
 /// The preset that a field names.
 pub(super) fn named(key: &Node) -> Result<(Brush, Operator)> {
     let wanted = key.text()?;
-    let Some((_, text)) = PRESETS.iter().find(|(known, _)| *known == wanted) else {
+    let Some((_, text)) = BRUSHES.iter().find(|(known, _)| *known == wanted) else {
         let names: Vec<_> = preset_names().collect();
         return Err(key.refused(format!("is “{wanted}”; the presets are {}", names.join(", "))));
     };
@@ -238,11 +180,11 @@ mod tests {
 
     #[test]
     fn every_preset_reads_and_has_a_name_a_group_and_a_sentence() {
-        for (key, text) in PRESETS {
+        for (key, text) in BRUSHES {
             let preset = built_in(key, text).unwrap_or_else(|e| panic!("{key}: {e}"));
             assert!(!preset.name.is_empty() && preset.group != Group::Imported, "{key}");
             assert!(preset.about.ends_with('.') && preset.about.len() > 20, "{key}");
-            assert_eq!(*key, crate::io::brush::plain(key));
+            assert_eq!(*key, crate::brush::plain(key));
             assert_eq!(built_in(key, &write_preset(&preset).to_string()).map(|p| p.name).ok(), Some(preset.name));
         }
         let mut groups: Vec<Group> = presets().map(|preset| preset.group).collect();

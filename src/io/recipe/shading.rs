@@ -4,7 +4,7 @@
 use super::Reader;
 use super::images::TURNS;
 use crate::Result;
-use crate::io::json::{Fields, Node, Object, fields::COORDINATE, object};
+use crate::json::{Fields, Node, Object, fields::COORDINATE, object};
 use crate::math::Vec3;
 use crate::shading::{
     Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection, RadianceScaling, Reference,

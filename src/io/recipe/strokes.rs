@@ -7,7 +7,7 @@ use super::images::{operator, write_operator};
 use super::{presets, tips};
 use crate::Result;
 use crate::document::StrokeList;
-use crate::io::json::{Fields, Node, Object, fields::COORDINATE, object};
+use crate::json::{Fields, Node, Object, fields::COORDINATE, object};
 use crate::math::{srgb::Color, vec2};
 use crate::paint::{Adjust, Brush, Sample, Stroke};
 use crate::surface::Operator;

@@ -6,8 +6,8 @@ use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, NormalSpace,
     SurfaceSource,
 };
-use crate::io::files;
-use crate::io::json::{Fields, Node, Object, object};
+use crate::files;
+use crate::json::{Fields, Node, Object, object};
 use serde_json::{Value, json};
 
 /// Stored values that mean "no surface".

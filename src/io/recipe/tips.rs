@@ -3,7 +3,7 @@
 
 use super::images::TURNS;
 use crate::Result;
-use crate::io::json::{Fields, Node, Object, object};
+use crate::json::{Fields, Node, Object, object};
 use crate::paint::grain::{Grain, GrainSource, Lies};
 use crate::paint::pattern::Pattern;
 use crate::paint::tip::{Bristles, Hose, Noise, Rank, Select};

@@ -4,8 +4,8 @@
 use super::log::{self, Kind};
 use super::state::{self, Known};
 use crate::document::Document;
-use crate::io::fs::{Fs, Handle};
-use crate::io::save::Stamp;
+use crate::fs::{Fs, Handle};
+use crate::save::Stamp;
 use crate::{Error, Result};
 use serde_json::{Value, json};
 use std::io::Write;

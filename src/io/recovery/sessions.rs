@@ -3,10 +3,10 @@
 
 use super::log::{self, Kind};
 use super::state::Last;
+use crate::Budget;
 use crate::document::Document;
-use crate::io::Budget;
-use crate::io::fs::{Fs, Lock};
-use crate::io::save::Stamp;
+use crate::fs::{Fs, Lock};
+use crate::save::Stamp;
 use crate::{Error, Result};
 use serde_json::Value;
 use std::io::Read;

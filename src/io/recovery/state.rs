@@ -3,14 +3,14 @@
 
 use super::log::{self, Kind};
 use crate::document::{Content, Document, Layer, Live, PixelLayer, StrokeList};
-use crate::io::project::assets::{Assets, Made, Painted};
-use crate::io::project::pixels;
-use crate::io::recipe::{self, Source};
-use crate::io::{Budget, Files, picture};
 use crate::math::Size;
 use crate::paint::Stroke;
+use crate::project::assets::{Assets, Made, Painted};
+use crate::project::pixels;
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, TILE, Tile, TileAt, TileGrid};
+use crate::recipe::{self, Source};
+use crate::{Budget, Files, picture};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, HashMap};
@@ -178,7 +178,7 @@ impl<'a> Last<'a> {
     /// The document; `None` where the log holds none.
     pub fn document(&self, file: &Path, budget: &Budget) -> Result<Option<Document>> {
         let Some(state) = self.state else { return Ok(None) };
-        let mut state = crate::io::json::parse(file, state, budget)?;
+        let mut state = crate::json::parse(file, state, budget)?;
         let mut tiles = Vec::new();
         self.fill_in(file, &mut state["document"], "", &mut tiles)?;
         let document = state["document"].take();

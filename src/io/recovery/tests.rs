@@ -1,12 +1,12 @@
 use super::journal::Journal;
 use super::state::Last;
 use super::*;
+use crate::Budget;
 use crate::document::{Content, Layer, PixelLayer};
-use crate::io::Budget;
-use crate::io::fs::Disk;
-use crate::io::fs::memory::{Failure, Memory, Trouble};
-use crate::io::project::sample::{assert_same, everything};
+use crate::fs::Disk;
+use crate::fs::memory::{Failure, Memory, Trouble};
 use crate::math::{Size, srgb::Color};
+use crate::project::sample::{assert_same, everything};
 use crate::raster::TileGrid;
 
 const LOG: &str = "/r/1.log";

@@ -1,7 +1,7 @@
 //! The new file while it is being written: beside its target, under a name of its own, held so that others know it is in use.
 //! Floor 5.
 
-use crate::io::fs::{Fs, Handle};
+use crate::fs::{Fs, Handle};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -68,7 +68,7 @@ fn is_ours(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::fs::memory::Memory;
+    use crate::fs::memory::Memory;
 
     #[test]
     fn what_no_process_holds_is_swept_and_nothing_else() {

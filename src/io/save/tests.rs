@@ -263,7 +263,7 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
 #[cfg(unix)]
 mod on_the_disk {
     use super::*;
-    use crate::io::{Budget, open, project::sample};
+    use crate::{Budget, open, project::sample};
     use std::os::unix::fs::{PermissionsExt, symlink};
 
     #[test]

@@ -61,7 +61,7 @@ fn inks_are_printed_and_a_big_tiff_is_known() {
     let mut bytes = Cursor::new(Vec::new());
     let mut encoder = tiff::encoder::TiffEncoder::new_big(&mut bytes).unwrap();
     encoder.write_image::<tiff::encoder::colortype::Gray32Float>(2, 1, &[0.5, 3.0]).unwrap();
-    let read = crate::io::bitmap::decode(Path::new("a.tif"), &bytes.into_inner(), &Budget::default()).unwrap();
+    let read = crate::bitmap::decode(Path::new("a.tif"), &bytes.into_inner(), &Budget::default()).unwrap();
     assert_eq!(read.image.into_rgb32f().into_raw(), [0.5, 0.5, 0.5, 3.0, 3.0, 3.0]);
 }
 #[test]

@@ -2,7 +2,7 @@
 //! Floor 5. What the names mean is `presets`'.
 
 use super::utf16;
-use crate::io::psd::cursor::Cursor;
+use crate::psd::cursor::Cursor;
 
 /// Objects within objects; more is no brush's.
 const DEEPEST: u32 = 16;

@@ -3,9 +3,9 @@
 
 use super::descriptor::{self, Object};
 use super::{MOST, SPACING};
-use crate::io::brush::Imported;
-use crate::io::psd::cursor::Cursor;
+use crate::brush::Imported;
 use crate::paint::{Brush, Tip};
+use crate::psd::cursor::Cursor;
 
 /// What is switched on in a brush and not taken from it.
 const LEFT_OUT: [(&str, &str); 7] = [

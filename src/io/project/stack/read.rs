@@ -2,8 +2,8 @@
 //! Floor 5.
 
 use super::{BLENDS, KIND};
+use crate::Budget;
 use crate::document::{Content, Layer, Lock};
-use crate::io::Budget;
 use crate::math::Size;
 use crate::raster::BlendMode;
 use crate::{Error, Result};

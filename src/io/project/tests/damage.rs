@@ -2,7 +2,7 @@
 
 use super::super::sample::{everything_json, files, png, read as read_recipe};
 use super::*;
-use crate::io::recipe;
+use crate::recipe;
 use serde_json::json;
 
 /// Every kind of layer on a canvas of a few pixels, so that every bit can be flipped.

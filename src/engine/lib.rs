@@ -1,0 +1,29 @@
+//! The engine: surfaces, the operators that bend marks over them, brushes, shading and the layered document.
+//! Floors 0 to 4 of the house (`docs/ARCHITECTURE.md`). It touches no file, no clock and starts no thread of its own,
+//! and gives the same bytes on every run with any number of threads.
+//!
+//! A picture of an object's shape (a normal map, a depth map, a mask) is a [`surface::Surface`]. Every dab, gradient
+//! and photo is a footprint (*where*: operator, anchors, weights) times a source (*what*: tip, ramp, image), bent
+//! over that surface before it lands on a tile.
+//!
+//! | floor | module | holds |
+//! |---|---|---|
+//! | 4 | [`document`] | layers, content, flattening |
+//! | 3 | [`paint`], [`shading`] | footprints, strokes, gradients, placed images; materials and radiance scaling |
+//! | 2 | [`surface`] | maps, curvature, the operators D_p and D_n, anchors, weights |
+//! | 1 | [`raster`] | tiles, blend modes, textures, samplers |
+//! | 0 | [`math`], [`error`] | rectangles, sRGB, run-time SIMD, the one error type |
+
+pub mod error;
+pub mod math;
+
+pub mod raster;
+
+pub mod surface;
+
+pub mod paint;
+pub mod shading;
+
+pub mod document;
+
+pub use error::{Error, Result};

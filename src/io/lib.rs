@@ -1,0 +1,27 @@
+//! Floor 5: files. One module a format; each brings what it reads into the program's own conventions at the door.
+
+pub mod bitmap;
+pub mod brush;
+pub mod budget;
+pub mod export;
+pub mod exr;
+pub mod files;
+pub mod fs;
+pub mod inspect;
+pub mod json;
+pub mod maps;
+pub mod open;
+pub mod picture;
+pub mod project;
+pub mod psd;
+pub mod recipe;
+pub mod recovery;
+pub mod save;
+
+// The floors beneath, under the names that they have there.
+use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
+
+pub use budget::Budget;
+pub use files::{Files, Folder, Given};
+pub use open::{Opened, open};
+pub use save::{Over, Saved, save};

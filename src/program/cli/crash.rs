@@ -1,0 +1,37 @@
+//! A defect of the program ends it with a sentence like any other failure, not with a trace.
+//! Floor 7.
+
+use crate::Result;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
+use std::sync::{Mutex, PoisonError};
+
+/// Where the first panic happened; readers catch those of decoders, and then it is no crash.
+static LAST: Mutex<Option<String>> = Mutex::new(None);
+
+/// The sentence of whatever went wrong, a panic included.
+pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), String> {
+    set_hook(Box::new(|panic| {
+        let place = panic.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));
+        let what = panic.payload_as_str().unwrap_or("unknown");
+        *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{what}{place}"));
+    }));
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(done) => done.map_err(|error| error.to_string()),
+        Err(_) => {
+            let what = LAST.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
+            Err(format!("internal error: {what}; this is a defect of Rilievo, please report it"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_a_sentence() {
+        let said = caught(|| panic!("a {} went missing", "tile")).unwrap_err();
+        let _ = std::panic::take_hook();
+        assert!(said.starts_with("internal error: a tile went missing (src/program/cli/crash.rs:"), "{said}");
+    }
+}

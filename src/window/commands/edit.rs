@@ -1,0 +1,61 @@
+//! The Edit menu.
+//! Floor 7.
+
+use super::{Command, LINE, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
+use crate::asked::WindowAsk;
+use crate::document::Content;
+use crate::session::Action;
+use crate::session::actions::{EditAction, HandAction, LayerAction};
+use crate::tools::ToolKind;
+use eframe::egui::Key;
+
+pub const COMMANDS: &[Command] = &[
+    row(
+        "Undo",
+        &[ctrl(Key::Z)],
+        "Take the last step back",
+        |session| session.tab().is_some_and(|tab| tab.history.done().is_some()),
+        |_, asked| asked.act(Action::Edit(EditAction::Undo {})),
+    ),
+    row(
+        "Redo",
+        &[ctrl_shift(Key::Z), ctrl(Key::Y)],
+        "Make the last undone step again",
+        |session| session.tab().is_some_and(|tab| tab.history.undone().is_some()),
+        |_, asked| asked.act(Action::Edit(EditAction::Redo {})),
+    ),
+    LINE,
+    row(
+        "Copy merged picture",
+        &[ctrl_shift(Key::C)],
+        "The finished picture to the clipboard",
+        has_document,
+        |_, asked| asked.ask(WindowAsk::CopyMerged),
+    ),
+    row("Paste picture", &[ctrl(Key::V)], "A picture from the clipboard as an image layer", always, |_, asked| {
+        asked.ask(WindowAsk::Paste)
+    }),
+    LINE,
+    row(
+        "Move, scale and turn",
+        &[ctrl(Key::T)],
+        "The image tool for an image: drag moves, Shift scales, Ctrl turns. For all else the move tool",
+        has_layer,
+        |session, asked| {
+            let is_image = session.layer().is_some_and(|layer| matches!(layer.content, Content::Image(_)));
+            let tool = if is_image { ToolKind::Image } else { ToolKind::Move };
+            asked.act(Action::Hand(HandAction::Tool { tool }));
+        },
+    ),
+    row(
+        "Clear layer",
+        &[key(Key::Delete)],
+        "Take the paint or the strokes out of the selected layer",
+        has_layer,
+        |session, asked| {
+            if let Some(layer) = session.layer_path() {
+                asked.act(Action::Layer(LayerAction::Clear { layer }));
+            }
+        },
+    ),
+];

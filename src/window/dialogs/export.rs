@@ -1,0 +1,78 @@
+//! Export: format and what shows through, then where to.
+//! Floor 7.
+
+use super::{Answer, buttons};
+use crate::asked::WindowAsk;
+use crate::math::{Size, srgb::Color};
+use crate::session::Session;
+use crate::theme;
+use eframe::egui::{Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2};
+
+/// What was chosen, kept for the next time.
+#[derive(Clone)]
+pub struct Export {
+    pub ending: &'static str,
+    pub background: Option<Color>,
+    pub quality: u8,
+}
+
+impl Default for Export {
+    fn default() -> Self {
+        Self { ending: "png", background: None, quality: 92 }
+    }
+}
+
+const FORMATS: [(&str, &str); 4] = [
+    ("png", "PNG: 8 bits, keeps transparency"),
+    ("exr", "EXR: linear light, half floats"),
+    ("jpg", "JPEG: small, opaque"),
+    ("webp", "WebP: lossless, small"),
+];
+
+impl Export {
+    /// `preview`: the picture, small.
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, preview: Option<TextureId>) -> Answer {
+        ui.set_width(320.0);
+        ui.heading("Export the picture");
+        if let (Some(preview), Some(document)) = (preview, session.shown()) {
+            self.preview(ui, preview, document.size);
+        }
+        if let Some(document) = session.shown() {
+            ui.weak(format!("{} pixels", document.size));
+        }
+        for (ending, about) in FORMATS {
+            ui.radio_value(&mut self.ending, ending, about);
+        }
+        let mut opaque = self.background.is_some() || self.ending == "jpg";
+        ui.add_enabled_ui(self.ending != "jpg", |ui| ui.checkbox(&mut opaque, "Lay it on white"));
+        self.background = opaque.then_some(Color::WHITE);
+        ui.add_enabled_ui(self.ending == "jpg", |ui| {
+            ui.add(Slider::new(&mut self.quality, 1..=100).text("Quality"));
+        });
+        match buttons(ui, "Export…", session.shown().is_some()) {
+            Some(true) => Answer::Ask(WindowAsk::Export(self.ending)),
+            Some(false) => Answer::Close,
+            None => Answer::Open,
+        }
+    }
+    /// The picture on what it will be laid on: white, or nothing.
+    fn preview(&self, ui: &mut Ui, preview: TextureId, canvas: Size) {
+        const ROOM_PT: Vec2 = vec2(320.0, 180.0);
+        let side = vec2(canvas.width as f32, canvas.height as f32);
+        let side = side * (ROOM_PT.x / side.x).min(ROOM_PT.y / side.y);
+        let (room, response) = ui.allocate_exact_size(vec2(ROOM_PT.x, side.y), Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Preview of the export"));
+        let rect = Rect::from_center_size(room.center(), side);
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 0.0, if self.background.is_some() { Color32::WHITE } else { theme::CHECKER[0] });
+        if self.background.is_none() {
+            const SQUARE_PT: f32 = 8.0;
+            let (columns, rows) = ((side.x / SQUARE_PT).ceil() as u32, (side.y / SQUARE_PT).ceil() as u32);
+            for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).filter(|(x, y)| (x + y) % 2 == 0) {
+                let corner = rect.min + vec2(x as f32, y as f32) * SQUARE_PT;
+                painter.rect_filled(Rect::from_min_size(corner, Vec2::splat(SQUARE_PT)), 0.0, theme::CHECKER[1]);
+            }
+        }
+        painter.image(preview, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+    }
+}

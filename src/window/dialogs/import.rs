@@ -1,0 +1,259 @@
+//! Maps become a document: which files, what was found of their conventions, and what they look like under a light, so that
+//! everything can be seen and corrected before the first stroke.
+//! Floor 7. Reading the maps is `io::maps`', on a thread of its own.
+
+use super::{Answer, buttons};
+use crate::Result;
+use crate::canvas::loaded;
+use crate::document::SurfaceSource;
+use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
+use crate::files::Purpose;
+use crate::io::maps;
+use crate::math::{Size, srgb::quantise, vec3};
+use crate::raster::Picture;
+use crate::session::storage::{self, Opened};
+use crate::surface::Surface;
+use crate::widgets::{choice_row, named, sentence};
+use eframe::egui::{self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2};
+use std::path::{Path, PathBuf};
+
+/// The dialog's state.
+#[derive(Default)]
+pub struct Import {
+    source: SurfaceSource,
+    /// As it was when the maps were read last.
+    read: Option<SurfaceSource>,
+    is_reading: bool,
+    found: Option<Result<maps::Import>>,
+    /// Lit as found, with red, green, and both flipped.
+    lit: Vec<TextureHandle>,
+    /// For the document in front, not for a new one.
+    replaces: bool,
+}
+
+/// What each of the four pictures changes: x and y flipped.
+const FLIPS: [(&str, bool, bool); 4] =
+    [("As it is", false, false), ("Flip red", true, false), ("Flip green", false, true), ("Flip both", true, true)];
+
+impl Import {
+    /// With the files that are known.
+    pub fn of(source: SurfaceSource) -> Self {
+        Self { source, ..Self::default() }
+    }
+    /// To replace the maps of a document, which are shown as they are.
+    pub fn replacing(source: Option<&SurfaceSource>) -> Self {
+        // What came out of a project has no file of its own to be read again.
+        let is_there = |source: &&SurfaceSource| {
+            let normal = source.normal.as_ref().map(|map| &map.file);
+            let file = normal.or(source.depth.as_ref().map(|map| &map.file));
+            file.is_some_and(|file| Path::new(file).is_file())
+        };
+        Self { source: source.filter(is_there).cloned().unwrap_or_default(), replaces: true, ..Self::default() }
+    }
+    /// A file was chosen for one of the maps.
+    pub fn take_file(&mut self, purpose: Purpose, file: PathBuf) {
+        let file = file.to_string_lossy().into_owned();
+        match purpose {
+            Purpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
+            Purpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
+            // The first file brings those that belong to it.
+            _ if self.source == SurfaceSource::default() => {
+                self.source = storage::maps_beside(Path::new(&file), storage::Kind::Normals);
+            }
+            _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
+        }
+    }
+    /// The maps were read.
+    pub fn take(&mut self, ctx: &Context, found: Result<maps::Import>) {
+        self.is_reading = false;
+        // A flat border is background, unless the user says otherwise; then everything is read once more.
+        let is_first = self.found.is_none() && self.source.mask.is_none();
+        if is_first && found.as_ref().is_ok_and(|import| import.findings.flat_border > 0.0) {
+            self.source.mask = Some(MaskSource::Flat);
+        }
+        self.lit.clear();
+        if let Ok(import) = &found {
+            let pictures = FLIPS.iter().filter_map(|&(name, x, y)| loaded(ctx, name, &lit(&import.surface, x, y)?));
+            self.lit = pictures.collect();
+        }
+        self.found = Some(found);
+    }
+    pub fn show(&mut self, ui: &mut Ui) -> Answer {
+        ui.set_width(560.0);
+        ui.heading(if self.replaces { "Other maps for this document" } else { "New document from maps" });
+        let mut ask = None;
+        self.files(ui, &mut ask);
+        if let Some(purpose) = ask {
+            return Answer::Ask(crate::asked::WindowAsk::Choose(purpose));
+        }
+        let is_some = self.source.normal.is_some() || self.source.depth.is_some();
+        if is_some && !self.is_reading && self.read.as_ref() != Some(&self.source) {
+            (self.read, self.is_reading) = (Some(self.source.clone()), true);
+            return Answer::Import(Box::new(self.source.clone()));
+        }
+        if self.is_reading {
+            ui.horizontal(|ui| {
+                ui.spinner();
+                ui.label("Reading the maps…");
+            });
+        }
+        match &self.found {
+            None => {}
+            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error.to_string())),
+            Some(Ok(_)) => self.understood(ui),
+        }
+        let is_ready = !self.is_reading && matches!(self.found, Some(Ok(_)));
+        match buttons(ui, if self.replaces { "Replace" } else { "Create" }, is_ready) {
+            Some(true) => self.create(),
+            Some(false) => Answer::Close,
+            None => Answer::Open,
+        }
+    }
+    /// The three files, each to be chosen or left out.
+    fn files(&mut self, ui: &mut Ui, ask: &mut Option<Purpose>) {
+        let name = |file: &str| Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let mask = match &self.source.mask {
+            Some(MaskSource::File { file, .. }) => Some(file.clone()),
+            _ => None,
+        };
+        let rows = [
+            ("Normal map", Purpose::NormalMap, self.source.normal.as_ref().map(|map| map.file.clone())),
+            ("Depth map", Purpose::DepthMap, self.source.depth.as_ref().map(|map| map.file.clone())),
+            ("Mask", Purpose::MaskMap, mask),
+        ];
+        for (label, purpose, file) in rows {
+            ui.horizontal(|ui| {
+                crate::widgets::name(ui, label);
+                let response = ui.button("Choose…");
+                named(&response, &format!("Choose {}", label.to_lowercase()));
+                if response.clicked() {
+                    *ask = Some(purpose);
+                }
+                match &file {
+                    Some(file) => {
+                        ui.label(name(file)).on_hover_text(file);
+                        let response = ui.small_button("Leave out");
+                        named(&response, &format!("Leave out {}", label.to_lowercase()));
+                        if response.clicked() {
+                            match purpose {
+                                Purpose::DepthMap => self.source.depth = None,
+                                Purpose::MaskMap => self.source.mask = None,
+                                _ => self.source.normal = None,
+                            }
+                        }
+                    }
+                    None => drop(ui.weak(if purpose == Purpose::MaskMap {
+                        "found from the maps"
+                    } else {
+                        "derived from the other map"
+                    })),
+                }
+            });
+        }
+    }
+    /// What was found, and how it is corrected.
+    fn understood(&mut self, ui: &mut Ui) {
+        self.pictures(ui);
+        if let Some(map) = &mut self.source.normal {
+            let encodings: Vec<(Option<NormalEncoding>, &str)> = std::iter::once((None, "found"))
+                .chain(NormalEncoding::ALL.iter().map(|&(e, name)| (Some(e), name)))
+                .collect();
+            if let Some(encoding) = choice_row(ui, "Encoding", map.convention.encoding, &encodings) {
+                map.convention.encoding = encoding;
+            }
+        }
+        if let Some(map) = &mut self.source.depth
+            && let Some(near) = choice_row(ui, "Near is", map.convention.near, Near::ALL)
+        {
+            map.convention.near = near;
+        }
+        let is_flat_out = self.source.mask == Some(MaskSource::Flat);
+        let has_border = matches!(&self.found, Some(Ok(import)) if import.findings.flat_border > 0.0);
+        if (is_flat_out || has_border)
+            && let Some(out) = choice_row(ui, "Flat border", is_flat_out, &[(true, "left out"), (false, "surface")])
+        {
+            self.source.mask = out.then_some(MaskSource::Flat);
+        }
+        let Some(Ok(maps::Import { surface, findings, .. })) = &self.found else { return };
+        ui.weak(format!("{} pixels, about {:.0} px deep", surface.size(), surface.depth_range_px()));
+        ui.collapsing("What was found", |ui| {
+            ScrollArea::vertical().max_height(150.0).show(ui, |ui| {
+                egui::Grid::new("findings").num_columns(3).striped(true).show(ui, |ui| {
+                    for choice in &findings.choices {
+                        ui.label(choice.field);
+                        ui.label(&choice.value);
+                        ui.weak(format!("{}, {:.0} %", choice.how.name(), choice.confidence * 100.0));
+                        ui.end_row();
+                    }
+                });
+                for note in &findings.notes {
+                    ui.label(note);
+                }
+            });
+        });
+    }
+    /// The surface lit from above left, four ways; a click corrects the map.
+    fn pictures(&mut self, ui: &mut Ui) {
+        ui.label("Lit from above left. Choose the one whose bumps stand out:");
+        let mut chosen = None;
+        ui.horizontal(|ui| {
+            for (i, (texture, (name, _, _))) in self.lit.iter().zip(FLIPS).enumerate() {
+                ui.vertical(|ui| {
+                    let (rect, response) = ui.allocate_exact_size(vec2(124.0, 124.0), Sense::click());
+                    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, i == 0, name));
+                    let side = texture.size_vec2();
+                    let scale = (rect.width() / side.x).min(rect.height() / side.y);
+                    let at = egui::Rect::from_center_size(rect.center(), side * scale);
+                    ui.painter().rect_filled(rect, 4.0, Color32::from_gray(0x20));
+                    let uv = egui::Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                    ui.painter().image(texture.id(), at, uv, Color32::WHITE);
+                    let rim = if i == 0 { ui.visuals().selection.stroke } else { ui.visuals().window_stroke };
+                    ui.painter().rect_stroke(rect, 4.0, rim, StrokeKind::Inside);
+                    if response.hovered() {
+                        ui.painter().rect_stroke(rect, 4.0, ui.visuals().widgets.hovered.fg_stroke, StrokeKind::Inside);
+                    }
+                    let text = RichText::new(sentence(name));
+                    ui.label(if i == 0 { text.strong() } else { text });
+                    if response.clicked() {
+                        chosen = Some(i);
+                    }
+                });
+            }
+        });
+        let (Some(i), Some(Ok(found))) = (chosen, &self.found) else { return };
+        let (_, x, y) = FLIPS[i];
+        if let Some(map) = &mut self.source.normal {
+            let now = found.findings.normal.clone().unwrap_or_default();
+            map.convention.flip_x = Some(now.flip_x.unwrap_or(false) != x);
+            map.convention.flip_y = Some(now.flip_y.unwrap_or(false) != y);
+        }
+    }
+    fn create(&mut self) -> Answer {
+        match self.found.take() {
+            Some(Ok(import)) if self.replaces => Answer::Replaced(Box::new((self.source.clone(), import))),
+            Some(Ok(import)) => Answer::Imported(Box::new(storage::of_import(&self.source, import))),
+            _ => Answer::Open,
+        }
+    }
+}
+
+/// A document made of maps, boxed: it is large.
+pub type Made = Box<Opened>;
+
+/// The surface under one light from above left, its normals flipped.
+fn lit(surface: &Surface, flip_x: bool, flip_y: bool) -> Option<Picture> {
+    const SIDE: u32 = 160;
+    let size = surface.size();
+    let step = size.width.max(size.height).div_ceil(SIDE).max(1);
+    let small = Size::new(size.width.div_ceil(step), size.height.div_ceil(step));
+    let light = vec3(-0.5, 0.6, 0.62).normalize();
+    let texel = |i: usize| {
+        let (x, y) = (i % small.width as usize * step as usize, i / small.width as usize * step as usize);
+        let mut n = surface.normal(x, y);
+        n.x = if flip_x { -n.x } else { n.x };
+        n.y = if flip_y { -n.y } else { n.y };
+        let shade = quantise(0.1 + 0.85 * n.dot(light).max(0.0).sqrt());
+        [shade, shade, shade, surface.coverage(x, y)]
+    };
+    Picture::srgb8(small, (0..small.area()).map(texel).collect())
+}

@@ -1,0 +1,73 @@
+//! The command palette: every command by a few letters of its name.
+//! Floor 7.
+
+use super::Answer;
+use crate::asked::Asked;
+use crate::commands::{self, Command};
+use crate::keymap::{Keymap, shown};
+use crate::session::Session;
+use crate::widgets::{list, named};
+use eframe::egui::{Button, Key, TextEdit, Ui};
+
+#[derive(Default)]
+pub struct Palette {
+    typed: String,
+    /// Which of the commands found.
+    at: usize,
+}
+
+impl Palette {
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, keymap: &Keymap, asked: &mut Asked) -> Answer {
+        ui.set_width(420.0);
+        let field =
+            ui.add(TextEdit::singleline(&mut self.typed).hint_text("Type a command").desired_width(f32::INFINITY));
+        named(&field, "Command");
+        field.request_focus();
+        if field.changed() {
+            self.at = 0;
+        }
+        let mut found: Vec<&'static Command> =
+            commands::all().filter(|command| matches(command.name, &self.typed)).collect();
+        // What begins with it first; all else as in the menus.
+        let typed = self.typed.trim().to_lowercase();
+        found.sort_by_key(|command| !command.name.to_lowercase().starts_with(&typed));
+        let (up, down, enter) =
+            ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown), i.key_pressed(Key::Enter)));
+        if down {
+            self.at += 1;
+        }
+        if up {
+            self.at = self.at.saturating_sub(1);
+        }
+        self.at = self.at.min(found.len().saturating_sub(1));
+        let mut chosen = enter.then(|| found.get(self.at)).flatten().copied();
+        list(ui, 360.0).auto_shrink([false, true]).show(ui, |ui| {
+            for (i, command) in found.iter().enumerate() {
+                let mut button = Button::selectable(i == self.at, command.name);
+                if let Some(keys) = keymap.first(command) {
+                    button = button.shortcut_text(shown(ui.ctx(), keys));
+                }
+                let response = ui.add_enabled((command.can)(session), button.min_size([400.0, 0.0].into()));
+                if (up || down) && i == self.at {
+                    response.scroll_to_me(None);
+                }
+                if response.on_hover_text(command.hint).clicked() {
+                    chosen = Some(command);
+                }
+            }
+        });
+        match chosen {
+            Some(command) if (command.can)(session) => {
+                (command.run)(session, asked);
+                Answer::Close
+            }
+            _ => Answer::Open,
+        }
+    }
+}
+
+/// Every word typed begins or stands in the name.
+fn matches(name: &str, typed: &str) -> bool {
+    let name = name.to_lowercase();
+    typed.to_lowercase().split_whitespace().all(|word| name.contains(word))
+}

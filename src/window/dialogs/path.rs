@@ -1,0 +1,126 @@
+//! A file dialog of the window's own, for systems that have none.
+//! Floor 7.
+
+use super::{Answer, buttons};
+use crate::files::Purpose;
+use crate::session::storage;
+use crate::widgets::{list, named};
+use eframe::egui::{Button, TextEdit, Ui};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub struct PathDialog {
+    purpose: Purpose,
+    folder: PathBuf,
+    /// What is typed: a name in the folder, or a whole path.
+    name: String,
+    listed: Listed,
+    /// The name has been given the keyboard once.
+    is_begun: bool,
+    /// The file that is there already, once that was said.
+    replaces: Option<PathBuf>,
+}
+
+/// What is in the folder that is shown.
+#[derive(Default)]
+struct Listed {
+    folder: PathBuf,
+    folders: Vec<String>,
+    files: Vec<String>,
+}
+
+impl PathDialog {
+    pub fn new(purpose: Purpose, folder: PathBuf, name: &str) -> Self {
+        Self { purpose, folder, name: name.into(), listed: Listed::default(), is_begun: false, replaces: None }
+    }
+    pub fn show(&mut self, ui: &mut Ui) -> Answer {
+        ui.set_width(460.0);
+        ui.heading(self.purpose.title());
+        if self.listed.folder != self.folder {
+            self.listed = Listed::of(&self.folder, self.purpose);
+        }
+        ui.horizontal(|ui| {
+            let up = self.folder.parent().map(Path::to_owned);
+            if ui.add_enabled(up.is_some(), Button::new("Up")).clicked() {
+                self.folder = up.unwrap_or_default();
+            }
+            ui.label(self.folder.display().to_string());
+        });
+        let mut chosen = None;
+        list(ui, 320.0).auto_shrink([false, false]).show(ui, |ui| {
+            for folder in &self.listed.folders {
+                if ui.add(Button::new(format!("{folder}/")).frame(false)).clicked() {
+                    self.folder = self.listed.folder.join(folder);
+                }
+            }
+            for file in &self.listed.files {
+                let response = ui.add(Button::selectable(*file == self.name, file));
+                if response.clicked() {
+                    self.name.clone_from(file);
+                }
+                if response.double_clicked() {
+                    chosen = Some(self.listed.folder.join(file));
+                }
+            }
+        });
+        ui.horizontal(|ui| {
+            let label = ui.label("File");
+            let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY)).labelled_by(label.id);
+            named(&field, "File name");
+            if !std::mem::replace(&mut self.is_begun, true) {
+                field.request_focus();
+            }
+        });
+        // A whole path replaces the folder.
+        let typed = self.folder.join(self.name.trim());
+        let can = !self.name.trim().is_empty() && (self.purpose.is_saving() || typed.is_file());
+        let is_warned = self.replaces.as_ref() == Some(&typed);
+        if is_warned {
+            ui.colored_label(ui.visuals().warn_fg_color, "There is such a file already.");
+        }
+        let yes = match self.purpose.is_saving() {
+            true if is_warned => "Replace",
+            true => "Save",
+            false => "Open",
+        };
+        match (buttons(ui, yes, can), chosen) {
+            (_, Some(file)) => self.choose(file),
+            (Some(true), None) => self.choose(typed),
+            (Some(false), None) => Answer::Close,
+            (None, None) => Answer::Open,
+        }
+    }
+    /// A file that would be lost is asked for twice.
+    fn choose(&mut self, file: PathBuf) -> Answer {
+        let named = if self.purpose == Purpose::Save { storage::with_ending(file.clone()) } else { file.clone() };
+        if self.purpose.is_saving() && named.is_file() && self.replaces.as_ref() != Some(&file) {
+            self.name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            self.folder = file.parent().map_or_else(|| self.folder.clone(), Path::to_owned);
+            self.replaces = Some(file);
+            return Answer::Open;
+        }
+        Answer::Chosen(self.purpose, file)
+    }
+}
+
+impl Listed {
+    fn of(folder: &Path, purpose: Purpose) -> Self {
+        let endings: Vec<&str> = purpose.filters().into_iter().flat_map(|(_, endings)| endings).collect();
+        let mut listed = Self { folder: folder.into(), ..Self::default() };
+        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+            let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
+            let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+            if name.starts_with('.') {
+                continue;
+            }
+            if path.is_dir() {
+                listed.folders.push(name);
+            } else if endings.contains(&ending.as_str()) {
+                listed.files.push(name);
+            }
+        }
+        listed.folders.sort_unstable();
+        listed.files.sort_unstable();
+        listed
+    }
+}

@@ -1,0 +1,100 @@
+//! What an accident left, offered once at the start: to be brought back, deleted, or left for later.
+//! Floor 7.
+
+use super::Answer;
+use crate::io::recovery::Session as Lost;
+use crate::widgets::list;
+use eframe::egui::{RichText, Ui};
+use std::time::{Duration, SystemTime};
+
+pub struct Recovery {
+    /// Oldest first, each with whether its deletion was asked for once.
+    lost: Vec<(Lost, bool)>,
+}
+
+impl Recovery {
+    pub fn new(lost: Vec<Lost>) -> Self {
+        Self { lost: lost.into_iter().map(|lost| (lost, false)).collect() }
+    }
+    pub fn is_empty(&self) -> bool {
+        self.lost.is_empty()
+    }
+    /// Closed, it leaves everything for the next start.
+    pub fn show(&mut self, ui: &mut Ui) -> Answer {
+        ui.set_width(460.0);
+        ui.heading("Recover unsaved drawings?");
+        ui.label("Rilievo ended unexpectedly. What is recovered opens as a new drawing; no file is replaced.");
+        let (mut recover, mut delete) = (None, None);
+        list(ui, 320.0).show(ui, |ui| {
+            for (i, (lost, is_asked)) in self.lost.iter_mut().enumerate() {
+                ui.separator();
+                let title = if lost.title.is_empty() { "Unnamed" } else { &lost.title };
+                ui.label(RichText::new(title).strong());
+                ui.label(described(lost));
+                ui.horizontal(|ui| {
+                    if ui.button(format!("Recover {title}")).clicked() {
+                        recover = Some(i);
+                    }
+                    let word = if *is_asked { "Delete for good" } else { "Delete…" };
+                    if ui.button(word).clicked() {
+                        delete = Some(i).filter(|_| *is_asked);
+                        *is_asked = true;
+                    }
+                });
+            }
+        });
+        ui.separator();
+        let mut answer = Answer::Open;
+        ui.horizontal(|ui| {
+            let can = self.lost.iter().any(|(lost, _)| !lost.has_failed);
+            if ui.add_enabled(can, eframe::egui::Button::new("Recover all")).clicked() {
+                answer = Answer::Recover(self.lost.extract_if(.., |(lost, _)| !lost.has_failed).map(first).collect());
+            }
+            if ui.button("Later").clicked() {
+                answer = Answer::Close;
+            }
+        });
+        if let Some(i) = recover {
+            return Answer::Recover(vec![self.lost.remove(i).0]);
+        }
+        delete.map_or(answer, |i| Answer::Delete(self.lost.remove(i).0))
+    }
+}
+
+fn first((lost, _): (Lost, bool)) -> Lost {
+    lost
+}
+
+/// When it was begun, where it was kept, and whether to be careful.
+fn described(lost: &Lost) -> String {
+    let age = lost.begun().and_then(|begun| SystemTime::now().duration_since(begun).ok());
+    let begun = age.map(|age| format!("Begun {} ago", spoken(age)));
+    let place = lost.file.as_ref().map_or("never saved".into(), |file| format!("last saved as {}", file.display()));
+    let failed = lost.has_failed.then(|| "recovering it failed before".into());
+    begun.into_iter().chain([place]).chain(failed).collect::<Vec<String>>().join(" · ")
+}
+
+/// A time in the largest unit it fills.
+fn spoken(time: Duration) -> String {
+    const MINUTE: u64 = 60;
+    const HOUR: u64 = 60 * MINUTE;
+    let secs = time.as_secs();
+    let (n, unit) = match secs {
+        0..120 => (secs, "seconds"),
+        120..7200 => (secs / MINUTE, "minutes"),
+        7200..172_800 => (secs / HOUR, "hours"),
+        _ => (secs / (24 * HOUR), "days"),
+    };
+    format!("{n} {unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_spoken_in_the_largest_unit_they_fill() {
+        let said = [0, 119, 120, 7199, 7200, 172_800].map(|secs| spoken(Duration::from_secs(secs)));
+        assert_eq!(said, ["0 seconds", "119 seconds", "2 minutes", "119 minutes", "2 hours", "2 days"]);
+    }
+}

@@ -1,0 +1,134 @@
+//! The keys: every command and tool with its own, each to be changed; what already has a key is said before it is taken.
+//! Floor 7.
+
+use super::{Answer, close};
+use crate::keymap::{Keyed, Keymap, shown};
+use crate::widgets::{list, named};
+use eframe::egui::{Event, Grid, Key, KeyboardShortcut, Modifiers, RichText, TextEdit, Ui};
+
+#[derive(Default)]
+pub struct Shortcuts {
+    filter: String,
+    /// What waits for a key.
+    waiting: Option<&'static str>,
+    /// A key that was pressed for something, though something else has it.
+    conflict: Option<(&'static str, KeyboardShortcut)>,
+}
+
+/// What the mouse and held keys do on the canvas.
+pub const ON_CANVAS: [(&str, &str); 12] = [
+    ("Move the view", "Space and drag, or the middle button"),
+    ("Zoom", "Wheel, or Ctrl and Space and drag"),
+    ("Turn the view", "Shift and Space and drag"),
+    ("Pan with the wheel", "Shift or Alt and the wheel"),
+    ("Brush size", "Drag with the right button"),
+    ("Straight line", "Shift and click with the brush"),
+    ("Take a colour", "Alt and click with the brush"),
+    ("Content under an anchor", "Ctrl and drag with the anchor tool"),
+    ("Re-pin an anchor", "Shift and drag with the anchor tool"),
+    ("Remove an anchor", "Alt and click with the anchor tool"),
+    ("Scale, turn an image", "Shift, Ctrl and drag with the image tool"),
+    ("Give a stroke up", "Escape"),
+];
+
+impl Shortcuts {
+    pub fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) -> Answer {
+        ui.set_width(520.0);
+        ui.heading("Keyboard shortcuts");
+        let field = ui.add(TextEdit::singleline(&mut self.filter).hint_text("Find").desired_width(f32::INFINITY));
+        named(&field, "Find a shortcut");
+        self.listen(ui, keymap);
+        self.ask(ui, keymap);
+        let wanted = self.filter.to_lowercase();
+        let shown = |name: &str| name.to_lowercase().contains(&wanted);
+        list(ui, 460.0).auto_shrink([false, false]).show(ui, |ui| {
+            Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
+                for keyed in Keyed::all().filter(|keyed| shown(keyed.name())) {
+                    ui.label(keyed.name()).on_hover_text(keyed.hint());
+                    ui.horizontal(|ui| self.keys(ui, keymap, keyed));
+                    ui.end_row();
+                }
+                for (what, how) in ON_CANVAS.iter().filter(|(what, _)| shown(what)) {
+                    ui.label(*what);
+                    ui.label(*how);
+                    ui.end_row();
+                }
+            });
+        });
+        close(ui)
+    }
+    /// The keys of one thing, and what is done to them.
+    fn keys(&mut self, ui: &mut Ui, keymap: &mut Keymap, keyed: Keyed) {
+        let name = keyed.name();
+        let keys = keymap.of(keyed);
+        for &one in &keys {
+            let text = shown(ui.ctx(), one);
+            let response = ui.button(RichText::new(&text).monospace()).on_hover_text("Click to take it away");
+            named(&response, &format!("{text} of {name}"));
+            if response.clicked() {
+                keymap.set(keyed, keys.iter().copied().filter(|known| *known != one).collect());
+            }
+        }
+        let is_waiting = self.waiting == Some(name);
+        let response = ui.selectable_label(is_waiting, if is_waiting { "Press a key…" } else { "+" });
+        named(&response, &format!("Add a key to {name}"));
+        if response.on_hover_text("Then press the key; Escape gives up").clicked() {
+            (self.waiting, self.conflict) = (Some(name), None);
+        }
+        if keymap.is_chosen(keyed) {
+            let response = ui.small_button("Reset").on_hover_text("The keys it comes with");
+            named(&response, &format!("Reset {name}"));
+            if response.clicked() {
+                keymap.reset(keyed);
+            }
+        }
+    }
+    /// Takes the key that something waits for.
+    fn listen(&mut self, ui: &Ui, keymap: &mut Keymap) {
+        let Some(keyed) = self.waiting.and_then(keyed) else { return };
+        let pressed = ui.input_mut(|i| {
+            let at = i.events.iter().position(|event| matches!(event, Event::Key { pressed: true, .. }))?;
+            // Neither does escape close the dialog, nor tab move on.
+            let Event::Key { key, modifiers, .. } = i.events.remove(at) else { return None };
+            i.events.retain(|event| !matches!(event, Event::Text(_)));
+            Some((key, modifiers))
+        });
+        let Some((key, held)) = pressed else { return };
+        self.waiting = None;
+        if key == Key::Escape {
+            return;
+        }
+        let mut modifiers = Modifiers::NONE;
+        for (is_held, modifier) in
+            [(held.command, Modifiers::COMMAND), (held.alt, Modifiers::ALT), (held.shift, Modifiers::SHIFT)]
+        {
+            modifiers = if is_held { modifiers.plus(modifier) } else { modifiers };
+        }
+        let keys = KeyboardShortcut::new(modifiers, key);
+        match keymap.conflict(keys, keyed) {
+            Some(_) => self.conflict = Some((keyed.name(), keys)),
+            None => keymap.take(keys, keyed),
+        }
+    }
+    /// Whether a key may be taken from what has it.
+    fn ask(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
+        let Some((name, keys)) = self.conflict else { return };
+        let Some(keyed) = keyed(name) else { return };
+        let Some(other) = keymap.conflict(keys, keyed) else { return self.conflict = None };
+        ui.horizontal_wrapped(|ui| {
+            let text = format!("{} belongs to “{}”.", shown(ui.ctx(), keys), other.name());
+            ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
+            if ui.button(format!("Give it to “{name}”")).clicked() {
+                keymap.take(keys, keyed);
+                self.conflict = None;
+            }
+            if ui.button("Leave it").clicked() {
+                self.conflict = None;
+            }
+        });
+    }
+}
+
+fn keyed(name: &str) -> Option<Keyed> {
+    Keyed::all().find(|keyed| keyed.name() == name)
+}

@@ -1,0 +1,240 @@
+//! Long work, each piece on a thread of its own with a bar of progress and a way to give it up, so that the window never waits.
+//! Floor 7.
+
+use crate::clipboard::{Clipboard, Pasted};
+use crate::document::{Document, LayerId, Progress, SurfaceSource};
+use crate::files::Purpose;
+use crate::io::recipe::Preset;
+use crate::io::save::Stamp;
+use crate::io::{maps, recovery};
+use crate::raster::Picture;
+use crate::session::Edit;
+use crate::session::actions::LayerAction;
+use crate::session::actions::files::read_picture;
+use crate::session::actions::pictures::{Part, Read};
+use crate::session::autosave::Found;
+use crate::session::storage::{self, Kind, Opened, Sorted};
+use crate::{Error, Result};
+use eframe::egui;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+/// What a job came to; done by the window when it arrives.
+pub enum Done {
+    /// A document, of this file if it is of one.
+    Opened(Option<PathBuf>, Box<Result<Opened>>),
+    /// Maps of an object: their conventions are to be seen first.
+    AreMaps(Box<SurfaceSource>),
+    /// The file is to be opened as a document of its own.
+    IsDocument(PathBuf),
+    /// The file is to be read, to become an image layer.
+    IsPicture(PathBuf, Where),
+    /// A job came to several things.
+    Several(Vec<Done>),
+    /// It went well, and whoever waits is told so.
+    Said(String),
+    /// Maps were read, for the import dialog.
+    Read(Box<Result<maps::Import>>),
+    /// Drawings that an accident left.
+    Lost(Vec<recovery::Session>),
+    /// One of them was brought back.
+    Recovered(Box<Result<Found>>),
+    /// A picture was read from a file, to become an image layer.
+    Pictured(PathBuf, String, Picture, Where),
+    /// A picture was read that a layer of a tab is to be made of.
+    Part(Box<PartRead>),
+    /// The document of a tab was saved; `None` if that was given up.
+    Saved(Box<Saved>),
+    /// An edit of the document of a tab that took long.
+    Edited(Box<Edited>),
+    /// The finished picture is in the clipboard, as long as this is kept.
+    Copied(Clipboard),
+    Pasted(Pasted),
+    /// The user's own brushes, and what cannot be read of them.
+    Brushes(Vec<Preset>, Vec<String>),
+    /// Nothing is left to be done, as when a job was given up.
+    Nothing,
+    Failed(Error),
+    /// A file dialog was answered; `None` where the system has no dialog.
+    Chosen(Purpose, Option<PathBuf>),
+}
+
+pub struct PartRead {
+    /// By its key.
+    pub tab: usize,
+    pub layer: LayerId,
+    pub part: Part,
+    pub file: PathBuf,
+    pub read: Read,
+}
+
+/// Where a picture is to be pinned to the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Where {
+    /// In the middle of the canvas.
+    Middle,
+    /// Under the pointer, if that is on the canvas.
+    Pointer,
+}
+
+pub struct Saved {
+    /// By its key.
+    pub tab: usize,
+    pub file: PathBuf,
+    /// What the file holds now.
+    pub document: Document,
+    pub stamp: Result<Option<Stamp>>,
+}
+
+pub struct Edited {
+    /// By its key.
+    pub tab: usize,
+    pub action: LayerAction,
+    /// What was edited.
+    pub from: Document,
+    pub edit: Edit,
+}
+
+/// What can be seen and done while a job lasts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum While {
+    /// It can be given up.
+    Working,
+    /// It edits the document in front, so nothing else may meanwhile. It can be given up.
+    Editing,
+    /// Another program is at work: a dialog of the system.
+    Asking,
+}
+
+/// A job under way.
+pub struct UnderWay {
+    key: usize,
+    /// What it does, for the status bar.
+    pub name: String,
+    pub progress: Arc<Progress>,
+    pub kind: While,
+    since: Instant,
+}
+
+impl UnderWay {
+    /// How far it has come, `[0, 1]`; `None` while that cannot be told.
+    pub fn share(&self) -> Option<f32> {
+        let (done, total) = self.progress.read();
+        (total > 0).then(|| done as f32 / total as f32)
+    }
+    /// It has lasted long enough to be worth a word.
+    pub fn is_long(&self) -> bool {
+        self.since.elapsed() > Duration::from_millis(250)
+    }
+}
+
+/// The jobs under way.
+pub struct Jobs {
+    sender: Sender<(usize, Done)>,
+    done: Receiver<(usize, Done)>,
+    ctx: egui::Context,
+    next: usize,
+    pub under_way: Vec<UnderWay>,
+    said: Option<(String, Instant)>,
+}
+
+impl Jobs {
+    pub fn new(ctx: &egui::Context) -> Self {
+        let (sender, done) = channel();
+        Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new(), said: None }
+    }
+    /// Runs a job; `name` is shown while it lasts.
+    pub fn start(&mut self, name: String, kind: While, work: impl FnOnce(&Progress) -> Done + Send + 'static) {
+        let key = self.next;
+        self.next += 1;
+        let progress = Arc::new(Progress::default());
+        let (sender, ctx, watched) = (self.sender.clone(), self.ctx.clone(), progress.clone());
+        let run = move || {
+            // The window may be gone by then.
+            let _ = sender.send((key, work(&watched)));
+            ctx.request_repaint();
+        };
+        if let Err(error) = spawn(&name, run) {
+            // This very end of the channel is held here.
+            let _ = self.sender.send((key, Done::Failed(error)));
+        }
+        self.under_way.push(UnderWay { key, name, progress, kind, since: Instant::now() });
+    }
+    /// Opens files that came together. `at`: where pictures become layers, if they do; else they open as documents.
+    pub fn open(&mut self, files: Vec<PathBuf>, at: Option<Where>) {
+        let name = match &files[..] {
+            [file] => format!("Opening {}", short(file)),
+            files => format!("Opening {} files", files.len()),
+        };
+        self.start(name, While::Working, move |_| {
+            let (mut known, mut done) = (Vec::new(), Vec::new());
+            for file in files {
+                match storage::kind_of(&file) {
+                    Ok(kind) => known.push((file, kind)),
+                    Err(error) => done.push(Done::Failed(error)),
+                }
+            }
+            let Sorted { objects, others } = storage::sorted(known);
+            done.extend(objects.into_iter().map(|source| Done::AreMaps(Box::new(source))));
+            done.extend(others.into_iter().map(|(file, kind)| match at.filter(|_| kind == Kind::Picture) {
+                Some(at) => Done::IsPicture(file, at),
+                None => Done::IsDocument(file),
+            }));
+            Done::Several(done)
+        });
+    }
+    pub fn read_document(&mut self, file: PathBuf) {
+        let name = format!("Opening {}", short(&file));
+        self.start(name, While::Working, move |_| {
+            let opened = storage::open(&file);
+            Done::Opened(Some(file), Box::new(opened))
+        });
+    }
+    pub fn read_picture(&mut self, file: PathBuf, at: Where) {
+        self.start(format!("Reading {}", short(&file)), While::Working, move |_| match read_picture(&file) {
+            Ok((name, picture)) => Done::Pictured(file, name, picture, at),
+            Err(error) => Done::Failed(error),
+        });
+    }
+    /// Tells that something went well, for a while.
+    pub fn say(&mut self, sentence: String) {
+        self.said = Some((sentence, Instant::now()));
+    }
+    /// What went well a moment ago.
+    pub fn said(&self) -> Option<&str> {
+        let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < TOLD)?;
+        Some(sentence)
+    }
+    /// What was finished since the last call. What was given up comes to nothing, unless it was done already.
+    pub fn finished(&mut self) -> Vec<Done> {
+        let mut finished = Vec::new();
+        for (key, done) in self.done.try_iter() {
+            let given_up = self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
+            self.under_way.retain(|job| job.key != key);
+            if !given_up || matches!(done, Done::Saved(_)) {
+                finished.push(done);
+            }
+        }
+        finished
+    }
+    /// The job that nothing else may be done beside.
+    pub fn editing(&self) -> Option<&UnderWay> {
+        self.under_way.iter().find(|job| job.kind == While::Editing)
+    }
+}
+
+/// How long a sentence about something that went well stays.
+const TOLD: Duration = Duration::from_secs(8);
+
+/// A file's own name, for a line in which a whole path has no room.
+pub fn short(file: &Path) -> String {
+    file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Starts a thread. Fails where the system starts none, with a sentence that names what it was for.
+pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
+    let started = std::thread::Builder::new().name("rilievo".into()).spawn(work);
+    started.map(drop).map_err(|error| Error::io(name, error))
+}

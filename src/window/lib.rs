@@ -1,0 +1,78 @@
+//! Floor 7: the window. Panels are functions that see the session and ask for actions; once a frame the actions are done.
+//! Nothing here knows pixels or equations.
+
+mod asked;
+mod canvas;
+mod clipboard;
+mod commands;
+mod dialogs;
+mod event_loop;
+mod files;
+mod icons;
+mod jobs;
+mod keymap;
+mod keys;
+mod memory;
+mod painter;
+mod panels;
+mod pen;
+mod recovery;
+mod sample;
+mod settings;
+mod swatches;
+mod theme;
+mod thumbnails;
+mod widgets;
+mod window;
+
+pub use window::Window;
+
+// The floors beneath, under the names that they have there.
+use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
+use rilievo_io as io;
+use rilievo_program::{session, tools};
+
+use eframe::egui;
+use std::cell::Cell;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+/// Opens the window with these files, or with the sample where there are none; returns when it is closed.
+///
+/// Fails with a sentence where there is no display.
+pub fn run(files: Vec<PathBuf>) -> Result<()> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Rilievo")
+        .with_app_id("rilievo")
+        .with_inner_size([1280.0, 820.0])
+        .with_min_inner_size([720.0, 480.0])
+        .with_drag_and_drop(true);
+    // Its keys come as keys: see `clipboard`.
+    let options = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
+    let (tablet, is_open) = (pen::SharedTablet::default(), Rc::new(Cell::new(false)));
+    let (pen, opened) = (tablet.clone(), is_open.clone());
+    let start = move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {
+        opened.set(true);
+        theme::install(&cc.egui_ctx);
+        let mut window = Window::remembering(&cc.egui_ctx, settings::file());
+        window.draw_on(pen);
+        if let Some(folder) = crate::io::recovery::folder() {
+            window.keep_recovery_in(folder);
+        }
+        if let Some(folder) = settings::brushes() {
+            window.keep_brushes_in(folder);
+        }
+        window.begin(files);
+        Ok(Box::new(window))
+    };
+    let wrong = match event_loop::run(options, tablet, Box::new(start)) {
+        Ok(()) if is_open.get() => return Ok(()),
+        // The windowing library keeps what was wrong to itself.
+        Ok(()) => "the display has no OpenGL to draw with".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    // Only what is wrong, not where the windowing library found it.
+    let wrong = wrong.rsplit(": ").next().unwrap_or(&wrong).trim_end_matches(['.', ')']);
+    let told = format!("no window can be opened here ({wrong}); “rilievo render” paints without one");
+    Err(Error::unsupported("display", told))
+}

@@ -1,0 +1,242 @@
+//! The brush in hand, all of it: tip, spread, grain, how the hand is calmed, what follows the pen and the surface.
+//! Floor 7. The list of brushes is `brushes`'; what a curve looks like is `curve`'s.
+
+use super::curve;
+use crate::asked::Asked;
+use crate::io::recipe::written_brush;
+use crate::paint::grain::{Grain, GrainSource, Lies};
+use crate::paint::pattern::Pattern;
+use crate::paint::tip::{Bristles, Noise};
+use crate::paint::{Brush, Curve, Drive, Dynamics, Input, Property, Stabilizer, Tip};
+use crate::raster::BlendMode;
+use crate::session::actions::HandAction;
+use crate::session::{Action, Session};
+use crate::widgets::{Number, check, choice_row, named, sentence};
+use eframe::egui::{self, Ui};
+
+/// The parts of a brush that are opened when they are wanted.
+pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    let brush = &session.brush;
+    let mut changed = None;
+    let mut part = |ui: &mut Ui, label: &str, show: fn(&mut Ui, &Brush) -> Option<Brush>| {
+        let header = egui::CollapsingHeader::new(label).id_salt(("brush", label));
+        changed = header.show(ui, |ui| show(ui, brush)).body_returned.flatten().or(changed.take());
+    };
+    part(ui, "Tip", tip);
+    part(ui, "Spread and colour", spread);
+    part(ui, "Grain", grain);
+    part(ui, "Stroke", stroke);
+    part(ui, "What follows what", dynamics);
+    if let Some(brush) = changed {
+        asked.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
+    }
+}
+
+/// The tips that need no file. A picture comes by importing it.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Round,
+    Ellipse,
+    Square,
+    Bristles,
+    Noise,
+    Pictures,
+}
+
+const KINDS: [(Kind, &str); 5] = [
+    (Kind::Round, "round"),
+    (Kind::Ellipse, "ellipse"),
+    (Kind::Square, "square"),
+    (Kind::Bristles, "bristles"),
+    (Kind::Noise, "specks"),
+];
+
+fn tip(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
+    let kind = match brush.tip {
+        Tip::Round => Kind::Round,
+        Tip::Ellipse { .. } => Kind::Ellipse,
+        Tip::Square { .. } => Kind::Square,
+        Tip::Bristles(_) => Kind::Bristles,
+        Tip::Noise(_) => Kind::Noise,
+        Tip::Picture(_) | Tip::Hose(_) => Kind::Pictures,
+    };
+    let chosen = choice_row(ui, "Shape", kind, &KINDS).map(|kind| match kind {
+        Kind::Round | Kind::Pictures => Tip::Round,
+        Kind::Ellipse => Tip::Ellipse { ratio: 0.5 },
+        Kind::Square => Tip::Square { ratio: 1.0 },
+        Kind::Bristles => Tip::Bristles(Bristles::default()),
+        Kind::Noise => Tip::Noise(Noise::default()),
+    });
+    let ratios = || Number::new("Ratio", 0.01..=1.0, "Of the shorter side to the longer one");
+    let whole = |v: f32| v.round().max(1.0) as u32;
+    let numbers = match &brush.tip {
+        Tip::Round => None,
+        Tip::Ellipse { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Ellipse { ratio: c.to }),
+        Tip::Square { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Square { ratio: c.to }),
+        Tip::Bristles(bristles) => {
+            let number = Number::new("Hairs", 1.0..=400.0, "How many hairs the brush has").decimals(0);
+            let count = number.row(ui, bristles.count as f32).map(|c| whole(c.to));
+            count.map(|count| Tip::Bristles(Bristles { count, ..*bristles }))
+        }
+        Tip::Noise(noise) => {
+            let cells = Number::new("Specks", 1.0..=100.0, "How many stand along the diameter").decimals(0);
+            let cells = cells.row(ui, noise.cells as f32).map(|c| Noise { cells: whole(c.to), ..*noise });
+            let density = Number::new("Density", 0.0..=1.0, "How much of the tip they cover");
+            let density = density.row(ui, noise.density).map(|c| Noise { density: c.to, ..*noise });
+            cells.or(density).map(Tip::Noise)
+        }
+        Tip::Picture(_) | Tip::Hose(_) => {
+            ui.weak("Pictures. Import… takes others.");
+            None
+        }
+    };
+    chosen.or(numbers).map(|tip| Brush { tip, ..brush.clone() })
+}
+
+fn spread(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
+    let mut to = brush.clone();
+    let mut changed = false;
+    let mut number = |ui: &mut Ui, number: Number, value: &mut f32| {
+        if let Some(c) = number.row(ui, *value) {
+            (*value, changed) = (c.to, true);
+        }
+    };
+    number(
+        ui,
+        Number::new("Scatter", 0.0..=4.0, "How far a dab may stand from the stroke, in diameters"),
+        &mut to.scatter,
+    );
+    let jitter = &mut to.jitter;
+    let hues = Number::new("Hue ±", 0.0..=180.0, "How far a dab's hue may be from the colour in hand").degrees();
+    number(ui, hues, &mut jitter.hue_degrees);
+    number(ui, Number::new("Saturation ±", 0.0..=1.0, "How far a dab's saturation may be"), &mut jitter.saturation);
+    number(ui, Number::new("Value ±", 0.0..=1.0, "How much lighter or darker a dab may be"), &mut jitter.value);
+    changed.then_some(to)
+}
+
+/// `None` is no grain.
+const PATTERNS: [(Option<Pattern>, &str); 6] = [
+    (None, "none"),
+    (Some(Pattern::Paper), "paper"),
+    (Some(Pattern::Weave), "weave"),
+    (Some(Pattern::Scales), "scales"),
+    (Some(Pattern::Lines), "lines"),
+    (Some(Pattern::Dots), "dots"),
+];
+
+fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
+    let pattern = match brush.grain.as_ref().map(|grain| &grain.source) {
+        Some(GrainSource::Pattern { pattern, .. }) => Some(*pattern),
+        _ => None,
+    };
+    let chosen = choice_row(ui, "Pattern", pattern, &PATTERNS).map(|pattern| {
+        let like = brush.grain.clone().unwrap_or_default();
+        pattern.map(|pattern| Grain { source: GrainSource::Pattern { pattern, seed: 0 }, ..like })
+    });
+    let of_grain = |grain: Option<Grain>| Brush { grain, ..brush.clone() };
+    let Some(grain) = &brush.grain else { return chosen.map(of_grain) };
+    let mut to = grain.clone();
+    let mut changed = false;
+    let mut number = |ui: &mut Ui, number: Number, value: &mut f32| {
+        if let Some(c) = number.row(ui, *value) {
+            (*value, changed) = (c.to, true);
+        }
+    };
+    number(ui, Number::new("Size", 1.0..=400.0, "Of one feature of the pattern").px(), &mut to.size_px);
+    number(ui, Number::new("Strength", 0.0..=1.0, "How much paint its valleys lose"), &mut to.strength);
+    number(ui, Number::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(), &mut to.rotation);
+    let on_surface = matches!(grain.lies, Lies::Surface { .. });
+    let hint = "Carried by the shape as a texture is; else it lies on the flat canvas";
+    if let Some(on) = check(ui, "On the surface", hint, on_surface) {
+        (to.lies, changed) = (if on { Lies::Surface { gamma: 1.0 } } else { Lies::Canvas }, true);
+    }
+    if let Lies::Surface { gamma } = &mut to.lies {
+        let gammas = Number::new("Depth γ", 0.0..=4.0, "How strongly the grain follows the depth");
+        if let Some(c) = gammas.row(ui, *gamma) {
+            (*gamma, changed) = (c.to, true);
+        }
+    }
+    chosen.or(changed.then_some(Some(to))).map(of_grain)
+}
+
+/// How the hand is calmed, by its kinds.
+#[derive(Clone, Copy, PartialEq)]
+enum Calming {
+    None,
+    Average,
+    String,
+}
+
+const CALMINGS: [(Calming, &str); 3] =
+    [(Calming::None, "none"), (Calming::Average, "trailing average"), (Calming::String, "pulled string")];
+
+fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
+    let kind = match brush.stabilizer {
+        Stabilizer::None => Calming::None,
+        Stabilizer::Average { .. } => Calming::Average,
+        Stabilizer::String { .. } => Calming::String,
+    };
+    let chosen = choice_row(ui, "Stabiliser", kind, &CALMINGS).map(|kind| match kind {
+        Calming::None => Stabilizer::None,
+        Calming::Average => Stabilizer::Average { weight: 0.7 },
+        Calming::String => Stabilizer::String { length_px: 30.0 },
+    });
+    let amount = match brush.stabilizer {
+        Stabilizer::None => None,
+        Stabilizer::Average { weight } => {
+            let number = Number::new("Weight", 0.0..=0.98, "How much of the past is left after ten pixels");
+            number.row(ui, weight).map(|c| Stabilizer::Average { weight: c.to })
+        }
+        Stabilizer::String { length_px } => {
+            let number = Number::new("Length", 1.0..=300.0, "The pen pulls the line on a string this long").px();
+            number.row(ui, length_px).map(|c| Stabilizer::String { length_px: c.to })
+        }
+    };
+    let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
+    let blended = choice_row(ui, "Blend", brush.blend, &BlendMode::ALL).map(|blend| Brush { blend, ..brush.clone() });
+    let erases = check(ui, "Erases", "The stroke takes paint away", brush.erases);
+    let erases = erases.map(|erases| Brush { erases, ..brush.clone() });
+    let keeps = check(ui, "Keeps alpha", "The stroke shows only on paint that is there", brush.keeps_alpha);
+    let keeps = keeps.map(|keeps_alpha| Brush { keeps_alpha, ..brush.clone() });
+    calmed.or(blended).or(erases).or(keeps)
+}
+
+fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
+    let mut to: Option<Dynamics> = None;
+    for Drive { property, input, curve: shape } in brush.dynamics.drives() {
+        let label = format!("{} by {}", word(&Property::ALL, property), word(&Input::ALL, input).to_lowercase());
+        ui.horizontal(|ui| {
+            ui.label(&label);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let remove = ui.small_button("Remove").on_hover_text("It follows this no more");
+                named(&remove, &format!("Remove {label}"));
+                if remove.clicked() {
+                    to = Some(brush.dynamics.with(*property, *input, Curve::Share(0.0)));
+                }
+            });
+        });
+        let bent = curve::show(ui, &format!("Curve of {}", label.to_lowercase()), shape, 64.0);
+        to = bent.map(|bent| brush.dynamics.with(*property, *input, bent)).or(to.take());
+    }
+    let menu = ui.menu_button("+ Let something follow…", |ui| {
+        for (property, name) in Property::ALL {
+            ui.menu_button(sentence(name), |ui| {
+                for (input, name) in Input::ALL {
+                    let is_new = brush.dynamics.curve(property, input).is_none();
+                    if ui.add_enabled(is_new, egui::Button::new(sentence(name))).clicked() {
+                        to = Some(brush.dynamics.with(property, input, Curve::Share(1.0)));
+                        ui.close();
+                    }
+                }
+            });
+        }
+    });
+    menu.response
+        .on_hover_text("Choose a property of the brush, then what it follows: the pen, chance, or the surface");
+    to.map(|dynamics| Brush { dynamics, ..brush.clone() })
+}
+
+/// A property's or an input's name as people read it.
+fn word<T: PartialEq>(all: &[(T, &str)], wanted: &T) -> String {
+    all.iter().find(|(known, _)| known == wanted).map_or_else(String::new, |(_, word)| sentence(word))
+}

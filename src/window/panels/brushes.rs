@@ -1,0 +1,151 @@
+//! The brushes: presets in groups, each shown painted on a ball, and the numbers of the one in hand.
+//! Floor 7.
+
+use super::brush;
+use crate::asked::{Asked, WindowAsk};
+use crate::files::Purpose;
+use crate::io::recipe::{Group, Preset};
+use crate::paint::Property;
+use crate::session::actions::hand::SIZES;
+use crate::session::actions::{FileAction, HandAction};
+use crate::session::brushes::is_found;
+use crate::session::{Action, Session};
+use crate::swatches::Swatches;
+use crate::widgets::{Number, named, title};
+use eframe::egui::text::{LayoutJob, TextWrapping};
+use eframe::egui::{self, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
+
+pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
+    let id = Id::unique("brush in hand");
+    let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
+        ui.selectable_value(&mut edits, true, "Brush in hand").on_hover_text("Change the brush you paint with");
+    });
+    ui.data_mut(|data| data.insert_temp(id, edits));
+    if edits {
+        numbers(ui, session, asked);
+        brush::show(ui, session, asked);
+        keep(ui, asked);
+    } else {
+        presets(ui, session, swatches, asked);
+    }
+}
+
+fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
+    let search = search(ui, asked);
+    for (group, name) in Group::ALL {
+        let presets = session.presets.iter().filter(|preset| preset.group == group && is_found(preset, &search));
+        let presets: Vec<&Preset> = presets.collect();
+        if presets.is_empty() {
+            continue;
+        }
+        title(ui, name);
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(5.0, 5.0);
+            for known in presets {
+                let response = preset(ui, known, session.preset == known.key, swatches);
+                if response.clicked() {
+                    asked.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
+                }
+                if known.group == Group::Imported {
+                    remove(&response, known, asked);
+                }
+            }
+        });
+    }
+}
+
+/// A right click on a brush of the user's own.
+fn remove(response: &Response, known: &Preset, asked: &mut Asked) {
+    response.context_menu(|ui| {
+        if ui.button("Remove brush").clicked() {
+            asked.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
+            ui.close();
+        }
+    });
+}
+
+/// The brush in hand under a name of its own.
+fn keep(ui: &mut Ui, asked: &mut Asked) {
+    let id = Id::unique("brush name");
+    let mut name = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let field = TextEdit::singleline(&mut name).hint_text("Name").desired_width(ui.available_width() - 96.0);
+        named(&ui.add(field), "Name of the brush to keep");
+        let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Keep brush"));
+        if button.on_hover_text("The brush as it is now joins the list").clicked() {
+            asked.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, name));
+}
+
+/// The row above the list; what is searched for.
+fn search(ui: &mut Ui, asked: &mut Asked) -> String {
+    let id = Id::unique("brush search");
+    let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        let field = TextEdit::singleline(&mut search).hint_text("Search").desired_width(ui.available_width() - 74.0);
+        named(&ui.add(field), "Search brushes");
+        let import = ui.button("Import…").on_hover_text(
+            "Brushes of GIMP (.gbr, .gih), MyPaint (.myb), Photoshop (.abr), a preset (.json), or a picture as a tip",
+        );
+        named(&import, "Import a brush…");
+        if import.clicked() {
+            asked.ask(WindowAsk::Choose(Purpose::Brush));
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, search.clone()));
+    search
+}
+
+/// One preset.
+fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(72.0, 84.0), Sense::click());
+    let label = &preset.name;
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}")));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    let look = ui.style().interact_selectable(&response, is_on);
+    ui.painter().rect(rect, 5.0, look.weak_bg_fill, look.bg_stroke, StrokeKind::Inside);
+    let at = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(64.0, 62.0));
+    if let Some(texture) = swatches.of(ui.ctx(), preset) {
+        ui.painter().image(texture, at, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let mut job = LayoutJob::simple_singleline(label.clone(), font, look.text_color());
+    // A long name ends in an ellipsis; the tooltip has it whole.
+    job.wrap = TextWrapping::truncate_at_width(rect.width() - 4.0);
+    let text = ui.fonts_mut(|fonts| fonts.layout_job(job));
+    let place = pos2(rect.center().x - 0.5 * text.size().x, rect.bottom() - 3.0 - text.size().y);
+    ui.painter().galley(place, text, look.text_color());
+    response.on_hover_text(format!("{label}\n{}", preset.about))
+}
+
+fn numbers(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    let brush = &session.brush;
+    let mut push = |action: Option<HandAction>| asked.actions.extend(action.map(Action::Hand));
+    let size = Number::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
+    push(size.row(ui, brush.size).map(|c| HandAction::Size { to: c.to }));
+    let hardness = Number::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered");
+    push(hardness.row(ui, brush.hardness).map(|c| HandAction::Hardness { to: c.to }));
+    let softness = Number::new("Softness", 0.0..=1.0, "Blur of the footprint: a rougher, less glossy mark");
+    push(softness.row(ui, brush.softness).map(|c| HandAction::Softness { to: c.to }));
+    let opacity = Number::new("Opacity", 0.0..=1.0, "Of the whole stroke");
+    push(opacity.row(ui, brush.opacity).map(|c| HandAction::Opacity { to: c.to }));
+    let flow = Number::new("Flow", 0.0..=1.0, "What one dab adds");
+    push(flow.row(ui, brush.flow).map(|c| HandAction::Flow { to: c.to }));
+    let spacing = Number::new("Spacing", 0.01..=4.0, "Distance between dabs, in diameters").logarithmic();
+    push(spacing.row(ui, brush.spacing).map(|c| HandAction::Spacing { to: c.to }));
+    let rotation = Number::new("Rotation", -180.0..=180.0, "Of the tip, counter-clockwise").degrees();
+    push(rotation.row(ui, brush.rotation).map(|c| HandAction::Rotation { to: c.to }));
+    title(ui, "Pen pressure");
+    let [size, flow] = [Property::Size, Property::Flow].map(|property| brush.dynamics.pressure_share(property));
+    let drives = Number::new("Size", 0.0..=1.0, "How much the size follows the pressure");
+    push(drives.row(ui, size).map(|c| HandAction::Pressure { size: c.to, flow }));
+    let drives = Number::new("Flow", 0.0..=1.0, "How much the flow follows the pressure");
+    push(drives.row(ui, flow).map(|c| HandAction::Pressure { size, flow: c.to }));
+}

@@ -1,0 +1,28 @@
+//! The history: every step by its name; a click goes there.
+//! Floor 7.
+
+use crate::asked::Asked;
+use crate::session::actions::EditAction;
+use crate::session::{Action, Session};
+use eframe::egui::{self, Button, RichText, Ui};
+
+pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    let Some(tab) = session.tab() else {
+        ui.weak("No document is open.");
+        return;
+    };
+    let done = tab.history.past().len() as i32;
+    let opened = std::iter::once(("Opened", -done));
+    let past = tab.history.past().enumerate().map(|(i, label)| (label, i as i32 + 1 - done));
+    let future = tab.history.future().enumerate().map(|(i, label)| (label, i as i32 + 1));
+    egui::ScrollArea::vertical().id_salt("history").auto_shrink([false, false]).stick_to_bottom(true).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        for (label, steps) in opened.chain(past).chain(future) {
+            let text = if steps > 0 { RichText::new(label).weak() } else { RichText::new(label) };
+            let row = Button::selectable(steps == 0, text).min_size(egui::vec2(ui.available_width(), 0.0));
+            if ui.add(row).clicked() && steps != 0 {
+                asked.act(Action::Edit(EditAction::Walk { steps }));
+            }
+        }
+    });
+}

@@ -1,0 +1,141 @@
+//! The layers, the topmost first, with what is done to the selected one above and beneath them.
+//! Floor 7. One layer is `row`'s, dragging it `drag`'s, its own menu `menu`'s.
+
+mod drag;
+mod menu;
+mod row;
+
+use crate::asked::Asked;
+use crate::document::{Content, Document, Group, Layer, Lock};
+use crate::icons::{Icon, icon_button};
+use crate::raster::BlendMode;
+use crate::session::actions::{LayerAction, NewLayer};
+use crate::session::{Action, LayerPath, Property, Session};
+use crate::thumbnails::Thumbnails;
+use crate::tools::ToolKind;
+use crate::widgets::{Number, choice};
+use eframe::egui::{self, Ui};
+use row::Row;
+use std::sync::Arc;
+
+pub fn kind_icon(content: &Content) -> (Icon, &'static str) {
+    match content {
+        Content::Fill(_) => (Icon::Fill, "Fill"),
+        Content::Pixels(_) => (Icon::Pixels, "Paint"),
+        Content::Image(_) => (Icon::Tool(ToolKind::Image), "Image"),
+        Content::Gradient(_) => (Icon::Tool(ToolKind::Gradient), "Gradient"),
+        Content::Strokes(_) => (Icon::Tool(ToolKind::Strokes), "Strokes"),
+        Content::Shading(_) => (Icon::Shading, "Shading"),
+        Content::RadianceScaling(_) => (Icon::Scaling, "Radiance scaling"),
+        Content::Normals(_) => (Icon::Normals, "Normals"),
+        Content::Group(_) => (Icon::Group, "Group"),
+    }
+}
+
+fn set(asked: &mut Asked, layer: &LayerPath, to: Property, done: bool) {
+    asked.act(Action::Layer(LayerAction::Set { layer: layer.clone(), to, done }));
+}
+
+pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, asked: &mut Asked) {
+    let Some(document) = session.shown() else {
+        ui.weak("No document is open.");
+        return;
+    };
+    head(ui, session, asked);
+    foot(ui, session, asked);
+    let height = ui.available_height();
+    egui::ScrollArea::vertical().id_salt("layers").max_height(height).auto_shrink([false, false]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        rows(ui, session, document, &document.layers, 0, thumbnails, asked);
+        if document.layers.is_empty() {
+            ui.weak("No layers yet: paint, or drop a picture.");
+        }
+    });
+}
+
+/// Blend mode and opacity of the selected layer.
+fn head(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
+    ui.horizontal(|ui| {
+        if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::ALL) {
+            set(asked, &path, Property::Blend { mode }, true);
+        }
+        let number = Number::new("Opacity", 0.0..=1.0, "Of the whole layer");
+        if let Some(changed) = number.inline(ui, layer.opacity, (ui.available_width() - 112.0).max(30.0)) {
+            set(asked, &path, Property::Opacity { to: changed.to }, changed.done);
+        }
+    });
+    ui.horizontal(|ui| {
+        let toggles = [
+            (Icon::LockAlpha, "Lock alpha", layer.lock == Lock::Alpha, "Paint only where there is paint already (/)"),
+            (Icon::Lock, "Lock layer", layer.lock == Lock::All, "No tool changes it"),
+            (Icon::Clip, "Clip to layer below", layer.clip_below, "Paint only where the layer beneath has paint"),
+        ];
+        for (icon, label, is_on, hint) in toggles {
+            if icon_button(ui, icon, label, is_on).on_hover_text(format!("{label}\n{hint}")).clicked() {
+                let lock = |lock: Lock| Property::Locked { lock: if is_on { Lock::None } else { lock } };
+                let to = match icon {
+                    Icon::LockAlpha => lock(Lock::Alpha),
+                    Icon::Lock => lock(Lock::All),
+                    _ => Property::ClipBelow { on: !is_on },
+                };
+                set(asked, &path, to, true);
+            }
+        }
+        let is_alone = session.tab().is_some_and(|tab| tab.solo == Some(layer.id));
+        if icon_button(ui, Icon::Solo, "Show layer alone", is_alone).on_hover_text("Show this layer alone").clicked() {
+            asked.act(Action::Layer(LayerAction::Solo { layer: path }));
+        }
+    });
+}
+
+/// The buttons that make, copy, merge and delete.
+fn foot(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    ui.horizontal(|ui| {
+        ui.menu_button("+ Add", |ui| {
+            for (kind, name) in NewLayer::ALL {
+                if ui.button(name).clicked() {
+                    asked.act(Action::Layer(LayerAction::Add { kind }));
+                    ui.close();
+                }
+            }
+        });
+        let Some(path) = session.layer_path() else { return };
+        type Make = fn(LayerPath) -> LayerAction;
+        let buttons: [(Icon, &str, Make); 6] = [
+            (Icon::Duplicate, "Duplicate layer", |layer| LayerAction::Duplicate { layer }),
+            (Icon::Up, "Move layer up", |layer| LayerAction::Nudge { layer, by: 1 }),
+            (Icon::Down, "Move layer down", |layer| LayerAction::Nudge { layer, by: -1 }),
+            (Icon::Merge, "Merge down", |layer| LayerAction::MergeDown { layer }),
+            (Icon::Bake, "Bake layer", |layer| LayerAction::Bake { layer }),
+            (Icon::Delete, "Delete layer", |layer| LayerAction::Delete { layer }),
+        ];
+        for (icon, label, make) in buttons {
+            let hint = crate::commands::named(label).map_or(label, |command| command.hint);
+            if icon_button(ui, icon, label, false).on_hover_text(format!("{label}\n{hint}")).clicked() {
+                asked.act(Action::Layer(make(path.clone())));
+            }
+        }
+    });
+}
+
+fn rows(
+    ui: &mut Ui,
+    session: &Session,
+    document: &Document,
+    layers: &[Arc<Layer>],
+    depth: usize,
+    thumbnails: &mut Thumbnails,
+    asked: &mut Asked,
+) {
+    for layer in layers.iter().rev() {
+        let Some(path) = LayerPath::of(document, layer.id) else { continue };
+        let row = Row { session, document, layer, path, depth };
+        row.show(ui, thumbnails, asked);
+        if let Content::Group(Group { layers, .. }) = &layer.content
+            && !row::is_folded(ui, layer.id)
+        {
+            rows(ui, session, document, layers, depth + 1, thumbnails, asked);
+        }
+    }
+}

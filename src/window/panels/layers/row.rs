@@ -1,0 +1,201 @@
+//! A layer's row: eye, thumbnails of the layer and its mask, name, what is special about it.
+//! Floor 7.
+
+use super::{drag, kind_icon, menu, set};
+use crate::asked::Asked;
+use crate::document::{Content, Document, Layer, LayerId, Lock, MaskKind};
+use crate::icons::{Icon, sized_button};
+use crate::raster::BlendMode;
+use crate::session::actions::LayerAction;
+use crate::session::{Action, LayerPath, Property, Session};
+use crate::theme::ACCENT;
+use crate::thumbnails::Thumbnails;
+use crate::widgets::sentence;
+use eframe::egui::{
+    self, Align2, Color32, Id, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui, pos2, vec2,
+};
+use std::sync::Arc;
+
+const ROW_PT: f32 = 38.0;
+const INDENT_PT: f32 = 14.0;
+
+/// A layer in its place.
+pub struct Row<'a> {
+    pub session: &'a Session,
+    pub document: &'a Document,
+    pub layer: &'a Arc<Layer>,
+    pub path: LayerPath,
+    /// Groups around it.
+    pub depth: usize,
+}
+
+fn folded(layer: LayerId) -> Id {
+    Id::unique(("folded", layer))
+}
+
+/// What is in the group is not shown.
+pub fn is_folded(ui: &Ui, layer: LayerId) -> bool {
+    ui.data(|data| data.get_temp::<bool>(folded(layer)).unwrap_or(false))
+}
+
+impl Row<'_> {
+    pub fn show(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, asked: &mut Asked) {
+        let Row { session, document, layer, path, depth } = self;
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
+        let is_selected = session.tab().is_some_and(|tab| tab.selected == Some(layer.id));
+        let label = format!("Layer {}", layer.name);
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label));
+        let fill = match (is_selected, response.hovered()) {
+            (true, _) => ui.visuals().selection.bg_fill,
+            (false, true) => ui.visuals().widgets.hovered.weak_bg_fill,
+            _ => ui.visuals().faint_bg_color,
+        };
+        ui.painter().rect_filled(rect, 4.0, fill);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+        inner.spacing_mut().item_spacing.x = 3.0;
+        inner.add_space(2.0 + *depth as f32 * INDENT_PT);
+        self.switches(&mut inner, asked);
+        picture(&mut inner, document, layer, thumbnails);
+        self.mask(&mut inner, thumbnails, asked);
+        name(&mut inner, session, layer, path, &response, asked);
+        drag::show(ui, document, layer, &response, rect, asked);
+        if response.clicked() {
+            asked.act(Action::Layer(LayerAction::Select { layer: path.clone() }));
+        }
+        response.context_menu(|ui| menu::show(ui, layer, path, asked));
+    }
+    /// The eye, a group's fold, and the sign of being clipped.
+    fn switches(&self, ui: &mut Ui, asked: &mut Asked) {
+        let layer = self.layer;
+        let eye = if layer.visible { Icon::Shown } else { Icon::Hidden };
+        let eye = sized_button(ui, eye, &format!("Show {}", layer.name), layer.visible, 22.0);
+        if eye.on_hover_text("Show or hide").clicked() {
+            set(asked, &self.path, Property::Visible { on: !layer.visible }, true);
+        }
+        if matches!(layer.content, Content::Group(_)) {
+            let is_folded = is_folded(ui, layer.id);
+            let icon = if is_folded { Icon::Closed } else { Icon::Opened };
+            if sized_button(ui, icon, &format!("Fold {}", layer.name), false, 18.0).clicked() {
+                ui.data_mut(|data| data.insert_temp(folded(layer.id), !is_folded));
+            }
+        }
+        if layer.clip_below {
+            let (at, _) = ui.allocate_exact_size(vec2(14.0, 14.0), Sense::hover());
+            Icon::Clip.draw(ui.painter(), at, ui.visuals().text_color());
+        }
+    }
+    /// The mask, small: a click paints on it, with Shift puts it aside.
+    fn mask(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, asked: &mut Asked) {
+        let Some(mask) = &self.layer.mask else { return };
+        let is_on = self.session.tab().is_some_and(|tab| tab.on_mask && tab.selected == Some(self.layer.id));
+        let (rect, response) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::click());
+        let label = format!("Mask of {}", self.layer.name);
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, &label));
+        ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x18));
+        match thumbnails.of_mask(ui.ctx(), self.layer) {
+            Some((texture, size)) => {
+                let at =
+                    Rect::from_center_size(rect.center(), size * (rect.width() / size.x).min(rect.height() / size.y));
+                let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+                ui.painter().image(texture, at, uv, Color32::WHITE);
+            }
+            None => Icon::Mask.draw(ui.painter(), rect.shrink(5.0), Color32::from_gray(0xe4)),
+        }
+        if mask.disabled {
+            let cross = Stroke::new(2.0, ui.visuals().error_fg_color);
+            ui.painter().line_segment([rect.left_top(), rect.right_bottom()], cross);
+            ui.painter().line_segment([rect.left_bottom(), rect.right_top()], cross);
+        }
+        if is_on {
+            ui.painter().rect_stroke(rect, 3.0, Stroke::new(2.0, ACCENT), StrokeKind::Outside);
+        }
+        let hint = "Click to paint on the mask; Shift and click to put it aside";
+        if !response.on_hover_text(hint).clicked() {
+            return;
+        }
+        let is_picture = matches!(mask.kind, MaskKind::File { .. });
+        let (layer, path) = (self.path.clone(), &self.path);
+        if ui.input(|i| i.modifiers.shift) {
+            set(asked, path, Property::MaskDisabled { on: !mask.disabled }, true);
+        } else if is_picture {
+            asked.act(Action::Layer(LayerAction::OnMask { layer, on: !is_on }));
+        } else {
+            asked.act(Action::Layer(LayerAction::Select { layer }));
+        }
+    }
+}
+
+/// The thumbnail, or the kind's icon until there is one.
+fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mut Thumbnails) {
+    let (rect, _) = ui.allocate_exact_size(vec2(30.0, 30.0), Sense::hover());
+    let (icon, _) = kind_icon(&layer.content);
+    ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x70));
+    if let Some((texture, size)) = thumbnails.of(ui.ctx(), document, layer) {
+        let scale = (rect.width() / size.x).min(rect.height() / size.y);
+        let at = Rect::from_center_size(rect.center(), size * scale);
+        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        ui.painter().image(texture, at, uv, Color32::WHITE);
+        let badge = Rect::from_min_size(rect.max - vec2(13.0, 13.0), vec2(13.0, 13.0));
+        ui.painter().rect_filled(badge, 3.0, Color32::from_black_alpha(150));
+        icon.draw(ui.painter(), badge.shrink(1.5), Color32::from_gray(0xe4));
+    } else {
+        icon.draw(ui.painter(), rect.shrink(6.0), Color32::from_gray(0xe4));
+    }
+}
+
+/// The name, or a field to type another into.
+fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &Response, asked: &mut Asked) {
+    let renaming = Id::unique("renaming layer");
+    let typed = ui.data(|data| data.get_temp::<(LayerId, String)>(renaming)).filter(|(id, _)| *id == layer.id);
+    if let Some((id, mut text)) = typed {
+        let response = ui.add(TextEdit::singleline(&mut text).desired_width(ui.available_width() - 24.0));
+        crate::widgets::named(&response, "Layer name");
+        if response.lost_focus() {
+            ui.data_mut(|data| data.remove::<(LayerId, String)>(renaming));
+            let is_kept = !ui.input(|i| i.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
+            if is_kept && text != layer.name {
+                set(asked, path, Property::Name { name: text.trim().to_owned() }, true);
+            }
+        } else {
+            response.request_focus();
+            ui.data_mut(|data| data.insert_temp(renaming, (id, text)));
+        }
+        return;
+    }
+    if row.double_clicked() {
+        ui.data_mut(|data| data.insert_temp(renaming, (layer.id, layer.name.clone())));
+    }
+    let at = ui.available_rect_before_wrap();
+    let is_alone = session.tab().is_some_and(|tab| tab.solo == Some(layer.id));
+    let badges =
+        [(layer.lock == Lock::All, Icon::Lock), (layer.lock == Lock::Alpha, Icon::LockAlpha), (is_alone, Icon::Solo)];
+    let badges: Vec<Icon> = badges.into_iter().filter(|(on, _)| *on).map(|(_, icon)| icon).collect();
+    let room = at.width() - 6.0 - 17.0 * badges.len() as f32;
+    let strong = ui.visuals().strong_text_color();
+    let color = if layer.visible { strong } else { ui.visuals().weak_text_color() };
+    let galley = egui::WidgetText::from(egui::RichText::new(&layer.name).color(color)).into_galley(
+        ui,
+        Some(egui::TextWrapMode::Truncate),
+        room.max(10.0),
+        TextStyle::Body,
+    );
+    ui.painter().galley(pos2(at.left() + 3.0, at.top() + 4.0), galley, color);
+    let (_, kind) = kind_icon(&layer.content);
+    let mode =
+        if layer.blend == BlendMode::Normal { String::new() } else { format!(" · {}", sentence(layer.blend.name())) };
+    let opacity = if layer.opacity < 1.0 { format!(" · {:.0} %", layer.opacity * 100.0) } else { String::new() };
+    let about = format!("{kind}{mode}{opacity}");
+    let font = TextStyle::Small.resolve(ui.style());
+    ui.painter().text(
+        pos2(at.left() + 3.0, at.bottom() - 5.0),
+        Align2::LEFT_BOTTOM,
+        about,
+        font,
+        ui.visuals().weak_text_color(),
+    );
+    for (i, icon) in badges.iter().enumerate() {
+        let center = pos2(at.right() - 10.0 - 17.0 * i as f32, at.center().y);
+        icon.draw(ui.painter(), Rect::from_center_size(center, vec2(13.0, 13.0)), ui.visuals().text_color());
+    }
+}

@@ -1,0 +1,244 @@
+//! Properties of shading layers and of radiance scaling: model, terms, lights, features.
+//! Floor 7.
+
+use super::colors;
+use super::properties::Setter;
+use crate::math::{Vec2, Vec3, vec2, vec3};
+use crate::session::Property;
+use crate::session::actions::pictures::Part;
+use crate::shading::{
+    Environment, FeatureScale, Features, Light, LightKind, Model, Projection, RadianceScaling, Scaling, Shading, Term,
+};
+use crate::widgets::{Changed, Number, check, choice_row, title};
+use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
+
+/// `canvas`: its sides, px.
+pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut Setter) {
+    if let Some(model) = choice_row(ui, "Model", shading.model, &Model::ALL) {
+        setter.set(Property::ShadingModel { model }, true);
+    }
+    term(ui, "Ambient", shading.ambient, setter, |term| Property::Ambient { term });
+    term(ui, "Diffuse", shading.diffuse, setter, |term| Property::Diffuse { term });
+    term(ui, "Specular", shading.specular, setter, |term| Property::Specular { term });
+    match shading.model {
+        Model::Phong | Model::Toon => {
+            let number = Number::new("Shininess", 1.0..=400.0, "How small the highlight is").logarithmic().decimals(0);
+            setter.take(number.row(ui, shading.shininess).map(|c| c.map(|to| Property::Shininess { to })));
+        }
+        Model::SubLambertian => {
+            let number = Number::new("Flatness", 0.0..=1.0, "1 is matt, 0 flat like the moon");
+            setter.take(number.row(ui, shading.exponent).map(|c| c.map(|to| Property::Exponent { to })));
+        }
+        Model::Ashikhmin => {
+            let (nu, nv) = (shading.nu, shading.nv);
+            let a = Number::new("Along x", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nu);
+            setter.take(a.map(|c| c.map(|nu| Property::Anisotropy { nu, nv })));
+            let b = Number::new("Along y", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nv);
+            setter.take(b.map(|c| c.map(|nv| Property::Anisotropy { nu, nv })));
+        }
+        Model::Refraction => {
+            let number = Number::new("Index", 1.0..=3.0, "Glass is 1.5");
+            setter.take(number.row(ui, shading.index).map(|c| c.map(|to| Property::RefractiveIndex { to })));
+        }
+        _ => {}
+    }
+    if shading.model == Model::Toon {
+        let number = Number::new("Tones", 2.0..=12.0, "Flat bands of light").decimals(0);
+        setter.take(number.row(ui, shading.bands as f32).map(|c| c.map(|to| Property::Bands { to: to as u32 })));
+    }
+    if matches!(shading.model, Model::AmbientOcclusion | Model::DiffuseEnvironment) {
+        let number = Number::new("Reach", 0.0..=400.0, "How far away occluders still count, px").decimals(0);
+        setter.take(number.row(ui, shading.occlusion_radius_px).map(|c| c.map(|to| Property::Occlusion { to })));
+    }
+    pictures(ui, shading, setter);
+    if !shading.model.needs_environment() && !matches!(shading.model, Model::LitSphere | Model::AmbientOcclusion) {
+        lights(ui, &shading.lights, canvas, setter);
+    }
+    features(ui, &shading.features, setter);
+}
+
+/// The environment or the lit spheres, where the model knows them.
+fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut Setter) {
+    let mut picture = |ui: &mut Ui, part: Part, file: Option<&str>, none: &str| {
+        title(ui, part.title());
+        ui.horizontal_wrapped(|ui| {
+            setter.choose(ui, part, "Choose…");
+            match file {
+                None => drop(ui.weak(none)),
+                Some(file) => {
+                    ui.label(file);
+                    if ui.small_button("Remove").clicked() {
+                        setter.set(Property::Without { part }, true);
+                    }
+                }
+            }
+        });
+    };
+    if shading.model.needs_environment() || shading.model == Model::Ashikhmin {
+        let file = shading.environment.as_ref().map(|environment| &*environment.file);
+        let none = if shading.lacks_environment() { "None yet: the layer is black" } else { "None: lit by the lights" };
+        picture(ui, Part::Environment, file, none);
+        if let Some(environment) = &shading.environment {
+            surroundings(ui, environment, setter);
+        }
+    } else if shading.model == Model::LitSphere {
+        picture(ui, Part::Sphere, shading.sphere.as_ref().map(|sphere| &*sphere.file), "Grey clay");
+        picture(ui, Part::ConcaveSphere, shading.sphere_concave.as_ref().map(|sphere| &*sphere.file), "The same");
+    }
+}
+
+fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut Setter) {
+    let Environment { projection, rotation, exposure, .. } = *environment;
+    if let Some(projection) = choice_row(ui, "Lies as", projection, &Projection::ALL) {
+        setter.set(Property::Surrounded { projection, rotation, exposure }, true);
+    }
+    let turn = Number::new("Turn", -180.0..=180.0, "About the vertical axis").degrees().row(ui, rotation);
+    setter.take(turn.map(|c| c.map(|rotation| Property::Surrounded { projection, rotation, exposure })));
+    let stops = Number::new("Exposure", -8.0..=8.0, "In stops").row(ui, exposure);
+    setter.take(stops.map(|c| c.map(|exposure| Property::Surrounded { projection, rotation, exposure })));
+}
+
+fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut Setter, put: fn(Term) -> Property) {
+    ui.horizontal(|ui| {
+        let color = colors::button(ui, &format!("{label} colour"), term.color);
+        setter.take(color.map(|c| c.map(|color| put(Term { color, ..term }))));
+        let weight = Number::new(label, 0.0..=2.0, "How much of it there is; 0 leaves it out").row(ui, term.weight);
+        setter.take(weight.map(|c| c.map(|weight| put(Term { weight, ..term }))));
+    });
+    let gamma = format!("{label} relief");
+    let number = Number::new(&gamma, 0.0..=8.0, "How strongly features are brought out in this term (γ)");
+    let changed = number.row(ui, term.scaling.gamma_convex);
+    setter.take(changed.map(|c| c.map(|gamma| put(Term { scaling: Scaling::new(term.scaling.alpha, gamma), ..term }))));
+}
+
+fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut Setter) {
+    title(ui, "Lights");
+    let with = |i: usize, light: Light| {
+        let mut lights = lights.to_vec();
+        if let Some(slot) = lights.get_mut(i) {
+            *slot = light;
+        }
+        Property::Lights { lights }
+    };
+    for (i, light) in lights.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let direction = match light.kind {
+                LightKind::Directional { direction } => direction,
+                // Seen from far enough, a point is a direction; the ball shows which.
+                LightKind::Point { position } => position,
+            };
+            if let (Some(changed), LightKind::Directional { .. }) =
+                (ball(ui, &format!("Direction of light {}", i + 1), direction), light.kind)
+            {
+                let kind = |direction| LightKind::Directional { direction };
+                setter.take(Some(changed.map(|direction| with(i, Light { kind: kind(direction), ..*light }))));
+            }
+            ui.vertical(|ui| {
+                ui.horizontal(|ui| {
+                    let color = colors::button(ui, &format!("Colour of light {}", i + 1), light.color);
+                    setter.take(color.map(|c| c.map(|color| with(i, Light { color, ..*light }))));
+                    if lights.len() > 1 && ui.small_button("Remove").clicked() {
+                        let mut left = lights.to_vec();
+                        left.remove(i);
+                        setter.set(Property::Lights { lights: left }, true);
+                    }
+                });
+                let label = format!("Light {}", i + 1);
+                let number = Number::new(&label, 0.0..=4.0, "Intensity").row(ui, light.intensity);
+                setter.take(number.map(|c| c.map(|intensity| with(i, Light { intensity, ..*light }))));
+                if let LightKind::Point { position } = light.kind {
+                    let label = format!("Height {}", i + 1);
+                    let height = Number::new(&label, 0.0..=4000.0, "Over the nearest point, px").decimals(0);
+                    let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
+                    let height = height.row(ui, position.z);
+                    setter.take(height.map(|c| c.map(|z| with(i, Light { kind: kind(z), ..*light }))));
+                }
+            });
+        });
+    }
+    ui.horizontal_wrapped(|ui| {
+        let far = LightKind::Directional { direction: vec3(-0.6, 0.2, 0.5) };
+        let near = LightKind::Point { position: vec3(canvas.x * 0.3, canvas.y * 0.3, canvas.max_element() * 0.3) };
+        for (text, kind) in [("Add light", far), ("Add light at a point", near)] {
+            if ui.button(text).clicked() {
+                let more = lights.iter().copied().chain([Light { kind, intensity: 0.5, ..Light::default() }]);
+                setter.set(Property::Lights { lights: more.collect() }, true);
+            }
+        }
+    });
+    ui.weak("The anchor tool (A) drags lights on the canvas.");
+}
+
+/// A ball on which a direction is dragged: toward the light, camera space (y up).
+fn ball(ui: &mut Ui, label: &str, direction: Vec3) -> Option<Changed<Vec3>> {
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(58.0, 58.0), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, label));
+    let (center, radius) = (rect.center(), 26.0);
+    let l = direction.normalize_or(Vec3::Z);
+    let painter = ui.painter();
+    painter.circle_filled(center, radius, Color32::from_gray(0x3a));
+    // A few discs toward the light: enough to see where it comes from.
+    for i in 1..=6 {
+        let t = i as f32 / 6.0;
+        let at = center + egui::vec2(l.x, -l.y) * radius * 0.55 * t;
+        painter.circle_filled(
+            at,
+            radius * (1.0 - 0.72 * t) * (0.75 + 0.25 * l.z.max(0.0)),
+            Color32::from_white_alpha(26),
+        );
+    }
+    painter.add(Shape::circle_stroke(center, radius, Stroke::new(1.0, Color32::from_gray(0x70))));
+    let handle = center + egui::vec2(l.x, -l.y) * radius;
+    painter.circle_filled(handle, 4.0, if l.z >= 0.0 { Color32::WHITE } else { Color32::from_gray(0x90) });
+    let is_held = response.is_pointer_button_down_on() || response.drag_stopped() || response.clicked();
+    let response = response.on_hover_text("Drag: the middle faces you, the rim grazes");
+    let pos = response.interact_pointer_pos().filter(|_| is_held)?;
+    let at = (pos - center) / radius;
+    let flat = vec2(at.x, -at.y).clamp_length_max(0.999);
+    let to = vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt());
+    Some(Changed { to, done: response.drag_stopped() || response.clicked() })
+}
+
+fn features(ui: &mut Ui, features: &Features, setter: &mut Setter) {
+    title(ui, "Features");
+    let Some(&scale) = features.scales.first() else { return };
+    let with = |scale: FeatureScale| {
+        let mut features = features.clone();
+        if let Some(first) = features.scales.first_mut() {
+            *first = scale;
+        }
+        Property::Features { features }
+    };
+    let number = Number::new("Width", 0.0..=40.0, "Features this many pixels wide count in full");
+    let changed = number.row(ui, scale.curvature_scale_px);
+    setter.take(changed.map(|c| c.map(|curvature_scale_px| with(FeatureScale { curvature_scale_px, ..scale }))));
+    let changed = Number::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, scale.blur_px);
+    setter.take(changed.map(|c| c.map(|blur_px| with(FeatureScale { blur_px, ..scale }))));
+    let hint = "0 all features, 1 those along the light, −1 those across it";
+    let changed = Number::new("Direction", -1.0..=1.0, hint).row(ui, features.lambda);
+    setter.take(
+        changed.map(|c| c.map(|lambda| Property::Features { features: Features { lambda, ..features.clone() } })),
+    );
+}
+
+pub fn radiance_scaling(ui: &mut Ui, scaling: &RadianceScaling, setter: &mut Setter) {
+    let now = scaling.scaling;
+    let gamma = Number::new("Strength", 0.0..=12.0, "How strongly relief is brought out (γ)").row(ui, now.gamma_convex);
+    setter.take(gamma.map(|c| c.map(|gamma| Property::Scaled { scaling: Scaling::new(now.alpha, gamma) })));
+    let concave = Number::new("In hollows", 0.0..=12.0, "The strength on concave features").row(ui, now.gamma_concave);
+    let with = |gamma_concave| Property::Scaled { scaling: Scaling { gamma_concave, ..now } };
+    setter.take(concave.map(|c| c.map(with)));
+    let hint = "Light of this brightness stays as it is (α)";
+    let alpha = Number::new("Still tone", 0.02..=0.98, hint).row(ui, now.alpha);
+    setter.take(alpha.map(|c| c.map(|alpha| Property::Scaled { scaling: Scaling { alpha, ..now } })));
+    let hint = "Keep the mean brightness over the surface";
+    if let Some(on) = check(ui, "Keep brightness", hint, scaling.keep_mean) {
+        setter.set(Property::KeepMean { on }, true);
+    }
+    features(ui, &scaling.features, setter);
+    if scaling.features.lambda != 0.0 {
+        title(ui, "Light that the direction refers to");
+        let changed = ball(ui, "Direction of the light", scaling.light);
+        setter.take(changed.map(|c| c.map(|light| Property::ScalingLight { light })));
+    }
+}

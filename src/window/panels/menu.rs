@@ -1,0 +1,89 @@
+//! The menu bar and the documents' tabs.
+//! Floor 7.
+
+use crate::asked::{Asked, WindowAsk};
+use crate::commands::{Command, MENUS, SHADING};
+use crate::icons::{Icon, sized_button};
+use crate::keymap::shown;
+use crate::session::actions::FileAction;
+use crate::session::{Action, Session};
+use crate::settings::Settings;
+use eframe::egui::{self, Button, RichText, Ui};
+use std::path::PathBuf;
+
+/// The menus, made from the commands.
+pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, asked: &mut Asked) {
+    egui::MenuBar::new().ui(ui, |ui| {
+        for (title, commands) in MENUS {
+            ui.menu_button(title, |ui| {
+                ui.set_min_width(220.0);
+                // A low window scrolls what does not fit.
+                let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 12.0;
+                egui::ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
+                    for command in commands {
+                        entry(ui, session, settings, command, asked);
+                        match command.name {
+                            "New gradient layer" => drop(ui.menu_button("New shading layer", |ui| {
+                                SHADING.iter().for_each(|command| entry(ui, session, settings, command, asked));
+                            })),
+                            "Open…" => recent_files(ui, &settings.recent, asked),
+                            _ => {}
+                        }
+                    }
+                });
+            });
+        }
+    });
+}
+
+fn entry(ui: &mut Ui, session: &Session, settings: &Settings, command: &'static Command, asked: &mut Asked) {
+    if command.is_line() {
+        return drop(ui.separator());
+    }
+    let is_on = command.is_on.is_some_and(|is_on| is_on(session, settings));
+    let mut button = Button::selectable(is_on, command.name);
+    if let Some(keys) = settings.keymap.first(command) {
+        button = button.shortcut_text(shown(ui.ctx(), keys));
+    }
+    let response = ui.add_enabled((command.can)(session), button);
+    if response.on_hover_text(command.hint).clicked() {
+        (command.run)(session, asked);
+        ui.close();
+    }
+}
+
+fn recent_files(ui: &mut Ui, recent: &[PathBuf], asked: &mut Asked) {
+    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for file in recent {
+                let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                if ui.button(name).on_hover_text(file.display().to_string()).clicked() {
+                    asked.ask(WindowAsk::Open(file.clone()));
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+/// One tab a document, a dot before what is not saved.
+pub fn tabs(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (index, tab) in session.tabs.iter().enumerate() {
+            let is_front = index == session.current;
+            let title = format!("{}{}", if tab.is_dirty() { "• " } else { "" }, tab.title());
+            let text = if is_front { RichText::new(title).strong() } else { RichText::new(title) };
+            let path = tab.file.as_ref().map_or_else(|| "Not saved yet".to_owned(), |file| file.display().to_string());
+            let response = ui.add(Button::selectable(is_front, text)).on_hover_text(path);
+            if response.clicked() {
+                asked.act(Action::File(FileAction::Tab { index }));
+            }
+            let close = sized_button(ui, Icon::Close, &format!("Close {}", tab.title()), false, 18.0);
+            if close.clicked() || response.middle_clicked() {
+                asked.ask(WindowAsk::Close(index));
+            }
+            ui.add_space(8.0);
+        }
+    });
+}

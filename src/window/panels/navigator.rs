@@ -1,0 +1,70 @@
+//! The navigator: the whole picture small, with what the window shows of it; a click looks there.
+//! Floor 7.
+
+use crate::asked::{Asked, WindowAsk};
+use crate::canvas::Canvas;
+use crate::math::{Vec2, vec2};
+use crate::session::actions::ViewAction;
+use crate::session::view::ZOOMS;
+use crate::session::{Action, Session};
+use crate::widgets::Number;
+use eframe::egui::{self, Color32, Rect, Sense, Shape, Stroke, Ui, pos2};
+
+pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, asked: &mut Asked) {
+    let Some(tab) = session.tab() else {
+        ui.weak("No document is open.");
+        return;
+    };
+    let (size, Some(view)) = (tab.document().size, tab.view) else { return };
+    let room = egui::vec2(ui.available_width() - 4.0, 180.0);
+    let scale = (room.x / size.width as f32).min(room.y / size.height as f32);
+    let side = egui::vec2(size.width as f32, size.height as f32) * scale;
+    ui.vertical_centered(|ui| {
+        let (rect, response) = ui.allocate_exact_size(side, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Navigator"));
+        ui.painter().rect_filled(rect, 0.0, Color32::from_gray(0x78));
+        if let Some(texture) = canvas.small(ui.ctx(), size) {
+            ui.painter().image(texture, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        }
+        let inverse = view.canvas_from_screen();
+        let half = canvas.area_pt * 0.5;
+        let corner = |x: f32, y: f32| {
+            let p: Vec2 = inverse.transform_point2(vec2(x, y) * half) * scale;
+            rect.min + egui::vec2(p.x, p.y)
+        };
+        let frame = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        // Where all is in sight there is nothing to frame.
+        if !Rect::from_points(&frame).contains_rect(rect.shrink(1.0)) {
+            let painter = ui.painter_at(rect);
+            painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(3.0, Color32::from_black_alpha(120))));
+            painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(1.4, Color32::WHITE)));
+        }
+        if let Some(pos) = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on()) {
+            let at = (pos - rect.min) / scale;
+            asked.act(Action::View(ViewAction::LookAt { center: vec2(at.x, at.y) }));
+        }
+    });
+    ui.horizontal(|ui| {
+        let per_point = ui.ctx().pixels_per_point();
+        let [least, most] = ZOOMS.map(|zoom| zoom * 100.0);
+        let zoom =
+            Number::new("Zoom", least..=most, "Screen pixels to a hundred of the canvas").percent().logarithmic();
+        if let Some(changed) = zoom.inline(ui, view.zoom * per_point * 100.0, 90.0) {
+            asked.act(Action::View(ViewAction::ZoomTo { zoom: changed.to / (100.0 * per_point) }));
+        }
+    });
+    ui.horizontal(|ui| {
+        if ui.button("Fit").on_hover_text("The whole canvas in the window").clicked() {
+            asked.ask(WindowAsk::Scale(0.0));
+        }
+        if ui.button("100 %").on_hover_text("Actual pixels").clicked() {
+            asked.ask(WindowAsk::Scale(1.0));
+        }
+        if ui.selectable_label(view.mirrored, "Mirror").on_hover_text("See the picture mirrored (M)").clicked() {
+            asked.act(Action::View(ViewAction::Mirror {}));
+        }
+        if ui.selectable_label(view.turn_rad != 0.0, "Upright").on_hover_text("Turn the canvas back (5)").clicked() {
+            asked.act(Action::View(ViewAction::Upright {}));
+        }
+    });
+}

@@ -1,0 +1,252 @@
+//! Properties of the selected layer: what it is made of, where it lies, how it bends.
+//! Floor 7. Materials and lights are `material`'s.
+
+use super::{colors, mask, material, options, strokes};
+use crate::asked::{Asked, WindowAsk};
+use crate::document::{Content, DetailSource, Layer, NormalLayer};
+use crate::files::Purpose;
+use crate::math::{Vec2, vec2};
+use crate::paint::{Adjust, Filter, Gradient, PlacedImage, Placement, Stop};
+use crate::raster::Outside;
+use crate::session::actions::LayerAction;
+use crate::session::actions::pictures::Part;
+use crate::session::{Action, LayerPath, Property, Session};
+use crate::surface::{Grain, Weights};
+use crate::widgets::{Changed, Number, check, choice_row, named, title};
+use eframe::egui::Ui;
+
+/// Pushes changes of one layer.
+pub struct Setter<'a> {
+    layer: LayerPath,
+    asked: &'a mut Asked,
+}
+
+impl Setter<'_> {
+    pub fn set(&mut self, to: Property, done: bool) {
+        self.asked.act(Action::Layer(LayerAction::Set { layer: self.layer.clone(), to, done }));
+    }
+    /// Does something else to the layer.
+    pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
+        self.asked.act(Action::Layer(action(self.layer.clone())));
+    }
+    /// A button that asks for a picture of the layer's.
+    pub fn choose(&mut self, ui: &mut Ui, part: Part, text: &str) {
+        let response = ui.button(text);
+        named(&response, &format!("Choose {}", part.title().to_lowercase()));
+        if response.clicked() {
+            self.asked.ask(WindowAsk::Choose(Purpose::Part(part)));
+        }
+    }
+    pub fn take(&mut self, changed: Option<Changed<Property>>) {
+        if let Some(Changed { to, done }) = changed {
+            self.set(to, done);
+        }
+    }
+}
+
+pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+    let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {
+        ui.weak("No layer is selected.");
+        return;
+    };
+    let mut setter = Setter { layer: path, asked };
+    let has_surface = session.shown().is_some_and(|document| document.surface.is_some());
+    match &layer.content {
+        Content::Fill(color) => {
+            let changed = colors::picker(ui, "Fill colour", *color);
+            setter.take(changed.map(|c| c.map(|color| Property::Fill { color })));
+        }
+        Content::Pixels(_) => {
+            ui.weak("Paint. Strokes on it are pixels.");
+        }
+        Content::Strokes(live) => {
+            strokes::show(ui, session, &setter.layer, &live.params().strokes, setter.asked);
+        }
+        Content::Image(live) => image(ui, live.params(), &mut setter),
+        Content::Gradient(live) => gradient(ui, live.params(), &mut setter),
+        Content::Shading(live) => {
+            let canvas = session.shown().map_or(Vec2::ONE, |document| 2.0 * document.size.center());
+            material::shading(ui, live.params(), canvas, &mut setter);
+        }
+        Content::RadianceScaling(scaling) => material::radiance_scaling(ui, scaling, &mut setter),
+        Content::Normals(normals) => normal_layer(ui, normals, &mut setter),
+        Content::Group(group) => {
+            let hint = "Blend each layer with what lies beneath the group, as if the group were not there";
+            if let Some(on) = check(ui, "Pass through", hint, group.pass_through) {
+                setter.set(Property::PassThrough { on }, true);
+            }
+        }
+    }
+    ui.separator();
+    let on_mask = session.tab().is_some_and(|tab| tab.on_mask);
+    common(ui, layer, has_surface, on_mask, &mut setter);
+}
+
+fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: &mut Setter) {
+    if has_surface {
+        let hint = "Paint nothing outside the surface";
+        if let Some(on) = check(ui, "Clip to surface", hint, layer.clip_to_surface) {
+            setter.set(Property::ClipToSurface { on }, true);
+        }
+    }
+    let hint = "Blend linear light instead of the encoded values";
+    if let Some(on) = check(ui, "Blend linear light", hint, layer.blend_linear) {
+        setter.set(Property::BlendLinear { on }, true);
+    }
+    mask::show(ui, layer, on_mask, setter);
+}
+
+const FILTERS: [(Filter, &str); 2] = [(Filter::Antialias, "antialias"), (Filter::Bilinear, "bilinear")];
+
+fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut Setter) {
+    ui.horizontal_wrapped(|ui| {
+        ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
+        setter.choose(ui, Part::Image, "Replace…");
+    });
+    operator(ui, image.bend.operator, setter);
+    placement(ui, image.placement, setter);
+    const OUTSIDE: [(Outside, &str); 4] =
+        [(Outside::Mirror, "mirror"), (Outside::Repeat, "repeat"), (Outside::Clamp, "clamp"), (Outside::None, "none")];
+    if let Some(outside) = choice_row(ui, "Outside", image.outside, &OUTSIDE) {
+        setter.set(Property::Beyond { outside }, true);
+    }
+    if let Some(filter) = choice_row(ui, "Filter", image.filter, &FILTERS) {
+        setter.set(Property::Filtered { filter }, true);
+    }
+    title(ui, "Anchors");
+    let n = image.bend.anchors.len();
+    ui.weak(format!(
+        "{n} {}; take the anchor tool (A) to move, add and remove them",
+        if n == 1 { "anchor" } else { "anchors" }
+    ));
+    if let Weights::Shepard { power } = image.bend.weights
+        && n > 1
+    {
+        let number = Number::new("Sharpness", 0.5..=8.0, "How sharply the anchors divide the surface");
+        setter.take(number.row(ui, power).map(|c| c.map(|to| Property::Power { to })));
+    }
+    title(ui, "Adjust");
+    adjust(ui, image.source.adjust, setter);
+}
+
+/// Detail: noise, or a map of normals.
+fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut Setter) {
+    ui.label("Normals combined onto the surface: what stands above sees them.");
+    let number = Number::new("Strength", 0.0..=4.0, "1 is the map as it is");
+    setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
+    ui.horizontal_wrapped(|ui| {
+        let source = match &normals.source {
+            DetailSource::Map { picture, .. } => format!("{} · {}", picture.file, picture.picture.size),
+            DetailSource::Grain(_) => "Grain, made of noise".into(),
+        };
+        ui.weak(source);
+        setter.choose(ui, Part::Detail, "Normal map…");
+        if matches!(normals.source, DetailSource::Map { .. }) && ui.button("Grain").clicked() {
+            setter.set(Property::Grained { grain: Grain::default() }, true);
+        }
+    });
+    if let DetailSource::Grain(grain) = normals.source {
+        let size = Number::new("Bump size", 1.0..=400.0, "Of the largest bumps, px").logarithmic().decimals(0);
+        let size = size.row(ui, grain.size_px).map(|c| c.map(|size_px| Grain { size_px, ..grain }));
+        let rough = Number::new("Roughness", 0.0..=1.5, "0 is smooth, 1 rough").row(ui, grain.roughness);
+        let stretch = Number::new("Stretch", 0.05..=40.0, "How much longer along x: brushed").logarithmic();
+        let stretch = stretch.row(ui, grain.stretch).map(|c| c.map(|stretch| Grain { stretch, ..grain }));
+        let changed = size.or(rough.map(|c| c.map(|roughness| Grain { roughness, ..grain }))).or(stretch);
+        setter.take(changed.map(|c| c.map(|grain| Property::Grained { grain })));
+    }
+    placement(ui, normals.placement, setter);
+}
+
+fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut Setter) {
+    ui.horizontal_wrapped(|ui| {
+        for (label, begins, hint) in crate::commands::operators() {
+            let is_on = std::mem::discriminant(&operator) == std::mem::discriminant(&begins);
+            if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
+                setter.set(Property::Bend { operator: begins }, true);
+            }
+        }
+    });
+    if let Some(changed) = options::number_rows(ui, operator) {
+        setter.take(Some(changed.map(|operator| Property::Bend { operator })));
+    }
+}
+
+fn placement(ui: &mut Ui, placement: Placement, setter: &mut Setter) {
+    let scale = Number::new("Scale", 0.05..=10.0, "1 covers the canvas").logarithmic().row(ui, placement.scale);
+    setter.take(scale.map(|c| c.map(|scale| Property::Place { placement: Placement { scale, ..placement } })));
+    let turn = Number::new("Rotation", -180.0..=180.0, "Counter-clockwise").degrees().row(ui, placement.rotation);
+    setter.take(turn.map(|c| c.map(|rotation| Property::Place { placement: Placement { rotation, ..placement } })));
+    ui.horizontal(|ui| {
+        crate::widgets::name(ui, "Centre");
+        let at = placement.center;
+        let x = Number::new("Centre x", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.x);
+        let y = Number::new("Centre y", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.y);
+        let center = x.map(|c| c.map(|x| vec2(x, at.y))).or(y.map(|c| c.map(|y| vec2(at.x, y))));
+        setter.take(center.map(|c| c.map(|center| Property::Place { placement: Placement { center, ..placement } })));
+    });
+}
+
+fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut Setter) {
+    type Put = fn(Adjust, f32) -> Adjust;
+    let rows: [(&str, f32, std::ops::RangeInclusive<f32>, &str, Put); 6] = [
+        ("Blur", adjust.blur, 0.0..=80.0, "A rougher material, in pixels of the picture", |a, blur| Adjust {
+            blur,
+            ..a
+        }),
+        ("Exposure", adjust.exposure, -4.0..=4.0, "In stops", |a, exposure| Adjust { exposure, ..a }),
+        ("Hue", adjust.hue, -180.0..=180.0, "In degrees", |a, hue| Adjust { hue, ..a }),
+        ("Saturation", adjust.saturation, 0.0..=2.0, "1 leaves it", |a, saturation| Adjust { saturation, ..a }),
+        ("Brightness", adjust.brightness, 0.0..=2.0, "1 leaves it", |a, brightness| Adjust { brightness, ..a }),
+        ("Contrast", adjust.contrast, 0.0..=2.0, "1 leaves it", |a, contrast| Adjust { contrast, ..a }),
+    ];
+    for (label, value, range, hint, put) in rows {
+        let changed = Number::new(label, range, hint).row(ui, value);
+        setter.take(changed.map(|c| c.map(|to| Property::Adjusted { adjust: put(adjust, to) })));
+    }
+}
+
+fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut Setter) {
+    operator(ui, gradient.operator, setter);
+    title(ui, "Stops");
+    let with = |i: usize, stop: Stop| {
+        let mut stops = gradient.stops.clone();
+        if let Some(slot) = stops.get_mut(i) {
+            *slot = stop;
+        }
+        stops.sort_by(|a, b| a.t.total_cmp(&b.t));
+        Property::Stops { stops }
+    };
+    let mut gone = None;
+    for (i, stop) in gradient.stops.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let color = colors::button(ui, &format!("Colour of stop {}", i + 1), stop.color);
+            setter.take(color.map(|c| c.map(|color| with(i, Stop { color, ..*stop }))));
+            let place = format!("Place of stop {}", i + 1);
+            let t = Number::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second").field(ui, stop.t);
+            setter.take(t.map(|c| c.map(|t| with(i, Stop { t, ..*stop }))));
+            if gradient.stops.len() > 1 && ui.small_button("Remove").clicked() {
+                gone = Some(i);
+            }
+        });
+    }
+    if let Some(i) = gone {
+        let mut stops = gradient.stops.clone();
+        stops.remove(i);
+        setter.set(Property::Stops { stops }, true);
+    }
+    ui.horizontal(|ui| {
+        if ui.button("Add stop").clicked() {
+            let mut stops = gradient.stops.clone();
+            let color = stops.last().map_or(crate::math::srgb::Color::WHITE, |stop| stop.color);
+            stops.push(Stop { t: 0.5, color });
+            stops.sort_by(|a, b| a.t.total_cmp(&b.t));
+            setter.set(Property::Stops { stops }, true);
+        }
+        if ui.button("Swap ends").clicked() {
+            setter.set(Property::Ends { from: gradient.to, to: gradient.from }, true);
+        }
+    });
+    if let Some(filter) = choice_row(ui, "Filter", gradient.filter, &FILTERS) {
+        setter.set(Property::Filtered { filter }, true);
+    }
+}

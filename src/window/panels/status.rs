@@ -1,0 +1,73 @@
+//! The line at the bottom: zoom, the place under the pointer with what the maps hold there, memory, how long the last redraw
+//! took, and what the tool in hand does.
+//! Floor 7.
+
+use crate::asked::{Asked, WindowAsk};
+use crate::canvas::Canvas;
+use crate::jobs::{Jobs, While};
+use crate::math::Vec2;
+use crate::memory::{Memory, spoken};
+use crate::session::Session;
+use crate::widgets::bar;
+use eframe::egui::{self, Button, RichText, Ui};
+
+pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, memory: &mut Memory, asked: &mut Asked) {
+    ui.horizontal(|ui| {
+        for job in jobs.under_way.iter().filter(|job| job.kind == While::Working && job.is_long()) {
+            ui.label(&job.name);
+            bar(ui, job.share(), 90.0);
+            if ui.small_button("Cancel").on_hover_text(format!("Give up: {}", job.name)).clicked() {
+                job.progress.cancel();
+            }
+            ui.separator();
+        }
+        if !jobs.under_way.is_empty() {
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(80));
+        }
+        let Some(tab) = session.tab() else {
+            ui.weak("Open a document, or drop a picture or a normal map on the window");
+            return;
+        };
+        let document = tab.shown();
+        let percent = tab.view.map_or(100.0, |view| view.zoom * ui.ctx().pixels_per_point() * 100.0);
+        if ui
+            .add(Button::new(format!("{percent:.0} %")).frame(false))
+            .on_hover_text("Click for actual pixels")
+            .clicked()
+        {
+            asked.ask(WindowAsk::Scale(1.0));
+        }
+        ui.weak(document.size.to_string());
+        ui.separator();
+        if let Some(said) = jobs.said() {
+            ui.label(said);
+            ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
+            ui.separator();
+        }
+        // The canvas is drawn after this line: what it knows may be of the document that was in front before.
+        let is_here = |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
+        if let Some(at) = canvas.under.filter(is_here) {
+            let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);
+            ui.label(RichText::new(format!("{x}, {y}")).monospace());
+            if let Some(surface) = document.surface.as_deref().filter(|s| s.coverage(x, y) > 0) {
+                let n = surface.normal(x, y);
+                let about = format!("n {:+.2} {:+.2} {:+.2}  z {:.3}", n.x, n.y, n.z, surface.depth(x, y));
+                ui.label(RichText::new(about).monospace())
+                    .on_hover_text("The surface's normal and depth under the pointer");
+            }
+        } else {
+            ui.weak(session.tool.row().hint);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
+            let text = if canvas.is_busy { RichText::new("Painting…").weak() } else { RichText::new(took).weak() };
+            ui.label(text).on_hover_text("How long the last redraw took");
+            if let Some(bytes) = memory.bytes() {
+                ui.weak(spoken(bytes)).on_hover_text("Memory that the program holds");
+            }
+            if document.surface.is_none() {
+                ui.weak("No surface: marks lie flat");
+            }
+        });
+    });
+}

@@ -1,0 +1,137 @@
+//! The strokes of the selected stroke layer: listed, chosen, restyled, ordered, taken away, baked.
+//! Floor 7.
+
+use super::{colors, options};
+use crate::asked::Asked;
+use crate::commands::operators;
+use crate::icons::{Icon, icon_button};
+use crate::paint::Stroke;
+use crate::session::actions::hand::SIZES;
+use crate::session::actions::{HandAction, StrokeAction, Style};
+use crate::session::{Action, LayerPath, Session};
+use crate::tools::ToolKind;
+use crate::widgets::{Changed, Number, swatch, title};
+use eframe::egui::{Button, ScrollArea, Ui, vec2};
+use std::sync::Arc;
+
+/// Rows of the list that are in sight.
+const ROWS: usize = 6;
+
+/// The list, and what can be done to the strokes that are chosen in it.
+pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<Stroke>], asked: &mut Asked) {
+    let n = strokes.len();
+    ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
+    let chosen = session.tab().map(|tab| tab.chosen_strokes()).unwrap_or_default();
+    list(ui, layer, strokes, &chosen, asked);
+    let Some(first) = chosen.first().and_then(|&index| strokes.get(index)) else {
+        ui.weak("Choose strokes here or, with the stroke tool (S), on the canvas.");
+        return;
+    };
+    buttons(ui, layer, n, &chosen, asked);
+    title(ui, if chosen.len() == 1 { "Stroke" } else { "Strokes" });
+    styles(ui, first, |to, done| {
+        let (layer, strokes) = (layer.clone(), chosen.clone());
+        asked.act(Action::Stroke(StrokeAction::Restyle { layer, strokes, to, done }));
+    });
+}
+
+/// The topmost stroke first.
+fn list(ui: &mut Ui, layer: &LayerPath, strokes: &[Arc<Stroke>], chosen: &[usize], asked: &mut Asked) {
+    let height = ui.spacing().interact_size.y;
+    let area = ScrollArea::vertical().id_salt("strokes").max_height((height + 2.0) * ROWS as f32);
+    ui.spacing_mut().item_spacing.y = 2.0;
+    area.auto_shrink([false, true]).show_rows(ui, height, strokes.len(), |ui, rows| {
+        for index in rows.map(|row| strokes.len() - 1 - row) {
+            let Some(stroke) = strokes.get(index) else { continue };
+            let is_on = chosen.contains(&index);
+            ui.horizontal(|ui| {
+                swatch(ui, &format!("Colour of stroke {}", index + 1), stroke.color(), vec2(18.0, height - 4.0));
+                let name = format!("Stroke {} · {:.0} px", index + 1, stroke.brush().size);
+                let row = Button::selectable(is_on, name).min_size(vec2(ui.available_width(), 0.0));
+                if ui.add(row).clicked() {
+                    let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
+                    let strokes = toggled(chosen, index, adds);
+                    asked.act(Action::Stroke(StrokeAction::Choose { layer: layer.clone(), strokes }));
+                    asked.act(Action::Hand(HandAction::Tool { tool: ToolKind::Strokes }));
+                }
+            });
+        }
+    });
+}
+
+/// Those chosen after a click on one of the list.
+fn toggled(chosen: &[usize], index: usize, adds: bool) -> Vec<usize> {
+    match (adds, chosen.contains(&index)) {
+        (false, _) => vec![index],
+        (true, true) => chosen.iter().copied().filter(|&other| other != index).collect(),
+        (true, false) => chosen.iter().copied().chain([index]).collect(),
+    }
+}
+
+fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], asked: &mut Asked) {
+    let (layer, strokes) = (|| layer.clone(), || chosen.to_vec());
+    let mut act = |action: StrokeAction| asked.act(Action::Stroke(action));
+    ui.horizontal(|ui| {
+        if let [stroke] = *chosen {
+            if stroke + 1 < count && icon_button(ui, Icon::Up, "Stroke up", false).clicked() {
+                act(StrokeAction::Order { layer: layer(), stroke, to: stroke + 1 });
+            }
+            if stroke > 0 && icon_button(ui, Icon::Down, "Stroke down", false).clicked() {
+                act(StrokeAction::Order { layer: layer(), stroke, to: stroke - 1 });
+            }
+            let hint = "Its brush, operator and colour come into the hand";
+            if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Take its brush", false).on_hover_text(hint).clicked()
+            {
+                act(StrokeAction::Take { layer: layer(), stroke });
+            }
+        }
+        if icon_button(ui, Icon::Duplicate, "Duplicate strokes", false).on_hover_text("Duplicate").clicked() {
+            act(StrokeAction::Duplicate { layer: layer(), strokes: strokes() });
+        }
+        let hint = "Bake: they become pixels on a paint layer of their own";
+        if icon_button(ui, Icon::Bake, "Bake strokes", false).on_hover_text(hint).clicked() {
+            act(StrokeAction::Bake { layer: layer(), strokes: strokes() });
+        }
+        if icon_button(ui, Icon::Delete, "Delete strokes", false).on_hover_text("Delete").clicked() {
+            act(StrokeAction::Delete { layer: layer(), strokes: strokes() });
+        }
+        let hint = "Paint them with the brush in hand";
+        let restyle = StrokeAction::Restyle { layer: layer(), strokes: strokes(), to: Style::Brush {}, done: true };
+        if icon_button(ui, Icon::Tool(ToolKind::Brush), "Give brush in hand", false).on_hover_text(hint).clicked() {
+            act(restyle);
+        }
+    });
+}
+
+/// What the first of the chosen strokes is painted with; a change goes to all of them.
+fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
+    let brush = stroke.brush();
+    let mut give = |changed: Option<Changed<Style>>| {
+        if let Some(Changed { to, done }) = changed {
+            set(to, done);
+        }
+    };
+    let unit = |label, hint| Number::new(label, 0.0..=1.0, hint);
+    let size = Number::new("Stroke size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
+    give(size.row(ui, brush.size).map(|c| c.map(|to| Style::Size { to })));
+    let opacity = unit("Opacity", "Of the whole stroke").row(ui, brush.opacity);
+    give(opacity.map(|c| c.map(|to| Style::Opacity { to })));
+    let flow = unit("Flow", "What one dab adds").row(ui, brush.flow);
+    give(flow.map(|c| c.map(|to| Style::Flow { to })));
+    let hardness = unit("Hardness", "Share of the radius that is fully covered").row(ui, brush.hardness);
+    give(hardness.map(|c| c.map(|to| Style::Hardness { to })));
+    let softness = unit("Softness", "A rougher, less glossy mark").row(ui, brush.softness);
+    give(softness.map(|c| c.map(|to| Style::Softness { to })));
+    ui.horizontal_wrapped(|ui| {
+        for (label, begins, hint) in operators() {
+            let is_on = std::mem::discriminant(&stroke.operator()) == std::mem::discriminant(&begins);
+            if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
+                give(Some(Changed { to: Style::Operator { operator: begins }, done: true }));
+            }
+        }
+    });
+    let numbers = options::number_rows(ui, stroke.operator());
+    give(numbers.map(|c| c.map(|operator| Style::Operator { operator })));
+    let color = colors::picker(ui, "Stroke colour", stroke.color());
+    give(color.map(|c| c.map(|color| Style::Color { color })));
+}

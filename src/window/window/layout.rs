@@ -1,0 +1,179 @@
+//! Where the panels stand: beside the canvas, in a window together, or each in one of its own.
+//! Floor 7. What is in them is `panels`'.
+
+use super::Window;
+use crate::asked::Asked;
+use crate::panels::{self, Front};
+use crate::settings::Side;
+use crate::theme::ACCENT;
+use eframe::egui::scroll_area::ScrollBarVisibility;
+use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
+
+/// How wide the panels may be, points.
+const WIDTHS_PT: std::ops::RangeInclusive<f32> = 230.0..=460.0;
+
+impl Window {
+    pub(super) fn lay_out(&mut self, ui: &mut Ui, asked: &mut Asked) {
+        let bar = |ui: &Ui| Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(6, 3));
+        let settings = &self.settings;
+        Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, asked));
+        if !self.settings.layout.is_hidden {
+            Panel::top("options").frame(bar(ui)).show(ui, |ui| panels::options::show(ui, &self.session, asked));
+            Panel::bottom("status").frame(bar(ui)).show(ui, |ui| {
+                panels::status::show(ui, &self.session, &self.canvas, &self.jobs, &mut self.memory, asked)
+            });
+            let keymap = &self.settings.keymap;
+            Panel::left("tools").exact_size(44.0).resizable(false).frame(bar(ui)).show(ui, |ui| {
+                // A low window scrolls them.
+                let area = egui::ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+                area.show(ui, |ui| panels::tools::show(ui, &self.session, keymap, asked));
+            });
+            self.side(ui, asked);
+            self.apart(ui.ctx(), asked);
+        }
+        if !self.session.tabs.is_empty() {
+            Panel::top("tabs").frame(bar(ui)).show(ui, |ui| panels::menu::tabs(ui, &self.session, asked));
+        }
+        self.show_messages(ui);
+        CentralPanel::no_frame().show(ui, |ui| {
+            let area = ui.max_rect();
+            self.canvas.show(ui, &self.session, &mut asked.actions);
+            self.show_steps(ui);
+            show_hovered(ui, area, self.session.tab().is_some());
+        });
+    }
+    /// The panels that are together.
+    fn side(&mut self, ui: &mut Ui, asked: &mut Asked) {
+        let side = self.settings.layout.side;
+        let beside = match side {
+            Side::Left => Panel::left("panels left"),
+            Side::Right => Panel::right("panels right"),
+            Side::Apart => {
+                let window = egui::Window::new("Panels").id(Id::unique("panels apart")).constrain(true);
+                let corner = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
+                let window = window.default_pos(corner).min_size([230.0, 300.0]);
+                let window = window.default_size([self.settings.layout.width_pt, 640.0]);
+                return drop(window.show(ui.ctx(), |ui| self.together(ui, asked)));
+            }
+        };
+        let beside = beside.default_size(self.settings.layout.width_pt).size_range(WIDTHS_PT);
+        let shown = beside.show(ui, |ui| self.together(ui, asked));
+        self.settings.layout.width_pt = shown.response.rect.width().round();
+    }
+    /// One of those that share a place above, the layers below.
+    fn together(&mut self, ui: &mut Ui, asked: &mut Asked) {
+        let apart = &self.settings.layout.apart;
+        let strip: Vec<_> =
+            Front::ALL.into_iter().filter(|(front, _)| *front != Front::Layers && !apart.contains(front)).collect();
+        let front = match self.settings.layout.front {
+            front if strip.iter().any(|(known, _)| *known == front) => Some(front),
+            _ => strip.first().map(|(front, _)| *front),
+        };
+        let has_layers = !apart.contains(&Front::Layers);
+        if let Some(front) = front {
+            if has_layers {
+                let above = Panel::top("front").resizable(true).default_size(372.0).size_range(140.0..=640.0);
+                // At the same left as the layers beneath.
+                let above = above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
+                above.show(ui, |ui| self.fronted(ui, &strip, front, asked));
+            } else {
+                self.fronted(ui, &strip, front, asked);
+            }
+        }
+        if has_layers {
+            CentralPanel::no_frame().show(ui, |ui| {
+                ui.add_space(4.0);
+                panels::layers::show(ui, &self.session, &mut self.thumbnails, asked);
+            });
+        }
+    }
+    /// The names of the panels that share a place, and the one in front.
+    fn fronted(&mut self, ui: &mut Ui, strip: &[(Front, &str)], mut front: Front, asked: &mut Asked) {
+        let mut gone = None;
+        ui.horizontal_wrapped(|ui| {
+            for &(choice, name) in strip {
+                let tab = ui.selectable_value(&mut front, choice, name);
+                let tab = tab.on_hover_text("Right-click for a window of its own");
+                tab.context_menu(|ui| {
+                    if ui.button("In a window of its own").clicked() {
+                        gone = Some(choice);
+                        ui.close();
+                    }
+                });
+            }
+        });
+        self.settings.layout.front = front;
+        self.settings.layout.apart.extend(gone);
+        ui.add_space(2.0);
+        let area = egui::ScrollArea::vertical().id_salt("front").auto_shrink([false, false]);
+        area.show(ui, |ui| self.panel(ui, front, asked));
+    }
+    fn panel(&mut self, ui: &mut Ui, front: Front, asked: &mut Asked) {
+        match front {
+            Front::Color => panels::colors::show(ui, &self.session, asked),
+            Front::Brushes => panels::brushes::show(ui, &self.session, &mut self.swatches, asked),
+            Front::Properties => panels::properties::show(ui, &self.session, asked),
+            Front::Surface => panels::surface::show(ui, &self.session, asked),
+            Front::History => panels::history::show(ui, &self.session, asked),
+            Front::Navigator => panels::navigator::show(ui, &self.session, &mut self.canvas, asked),
+            Front::Layers => panels::layers::show(ui, &self.session, &mut self.thumbnails, asked),
+        }
+    }
+    /// The panels in windows of their own; closing one puts it back.
+    fn apart(&mut self, ctx: &egui::Context, asked: &mut Asked) {
+        for (i, front) in self.settings.layout.apart.clone().into_iter().enumerate() {
+            let mut is_open = true;
+            // Over the canvas, so that none covers where it came from.
+            let corner = ctx.content_rect().center() + egui::vec2(-160.0, -220.0) + egui::Vec2::splat(26.0 * i as f32);
+            let window = egui::Window::new(front.name()).id(Id::unique(("panel", front.name())));
+            let window =
+                window.default_size([268.0, 340.0]).min_size([230.0, 160.0]).default_pos(corner).open(&mut is_open);
+            let area = |ui: &mut Ui| {
+                let area = egui::ScrollArea::vertical().id_salt(front.name()).auto_shrink([false, false]);
+                area.show(ui, |ui| self.panel(ui, front, asked));
+            };
+            window.show(ctx, area);
+            if !is_open {
+                self.settings.layout.apart.retain(|other| *other != front);
+            }
+        }
+    }
+    pub(super) fn show_messages(&mut self, ui: &mut Ui) {
+        if self.messages.is_empty() {
+            return;
+        }
+        let (mut read, mut all_read) = (None, false);
+        let room = ui.ctx().content_rect().height() * 0.25;
+        Panel::top("messages").show(ui, |ui| {
+            egui::ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
+                for (i, message) in self.messages.iter().enumerate() {
+                    ui.horizontal_wrapped(|ui| {
+                        if ui.button("Dismiss").clicked() {
+                            read = Some(i);
+                        }
+                        ui.label(RichText::new(message).color(ui.visuals().warn_fg_color));
+                    });
+                }
+            });
+            all_read = self.messages.len() > 2 && ui.button("All read").clicked();
+        });
+        read.map(|i| self.messages.remove(i));
+        if all_read {
+            self.messages.clear();
+        }
+    }
+}
+
+/// What becomes of files that are held over the window.
+fn show_hovered(ui: &Ui, area: egui::Rect, has_document: bool) {
+    if ui.input(|i| i.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let picture = if has_document { "a picture becomes a layer where it falls" } else { "a picture opens" };
+    let text = format!("Drop: {picture}, maps become a new document, a project opens");
+    let painter = ui.painter_at(area);
+    painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(90));
+    painter.rect_stroke(area.shrink(6.0), 6.0, egui::Stroke::new(2.0, ACCENT), egui::StrokeKind::Inside);
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    painter.text(area.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
+}

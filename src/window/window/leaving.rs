@@ -1,0 +1,57 @@
+//! Closing and leaving, and what comes in by other doors: dropped files.
+//! Floor 7.
+
+use super::Window;
+use crate::dialogs::{Dialog, Then, unsaved};
+use crate::jobs::Where;
+use crate::session::Action;
+use crate::session::actions::FileAction;
+use eframe::egui::{self, ViewportCommand};
+use std::path::PathBuf;
+
+impl Window {
+    pub(super) fn close(&mut self, ctx: &egui::Context, tab: usize) {
+        if self.session.tabs.get(tab).is_some_and(|tab| tab.is_dirty()) {
+            self.session.current = tab;
+            self.dialogs.push(Dialog::Unsaved(unsaved::Unsaved { tab, then: Then::Close(tab) }));
+        } else {
+            self.proceed(ctx, Then::Close(tab), false);
+        }
+    }
+    /// After the question about unsaved work. `discarding`: the tab asked about is given up.
+    pub(super) fn proceed(&mut self, ctx: &egui::Context, then: Then, discarding: bool) {
+        match then {
+            Then::Close(index) => self.apply(&Action::File(FileAction::Close { index })),
+            Then::Quit => {
+                if discarding {
+                    self.session.close_tab(self.session.current);
+                }
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+    /// The window is about to be closed: not while there is unsaved work that nobody gave up.
+    pub(super) fn guard_leaving(&mut self, ctx: &egui::Context) {
+        if self.leaving || !ctx.input(|i| i.viewport().close_requested()) {
+            return;
+        }
+        match self.session.tabs.iter().position(|tab| tab.is_dirty()) {
+            Some(tab) => {
+                ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+                self.session.current = tab;
+                self.dialogs.push(Dialog::Unsaved(unsaved::Unsaved { tab, then: Then::Quit }));
+            }
+            None => self.leaving = true,
+        }
+    }
+    /// Files dropped on the window: pictures go where they fall, all else is opened.
+    pub(super) fn take_dropped(&mut self, ctx: &egui::Context) {
+        let dropped: Vec<_> = ctx.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_path_buf()).collect());
+        if !dropped.is_empty() {
+            self.take_files(dropped);
+        }
+    }
+    pub(super) fn take_files(&mut self, files: Vec<PathBuf>) {
+        self.jobs.open(files, self.session.tab().map(|_| Where::Pointer));
+    }
+}
