@@ -18,7 +18,7 @@ impl Size {
     pub const fn area(self) -> usize {
         self.width as usize * self.height as usize
     }
-    /// The unit length *L*: the longer side, in pixels (MATH: makes α independent of resolution).
+    /// The unit length *L*: the longer side, in pixels (MATH 1: makes α independent of the resolution).
     pub fn longer_side(self) -> f32 {
         self.width.max(self.height) as f32
     }

@@ -35,15 +35,13 @@ pub struct Words {
     pub clipping: bool,
     /// Masks that are pictures.
     pub masks: bool,
-    /// Blend modes that it has no word for, or one that others read otherwise: most take W3C's “plus” for a sum of colours
-    /// alone, whatever the alpha.
-    pub unsaid: &'static [BlendMode],
+    /// Whether it has a word for a blend mode that others read as we do.
+    pub says: fn(BlendMode) -> bool,
 }
 
 impl Words {
-    pub const OPENRASTER: Words =
-        Words { clipping: false, masks: false, unsaid: &[BlendMode::Exclusion, BlendMode::Plus] };
-    pub const PHOTOSHOP: Words = Words { clipping: true, masks: true, unsaid: &[] };
+    pub const OPENRASTER: Words = Words { clipping: false, masks: false, says: BlendMode::is_said_by_openraster };
+    pub const PHOTOSHOP: Words = Words { clipping: true, masks: true, says: |_| true };
 }
 
 pub enum Shows {
@@ -167,7 +165,7 @@ impl Planner<'_> {
                 let is_faded = base.opacity < 1.0 || base.mask.is_some();
                 is_faded || runs(&group.layers).iter().any(|run| self.reads_beneath(run))
             }
-            _ => base.blend_linear || self.words.unsaid.contains(&base.blend),
+            _ => base.blend_linear || !(self.words.says)(base.blend),
         }
     }
 }

@@ -9,32 +9,10 @@ use super::plan::{Item, Shows};
 use crate::document::kept::Encoded;
 use crate::document::{Content, Lock};
 use crate::math::Size;
-use crate::raster::BlendMode;
 
 /// Marks what is ours; other programs pass it by.
 const NAMESPACE: &str = "xmlns:rilievo=\"urn:rilievo:project\"";
 const KIND: &str = "rilievo:kind";
-
-/// OpenRaster's words for blend modes.
-const BLENDS: [(BlendMode, &str); 17] = [
-    (BlendMode::Normal, "svg:src-over"),
-    (BlendMode::Multiply, "svg:multiply"),
-    (BlendMode::Screen, "svg:screen"),
-    (BlendMode::Overlay, "svg:overlay"),
-    (BlendMode::Darken, "svg:darken"),
-    (BlendMode::Lighten, "svg:lighten"),
-    (BlendMode::ColorDodge, "svg:color-dodge"),
-    (BlendMode::ColorBurn, "svg:color-burn"),
-    (BlendMode::HardLight, "svg:hard-light"),
-    (BlendMode::SoftLight, "svg:soft-light"),
-    (BlendMode::Difference, "svg:difference"),
-    (BlendMode::Exclusion, "krita:exclusion"),
-    (BlendMode::Hue, "svg:hue"),
-    (BlendMode::Saturation, "svg:saturation"),
-    (BlendMode::Color, "svg:color"),
-    (BlendMode::Luminosity, "svg:luminosity"),
-    (BlendMode::Plus, "svg:plus"),
-];
 
 /// The XML of a plan; `pictures` are those of [`super::look::pictures_of`] with their names, in that order.
 pub fn write(size: Size, items: &[Item], pictures: &[(String, Encoded)]) -> String {
@@ -54,7 +32,7 @@ fn write_items(xml: &mut String, items: &[Item], pictures: &mut dyn Iterator<Ite
 }
 
 fn write_item(item: &Item, pictures: &mut dyn Iterator<Item = &(String, Encoded)>) -> String {
-    let op = BLENDS.iter().find(|(mode, _)| *mode == item.blend).map_or(BLENDS[0].1, |(_, name)| name);
+    let op = item.blend.openraster();
     let visibility = if item.visible { "visible" } else { "hidden" };
     let mut common = format!(
         "name=\"{}\" opacity=\"{}\" visibility=\"{visibility}\" composite-op=\"{op}\"",

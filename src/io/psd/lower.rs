@@ -1,7 +1,7 @@
 //! A document into records: what Photoshop has words for as such, the rest as pixels, with the document itself beside them.
 //! Floor 5. Laying the records out as bytes is `emit`'s.
 
-use super::{BLENDS, Mask, PASS_THROUGH, Record, Section, emit, signature};
+use super::{Mask, PASS_THROUGH, Record, Section, emit, signature};
 use crate::document::kept::Encoded;
 use crate::document::{Content, Document, LayerId, LayerMask, Lock, MaskKind, Progress, flatten};
 use crate::math::{Rect, Size};
@@ -68,7 +68,7 @@ impl Lowering {
         if let Shows::Stack { isolated, items } = &item.shows {
             self.records.push(Record { name: "</Layer group>".into(), section: Section::End, ..Record::default() });
             self.items(file, items)?;
-            let blend = if *isolated { key(item.blend) } else { PASS_THROUGH };
+            let blend = if *isolated { item.blend.photoshop() } else { PASS_THROUGH };
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
             self.records.push(Record { blend, mask, section: Section::Group, ..record(item) });
             return Ok(());
@@ -107,15 +107,11 @@ impl Lowering {
     }
 }
 
-fn key(blend: BlendMode) -> [u8; 4] {
-    BLENDS.iter().find(|(mode, _)| *mode == blend).map_or(*b"norm", |(_, key)| *key)
-}
-
 /// What an item says of itself.
 fn record(item: &Item) -> Record {
     Record {
         name: item.name.clone(),
-        blend: key(item.blend),
+        blend: item.blend.photoshop(),
         opacity: (item.opacity * 255.0).round() as u8,
         clipped: item.clipped,
         visible: item.visible,

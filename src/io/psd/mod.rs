@@ -26,7 +26,6 @@ pub use lower::write;
 pub use tree::read;
 
 use crate::math::Rect;
-use crate::raster::BlendMode;
 
 /// What a file begins with.
 pub const MAGIC: [u8; 4] = *b"8BPS";
@@ -37,26 +36,7 @@ const VERSION_INFO: u16 = 1057;
 /// Of the numbers left to plug-ins, ours: a zip of the document and its files.
 const OURS: u16 = 4711;
 
-/// The keys of blend modes.
-const BLENDS: [(BlendMode, [u8; 4]); 17] = [
-    (BlendMode::Normal, *b"norm"),
-    (BlendMode::Multiply, *b"mul "),
-    (BlendMode::Screen, *b"scrn"),
-    (BlendMode::Overlay, *b"over"),
-    (BlendMode::Darken, *b"dark"),
-    (BlendMode::Lighten, *b"lite"),
-    (BlendMode::ColorDodge, *b"div "),
-    (BlendMode::ColorBurn, *b"idiv"),
-    (BlendMode::HardLight, *b"hLit"),
-    (BlendMode::SoftLight, *b"sLit"),
-    (BlendMode::Difference, *b"diff"),
-    (BlendMode::Exclusion, *b"smud"),
-    (BlendMode::Hue, *b"hue "),
-    (BlendMode::Saturation, *b"sat "),
-    (BlendMode::Color, *b"colr"),
-    (BlendMode::Luminosity, *b"lum "),
-    (BlendMode::Plus, *b"lddg"),
-];
+/// The key of a group whose layers blend with what lies beneath it.
 const PASS_THROUGH: [u8; 4] = *b"pass";
 
 /// A layer as it stands in the file; groups are records too, around those of their layers.

@@ -4,7 +4,7 @@ use crate::document::{Content, Document, Group, Layer, MaskKind, PixelLayer, Pro
 use crate::math::Size;
 use crate::project::Contents;
 use crate::project::sample::{assert_same, everything, files, read as read_recipe};
-use crate::raster::TileGrid;
+use crate::raster::{BlendMode, TileGrid};
 use serde_json::json;
 use std::path::Path;
 use std::sync::Arc;

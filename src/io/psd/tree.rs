@@ -2,7 +2,7 @@
 //! Floor 5. Parsing is `parse`'s.
 
 use super::parse::{Parsed, parse};
-use super::{BLENDS, Mask, PASS_THROUGH, Record, Section, signature};
+use super::{Mask, PASS_THROUGH, Record, Section, signature};
 use crate::document::{Content, Document, Group, Layer, LayerMask, Lock, MaskKind, PixelLayer};
 use crate::math::Size;
 use crate::project::archive::Archive;
@@ -131,7 +131,7 @@ impl Builder {
         }
     }
     fn layer(&mut self, record: Record, content: Content) -> Layer {
-        let known = BLENDS.iter().find(|(_, key)| *key == record.blend).map(|(mode, _)| *mode);
+        let known = BlendMode::from_photoshop(record.blend);
         if known.is_none() && record.blend != PASS_THROUGH {
             let key = String::from_utf8_lossy(&record.blend).into_owned();
             let reason =

@@ -193,7 +193,8 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         }
     };
     let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
-    let blended = choice_row(ui, "Blend", brush.blend, &BlendMode::ALL).map(|blend| Brush { blend, ..brush.clone() });
+    let blended =
+        choice_row(ui, "Blend", brush.blend, &BlendMode::LABELS).map(|blend| Brush { blend, ..brush.clone() });
     let erases = check(ui, "Erases", "The stroke takes paint away", brush.erases);
     let erases = erases.map(|erases| Brush { erases, ..brush.clone() });
     let keeps = check(ui, "Keeps alpha", "The stroke shows only on paint that is there", brush.keeps_alpha);

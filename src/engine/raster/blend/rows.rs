@@ -4,6 +4,7 @@
 //! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T = αs αb B(D/αb, S/αs).
 //! For most modes T needs no division. *Atop* leaves out the first term and keeps the backdrop's alpha: a clipped layer.
 
+use super::modes::blend_modes;
 use super::{BlendMode, Coverage, Mix, Paint, spec};
 use crate::math::srgb;
 use crate::raster::planar::Row;
@@ -135,8 +136,40 @@ fn blend_row(d: &mut Row, s: &Row, mix: Mix) {
         BlendMode::Saturation => non_separable(d, s, mix, saturation),
         BlendMode::Color => non_separable(d, s, mix, color),
         BlendMode::Luminosity => non_separable(d, s, mix, luminosity),
-        BlendMode::Plus => plus(d, s, mix),
+        _ => by_formula(d, s, mix),
     }
+}
+
+macro_rules! formula {
+    (separable, $b:ident, $d:ident, $s:ident, $mix:ident) => {
+        straight($d, $s, $mix, spec::$b)
+    };
+    (non_separable, $b:ident, $d:ident, $s:ident, $mix:ident) => {
+        non_separable($d, $s, $mix, spec::$b)
+    };
+    (sum, $b:ident, $d:ident, $s:ident, $mix:ident) => {
+        sum($d, $s, $mix, spec::$b)
+    };
+}
+macro_rules! by_formula {
+    ($($(#[$meta:meta])* $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);)+) => {
+        /// Modes without a twin of their own, from the formula of the table.
+        #[inline(always)]
+        fn by_formula(d: &mut Row, s: &Row, mix: Mix) {
+            match mix.mode {
+                $(BlendMode::$mode => formula!($kind, $b, d, s, mix),)+
+            }
+        }
+    };
+}
+blend_modes!(by_formula);
+
+/// A formula of straight components.
+#[inline(always)]
+fn straight(d: &mut Row, s: &Row, mix: Mix, b: impl Fn(f32, f32) -> f32 + Copy) {
+    // Divided, not multiplied by a reciprocal: some formulas break at 0 and at 1.
+    let of = |v: f32, a: f32| v / greatest(a, f32::MIN_POSITIVE);
+    separable(d, s, mix, |s, d, as_, ab| as_ * ab * b(of(d, ab), of(s, as_)));
 }
 
 /// `term(S, D, αs, αb)` is T.
@@ -173,18 +206,18 @@ fn non_separable(d: &mut Row, s: &Row, mix: Mix, b: impl Fn([f32; 3], [f32; 3]) 
 }
 
 #[inline(always)]
-fn plus(d: &mut Row, s: &Row, mix: Mix) {
+fn sum(d: &mut Row, s: &Row, mix: Mix, sum: impl Fn(f32, f32) -> f32 + Copy) {
     let ab = &mut d.a;
     for (d, s) in d.rgb.iter_mut().zip(&s.rgb) {
         for x in 0..TILE {
             // Clipped, only the share on the backdrop counts, and its alpha is the ceiling.
             let (share, ceiling) = if mix.atop { (ab[x], ab[x]) } else { (1.0, 1.0) };
-            d[x] = least(s[x] * share + d[x], ceiling);
+            d[x] = least(sum(d[x], s[x] * share), ceiling);
         }
     }
     if !mix.atop {
         for (ab, as_) in ab.iter_mut().zip(&s.a) {
-            *ab = least(*ab + as_, 1.0);
+            *ab = sum(*ab, *as_);
         }
     }
 }
@@ -295,4 +328,13 @@ fn through_straight(row: &mut Row, curve: impl Fn(f32) -> f32) {
             *v = curve(least(*v * reciprocal(a), 1.0)) * a;
         }
     }
+}
+
+/// One pixel of [`by_formula`], for modes that otherwise go another way.
+#[cfg(test)]
+pub(super) fn pixel_by_formula(mix: Mix, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
+    let [mut d, s] =
+        [backdrop, source].map(|[r, g, b, a]| Row { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] });
+    by_formula(&mut d, &s, mix);
+    d.pixel(TILE - 1)
 }

@@ -3,7 +3,7 @@
 
 use super::BlendMode;
 
-/// One mode's B(cb, cs): of a component, or of a whole colour.
+/// One mode's B(cb, cs), backdrop first as in the specification: of a component, or of a whole colour.
 #[derive(Clone, Copy)]
 pub enum Function {
     /// Each component on its own (sec. 9.1).
@@ -11,31 +11,7 @@ pub enum Function {
     /// All three components together (sec. 9.2).
     NonSeparable(fn([f32; 3], [f32; 3]) -> [f32; 3]),
     /// Not a mixing formula but a sum of premultiplied values, clamped at 1 (sec. 7, `lighter`).
-    Sum,
-}
-
-/// The function of a mode; backdrop first, as in the specification.
-pub fn function(mode: BlendMode) -> Function {
-    use Function::{NonSeparable, Separable, Sum};
-    match mode {
-        BlendMode::Normal => Separable(normal),
-        BlendMode::Multiply => Separable(multiply),
-        BlendMode::Screen => Separable(screen),
-        BlendMode::Overlay => Separable(overlay),
-        BlendMode::Darken => Separable(darken),
-        BlendMode::Lighten => Separable(lighten),
-        BlendMode::ColorDodge => Separable(color_dodge),
-        BlendMode::ColorBurn => Separable(color_burn),
-        BlendMode::HardLight => Separable(hard_light),
-        BlendMode::SoftLight => Separable(soft_light),
-        BlendMode::Difference => Separable(difference),
-        BlendMode::Exclusion => Separable(exclusion),
-        BlendMode::Hue => NonSeparable(hue),
-        BlendMode::Saturation => NonSeparable(saturation),
-        BlendMode::Color => NonSeparable(color),
-        BlendMode::Luminosity => NonSeparable(luminosity),
-        BlendMode::Plus => Sum,
-    }
+    Sum(fn(f32, f32) -> f32),
 }
 
 /// Composites one premultiplied pixel over another (sec. 5.8): the backdrop's share, the source's share outside the
@@ -47,10 +23,10 @@ pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f3
     let (ab, as_) = (backdrop[3], source[3]);
     let straight = |p: [f32; 4]| [0, 1, 2].map(|c| if p[3] > 0.0 { p[c] / p[3] } else { 0.0 });
     let (cb, cs) = (straight(backdrop), straight(source));
-    let mixed = match function(mode) {
+    let mixed = match mode.function() {
         Function::Separable(b) => [0, 1, 2].map(|c| b(cb[c], cs[c])),
         Function::NonSeparable(b) => b(cb, cs),
-        Function::Sum => return [0, 1, 2, 3].map(|c| (backdrop[c] + source[c]).min(1.0)),
+        Function::Sum(sum) => return [0, 1, 2, 3].map(|c| sum(backdrop[c], source[c])),
     };
     let [r, g, b] = [0, 1, 2].map(|c| as_ * (1.0 - ab) * cs[c] + as_ * ab * mixed[c] + (1.0 - as_) * ab * cb[c]);
     [r, g, b, as_ + ab - as_ * ab]
@@ -63,24 +39,31 @@ pub fn sane(p: [f32; 4]) -> [f32; 4] {
     [p[0].max(0.0).min(a), p[1].max(0.0).min(a), p[2].max(0.0).min(a), a]
 }
 
+#[inline(always)]
 pub fn normal(_cb: f32, cs: f32) -> f32 {
     cs
 }
+#[inline(always)]
 pub fn multiply(cb: f32, cs: f32) -> f32 {
     cb * cs
 }
+#[inline(always)]
 pub fn screen(cb: f32, cs: f32) -> f32 {
     cb + cs - cb * cs
 }
+#[inline(always)]
 pub fn overlay(cb: f32, cs: f32) -> f32 {
     hard_light(cs, cb)
 }
+#[inline(always)]
 pub fn darken(cb: f32, cs: f32) -> f32 {
     cb.min(cs)
 }
+#[inline(always)]
 pub fn lighten(cb: f32, cs: f32) -> f32 {
     cb.max(cs)
 }
+#[inline(always)]
 pub fn color_dodge(cb: f32, cs: f32) -> f32 {
     if cb == 0.0 {
         0.0
@@ -90,6 +73,7 @@ pub fn color_dodge(cb: f32, cs: f32) -> f32 {
         (cb / (1.0 - cs)).min(1.0)
     }
 }
+#[inline(always)]
 pub fn color_burn(cb: f32, cs: f32) -> f32 {
     if cb == 1.0 {
         1.0
@@ -99,29 +83,42 @@ pub fn color_burn(cb: f32, cs: f32) -> f32 {
         1.0 - ((1.0 - cb) / cs).min(1.0)
     }
 }
+#[inline(always)]
 pub fn hard_light(cb: f32, cs: f32) -> f32 {
     if cs <= 0.5 { multiply(cb, 2.0 * cs) } else { screen(cb, 2.0 * cs - 1.0) }
 }
+#[inline(always)]
 pub fn soft_light(cb: f32, cs: f32) -> f32 {
     let d = if cb <= 0.25 { ((16.0 * cb - 12.0) * cb + 4.0) * cb } else { cb.sqrt() };
     if cs <= 0.5 { cb - (1.0 - 2.0 * cs) * cb * (1.0 - cb) } else { cb + (2.0 * cs - 1.0) * (d - cb) }
 }
+#[inline(always)]
 pub fn difference(cb: f32, cs: f32) -> f32 {
     (cb - cs).abs()
 }
+#[inline(always)]
 pub fn exclusion(cb: f32, cs: f32) -> f32 {
     cb + cs - 2.0 * cb * cs
 }
+/// Of premultiplied values, and of the alphas.
+#[inline(always)]
+pub fn plus(backdrop: f32, source: f32) -> f32 {
+    (backdrop + source).min(1.0)
+}
 
+#[inline(always)]
 pub fn hue(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(set_sat(cs, sat(cb)), lum(cb))
 }
+#[inline(always)]
 pub fn saturation(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(set_sat(cb, sat(cs)), lum(cb))
 }
+#[inline(always)]
 pub fn color(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(cs, lum(cb))
 }
+#[inline(always)]
 pub fn luminosity(cb: [f32; 3], cs: [f32; 3]) -> [f32; 3] {
     set_lum(cb, lum(cs))
 }

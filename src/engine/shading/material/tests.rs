@@ -55,7 +55,7 @@ fn lamp(kind: LightKind, intensity: f32) -> Light {
     Light { kind, color: Color { r: 255, g: 220, b: 200, a: 255 }, intensity }
 }
 
-/// ℓ at a pixel, as MATH and the documents say it.
+/// ℓ at a pixel, as `docs/RECIPES.md` says it.
 fn direction_at(surface: &Surface, light: &Light, x: usize, y: usize) -> Vec3 {
     match light.kind {
         LightKind::Directional { direction } => direction.normalize(),

@@ -1,7 +1,7 @@
 //! `stack.xml` read, as strictly as its layers need and no more: programs differ in what they write beside them.
 //! Floor 5.
 
-use super::{BLENDS, KIND};
+use super::KIND;
 use crate::Budget;
 use crate::document::{Content, Layer, Lock};
 use crate::math::Size;
@@ -199,9 +199,8 @@ fn with_layers(element: Element, inner: Vec<Element>) -> Element {
 
 /// The blend mode of a composite operation, in OpenRaster's words or in those of programs that add their own.
 fn blend(op: &str) -> Option<BlendMode> {
-    let exact = BLENDS.iter().find(|(_, name)| *name == op).map(|(mode, _)| *mode);
     let plain = op.rsplit(':').next().unwrap_or(op).replace('_', "-");
-    exact.or_else(|| BlendMode::from_name(&plain)).or(match plain.as_str() {
+    BlendMode::from_openraster(op).or_else(|| BlendMode::from_name(&plain)).or(match plain.as_str() {
         "src-over" | "" => Some(BlendMode::Normal),
         "add" | "linear-dodge" => Some(BlendMode::Plus),
         _ => None,

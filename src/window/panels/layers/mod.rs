@@ -57,7 +57,7 @@ pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, asked: 
 fn head(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
     ui.horizontal(|ui| {
-        if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::ALL) {
+        if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::LABELS) {
             set(asked, &path, Property::Blend { mode }, true);
         }
         let number = Number::new("Opacity", 0.0..=1.0, "Of the whole layer");

@@ -10,7 +10,6 @@ use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath, Property, Session};
 use crate::theme::ACCENT;
 use crate::thumbnails::Thumbnails;
-use crate::widgets::sentence;
 use eframe::egui::{
     self, Align2, Color32, Id, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui, pos2, vec2,
 };
@@ -182,8 +181,7 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
     );
     ui.painter().galley(pos2(at.left() + 3.0, at.top() + 4.0), galley, color);
     let (_, kind) = kind_icon(&layer.content);
-    let mode =
-        if layer.blend == BlendMode::Normal { String::new() } else { format!(" · {}", sentence(layer.blend.name())) };
+    let mode = if layer.blend == BlendMode::Normal { String::new() } else { format!(" · {}", layer.blend.label()) };
     let opacity = if layer.opacity < 1.0 { format!(" · {:.0} %", layer.opacity * 100.0) } else { String::new() };
     let about = format!("{kind}{mode}{opacity}");
     let font = TextStyle::Small.resolve(ui.style());
