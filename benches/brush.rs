@@ -7,11 +7,13 @@
 //! A stroke's cost is all of it: its dabs found, what they reach, their coverage, laid on the tiles and quantised. The peer
 //! (benches/peers/libmypaint_dabs.c) is built with `cc` where libmypaint's headers are; else it is skipped, aloud.
 
-use rilievo::document::{Content, Document, Layer, Live, PixelLayer, Prepared, Progress, StrokeList, diff::diff};
-use rilievo::math::{Size, Vec2, hash, srgb::Color, vec2, vec3};
-use rilievo::paint::{Brush, Sample, Stroke, stroke};
-use rilievo::raster::{Plane, Tile, TileAt, TileGrid};
-use rilievo::surface::{Maps, Operator, Scene, Surface};
+use rilievo_engine::document::{
+    Content, Document, Layer, Live, PixelLayer, Prepared, Progress, StrokeList, diff::diff,
+};
+use rilievo_engine::math::{Size, Vec2, hash, srgb::Color, vec2, vec3};
+use rilievo_engine::paint::{Brush, Sample, Stroke, stroke};
+use rilievo_engine::raster::{Plane, Tile, TileAt, TileGrid};
+use rilievo_engine::surface::{Maps, Operator, Scene, Surface};
 use rilievo_program::tools::{self, Context, Outcome, Pen, ToolKind};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};

@@ -2,11 +2,11 @@
 //! that is handed the finished map. `cargo bench --bench engine`; quote ratios from one run, never times from another day.
 
 use rayon::prelude::*;
-use rilievo::document::{Content, Document, Layer, Live, Progress, Reduced, flatten};
-use rilievo::math::{Size, vec2, vec3};
-use rilievo::paint::{Adjust, Filter, PictureSource, PlacedImage, Placement};
-use rilievo::raster::{Outside, Picture, Plane, Tile, TileAt};
-use rilievo::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
+use rilievo_engine::document::{Content, Document, Layer, Live, Progress, Reduced, flatten};
+use rilievo_engine::math::{Size, vec2, vec3};
+use rilievo_engine::paint::{Adjust, Filter, PictureSource, PlacedImage, Placement};
+use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt};
+use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;

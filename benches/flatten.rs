@@ -5,9 +5,9 @@
 //! layer is 1 / (Gitem/s).
 
 use divan::{Bencher, counter::ItemsCount};
-use rilievo::document::{Content, Document, Layer, PixelLayer, Prepared, Progress};
-use rilievo::math::{Size, hash};
-use rilievo::raster::{BlendMode, TileAt, TileGrid};
+use rilievo_engine::document::{Content, Document, Layer, PixelLayer, Prepared, Progress};
+use rilievo_engine::math::{Size, hash};
+use rilievo_engine::raster::{BlendMode, TileAt, TileGrid};
 use std::sync::{Arc, LazyLock};
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
@@ -61,7 +61,7 @@ fn pool(threads: usize) -> rayon::ThreadPool {
 }
 fn flatten(bencher: Bencher, document: &Document, threads: usize) {
     let pool = pool(threads);
-    let flatten = || pool.install(|| rilievo::document::flatten(document, &Progress::default()));
+    let flatten = || pool.install(|| rilievo_engine::document::flatten(document, &Progress::default()));
     bencher.counter(pixels(document.layers.len())).bench_local(flatten);
 }
 
@@ -92,7 +92,7 @@ fn byte_loop_20_layers(bencher: Bencher) {
     });
 }
 
-rilievo::widest! {
+rilievo_engine::widest! {
     /// Source-over in bytes, rounded after every layer: the least work there is, and the least precise.
     fn bytes_over(canvas: &mut [u8], layer: &[u8]) {
         for (d, s) in canvas.chunks_exact_mut(32).zip(layer.chunks_exact(32)) {

@@ -2,12 +2,14 @@
 //! window may show them in; a brush's events until their tiles are flattened; getting a large document ready for a drag.
 //! `cargo bench --bench frame`. Peers: the frame rates asked for, 16 ms a drag and 8 ms a brush; and a copy of the picture.
 
-use rilievo::document::{Content, Document, Layer, Live, PixelLayer, Prepared, Progress, Reduced, diff, flatten};
-use rilievo::math::srgb::Color;
-use rilievo::math::{Size, Vec2, hash, vec2, vec3};
-use rilievo::paint::{Adjust, Brush, Filter, PictureSource, PlacedImage, Placement, Sample};
-use rilievo::raster::{Outside, Picture, Plane, Tile, TileAt, TileGrid};
-use rilievo::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
+use rilievo_engine::document::{
+    Content, Document, Layer, Live, PixelLayer, Prepared, Progress, Reduced, diff, flatten,
+};
+use rilievo_engine::math::srgb::Color;
+use rilievo_engine::math::{Size, Vec2, hash, vec2, vec3};
+use rilievo_engine::paint::{Adjust, Brush, Filter, PictureSource, PlacedImage, Placement, Sample};
+use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt, TileGrid};
+use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
 use rilievo_program::tools::{self, Context, Outcome, Pen, ToolKind};
 use std::sync::Arc;
 use std::time::Instant;

@@ -5,10 +5,10 @@
 
 use divan::Bencher;
 use divan::counter::BytesCount;
-use rilievo::document::{Content, Document, Layer, PixelLayer, Progress};
-use rilievo::io::{Budget, project};
-use rilievo::math::{Size, hash};
-use rilievo::raster::TileGrid;
+use rilievo_engine::document::{Content, Document, Layer, PixelLayer, Progress};
+use rilievo_engine::math::{Size, hash};
+use rilievo_engine::raster::TileGrid;
+use rilievo_io::{Budget, project};
 use rilievo_program::session::{Autosave, Session, Tab};
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -161,7 +161,7 @@ fn brush_while_saving(bencher: Bencher) {
         scope.spawn(|| {
             while !over.load(Ordering::Relaxed) {
                 let file = folder.path().join("a.ora");
-                let saved = rilievo::io::save(&document(), &file, rilievo::io::Over::Anything, &Progress::default());
+                let saved = rilievo_io::save(&document(), &file, rilievo_io::Over::Anything, &Progress::default());
                 saved.expect("a saved project");
             }
         });

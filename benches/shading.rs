@@ -4,11 +4,13 @@
 
 use divan::{Bencher, counter::ItemsCount};
 use rayon::prelude::*;
-use rilievo::document::{Content, Document, Layer, LayerId, Live, Prepared, Progress, diff};
-use rilievo::math::{Size, vec3};
-use rilievo::raster::{PlanarTile, Plane, TileAt, TileGrid, planar::Row};
-use rilievo::shading::{Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::Beneath};
-use rilievo::surface::{Maps, Scene, Surface};
+use rilievo_engine::document::{Content, Document, Layer, LayerId, Live, Prepared, Progress, diff};
+use rilievo_engine::math::{Size, vec3};
+use rilievo_engine::raster::{PlanarTile, Plane, TileAt, TileGrid, planar::Row};
+use rilievo_engine::shading::{
+    Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::Beneath,
+};
+use rilievo_engine::surface::{Maps, Scene, Surface};
 use std::sync::Arc;
 
 fn main() {
@@ -37,7 +39,7 @@ fn composite(scene: &Scene) -> Vec<(TileAt, PlanarTile)> {
     let tone = |x: usize, y: usize, c: usize| ((x * (3 + c) + y * 5) % 256) as f32 / 255.0;
     let row = |y: usize| Row {
         rgb: std::array::from_fn(|c| std::array::from_fn(|x| tone(x, y, c))),
-        a: [1.0; rilievo::raster::TILE],
+        a: [1.0; rilievo_engine::raster::TILE],
     };
     let mut tile = PlanarTile::transparent();
     tile.rows_mut().iter_mut().enumerate().for_each(|(y, r)| *r = row(y));
@@ -156,7 +158,7 @@ fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
     let pool = pool(2);
     let mut document = lit_document(what);
     let mut shown =
-        pool.install(|| rilievo::document::flatten(&document, &Progress::default())).expect("not cancelled");
+        pool.install(|| rilievo_engine::document::flatten(&document, &Progress::default())).expect("not cancelled");
     let mut step = 0;
     bencher.counter(area((SMALL, 2))).bench_local(|| {
         step += 1;

@@ -3,9 +3,9 @@
 //! `cargo bench --bench surface`. Figures are per map; divide by 8.29 million for ns per pixel. `threads = 0` is all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use rilievo::math::{Size, vec3};
-use rilievo::raster::Plane;
-use rilievo::surface::{Maps, Surface};
+use rilievo_engine::math::{Size, vec3};
+use rilievo_engine::raster::Plane;
+use rilievo_engine::surface::{Maps, Surface};
 
 fn main() {
     divan::main();

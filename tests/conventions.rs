@@ -1,11 +1,9 @@
 //! One surface, a ball with a bump, stored in every convention: it must come back as the same normals and depth.
 
-mod maps;
-
-use maps::{Ball, Memory, SIDE, encode, exr_bytes, png};
-use rilievo::document::source::*;
-use rilievo::io::Budget;
-use rilievo::io::maps::{Import, import};
+use super::maps::{Ball, Memory, SIDE, encode, exr_bytes, png};
+use rilievo_engine::document::source::*;
+use rilievo_io::Budget;
+use rilievo_io::maps::{Import, import};
 
 /// Which files take part beside the one under test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +79,7 @@ fn dxt5nm([r, g, ..]: [f32; 4]) -> [f32; 4] {
     [1.0, g, 0.0, r]
 }
 fn through_srgb(v: [f32; 4]) -> [f32; 4] {
-    let [r, g, b, a] = v.map(rilievo::math::srgb::encode);
+    let [r, g, b, a] = v.map(rilievo_engine::math::srgb::encode);
     [r, g, b, a]
 }
 
@@ -252,7 +250,7 @@ fn depth_in_pictures_of_any_depth_and_polarity_is_read() {
             Memory::new([("n.png", ball.normal_png()), ("d.png", png(bits, value)), ("m.png", ball.mask_png())]);
         let import = import(&source(map("n.png"), map("d.png"), true), &files, &Budget::default()).unwrap();
         assert!(errors(&import).1 < granted, "{bits} bits, white near {white_is_near}: {:?}", import.findings);
-        let alone = rilievo::io::maps::import(&source(None, map("d.png"), true), &files, &Budget::default()).unwrap();
+        let alone = rilievo_io::maps::import(&source(None, map("d.png"), true), &files, &Budget::default()).unwrap();
         assert!(errors(&alone).1 < granted && errors(&alone).0 < 12.0, "alone: {:?}", errors(&alone));
     }
 }
@@ -273,7 +271,7 @@ fn a_flat_border_is_surface_until_it_is_said_to_be_background() {
 #[test]
 fn maps_that_do_not_fit_get_a_sentence() {
     let ball = Ball::new();
-    let small = maps::png_of(SIDE / 2, 8, |_, _| [0.5, 0.5, 1.0, 1.0]);
+    let small = super::maps::png_of(SIDE / 2, 8, |_, _| [0.5, 0.5, 1.0, 1.0]);
     let grey = png(8, |x, _| {
         let v = x as f32 / SIDE as f32;
         [v, v, v, 1.0]

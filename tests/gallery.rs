@@ -1,7 +1,7 @@
 //! The gallery: every sample recipe renders to a picture, and `docs/GALLERY.md` shows every one of them.
 
-use rilievo::document::{Progress, flatten};
-use rilievo::io::{Budget, recipe};
+use rilievo_engine::document::{Progress, flatten};
+use rilievo_io::{Budget, recipe};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

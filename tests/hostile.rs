@@ -1,19 +1,11 @@
 //! Damaged and lying files: no panic, no allocation beyond what the budget allows.
 
-mod watch;
-
-use rilievo::document::source::{MapSource, SurfaceSource};
-use rilievo::io::{Budget, Files, inspect, maps, picture};
-use rilievo::{Error, Result};
+use super::watch;
+use rilievo_engine::document::source::{MapSource, SurfaceSource};
+use rilievo_engine::{Error, Result};
+use rilievo_io::{Budget, Files, inspect, maps, picture};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-
-/// The tests watch one allocator: one at a time.
-static TURN: Mutex<()> = Mutex::new(());
-
-#[global_allocator]
-static WATCH: watch::Watch = watch::Watch;
 
 const SIDE: usize = 24;
 
@@ -48,7 +40,7 @@ fn read_all(name: &str, bytes: &[u8], budget: &Budget) -> Vec<Error> {
         match maps::import(&source, &files, budget) {
             Ok(import) => {
                 let s = import.surface;
-                let finite = |p: &rilievo::raster::Plane<f32>| p.values().iter().all(|v| v.is_finite());
+                let finite = |p: &rilievo_engine::raster::Plane<f32>| p.values().iter().all(|v| v.is_finite());
                 assert!(finite(s.depth_plane()) && s.normal_planes().iter().all(|p| finite(p)), "{name}");
             }
             Err(e) => errors.push(e),
@@ -133,9 +125,9 @@ fn damage(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
 
 #[test]
 fn damaged_files_neither_panic_nor_allocate_beyond_the_budget() {
+    let _turn = watch::turn();
     use exr::prelude::Compression;
     use image::ImageFormat;
-    let _turn = TURN.lock();
     // Decoders' panics are caught at the door; their traces would bury this test's own.
     std::panic::set_hook(Box::new(|panic| {
         if panic.location().is_some_and(|l| l.file().contains("hostile")) {
@@ -180,7 +172,7 @@ fn damaged_files_neither_panic_nor_allocate_beyond_the_budget() {
 
 #[test]
 fn headers_that_promise_too_much_are_refused_before_anything_is_allocated() {
-    let _turn = TURN.lock();
+    let _turn = watch::turn();
     let mut png = bitmap(image::ImageFormat::Png);
     png[16..24].copy_from_slice(&[0, 0, 0x27, 0x10, 0, 0, 0x27, 0x10]);
     let crc = crc32(&png[12..29]);

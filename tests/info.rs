@@ -1,9 +1,6 @@
 //! `rilievo info` as scripts meet it.
 
-#[path = "maps/mod.rs"]
-mod maps;
-
-use maps::{Ball, encode, exr_bytes, png};
+use super::maps::{Ball, encode, exr_bytes, png};
 use serde_json::Value;
 use std::fs;
 use std::process::{Command, Output};
@@ -34,8 +31,8 @@ fn a_set_is_recognised_and_its_convention_told_as_json() {
 fn an_exr_is_listed_by_layers_and_read_as_a_surface() {
     let (ball, folder) = (Ball::new(), tempfile::tempdir().unwrap());
     let plane = |f: &dyn Fn(glam::Vec3, f32) -> f32, outside: f32| -> Vec<f32> {
-        let at = |i: usize| ball.at(i % maps::SIDE, i / maps::SIDE).map_or(outside, |(n, z)| f(n, z));
-        (0..maps::SIDE * maps::SIDE).map(at).collect()
+        let at = |i: usize| ball.at(i % super::maps::SIDE, i / super::maps::SIDE).map_or(outside, |(n, z)| f(n, z));
+        (0..super::maps::SIDE * super::maps::SIDE).map(at).collect()
     };
     let channels = [
         ("N.X", plane(&|n, _| n.x, 0.0)),

@@ -21,7 +21,7 @@ fn said(folder: &Path, args: &[&str]) -> String {
 /// A folder with a recipe of some layers.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let noise = |x: u32, y: u32| rilievo::math::hash::mix(x * 977 + y) as u8;
+    let noise = |x: u32, y: u32| rilievo_engine::math::hash::mix(x * 977 + y) as u8;
     let picture = image::RgbaImage::from_fn(48, 40, |x, y| {
         image::Rgba([noise(x, y), x as u8 * 5, noise(y, x), 255 - (x % 3 * 90) as u8])
     });

@@ -1,19 +1,10 @@
 //! Files of every format, damaged at random and in their structure: never a panic, never an abort, never more memory than
 //! is allowed, and every refusal a sentence that names the file. The same mutations on every run.
 
-mod readers;
-mod seeds;
-mod watch;
-
-use rilievo::math::hash::mix;
+use super::{readers, seeds, watch};
+use rilievo_engine::math::hash::mix;
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
-use std::sync::Mutex;
-
-#[global_allocator]
-static WATCH: watch::Watch = watch::Watch;
-/// The tests watch one allocator: one at a time.
-static TURN: Mutex<()> = Mutex::new(());
 
 /// The most that reading any of them may take.
 const MOST_BYTES: usize = 512 << 20;
@@ -121,7 +112,6 @@ fn mend_checksums(png: &mut [u8]) {
 
 /// Panics unless every mutation is read or refused; how many were refused, and the most memory one took.
 fn mutate(count: u32) -> (u32, usize) {
-    let _turn = TURN.lock();
     // Decoders' panics are caught at the door; their traces would bury this test's own.
     std::panic::set_hook(Box::new(|panic| {
         if panic.location().is_some_and(|place| place.file().starts_with("tests")) {
@@ -152,17 +142,18 @@ fn mutate(count: u32) -> (u32, usize) {
 
 #[test]
 fn every_seed_is_read_as_it_is() {
-    let _turn = TURN.lock();
+    let _turn = watch::turn();
     for (name, bytes) in seeds::all() {
         readers::any(Path::new(&name), &bytes).or_else(|e| needs_files(&name, e)).unwrap_or_else(|e| panic!("{e}"));
     }
 }
 /// A recipe alone names files that are not there.
-fn needs_files(name: &str, error: rilievo::Error) -> rilievo::Result<()> {
+fn needs_files(name: &str, error: rilievo_engine::Error) -> rilievo_engine::Result<()> {
     if name.ends_with(".json") && error.to_string().contains(".png") { Ok(()) } else { Err(error) }
 }
 #[test]
 fn damaged_files_of_every_format_are_read_or_refused_with_a_sentence() {
+    let _turn = watch::turn();
     let (refused, most) = mutate(20_000);
     eprintln!("{refused} refused; the most memory: {} KiB", most >> 10);
     assert!(refused > 5_000, "the mutations do damage: {refused}");
@@ -171,13 +162,14 @@ fn damaged_files_of_every_format_are_read_or_refused_with_a_sentence() {
 #[test]
 #[ignore = "twenty minutes; run by name"]
 fn long_a_million_damaged_files() {
+    let _turn = watch::turn();
     let (refused, most) = mutate(1_000_000);
     eprintln!("{refused} refused; the most memory: {} KiB", most >> 10);
 }
 /// What the fuzzer begins with, and what it found worth keeping, by the names of its targets.
 #[test]
 fn the_corpus_of_the_fuzzer_is_read_or_refused() {
-    let _turn = TURN.lock();
+    let _turn = watch::turn();
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
     for (target, reader) in readers::ALL {
         let folders = ["seeds", "corpus"].map(|folder| fuzz.join(folder).join(target));

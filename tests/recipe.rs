@@ -1,13 +1,13 @@
 //! Recipes: every kind of layer read with its defaults, refused with the path of what is wrong, and written back.
 
-use rilievo::document::{Content, Document, MaskKind};
-use rilievo::io::recipe::{self, Source};
-use rilievo::io::{Budget, Files};
-use rilievo::math::{Size, srgb::Color, vec2};
-use rilievo::paint::{Filter, Tip};
-use rilievo::raster::{BlendMode, Outside};
-use rilievo::surface::{Anchor, Operator, Weights};
-use rilievo::{Error, Result};
+use rilievo_engine::document::{Content, Document, MaskKind};
+use rilievo_engine::math::{Size, srgb::Color, vec2};
+use rilievo_engine::paint::{Filter, Tip};
+use rilievo_engine::raster::{BlendMode, Outside};
+use rilievo_engine::surface::{Anchor, Operator, Weights};
+use rilievo_engine::{Error, Result};
+use rilievo_io::recipe::{self, Source};
+use rilievo_io::{Budget, Files};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ fn with_layers(layers: Value) -> Value {
     json!({ "canvas": { "width": 32, "height": 16 }, "layers": layers })
 }
 
-fn only_layer(layer: Value) -> rilievo::document::Layer {
+fn only_layer(layer: Value) -> rilievo_engine::document::Layer {
     let document = read(&with_layers(json!([layer]))).unwrap_or_else(|e| panic!("{e}"));
     (*document.layers[0]).clone()
 }
@@ -132,7 +132,7 @@ fn strokes_read_their_samples_brush_and_preset() {
     assert_eq!(strokes[1].brush().size, 33.0);
     assert!(matches!(strokes[1].operator(), Operator::Normal { .. }), "the preset's own operator");
     assert!(matches!(strokes[2].brush().tip, Tip::Picture(_)));
-    assert_eq!(strokes[2].brush().dynamics.pressure_share(rilievo::paint::Property::Size), 1.0);
+    assert_eq!(strokes[2].brush().dynamics.pressure_share(rilievo_engine::paint::Property::Size), 1.0);
     assert_eq!(strokes[2].operator(), Operator::Depth { gamma: 1.0 });
 }
 
@@ -344,7 +344,7 @@ fn the_surface_is_written_as_it_was_read() {
             "background": [0.0, 65504.0], "range_px": 100.0, "smooth_steps": true },
         "mask": { "file": "m.png", "channel": "R", "invert": true }
     });
-    let node = rilievo::io::json::Node::root(Path::new("r.json"), &surface);
+    let node = rilievo_io::json::Node::root(Path::new("r.json"), &surface);
     let written = recipe::surface::write(&recipe::surface::read(&node).unwrap());
     assert_eq!(without_float_spelling(&written), without_float_spelling(&surface));
 }

@@ -1,11 +1,11 @@
 //! Small files of every format that is read, most of them made here, some by other programs (`files/`).
 
-use rilievo::document::{Document, Progress};
-use rilievo::io::fs::Disk;
-use rilievo::io::recovery::Recovery;
-use rilievo::io::{Budget, Files, project, psd, recipe};
-use rilievo::math::hash::mix;
-use rilievo::{Error, Result};
+use rilievo_engine::document::{Document, Progress};
+use rilievo_engine::math::hash::mix;
+use rilievo_engine::{Error, Result};
+use rilievo_io::fs::Disk;
+use rilievo_io::recovery::Recovery;
+use rilievo_io::{Budget, Files, project, psd, recipe};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::Cursor;

@@ -2,6 +2,7 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Hands everything to the system's allocator, and counts.
 pub struct Watch;
@@ -52,12 +53,16 @@ pub fn forget() -> usize {
     live
 }
 /// The most bytes in use since then.
-#[allow(dead_code)]
 pub fn peak() -> usize {
     PEAK.load(Ordering::Relaxed)
 }
 /// The largest block since then.
-#[allow(dead_code)]
 pub fn largest() -> usize {
     LARGEST.load(Ordering::Relaxed)
+}
+
+/// The tests watch one allocator, so they run one at a time: each holds its turn.
+pub fn turn() -> MutexGuard<'static, ()> {
+    static TURN: Mutex<()> = Mutex::new(());
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -4,8 +4,8 @@ use super::{Story, press, session, steps, window};
 use eframe::egui::accesskit::Role;
 use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
-use rilievo::paint::dynamics::{Input, Property};
-use rilievo::paint::{Stabilizer, Tip};
+use rilievo_engine::paint::dynamics::{Input, Property};
+use rilievo_engine::paint::{Stabilizer, Tip};
 
 fn editor() -> Story {
     let mut harness = window();

@@ -3,7 +3,7 @@
 use super::{Story, click, command, layers, press, session, steps, stroke, until, window};
 use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
-use rilievo::document::{Content, MaskKind};
+use rilievo_engine::document::{Content, MaskKind};
 
 #[test]
 fn layers_are_added_hidden_and_deleted_by_their_buttons() {

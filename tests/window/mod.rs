@@ -1,5 +1,4 @@
 //! The window, driven by the names of its controls, with no display and no graphics card.
-#![cfg(feature = "window-tests")]
 
 mod brushes;
 mod documents;

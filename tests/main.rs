@@ -1,0 +1,18 @@
+//! Every test of the whole program in one binary, so that it is linked once. Tests of damaged files stand apart
+//! (`damage.rs`): they watch the allocator.
+
+mod cli;
+mod conventions;
+mod documents;
+mod equations;
+mod floors;
+mod gallery;
+mod info;
+mod interchange;
+#[cfg(target_os = "linux")]
+mod kills;
+mod maps;
+mod recipe;
+mod view;
+#[cfg(feature = "window-tests")]
+mod window;
