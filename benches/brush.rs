@@ -8,13 +8,13 @@
 //! (benches/peers/libmypaint_dabs.c) is built with `cc` where libmypaint's headers are; else it is skipped, aloud.
 
 use rilievo_engine::document::{
-    Content, Document, Layer, Live, PixelLayer, Prepared, Progress, StrokeList, diff::diff,
+    Content, Document, Layer, Live, PixelLayer, PreparedDocument, Progress, StrokeList, diff::diff,
 };
 use rilievo_engine::math::{Size, Vec2, hash, srgb::Color, vec2, vec3};
 use rilievo_engine::paint::{Brush, Sample, Stroke, stroke};
 use rilievo_engine::raster::{Plane, Tile, TileAt, TileGrid};
 use rilievo_engine::surface::{Maps, Operator, Scene, Surface};
-use rilievo_program::tools::{self, Context, Outcome, Pen, ToolKind};
+use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
@@ -166,32 +166,32 @@ const FRAME: usize = 16;
 const HAND_PX: f32 = 2.0;
 
 /// The `i`th sample of a wavy line through the band.
-fn on_wave(i: usize) -> Pen {
+fn on_wave(i: usize) -> PenSample {
     let x = 200.0 + HAND_PX * i as f32;
     let sample = Sample { time_secs: i as f32 / 1000.0, ..Sample::at(vec2(x, 2048.0 + 120.0 * (x / 150.0).sin())) };
-    Pen { sample, ..Pen::at(Vec2::ZERO) }
+    PenSample { sample, ..PenSample::at(Vec2::ZERO) }
 }
 
 /// ms from a frame's events to its flattened tiles: painted, found, made ready, flattened.
 fn frame_times(document: &Document, layer: usize, operator: Operator) -> Vec<[f64; 4]> {
     let brush = Brush { size: 128.0, ..Brush::default() };
     let layer = Some(document.layers[layer].id);
-    let context = Context { layer, operator, ..Context::new(document, &brush) };
+    let context = ToolContext { layer, operator, ..ToolContext::new(document, &brush) };
     let (gesture, _) = tools::press(ToolKind::Brush, &context, on_wave(0));
     let mut gesture = gesture.expect("the layer takes paint");
     let progress = Progress::default();
-    let picture = Prepared::new(document, &progress).expect("nobody cancels");
+    let picture = PreparedDocument::new(document, &progress).expect("nobody cancels");
     let mut picture =
         picture.flatten_tiles(&TileGrid::default(), &picture.all_tiles(), &progress).expect("nobody cancels");
     let mut shown = document.clone();
     let frame = |frame: usize| {
-        let pens: Vec<Pen> = (1..=FRAME).map(|i| on_wave(frame * FRAME + i)).collect();
+        let pens: Vec<PenSample> = (1..=FRAME).map(|i| on_wave(frame * FRAME + i)).collect();
         let start = Instant::now();
         let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
         let painted = start.elapsed();
         let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
         let found = start.elapsed();
-        let prepared = Prepared::new(&next, &progress)?;
+        let prepared = PreparedDocument::new(&next, &progress)?;
         let ready = start.elapsed();
         picture = prepared.flatten_tiles(&picture, &tiles, &progress)?;
         let flattened = start.elapsed();
@@ -252,7 +252,7 @@ fn one_of_a_thousand() {
         Document { surface: LARGE_SCENE.surface.clone(), layers: vec![Arc::new(layer)], ..Document::empty(LARGE) };
     let progress = Progress::default();
     let start = Instant::now();
-    let prepared = Prepared::new(&document, &progress).expect("nobody cancels");
+    let prepared = PreparedDocument::new(&document, &progress).expect("nobody cancels");
     let picture =
         prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), &progress).expect("nobody cancels");
     let whole = start.elapsed().as_secs_f64() * 1e3;
@@ -264,7 +264,7 @@ fn one_of_a_thousand() {
             Some(())
         })?;
         let tiles: Vec<TileAt> = diff(&document, &next).into_iter().collect();
-        let prepared = Prepared::new(&next, &progress)?;
+        let prepared = PreparedDocument::new(&next, &progress)?;
         divan::black_box(prepared.flatten_tiles(&picture, &tiles, &progress)?);
         Some((start.elapsed().as_secs_f64() * 1e3, tiles.len() as f64))
     };

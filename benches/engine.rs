@@ -2,9 +2,9 @@
 //! that is handed the finished map. `cargo bench --bench engine`; quote ratios from one run, never times from another day.
 
 use rayon::prelude::*;
-use rilievo_engine::document::{Content, Document, Layer, Live, Progress, Reduced, flatten};
+use rilievo_engine::document::{Content, Document, DocumentReducer, Layer, Live, Progress, flatten};
 use rilievo_engine::math::{Size, vec2, vec3};
-use rilievo_engine::paint::{Adjust, Filter, PictureSource, PlacedImage, Placement};
+use rilievo_engine::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt};
 use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
 use std::process::Command;
@@ -30,7 +30,7 @@ static SOURCE: LazyLock<PictureSource> = LazyLock::new(|| {
     PictureSource::new("xor".into(), Picture::srgb8(SIZE, texels).expect("one texel a pixel"), Adjust::default())
 });
 
-fn image(operator: Operator, filter: Filter, anchors: usize) -> PlacedImage {
+fn image(operator: Operator, filter: ImageFilter, anchors: usize) -> PlacedImage {
     let at = [vec2(1920.5, 1080.5), vec2(700.5, 500.5), vec2(3000.5, 1700.5)];
     let anchors = at[..anchors].iter().map(|&at| Anchor::fixed(at)).collect();
     PlacedImage {
@@ -45,14 +45,14 @@ fn image(operator: Operator, filter: Filter, anchors: usize) -> PlacedImage {
 const D_N: Operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
 
 /// Name, operator, filter, number of anchors.
-const CASES: [(&str, Operator, Filter, usize); 7] = [
-    ("D_n bilinear", D_N, Filter::Bilinear, 1),
-    ("D_n antialias", D_N, Filter::Antialias, 1),
-    ("D_n bilinear, 3 anchors", D_N, Filter::Bilinear, 3),
-    ("D_n antialias, 3 anchors", D_N, Filter::Antialias, 3),
-    ("D_p bilinear", Operator::Depth { gamma: 1.0 }, Filter::Bilinear, 1),
-    ("D_r bilinear", Operator::Reflection { alpha: 0.5, detail: 0.0 }, Filter::Bilinear, 1),
-    ("unbent", Operator::None, Filter::Bilinear, 1),
+const CASES: [(&str, Operator, ImageFilter, usize); 7] = [
+    ("D_n bilinear", D_N, ImageFilter::Bilinear, 1),
+    ("D_n antialias", D_N, ImageFilter::Antialias, 1),
+    ("D_n bilinear, 3 anchors", D_N, ImageFilter::Bilinear, 3),
+    ("D_n antialias, 3 anchors", D_N, ImageFilter::Antialias, 3),
+    ("D_p bilinear", Operator::Depth { gamma: 1.0 }, ImageFilter::Bilinear, 1),
+    ("D_r bilinear", Operator::Reflection { alpha: 0.5, detail: 0.0 }, ImageFilter::Bilinear, 1),
+    ("unbent", Operator::None, ImageFilter::Bilinear, 1),
 ];
 
 fn render(image: &PlacedImage) -> Vec<Option<Tile>> {
@@ -86,12 +86,12 @@ fn bench(bencher: divan::Bencher, case: &str, threads: usize) {
 fn dragged(bencher: divan::Bencher, step: u32) {
     let content = |alpha: f32| {
         let operator = Operator::Normal { alpha, beta: 0.0, detail: 0.0 };
-        Content::Image(Live::new(image(operator, Filter::Antialias, 1)))
+        Content::Image(Live::new(image(operator, ImageFilter::Antialias, 1)))
     };
     let layers = vec![Arc::new(Layer::new("picture", content(0.5)))];
     let document = Document { surface: SCENE.surface.clone(), layers, ..Document::empty(SIZE) };
     let id = document.layers[0].id;
-    let mut reduced = Reduced::new(1.0 / step as f32);
+    let mut reduced = DocumentReducer::new(1.0 / step as f32);
     // The surface is made small once for all of a drag.
     reduced.of(&document).expect("a surface that can be made small");
     let mut alpha = 0.5;

@@ -5,7 +5,7 @@
 //! layer is 1 / (Gitem/s).
 
 use divan::{Bencher, counter::ItemsCount};
-use rilievo_engine::document::{Content, Document, Layer, PixelLayer, Prepared, Progress};
+use rilievo_engine::document::{Content, Document, Layer, PixelLayer, PreparedDocument, Progress};
 use rilievo_engine::math::{Size, hash};
 use rilievo_engine::raster::{BlendMode, TileAt, TileGrid};
 use std::sync::{Arc, LazyLock};
@@ -122,6 +122,7 @@ fn five_layers_in_linear_light(bencher: Bencher) {
 
 #[divan::bench(sample_count = 20)]
 fn one_tile_of_20_layers(bencher: Bencher) {
-    let prepared = Prepared::new(&document(LAYERS, BlendMode::Normal), &Progress::default()).expect("not cancelled");
+    let prepared =
+        PreparedDocument::new(&document(LAYERS, BlendMode::Normal), &Progress::default()).expect("not cancelled");
     bencher.counter(ItemsCount::new(64 * 64 * LAYERS)).bench_local(|| prepared.flatten_tile(TileAt::new(3, 3)));
 }

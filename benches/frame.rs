@@ -3,14 +3,14 @@
 //! `cargo bench --bench frame`. Peers: the frame rates asked for, 16 ms a drag and 8 ms a brush; and a copy of the picture.
 
 use rilievo_engine::document::{
-    Content, Document, Layer, Live, PixelLayer, Prepared, Progress, Reduced, diff, flatten,
+    Content, Document, DocumentReducer, Layer, Live, PixelLayer, PreparedDocument, Progress, diff, flatten,
 };
 use rilievo_engine::math::srgb::Color;
 use rilievo_engine::math::{Size, Vec2, hash, vec2, vec3};
-use rilievo_engine::paint::{Adjust, Brush, Filter, PictureSource, PlacedImage, Placement, Sample};
+use rilievo_engine::paint::{Adjust, Brush, ImageFilter, PictureSource, PlacedImage, Placement, Sample};
 use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt, TileGrid};
 use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
-use rilievo_program::tools::{self, Context, Outcome, Pen, ToolKind};
+use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -49,7 +49,7 @@ fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Co
             anchors: anchors.iter().map(|&at| Anchor::fixed(at)).collect(),
             weights: Weights::default(),
         },
-        filter: Filter::Antialias,
+        filter: ImageFilter::Antialias,
     }))
 }
 
@@ -59,7 +59,7 @@ fn drag(size: Size, step: u32, content: impl Fn(f32) -> Content) -> Vec<f64> {
     let layers = vec![Arc::new(ground), Arc::new(Layer::new("photo", content(0.0)))];
     let document = Document { surface: ball(size).surface, layers, ..Document::empty(size) };
     let id = document.layers[1].id;
-    let mut reduced = Reduced::new(1.0 / step as f32);
+    let mut reduced = DocumentReducer::new(1.0 / step as f32);
     let progress = Progress::default();
     reduced.of(&document).expect("a surface that can be made small");
     let frame = |i: u32| {
@@ -96,21 +96,21 @@ fn strokes() -> Vec<f64> {
         let x = 260.0 + 2.0 * i as f32;
         let at = vec2(x, 1024.0 + 120.0 * (x / 150.0).sin());
         let sample = Sample { time_secs: i as f32 / 1000.0, ..Sample::at(at) };
-        Pen { sample, ..Pen::at(Vec2::ZERO) }
+        PenSample { sample, ..PenSample::at(Vec2::ZERO) }
     };
-    let context = Context { layer, operator: D_N, ..Context::new(&document, &brush) };
+    let context = ToolContext { layer, operator: D_N, ..ToolContext::new(&document, &brush) };
     let (gesture, _) = tools::press(ToolKind::Brush, &context, pen(0));
     let mut gesture = gesture.expect("the layer takes paint");
     let progress = Progress::default();
-    let all = Prepared::new(&document, &progress).expect("nobody cancels");
+    let all = PreparedDocument::new(&document, &progress).expect("nobody cancels");
     let mut picture = all.flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress).expect("nobody cancels");
     let mut shown = document.clone();
     let frame = |frame: usize| {
-        let pens: Vec<Pen> = (1..=16).map(|i| pen(frame * 16 + i)).collect();
+        let pens: Vec<PenSample> = (1..=16).map(|i| pen(frame * 16 + i)).collect();
         let start = Instant::now();
         let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
         let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
-        picture = Prepared::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
+        picture = PreparedDocument::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
         shown = next;
         Some(start.elapsed().as_secs_f64() * 1e3)
     };
@@ -125,9 +125,9 @@ fn first_small(step: u32) -> [f64; 2] {
         let more = divan::black_box(work());
         (start.elapsed().as_secs_f64() * 1e3, more)
     };
-    let mut at_once = Reduced::new(1.0 / step as f32);
+    let mut at_once = DocumentReducer::new(1.0 / step as f32);
     let all = timed(&mut || at_once.of(&document).is_ok()).0;
-    let mut parts = Reduced::new(1.0 / step as f32);
+    let mut parts = DocumentReducer::new(1.0 / step as f32);
     let mut longest: f64 = 0.0;
     loop {
         let (ms, more) = timed(&mut || parts.prepare(&document));

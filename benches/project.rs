@@ -9,7 +9,7 @@ use rilievo_engine::document::{Content, Document, Layer, PixelLayer, Progress};
 use rilievo_engine::math::{Size, hash};
 use rilievo_engine::raster::TileGrid;
 use rilievo_io::{Budget, project};
-use rilievo_program::session::{Autosave, Session, Tab};
+use rilievo_program::session::{Autosave, OpenDocument, Session};
 use std::io::{Cursor, Read};
 use std::path::Path;
 use std::sync::LazyLock;
@@ -122,7 +122,7 @@ fn save_the_project_again(bencher: Bencher) {
 /// A session on the project that paints on its topmost layer; a pen held down.
 fn painting() -> Session {
     let mut session = Session::default();
-    session.add_tab(Tab::new("bench", document(), None));
+    session.add_document(OpenDocument::new("bench", document(), None));
     replay(&mut session, r#"{"in":"pointer","do":"press","tool":"brush","pen":[300,300],"px_per_pt":1}"#);
     session
 }
@@ -161,7 +161,7 @@ fn brush_while_saving(bencher: Bencher) {
         scope.spawn(|| {
             while !over.load(Ordering::Relaxed) {
                 let file = folder.path().join("a.ora");
-                let saved = rilievo_io::save(&document(), &file, rilievo_io::Over::Anything, &Progress::default());
+                let saved = rilievo_io::save(&document(), &file, rilievo_io::Overwrite::Anything, &Progress::default());
                 saved.expect("a saved project");
             }
         });

@@ -4,11 +4,11 @@
 
 use divan::{Bencher, counter::ItemsCount};
 use rayon::prelude::*;
-use rilievo_engine::document::{Content, Document, Layer, LayerId, Live, Prepared, Progress, diff};
+use rilievo_engine::document::{Content, Document, Layer, LayerId, Live, PreparedDocument, Progress, diff};
 use rilievo_engine::math::{Size, vec3};
-use rilievo_engine::raster::{PlanarTile, Plane, TileAt, TileGrid, planar::Row};
+use rilievo_engine::raster::{PlanarTile, Plane, TileAt, TileGrid, planar::PixelRow};
 use rilievo_engine::shading::{
-    Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::Beneath,
+    Light, LightKind, Model, RadianceScaling, Reference, Scaling, Shading, radiance::BackdropStats,
 };
 use rilievo_engine::surface::{Maps, Scene, Surface};
 use std::sync::Arc;
@@ -37,7 +37,7 @@ fn scene((width, height): (u32, u32)) -> Scene {
 /// A painted composite: every tone, opaque.
 fn composite(scene: &Scene) -> Vec<(TileAt, PlanarTile)> {
     let tone = |x: usize, y: usize, c: usize| ((x * (3 + c) + y * 5) % 256) as f32 / 255.0;
-    let row = |y: usize| Row {
+    let row = |y: usize| PixelRow {
         rgb: std::array::from_fn(|c| std::array::from_fn(|x| tone(x, y, c))),
         a: [1.0; rilievo_engine::raster::TILE],
     };
@@ -59,7 +59,7 @@ fn radiance_scaling_layer(bencher: Bencher, run: Run) {
     let scene = scene(run.0);
     let tiles = composite(&scene);
     let layer = RadianceScaling::default();
-    let beneath = Beneath { brightest: 1.0, gain: 1.0 };
+    let beneath = BackdropStats { brightest: 1.0, gain: 1.0 };
     let pool = pool(run.1);
     // A fresh composite each time: one scaled again and again ends in numbers too small to be fast.
     bencher.counter(area(run)).with_inputs(|| tiles.clone()).bench_local_refs(|tiles| {
@@ -93,7 +93,7 @@ fn copy_of_the_same_pixels(bencher: Bencher, run: Run) {
 fn radiance_scaling_of_tiles_in_the_cache(bencher: Bencher, run: Run) {
     let scene = scene(run.0);
     let layer = RadianceScaling::default();
-    let beneath = Beneath { brightest: 1.0, gain: 1.0 };
+    let beneath = BackdropStats { brightest: 1.0, gain: 1.0 };
     in_cache(bencher, run, |at, tile| layer.apply_tile(&scene, at, beneath, tile));
 }
 
@@ -170,7 +170,7 @@ fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
 
 fn redrawn(old: &Document, new: &Document, shown: &TileGrid) -> TileGrid {
     let changed: Vec<TileAt> = diff(old, new).into_iter().collect();
-    let prepared = Prepared::new(new, &Progress::default()).expect("not cancelled");
+    let prepared = PreparedDocument::new(new, &Progress::default()).expect("not cancelled");
     prepared.flatten_tiles(shown, &changed, &Progress::default()).expect("not cancelled")
 }
 

@@ -51,10 +51,12 @@
 #![warn(missing_docs)]
 
 pub use rilievo_engine::document::{
-    Content, Document, Group, Layer, LayerId, Lock, PixelLayer, Place, Progress, flatten, flatten_layer,
+    Content, Document, Group, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten, flatten_layer,
 };
 pub use rilievo_engine::math::{Size, srgb::Color};
 pub use rilievo_engine::raster::{BlendMode, TILE, Tile, TileGrid};
 pub use rilievo_engine::surface::Surface;
 pub use rilievo_engine::{Error, Result};
-pub use rilievo_io::{Budget, Files, Folder, Opened, Over, Saved, export, open, recipe, save};
+pub use rilievo_io::{
+    Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, export, open, recipe, save,
+};

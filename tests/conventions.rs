@@ -3,7 +3,7 @@
 use super::maps::{Ball, Memory, SIDE, encode, exr_bytes, png};
 use rilievo_engine::document::source::*;
 use rilievo_io::Budget;
-use rilievo_io::maps::{Import, import};
+use rilievo_io::maps::{ImportedSurface, import};
 
 /// Which files take part beside the one under test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ fn map<C: Default>(file: &str) -> Option<MapSource<C>> {
 }
 
 /// Mean angle in degrees and mean difference of depth, over the pixels wholly inside.
-fn errors(import: &Import) -> (f64, f64) {
+fn errors(import: &ImportedSurface) -> (f64, f64) {
     let (ball, s) = (Ball::new(), &import.surface);
     let (near, far) = ball.range();
     let (mut angle, mut depth, mut count) = (0.0, 0.0, 0.0);

@@ -216,7 +216,7 @@ fn fingerprint(document: &Document) -> (String, u32) {
 fn steps(story: &str) -> Vec<(String, u32)> {
     let (mut steps, mut last): (Vec<_>, Option<Document>) = (Vec::new(), None);
     let tell = |session: &mut Session| {
-        let now = session.tab().unwrap().document().clone();
+        let now = session.active().unwrap().document().clone();
         if !last.as_ref().is_some_and(|last| is_same(last, &now)) {
             steps.push(fingerprint(&now));
         }

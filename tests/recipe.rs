@@ -2,11 +2,11 @@
 
 use rilievo_engine::document::{Content, Document, MaskKind};
 use rilievo_engine::math::{Size, srgb::Color, vec2};
-use rilievo_engine::paint::{Filter, Tip};
+use rilievo_engine::paint::{ImageFilter, Tip};
 use rilievo_engine::raster::{BlendMode, Outside};
 use rilievo_engine::surface::{Anchor, Operator, Weights};
 use rilievo_engine::{Error, Result};
-use rilievo_io::recipe::{self, Source};
+use rilievo_io::recipe::{self, RecipeSource};
 use rilievo_io::{Budget, Files};
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -47,7 +47,7 @@ fn files() -> InMemory {
 
 fn read_with(files: &InMemory, recipe: &Value, budget: &Budget) -> Result<Document> {
     let text = recipe.to_string();
-    recipe::read(text.as_bytes(), Source { file: Path::new("r.json"), files, budget, onto: None })
+    recipe::read(text.as_bytes(), RecipeSource { file: Path::new("r.json"), files, budget, onto: None })
 }
 
 fn read(recipe: &Value) -> Result<Document> {
@@ -84,7 +84,7 @@ fn what_is_not_said_takes_its_default() {
         panic!("an image layer");
     };
     let image = image.params();
-    assert_eq!((image.outside, image.filter), (Outside::Mirror, Filter::Antialias));
+    assert_eq!((image.outside, image.filter), (Outside::Mirror, ImageFilter::Antialias));
     assert_eq!((image.placement.center, image.placement.scale), (vec2(16.0, 8.0), 1.0));
     assert_eq!((image.bend.operator, image.bend.anchors.len()), (Operator::None, 0));
     assert_eq!(image.bend.weights, Weights::Shepard { power: 2.0 });
@@ -344,7 +344,7 @@ fn the_surface_is_written_as_it_was_read() {
             "background": [0.0, 65504.0], "range_px": 100.0, "smooth_steps": true },
         "mask": { "file": "m.png", "channel": "R", "invert": true }
     });
-    let node = rilievo_io::json::Node::root(Path::new("r.json"), &surface);
+    let node = rilievo_io::json::JsonNode::root(Path::new("r.json"), &surface);
     let written = recipe::surface::write(&recipe::surface::read(&node).unwrap());
     assert_eq!(without_float_spelling(&written), without_float_spelling(&surface));
 }
@@ -375,7 +375,8 @@ fn every_recipe_in_the_documentation_reads() {
             let mut recipe: Value = serde_json::from_str(block).unwrap_or_else(|e| panic!("{page}: {e}"));
             recipe.as_object_mut().unwrap().remove("surface");
             recipe["canvas"] = json!({ "width": 8, "height": 8 });
-            let source = Source { file: Path::new(page), files: &AnyPicture, budget: &Budget::default(), onto: None };
+            let source =
+                RecipeSource { file: Path::new(page), files: &AnyPicture, budget: &Budget::default(), onto: None };
             recipe::read(recipe.to_string().as_bytes(), source).unwrap_or_else(|e| panic!("{e}"));
             read += 1;
         }
@@ -446,7 +447,7 @@ mod mutations {
             let i = at.index(text.len());
             text[i] = byte;
             for text in [&text[..], &text[..cut.index(text.len())]] {
-                let source = Source { file: Path::new("r.json"), files: &files(), budget: &Budget::default(), onto: None };
+                let source = RecipeSource { file: Path::new("r.json"), files: &files(), budget: &Budget::default(), onto: None };
                 if let Err(said) = recipe::read(text, source) {
                     prop_assert!(said.to_string().starts_with("r.json: "));
                 }

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A kind of file that a picture can be written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ExportFormat {
     /// 8 bits, straight alpha, marked as sRGB.
     Png,
     /// 8 bits, opaque.
@@ -27,20 +27,20 @@ pub enum Format {
     Exr,
 }
 
-impl Format {
+impl ExportFormat {
     /// Every format by the extensions of its files.
-    pub const ALL: [(Format, &'static str); 7] = [
-        (Format::Png, "png"),
-        (Format::Exr, "exr"),
-        (Format::Jpeg, "jpg"),
-        (Format::Jpeg, "jpeg"),
-        (Format::WebP, "webp"),
-        (Format::Tiff, "tif"),
-        (Format::Tiff, "tiff"),
+    pub const ALL: [(ExportFormat, &'static str); 7] = [
+        (ExportFormat::Png, "png"),
+        (ExportFormat::Exr, "exr"),
+        (ExportFormat::Jpeg, "jpg"),
+        (ExportFormat::Jpeg, "jpeg"),
+        (ExportFormat::WebP, "webp"),
+        (ExportFormat::Tiff, "tif"),
+        (ExportFormat::Tiff, "tiff"),
     ];
 
     /// The format that a file's name asks for.
-    pub fn of(file: &Path) -> Result<Format> {
+    pub fn of(file: &Path) -> Result<ExportFormat> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let found = Self::ALL.iter().find(|(_, known)| *known == extension);
         found.map(|(format, _)| *format).ok_or_else(|| {
@@ -52,7 +52,7 @@ impl Format {
 
 /// How a picture is written.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
+pub struct ExportOptions {
     /// What shows through where the picture is transparent; nothing by default.
     pub background: Option<Color>,
     /// Of a JPEG, 1 … 100.
@@ -63,33 +63,33 @@ pub struct Options {
     pub crop: Option<Rect>,
 }
 
-impl Default for Options {
+impl Default for ExportOptions {
     fn default() -> Self {
         Self { background: None, quality: 92, dots_per_inch: None, crop: None }
     }
 }
 
 /// A place to write to, checked before the work that fills it begins.
-pub struct Target {
+pub struct OutputFile {
     /// As the user named it, for messages.
     named: PathBuf,
     /// With links resolved: the file a link leads to is replaced, not the link.
     file: PathBuf,
     /// Absent for a document, whose bytes are not made here.
-    format: Option<Format>,
+    format: Option<ExportFormat>,
 }
 
 /// The name asks for a whole document, not for a picture.
 fn is_document(named: &Path) -> bool {
-    let ending = named.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    ["ora", "psd"].contains(&ending.as_str())
+    let extension = named.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    ["ora", "psd"].contains(&extension.as_str())
 }
 
-impl Target {
+impl OutputFile {
     /// Fails where the name asks for no known format, names a folder, lies in a folder that does not exist, or is one of
     /// the files that are being read.
     pub fn new(named: &Path, inputs: &[PathBuf]) -> Result<Self> {
-        let format = Format::of(named);
+        let format = ExportFormat::of(named);
         let format = if is_document(named) { None } else { Some(format?) };
         let file = fs::canonicalize(named).unwrap_or_else(|_| named.into());
         if file.exists() && !file.is_file() {
@@ -105,8 +105,8 @@ impl Target {
         Ok(Self { named: named.into(), file, format })
     }
     /// Encodes and writes the part of a flattened picture that the canvas shows.
-    pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &Options) -> Result<()> {
-        let format = self.format.map_or_else(|| Format::of(&self.named), Ok)?;
+    pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &ExportOptions) -> Result<()> {
+        let format = self.format.map_or_else(|| ExportFormat::of(&self.named), Ok)?;
         self.replace(&encode(&self.named, format, pixels, canvas, options)?)
     }
     /// Writes a temporary file beside the target and renames it: the target is the old file or the new one, never half of it.
@@ -136,7 +136,13 @@ fn folder_of(file: &Path) -> &Path {
 }
 
 /// The bytes of a picture file; `file` is for messages.
-pub fn encode(file: &Path, format: Format, pixels: &TileGrid, canvas: Size, options: &Options) -> Result<Vec<u8>> {
+pub fn encode(
+    file: &Path,
+    format: ExportFormat,
+    pixels: &TileGrid,
+    canvas: Size,
+    options: &ExportOptions,
+) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() {
         return Err(Error::unsupported(file, "the part to be written holds no pixels"));
@@ -147,11 +153,11 @@ pub fn encode(file: &Path, format: Format, pixels: &TileGrid, canvas: Size, opti
         lay_on(&mut rgba, background);
     }
     match format {
-        Format::Png => png(&rgba, canvas, png::BitDepth::Eight, options).map_err(|e| Error::unsupported(file, e)),
-        Format::Jpeg => jpeg(file, &rgba, canvas, options.quality),
-        Format::WebP => webp(file, &rgba, canvas),
-        Format::Tiff => tiff(file, rgba, canvas),
-        Format::Exr => exr(&rgba, canvas).map_err(|e| Error::unsupported(file, e)),
+        ExportFormat::Png => png(&rgba, canvas, png::BitDepth::Eight, options).map_err(|e| Error::unsupported(file, e)),
+        ExportFormat::Jpeg => jpeg(file, &rgba, canvas, options.quality),
+        ExportFormat::WebP => webp(file, &rgba, canvas),
+        ExportFormat::Tiff => tiff(file, rgba, canvas),
+        ExportFormat::Exr => exr(&rgba, canvas).map_err(|e| Error::unsupported(file, e)),
     }
 }
 
@@ -184,7 +190,7 @@ fn png_resolution(dots_per_inch: f32) -> png::PixelDimensions {
 }
 
 /// Straight RGBA of 8 bits, or of 16 with the larger byte first.
-fn png(rgba: &[u8], size: Size, depth: png::BitDepth, options: &Options) -> Result<Vec<u8>, png::EncodingError> {
+fn png(rgba: &[u8], size: Size, depth: png::BitDepth, options: &ExportOptions) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
     encoder.set_color(png::ColorType::Rgba);
@@ -244,7 +250,7 @@ mod tests {
             (0..size.area()).flat_map(|i| [(i * 7) as u8, (i * 3) as u8, 200, [255, 0][i % 2]]).collect();
         (TileGrid::from_straight_rgba(&rgba, 70, 3, 0, 0), size)
     }
-    fn encoded(format: Format, options: Options) -> Result<Vec<u8>> {
+    fn encoded(format: ExportFormat, options: ExportOptions) -> Result<Vec<u8>> {
         let (grid, size) = checker();
         encode(Path::new("out"), format, &grid, size, &options)
     }
@@ -252,8 +258,8 @@ mod tests {
     fn lossless_formats_read_back_as_they_were() {
         let (grid, size) = checker();
         let straight = grid.to_straight_rgba(size.rect());
-        for format in [Format::Png, Format::WebP] {
-            let bytes = encoded(format, Options::default()).unwrap();
+        for format in [ExportFormat::Png, ExportFormat::WebP] {
+            let bytes = encoded(format, ExportOptions::default()).unwrap();
             let read = image::load_from_memory(&bytes).unwrap().to_rgba8();
             assert_eq!(read.as_raw(), &straight, "{format:?}");
         }
@@ -261,7 +267,7 @@ mod tests {
     #[test]
     fn an_exr_holds_linear_light() {
         let (grid, size) = checker();
-        let bytes = encoded(Format::Exr, Options::default()).unwrap();
+        let bytes = encoded(ExportFormat::Exr, ExportOptions::default()).unwrap();
         let read = picture::decode(Path::new("out.exr"), &bytes, &Budget::default()).unwrap();
         let straight = grid.to_straight_rgba(size.rect());
         for (i, pixel) in straight.chunks_exact(4).enumerate().filter(|(_, p)| p[3] == 255) {
@@ -271,10 +277,10 @@ mod tests {
     }
     #[test]
     fn a_jpeg_of_a_transparent_picture_wants_a_background() {
-        let said = encoded(Format::Jpeg, Options::default()).unwrap_err().to_string();
+        let said = encoded(ExportFormat::Jpeg, ExportOptions::default()).unwrap_err().to_string();
         assert!(said.contains("--background"), "{said}");
-        let white = Options { background: Some(Color::WHITE), ..Options::default() };
-        assert!(encoded(Format::Jpeg, white).is_ok());
+        let white = ExportOptions { background: Some(Color::WHITE), ..ExportOptions::default() };
+        assert!(encoded(ExportFormat::Jpeg, white).is_ok());
     }
     #[test]
     fn a_background_shows_through_by_as_much_as_is_missing() {
@@ -288,7 +294,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.png");
         fs::write(&file, "old").unwrap();
-        Target::new(&file, &[]).unwrap().replace(b"new").unwrap();
+        OutputFile::new(&file, &[]).unwrap().replace(b"new").unwrap();
         assert_eq!(fs::read(&file).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
@@ -298,9 +304,9 @@ mod tests {
         let file = folder.path().join("a.png");
         fs::write(&file, "input").unwrap();
         let roundabout = folder.path().join("../").join(folder.path().file_name().unwrap()).join("a.png");
-        let said = Target::new(&roundabout, &[file]).err().unwrap().to_string();
+        let said = OutputFile::new(&roundabout, &[file]).err().unwrap().to_string();
         assert!(said.contains("read by this very command"), "{said}");
-        assert!(Target::new(folder.path().join("no/a.png").as_path(), &[]).is_err());
-        assert!(Format::of(Path::new("a.gif")).unwrap_err().to_string().contains(".png, .exr, .jpg"));
+        assert!(OutputFile::new(folder.path().join("no/a.png").as_path(), &[]).is_err());
+        assert!(ExportFormat::of(Path::new("a.gif")).unwrap_err().to_string().contains(".png, .exr, .jpg"));
     }
 }

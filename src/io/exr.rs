@@ -6,7 +6,7 @@ mod chunks;
 mod names;
 mod write;
 
-pub use names::{Pass, passes};
+pub use names::{ExrPass, passes};
 pub use write::{encode_channels, encode_light};
 
 use super::Budget;
@@ -20,7 +20,7 @@ use std::{
 
 /// One channel of one part.
 #[derive(Clone, Debug)]
-pub struct Channel {
+pub struct ExrChannel {
     /// `part.channel` where the part's name is needed to tell channels apart, else the channel's own name.
     pub name: String,
     /// Half, float or unsigned integer.
@@ -35,8 +35,8 @@ pub struct ExrFile<'a> {
     bytes: &'a [u8],
     meta: MetaData,
     chunks: Vec<chunks::Chunk>,
-    channels: Vec<Channel>,
-    passes: Vec<Pass>,
+    channels: Vec<ExrChannel>,
+    passes: Vec<ExrPass>,
     size: Size,
 }
 
@@ -65,11 +65,11 @@ impl<'a> ExrFile<'a> {
     pub fn size(&self) -> Size {
         self.size
     }
-    pub fn channels(&self) -> &[Channel] {
+    pub fn channels(&self) -> &[ExrChannel] {
         &self.channels
     }
     /// The channels grouped by layer.
-    pub fn passes(&self) -> &[Pass] {
+    pub fn passes(&self) -> &[ExrPass] {
         &self.passes
     }
     /// How many pictures the file says it holds, each of its own layers.
@@ -93,7 +93,7 @@ impl<'a> ExrFile<'a> {
     /// bare. Unsigned integers become floats.
     pub fn read(&self, wanted: &[usize]) -> Result<Vec<Plane<f32>>> {
         let mut planes = vec![Plane::filled(self.size, f32::NAN); wanted.len()];
-        let targets: Vec<&Channel> = wanted.iter().filter_map(|&w| self.channels.get(w)).collect();
+        let targets: Vec<&ExrChannel> = wanted.iter().filter_map(|&w| self.channels.get(w)).collect();
         let needed: Vec<&chunks::Chunk> =
             self.chunks.iter().filter(|c| targets.iter().any(|t| t.part == c.part)).collect();
         chunks::decode(self.file, self.bytes, &self.meta, &needed, |block| {

@@ -46,11 +46,11 @@ pub fn refusal(name: &str) -> Option<&'static str> {
 }
 
 /// The folder that holds a recipe. Links are not followed: a recipe cannot reach beyond its folder through one.
-pub struct Folder {
+pub struct RecipeFolder {
     root: PathBuf,
 }
 
-impl Folder {
+impl RecipeFolder {
     pub fn new(root: impl Into<PathBuf>) -> Self {
         Self { root: root.into() }
     }
@@ -60,7 +60,7 @@ impl Folder {
     }
 }
 
-impl Files for Folder {
+impl Files for RecipeFolder {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         if let Some(reason) = refusal(name) {
             return Err(Error::unsupported(name, reason));
@@ -82,11 +82,11 @@ impl Files for Folder {
 
 /// Files that the user named himself, on the command line or in a dialog: they may be anywhere.
 #[derive(Default)]
-pub struct Given {
+pub struct UserFiles {
     paths: HashMap<String, PathBuf>,
 }
 
-impl Given {
+impl UserFiles {
     /// The name by which a document knows a path of the user's.
     pub fn add(&mut self, path: &Path) -> String {
         let mut name = path.to_string_lossy().into_owned();
@@ -99,7 +99,7 @@ impl Given {
     }
 }
 
-impl Files for Given {
+impl Files for UserFiles {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         read_file(&self.path(name), budget.file_bytes)
     }
@@ -109,12 +109,12 @@ impl Files for Given {
 }
 
 /// Files that remember which of them were read, so that none of them is written over.
-pub struct Noted<F> {
+pub struct TrackedFiles<F> {
     files: F,
     read: RefCell<Vec<PathBuf>>,
 }
 
-impl<F: Files> Noted<F> {
+impl<F: Files> TrackedFiles<F> {
     pub fn new(files: F) -> Self {
         Self { files, read: RefCell::default() }
     }
@@ -124,7 +124,7 @@ impl<F: Files> Noted<F> {
     }
 }
 
-impl<F: Files> Files for Noted<F> {
+impl<F: Files> Files for TrackedFiles<F> {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         self.read.borrow_mut().push(self.path(name));
         self.files.read(name, budget)
@@ -135,12 +135,12 @@ impl<F: Files> Files for Noted<F> {
 }
 
 /// Files each of which is read once, and kept.
-pub struct Remembered<'a> {
+pub struct CachedFiles<'a> {
     files: &'a dyn Files,
     read: RefCell<BTreeMap<String, Asset>>,
 }
 
-impl<'a> Remembered<'a> {
+impl<'a> CachedFiles<'a> {
     pub fn new(files: &'a dyn Files) -> Self {
         Self { files, read: RefCell::default() }
     }
@@ -150,7 +150,7 @@ impl<'a> Remembered<'a> {
     }
 }
 
-impl Files for Remembered<'_> {
+impl Files for CachedFiles<'_> {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         if let Some(known) = self.read.borrow().get(name) {
             return Ok(known.bytes().to_vec());
@@ -188,12 +188,12 @@ pub fn read_file(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
 mod tests {
     use super::*;
 
-    fn folder_with_a_file() -> (tempfile::TempDir, Folder) {
+    fn folder_with_a_file() -> (tempfile::TempDir, RecipeFolder) {
         let outer = tempfile::tempdir().unwrap();
         fs::create_dir_all(outer.path().join("doc/sub")).unwrap();
         fs::write(outer.path().join("secret.png"), "secret").unwrap();
         fs::write(outer.path().join("doc/sub/a.png"), "inside").unwrap();
-        let folder = Folder::beside(&outer.path().join("doc/recipe.json"));
+        let folder = RecipeFolder::beside(&outer.path().join("doc/recipe.json"));
         (outer, folder)
     }
     #[test]
@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn what_the_user_names_may_be_anywhere() {
         let (outer, _) = folder_with_a_file();
-        let mut given = Given::default();
+        let mut given = UserFiles::default();
         let name = given.add(&outer.path().join("secret.png"));
         assert_eq!(given.read(&name, &Budget::default()).unwrap(), b"secret");
     }

@@ -1,7 +1,7 @@
 //! What a file is, before anyone decides what to use it for: its format, size, channels and layers.
 //! Floor 5. `info` prints it; a dialog that opens a file shows it. Conventions are `maps`' work.
 
-use super::maps::{Role, fitting};
+use super::maps::{MapRole, fitting};
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::Result;
 use crate::math::Size;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// A layer of an EXR.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layer {
+pub struct ExrLayer {
     /// Empty for the channels without a layer.
     pub name: String,
     /// The channels' whole names and kinds: half, float or uint.
@@ -18,7 +18,7 @@ pub struct Layer {
 
 /// A picture file from outside.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Description {
+pub struct FileDescription {
     /// `PNG`, `EXR`, …
     pub format: &'static str,
     pub size: Size,
@@ -27,7 +27,7 @@ pub struct Description {
     /// Bits of a channel; of EXR those of the widest.
     pub bits: u8,
     /// EXR only: its layers, and what its pixels are compressed with.
-    pub layers: Vec<Layer>,
+    pub layers: Vec<ExrLayer>,
     pub compression: Option<String>,
     /// EXR only: layers that fit as normals and as depth, the likeliest first.
     pub normals: Vec<String>,
@@ -41,40 +41,40 @@ pub struct Description {
 }
 
 /// Describes a file. EXR pixels are not decoded; other formats' are, so that damage shows.
-pub fn describe(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Description> {
+pub fn describe(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     if ExrFile::is_exr(bytes) { describe_exr(file, bytes, budget) } else { describe_bitmap(file, bytes, budget) }
 }
 
-fn describe_exr(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Description> {
+fn describe_exr(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     let exr = ExrFile::open(file, bytes, budget)?;
     let of = |i: &usize| exr.channels().get(*i).map(|c| (c.name.clone(), c.kind));
     let layers = exr
         .passes()
         .iter()
-        .map(|p| Layer { name: p.name.clone(), channels: p.channels.iter().filter_map(of).collect() });
-    Ok(Description {
+        .map(|p| ExrLayer { name: p.name.clone(), channels: p.channels.iter().filter_map(of).collect() });
+    Ok(FileDescription {
         format: "EXR",
         size: exr.size(),
         channels: exr.channels().iter().map(|c| c.name.clone()).collect(),
         bits: if exr.channels().iter().all(|c| c.kind == "half") { 16 } else { 32 },
         layers: layers.collect(),
         compression: Some(exr.compression()),
-        normals: fitting(&exr, Role::Normals),
-        depths: fitting(&exr, Role::Depth),
+        normals: fitting(&exr, MapRole::Normals),
+        depths: fitting(&exr, MapRole::Depth),
         is_grey: exr.channels().len() == 1,
         looks_like_normals: false,
         warning: None,
     })
 }
 
-fn describe_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Description> {
+fn describe_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     let bitmap = bitmap::decode(file, bytes, budget)?;
     let image = &bitmap.image;
     let colour = image.color();
     let names: &[&str] = if colour.has_color() { &["r", "g", "b", "a"] } else { &["y", "a"] };
     let texels = texels(image);
     let is_grey = texels.iter().all(|[r, g, b]| r == g && g == b);
-    Ok(Description {
+    Ok(FileDescription {
         format: bitmap.format,
         size: Size::new(image.width(), image.height()),
         channels: names.iter().take(colour.channel_count().into()).map(ToString::to_string).collect(),

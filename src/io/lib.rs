@@ -22,6 +22,6 @@ pub mod save;
 use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
 
 pub use budget::Budget;
-pub use files::{Files, Folder, Given};
-pub use open::{Opened, open};
-pub use save::{Over, Saved, save};
+pub use files::{Files, RecipeFolder, UserFiles};
+pub use open::{OpenedDocument, open};
+pub use save::{Overwrite, SavedDocument, save};

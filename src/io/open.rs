@@ -1,10 +1,10 @@
 //! The one door for documents: whatever a file is, told by its content, it becomes a document.
 //! Floor 5. Saving is `save`; the formats are modules of their own.
 
-use super::files::{Folder, read_file};
-use super::project::{self, Archive, Contents};
-use super::recipe::{self, Source};
-use super::save::Stamp;
+use super::files::{RecipeFolder, read_file};
+use super::project::{self, Archive, ProjectContents};
+use super::recipe::{self, RecipeSource};
+use super::save::FileStamp;
 use super::{Budget, picture, psd};
 use crate::Result;
 use crate::document::{Content, Document, Layer, PixelLayer};
@@ -12,20 +12,20 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A document and where it came from.
-pub struct Opened {
+pub struct OpenedDocument {
     pub document: Document,
     /// What is not as it was saved, or could not be carried over: a sentence each, to be shown.
     pub notes: Vec<String>,
     /// Nothing is lost. What is not whole must not be saved over its file unasked.
     pub is_whole: bool,
-    pub kind: Kind,
-    /// What the file was when it was read, for [`super::save::Over::This`].
-    pub stamp: Stamp,
+    pub kind: FileKind,
+    /// What the file was when it was read, for [`super::save::Overwrite::This`].
+    pub stamp: FileStamp,
 }
 
 /// What a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FileKind {
     /// OpenRaster, ours or another program's; the only kind that a document is saved to.
     Project,
     Recipe,
@@ -34,23 +34,23 @@ pub enum Kind {
     Picture,
 }
 
-impl Kind {
+impl FileKind {
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Project => "project",
-            Kind::Recipe => "recipe",
-            Kind::Psd => "psd",
-            Kind::Picture => "picture",
+            FileKind::Project => "project",
+            FileKind::Recipe => "recipe",
+            FileKind::Psd => "psd",
+            FileKind::Picture => "picture",
         }
     }
     /// What a file is by its first bytes; a picture where nothing else fits.
     pub fn of(bytes: &[u8]) -> Self {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         match text.first() {
-            _ if Archive::is_zip(bytes) => Kind::Project,
-            Some(b'{') => Kind::Recipe,
-            _ if bytes.starts_with(&psd::MAGIC) => Kind::Psd,
-            _ => Kind::Picture,
+            _ if Archive::is_zip(bytes) => FileKind::Project,
+            Some(b'{') => FileKind::Recipe,
+            _ if bytes.starts_with(&psd::MAGIC) => FileKind::Psd,
+            _ => FileKind::Picture,
         }
     }
 }
@@ -58,32 +58,33 @@ impl Kind {
 /// Opens a project, a recipe (the files it names lie beside it), a Photoshop file, or a picture, which becomes a document of one paint layer.
 ///
 /// A damaged project gives every layer that is intact; `notes` say what is not, and `is_whole` is false.
-pub fn open(file: &Path, budget: &Budget) -> Result<Opened> {
+pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let bytes = read_file(file, budget.file_bytes)?;
-    let kind = Kind::of(&bytes);
-    let whole = |(document, notes)| Contents { document, notes, is_whole: true };
-    let Contents { document, notes, is_whole } = match kind {
-        Kind::Project => project::read(file, &bytes, budget)?,
-        Kind::Recipe => {
-            whole(recipe::read_noting(&bytes, Source { file, files: &Folder::beside(file), budget, onto: None })?)
-        }
-        Kind::Psd => psd::read(file, &bytes, budget)?,
-        Kind::Picture => single(file, &bytes, budget)?,
+    let kind = FileKind::of(&bytes);
+    let whole = |(document, notes)| ProjectContents { document, notes, is_whole: true };
+    let ProjectContents { document, notes, is_whole } = match kind {
+        FileKind::Project => project::read(file, &bytes, budget)?,
+        FileKind::Recipe => whole(recipe::read_noting(
+            &bytes,
+            RecipeSource { file, files: &RecipeFolder::beside(file), budget, onto: None },
+        )?),
+        FileKind::Psd => psd::read(file, &bytes, budget)?,
+        FileKind::Picture => single(file, &bytes, budget)?,
     };
-    Ok(Opened { document, notes, is_whole, kind, stamp: Stamp::of(&bytes) })
+    Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes) })
 }
 
 /// A picture as a document of its size; an EXR of several layers with all of them.
-fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
+fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let mut stored = picture::layers(file, bytes, budget)?;
     let (several, has_whole) = (!stored.is_empty(), stored.iter().any(|layer| layer.is_whole));
     if !several {
         let picture = picture::decode(file, bytes, budget)?;
-        stored.push(picture::Layer { name: String::new(), picture, is_whole: true });
+        stored.push(picture::LightLayer { name: String::new(), picture, is_whole: true });
     }
     let size = stored[0].picture.size;
-    let layer = |stored: picture::Layer| {
+    let layer = |stored: picture::LightLayer| {
         let tiles = picture::to_tiles(&stored.picture, 0, 0);
         let name = if stored.name.is_empty() { name.clone().into_owned() } else { stored.name };
         let content = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
@@ -96,7 +97,7 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
         (true, false) => Some("an EXR does not tell how its layers lie on each other: they stand as in the file"),
     };
     let notes = notes.map(str::to_owned).into_iter().collect();
-    Ok(Contents { document: Document { layers, ..Document::empty(size) }, notes, is_whole: true })
+    Ok(ProjectContents { document: Document { layers, ..Document::empty(size) }, notes, is_whole: true })
 }
 
 #[cfg(test)]
@@ -114,7 +115,7 @@ mod tests {
             let bytes = encode_channels(file, crate::math::Size::new(2, 2), channels).unwrap();
             single(file, &bytes, &Budget::default()).unwrap()
         };
-        let shown = |contents: &Contents| -> Vec<(String, bool)> {
+        let shown = |contents: &ProjectContents| -> Vec<(String, bool)> {
             contents.document.layers.iter().map(|layer| (layer.name.clone(), layer.visible)).collect()
         };
         let alone = opened(&["diffuse."]);
@@ -124,9 +125,9 @@ mod tests {
     }
     #[test]
     fn what_a_file_is_shows_in_its_first_bytes() {
-        assert_eq!(Kind::of(b"PK\x03\x04rest"), Kind::Project);
-        assert_eq!(Kind::of(b"\xef\xbb\xbf \n{\"format\""), Kind::Recipe);
-        assert_eq!(Kind::of(b"8BPS\0\x01"), Kind::Psd);
-        assert_eq!(Kind::of(b"\x89PNG"), Kind::Picture);
+        assert_eq!(FileKind::of(b"PK\x03\x04rest"), FileKind::Project);
+        assert_eq!(FileKind::of(b"\xef\xbb\xbf \n{\"format\""), FileKind::Recipe);
+        assert_eq!(FileKind::of(b"8BPS\0\x01"), FileKind::Psd);
+        assert_eq!(FileKind::of(b"\x89PNG"), FileKind::Picture);
     }
 }

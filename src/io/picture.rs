@@ -3,7 +3,7 @@
 
 mod light;
 
-pub use light::{Layer, layers};
+pub use light::{LightLayer, layers};
 
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};

@@ -3,11 +3,11 @@
 
 mod part;
 
-use super::fs::{Disk, Found, Fs, Handle};
+use super::fs::{Disk, EntryKind, FileHandle, Fs};
 use super::project;
 use crate::document::{Document, Progress};
 use crate::{Error, Result};
-use part::{Part, SPARE, sweep};
+use part::{PartFile, SPARE, sweep};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -20,17 +20,17 @@ const FIRST_PAUSE: Duration = Duration::from_millis(10);
 
 /// What a file held when it was last read or written here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Stamp {
+pub struct FileStamp {
     pub(super) bytes: u64,
     pub(super) crc: u32,
 }
 
-impl Stamp {
+impl FileStamp {
     pub fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, crc: crc32fast::hash(bytes) }
     }
     /// Of a file, piece by piece.
-    pub(super) fn read(handle: &mut dyn Handle) -> io::Result<Self> {
+    pub(super) fn read(handle: &mut dyn FileHandle) -> io::Result<Self> {
         let (mut buffer, mut hasher, mut bytes) = (vec![0; CHUNK], crc32fast::Hasher::new(), 0);
         loop {
             let n = read_some(handle, &mut buffer)?;
@@ -45,20 +45,20 @@ impl Stamp {
 
 /// What a save may replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Over {
+pub enum Overwrite {
     /// Nothing: there must be no file of that name yet.
     Nothing,
     /// The file as it was when it was opened or last saved; another program's change is not overwritten.
-    This(Stamp),
+    This(FileStamp),
     /// Whatever is there: the user said so.
     Anything,
 }
 
 /// A document on the disk.
 #[derive(Clone, Copy, Debug)]
-pub struct Saved {
+pub struct SavedDocument {
     /// For the next save.
-    pub stamp: Stamp,
+    pub stamp: FileStamp,
 }
 
 /// Saves a document as a project; `None` if cancelled, and then nothing has changed.
@@ -66,7 +66,7 @@ pub struct Saved {
 /// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits for it. Returns once the
 /// file and its folder are on the disk. The previous version is kept beside it as `name~`. Fails with [`Error::Changed`]
 /// where `over` does not allow what would be replaced; whatever fails, the old file is as it was.
-pub fn save(document: &Document, file: &Path, over: Over, progress: &Progress) -> Result<Option<Saved>> {
+pub fn save(document: &Document, file: &Path, over: Overwrite, progress: &Progress) -> Result<Option<SavedDocument>> {
     let encoded = in_own_threads(file, || project::write(file, document, progress))??;
     let Some(bytes) = encoded else { return Ok(None) };
     replace(&Disk, file, &bytes, over, progress)
@@ -85,28 +85,34 @@ fn in_own_threads<T: Send>(file: &Path, work: impl FnOnce() -> T + Send) -> Resu
 }
 
 /// Puts bytes in a file's place by the mechanism of docs/PROJECTS.md; `None` if cancelled.
-pub fn replace(fs: &dyn Fs, file: &Path, bytes: &[u8], over: Over, progress: &Progress) -> Result<Option<Saved>> {
-    let saving = Saving { fs, named: file, bytes, over, progress };
-    saving.run().map(|done| done.then(|| Saved { stamp: Stamp::of(bytes) }))
+pub fn replace(
+    fs: &dyn Fs,
+    file: &Path,
+    bytes: &[u8],
+    over: Overwrite,
+    progress: &Progress,
+) -> Result<Option<SavedDocument>> {
+    let saving = SaveJob { fs, named: file, bytes, over, progress };
+    saving.run().map(|done| done.then(|| SavedDocument { stamp: FileStamp::of(bytes) }))
 }
 
-struct Saving<'a> {
+struct SaveJob<'a> {
     fs: &'a dyn Fs,
     /// As the user named it, for messages.
     named: &'a Path,
     bytes: &'a [u8],
-    over: Over,
+    over: Overwrite,
     progress: &'a Progress,
 }
 
-impl Saving<'_> {
+impl SaveJob<'_> {
     /// Whether it was done, and not cancelled.
     fn run(&self) -> Result<bool> {
         let target = self.target()?;
         self.check(&target)?;
         sweep(self.fs, folder_of(&target));
         let failed = |e| self.failed("the drawing could not be written there; choose another place", e);
-        let mut part = Part::create(self.fs, folder_of(&target)).map_err(failed)?;
+        let mut part = PartFile::create(self.fs, folder_of(&target)).map_err(failed)?;
         let placed = self.write_part(&mut part, &target).and_then(|is_written| {
             if is_written {
                 self.place(&part, &target)?;
@@ -125,16 +131,16 @@ impl Saving<'_> {
     fn target(&self) -> Result<PathBuf> {
         let io = |e| self.failed("", e);
         match self.fs.found(self.named).map_err(io)? {
-            Some(Found::File) | Some(Found::Link) => {
+            Some(EntryKind::File) | Some(EntryKind::Link) => {
                 let target = self.fs.resolve(self.named);
                 let target = target.map_err(|e| self.failed("it is a link that leads nowhere", e))?;
                 match self.fs.found(&target).map_err(io)? {
-                    Some(Found::File) => Ok(target),
+                    Some(EntryKind::File) => Ok(target),
                     _ => Err(Error::unsupported(self.named, "it is not a regular file, so it cannot be replaced")),
                 }
             }
-            Some(Found::Folder) => Err(Error::unsupported(self.named, "it is a folder")),
-            Some(Found::Other) => {
+            Some(EntryKind::Folder) => Err(Error::unsupported(self.named, "it is a folder")),
+            Some(EntryKind::Other) => {
                 Err(Error::unsupported(self.named, "it is not a regular file, so it cannot be replaced"))
             }
             None => {
@@ -149,20 +155,20 @@ impl Saving<'_> {
         let changed = |reason: &str| Err(Error::Changed { file: self.named.into(), reason: reason.into() });
         let is_there = self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
         match self.over {
-            Over::Nothing if is_there => changed("there is a file of this name already"),
+            Overwrite::Nothing if is_there => changed("there is a file of this name already"),
             // Gone is no change that could be overwritten.
-            Over::This(stamp) if is_there && self.stamp_of(target)? != stamp => {
+            Overwrite::This(stamp) if is_there && self.stamp_of(target)? != stamp => {
                 changed("another program changed it since it was opened")
             }
             _ => Ok(()),
         }
     }
-    fn stamp_of(&self, target: &Path) -> Result<Stamp> {
+    fn stamp_of(&self, target: &Path) -> Result<FileStamp> {
         let failed = |e| self.failed("it cannot be compared with what was opened", e);
-        Stamp::read(&mut *self.fs.open(target).map_err(failed)?).map_err(failed)
+        FileStamp::read(&mut *self.fs.open(target).map_err(failed)?).map_err(failed)
     }
     /// Writes the new file under another name and makes sure of it; whether it was not cancelled meanwhile.
-    fn write_part(&self, part: &mut Part, target: &Path) -> Result<bool> {
+    fn write_part(&self, part: &mut PartFile, target: &Path) -> Result<bool> {
         let chunks = self.bytes.len().div_ceil(CHUNK) as u64;
         self.progress.add_total(2 * chunks);
         let failed = |e| self.failed("the drawing could not be written there; choose another place", e);
@@ -204,7 +210,7 @@ impl Saving<'_> {
         }
     }
     /// Keeps the old file as `name~` and puts the new one in its place.
-    fn place(&self, part: &Part, target: &Path) -> Result<()> {
+    fn place(&self, part: &PartFile, target: &Path) -> Result<()> {
         self.check(target)?;
         if self.fs.found(target).map_err(|e| self.failed("", e))?.is_some() {
             self.keep(part, target).map_err(|e| self.failed("the previous version could not be kept beside it", e))?;
@@ -223,7 +229,7 @@ impl Saving<'_> {
         Ok(())
     }
     /// The old file as `name~`: a second name where the disk knows such, else a copy. Never for a moment without one.
-    fn keep(&self, part: &Part, target: &Path) -> io::Result<()> {
+    fn keep(&self, part: &PartFile, target: &Path) -> io::Result<()> {
         let spare = part.path.with_extension(SPARE);
         if self.fs.link(target, &spare).is_err() {
             let copied = self.copy(target, &spare);
@@ -264,7 +270,7 @@ impl Saving<'_> {
 }
 
 /// Reads until the buffer is full or the file ends.
-fn read_some(handle: &mut dyn Handle, buffer: &mut [u8]) -> io::Result<usize> {
+fn read_some(handle: &mut dyn FileHandle, buffer: &mut [u8]) -> io::Result<usize> {
     let mut filled = 0;
     while filled < buffer.len() {
         match handle.read(&mut buffer[filled..]) {

@@ -10,7 +10,7 @@ use eframe::egui::{Context, Event, Key, Modifiers, OutputCommand};
 use std::path::PathBuf;
 
 /// What was found in the clipboard to be pasted.
-pub enum Pasted {
+pub enum PastedContent {
     Picture(Picture),
     /// Copied in a file manager.
     Files(Vec<PathBuf>),
@@ -21,15 +21,17 @@ fn open() -> Result<Clipboard> {
 }
 
 /// The picture in the clipboard, or the files; fails where there are none. Takes as long as the program that owns them.
-pub fn pasted() -> Result<Pasted> {
+pub fn pasted() -> Result<PastedContent> {
     let mut clipboard = open()?;
     if let Ok(image) = clipboard.get_image() {
         let size = Size::new(image.width as u32, image.height as u32);
         let picture = Picture::srgb8(size, image.bytes.as_chunks::<4>().0.to_vec());
-        return picture.map(Pasted::Picture).ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"));
+        return picture
+            .map(PastedContent::Picture)
+            .ok_or_else(|| Error::unsupported("clipboard", "its picture is broken"));
     }
     let files = clipboard.get().file_list().ok().filter(|files| !files.is_empty());
-    files.map(Pasted::Files).ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
+    files.map(PastedContent::Files).ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
 }
 
 /// Puts a picture of straight RGBA into the clipboard. It stays there as long as what is returned is kept.

@@ -1,7 +1,7 @@
 //! The window's event loop, in which the tablet hears of the pointer before the window does.
 //! Floor 7.
 
-use super::pen::{self, Devices, SharedTablet};
+use super::pen::{self, PenDevices, SharedTablet};
 use eframe::{EframeWinitApplication, UserEvent};
 use winit::application::ApplicationHandler;
 use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
@@ -22,7 +22,7 @@ pub fn run(options: eframe::NativeOptions, tablet: SharedTablet, start: eframe::
     let events = event_loop()?;
     let window = eframe::create_native("rilievo", options, start, &events);
     let devices = pen::devices(&events);
-    events.run_app(&mut Overhearing { window, tablet, devices })?;
+    events.run_app(&mut TabletListener { window, tablet, devices })?;
     Ok(())
 }
 
@@ -41,13 +41,13 @@ fn event_loop() -> eframe::Result<EventLoop<UserEvent>> {
 }
 
 /// The window, and what the tablet hears of its events.
-struct Overhearing<'a> {
+struct TabletListener<'a> {
     window: EframeWinitApplication<'a>,
     tablet: SharedTablet,
-    devices: Option<Box<dyn Devices>>,
+    devices: Option<Box<dyn PenDevices>>,
 }
 
-impl Overhearing<'_> {
+impl TabletListener<'_> {
     fn overhear(&mut self, event: &WindowEvent) {
         let mut tablet = self.tablet.borrow_mut();
         match *event {
@@ -63,7 +63,7 @@ impl Overhearing<'_> {
     }
 }
 
-impl ApplicationHandler<UserEvent> for Overhearing<'_> {
+impl ApplicationHandler<UserEvent> for TabletListener<'_> {
     fn window_event(&mut self, events: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
         self.overhear(&event);
         self.window.window_event(events, window, event);

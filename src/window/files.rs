@@ -1,17 +1,17 @@
 //! Asking for a file: the system's own dialog, or one of the window where the system has none.
 //! Floor 7.
 
-use super::jobs::{Done, Jobs, While};
-use crate::io::export::Format;
-use crate::session::actions::pictures::Part;
-use crate::session::brushes::ENDINGS;
+use super::jobs::{JobKind, JobResult, Jobs};
+use crate::io::export::ExportFormat;
+use crate::session::actions::pictures::PicturePart;
+use crate::session::brushes::EXTENSIONS;
 use crate::session::storage::{DOCUMENTS, PICTURES};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// What the file is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum FilePurpose {
     Open,
     Place,
     Brush,
@@ -19,43 +19,49 @@ pub enum Purpose {
     DepthMap,
     MaskMap,
     /// A picture that the selected layer is made of.
-    Part(Part),
+    Part(PicturePart),
     Save,
     Export,
 }
 
-impl Purpose {
+impl FilePurpose {
     pub fn title(self) -> &'static str {
         match self {
-            Purpose::Open => "Open",
-            Purpose::Place => "Place an image",
-            Purpose::Brush => "Import a brush",
-            Purpose::NormalMap => "Normal map",
-            Purpose::DepthMap => "Depth map",
-            Purpose::MaskMap => "Mask",
-            Purpose::Part(part) => part.title(),
-            Purpose::Save => "Save as",
-            Purpose::Export => "Export the picture",
+            FilePurpose::Open => "Open",
+            FilePurpose::Place => "Place an image",
+            FilePurpose::Brush => "Import a brush",
+            FilePurpose::NormalMap => "Normal map",
+            FilePurpose::DepthMap => "Depth map",
+            FilePurpose::MaskMap => "Mask",
+            FilePurpose::Part(part) => part.title(),
+            FilePurpose::Save => "Save as",
+            FilePurpose::Export => "Export the picture",
         }
     }
     pub fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save | Purpose::Export)
+        matches!(self, FilePurpose::Save | FilePurpose::Export)
     }
     /// The endings of files to choose from, each with what they are called together.
     pub fn filters(self) -> Vec<(&'static str, Vec<&'static str>)> {
         let pictures = || PICTURES.to_vec();
         match self {
-            Purpose::Open => vec![
+            FilePurpose::Open => vec![
                 ("Everything that opens", [DOCUMENTS.to_vec(), pictures()].concat()),
                 ("Documents", DOCUMENTS.to_vec()),
                 ("Pictures and maps", pictures()),
             ],
-            Purpose::Brush => vec![("Brushes", ENDINGS.to_vec())],
-            Purpose::Place | Purpose::NormalMap | Purpose::DepthMap | Purpose::MaskMap | Purpose::Part(_) => {
+            FilePurpose::Brush => vec![("Brushes", EXTENSIONS.to_vec())],
+            FilePurpose::Place
+            | FilePurpose::NormalMap
+            | FilePurpose::DepthMap
+            | FilePurpose::MaskMap
+            | FilePurpose::Part(_) => {
                 vec![("Pictures", pictures())]
             }
-            Purpose::Save => vec![("Documents", DOCUMENTS.to_vec())],
-            Purpose::Export => vec![("Pictures", Format::ALL.iter().map(|(_, ending)| *ending).collect())],
+            FilePurpose::Save => vec![("Documents", DOCUMENTS.to_vec())],
+            FilePurpose::Export => {
+                vec![("Pictures", ExportFormat::ALL.iter().map(|(_, extension)| *extension).collect())]
+            }
         }
     }
 }
@@ -64,43 +70,43 @@ impl Purpose {
 const NEVER_SHOWN: Duration = Duration::from_millis(500);
 
 /// What the system's dialog came to.
-pub enum Answer {
+pub enum FileAnswer {
     File(PathBuf),
     Cancelled,
     /// There is no such dialog here.
     Nowhere,
 }
 
-/// Asks with the system's dialog, on another thread. [`Done::Chosen`] with `None` means that there is none, or that the window
+/// Asks with the system's dialog, on another thread. [`JobResult::Chosen`] with `None` means that there is none, or that the window
 /// is to ask `by_itself`.
-pub fn ask(jobs: &mut Jobs, purpose: Purpose, name: &str, by_itself: bool) {
+pub fn request(jobs: &mut Jobs, purpose: FilePurpose, name: &str, by_itself: bool) {
     let name = name.to_owned();
-    jobs.start(purpose.title().into(), While::Asking, move |_| match answer(purpose, &name, by_itself) {
-        Answer::File(file) => Done::Chosen(purpose, Some(file)),
-        Answer::Cancelled => Done::Nothing,
-        Answer::Nowhere => Done::Chosen(purpose, None),
+    jobs.start(purpose.title().into(), JobKind::Asking, move |_| match answer(purpose, &name, by_itself) {
+        FileAnswer::File(file) => JobResult::Chosen(purpose, Some(file)),
+        FileAnswer::Cancelled => JobResult::Nothing,
+        FileAnswer::Nowhere => JobResult::Chosen(purpose, None),
     });
 }
 
-fn answer(purpose: Purpose, name: &str, by_itself: bool) -> Answer {
-    if by_itself { Answer::Nowhere } else { system_dialog(purpose, name) }
+fn answer(purpose: FilePurpose, name: &str, by_itself: bool) -> FileAnswer {
+    if by_itself { FileAnswer::Nowhere } else { system_dialog(purpose, name) }
 }
 
-fn system_dialog(purpose: Purpose, name: &str) -> Answer {
+fn system_dialog(purpose: FilePurpose, name: &str) -> FileAnswer {
     // Elsewhere than on Windows and macOS the dialog is another program's, reached over the session's bus.
     let is_own = cfg!(any(target_os = "windows", target_os = "macos"));
     if !is_own && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none() {
-        return Answer::Nowhere;
+        return FileAnswer::Nowhere;
     }
     let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
-    for (label, endings) in purpose.filters() {
-        dialog = dialog.add_filter(label, &endings);
+    for (label, extensions) in purpose.filters() {
+        dialog = dialog.add_filter(label, &extensions);
     }
     let asked = Instant::now();
     let file = if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
     match file {
-        Some(file) => Answer::File(file),
-        None if asked.elapsed() < NEVER_SHOWN => Answer::Nowhere,
-        None => Answer::Cancelled,
+        Some(file) => FileAnswer::File(file),
+        None if asked.elapsed() < NEVER_SHOWN => FileAnswer::Nowhere,
+        None => FileAnswer::Cancelled,
     }
 }

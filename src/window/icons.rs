@@ -4,18 +4,18 @@
 use crate::tools::ToolKind;
 use eframe::egui::{self, Color32, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2, pos2, vec2};
 
-type At = (f32, f32);
+type IconPoint = (f32, f32);
 
 /// A part of an icon.
-enum Part {
-    Line(&'static [At]),
-    Closed(&'static [At]),
-    Filled(&'static [At]),
+enum IconPart {
+    Line(&'static [IconPoint]),
+    Closed(&'static [IconPoint]),
+    Filled(&'static [IconPoint]),
     /// Centre and radius.
-    Circle(At, f32),
-    Dot(At, f32),
+    Circle(IconPoint, f32),
+    Dot(IconPoint, f32),
 }
-use Part::{Circle, Closed, Dot, Filled, Line};
+use IconPart::{Circle, Closed, Dot, Filled, Line};
 
 /// What an icon stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -49,7 +49,7 @@ pub enum Icon {
 }
 
 impl Icon {
-    fn parts(self) -> &'static [Part] {
+    fn parts(self) -> &'static [IconPart] {
         match self {
             Icon::Tool(ToolKind::Brush) => &[
                 Closed(&[(13.5, 1.5), (14.5, 2.5), (8.2, 9.8), (6.2, 7.8)]),
@@ -225,8 +225,8 @@ impl Icon {
     pub fn draw(self, painter: &Painter, rect: Rect, color: Color32) {
         let scale = rect.width().min(rect.height()) / 16.0;
         let corner = rect.center() - Vec2::splat(8.0 * scale);
-        let at = |&(x, y): &At| pos2(corner.x + x * scale, corner.y + y * scale);
-        let path = |points: &[At]| -> Vec<Pos2> { points.iter().map(at).collect() };
+        let at = |&(x, y): &IconPoint| pos2(corner.x + x * scale, corner.y + y * scale);
+        let path = |points: &[IconPoint]| -> Vec<Pos2> { points.iter().map(at).collect() };
         let stroke = Stroke::new((1.25 * scale).max(1.0), color);
         for part in self.parts() {
             match part {

@@ -1,19 +1,19 @@
 //! Long work, each piece on a thread of its own with a bar of progress and a way to give it up, so that the window never waits.
 //! Floor 7.
 
-use crate::clipboard::{Clipboard, Pasted};
+use crate::clipboard::{Clipboard, PastedContent};
 use crate::document::{Document, LayerId, Progress, SurfaceSource};
-use crate::files::Purpose;
+use crate::files::FilePurpose;
 use crate::io::recipe::Preset;
-use crate::io::save::Stamp;
+use crate::io::save::FileStamp;
 use crate::io::{maps, recovery};
 use crate::raster::Picture;
 use crate::session::Edit;
 use crate::session::actions::LayerAction;
 use crate::session::actions::files::read_picture;
-use crate::session::actions::pictures::{Part, Read};
-use crate::session::autosave::Found;
-use crate::session::storage::{self, Kind, Opened, Sorted};
+use crate::session::actions::pictures::{PicturePart, ReadPart};
+use crate::session::autosave::RecoveredTab;
+use crate::session::storage::{self, FileUse, OpenedTab, SortedFiles};
 use crate::{Error, Result};
 use eframe::egui;
 use std::path::{Path, PathBuf};
@@ -22,73 +22,73 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 /// What a job came to; done by the window when it arrives.
-pub enum Done {
+pub enum JobResult {
     /// A document, of this file if it is of one.
-    Opened(Option<PathBuf>, Box<Result<Opened>>),
+    Opened(Option<PathBuf>, Box<Result<OpenedTab>>),
     /// Maps of an object: their conventions are to be seen first.
     AreMaps(Box<SurfaceSource>),
     /// The file is to be opened as a document of its own.
     IsDocument(PathBuf),
     /// The file is to be read, to become an image layer.
-    IsPicture(PathBuf, Where),
+    IsPicture(PathBuf, PinPosition),
     /// A job came to several things.
-    Several(Vec<Done>),
+    Several(Vec<JobResult>),
     /// It went well, and whoever waits is told so.
     Said(String),
     /// Maps were read, for the import dialog.
-    Read(Box<Result<maps::Import>>),
+    Read(Box<Result<maps::ImportedSurface>>),
     /// Drawings that an accident left.
-    Lost(Vec<recovery::Session>),
+    Lost(Vec<recovery::LostSession>),
     /// One of them was brought back.
-    Recovered(Box<Result<Found>>),
+    Recovered(Box<Result<RecoveredTab>>),
     /// A picture was read from a file, to become an image layer.
-    Pictured(PathBuf, String, Picture, Where),
+    Pictured(PathBuf, String, Picture, PinPosition),
     /// A picture was read that a layer of a tab is to be made of.
-    Part(Box<PartRead>),
+    Part(Box<PartResult>),
     /// The document of a tab was saved; `None` if that was given up.
-    Saved(Box<Saved>),
+    Saved(Box<SaveResult>),
     /// An edit of the document of a tab that took long.
-    Edited(Box<Edited>),
+    Edited(Box<EditResult>),
     /// The finished picture is in the clipboard, as long as this is kept.
     Copied(Clipboard),
-    Pasted(Pasted),
+    Pasted(PastedContent),
     /// The user's own brushes, and what cannot be read of them.
     Brushes(Vec<Preset>, Vec<String>),
     /// Nothing is left to be done, as when a job was given up.
     Nothing,
     Failed(Error),
     /// A file dialog was answered; `None` where the system has no dialog.
-    Chosen(Purpose, Option<PathBuf>),
+    Chosen(FilePurpose, Option<PathBuf>),
 }
 
-pub struct PartRead {
+pub struct PartResult {
     /// By its key.
     pub tab: usize,
     pub layer: LayerId,
-    pub part: Part,
+    pub part: PicturePart,
     pub file: PathBuf,
-    pub read: Read,
+    pub read: ReadPart,
 }
 
 /// Where a picture is to be pinned to the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Where {
+pub enum PinPosition {
     /// In the middle of the canvas.
     Middle,
     /// Under the pointer, if that is on the canvas.
     Pointer,
 }
 
-pub struct Saved {
+pub struct SaveResult {
     /// By its key.
     pub tab: usize,
     pub file: PathBuf,
     /// What the file holds now.
     pub document: Document,
-    pub stamp: Result<Option<Stamp>>,
+    pub stamp: Result<Option<FileStamp>>,
 }
 
-pub struct Edited {
+pub struct EditResult {
     /// By its key.
     pub tab: usize,
     pub action: LayerAction,
@@ -99,7 +99,7 @@ pub struct Edited {
 
 /// What can be seen and done while a job lasts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum While {
+pub enum JobKind {
     /// It can be given up.
     Working,
     /// It edits the document in front, so nothing else may meanwhile. It can be given up.
@@ -109,16 +109,16 @@ pub enum While {
 }
 
 /// A job under way.
-pub struct UnderWay {
+pub struct RunningJob {
     key: usize,
     /// What it does, for the status bar.
     pub name: String,
     pub progress: Arc<Progress>,
-    pub kind: While,
+    pub kind: JobKind,
     since: Instant,
 }
 
-impl UnderWay {
+impl RunningJob {
     /// How far it has come, `[0, 1]`; `None` while that cannot be told.
     pub fn share(&self) -> Option<f32> {
         let (done, total) = self.progress.read();
@@ -132,11 +132,11 @@ impl UnderWay {
 
 /// The jobs under way.
 pub struct Jobs {
-    sender: Sender<(usize, Done)>,
-    done: Receiver<(usize, Done)>,
+    sender: Sender<(usize, JobResult)>,
+    done: Receiver<(usize, JobResult)>,
     ctx: egui::Context,
     next: usize,
-    pub under_way: Vec<UnderWay>,
+    pub under_way: Vec<RunningJob>,
     said: Option<(String, Instant)>,
 }
 
@@ -146,7 +146,7 @@ impl Jobs {
         Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new(), said: None }
     }
     /// Runs a job; `name` is shown while it lasts.
-    pub fn start(&mut self, name: String, kind: While, work: impl FnOnce(&Progress) -> Done + Send + 'static) {
+    pub fn start(&mut self, name: String, kind: JobKind, work: impl FnOnce(&Progress) -> JobResult + Send + 'static) {
         let key = self.next;
         self.next += 1;
         let progress = Arc::new(Progress::default());
@@ -158,44 +158,44 @@ impl Jobs {
         };
         if let Err(error) = spawn(&name, run) {
             // This very end of the channel is held here.
-            let _ = self.sender.send((key, Done::Failed(error)));
+            let _ = self.sender.send((key, JobResult::Failed(error)));
         }
-        self.under_way.push(UnderWay { key, name, progress, kind, since: Instant::now() });
+        self.under_way.push(RunningJob { key, name, progress, kind, since: Instant::now() });
     }
     /// Opens files that came together. `at`: where pictures become layers, if they do; else they open as documents.
-    pub fn open(&mut self, files: Vec<PathBuf>, at: Option<Where>) {
+    pub fn open(&mut self, files: Vec<PathBuf>, at: Option<PinPosition>) {
         let name = match &files[..] {
             [file] => format!("Opening {}", short(file)),
             files => format!("Opening {} files", files.len()),
         };
-        self.start(name, While::Working, move |_| {
+        self.start(name, JobKind::Working, move |_| {
             let (mut known, mut done) = (Vec::new(), Vec::new());
             for file in files {
                 match storage::kind_of(&file) {
                     Ok(kind) => known.push((file, kind)),
-                    Err(error) => done.push(Done::Failed(error)),
+                    Err(error) => done.push(JobResult::Failed(error)),
                 }
             }
-            let Sorted { objects, others } = storage::sorted(known);
-            done.extend(objects.into_iter().map(|source| Done::AreMaps(Box::new(source))));
-            done.extend(others.into_iter().map(|(file, kind)| match at.filter(|_| kind == Kind::Picture) {
-                Some(at) => Done::IsPicture(file, at),
-                None => Done::IsDocument(file),
+            let SortedFiles { objects, others } = storage::sorted(known);
+            done.extend(objects.into_iter().map(|source| JobResult::AreMaps(Box::new(source))));
+            done.extend(others.into_iter().map(|(file, kind)| match at.filter(|_| kind == FileUse::Picture) {
+                Some(at) => JobResult::IsPicture(file, at),
+                None => JobResult::IsDocument(file),
             }));
-            Done::Several(done)
+            JobResult::Several(done)
         });
     }
     pub fn read_document(&mut self, file: PathBuf) {
         let name = format!("Opening {}", short(&file));
-        self.start(name, While::Working, move |_| {
+        self.start(name, JobKind::Working, move |_| {
             let opened = storage::open(&file);
-            Done::Opened(Some(file), Box::new(opened))
+            JobResult::Opened(Some(file), Box::new(opened))
         });
     }
-    pub fn read_picture(&mut self, file: PathBuf, at: Where) {
-        self.start(format!("Reading {}", short(&file)), While::Working, move |_| match read_picture(&file) {
-            Ok((name, picture)) => Done::Pictured(file, name, picture, at),
-            Err(error) => Done::Failed(error),
+    pub fn read_picture(&mut self, file: PathBuf, at: PinPosition) {
+        self.start(format!("Reading {}", short(&file)), JobKind::Working, move |_| match read_picture(&file) {
+            Ok((name, picture)) => JobResult::Pictured(file, name, picture, at),
+            Err(error) => JobResult::Failed(error),
         });
     }
     /// Tells that something went well, for a while.
@@ -208,20 +208,20 @@ impl Jobs {
         Some(sentence)
     }
     /// What was finished since the last call. What was given up comes to nothing, unless it was done already.
-    pub fn finished(&mut self) -> Vec<Done> {
+    pub fn finished(&mut self) -> Vec<JobResult> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
             let given_up = self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
             self.under_way.retain(|job| job.key != key);
-            if !given_up || matches!(done, Done::Saved(_)) {
+            if !given_up || matches!(done, JobResult::Saved(_)) {
                 finished.push(done);
             }
         }
         finished
     }
     /// The job that nothing else may be done beside.
-    pub fn editing(&self) -> Option<&UnderWay> {
-        self.under_way.iter().find(|job| job.kind == While::Editing)
+    pub fn editing(&self) -> Option<&RunningJob> {
+        self.under_way.iter().find(|job| job.kind == JobKind::Editing)
     }
 }
 

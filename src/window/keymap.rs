@@ -1,7 +1,7 @@
 //! Which keys do what: the commands' and tools' own, and those the user chose instead.
 //! Floor 7. Listening to them is `keys`'.
 
-use super::commands::{self, Command};
+use super::commands::{self, MenuCommand};
 use crate::tools::{ToolKind, ToolRow};
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde_json::{Map, Value};
@@ -15,35 +15,35 @@ pub struct Keymap {
 
 /// What keys can be given to.
 #[derive(Clone, Copy)]
-pub enum Keyed {
-    Command(&'static Command),
+pub enum KeyTarget {
+    Command(&'static MenuCommand),
     Tool(&'static ToolRow),
 }
 
-impl Keyed {
+impl KeyTarget {
     /// Everything that keys can be given to, tools first.
-    pub fn all() -> impl Iterator<Item = Keyed> {
+    pub fn all() -> impl Iterator<Item = KeyTarget> {
         const TOOLS: &[ToolRow] = &ToolKind::ALL;
-        let commands = commands::all().map(Keyed::Command);
-        TOOLS.iter().map(Keyed::Tool).chain(commands)
+        let commands = commands::all().map(KeyTarget::Command);
+        TOOLS.iter().map(KeyTarget::Tool).chain(commands)
     }
     pub fn name(self) -> &'static str {
         match self {
-            Keyed::Command(command) => command.name,
-            Keyed::Tool(row) => row.label,
+            KeyTarget::Command(command) => command.name,
+            KeyTarget::Tool(row) => row.label,
         }
     }
     pub fn hint(self) -> &'static str {
         match self {
-            Keyed::Command(command) => command.hint,
-            Keyed::Tool(row) => row.hint,
+            KeyTarget::Command(command) => command.hint,
+            KeyTarget::Tool(row) => row.hint,
         }
     }
     /// The keys it comes with.
     fn own(self) -> Vec<KeyboardShortcut> {
         match self {
-            Keyed::Command(command) => command.keys.to_vec(),
-            Keyed::Tool(row) => {
+            KeyTarget::Command(command) => command.keys.to_vec(),
+            KeyTarget::Tool(row) => {
                 let key = Key::from_name(&row.key.to_string());
                 key.into_iter().map(|key| KeyboardShortcut::new(Modifiers::NONE, key)).collect()
             }
@@ -52,33 +52,33 @@ impl Keyed {
 }
 
 impl Keymap {
-    pub fn of(&self, keyed: Keyed) -> Vec<KeyboardShortcut> {
+    pub fn of(&self, keyed: KeyTarget) -> Vec<KeyboardShortcut> {
         self.chosen.get(keyed.name()).cloned().unwrap_or_else(|| keyed.own())
     }
     /// The first key of a command, which menus show.
-    pub fn first(&self, command: &'static Command) -> Option<KeyboardShortcut> {
-        self.of(Keyed::Command(command)).first().copied()
+    pub fn first(&self, command: &'static MenuCommand) -> Option<KeyboardShortcut> {
+        self.of(KeyTarget::Command(command)).first().copied()
     }
-    pub fn is_chosen(&self, keyed: Keyed) -> bool {
+    pub fn is_chosen(&self, keyed: KeyTarget) -> bool {
         self.chosen.contains_key(keyed.name())
     }
     /// Gives keys; those it comes with need not be remembered.
-    pub fn set(&mut self, keyed: Keyed, keys: Vec<KeyboardShortcut>) {
+    pub fn set(&mut self, keyed: KeyTarget, keys: Vec<KeyboardShortcut>) {
         if keys == keyed.own() {
             self.chosen.remove(keyed.name());
         } else {
             self.chosen.insert(keyed.name().to_owned(), keys);
         }
     }
-    pub fn reset(&mut self, keyed: Keyed) {
+    pub fn reset(&mut self, keyed: KeyTarget) {
         self.chosen.remove(keyed.name());
     }
     /// What else has this key.
-    pub fn conflict(&self, keys: KeyboardShortcut, except: Keyed) -> Option<Keyed> {
-        Keyed::all().find(|other| other.name() != except.name() && self.of(*other).contains(&keys))
+    pub fn conflict(&self, keys: KeyboardShortcut, except: KeyTarget) -> Option<KeyTarget> {
+        KeyTarget::all().find(|other| other.name() != except.name() && self.of(*other).contains(&keys))
     }
     /// Takes a key from whatever has it, and gives it.
-    pub fn take(&mut self, keys: KeyboardShortcut, to: Keyed) {
+    pub fn take(&mut self, keys: KeyboardShortcut, to: KeyTarget) {
         while let Some(other) = self.conflict(keys, to) {
             let left = self.of(other).into_iter().filter(|known| *known != keys).collect();
             self.set(other, left);
@@ -95,7 +95,7 @@ impl Keymap {
     }
     /// What is not understood is left out.
     pub fn from_json(value: &Map<String, Value>) -> Self {
-        let known = |name: &str| Keyed::all().any(|keyed| keyed.name() == name);
+        let known = |name: &str| KeyTarget::all().any(|keyed| keyed.name() == name);
         let keys = |list: &Value| -> Option<Vec<KeyboardShortcut>> {
             list.as_array()?.iter().map(|keys| read(keys.as_str()?)).collect()
         };
@@ -138,13 +138,13 @@ fn read(text: &str) -> Option<KeyboardShortcut> {
 mod tests {
     use super::*;
 
-    fn named(name: &str) -> Keyed {
-        Keyed::all().find(|keyed| keyed.name() == name).unwrap()
+    fn named(name: &str) -> KeyTarget {
+        KeyTarget::all().find(|keyed| keyed.name() == name).unwrap()
     }
 
     #[test]
     fn every_key_survives_being_written_and_read() {
-        for keyed in Keyed::all() {
+        for keyed in KeyTarget::all() {
             for keys in keyed.own() {
                 assert_eq!(read(&written(keys)), Some(keys), "{}", written(keys));
             }

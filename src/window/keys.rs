@@ -1,22 +1,22 @@
 //! The keyboard: commands and tools by their keys.
 //! Floor 7. Which keys those are is `keymap`'s.
 
-use super::asked::Asked;
-use super::keymap::{Keyed, Keymap};
+use super::keymap::{KeyTarget, Keymap};
+use super::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use eframe::egui::{Context, Event, KeyboardShortcut, Modifiers};
 
 /// Pushes what the keys of this frame ask for. Nothing while a text is being typed.
-pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, asked: &mut Asked) {
+pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
     if ctx.egui_wants_keyboard_input() || session.is_drawing() {
         return;
     }
     let is_pressed = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
     if ctx.input(|i| i.events.iter().any(is_pressed)) {
         // Those with more modifiers first: Ctrl+Shift+Z is not Ctrl+Z.
-        let mut all: Vec<(KeyboardShortcut, Keyed)> =
-            Keyed::all().flat_map(|keyed| keymap.of(keyed).into_iter().map(move |keys| (keys, keyed))).collect();
+        let mut all: Vec<(KeyboardShortcut, KeyTarget)> =
+            KeyTarget::all().flat_map(|keyed| keymap.of(keyed).into_iter().map(move |keys| (keys, keyed))).collect();
         all.sort_by_key(|(keys, _)| {
             let Modifiers { alt, shift, command, .. } = keys.modifiers;
             std::cmp::Reverse(u8::from(alt) + u8::from(shift) + u8::from(command))
@@ -26,9 +26,9 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, asked: &mut Ask
                 continue;
             }
             match keyed {
-                Keyed::Command(command) if (command.can)(session) => (command.run)(session, asked),
-                Keyed::Command(_) => {}
-                Keyed::Tool(row) => asked.act(Action::Hand(HandAction::Tool { tool: row.kind })),
+                KeyTarget::Command(command) if (command.can)(session) => (command.run)(session, requests),
+                KeyTarget::Command(_) => {}
+                KeyTarget::Tool(row) => requests.act(Action::Hand(HandAction::Tool { tool: row.kind })),
             }
         }
     }

@@ -1,7 +1,6 @@
 //! Floor 7: the window. Panels are functions that see the session and ask for actions; once a frame the actions are done.
 //! Nothing here knows pixels or equations.
 
-mod asked;
 mod canvas;
 mod clipboard;
 mod commands;
@@ -13,10 +12,11 @@ mod jobs;
 mod keymap;
 mod keys;
 mod memory;
-mod painter;
 mod panels;
 mod pen;
 mod recovery;
+mod render_thread;
+mod requests;
 mod sample;
 mod settings;
 mod swatches;
@@ -25,7 +25,7 @@ mod thumbnails;
 mod widgets;
 mod window;
 
-pub use window::Window;
+pub use window::MainWindow;
 
 // The floors beneath, under the names that they have there.
 use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
@@ -54,7 +54,7 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
     let start = move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {
         opened.set(true);
         theme::install(&cc.egui_ctx);
-        let mut window = Window::remembering(&cc.egui_ctx, settings::file());
+        let mut window = MainWindow::remembering(&cc.egui_ctx, settings::file());
         window.draw_on(pen);
         if let Some(folder) = crate::io::recovery::folder() {
             window.keep_recovery_in(folder);

@@ -7,18 +7,18 @@ use std::time::{Duration, Instant};
 const PAUSE: Duration = Duration::from_secs(1);
 
 #[derive(Default)]
-pub struct Memory {
-    seen: Option<(Instant, Option<u64>)>,
+pub struct MemoryMeter {
+    sampled: Option<(Instant, Option<u64>)>,
 }
 
-impl Memory {
+impl MemoryMeter {
     /// Bytes held a moment ago.
     pub fn bytes(&mut self) -> Option<u64> {
-        match self.seen {
+        match self.sampled {
             Some((since, bytes)) if since.elapsed() < PAUSE => bytes,
             _ => {
                 let bytes = std::fs::read_to_string("/proc/self/status").ok().and_then(|text| resident(&text));
-                self.seen = Some((Instant::now(), bytes));
+                self.sampled = Some((Instant::now(), bytes));
                 bytes
             }
         }

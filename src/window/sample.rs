@@ -3,10 +3,10 @@
 
 use crate::document::{Content, Document, Layer, Live};
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
-use crate::paint::{Filter, Gradient, Stop};
+use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::raster::Plane;
-use crate::session::Tab;
-use crate::session::storage::Opened;
+use crate::session::OpenDocument;
+use crate::session::storage::OpenedTab;
 use crate::surface::{Maps, Operator, Surface};
 use crate::{Error, Result};
 use std::sync::Arc;
@@ -14,31 +14,31 @@ use std::sync::Arc;
 const SIDE: usize = 640;
 
 /// The sample as a document of its own.
-pub fn open() -> Result<Opened> {
+pub fn open() -> Result<OpenedTab> {
     let surface = surface().map_err(|error| Error::unsupported("sample", error))?;
-    let ground = Gradient {
+    let background = Gradient {
         from: vec2(0.0, 0.0),
         to: vec2(0.0, SIDE as f32),
-        stops: vec![Stop { t: 0.0, color: grey(0x3a) }, Stop { t: 1.0, color: grey(0x24) }],
+        stops: vec![GradientStop { t: 0.0, color: grey(0x3a) }, GradientStop { t: 1.0, color: grey(0x24) }],
         operator: Operator::None,
-        filter: Filter::Antialias,
+        filter: ImageFilter::Antialias,
     };
     let clay = Gradient {
         from: vec2(0.30, 0.22) * SIDE as f32,
         to: vec2(0.62, 0.74) * SIDE as f32,
         stops: vec![
-            Stop { t: 0.0, color: Color { r: 0xc8, g: 0xa0, b: 0x78, a: 255 } },
-            Stop { t: 0.55, color: Color { r: 0x86, g: 0x56, b: 0x40, a: 255 } },
-            Stop { t: 1.0, color: Color { r: 0x36, g: 0x20, b: 0x22, a: 255 } },
+            GradientStop { t: 0.0, color: Color { r: 0xc8, g: 0xa0, b: 0x78, a: 255 } },
+            GradientStop { t: 0.55, color: Color { r: 0x86, g: 0x56, b: 0x40, a: 255 } },
+            GradientStop { t: 1.0, color: Color { r: 0x36, g: 0x20, b: 0x22, a: 255 } },
         ],
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
-        filter: Filter::Antialias,
+        filter: ImageFilter::Antialias,
     };
-    let behind = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Gradient(Live::new(ground))) };
+    let behind = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Gradient(Live::new(background))) };
     let layers = vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
     let size = Size::new(SIDE as u32, SIDE as u32);
     let document = Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
-    Ok(Opened { tab: Tab::new("Sample", document, None), notes: Vec::new() })
+    Ok(OpenedTab { tab: OpenDocument::new("Sample", document, None), notes: Vec::new() })
 }
 
 fn grey(v: u8) -> Color {

@@ -4,10 +4,10 @@
 
 use super::jobs;
 use super::keymap::Keymap;
-use super::panels::Front;
+use super::panels::PanelKind;
 use crate::document::Progress;
 use crate::io::fs::Disk;
-use crate::io::save::{Over, replace};
+use crate::io::save::{Overwrite, replace};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub struct Settings {
     pub is_light: bool,
     /// How large the interface is, if that was chosen.
     pub scale: Option<f32>,
-    pub layout: Layout,
+    pub layout: PanelLayout,
     pub keymap: Keymap,
     /// The three steps of a first start were seen to the end, or put away.
     pub is_hint_done: bool,
@@ -36,36 +36,37 @@ pub struct Settings {
 
 /// Where the panels stand.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layout {
-    pub side: Side,
+pub struct PanelLayout {
+    pub side: PanelSide,
     pub is_hidden: bool,
     /// Which panel is in front above the layers.
-    pub front: Front,
+    pub front: PanelKind,
     /// Panels in windows of their own.
-    pub apart: Vec<Front>,
+    pub apart: Vec<PanelKind>,
     pub width_pt: f32,
 }
 
 /// On which side of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum PanelSide {
     Left,
     Right,
     /// In a window of their own.
     Apart,
 }
 
-impl Side {
+impl PanelSide {
     pub fn other(self) -> Self {
-        if self == Side::Right { Side::Left } else { Side::Right }
+        if self == PanelSide::Right { PanelSide::Left } else { PanelSide::Right }
     }
 }
 
-const SIDES: [(Side, &str); 3] = [(Side::Left, "left"), (Side::Right, "right"), (Side::Apart, "apart")];
+const SIDES: [(PanelSide, &str); 3] =
+    [(PanelSide::Left, "left"), (PanelSide::Right, "right"), (PanelSide::Apart, "apart")];
 
-impl Default for Layout {
+impl Default for PanelLayout {
     fn default() -> Self {
-        Self { side: Side::Right, is_hidden: false, front: Front::Color, apart: Vec::new(), width_pt: 268.0 }
+        Self { side: PanelSide::Right, is_hidden: false, front: PanelKind::Color, apart: Vec::new(), width_pt: 268.0 }
     }
 }
 
@@ -76,7 +77,7 @@ impl Settings {
         self.recent.truncate(RECENT);
     }
     fn to_json(&self) -> Value {
-        let Layout { side, is_hidden, front, apart, width_pt } = &self.layout;
+        let PanelLayout { side, is_hidden, front, apart, width_pt } = &self.layout;
         let recent: Vec<String> = self.recent.iter().map(|file| file.to_string_lossy().into_owned()).collect();
         let apart: Vec<&str> = apart.iter().map(|front| front.name()).collect();
         let side = SIDES.iter().find(|(known, _)| known == side).map_or("right", |(_, name)| name);
@@ -103,13 +104,13 @@ impl Settings {
         let object = |name: &str| value.get(name).and_then(Value::as_object).unwrap_or(&nothing);
         let panels = object("panels");
         let word = |name: &str| panels.get(name).and_then(Value::as_str).unwrap_or_default();
-        let plain = Layout::default();
+        let plain = PanelLayout::default();
         let width = panels.get("width").and_then(Value::as_f64).map_or(plain.width_pt, |width| width as f32);
-        let layout = Layout {
+        let layout = PanelLayout {
             side: SIDES.iter().find(|(_, name)| *name == word("side")).map_or(plain.side, |(side, _)| *side),
             is_hidden: flag(panels, "hidden"),
-            front: Front::from_name(word("front")).unwrap_or(plain.front),
-            apart: texts(panels.get("apart")).iter().filter_map(|name| Front::from_name(name)).collect(),
+            front: PanelKind::from_name(word("front")).unwrap_or(plain.front),
+            apart: texts(panels.get("apart")).iter().filter_map(|name| PanelKind::from_name(name)).collect(),
             width_pt: width.max(200.0).min(800.0),
         };
         let recent = texts(value.get("recent")).into_iter().take(RECENT).map(PathBuf::from).collect();
@@ -135,7 +136,7 @@ impl Settings {
             std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         }
         let text = format!("{:#}\n", self.to_json());
-        replace(&Disk, file, text.as_bytes(), Over::Anything, &Progress::default()).map(drop)
+        replace(&Disk, file, text.as_bytes(), Overwrite::Anything, &Progress::default()).map(drop)
     }
 }
 
@@ -154,13 +155,13 @@ pub fn brushes() -> Option<PathBuf> {
 }
 
 /// Keeps the file as the settings are.
-pub struct Keeper {
+pub struct SettingsFile {
     file: Option<PathBuf>,
     written: Settings,
     looked: Instant,
 }
 
-impl Keeper {
+impl SettingsFile {
     /// The settings of a file and their keeper; without one nothing is remembered.
     pub fn new(file: Option<PathBuf>) -> (Settings, Self, Option<String>) {
         let read = file.as_deref().map_or_else(|| Ok(Settings::default()), Settings::read);
@@ -203,11 +204,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("deep").join("settings.json");
         assert_eq!(Settings::read(&file).unwrap(), Settings::default(), "no file is an empty one");
-        let layout = Layout {
-            side: Side::Left,
+        let layout = PanelLayout {
+            side: PanelSide::Left,
             is_hidden: true,
-            front: Front::History,
-            apart: vec![Front::Navigator],
+            front: PanelKind::History,
+            apart: vec![PanelKind::Navigator],
             width_pt: 300.0,
         };
         let mut settings = Settings { is_light: true, layout, is_hint_done: true, ..Settings::default() };
@@ -225,7 +226,7 @@ mod tests {
             ["{", "[]", "\u{0}", "{\"panels\": 7, \"recent\": [3], \"keys\": {\"Save\": [9]}, \"light\": \"x\"}"]
         {
             std::fs::write(&file, text).unwrap();
-            let (settings, _, trouble) = Keeper::new(Some(file.clone()));
+            let (settings, _, trouble) = SettingsFile::new(Some(file.clone()));
             assert_eq!(settings, Settings::default(), "{text}");
             let is_told = trouble.is_some_and(|trouble| trouble.contains("settings.json"));
             assert_eq!(is_told, text.len() < 9, "{text}");

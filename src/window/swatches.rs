@@ -12,14 +12,14 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 /// The pictures of the brushes.
 #[derive(Default)]
 pub struct Swatches {
-    painter: Option<Painter>,
-    asked: HashSet<String>,
+    thread: Option<SwatchThread>,
+    requested: HashSet<String>,
     made: HashMap<String, TextureHandle>,
     /// What cannot be done here, to be told once.
     pub trouble: Option<Error>,
 }
 
-struct Painter {
+struct SwatchThread {
     wanted: Sender<Preset>,
     coming: Receiver<(String, ColorImage)>,
 }
@@ -30,24 +30,24 @@ const SIDE: u32 = 128;
 impl Swatches {
     /// The picture of a brush, once it is painted.
     pub fn of(&mut self, ctx: &egui::Context, preset: &Preset) -> Option<TextureId> {
-        if self.painter.is_none() {
-            let (painter, trouble) = Painter::start(ctx.clone());
+        if self.thread.is_none() {
+            let (thread, trouble) = SwatchThread::start(ctx.clone());
             // Without a thread there are no pictures, only names.
-            (self.painter, self.trouble) = (Some(painter), trouble);
+            (self.thread, self.trouble) = (Some(thread), trouble);
         }
-        let painter = self.painter.as_ref()?;
-        for (key, image) in painter.coming.try_iter() {
+        let thread = self.thread.as_ref()?;
+        for (key, image) in thread.coming.try_iter() {
             self.made.insert(key.clone(), ctx.load_texture(key, image, TextureOptions::LINEAR));
         }
-        if self.asked.insert(preset.key.clone()) {
+        if self.requested.insert(preset.key.clone()) {
             // A painter that is gone paints nothing.
-            let _ = painter.wanted.send(preset.clone());
+            let _ = thread.wanted.send(preset.clone());
         }
         self.made.get(&preset.key).map(TextureHandle::id)
     }
 }
 
-impl Painter {
+impl SwatchThread {
     fn start(waker: egui::Context) -> (Self, Option<Error>) {
         let ((wanted, orders), (sender, coming)) = (channel::<Preset>(), channel());
         let work = move || {

@@ -15,21 +15,21 @@ use std::sync::{Arc, Weak};
 const SIDE: u32 = 64;
 
 /// A layer to be painted small.
-struct Order {
+struct ThumbnailOrder {
     layer: Arc<Layer>,
     document: Document,
 }
 
 /// A layer, painted small.
-struct Small {
+struct Thumbnail {
     id: LayerId,
     image: ColorImage,
 }
 
 /// The thumbnails there are, and the thread that makes them.
 pub struct Thumbnails {
-    orders: Sender<Order>,
-    done: Receiver<Small>,
+    orders: Sender<ThumbnailOrder>,
+    done: Receiver<Thumbnail>,
     made: HashMap<LayerId, TextureHandle>,
     /// Which version of a layer was ordered last.
     ordered: HashMap<LayerId, Weak<Layer>>,
@@ -41,14 +41,14 @@ pub struct Thumbnails {
 
 impl Thumbnails {
     pub fn new(ctx: &egui::Context) -> Self {
-        let (orders, coming) = channel::<Order>();
+        let (orders, coming) = channel::<ThumbnailOrder>();
         let (finished, done) = channel();
         let waker = ctx.clone();
         let work = move || {
-            let mut maker = Maker::default();
+            let mut maker = ThumbnailMaker::default();
             while let Ok(order) = coming.recv() {
                 // Of a layer that changes while it waits, only the last version counts.
-                let mut latest: HashMap<LayerId, Order> = HashMap::from([(order.layer.id, order)]);
+                let mut latest: HashMap<LayerId, ThumbnailOrder> = HashMap::from([(order.layer.id, order)]);
                 latest.extend(coming.try_iter().map(|order| (order.layer.id, order)));
                 for order in latest.into_values() {
                     let Some(small) = maker.make(&order) else { continue };
@@ -65,7 +65,7 @@ impl Thumbnails {
     }
     /// Takes what was made.
     pub fn collect(&mut self, ctx: &egui::Context) {
-        for Small { id, image } in self.done.try_iter() {
+        for Thumbnail { id, image } in self.done.try_iter() {
             let texture = ctx.load_texture(format!("layer {id:?}"), image, TextureOptions::LINEAR);
             self.made.insert(id, texture);
         }
@@ -80,7 +80,7 @@ impl Thumbnails {
             self.ordered.insert(layer.id, Arc::downgrade(layer));
             let alone = Document { layers: vec![layer.clone()], ..document.clone() };
             // Without a thread nobody takes orders, and that was told.
-            let _ = self.orders.send(Order { layer: layer.clone(), document: alone });
+            let _ = self.orders.send(ThumbnailOrder { layer: layer.clone(), document: alone });
         }
         self.made.get(&layer.id).map(|texture| (texture.id(), vec2(texture.size()[0] as f32, texture.size()[1] as f32)))
     }
@@ -110,12 +110,12 @@ impl Thumbnails {
 
 /// The thread's own: the last surface, small.
 #[derive(Default)]
-struct Maker {
+struct ThumbnailMaker {
     surface: Option<(Weak<Surface>, Option<Arc<Surface>>)>,
 }
 
-impl Maker {
-    fn make(&mut self, order: &Order) -> Option<Small> {
+impl ThumbnailMaker {
+    fn make(&mut self, order: &ThumbnailOrder) -> Option<Thumbnail> {
         let size = order.document.size;
         let factor = (SIDE as f32 / size.longer_side()).min(1.0);
         // The surface is made small once, not for every layer.
@@ -129,7 +129,7 @@ impl Maker {
         let bytes = grid.to_straight_rgba(bare.size.rect());
         let pixels = bytes.as_chunks::<4>().0.iter().map(|&[r, g, b, a]| Color32::from_rgba_unmultiplied(r, g, b, a));
         let image = ColorImage::new([bare.size.width as usize, bare.size.height as usize], pixels.collect());
-        Some(Small { id, image })
+        Some(Thumbnail { id, image })
     }
     fn small_surface(&mut self, surface: Option<&Arc<Surface>>, to: &Document) -> Option<Arc<Surface>> {
         let surface = surface?;

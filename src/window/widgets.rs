@@ -8,28 +8,28 @@ use std::ops::RangeInclusive;
 
 /// A value that a widget gave: shown only, or to be kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Changed<T> {
+pub struct ValueChange<T> {
     pub to: T,
     /// The hand let go: one step of history.
     pub done: bool,
 }
 
-impl<T> Changed<T> {
-    pub fn map<U>(self, f: impl FnOnce(T) -> U) -> Changed<U> {
-        Changed { to: f(self.to), done: self.done }
+impl<T> ValueChange<T> {
+    pub fn map<U>(self, f: impl FnOnce(T) -> U) -> ValueChange<U> {
+        ValueChange { to: f(self.to), done: self.done }
     }
 }
 
 /// Whether a widget's value is to be shown, kept, or neither.
-pub fn change<T>(response: &Response, to: T) -> Option<Changed<T>> {
+pub fn change<T>(response: &Response, to: T) -> Option<ValueChange<T>> {
     if response.drag_stopped() {
-        return Some(Changed { to, done: true });
+        return Some(ValueChange { to, done: true });
     }
-    response.changed().then(|| Changed { to, done: !response.dragged() })
+    response.changed().then(|| ValueChange { to, done: !response.dragged() })
 }
 
 /// A number with its name before it.
-pub struct Number<'a> {
+pub struct NumberField<'a> {
     pub label: &'a str,
     pub hint: &'a str,
     pub range: RangeInclusive<f32>,
@@ -38,7 +38,7 @@ pub struct Number<'a> {
     pub logarithmic: bool,
 }
 
-impl<'a> Number<'a> {
+impl<'a> NumberField<'a> {
     pub fn new(label: &'a str, range: RangeInclusive<f32>, hint: &'a str) -> Self {
         Self { label, hint, range, suffix: "", decimals: 2, logarithmic: false }
     }
@@ -72,7 +72,7 @@ impl<'a> Number<'a> {
             .trailing_fill(true)
     }
     /// A slider in a row of its own, the name to its left.
-    pub fn row(self, ui: &mut Ui, value: f32) -> Option<Changed<f32>> {
+    pub fn row(self, ui: &mut Ui, value: f32) -> Option<ValueChange<f32>> {
         let mut to = value;
         let response = ui.horizontal(|ui| {
             let label = name(ui, self.label);
@@ -83,7 +83,7 @@ impl<'a> Number<'a> {
         change(&response.inner.on_hover_text(self.hint), to)
     }
     /// A slider in a bar among others, its name before it.
-    pub fn inline(self, ui: &mut Ui, value: f32, width_pt: f32) -> Option<Changed<f32>> {
+    pub fn inline(self, ui: &mut Ui, value: f32, width_pt: f32) -> Option<ValueChange<f32>> {
         /// Of the number after the slider: four digits and a unit.
         const NUMBER_PT: f32 = 56.0;
         let mut to = value;
@@ -100,7 +100,7 @@ impl<'a> Number<'a> {
         change(&inner.inner.on_hover_text(self.hint), to)
     }
     /// A number alone, to be dragged or typed.
-    pub fn field(self, ui: &mut Ui, value: f32) -> Option<Changed<f32>> {
+    pub fn field(self, ui: &mut Ui, value: f32) -> Option<ValueChange<f32>> {
         let mut to = value;
         let speed = (self.range.end() - self.range.start()) / 300.0;
         let drag = DragValue::new(&mut to)

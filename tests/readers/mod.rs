@@ -2,7 +2,7 @@
 
 use rilievo_engine::document::source::{MapSource, SurfaceSource};
 use rilievo_engine::{Error, Result};
-use rilievo_io::{Budget, Files, inspect, maps, open::Kind, picture, project, psd, recipe, recovery};
+use rilievo_io::{Budget, Files, inspect, maps, open::FileKind, picture, project, psd, recipe, recovery};
 use std::path::{Path, PathBuf};
 
 /// A reader by its name; it must neither panic nor allocate beyond the budget, and fail with a sentence.
@@ -46,7 +46,7 @@ pub fn psd(file: &Path, bytes: &[u8]) -> Result<()> {
     psd::read(file, bytes, &budget()).map(drop)
 }
 pub fn recipe(file: &Path, bytes: &[u8]) -> Result<()> {
-    let source = recipe::Source { file, files: &One(Vec::new()), budget: &budget(), onto: None };
+    let source = recipe::RecipeSource { file, files: &One(Vec::new()), budget: &budget(), onto: None };
     recipe::read(bytes, source).map(drop)
 }
 pub fn picture(file: &Path, bytes: &[u8]) -> Result<()> {
@@ -78,12 +78,12 @@ pub fn recovery(file: &Path, bytes: &[u8]) -> Result<()> {
 /// With the reader that the program would take.
 #[allow(dead_code)]
 pub fn any(file: &Path, bytes: &[u8]) -> Result<()> {
-    match Kind::of(bytes) {
+    match FileKind::of(bytes) {
         _ if bytes.starts_with(b"RILOG") => recovery(file, bytes),
-        Kind::Project => project(file, bytes),
-        Kind::Psd => psd(file, bytes),
-        Kind::Recipe => recipe(file, bytes),
-        Kind::Picture if file.starts_with("maps") => maps(file, bytes),
-        Kind::Picture => picture(file, bytes),
+        FileKind::Project => project(file, bytes),
+        FileKind::Psd => psd(file, bytes),
+        FileKind::Recipe => recipe(file, bytes),
+        FileKind::Picture if file.starts_with("maps") => maps(file, bytes),
+        FileKind::Picture => picture(file, bytes),
     }
 }

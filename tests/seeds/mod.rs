@@ -4,7 +4,7 @@ use rilievo_engine::document::{Document, Progress};
 use rilievo_engine::math::hash::mix;
 use rilievo_engine::{Error, Result};
 use rilievo_io::fs::Disk;
-use rilievo_io::recovery::Recovery;
+use rilievo_io::recovery::RecoveryLog;
 use rilievo_io::{Budget, Files, project, psd, recipe};
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -187,12 +187,12 @@ fn documents() -> Vec<Seed> {
 }
 fn read(json: &Value, files: &InMemory) -> Document {
     let budget = Budget::default();
-    let source = recipe::Source { file: Path::new("r.json"), files, budget: &budget, onto: None };
+    let source = recipe::RecipeSource { file: Path::new("r.json"), files, budget: &budget, onto: None };
     recipe::read(json.to_string().as_bytes(), source).unwrap_or_else(|e| panic!("{e}"))
 }
 fn log(document: &Document) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
-    let recovery = Recovery::start(Arc::new(Disk), folder.path(), document, "seed", None).unwrap();
+    let recovery = RecoveryLog::start(Arc::new(Disk), folder.path(), document, "seed", None).unwrap();
     recovery.flush();
     let logs = std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path());
     std::fs::read(logs.into_iter().find(|path| path.extension().is_some_and(|e| e == "log")).unwrap()).unwrap()

@@ -3,7 +3,7 @@
 use super::{choose, click, command, drop_files, layers, press, session, steps, stroke, until, window, window_of};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
-use rilievo_window::Window;
+use rilievo_window::MainWindow;
 use std::path::{Path, PathBuf};
 
 #[test]
@@ -16,7 +16,7 @@ fn closing_with_unsaved_work_asks_first() {
     steps(&mut harness);
     harness.get_by_label("Do not save").click();
     steps(&mut harness);
-    assert!(session(&harness).tab().is_none());
+    assert!(session(&harness).active().is_none());
 }
 #[test]
 fn what_cannot_be_opened_is_told_in_a_sentence_that_stays() {
@@ -40,8 +40,8 @@ fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
     until(&mut harness, |_| png.is_file());
     command(&mut harness, "Save as");
     choose(&mut harness, &ora);
-    until(&mut harness, |harness| session(harness).tab().unwrap().file.is_some());
-    assert!(ora.is_file() && !session(&harness).tab().unwrap().is_dirty());
+    until(&mut harness, |harness| session(harness).active().unwrap().file.is_some());
+    assert!(ora.is_file() && !session(&harness).active().unwrap().is_dirty());
 }
 #[test]
 fn quitting_asks_for_each_document_with_unsaved_work_and_saves_it_where_it_is_told() {
@@ -52,15 +52,15 @@ fn quitting_asks_for_each_document_with_unsaved_work_and_saves_it_where_it_is_to
     command(&mut harness, "Close");
     harness.get_by_label_contains("Save the changes to “Untitled 1”?");
     press(&mut harness, "Cancel");
-    assert!(session(&harness).tab().is_some_and(|tab| tab.is_dirty()));
+    assert!(session(&harness).active().is_some_and(|tab| tab.is_dirty()));
     command(&mut harness, "Close");
     press(&mut harness, "Save");
     choose(&mut harness, &file);
-    until(&mut harness, |harness| session(harness).tab().is_none());
+    until(&mut harness, |harness| session(harness).active().is_none());
     harness.state_mut().as_mut().unwrap().begin(vec![file]);
-    until(&mut harness, |harness| session(harness).tab().is_some());
+    until(&mut harness, |harness| session(harness).active().is_some());
     assert_eq!(layers(&harness), ["Background", "Strokes"]);
-    assert!(!session(&harness).tab().unwrap().is_dirty());
+    assert!(!session(&harness).active().unwrap().is_dirty());
 }
 #[test]
 fn several_documents_stand_in_tabs_and_the_next_one_comes_to_the_front() {
@@ -69,13 +69,13 @@ fn several_documents_stand_in_tabs_and_the_next_one_comes_to_the_front() {
     press(&mut harness, "1920 × 1080");
     press(&mut harness, "Dark");
     press(&mut harness, "Create");
-    assert_eq!((session(&harness).tabs.len(), session(&harness).current), (2, 1));
+    assert_eq!((session(&harness).open_documents.len(), session(&harness).current), (2, 1));
     command(&mut harness, "Next document");
     assert_eq!(session(&harness).current, 0);
     press(&mut harness, "Untitled 2");
-    assert_eq!(session(&harness).tab().unwrap().document().size.width, 1920);
+    assert_eq!(session(&harness).active().unwrap().document().size.width, 1920);
     press(&mut harness, "Close Untitled 1");
-    assert_eq!(session(&harness).tabs.len(), 1);
+    assert_eq!(session(&harness).open_documents.len(), 1);
 }
 /// Whether something of this name is there, perhaps a control beside its name.
 fn shows(harness: &super::Story, label: &str) -> bool {
@@ -85,7 +85,7 @@ fn shows(harness: &super::Story, label: &str) -> bool {
 fn create(harness: &mut super::Story) {
     for _ in 0..300 {
         super::key(harness, Modifiers::NONE, Key::Enter);
-        if session(harness).tabs.len() == 2 {
+        if session(harness).open_documents.len() == 2 {
             return;
         }
         std::thread::sleep(std::time::Duration::from_millis(20));
@@ -120,7 +120,7 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     until(&mut harness, |harness| shows(harness, "Flip green"));
     press(&mut harness, "What was found");
     create(&mut harness);
-    let tab = session(&harness).tab().unwrap();
+    let tab = session(&harness).active().unwrap();
     let surface = tab.document().surface.clone().unwrap();
     assert_eq!((surface.coverage(2, 2), surface.coverage(48, 48)), (0, 255));
     assert!(surface.normal(48, 20).y < 0.0, "the upper half looks down now");
@@ -139,12 +139,12 @@ fn maps_that_are_dropped_together_are_one_objects() {
     }
     create(&mut harness);
     assert!(harness.query_by_label("Create").is_none(), "there was one dialog");
-    assert_eq!(session(&harness).tabs.len(), 2);
+    assert_eq!(session(&harness).open_documents.len(), 2);
 }
 #[test]
 fn the_first_start_opens_a_sample_with_three_steps_that_can_be_put_away() {
     let mut harness = window_of(1.0, |ctx| {
-        let mut window = Window::new(ctx);
+        let mut window = MainWindow::new(ctx);
         window.begin(Vec::new());
         window
     });
@@ -182,6 +182,6 @@ fn a_smaller_document_comes_to_the_front_under_a_pointer_over_a_larger_one() {
     steps(&mut harness);
     let small = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_normals/bronze_muse.json");
     drop_files(&mut harness, &[&small]);
-    until(&mut harness, |harness| session(harness).tabs.len() == 2);
+    until(&mut harness, |harness| session(harness).open_documents.len() == 2);
     assert!(session(&harness).shown().is_some_and(|document| document.surface.is_some()));
 }

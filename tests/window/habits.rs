@@ -3,7 +3,7 @@
 use super::{Story, command, key, layers, press, session, steps, until, window, window_at};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use rilievo_window::Window;
+use rilievo_window::MainWindow;
 
 #[test]
 fn a_key_that_is_taken_is_asked_for_and_then_given() {
@@ -42,7 +42,7 @@ fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
     for pixels_per_point in [1.0, 1.5, 2.0] {
         let mut harness = window_at(pixels_per_point, None);
         command(&mut harness, "Actual pixels");
-        let zoom = session(&harness).tab().unwrap().view.unwrap().zoom;
+        let zoom = session(&harness).active().unwrap().view.unwrap().zoom;
         assert!((zoom * pixels_per_point - 1.0).abs() < 1e-4, "{zoom}");
         harness.get_by_label("100 %");
     }
@@ -50,7 +50,7 @@ fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
 #[test]
 fn every_command_stands_in_its_menu() {
     let mut harness = window();
-    for (title, commands) in Window::menus() {
+    for (title, commands) in MainWindow::menus() {
         press(&mut harness, title);
         for name in commands {
             assert!(harness.query_all_by_label_contains(name).count() > 0, "{name} in {title}");
@@ -62,13 +62,13 @@ fn every_command_stands_in_its_menu() {
 fn every_command_is_done_by_its_name() {
     let mut harness = window();
     command(&mut harness, "New gradient layer");
-    let names: Vec<&str> = Window::menus().flat_map(|(_, names)| names).filter(|name| *name != "Close").collect();
+    let names: Vec<&str> = MainWindow::menus().flat_map(|(_, names)| names).filter(|name| *name != "Close").collect();
     assert!(names.len() > 60);
     for name in names {
         command(&mut harness, name);
         // Whatever dialog it opened goes again.
         (0..2).for_each(|_| key(&mut harness, Modifiers::NONE, Key::Escape));
-        assert!(session(&harness).tab().is_some(), "{name}");
+        assert!(session(&harness).active().is_some(), "{name}");
     }
     command(&mut harness, "Close");
     press(&mut harness, "Do not save");
@@ -76,7 +76,7 @@ fn every_command_is_done_by_its_name() {
 #[test]
 fn the_interface_is_made_larger_and_the_picture_stays_as_it_is() {
     let mut harness = window();
-    let zoom = |harness: &Story| session(harness).tab().unwrap().view.unwrap().zoom * harness.ctx.pixels_per_point();
+    let zoom = |harness: &Story| session(harness).active().unwrap().view.unwrap().zoom * harness.ctx.pixels_per_point();
     let before = zoom(&harness);
     command(&mut harness, "Larger interface");
     assert!(harness.ctx.zoom_factor() > 1.05 && (zoom(&harness) / before - 1.0).abs() < 1e-3);
@@ -89,6 +89,10 @@ fn the_palette_puts_what_begins_with_the_words_first() {
     command(&mut harness, "operator: shading");
     assert!(matches!(session(&harness).operator, rilievo_engine::surface::Operator::Normal { .. }));
     command(&mut harness, "lock");
-    assert_eq!(session(&harness).layer().unwrap().lock, rilievo_engine::document::Lock::Alpha, "not “Clip” or “Block”");
+    assert_eq!(
+        session(&harness).layer().unwrap().lock,
+        rilievo_engine::document::LayerLock::Alpha,
+        "not “Clip” or “Block”"
+    );
     assert_eq!(layers(&harness), ["Background"]);
 }

@@ -41,7 +41,7 @@ fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
         MaskKind::File { coverage, .. } => coverage,
         _ => panic!("a mask to paint on"),
     };
-    assert!(session(&harness).tab().unwrap().on_mask && coverage(&harness).values().iter().all(|&v| v == 0));
+    assert!(session(&harness).active().unwrap().on_mask && coverage(&harness).values().iter().all(|&v| v == 0));
     stroke(&mut harness, vec2(60.0, 10.0));
     assert!(coverage(&harness).values().iter().any(|&v| v > 100), "light paint shows");
     assert_eq!(layers(&harness), ["Background"], "the stroke went to the mask");
@@ -49,7 +49,7 @@ fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
     command(&mut harness, "Use mask");
     assert!(masked(&harness).unwrap().invert && masked(&harness).unwrap().disabled);
     press(&mut harness, "Mask of Background");
-    assert!(!session(&harness).tab().unwrap().on_mask, "the brush paints on the layer again");
+    assert!(!session(&harness).active().unwrap().on_mask, "the brush paints on the layer again");
     command(&mut harness, "Delete mask");
     assert!(masked(&harness).is_none());
     command(&mut harness, "Paint on mask");

@@ -35,7 +35,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
         steps(&mut harness);
     }
     let heights = |harness: &Story| -> Vec<f32> {
-        let tab = session(harness).tab().unwrap();
+        let tab = session(harness).active().unwrap();
         tab.document().strokes(tab.selected.unwrap()).iter().map(|stroke| stroke.samples()[0].at.y).collect()
     };
     let [upper, lower] = heights(&harness)[..] else { panic!("two strokes") };
@@ -43,7 +43,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     steps(&mut harness);
     click(&mut harness, "Stroke 1 ·");
     assert_eq!(session(&harness).tool, rilievo_program::tools::ToolKind::Strokes);
-    assert_eq!(session(&harness).tab().unwrap().chosen_strokes(), [0]);
+    assert_eq!(session(&harness).active().unwrap().chosen_strokes(), [0]);
     harness.get_by_label("Stroke up").click();
     steps(&mut harness);
     assert_eq!(heights(&harness), [lower, upper]);
@@ -60,7 +60,7 @@ fn a_stroke_is_chosen_in_the_list_ordered_duplicated_and_deleted() {
     steps(&mut harness);
     harness.drop_at(canvas.center() + vec2(0.0, 10.0));
     steps(&mut harness);
-    assert_eq!(session(&harness).tab().unwrap().chosen_strokes(), [0]);
+    assert_eq!(session(&harness).active().unwrap().chosen_strokes(), [0]);
     assert!(heights(&harness)[0] < lower && heights(&harness)[1] == upper);
 }
 #[test]
@@ -87,7 +87,7 @@ fn the_brush_is_made_to_smudge_and_says_what_it_needs() {
     steps(&mut harness);
     harness.get_by_label("Smudge").click();
     steps(&mut harness);
-    assert!(session(&harness).brush.mark.is_retouching());
+    assert!(session(&harness).brush.mode.is_retouching());
     assert_ne!(harness.query_all_by_label("Length").count(), 0);
     let canvas = harness.get_by_label("Canvas").rect();
     harness.drag_at(canvas.center());
@@ -121,7 +121,7 @@ fn keys_that_other_painting_programs_taught_do_the_same_here() {
     let mut harness = window();
     let (size, view) = (
         |harness: &Story| session(harness).brush.size,
-        |harness: &Story| session(harness).tab().unwrap().view.unwrap(),
+        |harness: &Story| session(harness).active().unwrap().view.unwrap(),
     );
     let before = size(&harness);
     key(&mut harness, Modifiers::NONE, Key::CloseBracket);

@@ -13,11 +13,11 @@ mod replayed;
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use rilievo_window::Window;
+use rilievo_window::MainWindow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-type Story = Harness<'static, Option<Window>>;
+type Story = Harness<'static, Option<MainWindow>>;
 
 /// A window of a usual size, with an empty canvas in it.
 fn window() -> Story {
@@ -25,15 +25,15 @@ fn window() -> Story {
 }
 /// The same with so many pixels to a point, and the settings of a file.
 fn window_at(pixels_per_point: f32, settings: Option<PathBuf>) -> Story {
-    let mut harness = window_of(pixels_per_point, move |ctx| Window::remembering(ctx, settings.clone()));
+    let mut harness = window_of(pixels_per_point, move |ctx| MainWindow::remembering(ctx, settings.clone()));
     click(&mut harness, "File");
     click(&mut harness, "New…");
     click(&mut harness, "Create");
     harness
 }
 /// A window as it is made, which asks for files with its own dialog.
-fn window_of(pixels_per_point: f32, make: impl Fn(&eframe::egui::Context) -> Window + 'static) -> Story {
-    let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
+fn window_of(pixels_per_point: f32, make: impl Fn(&eframe::egui::Context) -> MainWindow + 'static) -> Story {
+    let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<MainWindow>| {
         window.get_or_insert_with(|| make(ui.ctx()).asking_itself()).show(ui);
     };
     let builder =
@@ -130,6 +130,6 @@ fn session(harness: &Story) -> &rilievo_program::session::Session {
     &harness.state().as_ref().unwrap().session
 }
 fn layers(harness: &Story) -> Vec<String> {
-    let document = session(harness).tab().unwrap().document();
+    let document = session(harness).active().unwrap().document();
     document.layers.iter().map(|layer| layer.name.clone()).collect()
 }

@@ -69,7 +69,7 @@ fn a_click_in_the_history_goes_there_and_one_in_the_navigator_looks_there() {
     steps(&mut harness);
     harness.drop_at(corner);
     steps(&mut harness);
-    let center = session(&harness).tab().unwrap().view.unwrap().center;
+    let center = session(&harness).active().unwrap().view.unwrap().center;
     assert!(center.x < 200.0 && center.y < 200.0, "{center}");
 }
 #[test]

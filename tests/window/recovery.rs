@@ -2,14 +2,14 @@
 
 use super::{Story, click, layers, session, until, window_of};
 use egui_kittest::kittest::Queryable;
-use rilievo_window::Window;
+use rilievo_window::MainWindow;
 use std::path::Path;
 
 /// A window that keeps its recovery logs in a folder.
 fn window_recovering(folder: &Path) -> Story {
     let folder = folder.to_owned();
     window_of(1.0, move |ctx| {
-        let mut window = Window::new(ctx);
+        let mut window = MainWindow::new(ctx);
         window.keep_recovery_in(folder.clone());
         window
     })
@@ -31,10 +31,10 @@ fn after_a_crash_the_window_offers_what_was_unsaved() {
     harness.get_by_label("Recover Unnamed").click();
     until(&mut harness, |harness| harness.query_by_label_contains("no whole version").is_some());
     harness.get_by_label("Recover all").click();
-    until(&mut harness, |harness| session(harness).tab().is_some());
+    until(&mut harness, |harness| session(harness).active().is_some());
     assert!(harness.query_by_label("Recover unsaved drawings?").is_none());
     assert_eq!(layers(&harness), ["Background", "Gradient"]);
-    let tab = session(&harness).tab().unwrap();
+    let tab = session(&harness).active().unwrap();
     assert!(tab.is_dirty() && tab.file.is_none());
     assert_eq!(tab.title(), "Untitled 1 (recovered)");
 }

@@ -5,7 +5,7 @@ use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_engine::document::{Document, Progress, flatten};
 use rilievo_program::session::{Session, storage};
-use rilievo_window::Window;
+use rilievo_window::MainWindow;
 use std::io::Read;
 use std::path::Path;
 
@@ -50,11 +50,11 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
         .save(&photo)
         .unwrap();
     let mut harness = window_of(1.0, move |ctx| {
-        let mut window = Window::new(ctx).recording();
+        let mut window = MainWindow::new(ctx).recording();
         window.begin(vec![file.clone()]);
         window
     });
-    until(&mut harness, |harness| session(harness).tab().is_some());
+    until(&mut harness, |harness| session(harness).active().is_some());
     drop_files(&mut harness, &[&photo]);
     until(&mut harness, |harness| layers(harness).contains(&"photo".to_owned()));
     // The photo becomes a reflection, and one of its anchors is moved.
@@ -84,14 +84,14 @@ fn a_story_of_photo_strokes_moves_and_masks_replays_to_the_same_bytes() {
         matches!(session(harness).layer().unwrap().content, rilievo_engine::document::Content::Pixels(_))
     });
     command(&mut harness, "Move layer down");
-    let seen = session(&harness).tab().unwrap().document().clone();
+    let seen = session(&harness).active().unwrap().document().clone();
     assert_eq!(seen.layers.len(), 5, "{:?}", layers(&harness));
     assert!(harness.query_by_label("Dismiss").is_none(), "nothing went wrong");
 
     let text = harness.state().as_ref().unwrap().recorded();
     let mut again = Session::default();
     again.replay(Path::new("story.jsonl"), &text).unwrap();
-    let replayed = again.tab().unwrap().document();
+    let replayed = again.active().unwrap().document();
     let [(picture, described), (again, described_again)] =
         [bytes(&seen, folder.path(), "seen.ora"), bytes(replayed, folder.path(), "again.ora")];
     assert!(picture == again, "the pictures differ");

@@ -3,12 +3,12 @@
 
 use super::Content;
 use crate::paint::{Scene, stroke};
-use crate::raster::{Paint, PlanarTile, Tile, TileAt};
+use crate::raster::{PlanarTile, Tile, TileAt, TilePaint};
 use crate::surface::{Bend, Deformation};
 use std::sync::Arc;
 
 /// The pixels of a layer in one tile.
-pub(super) enum Painted {
+pub(super) enum TileContent {
     Nothing,
     /// One premultiplied colour everywhere.
     Solid([f32; 4]),
@@ -16,45 +16,45 @@ pub(super) enum Painted {
     Group(PlanarTile),
 }
 
-impl Painted {
+impl TileContent {
     fn of_tile(tile: Option<Arc<Tile>>) -> Self {
-        tile.map_or(Painted::Nothing, Painted::Tile)
+        tile.map_or(TileContent::Nothing, TileContent::Tile)
     }
-    pub fn as_paint(&self) -> Option<Paint<'_>> {
+    pub fn as_paint(&self) -> Option<TilePaint<'_>> {
         match self {
-            Painted::Nothing => None,
-            Painted::Solid(color) => Some(Paint::Solid(*color)),
-            Painted::Tile(tile) => Some(Paint::Bytes(tile)),
-            Painted::Group(pixels) => Some(Paint::Planar(pixels)),
+            TileContent::Nothing => None,
+            TileContent::Solid(color) => Some(TilePaint::Solid(*color)),
+            TileContent::Tile(tile) => Some(TilePaint::Bytes(tile)),
+            TileContent::Group(pixels) => Some(TilePaint::Planar(pixels)),
         }
     }
     /// Known to cover every pixel wholly.
     pub fn is_opaque(&self) -> bool {
         match self {
-            Painted::Solid(color) => color[3] >= 1.0,
-            Painted::Tile(tile) => tile.is_opaque(),
-            Painted::Nothing | Painted::Group(_) => false,
+            TileContent::Solid(color) => color[3] >= 1.0,
+            TileContent::Tile(tile) => tile.is_opaque(),
+            TileContent::Nothing | TileContent::Group(_) => false,
         }
     }
 }
 
 /// Renders one tile of a layer's content, or finds it rendered. Groups, adjustments and normals have no pixels of their own.
-pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> Painted {
+pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> TileContent {
     match content {
-        Content::Fill(color) => Painted::Solid(color.premultiplied()),
-        Content::Pixels(pixels) => Painted::of_tile(pixels.tiles.tile(at).cloned()),
-        Content::Gradient(live) => Painted::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
+        Content::Fill(color) => TileContent::Solid(color.premultiplied()),
+        Content::Pixels(pixels) => TileContent::of_tile(pixels.tiles.tile(at).cloned()),
+        Content::Gradient(live) => TileContent::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
         Content::Strokes(live) => {
-            Painted::of_tile(live.tile(scene, at, || stroke::render_tile(&live.params().strokes, scene, at)))
+            TileContent::of_tile(live.tile(scene, at, || stroke::render_tile(&live.params().strokes, scene, at)))
         }
-        Content::Image(live) => Painted::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
-        Content::Shading(live) => Painted::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
-        Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_) => Painted::Nothing,
+        Content::Image(live) => TileContent::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
+        Content::Shading(live) => TileContent::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
+        Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_) => TileContent::Nothing,
     }
 }
 
 /// Computes now what many tiles would otherwise compute at the same time.
-pub(super) fn warm(content: &Content, scene: &Scene) {
+pub(super) fn warm_caches(content: &Content, scene: &Scene) {
     let bend = |bend: &Bend| drop(Deformation::new(scene.surface.as_deref(), scene.size, bend));
     match content {
         Content::Image(live) => {

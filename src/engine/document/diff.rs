@@ -15,20 +15,15 @@ pub fn diff(old: &Document, new: &Document) -> BTreeSet<TileAt> {
     if !old.scene().is_same(&new.scene()) {
         return TileAt::covering(new.size.rect()).collect();
     }
-    let mut diff = Diff {
-        old: surroundings(old),
-        new: surroundings(new),
-        document: new,
-        scene: new.scene(),
-        changed: BTreeSet::new(),
-    };
+    let mut diff =
+        Diff { old: contexts(old), new: contexts(new), document: new, scene: new.scene(), changed: BTreeSet::new() };
     diff.stack(&old.layers, &new.layers, false);
     diff.changed
 }
 
 /// What a layer's looks depend on beside itself and its backdrop.
 #[derive(Default, PartialEq)]
-struct Surroundings {
+struct LayerContext {
     /// What it is clipped to, if it is clipped.
     base: Option<LayerId>,
     /// A visible layer is clipped to it.
@@ -37,13 +32,13 @@ struct Surroundings {
     normals: Vec<*const Layer>,
 }
 
-fn surroundings(document: &Document) -> BTreeMap<LayerId, Surroundings> {
+fn contexts(document: &Document) -> BTreeMap<LayerId, LayerContext> {
     let mut all = BTreeMap::new();
     survey(&document.layers, &mut Vec::new(), &mut all);
     all
 }
 
-fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTreeMap<LayerId, Surroundings>) {
+fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTreeMap<LayerId, LayerContext>) {
     let (mut base, mut base_shows) = (None, false);
     for layer in layers {
         if let Content::Normals(_) = layer.content {
@@ -52,7 +47,7 @@ fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTre
             }
             continue;
         }
-        let mut here = Surroundings { normals: normals.clone(), ..Surroundings::default() };
+        let mut here = LayerContext { normals: normals.clone(), ..LayerContext::default() };
         if layer.clip_below {
             here.base = base;
             if let Some(base) = base.and_then(|id| all.get_mut(&id)).filter(|_| layer.visible) {
@@ -72,8 +67,8 @@ fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTre
 }
 
 struct Diff<'d> {
-    old: BTreeMap<LayerId, Surroundings>,
-    new: BTreeMap<LayerId, Surroundings>,
+    old: BTreeMap<LayerId, LayerContext>,
+    new: BTreeMap<LayerId, LayerContext>,
     /// The new one.
     document: &'d Document,
     scene: Scene,

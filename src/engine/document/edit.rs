@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 /// A place among layers: in which group (`None`: the document itself), and how many layers stand beneath it there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct LayerSlot {
     pub group: Option<LayerId>,
     /// Larger than the number of layers means on top.
     pub index: usize,
 }
 
-impl Place {
+impl LayerSlot {
     /// Among the layers of the document itself.
     pub fn top_level(index: usize) -> Self {
         Self { group: None, index }
@@ -28,10 +28,10 @@ impl Document {
         self.walk().into_iter().map(|(_, layer)| layer).find(|layer| layer.id == id)
     }
     /// Where a layer stands.
-    pub fn place_of(&self, id: LayerId) -> Option<Place> {
-        fn find(layers: &[Arc<Layer>], group: Option<LayerId>, id: LayerId) -> Option<Place> {
+    pub fn place_of(&self, id: LayerId) -> Option<LayerSlot> {
+        fn find(layers: &[Arc<Layer>], group: Option<LayerId>, id: LayerId) -> Option<LayerSlot> {
             layers.iter().enumerate().find_map(|(index, layer)| match &layer.content {
-                _ if layer.id == id => Some(Place { group, index }),
+                _ if layer.id == id => Some(LayerSlot { group, index }),
                 Content::Group(inner) => find(&inner.layers, Some(layer.id), id),
                 _ => None,
             })
@@ -48,7 +48,7 @@ impl Document {
         })
     }
     /// With one more layer. `None` also where the document has a layer of that id already.
-    pub fn with_inserted(&self, layer: Layer, place: Place) -> Option<Document> {
+    pub fn with_inserted(&self, layer: Layer, place: LayerSlot) -> Option<Document> {
         let new = Document { layers: vec![Arc::new(layer)], ..Document::empty(self.size) };
         if new.walk().iter().any(|(_, layer)| self.layer(layer.id).is_some()) {
             return None;
@@ -67,7 +67,7 @@ impl Document {
         })
     }
     /// With a layer elsewhere; `place` counts the layers without it. `None` also for a group into itself.
-    pub fn with_moved(&self, id: LayerId, place: Place) -> Option<Document> {
+    pub fn with_moved(&self, id: LayerId, place: LayerSlot) -> Option<Document> {
         let layer = self.layer(id)?.clone();
         let rest = self.without_layer(id)?;
         rest.with_siblings(place, |layers, index| {
@@ -78,7 +78,7 @@ impl Document {
     /// Changes the list of layers that a place is in.
     fn with_siblings(
         &self,
-        place: Place,
+        place: LayerSlot,
         change: impl FnOnce(&mut Vec<Arc<Layer>>, usize) -> Option<()>,
     ) -> Option<Document> {
         let mut next = self.clone();
@@ -152,23 +152,23 @@ mod tests {
         let old = document();
         assert_eq!(names(&old), "abchgd");
         let h = id(&old, "h");
-        assert_eq!(names(&old.with_inserted(fill("x"), Place::in_group(h, 0)).unwrap()), "abxchgd");
-        assert_eq!(names(&old.with_inserted(fill("x"), Place::top_level(99)).unwrap()), "abchgdx");
+        assert_eq!(names(&old.with_inserted(fill("x"), LayerSlot::in_group(h, 0)).unwrap()), "abxchgd");
+        assert_eq!(names(&old.with_inserted(fill("x"), LayerSlot::top_level(99)).unwrap()), "abchgdx");
         assert_eq!(names(&old.without_layer(h).unwrap()), "abgd");
-        let moved = old.with_moved(id(&old, "a"), Place::in_group(h, 1)).unwrap();
+        let moved = old.with_moved(id(&old, "a"), LayerSlot::in_group(h, 1)).unwrap();
         assert_eq!(names(&moved), "bcahgd");
-        assert_eq!(moved.place_of(id(&old, "a")), Some(Place::in_group(h, 1)));
-        assert_eq!(names(&moved.with_moved(h, Place::top_level(0)).unwrap()), "cahbgd");
+        assert_eq!(moved.place_of(id(&old, "a")), Some(LayerSlot::in_group(h, 1)));
+        assert_eq!(names(&moved.with_moved(h, LayerSlot::top_level(0)).unwrap()), "cahbgd");
     }
     #[test]
     fn what_cannot_be_done_is_not_done_by_halves() {
         let old = document();
         let (g, h) = (id(&old, "g"), id(&old, "h"));
-        assert!(old.with_moved(g, Place::in_group(h, 0)).is_none(), "a group into itself");
-        assert!(old.with_moved(g, Place::in_group(LayerId::fresh(), 0)).is_none());
+        assert!(old.with_moved(g, LayerSlot::in_group(h, 0)).is_none(), "a group into itself");
+        assert!(old.with_moved(g, LayerSlot::in_group(LayerId::fresh(), 0)).is_none());
         assert!(old.without_layer(LayerId::fresh()).is_none());
-        assert!(old.with_inserted(fill("x"), Place::in_group(id(&old, "a"), 0)).is_none(), "into no group");
+        assert!(old.with_inserted(fill("x"), LayerSlot::in_group(id(&old, "a"), 0)).is_none(), "into no group");
         let twin = Layer::clone(old.layer(h).unwrap());
-        assert!(old.with_inserted(twin, Place::top_level(0)).is_none(), "the same layer twice");
+        assert!(old.with_inserted(twin, LayerSlot::top_level(0)).is_none(), "the same layer twice");
     }
 }

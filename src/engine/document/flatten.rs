@@ -4,19 +4,19 @@
 
 use super::compose::Composer;
 use super::prepare::in_parallel;
-use super::{Content, Document, Layer, LayerId, Prepared, Progress};
+use super::{Content, Document, Layer, LayerId, PreparedDocument, Progress};
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
 /// Flattens the whole document; `None` if cancelled.
 pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
-    let prepared = Prepared::new(document, progress)?;
+    let prepared = PreparedDocument::new(document, progress)?;
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
 
 /// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row. `None` if cancelled.
 pub fn flatten_deep(document: &Document, progress: &Progress) -> Option<Vec<[f32; 4]>> {
-    let prepared = Prepared::new(document, progress)?;
+    let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
     let composed = in_parallel(&tiles, progress, |at| prepared.compose_tile(at))?;
     let canvas = document.size.rect();
@@ -76,7 +76,7 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
     found.then_some(shown)
 }
 
-impl Prepared {
+impl PreparedDocument {
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
         self.compose_tile(at).quantised().map(Arc::new)

@@ -6,15 +6,15 @@ use super::Document;
 /// The present document, those before it and those undone.
 pub struct History {
     /// Oldest first; the label is of the edit that led away from it.
-    past: Vec<Step>,
+    past: Vec<HistoryStep>,
     present: Document,
     /// Nearest last; the label is of the edit that leads to it.
-    future: Vec<Step>,
+    future: Vec<HistoryStep>,
     /// Steps kept at most.
     limit: usize,
 }
 
-struct Step {
+struct HistoryStep {
     label: String,
     document: Document,
 }
@@ -31,22 +31,22 @@ impl History {
     pub fn commit(&mut self, label: impl Into<String>, document: Document) {
         self.future.clear();
         let before = std::mem::replace(&mut self.present, document);
-        self.past.push(Step { label: label.into(), document: before });
+        self.past.push(HistoryStep { label: label.into(), document: before });
         let excess = self.past.len().saturating_sub(self.limit);
         self.past.drain(..excess);
     }
     /// Goes back by one edit and tells its label; `None` at the beginning.
     pub fn undo(&mut self) -> Option<&str> {
-        let Step { label, document } = self.past.pop()?;
+        let HistoryStep { label, document } = self.past.pop()?;
         let document = std::mem::replace(&mut self.present, document);
-        self.future.push(Step { label, document });
+        self.future.push(HistoryStep { label, document });
         self.undone()
     }
     /// Goes forward again by one edit and tells its label; `None` at the end.
     pub fn redo(&mut self) -> Option<&str> {
-        let Step { label, document } = self.future.pop()?;
+        let HistoryStep { label, document } = self.future.pop()?;
         let document = std::mem::replace(&mut self.present, document);
-        self.past.push(Step { label, document });
+        self.past.push(HistoryStep { label, document });
         self.done()
     }
     /// Every edit that was made, oldest first.

@@ -1,7 +1,7 @@
 //! A layer: how it meets what lies beneath, and what it holds.
 //! Floor 4.
 
-use super::{kept::Kept, live::Live, mask::LayerMask, normals::NormalLayer};
+use super::{cache::LayerCache, live::Live, mask::LayerMask, normals::NormalLayer};
 use crate::math::srgb::Color;
 use crate::paint::{Gradient, PlacedImage, Stroke};
 use crate::raster::{BlendMode, TileGrid};
@@ -34,13 +34,13 @@ pub struct Layer {
     pub blend_linear: bool,
     /// Paint only where the nearest layer beneath that is not itself clipped has coverage.
     pub clip_below: bool,
-    pub lock: Lock,
+    pub lock: LayerLock,
     pub mask: Option<LayerMask>,
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
     pub content: Content,
     /// What was worked out for this layer and still holds; of no meaning to a document's value.
-    pub kept: Kept,
+    pub cache: LayerCache,
 }
 
 impl Layer {
@@ -54,18 +54,18 @@ impl Layer {
             blend: BlendMode::Normal,
             blend_linear: false,
             clip_below: false,
-            lock: Lock::None,
+            lock: LayerLock::None,
             mask: None,
             clip_to_surface: true,
             content,
-            kept: Kept::default(),
+            cache: LayerCache::default(),
         }
     }
 }
 
 /// What of a layer may not be painted on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Lock {
+pub enum LayerLock {
     #[default]
     None,
     Alpha,

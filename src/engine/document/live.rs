@@ -9,23 +9,23 @@ use std::sync::{Arc, Mutex, OnceLock};
 #[derive(Clone)]
 pub struct Live<T> {
     params: Arc<T>,
-    rendered: Arc<Rendered>,
+    rendered: Arc<RenderedTiles>,
 }
 
 /// The tiles of one scene; replaced when the layer is seen on another canvas or surface.
 #[derive(Default)]
-struct Rendered {
-    seen: Mutex<Option<(Scene, Arc<Cells>)>>,
+struct RenderedTiles {
+    current: Mutex<Option<(Scene, Arc<TileCells>)>>,
 }
 
 /// One cell a tile of the canvas, filled when first asked for.
-struct Cells {
+struct TileCells {
     cols: i32,
     rows: i32,
     cells: Vec<OnceLock<Option<Arc<Tile>>>>,
 }
 
-impl Cells {
+impl TileCells {
     fn for_scene(scene: &Scene) -> Self {
         let side = |n: u32| n.div_ceil(crate::raster::TILE as u32) as i32;
         let (cols, rows) = (side(scene.size.width), side(scene.size.height));
@@ -47,9 +47,9 @@ impl<T> Live<T> {
     /// New parameters that change only some tiles: those for which `keeps` is true are taken over as they are rendered.
     pub fn with(&self, params: T, keeps: impl Fn(TileAt) -> bool) -> Self {
         let next = Self::new(params);
-        let seen = self.lock().clone();
-        if let Some((scene, old)) = seen {
-            let cells = Cells::for_scene(&scene);
+        let current = self.lock().clone();
+        if let Some((scene, old)) = current {
+            let cells = TileCells::for_scene(&scene);
             for at in TileAt::covering(scene.size.rect()).filter(|&at| keeps(at)) {
                 if let (Some(from), Some(to)) = (old.cell(at).and_then(OnceLock::get), cells.cell(at)) {
                     let _ = to.set(from.clone());
@@ -68,7 +68,7 @@ impl<T> Live<T> {
         scene: &Scene,
         tiles: impl IntoIterator<Item = (TileAt, Option<Arc<Tile>>)>,
     ) -> Self {
-        let (old, cells) = (self.cells(scene), Cells::for_scene(scene));
+        let (old, cells) = (self.cells(scene), TileCells::for_scene(scene));
         for (at, tile) in tiles {
             cells.cell(at).map(|cell| cell.set(tile));
         }
@@ -84,12 +84,12 @@ impl<T> Live<T> {
     /// Whether a tile is known to look the same in both on this scene: rendered, and the very same pixels.
     pub fn same_tiles(&self, other: &Self, scene: &Scene) -> impl Fn(TileAt) -> bool {
         let rendered = |live: &Self| {
-            let seen = live.lock();
-            seen.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, cells)| cells.clone())
+            let current = live.lock();
+            current.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, cells)| cells.clone())
         };
         let both = rendered(self).zip(rendered(other));
         move |at| {
-            let tile = |cells: &Cells| cells.cell(at)?.get().map(|tile| tile.as_ref().map(Arc::as_ptr));
+            let tile = |cells: &TileCells| cells.cell(at)?.get().map(|tile| tile.as_ref().map(Arc::as_ptr));
             both.as_ref().and_then(|(a, b)| Some(tile(a)? == tile(b)?)).unwrap_or(false)
         }
     }
@@ -102,19 +102,19 @@ impl<T> Live<T> {
     pub fn ptr_eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.params, &other.params)
     }
-    fn cells(&self, scene: &Scene) -> Arc<Cells> {
-        let mut seen = self.lock();
-        match &*seen {
+    fn cells(&self, scene: &Scene) -> Arc<TileCells> {
+        let mut current = self.lock();
+        match &*current {
             Some((s, cells)) if s.is_same(scene) => cells.clone(),
             _ => {
-                let cells = Arc::new(Cells::for_scene(scene));
-                *seen = Some((scene.clone(), cells.clone()));
+                let cells = Arc::new(TileCells::for_scene(scene));
+                *current = Some((scene.clone(), cells.clone()));
                 cells
             }
         }
     }
-    fn lock(&self) -> std::sync::MutexGuard<'_, Option<(Scene, Arc<Cells>)>> {
-        self.rendered.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    fn lock(&self) -> std::sync::MutexGuard<'_, Option<(Scene, Arc<TileCells>)>> {
+        self.rendered.current.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
 

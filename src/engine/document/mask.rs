@@ -1,9 +1,9 @@
 //! A layer's mask: a picture of coverage, or one derived from the surface.
 //! Floor 4.
 
-use super::{Content, Layer, prepare, prepare::Node};
+use super::{Content, Layer, prepare, prepare::PreparedLayer};
 use crate::paint::Scene;
-use crate::raster::{Coverage, Plane, TileAt};
+use crate::raster::{Plane, TileAt, TileCoverage};
 use crate::surface::{Curvature, Surface};
 use std::sync::Arc;
 
@@ -30,14 +30,14 @@ pub enum MaskKind {
 }
 
 /// How much of a node arrives at each pixel of a tile: its opacity, its mask, and the surface where it is clipped to it.
-pub(super) fn coverage(node: &Node, at: TileAt) -> Coverage {
-    let coverage = Coverage::uniform(node.layer.opacity);
+pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
+    let coverage = TileCoverage::uniform(node.layer.opacity);
     let coverage = match clip(node) {
         None => coverage,
         Some(surface) => match cover_of_tile(surface, at) {
-            Cover::None => return Coverage::uniform(0.0),
-            Cover::Whole => coverage,
-            Cover::Part => {
+            TileCover::None => return TileCoverage::uniform(0.0),
+            TileCover::Whole => coverage,
+            TileCover::Part => {
                 let plane = surface.coverage_plane();
                 coverage.times(pixels(at, |x, y| plane.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0)))
             }
@@ -50,35 +50,35 @@ pub(super) fn coverage(node: &Node, at: TileAt) -> Coverage {
 }
 
 /// The surface does not cut the node in this tile.
-pub(super) fn is_whole_on_surface(node: &Node, at: TileAt) -> bool {
-    clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), Cover::Whole))
+pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
+    clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), TileCover::Whole))
 }
 
 /// The surface that a node is clipped to, if any. A group's layers clip themselves: a second time would thin their rims.
 /// An adjustment changes what is painted already.
-fn clip(node: &Node) -> Option<&Surface> {
+fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = !matches!(node.layer.content, Content::Group(_) | Content::RadianceScaling(_));
     node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)
 }
 
 /// How far a surface covers a tile.
-enum Cover {
+enum TileCover {
     None,
     Part,
     Whole,
 }
 
-fn cover_of_tile(surface: &Surface, at: TileAt) -> Cover {
+fn cover_of_tile(surface: &Surface, at: TileAt) -> TileCover {
     let plane = surface.coverage_plane();
     let inside = at.rect().intersect(surface.size().rect());
     let columns = inside.x0 as usize..inside.x1 as usize;
     let rows = || (inside.y0..inside.y1).map(|y| &plane.row(y as usize)[columns.clone()]);
     if rows().all(|row| row.iter().all(|&c| c == 0)) {
-        Cover::None
+        TileCover::None
     } else if rows().all(|row| row.iter().all(|&c| c == 255)) {
-        Cover::Whole
+        TileCover::Whole
     } else {
-        Cover::Part
+        TileCover::Part
     }
 }
 
@@ -106,7 +106,13 @@ impl LayerMask {
         LayerMask { kind: MaskKind::File { file: String::new(), coverage }, ..self.clone() }
     }
     /// Multiplies a coverage by the mask. One derived from a surface changes nothing where there is none.
-    fn multiply(&self, coverage: Coverage, scene: &Scene, curvature: Option<&Curvature>, at: TileAt) -> Coverage {
+    fn multiply(
+        &self,
+        coverage: TileCoverage,
+        scene: &Scene,
+        curvature: Option<&Curvature>,
+        at: TileAt,
+    ) -> TileCoverage {
         let needs_surface = !matches!(self.kind, MaskKind::File { .. });
         if self.disabled || (needs_surface && scene.surface.is_none()) {
             return coverage;

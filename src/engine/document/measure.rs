@@ -2,34 +2,34 @@
 //! Floor 4. Tiles are measured in parallel and added up in their order, so the figures do not depend on the threads.
 
 use super::Progress;
-use super::compose::{Composer, Flow};
-use super::prepare::{Adjustment, Prepared, in_parallel};
+use super::compose::{ComposeFlow, Composer};
+use super::prepare::{Adjustment, PreparedDocument, in_parallel};
 use crate::math::fast;
 use crate::math::srgb::{decode, decode_fast, luminance};
-use crate::raster::{PlanarTile, TILE, TileAt, planar::Row};
-use crate::shading::radiance::{Beneath, Means};
+use crate::raster::{PlanarTile, TILE, TileAt, planar::PixelRow};
+use crate::shading::radiance::{BackdropStats, LuminanceSums};
 use crate::shading::{RadianceScaling, Reference};
 use crate::surface::Scene;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
-impl Prepared {
+impl PreparedDocument {
     /// Measures what lies beneath the next adjustment, or finds it measured; `None` if cancelled.
-    pub(super) fn measure(&self, adjustment: &Adjustment, progress: &Progress) -> Option<Beneath> {
+    pub(super) fn measure(&self, adjustment: &Adjustment, progress: &Progress) -> Option<BackdropStats> {
         let Adjustment { layer, scaling, scene, beneath } = adjustment;
         let brightest = match scaling.reference {
             Reference::Value(value) => value,
             Reference::Auto => {
-                layer.kept.brightest.get(scene, beneath, &(), || self.brightest_beneath(scene, progress))?
+                layer.cache.brightest.get(scene, beneath, &(), || self.brightest_beneath(scene, progress))?
             }
         };
         let gain = match scaling.keep_mean {
             false => 1.0,
             true => {
                 let measure = || self.gain(scaling, scene, brightest, progress);
-                layer.kept.gain.get(scene, beneath, scaling, measure)?
+                layer.cache.gain.get(scene, beneath, scaling, measure)?
             }
         };
-        Some(Beneath { brightest, gain })
+        Some(BackdropStats { brightest, gain })
     }
     /// Y*: the greatest luminance beneath the next adjustment.
     fn brightest_beneath(&self, scene: &Scene, progress: &Progress) -> Option<f32> {
@@ -52,14 +52,14 @@ impl Prepared {
             measured.unwrap_or_default()
         };
         let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
-        Some(tiles.into_iter().fold(Means::default(), Means::plus).gain())
+        Some(tiles.into_iter().fold(LuminanceSums::default(), LuminanceSums::plus).gain())
     }
     /// One tile of what lies beneath the next adjustment, in its own scope.
     fn beneath_next(&self, at: TileAt) -> Option<PlanarTile> {
         let composer = Composer { prepared: self, at, sought: Some(self.beneath.len()) };
         match composer.stack(&self.stack, &mut PlanarTile::transparent()) {
-            Flow::Break(beneath) => Some(beneath),
-            Flow::Continue(()) => None,
+            ComposeFlow::Break(beneath) => Some(beneath),
+            ComposeFlow::Continue(()) => None,
         }
     }
 }
@@ -91,7 +91,7 @@ fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt, known: f32) -> f32 
 }
 
 /// What no pixel's luminance is above: that of the greatest red, green and blue.
-fn bound(rows: &[Row]) -> f32 {
+fn bound(rows: &[PixelRow]) -> f32 {
     let mut most = [[0.0; TILE]; 3];
     rows.iter().for_each(|row| raise_to_channels(row, &mut most));
     let [r, g, b] = most.map(|column| column.into_iter().fold(0.0, f32::max));
@@ -103,7 +103,7 @@ const DECODE_ERROR: f32 = 1e-3;
 
 crate::widest! {
     /// Raises each column's red, green and blue to a row's straight ones.
-    fn raise_to_channels(row: &Row, most: &mut [[f32; TILE]; 3]) {
+    fn raise_to_channels(row: &PixelRow, most: &mut [[f32; TILE]; 3]) {
         let mut per_a = [0.0; TILE];
         for (per_a, &a) in per_a.iter_mut().zip(&row.a) {
             *per_a = 1.0 / fast::max(a, 0.5);
@@ -115,7 +115,7 @@ crate::widest! {
         }
     }
     /// Raises each column's value to the luminance of its pixel in a row, where that counts.
-    fn raise_to_brightest(row: &Row, covers: &[u8; TILE], most: &mut [f32; TILE]) {
+    fn raise_to_brightest(row: &PixelRow, covers: &[u8; TILE], most: &mut [f32; TILE]) {
         for x in 0..TILE {
             let per_a = 1.0 / fast::max(row.a[x], 0.5);
             let light = |v: f32| decode_fast(fast::min(v * per_a, 1.0));

@@ -1,13 +1,13 @@
 //! Floor 4: the document is a value. Cheap to clone, never changed while shared: an edit is a new document, undo a list
 //! of them, and what must be redrawn is what differs by pointer.
 
+pub mod cache;
 mod compose;
 mod content;
 pub mod diff;
 pub mod edit;
 pub mod flatten;
 pub mod history;
-pub mod kept;
 pub mod layer;
 pub mod live;
 pub mod mask;
@@ -16,22 +16,22 @@ pub mod normals;
 mod prepare;
 pub mod progress;
 pub mod scale;
-mod seen;
+mod scenes;
 pub mod source;
 mod strokes;
 pub mod view;
 
 pub use diff::diff;
-pub use edit::Place;
+pub use edit::LayerSlot;
 pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers};
 pub use history::History;
-pub use layer::{Content, Group, Layer, LayerId, Lock, PixelLayer, StrokeList};
+pub use layer::{Content, Group, Layer, LayerId, LayerLock, PixelLayer, StrokeList};
 pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
 pub use normals::{DetailSource, NormalLayer};
-pub use prepare::Prepared;
+pub use prepare::PreparedDocument;
 pub use progress::Progress;
-pub use scale::Reduced;
+pub use scale::DocumentReducer;
 pub use source::SurfaceSource;
 
 use crate::{math::Size, paint::Scene, raster::Asset, surface::Surface};

@@ -5,7 +5,7 @@ use super::{Layer, LayerMask, prepare, source::NormalConvention};
 use crate::math::{Affine2, Vec2, Vec3, vec2};
 use crate::paint::{PictureSource, Placement, Scene};
 use crate::raster::Outside;
-use crate::surface::{Curvature, DetailMap, Grain, Surface};
+use crate::surface::{Curvature, DetailMap, NoiseRelief, Surface};
 use std::sync::Arc;
 
 /// Detail combined onto the surface: what stands above in its group sees the combined normals. The layer's opacity and
@@ -31,7 +31,7 @@ pub enum DetailSource {
         map: Arc<DetailMap>,
     },
     /// A noisy relief. The placement turns and scales it about its centre.
-    Grain(Grain),
+    Grain(NoiseRelief),
 }
 
 impl PartialEq for NormalLayer {
@@ -78,14 +78,14 @@ pub(super) fn scene_above(layer: &Layer, normals: &NormalLayer, beneath: &Scene)
         let curvature = prepare::curvature_of_mask(layer, beneath);
         Some(Arc::new(combination.on(surface, beneath, curvature.as_deref())))
     };
-    let combined = layer.kept.combined.get(beneath, &[], &combination, combine);
+    let combined = layer.cache.combined.get(beneath, &[], &combination, combine);
     Scene { surface: combined.or_else(|| beneath.surface.clone()), ..beneath.clone() }
 }
 
 impl Combination {
     /// `curvature`: of the surface, for a mask derived from it.
     fn on(&self, surface: &Arc<Surface>, scene: &Scene, curvature: Option<&Curvature>) -> Surface {
-        let detail = Lying::of(&self.normals, scene);
+        let detail = PlacedDetail::of(&self.normals, scene);
         surface.combined(|x, y| {
             let mask = self.mask.as_ref().map_or(1.0, |m| m.at(scene, curvature, x as i32, y as i32));
             let strength = self.normals.strength * self.opacity * mask;
@@ -96,7 +96,7 @@ impl Combination {
 }
 
 /// Detail as it lies on the canvas.
-struct Lying<'a> {
+struct PlacedDetail<'a> {
     normals: &'a NormalLayer,
     /// Texels of the map, or px of the grain, from canvas px.
     from_canvas: Affine2,
@@ -106,7 +106,7 @@ struct Lying<'a> {
     turn: Vec2,
 }
 
-impl<'a> Lying<'a> {
+impl<'a> PlacedDetail<'a> {
     fn of(normals: &'a NormalLayer, scene: &Scene) -> Self {
         let placement = &normals.placement;
         let from_canvas = match &normals.source {
@@ -131,7 +131,7 @@ impl<'a> Lying<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Content, Document, Group, Live, MaskKind, Prepared, Progress, flatten};
+    use crate::document::{Content, Document, Group, Live, MaskKind, PreparedDocument, Progress, flatten};
     use crate::math::{Size, srgb::Color, vec3};
     use crate::raster::Plane;
     use crate::shading::{Model, Shading};
@@ -220,7 +220,7 @@ mod tests {
         ]);
         let Content::Shading(live) = &before.layers[1].content else { unreachable!() };
         let tile = |document: &Document| {
-            let prepared = Prepared::new(document, &Progress::default()).unwrap();
+            let prepared = PreparedDocument::new(document, &Progress::default()).unwrap();
             let at = crate::raster::TileAt::new(0, 0);
             prepared.flatten_tile(at);
             live.tile(&prepared.stack[0].scene, at, || unreachable!("it was rendered")).unwrap()
@@ -232,7 +232,7 @@ mod tests {
     }
     #[test]
     fn grain_roughens_and_without_a_surface_there_is_nothing_to_roughen() {
-        let grain = NormalLayer { source: DetailSource::Grain(Grain::default()), ..leaning(0.5) };
+        let grain = NormalLayer { source: DetailSource::Grain(NoiseRelief::default()), ..leaning(0.5) };
         let layer = Layer::new("", Content::Normals(grain.clone()));
         let surface = seen(&layer, &document(vec![]));
         assert!((0..40).any(|y| surface.normal(20, y).z < 0.98));

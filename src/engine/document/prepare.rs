@@ -5,32 +5,32 @@ use super::{Content, Document, Group, Layer, MaskKind, Progress, content, normal
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
-use crate::shading::{RadianceScaling, radiance::Beneath};
+use crate::shading::{RadianceScaling, radiance::BackdropStats};
 use crate::surface::Curvature;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// What of a document flattening needs, resolved. Holds the layers it needs, so the document may be dropped or edited.
-pub struct Prepared {
+pub struct PreparedDocument {
     pub(super) size: Size,
     /// Bottom first.
-    pub(super) stack: Vec<Node>,
+    pub(super) stack: Vec<PreparedLayer>,
     /// What is known of the composite beneath each adjustment, in the order they apply.
-    pub(super) beneath: Vec<Beneath>,
+    pub(super) beneath: Vec<BackdropStats>,
 }
 
 /// A visible layer in its place.
-pub(super) struct Node {
+pub(super) struct PreparedLayer {
     pub layer: Arc<Layer>,
     /// The canvas and surface that the layer sees.
     pub scene: Scene,
     /// For a mask derived from it.
     pub curvature: Option<Arc<Curvature>>,
     /// Of a group, bottom first.
-    pub children: Vec<Node>,
+    pub children: Vec<PreparedLayer>,
     /// The run of layers clipped to this one, bottom first.
-    pub clipped: Vec<Node>,
+    pub clipped: Vec<PreparedLayer>,
     /// Which adjustments stand in this node: itself, its children, its clipped layers.
     pub adjustments: Range<usize>,
 }
@@ -44,10 +44,10 @@ pub(super) struct Adjustment {
     pub beneath: Vec<Arc<Layer>>,
 }
 
-impl Prepared {
+impl PreparedDocument {
     /// Resolves the layers and measures what adjustments refer to; `None` if cancelled meanwhile.
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
-        let mut builder = Builder::default();
+        let mut builder = StackBuilder::default();
         let stack = builder.nodes(&document.layers, &mut document.scene(), &[]);
         let mut prepared = Self { size: document.size, stack, beneath: Vec::new() };
         for adjustment in builder.adjustments {
@@ -79,12 +79,12 @@ pub(super) fn in_parallel<T: Send>(
 }
 
 #[derive(Default)]
-struct Builder {
+struct StackBuilder {
     adjustments: Vec<Adjustment>,
 }
 
 /// What a clipped layer would be clipped to.
-enum Base {
+enum ClipBase {
     /// Nothing stands beneath: clipped layers paint nothing.
     Nothing,
     /// Hidden, and its clipped layers with it.
@@ -93,11 +93,11 @@ enum Base {
     Shown,
 }
 
-impl Builder {
+impl StackBuilder {
     /// `scene` is what the first layer sees and becomes what stands above sees; `beneath` is the scope so far.
-    fn nodes(&mut self, layers: &[Arc<Layer>], scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<Node> {
-        let mut nodes: Vec<Node> = Vec::new();
-        let mut base = Base::Nothing;
+    fn nodes(&mut self, layers: &[Arc<Layer>], scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<PreparedLayer> {
+        let mut nodes: Vec<PreparedLayer> = Vec::new();
+        let mut base = ClipBase::Nothing;
         for (i, layer) in layers.iter().enumerate() {
             if let Content::Normals(normals) = &layer.content {
                 // It paints nothing, so it neither is a base nor stands between a base and its clipped layers.
@@ -107,9 +107,9 @@ impl Builder {
                 continue;
             }
             if !layer.clip_below {
-                base = if layer.visible { Base::Shown } else { Base::Hidden };
+                base = if layer.visible { ClipBase::Shown } else { ClipBase::Hidden };
             }
-            if !layer.visible || !matches!(base, Base::Shown) {
+            if !layer.visible || !matches!(base, ClipBase::Shown) {
                 continue;
             }
             let node = self.node(layer, scene, &[beneath, &layers[..i]].concat());
@@ -123,28 +123,28 @@ impl Builder {
         }
         nodes
     }
-    fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, beneath: &[Arc<Layer>]) -> Node {
+    fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, beneath: &[Arc<Layer>]) -> PreparedLayer {
         let first = self.adjustments.len();
-        let seen = scene.clone();
+        let visible_scene = scene.clone();
         let children = match &layer.content {
             Content::Group(group) => self.children(group, scene, beneath),
             _ => Vec::new(),
         };
-        content::warm(&layer.content, &seen);
+        content::warm_caches(&layer.content, &visible_scene);
         if let Content::RadianceScaling(scaling) = &layer.content {
             let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), beneath.to_vec());
-            self.adjustments.push(Adjustment { layer, scaling, scene: seen.clone(), beneath });
+            self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
         }
-        Node {
-            curvature: curvature_of_mask(layer, &seen),
+        PreparedLayer {
+            curvature: curvature_of_mask(layer, &visible_scene),
             layer: layer.clone(),
-            scene: seen,
+            scene: visible_scene,
             children,
             clipped: Vec::new(),
             adjustments: first..self.adjustments.len(),
         }
     }
-    fn children(&mut self, group: &Group, scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<Node> {
+    fn children(&mut self, group: &Group, scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<PreparedLayer> {
         if group.pass_through {
             return self.nodes(&group.layers, scene, beneath);
         }

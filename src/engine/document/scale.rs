@@ -1,11 +1,11 @@
 //! A document at another resolution: for a quick preview, or a larger print of what is live.
 //! Floor 4. Live layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
 
-mod reduced;
+mod reducer;
 
-pub use reduced::Reduced;
+pub use reducer::DocumentReducer;
 
-use super::kept::Kept;
+use super::cache::LayerCache;
 use super::{Content, DetailSource, Document, Group, Layer, Live, MaskKind, PixelLayer, StrokeList};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
 use crate::paint::{Sample, Stabilizer, Stroke};
@@ -21,14 +21,14 @@ impl Document {
     /// `factor`: finite and `> 0`, else the document comes back as it is. Whether there is room for the result is the
     /// caller's to check. Fails where nothing is left of a surface thinner than the new pixels.
     pub fn scaled(&self, factor: f32) -> Result<Document, SurfaceError> {
-        let Some(scale) = Scale::of(self.size, factor) else { return Ok(self.clone()) };
+        let Some(scale) = CanvasScale::of(self.size, factor) else { return Ok(self.clone()) };
         let surface = self.surface.as_ref().map(|s| s.stretched(scale.to).map(Arc::new)).transpose()?;
         Ok(Document { size: scale.to, surface, layers: scale.layers(&self.layers), ..self.clone() })
     }
 }
 
 /// From one canvas to another.
-struct Scale {
+struct CanvasScale {
     /// Of coordinates; the two differ as far as rounding the canvas demands.
     per_axis: Vec2,
     /// Of lengths that have no direction.
@@ -37,7 +37,7 @@ struct Scale {
     to: Size,
 }
 
-impl Scale {
+impl CanvasScale {
     /// `None` where nothing is to be scaled.
     fn of(from: Size, factor: f32) -> Option<Self> {
         let to = from.scaled(factor);
@@ -51,7 +51,7 @@ impl Scale {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()
     }
     fn layer(&self, layer: &Layer) -> Layer {
-        let mut next = Layer { content: self.content(&layer.content), kept: Kept::default(), ..layer.clone() };
+        let mut next = Layer { content: self.content(&layer.content), cache: LayerCache::default(), ..layer.clone() };
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
             Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
             Some(MaskKind::Curvature { scale, blur, .. }) => {

@@ -1,7 +1,9 @@
 //! Edits of the strokes of a stroke layer: which there are, in what order, where and how each is painted.
 //! Floor 4. Only tiles that an edit can change are rendered again.
 
-use super::{Content, Document, Layer, LayerId, Live, Lock, PixelLayer, Place, Progress, StrokeList, flatten_layer};
+use super::{
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, Progress, StrokeList, flatten_layer,
+};
 use crate::math::Vec2;
 use crate::paint::{Scene, Stroke};
 use crate::raster::TileAt;
@@ -86,10 +88,10 @@ impl Document {
         let pixels = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
         let name = format!("{} baked", old.name);
         let baked =
-            Layer { id: LayerId::fresh(), name, kept: Default::default(), content: pixels, ..Layer::clone(old) };
+            Layer { id: LayerId::fresh(), name, cache: Default::default(), content: pixels, ..Layer::clone(old) };
         let (id, place) = (baked.id, self.place_of(layer)?);
         let index = if are_lowest { place.index } else { place.index + 1 };
-        Some((left.with_inserted(baked, Place { index, ..place })?, id))
+        Some((left.with_inserted(baked, LayerSlot { index, ..place })?, id))
     }
     /// With the strokes of a layer edited as a list.
     pub fn with_strokes(
@@ -97,7 +99,7 @@ impl Document {
         layer: LayerId,
         edit: impl FnOnce(&mut Vec<Arc<Stroke>>) -> Option<()>,
     ) -> Option<Document> {
-        let old = self.layer(layer).filter(|layer| layer.lock != Lock::All)?;
+        let old = self.layer(layer).filter(|layer| layer.lock != LayerLock::All)?;
         let Content::Strokes(live) = &old.content else { return None };
         let before = &live.params().strokes;
         let mut strokes = before.clone();
@@ -225,7 +227,7 @@ mod tests {
         assert!(old.without_strokes(id, &[4]).is_none() && old.without_strokes(id, &[]).is_none());
         assert!(old.with_reordered_stroke(id, 9, 0).is_none());
         assert!(old.without_strokes(LayerId::fresh(), &[0]).is_none());
-        let locked = old.with_layer(id, |layer| layer.lock = Lock::All).unwrap();
+        let locked = old.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
         assert!(locked.with_moved_strokes(id, &[0], Vec2::ONE).is_none());
     }
     #[test]
@@ -234,7 +236,7 @@ mod tests {
         let before = picture(&old);
         for (chosen, place) in [(vec![0, 1], 0), (vec![2, 3], 1), (vec![0, 1, 2, 3], 1)] {
             let (baked, pixels) = old.with_baked_strokes(id, &chosen).unwrap();
-            assert_eq!(baked.place_of(pixels), Some(Place::top_level(place)));
+            assert_eq!(baked.place_of(pixels), Some(LayerSlot::top_level(place)));
             assert_eq!(baked.strokes(id).len(), 4 - chosen.len());
             let now = picture(&baked);
             let apart = now.iter().zip(&before).map(|(a, b)| a.abs_diff(*b)).max();

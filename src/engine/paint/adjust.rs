@@ -48,7 +48,7 @@ impl Adjust {
             texels = blurred(picture.size, texels, self.blur);
         }
         let is_linear = matches!(picture.texels, Texels::Linear(_));
-        let tone = Tone::new(self, is_linear);
+        let tone = TexelAdjust::new(self, is_linear);
         for t in &mut texels {
             *t = tone.apply(*t);
         }
@@ -62,7 +62,7 @@ impl Adjust {
 }
 
 /// The adjustments of single texels, made ready.
-struct Tone {
+struct TexelAdjust {
     is_linear: bool,
     /// Factor of linear light.
     exposure: f32,
@@ -70,7 +70,7 @@ struct Tone {
     encoded: Option<(Mat3, Vec3)>,
 }
 
-impl Tone {
+impl TexelAdjust {
     fn new(adjust: &Adjust, is_linear: bool) -> Self {
         let Adjust { hue, saturation, brightness, contrast, .. } = *adjust;
         let identity = hue == 0.0 && saturation == 1.0 && brightness == 1.0 && contrast == 1.0;

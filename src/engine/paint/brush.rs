@@ -1,13 +1,13 @@
 //! A brush: the footprint of one dab and how dabs follow each other.
-//! Floor 3. Not here: how the hand and the surface drive it (`dynamics`), the dabs themselves (`laying`).
+//! Floor 3. Not here: how the hand and the surface drive it (`dynamics`), the dabs themselves (`walker`).
 
 use super::dynamics::{Dynamics, Input};
-use super::grain::{Grain, GrainSource};
+use super::grain::{BrushGrain, GrainSource};
 use super::image::PictureSource;
 use super::tip::{Bristles, Hose, Noise};
 use crate::math::{Mat2, Vec2};
 use crate::raster::BlendMode;
-use crate::surface::Bounded;
+use crate::surface::PaintLimit;
 
 /// The settings of a brush. Lengths are canvas px, ratios plain numbers.
 #[derive(Clone)]
@@ -25,12 +25,12 @@ pub struct Brush {
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
     /// How symmetry turned the stroke.
-    pub facing: Facing,
+    pub facing: StrokeFrame,
     /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
     pub softness: f32,
     /// How far a dab may stand from the stroke, a ratio of its diameter, `[0, 10]`.
     pub scatter: f32,
-    pub jitter: Jitter,
+    pub jitter: ColorJitter,
     /// How the stroke meets what is beneath it in its layer.
     pub blend: BlendMode,
     /// The stroke takes paint away from its layer instead of adding it.
@@ -38,11 +38,11 @@ pub struct Brush {
     /// The stroke shows only where its layer is painted already, whose coverage stays.
     pub keeps_alpha: bool,
     /// How far the stroke may go.
-    pub bounded: Bounded,
+    pub bounded: PaintLimit,
     /// What the brush does where its footprint lands. Strokes of a stroke layer paint, whatever it says.
-    pub mark: Mark,
+    pub mode: BrushMode,
     pub tip: Tip,
-    pub grain: Option<Grain>,
+    pub grain: Option<BrushGrain>,
     /// What calmed the hand. The samples of a stroke are calm already: painting them again does not ask for it.
     pub stabilizer: Stabilizer,
     pub dynamics: Dynamics,
@@ -53,14 +53,14 @@ pub struct Brush {
 /// The frame that a stroke was drawn in, as it lies on the canvas: mirrored first, turned then. What turns or scatters a dab does
 /// so within it, so that the images of one stroke are images dab by dab.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Facing {
+pub struct StrokeFrame {
     /// Counter-clockwise as seen, degrees.
     pub turn: f32,
     /// Left and right are exchanged.
     pub is_mirrored: bool,
 }
 
-impl Facing {
+impl StrokeFrame {
     /// Of an orthogonal map of the canvas, y down.
     pub fn of(map: Mat2) -> Self {
         let is_mirrored = map.determinant() < 0.0;
@@ -84,7 +84,7 @@ impl Facing {
 
 /// What a brush does where its footprint lands. All but paint work on what a paint layer holds.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Mark {
+pub enum BrushMode {
     #[default]
     Paint,
     /// Drags what is there along; `length` in `[0, 1]`, the share of it that is left after a drag of one radius.
@@ -100,23 +100,23 @@ pub enum Mark {
     },
 }
 
-impl Mark {
+impl BrushMode {
     /// What a smudge keeps, and how wide a blur is, where it is not said.
     pub const SMUDGE_LENGTH: f32 = 0.8;
     pub const BLUR_WIDTH: f32 = 0.3;
 
     /// It works on what is there.
     pub fn is_retouching(self) -> bool {
-        self != Mark::Paint
+        self != BrushMode::Paint
     }
     pub fn is_clone(self) -> bool {
-        matches!(self, Mark::Clone { .. })
+        matches!(self, BrushMode::Clone { .. })
     }
 }
 
 /// How far a dab's colour may be from the stroke's, either way; each dab at random.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Jitter {
+pub struct ColorJitter {
     /// `[0, 180]`.
     pub hue_degrees: f32,
     /// `[0, 1]`, of the colour's saturation and value (HSV).
@@ -184,7 +184,7 @@ impl Brush {
             }
             _ => {}
         }
-        if let Some(Grain { source: GrainSource::Picture(source), .. }) = &mut next.grain {
+        if let Some(BrushGrain { source: GrainSource::Picture(source), .. }) = &mut next.grain {
             *source = replace(source)?;
         }
         Ok(next)
@@ -200,15 +200,15 @@ impl Default for Brush {
             flow: 1.0,
             spacing: 0.1,
             rotation: 0.0,
-            facing: Facing::default(),
+            facing: StrokeFrame::default(),
             softness: 0.0,
             scatter: 0.0,
-            jitter: Jitter::default(),
+            jitter: ColorJitter::default(),
             blend: BlendMode::Normal,
             erases: false,
             keeps_alpha: false,
-            bounded: Bounded::Free,
-            mark: Mark::Paint,
+            bounded: PaintLimit::Free,
+            mode: BrushMode::Paint,
             tip: Tip::Round,
             grain: None,
             stabilizer: Stabilizer::None,
@@ -221,7 +221,7 @@ impl Default for Brush {
 impl Brush {
     /// Chance decides something about its strokes: they want a seed of their own.
     pub fn is_random(&self) -> bool {
-        let Jitter { hue_degrees, saturation, value } = self.jitter;
+        let ColorJitter { hue_degrees, saturation, value } = self.jitter;
         let strays = [self.scatter, hue_degrees, saturation, value].iter().any(|&v| v > 0.0);
         strays || self.dynamics.follow(Input::Random) || matches!(self.tip, Tip::Hose(_))
     }

@@ -1,5 +1,5 @@
 //! The smooth curve through the samples of a stroke, segment by segment.
-//! Floor 3. Not here: what is walked along it (`laying`).
+//! Floor 3. Not here: what is walked along it (`walker`).
 
 use crate::math::Vec2;
 
@@ -9,7 +9,7 @@ pub const SAME_PX: f32 = 1e-3;
 /// The curve between two samples: a centripetal Catmull-Rom spline (Barry and Goldman 1988; Yuksel et al. 2011: no cusp
 /// or loop within a segment).
 #[derive(Clone, Copy)]
-pub struct Segment {
+pub struct CurveSegment {
     from: Vec2,
     to: Vec2,
     /// Its derivatives at both ends.
@@ -17,7 +17,7 @@ pub struct Segment {
     into: Vec2,
 }
 
-impl Segment {
+impl CurveSegment {
     /// From `from` to `to`, on its way from `before` and toward `after`; where there is none, an end goes on straight.
     pub fn new(before: Option<Vec2>, from: Vec2, to: Vec2, after: Option<Vec2>) -> Self {
         let (before, after) = (before.unwrap_or(2.0 * from - to), after.unwrap_or(2.0 * to - from));

@@ -1,27 +1,27 @@
 //! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch.
-//! Floor 3. Not here: where dabs stand (`laying`), the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up
+//! Floor 3. Not here: where dabs stand (`walker`), the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up
 //! to a stroke (`stroke`).
 
-mod covered;
+mod coverage;
 mod round;
 
-pub use covered::Footprint;
+pub use coverage::Footprint;
 pub use round::slope;
 
+use super::dab_walker::Dab;
 use super::image::transform;
-use super::laying::Dab;
 use super::patches::Patches;
 use super::profile::RoundProfile;
 use super::scene::Scene;
-use super::stamp::Stamp;
-use super::wash::{DabPaint, Wash};
+use super::stamp::TipStamp;
+use super::stroke_tile::{DabPaint, StrokeTile};
 use crate::math::{Rect, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::Surface;
 use crate::surface::deformation::{Deformation, DeformedRect};
-use crate::surface::reach::{BLOCK, Extent, Reach, TileBlocks};
-use round::{RoundTip, Row, bent_row, flat_row};
+use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TileBlocks};
+use round::{RoundTip, RowZones, bent_row, flat_row};
 use std::ops::Range;
 
 /// One dab on the canvas it is painted on.
@@ -31,24 +31,24 @@ pub struct PlacedDab<'s> {
     deformation: Deformation<'s>,
     /// `None` where D is the identity.
     bent_over: Option<&'s Surface>,
-    reach: Reach<'s>,
+    support: SupportBounds<'s>,
 }
 
 /// Half a pixel's width on either side: the box of the round tip's filter.
 const ROUND_FILTER_PX: f32 = 0.5;
 
 /// How far a round dab reaches.
-pub fn round_extent(dab: &Dab) -> Extent {
+pub fn round_extent(dab: &Dab) -> DabExtent {
     let profile = RoundProfile::new(dab.hardness, dab.softness);
-    Extent { radius_px: dab.radius * profile.reach(), filter_px: ROUND_FILTER_PX }
+    DabExtent { radius_px: dab.radius * profile.outer_radius(), filter_px: ROUND_FILTER_PX }
 }
 
 /// Buffers of one dab, used again for the next.
 #[derive(Default)]
 pub struct DabScratch {
     deformed: DeformedRect,
-    stamping: Stamping,
-    row: Row,
+    stamping: StampScratch,
+    row: RowZones,
     /// Coverage of a row, or of a part of a tile.
     covered: Vec<f32>,
     /// What a picture tip brings to a part of a tile.
@@ -57,7 +57,7 @@ pub struct DabScratch {
 
 /// What reading a picture tip takes.
 #[derive(Default)]
-struct Stamping {
+struct StampScratch {
     patches: Patches,
     /// Made for the first stamp: round dabs do without.
     antialias: Option<Box<Antialias>>,
@@ -66,18 +66,18 @@ struct Stamping {
 
 impl<'s> PlacedDab<'s> {
     /// `extent`: of the tip's footprint.
-    pub fn new(dab: Dab, scene: &'s Scene, extent: Extent) -> Self {
+    pub fn new(dab: Dab, scene: &'s Scene, extent: DabExtent) -> Self {
         let surface = scene.surface.as_deref();
         let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at);
         let bent_over = surface.filter(|_| !deformation.is_identity());
-        let reach = Reach::new(surface, scene.size, dab.operator, dab.at, extent);
-        Self { dab, scene, deformation, bent_over, reach }
+        let support = SupportBounds::new(surface, scene.size, dab.operator, dab.at, extent);
+        Self { dab, scene, deformation, bent_over, support }
     }
     pub fn dab(&self) -> &Dab {
         &self.dab
     }
-    pub fn reach(&self) -> &Reach<'s> {
-        &self.reach
+    pub fn support(&self) -> &SupportBounds<'s> {
+        &self.support
     }
     /// D over the touched blocks of an area of a tile and the pixels around them, in rows of the area grown by one.
     fn fill_touched(&self, blocks: &TileBlocks, at: TileAt, area: Rect, deformed: &mut DeformedRect) {
@@ -93,22 +93,22 @@ impl<'s> PlacedDab<'s> {
         DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
     }
     /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling c.
-    pub fn add_round(&self, at: TileAt, wash: &mut Wash, scratch: &mut DabScratch) {
-        let blocks = self.reach.blocks(at);
+    pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
+        let blocks = self.support.blocks(at);
         let area = touched(&blocks, at).intersect(self.scene.size.rect());
         let mut tip = RoundTip::new(&self.dab);
         let DabScratch { deformed, covered, row, .. } = scratch;
         let field = self.bent_over.map(|surface| {
             self.fill_touched(&blocks, at, area, deformed);
-            Field { surface, rect: area.grown(1), d: deformed }
+            DeformationField { surface, rect: area.grown(1), d: deformed }
         });
-        let mut add = |span: Span, tip: &RoundTip, out: &mut [f32]| match &field {
+        let mut add = |span: PixelSpan, tip: &RoundTip, out: &mut [f32]| match &field {
             Some(field) => bent_row(field.around(span), tip, row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
-        if wash.is_one_color() {
+        if stroke_tile.is_one_color() {
             for span in spans(&blocks, at, area) {
-                add(span, &tip, wash.coverage(span.start_in(at), span.n));
+                add(span, &tip, stroke_tile.coverage(span.start_in(at), span.n));
             }
             return;
         }
@@ -118,14 +118,14 @@ impl<'s> PlacedDab<'s> {
             covered.clear();
             covered.resize(span.n, 0.0);
             add(span, &tip, covered);
-            wash.cover(span.start_in(at), covered, DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) });
+            stroke_tile.cover(span.start_in(at), covered, DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) });
         }
     }
     /// Adds a picture tip to a tile: its mean over the patch of the image plane under each pixel.
-    pub fn add_stamp(&self, stamp: &Stamp, at: TileAt, wash: &mut Wash, scratch: &mut DabScratch) {
-        let blocks = self.reach.blocks(at);
+    pub fn add_stamp(&self, stamp: &TipStamp, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
+        let blocks = self.support.blocks(at);
         let area = touched(&blocks, at).intersect(self.scene.size.rect());
-        let DabScratch { deformed, stamping: Stamping { patches, antialias, row }, .. } = scratch;
+        let DabScratch { deformed, stamping: StampScratch { patches, antialias, row }, .. } = scratch;
         let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
         self.deformation.fill(area.grown(1), deformed);
         transform(texels_from_canvas, &mut deformed.x, &mut deformed.y);
@@ -136,20 +136,20 @@ impl<'s> PlacedDab<'s> {
             let patches = patches.row(self.scene, area, span.y, deformed, texels_from_canvas);
             antialias.row(stamp.texture(), patches, Outside::None, row);
             let from = (span.x - area.x0) as usize;
-            wash.stamp(span.start_in(at), &row[from..from + span.n], paint);
+            stroke_tile.stamp(span.start_in(at), &row[from..from + span.n], paint);
         }
     }
 }
 
 /// A row of pixels that a dab may touch.
 #[derive(Clone, Copy)]
-struct Span {
+struct PixelSpan {
     x: i32,
     y: i32,
     n: usize,
 }
 
-impl Span {
+impl PixelSpan {
     fn start_in(self, at: TileAt) -> usize {
         let tile = at.rect();
         (self.y - tile.y0) as usize * TILE + (self.x - tile.x0) as usize
@@ -181,37 +181,37 @@ fn columns(bits: u8, at: TileAt) -> Range<i32> {
 }
 
 /// The rows of `area`, each from its first to its last touched block.
-fn spans(blocks: &TileBlocks, at: TileAt, area: Rect) -> impl Iterator<Item = Span> + use<> {
+fn spans(blocks: &TileBlocks, at: TileAt, area: Rect) -> impl Iterator<Item = PixelSpan> + use<> {
     let blocks = *blocks;
     (area.y0..area.y1).filter_map(move |y| {
         let columns = columns(row_of(&blocks, at, y), at);
         let (x0, x1) = (columns.start.max(area.x0), columns.end.min(area.x1));
-        (x0 < x1).then(|| Span { x: x0, y, n: (x1 - x0) as usize })
+        (x0 < x1).then(|| PixelSpan { x: x0, y, n: (x1 - x0) as usize })
     })
 }
 
 /// D over a rectangle and the pixels around it.
-struct Field<'f> {
+struct DeformationField<'f> {
     surface: &'f Surface,
     rect: Rect,
     d: &'f DeformedRect,
 }
 
-impl<'f> Field<'f> {
-    fn around(&self, span: Span) -> Around<'f> {
+impl<'f> DeformationField<'f> {
+    fn around(&self, span: PixelSpan) -> SpanNeighbours<'f> {
         let start = |y: i32| (y - self.rect.y0) as usize * self.rect.width() + (span.x - 1 - self.rect.x0) as usize;
         let row = |y: i32| {
             let range = start(y)..start(y) + span.n + 2;
             (&self.d.x[range.clone()], &self.d.y[range])
         };
         let linked = &self.surface.links_plane().row(span.y as usize)[span.x as usize..][..span.n];
-        Around { above: row(span.y - 1), row: row(span.y), below: row(span.y + 1), linked }
+        SpanNeighbours { above: row(span.y - 1), row: row(span.y), below: row(span.y + 1), linked }
     }
 }
 
 /// D of a span's pixels, of one more at each end, and of the rows above and below; (x, y) each.
 #[derive(Clone, Copy)]
-struct Around<'f> {
+struct SpanNeighbours<'f> {
     above: (&'f [f32], &'f [f32]),
     row: (&'f [f32], &'f [f32]),
     below: (&'f [f32], &'f [f32]),

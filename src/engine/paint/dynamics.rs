@@ -1,5 +1,5 @@
 //! How a brush follows the hand and the surface: each property of a dab driven by curves over what is known where it stands.
-//! Floor 3. Not here: where dabs stand and what is read there (`laying`).
+//! Floor 3. Not here: where dabs stand and what is read there (`walker`).
 
 use crate::math::{Vec2, hash, vec2};
 use std::f32::consts::TAU;
@@ -102,7 +102,7 @@ pub const FAR_DIAMETERS: f32 = 10.0;
 
 /// What is known where a dab stands, each in `[0, 1]` as [`Input`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Readings {
+pub struct DabInputs {
     pub pressure: f32,
     pub tilt: f32,
     pub tilt_direction: f32,
@@ -116,7 +116,7 @@ pub struct Readings {
     pub seed: u32,
 }
 
-impl Default for Readings {
+impl Default for DabInputs {
     /// Full pressure, upright, at rest, off the surface.
     fn default() -> Self {
         Self {
@@ -134,7 +134,7 @@ impl Default for Readings {
     }
 }
 
-impl Readings {
+impl DabInputs {
     /// What drives a property by an input.
     fn of(&self, input: Input, property: Property) -> f32 {
         match input {
@@ -268,17 +268,17 @@ impl Dynamics {
     pub fn drive(&self, property: Property) -> bool {
         self.drives.iter().any(|drive| drive.property == property)
     }
-    fn outputs(&self, property: Property, readings: &Readings) -> impl Iterator<Item = f32> {
+    fn outputs(&self, property: Property, inputs: &DabInputs) -> impl Iterator<Item = f32> {
         let rows = self.drives.iter().filter(move |drive| drive.property == property);
-        rows.map(move |drive| drive.curve.at(readings.of(drive.input, property)))
+        rows.map(move |drive| drive.curve.at(inputs.of(drive.input, property)))
     }
     /// What a property is multiplied by, `[0, 1]`.
-    pub fn factor(&self, property: Property, readings: &Readings) -> f32 {
-        self.outputs(property, readings).product()
+    pub fn factor(&self, property: Property, inputs: &DabInputs) -> f32 {
+        self.outputs(property, inputs).product()
     }
     /// What is added to an angle, in turns.
-    pub fn turns(&self, property: Property, readings: &Readings) -> f32 {
-        self.outputs(property, readings).sum()
+    pub fn turns(&self, property: Property, inputs: &DabInputs) -> f32 {
+        self.outputs(property, inputs).sum()
     }
 }
 
@@ -313,10 +313,10 @@ mod tests {
             .with(Property::Size, Input::Slope, through(&[(0.0, 1.0), (1.0, 0.5)]))
             .with(Property::Rotation, Input::Direction, Curve::Share(1.0))
             .with(Property::Rotation, Input::Tilt, Curve::Share(1.0));
-        let readings = Readings { pressure: 0.5, slope: 1.0, direction: 0.25, tilt: 0.5, ..Readings::default() };
-        assert_eq!(dynamics.factor(Property::Size, &readings), 0.25);
-        assert_eq!(dynamics.turns(Property::Rotation, &readings), 0.75);
-        assert_eq!(dynamics.factor(Property::Flow, &readings), 1.0);
+        let inputs = DabInputs { pressure: 0.5, slope: 1.0, direction: 0.25, tilt: 0.5, ..DabInputs::default() };
+        assert_eq!(dynamics.factor(Property::Size, &inputs), 0.25);
+        assert_eq!(dynamics.turns(Property::Rotation, &inputs), 0.75);
+        assert_eq!(dynamics.factor(Property::Flow, &inputs), 1.0);
     }
     #[test]
     fn a_row_takes_the_place_of_the_one_before_and_a_factor_of_one_is_none() {
@@ -333,7 +333,7 @@ mod tests {
     }
     #[test]
     fn what_is_random_differs_from_dab_to_dab_and_from_property_to_property() {
-        let random = |seed, property| Readings { seed, ..Readings::default() }.of(Input::Random, property);
+        let random = |seed, property| DabInputs { seed, ..DabInputs::default() }.of(Input::Random, property);
         assert_eq!(random(3, Property::Size), random(3, Property::Size));
         assert_ne!(random(3, Property::Size), random(4, Property::Size));
         assert_ne!(random(3, Property::Size), random(3, Property::Hue));

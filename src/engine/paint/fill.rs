@@ -10,7 +10,7 @@ mod tests;
 
 use crate::math::{Rect, Size, Vec2};
 use crate::raster::{Plane, Tile, TileAt, distance};
-use crate::surface::objects::{Bounded, Part};
+use crate::surface::objects::{CanvasPart, PaintLimit};
 use std::sync::Arc;
 
 /// How far a fill goes.
@@ -26,12 +26,12 @@ pub struct Fill {
     pub antialias: bool,
     /// Colours are those of the layer alone, not of the picture.
     pub layer_alone: bool,
-    pub bounded: Bounded,
+    pub bounded: PaintLimit,
 }
 
 impl Default for Fill {
     fn default() -> Self {
-        let bounded = Bounded::Free;
+        let bounded = PaintLimit::Free;
         Self { tolerance: 0.1, gap_px: 0.0, grow_px: 1.0, antialias: true, layer_alone: false, bounded }
     }
 }
@@ -41,14 +41,14 @@ pub const WIDEST_GAP_PX: f32 = 64.0;
 pub const FARTHEST_GROWTH_PX: f32 = 32.0;
 
 /// What a fill covers.
-pub struct Filled {
+pub struct FilledArea {
     /// The canvas pixels that `coverage` holds, column 0 and row 0 at its corner.
     pub rect: Rect,
     /// 255 wholly covered.
     coverage: Plane<u8>,
 }
 
-impl Filled {
+impl FilledArea {
     /// The share of a canvas pixel that is covered, `[0, 1]`.
     pub fn coverage(&self, x: i32, y: i32) -> f32 {
         let at = |v: i32, from: i32| v.saturating_sub(from);
@@ -59,15 +59,15 @@ impl Filled {
 impl Fill {
     /// Fills from a canvas point. `None` where it is off the canvas or outside of `part`.
     ///
-    /// * `part`: of the canvas that may be touched (`Bounded::from`); its border is one of the fill's.
+    /// * `part`: of the canvas that may be touched (`PaintLimit::from`); its border is one of the fill's.
     /// * `tile`: the picture that is read, premultiplied; asked once for each tile that the fill reaches.
     pub fn from(
         &self,
         start: Vec2,
         canvas: Size,
-        part: &Part,
+        part: &CanvasPart,
         tile: impl Fn(TileAt) -> Option<Arc<Tile>> + Sync,
-    ) -> Option<Filled> {
+    ) -> Option<FilledArea> {
         let (x, y) = (start.x.floor() as i32, start.y.floor() as i32);
         if !start.is_finite() || !canvas.rect().contains(x, y) {
             return None;
@@ -85,10 +85,10 @@ impl Fill {
     ///
     /// A pixel is covered by ½ + g − d, clamped, with g the growth and d how far its centre lies beyond the edge, which runs
     /// midway between pixels inside and outside: a step across an axis stays sharp, a slanted one is smoothed.
-    fn edged(&self, inside: Inside, canvas: Size, part: &Part) -> Filled {
+    fn edged(&self, inside: PixelSet, canvas: Size, part: &CanvasPart) -> FilledArea {
         let grow_px = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
         let limit = grow_px.abs().ceil() as u16 + 1;
-        let Inside { rect, pixels } = inside.within(inside.rect.grown(i32::from(limit)).intersect(canvas.rect()));
+        let PixelSet { rect, pixels } = inside.within(inside.rect.grown(i32::from(limit)).intersect(canvas.rect()));
         let to_inside = distance::squared(&pixels, limit);
         let to_outside = distance::squared(&pixels.map(|p| u8::from(p == 0)), limit);
         let coverage = Plane::from_fn(pixels.size(), |x, y| {
@@ -102,22 +102,22 @@ impl Fill {
             let allowed = if part.is_whole() || share == 0.0 { 1.0 } else { part.coverage(x, y) };
             (share * allowed * 255.0).round() as u8
         });
-        Filled { rect, coverage }
+        FilledArea { rect, coverage }
     }
 }
 
 /// Some pixels of the canvas: 1 in a plane that holds a rectangle of it.
-struct Inside {
+struct PixelSet {
     rect: Rect,
     pixels: Plane<u8>,
 }
 
-impl Inside {
+impl PixelSet {
     /// The same pixels in another rectangle.
-    fn within(&self, rect: Rect) -> Inside {
+    fn within(&self, rect: Rect) -> PixelSet {
         let size = Size::new(rect.width() as u32, rect.height() as u32);
         let (dx, dy) = (rect.x0 - self.rect.x0, rect.y0 - self.rect.y0);
         let pixels = Plane::from_fn(size, |x, y| self.pixels.get(x as i32 + dx, y as i32 + dy).unwrap_or(0));
-        Inside { rect, pixels }
+        PixelSet { rect, pixels }
     }
 }

@@ -2,7 +2,7 @@
 //! Floor 3. Not here: the ramp itself (`ramp`), D (`surface::deformation`).
 
 use super::ramp::Ramp;
-use super::scene::{Filter, Scene};
+use super::scene::{ImageFilter, Scene};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::raster::tile::{TILE, transparent_f32};
 use crate::raster::{Tile, TileAt};
@@ -11,7 +11,7 @@ use crate::surface::{Anchor, Bend, Operator, Weights, links};
 
 /// A colour at a place of the ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
+pub struct GradientStop {
     /// In `[0, 1]`, not decreasing from stop to stop.
     pub t: f32,
     pub color: Color,
@@ -23,9 +23,9 @@ pub struct Gradient {
     pub from: Vec2,
     pub to: Vec2,
     /// At least one. Between two stops straight-alpha encoded values are interpolated linearly.
-    pub stops: Vec<Stop>,
+    pub stops: Vec<GradientStop>,
     pub operator: Operator,
-    pub filter: Filter,
+    pub filter: ImageFilter,
 }
 
 impl Gradient {
@@ -42,14 +42,14 @@ impl Gradient {
             return None;
         }
         // One more pixel on every side, for the differences.
-        let field = Projection::over(self, scene, area.grown(1).intersect(scene.size.rect()));
+        let field = RampPositions::over(self, scene, area.grown(1).intersect(scene.size.rect()));
         let mut pixels = transparent_f32();
         for y in area.y0..area.y1 {
             let row = (y - at.rect().y0) as usize * TILE;
             for x in area.x0..area.x1 {
                 let color = match self.filter {
-                    Filter::Bilinear => ramp.at(field.at(x, y)),
-                    Filter::Antialias => ramp.mean(field.at(x, y), field.footprint(x, y, scene)),
+                    ImageFilter::Bilinear => ramp.at(field.at(x, y)),
+                    ImageFilter::Antialias => ramp.mean(field.at(x, y), field.footprint(x, y, scene)),
                 };
                 pixels[row + (x - at.rect().x0) as usize] = color;
             }
@@ -59,14 +59,14 @@ impl Gradient {
 }
 
 /// t(D(q)), before it is clamped, at every pixel centre of a rectangle.
-struct Projection {
+struct RampPositions {
     rect: Rect,
     t: Vec<f32>,
     /// ∇t on a flat canvas.
     flat: Vec2,
 }
 
-impl Projection {
+impl RampPositions {
     fn over(gradient: &Gradient, scene: &Scene, rect: Rect) -> Self {
         let bend = gradient.bend();
         let mut d = DeformedRect::default();
@@ -110,8 +110,8 @@ mod tests {
     use crate::math::{Size, vec2};
 
     fn black_to_white(from: Vec2, to: Vec2) -> Gradient {
-        let stops = vec![Stop { t: 0.0, color: Color::BLACK }, Stop { t: 1.0, color: Color::WHITE }];
-        Gradient { from, to, stops, operator: Operator::None, filter: Filter::Antialias }
+        let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
+        Gradient { from, to, stops, operator: Operator::None, filter: ImageFilter::Antialias }
     }
     fn pixel(gradient: &Gradient, x: i32, y: i32) -> [u8; 4] {
         let scene = Scene { size: Size::new(100, 100), surface: None };
@@ -134,12 +134,12 @@ mod tests {
     #[test]
     fn both_filters_agree_on_a_slow_ramp_and_differ_at_a_sharp_edge() {
         let slow = black_to_white(vec2(10.0, 20.0), vec2(90.0, 70.0));
-        let exact = Gradient { filter: Filter::Bilinear, ..slow.clone() };
+        let exact = Gradient { filter: ImageFilter::Bilinear, ..slow.clone() };
         assert!(pixel(&slow, 44, 47)[0].abs_diff(pixel(&exact, 44, 47)[0]) <= 1);
         // All of black to white falls into the right half of pixel 50.
         let sharp = black_to_white(vec2(50.5, 0.0), vec2(51.0, 0.0));
         assert_eq!(pixel(&sharp, 50, 10)[0], 64);
-        assert_eq!(pixel(&Gradient { filter: Filter::Bilinear, ..sharp }, 50, 10)[0], 0);
+        assert_eq!(pixel(&Gradient { filter: ImageFilter::Bilinear, ..sharp }, 50, 10)[0], 0);
     }
     #[test]
     fn a_segment_without_length_shows_the_last_stop() {

@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// A brush's grain.
 #[derive(Clone)]
-pub struct Grain {
+pub struct BrushGrain {
     pub source: GrainSource,
     /// Size of one feature of a pattern, or of a picture's longer side; canvas px, `> 0`.
     pub size_px: f32,
@@ -34,7 +34,7 @@ pub struct Grain {
     pub strength: f32,
     /// Greys up to the first take no paint, from the second on all; of `[0, 1]`, the first below the second.
     pub levels: [f32; 2],
-    pub lies: Lies,
+    pub lies: GrainSpace,
 }
 
 /// What the grain is.
@@ -50,7 +50,7 @@ pub enum GrainSource {
 
 /// What carries the grain.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Lies {
+pub enum GrainSpace {
     /// The flat canvas.
     #[default]
     Canvas,
@@ -58,7 +58,7 @@ pub enum Lies {
     Surface { gamma: f32 },
 }
 
-impl Default for Grain {
+impl Default for BrushGrain {
     fn default() -> Self {
         Self {
             source: GrainSource::Pattern { pattern: Pattern::default(), seed: 0 },
@@ -66,13 +66,13 @@ impl Default for Grain {
             rotation: 0.0,
             strength: 1.0,
             levels: [0.0, 1.0],
-            lies: Lies::default(),
+            lies: GrainSpace::default(),
         }
     }
 }
 
 /// The grain under one stroke.
-pub struct LaidGrain {
+pub struct StrokeGrain {
     texture: Arc<Texture>,
     texels_from_canvas: Affine2,
     operator: Operator,
@@ -81,9 +81,9 @@ pub struct LaidGrain {
     strength: f32,
 }
 
-impl LaidGrain {
+impl StrokeGrain {
     /// `start`: where the stroke begins, canvas px.
-    pub fn new(grain: &Grain, start: Vec2) -> Self {
+    pub fn new(grain: &BrushGrain, start: Vec2) -> Self {
         let texture = grain.texture();
         let texels = match grain.source {
             GrainSource::Pattern { .. } => Pattern::SIDE as f32 / Pattern::CELLS as f32,
@@ -93,8 +93,8 @@ impl LaidGrain {
         let texels_per_px = Vec2::splat(texels / grain.size_px.max(0.01));
         let turn = if grain.rotation.is_finite() { grain.rotation.to_radians() } else { 0.0 };
         let operator = match grain.lies {
-            Lies::Canvas => Operator::None,
-            Lies::Surface { gamma } => Operator::Depth { gamma },
+            GrainSpace::Canvas => Operator::None,
+            GrainSpace::Surface { gamma } => Operator::Depth { gamma },
         };
         Self {
             texture,
@@ -141,7 +141,7 @@ static MADE: Mutex<Vec<(PatternKey, Arc<Texture>)>> = Mutex::new(Vec::new());
 /// Which pattern, its seed, its levels.
 type PatternKey = (Pattern, u32, [u32; 2]);
 
-impl Grain {
+impl BrushGrain {
     /// G, its levels applied: every channel holds it.
     fn texture(&self) -> Arc<Texture> {
         let levels = self.levels.map(f32::to_bits);
@@ -215,14 +215,14 @@ mod tests {
         };
         Scene { size: SIZE, surface: Some(Arc::new(Surface::new(maps).unwrap())) }
     }
-    fn row(grain: &Grain, scene: &Scene, y: usize) -> Vec<f32> {
-        let laid = LaidGrain::new(grain, vec2(64.0, 64.0));
+    fn row(grain: &BrushGrain, scene: &Scene, y: usize) -> Vec<f32> {
+        let laid = StrokeGrain::new(grain, vec2(64.0, 64.0));
         let tiles = [0, 1].map(|col| laid.tile(scene, TileAt::new(col, (y / TILE) as i32)));
         tiles.iter().flat_map(|tile| tile[y % TILE * TILE..][..TILE].to_vec()).collect()
     }
-    fn lines(lies: Lies) -> Grain {
+    fn lines(lies: GrainSpace) -> BrushGrain {
         let source = GrainSource::Pattern { pattern: Pattern::Lines, seed: 0 };
-        Grain { source, size_px: 8.0, rotation: 90.0, levels: [0.4, 0.6], lies, ..Grain::default() }
+        BrushGrain { source, size_px: 8.0, rotation: 90.0, levels: [0.4, 0.6], lies, ..BrushGrain::default() }
     }
     /// How often a row crosses from bare to covered within a part of it.
     fn crossings(row: &[f32]) -> usize {
@@ -235,40 +235,40 @@ mod tests {
         assert_eq!(factor_of(1.0, 0.25), 0.25);
         assert_eq!(factor_of(0.5, 0.0), 0.5);
         let flat = Scene { size: SIZE, surface: None };
-        let weak = Grain { strength: 0.5, ..lines(Lies::Canvas) };
+        let weak = BrushGrain { strength: 0.5, ..lines(GrainSpace::Canvas) };
         assert!(row(&weak, &flat, 10).iter().all(|f| (0.499..=1.0).contains(f)));
     }
     #[test]
     fn a_feature_of_a_pattern_is_as_large_as_the_grain_says_and_repeats() {
         let flat = Scene { size: SIZE, surface: None };
-        assert!((15..=17).contains(&crossings(&row(&lines(Lies::Canvas), &flat, 64))));
-        let coarse = Grain { size_px: 32.0, ..lines(Lies::Canvas) };
+        assert!((15..=17).contains(&crossings(&row(&lines(GrainSpace::Canvas), &flat, 64))));
+        let coarse = BrushGrain { size_px: 32.0, ..lines(GrainSpace::Canvas) };
         assert!((3..=5).contains(&crossings(&row(&coarse, &flat, 64))));
     }
     #[test]
     fn on_the_surface_grain_is_larger_where_the_shape_comes_near() {
-        let row = row(&lines(Lies::Surface { gamma: 1.5 }), &ramp(), 64);
+        let row = row(&lines(GrainSpace::Surface { gamma: 1.5 }), &ramp(), 64);
         let (far, near) = (crossings(&row[..60]), crossings(&row[68..]));
         assert!(far > near + 1, "{far} lines on the far half, {near} on the near one");
     }
     #[test]
     fn on_a_flat_surface_and_where_the_stroke_begins_it_is_the_canvas_s() {
-        let laid = |lies| LaidGrain::new(&lines(lies), vec2(20.5, 20.5)).tile(&ramp(), TileAt::new(0, 0));
-        let (canvas, surface) = (laid(Lies::Canvas), laid(Lies::Surface { gamma: 2.0 }));
+        let laid = |lies| StrokeGrain::new(&lines(lies), vec2(20.5, 20.5)).tile(&ramp(), TileAt::new(0, 0));
+        let (canvas, surface) = (laid(GrainSpace::Canvas), laid(GrainSpace::Surface { gamma: 2.0 }));
         let start = 20 * TILE + 20;
         assert!((canvas[start] - surface[start]).abs() < 0.02);
         let flat = Scene { size: SIZE, surface: None };
-        let [a, b] = [Lies::Canvas, Lies::Surface { gamma: 2.0 }].map(|lies| row(&lines(lies), &flat, 30));
+        let [a, b] = [GrainSpace::Canvas, GrainSpace::Surface { gamma: 2.0 }].map(|lies| row(&lines(lies), &flat, 30));
         assert_eq!(a, b);
     }
     #[test]
     fn what_is_not_a_number_still_gives_factors() {
-        let bad = Grain {
+        let bad = BrushGrain {
             size_px: f32::NAN,
             rotation: f32::INFINITY,
             strength: f32::NAN,
             levels: [0.5, 0.5],
-            ..Grain::default()
+            ..BrushGrain::default()
         };
         assert!(row(&bad, &ramp(), 3).iter().all(|f| (0.0..=1.0).contains(f)));
     }

@@ -4,8 +4,8 @@
 use super::{
     adjust::Adjust,
     patches::Patches,
-    scene::{Filter, Scene},
-    stamp::Stamps,
+    scene::{ImageFilter, Scene},
+    stamp::StampCache,
 };
 use crate::math::{Affine2, Size, Vec2};
 use crate::raster::sampler::{Antialias, Bilinear};
@@ -49,14 +49,14 @@ pub struct PictureSource {
     pub adjust: Adjust,
     texture: Arc<OnceLock<Texture>>,
     /// What was made of it as a brush's tip.
-    stamps: Arc<Stamps>,
+    stamps: Arc<StampCache>,
 }
 
 impl PictureSource {
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
         Self { file, picture, adjust, texture: Arc::default(), stamps: Arc::default() }
     }
-    pub(super) fn stamps(&self) -> &Stamps {
+    pub(super) fn stamps(&self) -> &StampCache {
         &self.stamps
     }
     /// The adjusted texture.
@@ -75,7 +75,7 @@ pub struct PlacedImage {
     pub placement: Placement,
     pub outside: Outside,
     pub bend: Bend,
-    pub filter: Filter,
+    pub filter: ImageFilter,
 }
 
 impl PlacedImage {
@@ -90,7 +90,7 @@ impl PlacedImage {
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
         let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;
         // One more pixel on every side, where differences are taken.
-        let margin = if self.filter == Filter::Bilinear || is_exact { 0 } else { 1 };
+        let margin = if self.filter == ImageFilter::Bilinear || is_exact { 0 } else { 1 };
         let mut positions = DeformedRect::default();
         deformation.fill(area.grown(margin), &mut positions);
         if texels_from_canvas != Affine2::IDENTITY {
@@ -159,7 +159,7 @@ mod tests {
             placement: Placement::covering(canvas),
             outside: Outside::None,
             bend: Bend::default(),
-            filter: Filter::Bilinear,
+            filter: ImageFilter::Bilinear,
         }
     }
 
@@ -170,7 +170,7 @@ mod tests {
         let Texels::Srgb8(texels) = &picture.texels else { unreachable!() };
         let texels = texels.as_flattened().to_vec();
         let scene = Scene { size, surface: None };
-        for filter in [Filter::Bilinear, Filter::Antialias] {
+        for filter in [ImageFilter::Bilinear, ImageFilter::Antialias] {
             let image = PlacedImage { filter, ..placed(picture.clone(), size) };
             assert!(rendered(&image, &scene) == texels, "{filter:?}");
         }
@@ -257,7 +257,7 @@ mod tests {
                 pixels.iter().zip(&reference).map(|(&(x, y), r)| (f32::from(bytes[(y * 96 + x) * 4]) - r).powi(2));
             (squares.sum::<f32>() / pixels.len() as f32).sqrt()
         };
-        let (filtered, unfiltered) = (error(Filter::Antialias), error(Filter::Bilinear));
+        let (filtered, unfiltered) = (error(ImageFilter::Antialias), error(ImageFilter::Bilinear));
         assert!(filtered < 0.25 * unfiltered, "{filtered} of {unfiltered}");
     }
     #[test]
@@ -274,7 +274,7 @@ mod tests {
         image.bend.operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
         image.bend.anchors = vec![Anchor::fixed(vec2(10.5, 30.5))];
         let bilinear = rendered(&image, &plates);
-        image.filter = Filter::Antialias;
+        image.filter = ImageFilter::Antialias;
         let antialias = rendered(&image, &plates);
         assert!(
             bilinear[(30 * 64 + 40) * 4..][..3]

@@ -31,7 +31,7 @@ impl RoundProfile {
         Self { end, length, per_length, blur_squared, start: smoothstep_integral(end * per_length) }
     }
     /// Beyond this distance coverage is 0 where no pixel's footprint widens it.
-    pub fn reach(&self) -> f32 {
+    pub fn outer_radius(&self) -> f32 {
         self.end + 0.5 * self.blur_squared.sqrt()
     }
     /// Mean coverage at distance `r ≥ 0` over a pixel whose width along the radius has this square, both in radii.
@@ -91,7 +91,7 @@ mod tests {
         for (r, coverage) in [(0.0, 1.0), (0.9, 1.0), (1.0, 0.5), (1.00625, 0.25), (1.1, 0.0)] {
             assert!((disc.mean(r, pixel) - coverage).abs() < 2e-3, "at {r}: {}", disc.mean(r, pixel));
         }
-        assert!((disc.reach() - 1.0).abs() < 1e-3);
+        assert!((disc.outer_radius() - 1.0).abs() < 1e-3);
     }
     #[test]
     fn coverage_is_whole_up_to_the_hardness_and_falls_as_a_smoothstep() {
@@ -156,7 +156,7 @@ mod tests {
     fn a_profile_never_rises_outward_and_ends_at_its_reach() {
         for (hardness, softness) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0)] {
             let tip = RoundProfile::new(hardness, softness);
-            let values: Vec<f32> = (0..300).map(|i| tip.mean(i as f32 * tip.reach() / 250.0, 0.0)).collect();
+            let values: Vec<f32> = (0..300).map(|i| tip.mean(i as f32 * tip.outer_radius() / 250.0, 0.0)).collect();
             assert!(values.windows(2).all(|v| v[1] <= v[0] + 1e-3), "{hardness} {softness}");
             assert!(values[251..].iter().all(|v| v.abs() < 1e-3));
             assert!(values.iter().all(|v| (-1e-3..=1.001).contains(v)));

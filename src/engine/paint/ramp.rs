@@ -1,12 +1,12 @@
 //! A colour ramp, read at a point or averaged over an interval in closed form.
 //! Floor 3. Not here: which t a pixel has (`gradient`).
 
-use super::gradient::Stop;
+use super::gradient::GradientStop;
 
 /// Stops made ready: sorted, with the integral of the premultiplied colour up to each.
 pub struct Ramp {
     /// One for each interval between neighbouring stops that is longer than nothing.
-    pieces: Vec<Piece>,
+    pieces: Vec<RampPiece>,
     /// Premultiplied, before the first piece and after the last.
     first: [f32; 4],
     last: [f32; 4],
@@ -14,7 +14,7 @@ pub struct Ramp {
 
 /// Between two stops, with s = (t − start) / length: straight colour and alpha are linear in s, so the premultiplied
 /// colour is a parabola a + b s + c s².
-struct Piece {
+struct RampPiece {
     start: f32,
     length: f32,
     a: [f32; 4],
@@ -24,8 +24,8 @@ struct Piece {
     before: [f64; 4],
 }
 
-impl Piece {
-    fn between(from: Stop, to: Stop, before: [f64; 4]) -> Self {
+impl RampPiece {
+    fn between(from: GradientStop, to: GradientStop, before: [f64; 4]) -> Self {
         let (p, q) = (from.color.to_f32(), to.color.to_f32());
         // Alpha itself is linear: its factor stays 1, which the fourth entry of `weight` says.
         let weight = |v: [f32; 4], i: usize| if i == 3 { 1.0 } else { v[3] };
@@ -55,19 +55,19 @@ impl Piece {
 
 impl Ramp {
     /// `None` without a stop at a finite place. Stops out of order are sorted; of two at one place the later wins there.
-    pub fn new(stops: &[Stop]) -> Option<Self> {
-        let mut stops: Vec<Stop> = stops.iter().copied().filter(|s| s.t.is_finite()).collect();
+    pub fn new(stops: &[GradientStop]) -> Option<Self> {
+        let mut stops: Vec<GradientStop> = stops.iter().copied().filter(|s| s.t.is_finite()).collect();
         stops.sort_by(|a, b| a.t.total_cmp(&b.t));
         let (first, last) = (stops.first()?.color.premultiplied(), stops.last()?.color.premultiplied());
-        let mut pieces: Vec<Piece> = Vec::new();
+        let mut pieces: Vec<RampPiece> = Vec::new();
         for pair in stops.windows(2).filter(|pair| pair[1].t > pair[0].t) {
             let before = pieces.last().map_or([0.0; 4], |p| p.integral(p.start + p.length));
-            pieces.push(Piece::between(pair[0], pair[1], before));
+            pieces.push(RampPiece::between(pair[0], pair[1], before));
         }
         Some(Self { pieces, first, last })
     }
     /// The piece that holds `t`, or the colour that stands before the first or after the last.
-    fn piece(&self, t: f32) -> Result<&Piece, [f32; 4]> {
+    fn piece(&self, t: f32) -> Result<&RampPiece, [f32; 4]> {
         let i = self.pieces.partition_point(|p| p.start <= t);
         match i.checked_sub(1).and_then(|i| self.pieces.get(i)) {
             None => Err(self.first),
@@ -121,8 +121,8 @@ mod tests {
     use super::*;
     use crate::math::srgb::Color;
 
-    fn stop(t: f32, text: &str) -> Stop {
-        Stop { t, color: Color::parse(text).unwrap() }
+    fn stop(t: f32, text: &str) -> GradientStop {
+        GradientStop { t, color: Color::parse(text).unwrap() }
     }
     fn assert_near(a: [f32; 4], b: [f32; 4], tolerance: f32) {
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance), "{a:?} is not {b:?}");

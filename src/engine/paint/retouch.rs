@@ -1,67 +1,67 @@
 //! Smudge, blur and clone: brushes that work on the paint that is there. Dab by dab through the same bent footprint as paint,
 //! each on what the last one left, in f32, rounded to bytes as it is shown.
-//! Floor 3. `drag` says where smudge and clone take a pixel's colour from, `soften` what blur makes of it, `wet` holds the
+//! Floor 3. `drag` says where smudge and clone take a pixel's colour from, `soften` what blur makes of it, `pixels` holds the
 //! pixels. Not here: what the pen did (`tools`).
 
 mod drag;
+mod pixels;
 mod soften;
-mod wet;
 
 #[cfg(test)]
 mod tests;
 
-use super::brush::{Brush, Mark};
+use super::brush::{Brush, BrushMode};
 use super::dab::{DabScratch, PlacedDab};
-use super::laying::{Dab, Laying};
+use super::dab_walker::{Dab, DabWalker};
 use super::scene::Scene;
-use super::stroke::laid::{Laid, tiles_of};
+use super::stroke::dabs::{StrokeDabs, tiles_of};
 use super::stroke::{Sample, Stroke};
-use super::wash::Wash;
+use super::stroke_tile::StrokeTile;
 use crate::math::{Rect, Vec2};
-use crate::raster::planar::Row;
+use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, TileGrid};
-use crate::surface::objects::Part;
+use crate::surface::objects::CanvasPart;
+use pixels::RetouchPixels;
 use rayon::prelude::*;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
-use wet::Wet;
 
 /// Strokes of retouching drawn together: one, or one and its mirror images. Their dabs take turns.
 ///
 /// However their samples come in batches, the pixels that are left are the same.
-pub struct Retouching {
+pub struct ActiveRetouching {
     scene: Scene,
     /// What clone copies from.
     source: TileGrid,
-    wet: Wet,
-    hands: Vec<Hand>,
+    retouched: RetouchPixels,
+    strokes: Vec<RetouchStroke>,
     /// Where the end of the curve was shown, which the next sample may bend.
     tail: BTreeSet<TileAt>,
 }
 
 /// One stroke in the making.
-struct Hand {
+struct RetouchStroke {
     brush: Brush,
-    laid: Laid,
-    laying: Laying,
+    stroke_dabs: StrokeDabs,
+    walker: DabWalker,
     /// From a pixel to what is cloned onto it, px.
     offset: Vec2,
     /// Where it may go; known from its first sample on.
-    part: Option<Part>,
-    progress: Progress,
+    part: Option<CanvasPart>,
+    progress: DabQueue,
 }
 
 /// How far a stroke has been rubbed in.
 #[derive(Clone, Default)]
-struct Progress {
+struct DabQueue {
     /// Dabs whose turn has not come.
     waiting: VecDeque<Dab>,
     before: Option<Dab>,
 }
 
 /// A dab on a tile: which pixels, and how much of each.
-struct Touch {
+struct TileDab {
     at: TileAt,
     /// Canvas px; it holds every pixel that is covered.
     area: Rect,
@@ -69,35 +69,35 @@ struct Touch {
     coverage: Box<[f32; TILE_AREA]>,
 }
 
-impl Retouching {
+impl ActiveRetouching {
     /// Begins strokes like these, whose samples do not count.
     ///
     /// * `offsets`: of each stroke, from a pixel to what is cloned onto it, px; 0 where none is said.
     /// * `base`: the layer's pixels. `source`: what clone copies from, as it was before the stroke.
     pub fn new(strokes: &[Stroke], offsets: &[Vec2], base: TileGrid, source: TileGrid, scene: &Scene) -> Self {
         let offsets = offsets.iter().copied().filter(|offset| offset.is_finite()).chain(std::iter::repeat(Vec2::ZERO));
-        let hand = |(stroke, offset): (&Stroke, Vec2)| Hand {
+        let stroke = |(stroke, offset): (&Stroke, Vec2)| RetouchStroke {
             brush: stroke.brush().clone(),
-            laid: Laid::empty(stroke.brush(), scene),
-            laying: Laying::new(stroke.brush(), stroke.operator(), stroke.color(), scene),
+            stroke_dabs: StrokeDabs::empty(stroke.brush(), scene),
+            walker: DabWalker::new(stroke.brush(), stroke.operator(), stroke.color(), scene),
             offset,
             part: None,
-            progress: Progress::default(),
+            progress: DabQueue::default(),
         };
-        let hands = strokes.iter().zip(offsets).map(hand).collect();
-        Self { scene: scene.clone(), source, wet: Wet::new(base), hands, tail: BTreeSet::new() }
+        let strokes = strokes.iter().zip(offsets).map(stroke).collect();
+        Self { scene: scene.clone(), source, retouched: RetouchPixels::new(base), strokes, tail: BTreeSet::new() }
     }
     /// Takes the next samples of each stroke in; gives the tiles of the layer that look different now.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
-        for (hand, samples) in self.hands.iter_mut().zip(samples) {
-            hand.take(samples, &self.scene);
+        for (stroke, samples) in self.strokes.iter_mut().zip(samples) {
+            stroke.take(samples, &self.scene);
         }
         let mut changed = std::mem::take(&mut self.tail);
-        while !self.hands.is_empty() && self.hands.iter().all(|hand| !hand.progress.waiting.is_empty()) {
-            for i in 0..self.hands.len() {
-                let mut progress = std::mem::take(&mut self.hands[i].progress);
-                changed.extend(self.hands[i].rub_next(&mut progress, &mut self.wet, &self.source, &self.scene));
-                self.hands[i].progress = progress;
+        while !self.strokes.is_empty() && self.strokes.iter().all(|stroke| !stroke.progress.waiting.is_empty()) {
+            for i in 0..self.strokes.len() {
+                let mut progress = std::mem::take(&mut self.strokes[i].progress);
+                changed.extend(self.strokes[i].rub_next(&mut progress, &mut self.retouched, &self.source, &self.scene));
+                self.strokes[i].progress = progress;
             }
         }
         let shown = self.with_tail();
@@ -107,70 +107,76 @@ impl Retouching {
         changed.par_iter().map(tile).collect()
     }
     /// The pixels with the dabs that are due if no more samples come.
-    fn with_tail(&mut self) -> Wet {
-        let mut wet = self.wet.clone();
-        let mut rests: Vec<Progress> = self.hands.iter().map(Hand::rest).collect();
+    fn with_tail(&mut self) -> RetouchPixels {
+        let mut retouched = self.retouched.clone();
+        let mut rests: Vec<DabQueue> = self.strokes.iter().map(RetouchStroke::rest).collect();
         while rests.iter().any(|rest| !rest.waiting.is_empty()) {
-            for (hand, rest) in self.hands.iter().zip(&mut rests) {
-                self.tail.extend(hand.rub_next(rest, &mut wet, &self.source, &self.scene));
+            for (stroke, rest) in self.strokes.iter().zip(&mut rests) {
+                self.tail.extend(stroke.rub_next(rest, &mut retouched, &self.source, &self.scene));
             }
         }
-        wet
+        retouched
     }
 }
 
-impl Hand {
+impl RetouchStroke {
     fn take(&mut self, samples: &[Sample], scene: &Scene) {
         let Some(first) = samples.first() else { return };
         let bounded = self.brush.bounded;
-        self.laid.begin(&self.brush, samples);
+        self.stroke_dabs.begin(&self.brush, samples);
         self.part.get_or_insert_with(|| bounded.from(scene.surface.as_ref(), first.at));
         let mut dabs = Vec::new();
-        samples.iter().for_each(|sample| self.laying.push(sample, &mut dabs));
+        samples.iter().for_each(|sample| self.walker.push(sample, &mut dabs));
         self.progress.waiting.extend(dabs);
     }
-    fn rest(&self) -> Progress {
+    fn rest(&self) -> DabQueue {
         let mut rest = self.progress.clone();
-        rest.waiting.extend(self.laying.tail());
+        rest.waiting.extend(self.walker.tail());
         rest
     }
     /// Rubs the next dab in, if there is one; the tiles that it changed.
-    fn rub_next(&self, progress: &mut Progress, wet: &mut Wet, source: &TileGrid, scene: &Scene) -> Vec<TileAt> {
+    fn rub_next(
+        &self,
+        progress: &mut DabQueue,
+        retouched: &mut RetouchPixels,
+        source: &TileGrid,
+        scene: &Scene,
+    ) -> Vec<TileAt> {
         let Some(dab) = progress.waiting.pop_front() else { return Vec::new() };
         let before = progress.before.replace(dab);
-        let placed = self.laid.place(dab, scene);
+        let placed = self.stroke_dabs.place(dab, scene);
         let rubbed = |scratch: &mut DabScratch, at: &TileAt| {
             let touch = self.touch(&placed, *at, scratch, scene)?;
-            let colors = match self.brush.mark {
-                Mark::Paint => None,
-                Mark::Smudge { length } => drag::smudged(&touch, &dab, before.as_ref()?, length, wet, scene),
-                Mark::Blur { width } => {
-                    Some(soften::blurred(&touch, &dab, before.as_ref(), width, self.limits(), wet, scene))
+            let colors = match self.brush.mode {
+                BrushMode::Paint => None,
+                BrushMode::Smudge { length } => drag::smudged(&touch, &dab, before.as_ref()?, length, retouched, scene),
+                BrushMode::Blur { width } => {
+                    Some(soften::blurred(&touch, &dab, before.as_ref(), width, self.limits(), retouched, scene))
                 }
-                Mark::Clone { .. } => Some(drag::cloned(&touch, &dab, self.offset, source, scene)),
+                BrushMode::Clone { .. } => Some(drag::cloned(&touch, &dab, self.offset, source, scene)),
             }?;
-            let mut tile = wet.tile(*at);
+            let mut tile = retouched.tile(*at);
             mix(&mut tile, &touch, &colors, self.brush.keeps_alpha);
             Some((*at, tile))
         };
         let made: Vec<_> = tiles_of(&placed).par_iter().map_init(DabScratch::default, rubbed).collect();
         let mut changed = Vec::new();
         for (at, tile) in made.into_iter().flatten() {
-            wet.set(at, tile);
+            retouched.set(at, tile);
             changed.push(at);
         }
         changed
     }
-    fn limits(&self) -> &Part {
-        self.part.as_ref().unwrap_or(&Part::Whole)
+    fn limits(&self) -> &CanvasPart {
+        self.part.as_ref().unwrap_or(&CanvasPart::Whole)
     }
     /// What a dab covers of a tile; `None` where it covers nothing.
-    fn touch(&self, placed: &PlacedDab, at: TileAt, scratch: &mut DabScratch, scene: &Scene) -> Option<Touch> {
-        let mut wash = Wash::one_color();
-        let grain = self.laid.grain(at);
-        self.laid.add(placed, at, grain.as_deref(), &mut wash, scratch);
+    fn touch(&self, placed: &PlacedDab, at: TileAt, scratch: &mut DabScratch, scene: &Scene) -> Option<TileDab> {
+        let mut stroke_tile = StrokeTile::one_color();
+        let grain = self.stroke_dabs.grain(at);
+        self.stroke_dabs.add(placed, at, grain.as_deref(), &mut stroke_tile, scratch);
         let mut coverage: Box<[f32; TILE_AREA]> = Box::new([0.0; TILE_AREA]);
-        coverage.copy_from_slice(wash.coverage(0, TILE_AREA));
+        coverage.copy_from_slice(stroke_tile.coverage(0, TILE_AREA));
         let opacity = self.brush.opacity.max(0.0).min(1.0);
         let (tile, part) = (at.rect(), self.limits());
         let mut area = Rect::EMPTY;
@@ -181,11 +187,11 @@ impl Hand {
             }
         }
         let area = area.intersect(scene.size.rect());
-        (!area.is_empty()).then_some(Touch { at, area, coverage })
+        (!area.is_empty()).then_some(TileDab { at, area, coverage })
     }
 }
 
-impl Touch {
+impl TileDab {
     /// Of a canvas pixel of the area.
     fn share(&self, x: i32, y: i32) -> f32 {
         let tile = self.at.rect();
@@ -194,7 +200,7 @@ impl Touch {
 }
 
 /// Moves the covered pixels of a tile toward new colours, one for each pixel of the touched area, row by row.
-fn mix(tile: &mut PlanarTile, touch: &Touch, colors: &[[f32; 4]], keeps_alpha: bool) {
+fn mix(tile: &mut PlanarTile, touch: &TileDab, colors: &[[f32; 4]], keeps_alpha: bool) {
     let (corner, area) = (touch.at.rect(), touch.area);
     for (y, colors) in (area.y0..area.y1).zip(colors.chunks_exact(area.width())) {
         let Some(row) = tile.rows_mut().get_mut((y - corner.y0) as usize) else { continue };
@@ -217,6 +223,6 @@ fn toward(pixel: [f32; 4], color: [f32; 4], share: f32, keeps_alpha: bool) -> [f
     [0, 1, 2, 3].map(|c| if c == 3 { pixel[3] } else { (mixed[c] * scale).min(pixel[3]) })
 }
 
-fn put(row: &mut Row, x: usize, pixel: [f32; 4]) {
+fn put(row: &mut PixelRow, x: usize, pixel: [f32; 4]) {
     (row.rgb[0][x], row.rgb[1][x], row.rgb[2][x], row.a[x]) = (pixel[0], pixel[1], pixel[2], pixel[3]);
 }

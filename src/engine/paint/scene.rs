@@ -5,7 +5,7 @@ pub use crate::surface::Scene;
 
 /// How an image is read through its deformation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Filter {
+pub enum ImageFilter {
     /// Filtered over the pixel's footprint in the image plane.
     #[default]
     Antialias,

@@ -1,16 +1,16 @@
 //! Picture tips: a picture made ready to be stamped, its softness blurred in.
 //! Floor 3. Not here: where a stamp lands (`dab`), reading pictures under a deformation (`raster::sampler`).
 
+use super::dab_walker::Dab;
 use super::image::PictureSource;
-use super::laying::Dab;
 use crate::math::{Affine2, Size, Vec2};
-use crate::raster::texture::Level;
+use crate::raster::texture::MipLevel;
 use crate::raster::{Picture, Texture, blur};
-use crate::surface::reach::Extent;
+use crate::surface::support::DabExtent;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A tip as it is sampled. Its picture covers the square of the dab's diameter; softness makes it larger.
-pub struct Stamp {
+pub struct TipStamp {
     texture: Texture,
     /// It brings its own colours; else only its alpha counts.
     pub is_colored: bool,
@@ -20,8 +20,8 @@ pub struct Stamp {
 
 /// The stamps made from one picture, by softness: a brush's strokes share theirs.
 #[derive(Default)]
-pub struct Stamps {
-    made: Mutex<Vec<(u32, Arc<Stamp>)>>,
+pub struct StampCache {
+    made: Mutex<Vec<(u32, Arc<TipStamp>)>>,
     grains: Mutex<Vec<([u32; 2], Arc<Texture>)>>,
 }
 
@@ -30,21 +30,21 @@ const KEPT: usize = STEPS as usize + 8;
 /// Softnesses in between are mixed of the two nearest of these steps, which nobody can tell from the true blur.
 const STEPS: u32 = 12;
 
-impl Stamps {
+impl StampCache {
     /// What was made of the picture as grain, by its levels.
     pub fn grains(&self) -> &Mutex<Vec<([u32; 2], Arc<Texture>)>> {
         &self.grains
     }
     /// The stamp of a picture with a softness in `[0, 1]`.
-    pub fn of(source: &PictureSource, softness: f32) -> Arc<Stamp> {
+    pub fn of(source: &PictureSource, softness: f32) -> Arc<TipStamp> {
         let lock = || source.stamps().made.lock().unwrap_or_else(PoisonError::into_inner);
         let key = softness.to_bits();
-        let find = |made: &[(u32, Arc<Stamp>)]| made.iter().find(|(k, _)| *k == key).map(|(_, s)| s.clone());
+        let find = |made: &[(u32, Arc<TipStamp>)]| made.iter().find(|(k, _)| *k == key).map(|(_, s)| s.clone());
         if let Some(stamp) = find(&lock()) {
             return stamp;
         }
         // Unlocked: two threads may both make it, and make the same.
-        let stamp = Arc::new(Stamp::new(source.texture(), softness));
+        let stamp = Arc::new(TipStamp::new(source.texture(), softness));
         let mut made = lock();
         if made.len() >= KEPT {
             made.remove(0);
@@ -55,27 +55,27 @@ impl Stamps {
 }
 
 /// The stamps of a tip, sharp to blurred.
-pub enum Softened {
+pub enum SoftenedStamps {
     /// Every dab has the brush's own softness.
-    One(Arc<Stamp>),
+    One(Arc<TipStamp>),
     /// From softness 0 to 1 at even steps.
-    Steps(Vec<Arc<Stamp>>),
+    Steps(Vec<Arc<TipStamp>>),
 }
 
-impl Softened {
+impl SoftenedStamps {
     /// `is_driven`: dabs differ in softness.
     pub fn of(source: &PictureSource, softness: f32, is_driven: bool) -> Self {
         if is_driven {
-            let steps = (0..=STEPS).map(|step| Stamps::of(source, step as f32 / STEPS as f32));
-            return Softened::Steps(steps.collect());
+            let steps = (0..=STEPS).map(|step| StampCache::of(source, step as f32 / STEPS as f32));
+            return SoftenedStamps::Steps(steps.collect());
         }
-        Softened::One(Stamps::of(source, softness.max(0.0).min(1.0)))
+        SoftenedStamps::One(StampCache::of(source, softness.max(0.0).min(1.0)))
     }
     /// The stamp next below a softness, and the one above with its share where the dab lies between them.
-    pub fn at(&self, softness: f32) -> (&Stamp, Option<(&Stamp, f32)>) {
+    pub fn at(&self, softness: f32) -> (&TipStamp, Option<(&TipStamp, f32)>) {
         match self {
-            Softened::One(stamp) => (stamp, None),
-            Softened::Steps(stamps) => {
+            SoftenedStamps::One(stamp) => (stamp, None),
+            SoftenedStamps::Steps(stamps) => {
                 let place = softness.max(0.0).min(1.0) * STEPS as f32;
                 let below = (place as usize).min(stamps.len().saturating_sub(2));
                 let share = place - below as f32;
@@ -88,7 +88,7 @@ impl Softened {
         self.at(0.0).0.is_colored
     }
     /// How far a dab reaches with the widest of its stamps.
-    pub fn extent(&self, dab: &Dab) -> Extent {
+    pub fn extent(&self, dab: &Dab) -> DabExtent {
         let (below, above) = self.at(dab.softness);
         above.map_or(below, |(above, _)| above).extent(dab)
     }
@@ -99,7 +99,7 @@ const SIGMA_RATIO: f32 = 0.35;
 /// A blur of this many texels is smooth when magnified; a wider one is made at a coarser level, at the same cost.
 const SIGMA_TEXELS: f32 = 8.0;
 
-impl Stamp {
+impl TipStamp {
     fn new(tip: &Texture, softness: f32) -> Self {
         let size = tip.size();
         let is_colored = !is_grey(&tip.levels()[0]);
@@ -129,21 +129,21 @@ impl Stamp {
             * Affine2::from_translation(-dab.at)
     }
     /// How far the picture's corners reach, and a texel beyond.
-    pub fn extent(&self, dab: &Dab) -> Extent {
+    pub fn extent(&self, dab: &Dab) -> DabExtent {
         let px_per_texel = dab.radius / self.texels_per_radius;
         let corner = self.texture.size().center().length() + 1.0;
         // Two pixels' lengths on either side, which one-sided differences may double: the grid of taps and their cells.
-        Extent { radius_px: corner * px_per_texel, filter_px: 4.0 }
+        DabExtent { radius_px: corner * px_per_texel, filter_px: 4.0 }
     }
 }
 
 /// Opaque and grey throughout: a picture of coverage.
-fn is_grey(level: &Level) -> bool {
+fn is_grey(level: &MipLevel) -> bool {
     level.texels.iter().all(|&[r, g, b, a]| r == g && g == b && a == 255)
 }
 
 /// The tip's picture with a transparent border as wide as its blur; coverage becomes alpha.
-fn softened(level: &Level, is_colored: bool, sigma: f32) -> Picture {
+fn softened(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
     let margin = (3.0 * sigma).ceil() as u32;
     let size = Size::new(level.size.width + 2 * margin, level.size.height + 2 * margin);
     let mut texels = vec![[0.0f32; 4]; size.area()];
@@ -184,15 +184,16 @@ mod tests {
 
     #[test]
     fn an_opaque_grey_picture_is_coverage_and_any_other_a_coloured_stamp() {
-        let grey = Stamps::of(&source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255]), 0.0);
+        let grey =
+            StampCache::of(&source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255]), 0.0);
         assert!(!grey.is_colored);
         assert_eq!(grey.texture().levels()[0].texels[3], [90; 4], "premultiplied white of alpha 90");
-        assert!(Stamps::of(&source(Size::new(8, 4), |_, _| [1, 2, 3, 255]), 0.0).is_colored);
-        assert!(Stamps::of(&source(Size::new(8, 4), |x, _| [9, 9, 9, x as u8]), 0.0).is_colored);
+        assert!(StampCache::of(&source(Size::new(8, 4), |_, _| [1, 2, 3, 255]), 0.0).is_colored);
+        assert!(StampCache::of(&source(Size::new(8, 4), |x, _| [9, 9, 9, x as u8]), 0.0).is_colored);
     }
     #[test]
     fn the_longer_side_is_the_diameter_and_turns_counter_clockwise() {
-        let stamp = Stamps::of(&source(Size::new(40, 20), |_, _| [255; 4]), 0.0);
+        let stamp = StampCache::of(&source(Size::new(40, 20), |_, _| [255; 4]), 0.0);
         let upright = stamp.texels_from_canvas(&dab(10.0, 0.0));
         assert!((upright.transform_point2(vec2(60.0, 60.0)) - vec2(40.0, 10.0)).length() < 1e-4);
         // A quarter turn: the right end of the tip is seen at the top.
@@ -204,7 +205,7 @@ mod tests {
         for side in [64, 1024] {
             let source = source(Size::new(side, side), |_, _| [255; 4]);
             let covered = |softness: f32| {
-                let stamp = Stamps::of(&source, softness);
+                let stamp = StampCache::of(&source, softness);
                 let level = &stamp.texture().levels()[0];
                 assert!(level.size.longer_side() < 3.0 * side as f32);
                 let sum: f64 = level.texels.iter().map(|t| f64::from(t[3]) / 255.0).sum();
@@ -219,6 +220,6 @@ mod tests {
     #[test]
     fn strokes_of_one_brush_share_their_stamp() {
         let tip = source(Size::new(8, 8), |_, _| [255; 4]);
-        assert!(Arc::ptr_eq(&Stamps::of(&tip, 0.25), &Stamps::of(&tip.clone(), 0.25)));
+        assert!(Arc::ptr_eq(&StampCache::of(&tip, 0.25), &StampCache::of(&tip.clone(), 0.25)));
     }
 }

@@ -1,20 +1,20 @@
 //! The brush tool: a stroke is a list of dabs, each a footprint bent around its own centre (SF sec. 5.2, fig. 7).
-//! Floor 3. Not here: dabs from samples (`laying`), one dab on a tile (`dab`).
+//! Floor 3. Not here: dabs from samples (`walker`), one dab on a tile (`dab`).
 
-mod in_hand;
-pub(super) mod laid;
+mod active;
+pub(super) mod dabs;
 
-pub use in_hand::{Ground, InHand};
+pub use active::{ActiveStrokes, Backdrop};
 
 use super::brush::Brush;
 use super::dab::DabScratch;
 use super::scene::Scene;
-use super::wash::Manner;
+use super::stroke_tile::StrokeBlend;
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
-use crate::surface::objects::Part;
-use laid::Laid;
+use crate::surface::objects::CanvasPart;
+use dabs::StrokeDabs;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// One reading of the pen.
@@ -44,13 +44,13 @@ pub struct Stroke {
     operator: Operator,
     color: Color,
     samples: Vec<Sample>,
-    found: Arc<Mutex<Found>>,
+    found: Arc<Mutex<StrokeCache>>,
 }
 
 /// What was found of a stroke on a canvas, kept beside it.
 #[derive(Default)]
-struct Found {
-    laid: Option<Arc<Laid>>,
+struct StrokeCache {
+    stroke_dabs: Option<Arc<StrokeDabs>>,
     /// Bounds that were known before the dabs: a stroke in hand knows its own.
     bounds: Option<(Scene, Rect)>,
 }
@@ -75,23 +75,23 @@ impl Stroke {
     /// The pixels that the stroke can touch on a canvas, in whole tiles; never fewer.
     pub fn bounds(&self, scene: &Scene) -> Rect {
         let known = self.found().bounds.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, bounds)| *bounds);
-        known.unwrap_or_else(|| self.laid(scene).bounds()).intersect(scene.size.rect())
+        known.unwrap_or_else(|| self.stroke_dabs(scene).bounds()).intersect(scene.size.rect())
     }
     /// The stroke may paint on a tile.
     pub fn touches(&self, scene: &Scene, at: TileAt) -> bool {
-        self.laid(scene).touches(at)
+        self.stroke_dabs(scene).touches(at)
     }
     /// The stroke's dabs on a canvas, found once.
-    fn laid(&self, scene: &Scene) -> Arc<Laid> {
-        if let Some(laid) = self.found().laid.as_ref().filter(|laid| laid.is_on(scene)) {
-            return laid.clone();
+    fn stroke_dabs(&self, scene: &Scene) -> Arc<StrokeDabs> {
+        if let Some(stroke_dabs) = self.found().stroke_dabs.as_ref().filter(|stroke_dabs| stroke_dabs.is_on(scene)) {
+            return stroke_dabs.clone();
         }
         // Unlocked: two threads may both find them, and find the same.
-        let laid = Arc::new(Laid::of(self, scene));
-        self.found().laid = Some(laid.clone());
-        laid
+        let stroke_dabs = Arc::new(StrokeDabs::of(self, scene));
+        self.found().stroke_dabs = Some(stroke_dabs.clone());
+        stroke_dabs
     }
-    fn found(&self) -> MutexGuard<'_, Found> {
+    fn found(&self) -> MutexGuard<'_, StrokeCache> {
         self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -99,22 +99,22 @@ impl Stroke {
 impl Stroke {
     /// Paints the stroke over a tile in flight. Flow is per dab; opacity caps the whole.
     fn paint(&self, scene: &Scene, at: TileAt, pixels: &mut PlanarTile, scratch: &mut DabScratch) {
-        let laid = self.laid(scene);
-        let mut wash = laid.wash();
-        let grain = laid.grain(at);
-        for dab in laid.on_tile(at) {
-            laid.add(&laid.place(*dab, scene), at, grain.as_deref(), &mut wash, scratch);
+        let stroke_dabs = self.stroke_dabs(scene);
+        let mut stroke_tile = stroke_dabs.stroke_tile();
+        let grain = stroke_dabs.grain(at);
+        for dab in stroke_dabs.on_tile(at) {
+            stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, grain.as_deref(), &mut stroke_tile, scratch);
         }
-        wash.bound_to(&self.part(scene), at);
-        wash.lay_over(pixels, self.manner());
+        stroke_tile.limit_to(&self.part(scene), at);
+        stroke_tile.blend_over(pixels, self.manner());
     }
     /// The part of the canvas that the stroke may touch.
-    fn part(&self, scene: &Scene) -> Part {
+    fn part(&self, scene: &Scene) -> CanvasPart {
         let start = self.samples.first().map_or(Vec2::ZERO, |sample| sample.at);
         self.brush.bounded.from(scene.surface.as_ref(), start)
     }
-    fn manner(&self) -> Manner {
-        Manner::of(&self.brush, self.color)
+    fn manner(&self) -> StrokeBlend {
+        StrokeBlend::of(&self.brush, self.color)
     }
 }
 

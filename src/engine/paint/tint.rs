@@ -2,7 +2,7 @@
 //! Floor 3.
 
 use super::brush::Brush;
-use super::dynamics::{Property, Readings};
+use super::dynamics::{DabInputs, Property};
 use crate::math::{
     hash,
     srgb::{Color, quantise},
@@ -16,14 +16,14 @@ pub fn varies(brush: &Brush) -> bool {
 }
 
 /// The colour of a dab; alpha stays the stroke's.
-pub fn of(brush: &Brush, color: Color, readings: &Readings) -> Color {
+pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     let unit = |v: f32| v.max(0.0).min(1.0);
-    let either_way = |channel: u32| 2.0 * hash::unit(readings.seed, channel, 2) - 1.0;
+    let either_way = |channel: u32| 2.0 * hash::unit(inputs.seed, channel, 2) - 1.0;
     let (jitter, dynamics) = (brush.jitter, &brush.dynamics);
     let [h, s, v] = hsv(color);
-    let turns = dynamics.turns(Property::Hue, readings) + unit(jitter.hue_degrees / 180.0) * 0.5 * either_way(0);
-    let s = s * dynamics.factor(Property::Saturation, readings) + unit(jitter.saturation) * either_way(1);
-    let v = v * dynamics.factor(Property::Value, readings) + unit(jitter.value) * either_way(2);
+    let turns = dynamics.turns(Property::Hue, inputs) + unit(jitter.hue_degrees / 180.0) * 0.5 * either_way(0);
+    let s = s * dynamics.factor(Property::Saturation, inputs) + unit(jitter.saturation) * either_way(1);
+    let v = v * dynamics.factor(Property::Value, inputs) + unit(jitter.value) * either_way(2);
     let [r, g, b] = rgb([h + turns, unit(s), unit(v)]).map(quantise);
     Color { r, g, b, ..color }
 }
@@ -58,7 +58,7 @@ fn rgb([hue, saturation, value]: [f32; 3]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paint::{Curve, Dynamics, Input, Jitter};
+    use crate::paint::{ColorJitter, Curve, Dynamics, Input};
 
     #[test]
     fn colours_go_to_hsv_and_back() {
@@ -74,14 +74,15 @@ mod tests {
         let brush =
             Brush { dynamics: Dynamics::none().with(Property::Hue, Input::Pressure, third), ..Brush::default() };
         let red = Color::parse("#ff000080").unwrap();
-        assert_eq!(of(&brush, red, &Readings::default()).to_string(), "#00ff0080");
+        assert_eq!(of(&brush, red, &DabInputs::default()).to_string(), "#00ff0080");
     }
     #[test]
     fn jitter_stays_within_its_bounds_and_reaches_far_into_them() {
-        let brush = Brush { jitter: Jitter { hue_degrees: 36.0, saturation: 0.2, value: 0.1 }, ..Brush::default() };
+        let brush =
+            Brush { jitter: ColorJitter { hue_degrees: 36.0, saturation: 0.2, value: 0.1 }, ..Brush::default() };
         let color = Color::parse("#804040").unwrap();
         let all: Vec<[f32; 3]> =
-            (0..500).map(|seed| hsv(of(&brush, color, &Readings { seed, ..Readings::default() }))).collect();
+            (0..500).map(|seed| hsv(of(&brush, color, &DabInputs { seed, ..DabInputs::default() }))).collect();
         for (c, (middle, reach)) in [(0.0, 0.1), (0.5, 0.2), (0.502, 0.1)].into_iter().enumerate() {
             let from_middle = |v: &[f32; 3]| if c == 0 { (v[0] + 0.5) % 1.0 - 0.5 } else { v[c] - middle };
             let farthest = all.iter().map(|v| from_middle(v).abs()).fold(0.0, f32::max);

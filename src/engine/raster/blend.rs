@@ -23,7 +23,7 @@ pub struct Mix {
 
 /// What is painted on a tile.
 #[derive(Clone, Copy)]
-pub enum Paint<'a> {
+pub enum TilePaint<'a> {
     /// One premultiplied colour everywhere.
     Solid([f32; 4]),
     Bytes(&'a Tile),
@@ -32,14 +32,14 @@ pub enum Paint<'a> {
 
 /// How much of the paint arrives at each pixel of a tile: an opacity times, where there is one, a mask.
 #[derive(Clone, Debug)]
-pub struct Coverage {
+pub struct TileCoverage {
     opacity: f32,
     /// `TILE_AREA` values in `[0, 1]`.
     mask: Option<Box<[f32]>>,
 }
 
-impl Coverage {
-    pub const FULL: Coverage = Coverage { opacity: 1.0, mask: None };
+impl TileCoverage {
+    pub const FULL: TileCoverage = TileCoverage { opacity: 1.0, mask: None };
 
     /// The same everywhere; clamped to `[0, 1]`, NaN is 0.
     pub fn uniform(opacity: f32) -> Self {
@@ -81,12 +81,12 @@ impl Coverage {
 
 impl PlanarTile {
     /// Blends paint into the tile. NaN cannot come of it: paint is finite, and coverage in `[0, 1]`, by construction.
-    pub fn blend(&mut self, mix: Mix, paint: Paint<'_>, coverage: &Coverage) {
-        let paint = if let Paint::Solid(color) = paint { Paint::Solid(sane(color)) } else { paint };
+    pub fn blend(&mut self, mix: Mix, paint: TilePaint<'_>, coverage: &TileCoverage) {
+        let paint = if let TilePaint::Solid(color) = paint { TilePaint::Solid(sane(color)) } else { paint };
         rows::blend_rows(self.rows_mut(), mix, &paint, coverage);
     }
     /// Moves the tile toward another by a coverage: none leaves it, full replaces it.
-    pub fn mix_toward(&mut self, other: &PlanarTile, coverage: &Coverage) {
+    pub fn mix_toward(&mut self, other: &PlanarTile, coverage: &TileCoverage) {
         rows::mix_rows(self.rows_mut(), other.rows(), coverage);
     }
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 /// What the filter finds beyond the picture.
 #[derive(Clone, Copy, PartialEq)]
-enum Beyond {
+enum BlurBorder {
     /// The border's value, on and on.
     Border,
     /// 0: sums lose weight, which a mask gives back.
@@ -31,7 +31,7 @@ pub fn gaussian_masked(plane: &Plane<f32>, mask: &Plane<f32>, sigma_px: f32) -> 
             [m * plane.values()[i], m]
         })
         .collect();
-    let blurred = blurred(plane.size(), &weighted, sigma_px, Beyond::Nothing);
+    let blurred = blurred(plane.size(), &weighted, sigma_px, BlurBorder::Nothing);
     // Below a thousandth of the weight only the filter's own error would be divided.
     let values = blurred.iter().map(|&[v, m]| if m > 1e-3 { v / m } else { 0.0 }).collect();
     Plane::from_values(plane.size(), values).expect("one value per pixel")
@@ -41,7 +41,7 @@ pub fn gaussian_masked(plane: &Plane<f32>, mask: &Plane<f32>, sigma_px: f32) -> 
 ///
 /// Returns the pixels unchanged where `sigma_px` is not above 0 or `pixels` are not one per pixel of `size`.
 pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32) -> Vec<[f32; N]> {
-    blurred(size, pixels, sigma_px, Beyond::Border)
+    blurred(size, pixels, sigma_px, BlurBorder::Border)
 }
 
 /// Blurs pixels by a Gaussian of a variance, px²; beyond the border there is nothing, so that sums lose weight: a weight among the
@@ -50,19 +50,19 @@ pub fn spread_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], variance: 
     /// Narrower Gaussians are too narrow to be sampled: three pixels of their very variance stand for them.
     const SAMPLED: f32 = 0.64;
     if variance > 0.0 && variance < SAMPLED && pixels.len() == size.area() && N > 0 {
-        return passed(size, pixels, &Filter::Taps(vec![1.0 - variance, 0.5 * variance]), Beyond::Nothing);
+        return passed(size, pixels, &Gaussian::Taps(vec![1.0 - variance, 0.5 * variance]), BlurBorder::Nothing);
     }
-    blurred(size, pixels, variance.max(0.0).sqrt(), Beyond::Nothing)
+    blurred(size, pixels, variance.max(0.0).sqrt(), BlurBorder::Nothing)
 }
 
-fn blurred<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32, beyond: Beyond) -> Vec<[f32; N]> {
+fn blurred<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32, beyond: BlurBorder) -> Vec<[f32; N]> {
     if sigma_px.is_nan() || sigma_px <= 0.0 || pixels.len() != size.area() || N == 0 {
         return pixels.to_vec();
     }
-    passed(size, pixels, &Filter::new(sigma_px.min(4.0 * size.longer_side().max(1.0))), beyond)
+    passed(size, pixels, &Gaussian::new(sigma_px.min(4.0 * size.longer_side().max(1.0))), beyond)
 }
 
-fn passed<const N: usize>(size: Size, pixels: &[[f32; N]], filter: &Filter, beyond: Beyond) -> Vec<[f32; N]> {
+fn passed<const N: usize>(size: Size, pixels: &[[f32; N]], filter: &Gaussian, beyond: BlurBorder) -> Vec<[f32; N]> {
     let (w, h) = (size.width as usize, size.height as usize);
     // Each pass blurs down the columns and lays the result on its side.
     let sideways = down_columns(pixels, w, h, filter, beyond);
@@ -73,19 +73,19 @@ fn passed<const N: usize>(size: Size, pixels: &[[f32; N]], filter: &Filter, beyo
 const LANES: usize = 16;
 
 /// A strip of columns: rows of `LANES` floats.
-type Strip = Vec<[f32; LANES]>;
+type ColumnStrip = Vec<[f32; LANES]>;
 
 /// Blurs the columns of `width · height` pixels; the result is transposed, `height · width`.
 fn down_columns<const N: usize>(
     pixels: &[[f32; N]],
     width: usize,
     height: usize,
-    filter: &Filter,
-    beyond: Beyond,
+    filter: &Gaussian,
+    beyond: BlurBorder,
 ) -> Vec<[f32; N]> {
     let mut out = vec![[0.0; N]; pixels.len()];
     let across = (LANES / N).max(1);
-    let blur_strip = |(strip, result): &mut (Strip, Strip), (i, out): (usize, &mut [[f32; N]])| {
+    let blur_strip = |(strip, result): &mut (ColumnStrip, ColumnStrip), (i, out): (usize, &mut [[f32; N]])| {
         let columns = i * across..(i * across + across).min(width);
         for lanes in (0..N * columns.len()).step_by(LANES) {
             let lanes = lanes..(lanes + LANES).min(N * columns.len());
@@ -107,35 +107,35 @@ fn down_columns<const N: usize>(
     };
     // A worker that waited for helpers could be handed a tile that waits for this very blur: it works alone.
     if rayon::current_thread_index().is_some() {
-        let mut buffers = (Strip::new(), Strip::new());
+        let mut buffers = (ColumnStrip::new(), ColumnStrip::new());
         out.chunks_mut(across * height).enumerate().for_each(|strip| blur_strip(&mut buffers, strip));
     } else {
         let strips = out.par_chunks_mut(across * height).enumerate();
-        strips.for_each_init(|| (Strip::new(), Strip::new()), blur_strip);
+        strips.for_each_init(|| (ColumnStrip::new(), ColumnStrip::new()), blur_strip);
     }
     out
 }
 
 /// A one-dimensional Gaussian.
-enum Filter {
+enum Gaussian {
     /// Weights at distances 0, 1, …
     Taps(Vec<f32>),
-    /// Two damped oscillations; see [`Pole`].
-    Poles([Pole; 2]),
+    /// Two damped oscillations; see [`GaussianPole`].
+    Poles([GaussianPole; 2]),
 }
 
 /// One term of Deriche's fourth-order approximation of a Gaussian (INRIA report 1893, 1993): Re(a pⁿ) at distance n, a and p complex.
 ///
 /// Run as first-order recursions, each term keeps its accuracy in f32 however wide the Gaussian is.
 #[derive(Clone, Copy)]
-struct Pole {
+struct GaussianPole {
     a: (f32, f32),
     p: (f32, f32),
     /// State after endless ones: 1 / (1 − p).
     rest: (f32, f32),
 }
 
-impl Filter {
+impl Gaussian {
     /// Where the taps become dearer than the recursion.
     const WIDEST_TAPS_PX: f32 = 4.0;
 
@@ -157,19 +157,19 @@ impl Filter {
         });
         let sum: f64 = poles.iter().map(|&(.., weight)| weight).sum();
         let narrow = |(re, im): (f64, f64)| (re as f32, im as f32);
-        Self::Poles(poles.map(|((re, im), p, rest, _)| Pole {
+        Self::Poles(poles.map(|((re, im), p, rest, _)| GaussianPole {
             a: narrow((re / sum, im / sum)),
             p: narrow(p),
             rest: narrow(rest),
         }))
     }
     /// Filters every lane of a strip; `out` gets as many rows.
-    fn apply(&self, strip: &[[f32; LANES]], beyond: Beyond, out: &mut Strip) {
+    fn apply(&self, strip: &[[f32; LANES]], beyond: BlurBorder, out: &mut ColumnStrip) {
         out.clear();
         out.resize(strip.len(), [0.0; LANES]);
         match self {
-            Filter::Taps(taps) => apply_taps(strip, taps, beyond, out),
-            Filter::Poles(poles) => apply_poles(strip, poles, beyond, out),
+            Gaussian::Taps(taps) => apply_taps(strip, taps, beyond, out),
+            Gaussian::Poles(poles) => apply_poles(strip, poles, beyond, out),
         }
     }
 }
@@ -185,7 +185,7 @@ pub fn half_kernel(sigma_px: f32) -> Vec<f32> {
 
 crate::widest! {
     /// Σ_k w_k (strip[y − k] + strip[y + k]).
-    fn apply_taps(strip: &[[f32; LANES]], taps: &[f32], beyond: Beyond, out: &mut [[f32; LANES]]) {
+    fn apply_taps(strip: &[[f32; LANES]], taps: &[f32], beyond: BlurBorder, out: &mut [[f32; LANES]]) {
         let n = strip.len();
         let nothing = [0.0; LANES];
         for y in 0..n {
@@ -194,7 +194,7 @@ crate::widest! {
                 *v *= taps[0];
             }
             for (k, &w) in taps.iter().enumerate().skip(1) {
-                let clip = |inside: bool, at: usize| if inside || beyond == Beyond::Border { &strip[at] } else { &nothing };
+                let clip = |inside: bool, at: usize| if inside || beyond == BlurBorder::Border { &strip[at] } else { &nothing };
                 let (a, b) = (clip(y >= k, y.saturating_sub(k)), clip(y + k < n, (y + k).min(n - 1)));
                 for l in 0..LANES {
                     sum[l] += w * (a[l] + b[l]);
@@ -205,9 +205,9 @@ crate::widest! {
     }
 
     /// Σ_n Re(a pⁿ) over both sides, as one recursion down and one up.
-    fn apply_poles(strip: &[[f32; LANES]], poles: &[Pole; 2], beyond: Beyond, out: &mut [[f32; LANES]]) {
+    fn apply_poles(strip: &[[f32; LANES]], poles: &[GaussianPole; 2], beyond: BlurBorder, out: &mut [[f32; LANES]]) {
         let (Some(first), Some(last)) = (strip.first(), strip.last()) else { return };
-        let mut down = poles.map(|p| State::resting(p, first, beyond));
+        let mut down = poles.map(|p| RecursionState::resting(p, first, beyond));
         for (line, out) in strip.iter().zip(out.iter_mut()) {
             for (state, pole) in down.iter_mut().zip(poles) {
                 // s ← x + p s
@@ -216,7 +216,7 @@ crate::widest! {
                 state.add_to(pole, out);
             }
         }
-        let mut up = poles.map(|p| State::resting(p, last, beyond));
+        let mut up = poles.map(|p| RecursionState::resting(p, last, beyond));
         for (line, out) in strip.iter().zip(out.iter_mut()).rev() {
             for (state, pole) in up.iter_mut().zip(poles) {
                 // s ← p s, then the pixel itself for those above: distance 0 was counted on the way down.
@@ -229,17 +229,17 @@ crate::widest! {
 }
 
 /// The complex state of one recursion, lane by lane.
-struct State {
+struct RecursionState {
     re: [f32; LANES],
     im: [f32; LANES],
 }
 
-impl State {
+impl RecursionState {
     /// As if `line` had stood there forever, or nothing.
     #[inline(always)]
-    fn resting(pole: Pole, line: &[f32; LANES], beyond: Beyond) -> Self {
+    fn resting(pole: GaussianPole, line: &[f32; LANES], beyond: BlurBorder) -> Self {
         let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
-        if beyond == Beyond::Border {
+        if beyond == BlurBorder::Border {
             for l in 0..LANES {
                 re[l] = pole.rest.0 * line[l];
                 im[l] = pole.rest.1 * line[l];
@@ -254,7 +254,7 @@ impl State {
         }
     }
     #[inline(always)]
-    fn advance(&mut self, pole: &Pole) {
+    fn advance(&mut self, pole: &GaussianPole) {
         for l in 0..LANES {
             let (re, im) = (self.re[l], self.im[l]);
             self.re[l] = pole.p.0 * re - pole.p.1 * im;
@@ -262,7 +262,7 @@ impl State {
         }
     }
     #[inline(always)]
-    fn add_to(&self, pole: &Pole, out: &mut [f32; LANES]) {
+    fn add_to(&self, pole: &GaussianPole, out: &mut [f32; LANES]) {
         for ((out, re), im) in out.iter_mut().zip(&self.re).zip(&self.im) {
             *out += pole.a.0 * re - pole.a.1 * im;
         }

@@ -7,14 +7,14 @@ use crate::math::{Size, Vec2, hash, vec2};
 
 /// How the lines look.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lines {
+pub struct LineStyle {
     /// Size of the noise's grains, px, `≥ 1`.
     pub grain_px: f32,
     /// Length of a line to either side, px.
     pub reach_px: f32,
 }
 
-impl Lines {
+impl LineStyle {
     /// Grains that can be seen at the size of a picture, and lines fifteen grains long.
     pub fn for_size(size: Size) -> Self {
         let grain_px = (size.longer_side() / 1024.0).max(1.0).min(2.5);
@@ -31,14 +31,14 @@ const CONTRAST: f32 = 0.22;
 /// * `passes`: whether a line may go on from one pixel to another, which touch at a side or a corner.
 pub fn smeared_noise(
     direction: &Plane<Vec2>,
-    lines: Lines,
+    lines: LineStyle,
     passes: impl Fn((usize, usize), (usize, usize)) -> bool + Sync,
 ) -> Plane<f32> {
     let size = direction.size();
     let noise = noise(size, lines.grain_px);
     let window = hann(lines.reach_px);
     let smeared = Plane::from_fn(size, |x, y| {
-        let mut sum = Sum::default();
+        let mut sum = NoiseSum::default();
         sum.add(window[0], noise.at(x, y));
         for sign in [1.0, -1.0] {
             trace(direction, (x, y), sign, &window[1..], &passes, |w, (x, y)| sum.add(w, noise.at(x, y)));
@@ -84,12 +84,12 @@ fn trace(
 
 /// A weighted sum of noise that knows its own variance.
 #[derive(Default)]
-struct Sum {
+struct NoiseSum {
     value: f32,
     squares: f32,
 }
 
-impl Sum {
+impl NoiseSum {
     fn add(&mut self, weight: f32, noise: f32) {
         self.value += weight * noise;
         self.squares += weight * weight;
@@ -129,7 +129,7 @@ mod tests {
         let changes = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
         changes.map(|(x, y)| (plane.at(x + dx, y + dy) - plane.at(x, y)).abs()).sum::<f32>() / (w * h) as f32
     }
-    const LINES: Lines = Lines { grain_px: 1.0, reach_px: 12.0 };
+    const LINES: LineStyle = LineStyle { grain_px: 1.0, reach_px: 12.0 };
 
     #[test]
     fn grey_changes_little_along_a_line_and_much_across() {

@@ -15,7 +15,7 @@ pub mod texture;
 pub mod tile;
 
 pub use asset::Asset;
-pub use blend::{BlendMode, Coverage, Mix, Paint};
+pub use blend::{BlendMode, Mix, TileCoverage, TilePaint};
 pub use grid::TileGrid;
 pub use picture::Picture;
 pub use planar::PlanarTile;

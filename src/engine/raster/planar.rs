@@ -8,26 +8,26 @@ use crate::math::srgb::quantise;
 
 /// One row of a tile, premultiplied, encoded. A KiB, so that a row and what meets it stay in the first-level cache.
 #[derive(Clone, Copy)]
-pub struct Row {
+pub struct PixelRow {
     /// Red, green, blue, each in `[0, alpha]`.
     pub rgb: [[f32; TILE]; 3],
     /// Alpha, `[0, 1]`.
     pub a: [f32; TILE],
 }
 
-impl Row {
-    pub const TRANSPARENT: Row = Row { rgb: [[0.0; TILE]; 3], a: [0.0; TILE] };
+impl PixelRow {
+    pub const TRANSPARENT: PixelRow = PixelRow { rgb: [[0.0; TILE]; 3], a: [0.0; TILE] };
 }
 
 /// A tile of accumulated pixels.
 #[derive(Clone)]
 pub struct PlanarTile {
-    rows: Vec<Row>,
+    rows: Vec<PixelRow>,
 }
 
 impl PlanarTile {
     pub fn transparent() -> Self {
-        Self { rows: vec![Row::TRANSPARENT; TILE] }
+        Self { rows: vec![PixelRow::TRANSPARENT; TILE] }
     }
     /// Takes pixels in; what is out of range or NaN is brought into it.
     pub fn from_pixels(pixels: &TileF32) -> Self {
@@ -49,10 +49,10 @@ impl PlanarTile {
         }
     }
     /// The `TILE` rows, the top one first.
-    pub fn rows(&self) -> &[Row] {
+    pub fn rows(&self) -> &[PixelRow] {
         &self.rows
     }
-    pub fn rows_mut(&mut self) -> &mut [Row] {
+    pub fn rows_mut(&mut self) -> &mut [PixelRow] {
         &mut self.rows
     }
     /// Rounds to bytes; `None` where the tile is wholly transparent.
@@ -66,7 +66,7 @@ impl PlanarTile {
     }
 }
 
-impl Row {
+impl PixelRow {
     /// One premultiplied pixel; `x < TILE`.
     #[inline(always)]
     pub fn pixel(&self, x: usize) -> [f32; 4] {
@@ -76,9 +76,9 @@ impl Row {
 
 crate::widest! {
     /// Rounds rows to premultiplied bytes, `4 · TILE` a row.
-    fn quantise_rows(rows: &[Row], bytes: &mut [u8]) {
+    fn quantise_rows(rows: &[PixelRow], bytes: &mut [u8]) {
         for (row, bytes) in rows.iter().zip(bytes.chunks_exact_mut(4 * TILE)) {
-            let Row { rgb: [r, g, b], a } = row;
+            let PixelRow { rgb: [r, g, b], a } = row;
             let mut packed = [0u32; TILE];
             for x in 0..TILE {
                 packed[x] = byte(r[x]) | byte(g[x]) << 8 | byte(b[x]) << 16 | byte(a[x]) << 24;

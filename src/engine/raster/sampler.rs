@@ -9,7 +9,7 @@ mod taps;
 pub use antialias::{Antialias, PatchRow};
 pub use rows::Bilinear;
 
-use super::texture::{Level, Outside, Texture};
+use super::texture::{MipLevel, Outside, Texture};
 use crate::math::Vec2;
 
 /// Positions beyond this, in texels, are pulled in: an index must fit an i32.
@@ -21,7 +21,7 @@ pub fn bilinear(texture: &Texture, p: Vec2, outside: Outside) -> [f32; 4] {
 }
 
 /// A bilinear tap in one level, at `p` in that level's texels; `[0, 255]`.
-fn bilinear_in(level: &Level, p: Vec2, outside: Outside) -> [f32; 4] {
+fn bilinear_in(level: &MipLevel, p: Vec2, outside: Outside) -> [f32; 4] {
     let (w, h) = (level.size.width as i32, level.size.height as i32);
     let p = p.clamp(Vec2::splat(-FARTHEST), Vec2::splat(FARTHEST)) - 0.5;
     let floor = p.floor();

@@ -39,7 +39,7 @@ impl Outside {
 
 /// One mip level.
 #[derive(Clone)]
-pub struct Level {
+pub struct MipLevel {
     pub size: Size,
     /// Premultiplied RGBA, sRGB-encoded, row by row.
     pub texels: Vec<[u8; 4]>,
@@ -48,7 +48,7 @@ pub struct Level {
 /// A mip chain; level 0 is the picture itself, each next one half as large down to 1 × 1.
 #[derive(Clone)]
 pub struct Texture {
-    levels: Vec<Level>,
+    levels: Vec<MipLevel>,
 }
 
 impl Texture {
@@ -64,7 +64,7 @@ impl Texture {
                 })
                 .collect(),
         };
-        let mut levels = vec![Level { size: picture.size, texels }];
+        let mut levels = vec![MipLevel { size: picture.size, texels }];
         while let Some(next) = levels.last().and_then(halved) {
             levels.push(next);
         }
@@ -74,7 +74,7 @@ impl Texture {
         self.levels[0].size
     }
     /// Level 0 is the picture; there is always at least one.
-    pub fn levels(&self) -> &[Level] {
+    pub fn levels(&self) -> &[MipLevel] {
         &self.levels
     }
 }
@@ -86,7 +86,7 @@ fn premultiplied_u8(straight: [u8; 4]) -> [u8; 4] {
 }
 
 /// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side is odd, weighted by area).
-fn halved(level: &Level) -> Option<Level> {
+fn halved(level: &MipLevel) -> Option<MipLevel> {
     let Size { width: w, height: h } = level.size;
     if w == 1 && h == 1 {
         return None;
@@ -108,7 +108,7 @@ fn halved(level: &Level) -> Option<Level> {
             texels.push(sum.map(|v| (v + 0.5) as u8));
         }
     }
-    Some(Level { size, texels })
+    Some(MipLevel { size, texels })
 }
 
 /// For each of `to` cells, the cells of `from ≥ to` it covers and their weights, which add up to 1.

@@ -52,7 +52,7 @@ impl Features {
             };
             return FeatureMap::Isotropic(surface.kappa(&self.scales.iter().map(scale).collect::<Vec<_>>()));
         }
-        let part = |s: &FeatureScale| Part {
+        let part = |s: &FeatureScale| ScalePart {
             curvature: surface.curvature(s.blur_px),
             curvature_scale_px: s.curvature_scale_px,
             share: share(s),
@@ -66,13 +66,13 @@ pub enum FeatureMap {
     /// λ = 0: the same toward every light.
     Isotropic(Arc<Kappa>),
     Directional {
-        parts: Vec<Part>,
+        parts: Vec<ScalePart>,
         lambda: f32,
     },
 }
 
 /// One scale of several.
-pub struct Part {
+pub struct ScalePart {
     curvature: Arc<Curvature>,
     curvature_scale_px: f32,
     /// Shares add up to 1.
@@ -85,7 +85,8 @@ impl FeatureMap {
         match self {
             Self::Isotropic(kappa) => kappa.at(x, y),
             Self::Directional { parts, lambda } => {
-                let kappa = |p: &Part| p.share * p.curvature.kappa_along(x, y, p.curvature_scale_px, *lambda, light);
+                let kappa =
+                    |p: &ScalePart| p.share * p.curvature.kappa_along(x, y, p.curvature_scale_px, *lambda, light);
                 parts.iter().map(kappa).sum()
             }
         }
@@ -146,7 +147,7 @@ struct TensorRow<'a> {
     fade: &'a [u8],
 }
 
-impl Part {
+impl ScalePart {
     fn row(&self, x0: usize, y: usize, width: usize) -> TensorRow<'_> {
         let Curvature { hxx, hxy, hyy, fade } = &*self.curvature;
         let [hxx, hxy, hyy] = [hxx, hxy, hyy].map(|plane| &plane.row(y)[x0..x0 + width]);

@@ -1,7 +1,7 @@
 //! Lights: plain data, so that they can be dragged on the canvas, and where they stand seen from a row of pixels.
 //! Floor 3.
 
-use super::ground::{Ground, Pixels, Toward};
+use super::surface_row::{LightDirection, RowValues, SurfaceRow};
 use crate::math::{Vec3, fast, srgb::Color, vec3};
 use crate::raster::TILE;
 
@@ -33,13 +33,13 @@ impl Default for Light {
 /// A light seen from the pixels of a row.
 pub struct RowLight {
     /// ℓ, unit, camera space.
-    pub direction: [Pixels; 3],
+    pub direction: [RowValues; 3],
     /// Colour × intensity, linear.
     pub radiance: [f32; 3],
-    stands: Stands,
+    stands: RowLightPosition,
 }
 
-enum Stands {
+enum RowLightPosition {
     /// ℓ, the same everywhere.
     Afar(Vec3),
     /// As [`LightKind::Point`].
@@ -50,32 +50,33 @@ impl RowLight {
     /// From one direction, of any length; `radiance` linear.
     pub fn directional(direction: Vec3, radiance: [f32; 3]) -> Self {
         let l = direction.normalize_or(Vec3::Z);
-        Self { direction: l.to_array().map(|v| [v; TILE]), radiance, stands: Stands::Afar(l) }
+        Self { direction: l.to_array().map(|v| [v; TILE]), radiance, stands: RowLightPosition::Afar(l) }
     }
     fn point(position: Vec3, radiance: [f32; 3]) -> Self {
-        Self { direction: [[0.0; TILE], [0.0; TILE], [1.0; TILE]], radiance, stands: Stands::At(position) }
+        Self { direction: [[0.0; TILE], [0.0; TILE], [1.0; TILE]], radiance, stands: RowLightPosition::At(position) }
     }
     /// Turns to a row.
-    pub fn turn(&mut self, ground: &Ground) {
-        let Stands::At(position) = self.stands else { return };
-        let (surface, columns) = (ground.surface, ground.x0..ground.x0 + ground.width);
+    pub fn turn(&mut self, surface_row: &SurfaceRow) {
+        let RowLightPosition::At(position) = self.stands else { return };
+        let (surface, columns) = (surface_row.surface, surface_row.x0..surface_row.x0 + surface_row.width);
         // The first pixel from the light, x right, y up; heights are counted from the surface's nearest point.
-        let first = vec3(position.x - (ground.x0 as f32 + 0.5), ground.y as f32 + 0.5 - position.y, position.z);
-        let depth = &surface.depth_plane().row(ground.y)[columns];
+        let first =
+            vec3(position.x - (surface_row.x0 as f32 + 0.5), surface_row.y as f32 + 0.5 - position.y, position.z);
+        let depth = &surface.depth_plane().row(surface_row.y)[columns];
         turn_to_point(first, surface.depth_range_px(), depth, &mut self.direction);
     }
     /// What κ(ℓ) is asked for.
-    pub fn toward(&self) -> Toward<'_> {
+    pub fn toward(&self) -> LightDirection<'_> {
         match self.stands {
-            Stands::Afar(l) => Toward::One(l),
-            Stands::At(_) => Toward::Each(&self.direction[0], &self.direction[1]),
+            RowLightPosition::Afar(l) => LightDirection::One(l),
+            RowLightPosition::At(_) => LightDirection::Each(&self.direction[0], &self.direction[1]),
         }
     }
 }
 
 impl Light {
     /// The light as the rows of a tile see it; it is turned to each.
-    pub fn seen(&self) -> RowLight {
+    pub fn row_light(&self) -> RowLight {
         let radiance = self.color.linear().map(|c| c * self.intensity);
         match self.kind {
             LightKind::Directional { direction } => RowLight::directional(direction, radiance),
@@ -87,7 +88,7 @@ impl Light {
 crate::widest! {
     /// ℓ of each pixel of a row: toward a point that lies at `from_first` from the first pixel, were it at height 0; the
     /// surface recedes from there by its depth.
-    fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: &mut [Pixels; 3]) {
+    fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: &mut [RowValues; 3]) {
         let [lx, ly, lz] = direction;
         for (x, (&depth, ((lx, ly), lz))) in depth.iter().zip(lx.iter_mut().zip(ly).zip(lz)).enumerate() {
             let (right, up) = (from_first.x - x as i32 as f32, from_first.y);

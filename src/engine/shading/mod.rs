@@ -5,12 +5,12 @@
 
 pub mod environment;
 pub mod features;
-pub mod ground;
 pub mod light;
 pub mod material;
 pub mod radiance;
 pub mod scaling;
 pub mod sphere;
+pub mod surface_row;
 
 pub use environment::{Environment, Projection};
 pub use features::{FeatureScale, Features};

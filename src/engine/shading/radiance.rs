@@ -8,7 +8,7 @@ use super::{
     scaling::{Reference, Scaling},
 };
 use crate::math::{Vec3, fast, srgb, vec3};
-use crate::raster::{PlanarTile, TILE, TileAt, planar::Row};
+use crate::raster::{PlanarTile, TILE, TileAt, planar::PixelRow};
 use crate::surface::Scene;
 use row::RowScaler;
 
@@ -42,23 +42,23 @@ impl Default for RadianceScaling {
 
 /// What must be known of the whole composite beneath before one tile of it can be scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beneath {
+pub struct BackdropStats {
     /// Its greatest luminance over the surface, linear light.
     pub brightest: f32,
-    /// The factor that restores its mean luminance: [`Means::gain`]; 1 where the mean need not stay.
+    /// The factor that restores its mean luminance: [`LuminanceSums::gain`]; 1 where the mean need not stay.
     pub gain: f32,
 }
 
 /// Luminance of a part of the composite, added up before and after scaling. Add the parts in a fixed order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Means {
+pub struct LuminanceSums {
     pub before: f64,
     pub after: f64,
 }
 
-impl Means {
-    pub fn plus(self, other: Means) -> Means {
-        Means { before: self.before + other.before, after: self.after + other.after }
+impl LuminanceSums {
+    pub fn plus(self, other: LuminanceSums) -> LuminanceSums {
+        LuminanceSums { before: self.before + other.before, after: self.after + other.after }
     }
     /// The factor of the light that brings `after` back to `before`, within reason.
     pub fn gain(self) -> f32 {
@@ -69,7 +69,7 @@ impl Means {
 
 impl RadianceScaling {
     /// Scales one tile of the composite. Alpha and hue stay, as does what is off the surface; γ = 0 changes nothing.
-    pub fn apply_tile(&self, scene: &Scene, at: TileAt, beneath: Beneath, pixels: &mut PlanarTile) {
+    pub fn apply_tile(&self, scene: &Scene, at: TileAt, beneath: BackdropStats, pixels: &mut PlanarTile) {
         let gain = if self.keep_mean { beneath.gain } else { 1.0 };
         if self.scaling.is_none() && gain == 1.0 {
             return;
@@ -90,9 +90,9 @@ impl RadianceScaling {
         });
     }
     /// Luminance of one tile before and after scaling, weighed by alpha and by how far the surface covers each pixel.
-    pub fn means_tile(&self, scene: &Scene, at: TileAt, brightest: f32, pixels: &PlanarTile) -> Means {
+    pub fn means_tile(&self, scene: &Scene, at: TileAt, brightest: f32, pixels: &PlanarTile) -> LuminanceSums {
         let y_star = self.reference.resolve(brightest);
-        let mut means = Means::default();
+        let mut means = LuminanceSums::default();
         self.for_rows(scene, at, |y, kappa, coverage| {
             let Some(row) = pixels.rows().get(y) else { return };
             let [before, after] = light_of_row(row, kappa, self.scaling, 1.0 / y_star);
@@ -127,7 +127,7 @@ impl RadianceScaling {
 
 crate::widest! {
     /// Alpha × luminance of each pixel, before and after scaling.
-    fn light_of_row(row: &Row, kappa: &[f32; TILE], scaling: Scaling, per_y_star: f32) -> [[f32; TILE]; 2] {
+    fn light_of_row(row: &PixelRow, kappa: &[f32; TILE], scaling: Scaling, per_y_star: f32) -> [[f32; TILE]; 2] {
         let [mut before, mut after] = [[0.0; TILE]; 2];
         for x in 0..TILE {
             let per_a = 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE);

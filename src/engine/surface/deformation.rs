@@ -4,7 +4,7 @@
 
 mod fill;
 
-use super::operator::{Operator, Reading, Slopes, outer};
+use super::operator::{MapSlopes, MapValues, Operator, outer};
 use super::{Anchor, Bend, Curvature, Surface, Weights, links};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
 use std::ops::Range;
@@ -29,7 +29,7 @@ pub struct Deformation<'a> {
 #[derive(Clone, Copy)]
 struct Pin {
     anchor: Anchor,
-    reading: Reading,
+    map_values: MapValues,
 }
 
 /// D at every pixel centre of a rectangle, row by row.
@@ -61,9 +61,14 @@ impl<'a> Deformation<'a> {
     /// stroke goes on over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         let bend = Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() };
-        Self::pinned(surface, size, &bend, nearest_reading)
+        Self::pinned(surface, size, &bend, nearest_map_values)
     }
-    fn pinned(surface: Option<&'a Surface>, size: Size, bend: &Bend, read: impl Fn(&Surface, Vec2) -> Reading) -> Self {
+    fn pinned(
+        surface: Option<&'a Surface>,
+        size: Size,
+        bend: &Bend,
+        read: impl Fn(&Surface, Vec2) -> MapValues,
+    ) -> Self {
         let near = |p: Vec2| p.clamp(Vec2::splat(-FARTHEST_PX), Vec2::splat(FARTHEST_PX));
         let pins = bend
             .anchors
@@ -71,7 +76,7 @@ impl<'a> Deformation<'a> {
             .filter(|a| a.at.is_finite() && a.source.is_finite())
             .map(|a| {
                 let anchor = Anchor { at: near(a.at), source: near(a.source) };
-                Pin { anchor, reading: surface.map_or(Reading::default(), |s| read(s, anchor.at)) }
+                Pin { anchor, map_values: surface.map_or(MapValues::default(), |s| read(s, anchor.at)) }
             })
             .collect();
         let operator = bend.operator.finite();
@@ -134,16 +139,16 @@ impl<'a> Deformation<'a> {
     /// offset_i(q), 0 outside the surface.
     fn offset(&self, pin: &Pin, q: Vec2, x: i32, y: i32) -> Vec2 {
         let Some((surface, x, y)) = self.on_surface(x, y) else { return Vec2::ZERO };
-        let offset = self.operator.offset(q - pin.anchor.at, reading(surface, x, y), pin.reading, self.unit_px);
+        let offset = self.operator.offset(q - pin.anchor.at, map_values(surface, x, y), pin.map_values, self.unit_px);
         self.detail_gain(x, y) * offset
     }
     fn offset_jacobian(&self, pin: &Pin, q: Vec2, x: i32, y: i32) -> Mat2 {
         let Some((surface, x, y)) = self.on_surface(x, y) else { return Mat2::ZERO };
-        let (from_anchor, here) = (q - pin.anchor.at, reading(surface, x, y));
-        let offset = self.operator.offset(from_anchor, here, pin.reading, self.unit_px);
+        let (from_anchor, here) = (q - pin.anchor.at, map_values(surface, x, y));
+        let offset = self.operator.offset(from_anchor, here, pin.map_values, self.unit_px);
         let jacobian =
-            self.operator.offset_jacobian(from_anchor, here, slopes(surface, x, y), pin.reading, self.unit_px);
-        let near = Neighbours::linked(surface, x, y);
+            self.operator.offset_jacobian(from_anchor, here, slopes(surface, x, y), pin.map_values, self.unit_px);
+        let near = DifferencePairs::linked(surface, x, y);
         jacobian * self.detail_gain(x, y) + outer(offset, near.slope(|x, y| self.detail_gain(x, y)))
     }
     /// 1 + μ κ(q): how much curvature scales the magnitude α (SF sec. 6, fig. 10).
@@ -168,34 +173,34 @@ fn sane(weights: Weights) -> Weights {
 }
 
 /// What the maps hold at the pixel of an anchor.
-fn at_anchor(surface: &Surface, at: Vec2) -> Reading {
+fn at_anchor(surface: &Surface, at: Vec2) -> MapValues {
     let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
     match surface.coverage_plane().get(x, y) {
-        Some(coverage) if coverage > 0 => reading(surface, x as usize, y as usize),
-        _ => Reading::BACKGROUND,
+        Some(coverage) if coverage > 0 => map_values(surface, x as usize, y as usize),
+        _ => MapValues::BACKGROUND,
     }
 }
 
 /// What the maps hold at the piece of surface nearest to a point: they are grown outward.
-fn nearest_reading(surface: &Surface, at: Vec2) -> Reading {
+fn nearest_map_values(surface: &Surface, at: Vec2) -> MapValues {
     let (x, y) = surface.pixel_of(at);
-    reading(surface, x, y)
+    map_values(surface, x, y)
 }
 
-fn reading(surface: &Surface, x: usize, y: usize) -> Reading {
-    Reading { depth: surface.depth(x, y), nbar: surface.nbar(x, y), nz: surface.normal(x, y).z }
+fn map_values(surface: &Surface, x: usize, y: usize) -> MapValues {
+    MapValues { depth: surface.depth(x, y), nbar: surface.nbar(x, y), nz: surface.normal(x, y).z }
 }
 
 /// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel itself
 /// in place of one that does not.
-pub(super) struct Neighbours {
+pub(super) struct DifferencePairs {
     /// Left and right, up and down.
     pairs: [[(usize, usize); 2]; 2],
     /// One over the distance of each pair; 1 where both are the pixel itself.
     per_px: [f32; 2],
 }
 
-impl Neighbours {
+impl DifferencePairs {
     pub(super) fn linked(surface: &Surface, x: usize, y: usize) -> Self {
         let bits = surface.links_plane().at(x, y);
         let side = |bit: u8| usize::from(bits & bit != 0);
@@ -212,10 +217,10 @@ impl Neighbours {
 }
 
 /// How the maps change at a pixel, within its piece of surface.
-fn slopes(surface: &Surface, x: usize, y: usize) -> Slopes {
-    let near = Neighbours::linked(surface, x, y);
+fn slopes(surface: &Surface, x: usize, y: usize) -> MapSlopes {
+    let near = DifferencePairs::linked(surface, x, y);
     let nbar = [near.slope(|x, y| surface.nbar(x, y).x), near.slope(|x, y| surface.nbar(x, y).y)];
-    Slopes {
+    MapSlopes {
         depth: near.slope(|x, y| surface.depth(x, y)),
         nbar: Mat2::from_cols(nbar[0], nbar[1]).transpose(),
         nz: near.slope(|x, y| surface.normal(x, y).z),

@@ -16,11 +16,11 @@ pub fn normals_from_depth(depth: &Plane<f32>, range_px: f32) -> Plane<Vec3> {
         let at = |dx: i32, dy: i32| depth.get(x + dx, y + dy).filter(|z| z.is_finite());
         let Some(here) = at(0, 0) else { return Vec3::ZERO };
         let slope = |dx: i32, dy: i32| {
-            let before = Side {
+            let before = SideSteps {
                 near: at(-dx, -dy).map(|z| here - z),
                 far: at(-dx, -dy).zip(at(-2 * dx, -2 * dy)).map(|(a, b)| a - b),
             };
-            let after = Side {
+            let after = SideSteps {
                 near: at(dx, dy).map(|z| z - here),
                 far: at(2 * dx, 2 * dy).zip(at(dx, dy)).map(|(a, b)| a - b),
             };
@@ -32,12 +32,12 @@ pub fn normals_from_depth(depth: &Plane<f32>, range_px: f32) -> Plane<Vec3> {
 
 /// The step to the next pixel on one side, and the one after it.
 #[derive(Clone, Copy)]
-struct Side {
+struct SideSteps {
     near: Option<f32>,
     far: Option<f32>,
 }
 
-impl Side {
+impl SideSteps {
     /// How much the step changes further out: small where the surface goes on, large at a jump.
     fn bend(self) -> f32 {
         match (self.near, self.far) {
@@ -49,7 +49,7 @@ impl Side {
 }
 
 /// The mean of both sides where they go together; the side that goes on smoothly where one is a jump; 0 between none.
-fn edge_aware(before: Side, after: Side) -> f32 {
+fn edge_aware(before: SideSteps, after: SideSteps) -> f32 {
     match (before.near, after.near) {
         (Some(a), Some(b)) => {
             let (bend_a, bend_b) = (before.bend(), after.bend());

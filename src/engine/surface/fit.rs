@@ -34,10 +34,10 @@ impl Surface {
         })
     }
     /// The mean over the box of half sides `half` around a point of the map, cut at its border; beyond there is no surface.
-    fn mean_over(&self, center: Vec2, half: Vec2) -> Mean {
+    fn mean_over(&self, center: Vec2, half: Vec2) -> MeanTexel {
         let border = vec2(self.size().width as f32, self.size().height as f32);
         if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {
-            return Mean::default();
+            return MeanTexel::default();
         }
         let (low, high) = ((center - half).max(Vec2::ZERO), (center + half).min(border));
         let (x0, x1) = (low.x.floor() as i32, high.x.ceil() as i32);
@@ -51,7 +51,7 @@ impl Surface {
         // The covered pixel nearest to the centre says which piece of surface this is.
         let distance = |&(x, y, _): &(i32, i32, f32)| (vec2(x as f32 + 0.5, y as f32 + 0.5) - center).length_squared();
         let Some((rx, ry, _)) = covered.clone().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
-            return Mean::default();
+            return MeanTexel::default();
         };
         let (mut normal, mut depth, mut joined, mut all) = (Vec3::ZERO, 0.0, 0.0, 0.0);
         for (x, y, weight) in covered {
@@ -63,7 +63,7 @@ impl Surface {
             }
         }
         let area = (high - low).element_product();
-        Mean { normal, depth: depth / joined, coverage: (all / area).min(255.0).round() as u8 }
+        MeanTexel { normal, depth: depth / joined, coverage: (all / area).min(255.0).round() as u8 }
     }
     /// Whether two pixels near each other lie on one smooth piece: the step in depth is no larger than the steeper of
     /// the two slopes tells, with a pixel and a half granted for coarse depth (as `links` grants it).
@@ -81,13 +81,13 @@ impl Surface {
 
 /// What a new pixel reads; no surface by default.
 #[derive(Clone, Copy)]
-struct Mean {
+struct MeanTexel {
     normal: Vec3,
     depth: f32,
     coverage: u8,
 }
 
-impl Default for Mean {
+impl Default for MeanTexel {
     fn default() -> Self {
         Self { normal: Vec3::ZERO, depth: f32::NAN, coverage: 0 }
     }

@@ -1,14 +1,14 @@
 //! Surface flows: in which direction, and how much, a picture on the surface is squeezed (SF sec. 4.3; MATH 3).
 //! Floor 2. For viewing: no operator reads them. Not here: the colours they are shown in (`document::view`).
 
-use super::deformation::Neighbours;
+use super::deformation::DifferencePairs;
 use super::{Bend, Deformation, Surface};
 use crate::math::{Mat2, Size, Vec2, Vec3, vec2};
 use crate::raster::{Plane, blur};
 
 /// A structure tensor JᵀJ: symmetric, image axes (y **down**).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Tensor {
+pub struct StructureTensor {
     pub xx: f32,
     pub xy: f32,
     pub yy: f32,
@@ -23,7 +23,7 @@ pub struct Eigen {
     pub direction: Vec2,
 }
 
-impl Tensor {
+impl StructureTensor {
     /// T = JᵀJ of J = [∂x, ∂y].
     pub fn of_columns(dx: Vec3, dy: Vec3) -> Self {
         Self { xx: dx.dot(dx), xy: dx.dot(dy), yy: dy.dot(dy) }
@@ -38,40 +38,40 @@ impl Tensor {
 }
 
 /// A tensor for every pixel.
-pub struct Flow {
-    tensors: Plane<Tensor>,
+pub struct FlowField {
+    tensors: Plane<StructureTensor>,
     /// Stretch of a picture that nothing bends: 1 for positions, 0 for normals, which then do not change.
     unbent: f32,
 }
 
 /// T_p = JᵀJ, J = [∂x p, ∂y p], p = (x, y, z·Z): the first-order flow (SF sec. 4.3; MATH 3). Derivatives per px, z·Z in px.
-pub fn position_tensor(depth_slope_px: Vec2) -> Tensor {
-    Tensor::of_columns(Vec3::new(1.0, 0.0, depth_slope_px.x), Vec3::new(0.0, 1.0, depth_slope_px.y))
+pub fn position_tensor(depth_slope_px: Vec2) -> StructureTensor {
+    StructureTensor::of_columns(Vec3::new(1.0, 0.0, depth_slope_px.x), Vec3::new(0.0, 1.0, depth_slope_px.y))
 }
 
 /// T_n = JᵀJ, J = [∂x n, ∂y n]: the second-order flow (SF sec. 4.3; MATH 3). Derivatives per px.
-pub fn normal_tensor(dx_normal: Vec3, dy_normal: Vec3) -> Tensor {
-    Tensor::of_columns(dx_normal, dy_normal)
+pub fn normal_tensor(dx_normal: Vec3, dy_normal: Vec3) -> StructureTensor {
+    StructureTensor::of_columns(dx_normal, dy_normal)
 }
 
 /// The same of a deformation: JᵀJ with J = ∂D/∂q (SF fig. 3c).
-pub fn deformation_tensor(jacobian: Mat2) -> Tensor {
-    Tensor::of_columns(jacobian.x_axis.extend(0.0), jacobian.y_axis.extend(0.0))
+pub fn deformation_tensor(jacobian: Mat2) -> StructureTensor {
+    StructureTensor::of_columns(jacobian.x_axis.extend(0.0), jacobian.y_axis.extend(0.0))
 }
 
-impl Flow {
+impl FlowField {
     /// T_p of every pixel, from the depth.
     pub fn of_depth(surface: &Surface) -> Self {
         let range_px = surface.depth_range_px();
         let tensors = Plane::from_fn(surface.size(), |x, y| {
-            position_tensor(Neighbours::linked(surface, x, y).slope(|x, y| surface.depth(x, y)) * range_px)
+            position_tensor(DifferencePairs::linked(surface, x, y).slope(|x, y| surface.depth(x, y)) * range_px)
         });
         Self { tensors, unbent: 1.0 }
     }
     /// T_n of every pixel, from the normals.
     pub fn of_normals(surface: &Surface) -> Self {
         let tensors = Plane::from_fn(surface.size(), |x, y| {
-            let near = Neighbours::linked(surface, x, y);
+            let near = DifferencePairs::linked(surface, x, y);
             let slopes = [0, 1, 2].map(|c| near.slope(|x, y| surface.normal(x, y)[c]));
             normal_tensor(Vec3::from(slopes.map(|s| s.x)), Vec3::from(slopes.map(|s| s.y)))
         });
@@ -86,7 +86,7 @@ impl Flow {
     /// The flow with its tensors blurred within the covered pixels, which averages the noise of coarse maps away.
     pub fn smoothed(&self, coverage: Option<&Plane<u8>>, sigma_px: f32) -> Self {
         let covered = |i: usize| coverage.is_none_or(|c| c.values().get(i).is_some_and(|&c| c > 0));
-        let weighted = |(i, t): (usize, &Tensor)| {
+        let weighted = |(i, t): (usize, &StructureTensor)| {
             let m = if covered(i) { 1.0 } else { 0.0 };
             [m * t.xx, m * t.xy, m * t.yy, m]
         };
@@ -95,7 +95,7 @@ impl Flow {
         let blurred = blur::gaussian_pixels(size, &pixels, sigma_px);
         let tensors = blurred.iter().map(|&[xx, xy, yy, m]| {
             let scale = if m > 1e-3 { 1.0 / m } else { 0.0 };
-            Tensor { xx: xx * scale, xy: xy * scale, yy: yy * scale }
+            StructureTensor { xx: xx * scale, xy: xy * scale, yy: yy * scale }
         });
         let tensors = Plane::from_values(size, tensors.collect()).expect("one tensor per pixel");
         Self { tensors, unbent: self.unbent }
@@ -103,7 +103,7 @@ impl Flow {
     pub fn size(&self) -> Size {
         self.tensors.size()
     }
-    pub fn at(&self, x: usize, y: usize) -> Tensor {
+    pub fn at(&self, x: usize, y: usize) -> StructureTensor {
         self.tensors.at(x, y)
     }
     /// How much a pixel's flow differs from that of a picture that nothing bends: |√λ₁ − 1|, of normals √λ₁.
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn the_flow_of_a_spheres_normals_grows_toward_its_rim() {
         // T_n = (I + p pᵀ / z²) / R² at the point p of the unit sphere.
-        let flow = Flow::of_normals(&sphere());
+        let flow = FlowField::of_normals(&sphere());
         let (x, z) = (20.5 / RADIUS_PX, (1.0 - (20.5f32 / RADIUS_PX).powi(2)).sqrt());
         let eigen = flow.at(70, 49).eigen();
         assert_near(eigen.larger * RADIUS_PX * RADIUS_PX, 1.0 + x * x / (z * z), 5e-3);
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn the_flow_of_depth_is_the_slope_of_the_surface() {
         // λ₁ = 1 + |∇h|², of a sphere 1 / z², along the slope; nothing changes across it.
-        let flow = Flow::of_depth(&sphere());
+        let flow = FlowField::of_depth(&sphere());
         let (r, z) = (20.5 / RADIUS_PX, (1.0 - (20.5f32 / RADIUS_PX).powi(2)).sqrt());
         let eigen = flow.at(49, 70).eigen();
         assert_near(eigen.larger, 1.0 + r * r / (z * z), 0.05);
@@ -162,16 +162,16 @@ mod tests {
         let surface = sphere();
         let anchors = vec![Anchor::fixed(vec2(50.5, 50.5))];
         let bend = |operator| Bend { operator, anchors: anchors.clone(), weights: Weights::default() };
-        let still = Flow::of_deformation(Some(&surface), surface.size(), &bend(Operator::None));
+        let still = FlowField::of_deformation(Some(&surface), surface.size(), &bend(Operator::None));
         assert_near(still.magnitude(70, 49), 0.0, 1e-6);
         let bent = Operator::Normal { alpha: 1.0, beta: 0.0, detail: 0.0 };
-        let flow = Flow::of_deformation(Some(&surface), surface.size(), &bend(bent));
+        let flow = FlowField::of_deformation(Some(&surface), surface.size(), &bend(bent));
         assert!(flow.magnitude(70, 49) > 0.5);
     }
     #[test]
     fn smoothing_stays_within_the_surface() {
         let surface = sphere();
-        let flow = Flow::of_normals(&surface);
+        let flow = FlowField::of_normals(&surface);
         let smooth = flow.smoothed(Some(surface.coverage_plane()), 2.0);
         // The rim changes most; nothing from beyond it may dilute it.
         assert!(smooth.magnitude(88, 49) > 0.7 * flow.magnitude(88, 49));

@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 
 /// A relief of gradient noise, octaves added up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grain {
+pub struct NoiseRelief {
     /// Size of the largest bumps, px, `> 0`.
     pub size_px: f32,
     /// Each half as large as the one before, `≥ 1`.
@@ -18,13 +18,13 @@ pub struct Grain {
     pub seed: u32,
 }
 
-impl Default for Grain {
+impl Default for NoiseRelief {
     fn default() -> Self {
         Self { size_px: 24.0, octaves: 4, roughness: 0.6, stretch: 1.0, seed: 0 }
     }
 }
 
-impl Grain {
+impl NoiseRelief {
     /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y down), seen through a pixel
     /// `px` wide: bumps too small for it fade away.
     pub fn normal(&self, at: Vec2, px: f32) -> Vec3 {
@@ -33,11 +33,11 @@ impl Grain {
         for octave in 0..self.octaves {
             let bump = vec2(size * self.stretch, size);
             // Below two pixels a bump cannot be told, from four on it is whole.
-            let seen = ((bump.min_element() / px.max(1e-6) - 2.0) / 2.0).clamp(0.0, 1.0);
-            if seen > 0.0 {
+            let visibility = ((bump.min_element() / px.max(1e-6) - 2.0) / 2.0).clamp(0.0, 1.0);
+            if visibility > 0.0 {
                 // The height is as large as the bump, so its slope is the noise's own, less along a stretched bump.
                 let lean = gradient(at / bump, hash::mix(self.seed ^ hash::mix(octave)));
-                slope += lean * vec2(1.0 / self.stretch.max(1e-6), 1.0) * share * seen;
+                slope += lean * vec2(1.0 / self.stretch.max(1e-6), 1.0) * share * visibility;
             }
             (size, share) = (size * 0.5, share * self.roughness);
         }
@@ -71,15 +71,15 @@ mod tests {
 
     #[test]
     fn grain_leans_every_way_alike_and_is_the_same_every_time() {
-        let grain = Grain::default();
+        let grain = NoiseRelief::default();
         let at = |i: u32| vec2((i % 90) as f32 * 1.7, (i / 90) as f32 * 2.3);
         let slopes: Vec<Vec2> = (0..8100).map(|i| grain.normal(at(i), 1.0).truncate()).collect();
         let mean = slopes.iter().sum::<Vec2>() / 8100.0;
         let spread = slopes.iter().map(|s| s.length_squared()).sum::<f32>() / 8100.0;
         assert!(mean.length() < 0.1, "{mean}");
         assert!((0.1..2.0).contains(&spread), "{spread}");
-        assert_eq!(grain.normal(at(77), 1.0), Grain::default().normal(at(77), 1.0));
-        assert_ne!(grain.normal(at(77), 1.0), Grain { seed: 1, ..grain }.normal(at(77), 1.0));
+        assert_eq!(grain.normal(at(77), 1.0), NoiseRelief::default().normal(at(77), 1.0));
+        assert_ne!(grain.normal(at(77), 1.0), NoiseRelief { seed: 1, ..grain }.normal(at(77), 1.0));
     }
     #[test]
     fn the_gradient_is_that_of_one_continuous_relief() {
@@ -99,13 +99,13 @@ mod tests {
     }
     #[test]
     fn bumps_too_small_to_be_seen_fade_and_stretched_ones_lean_across() {
-        let grain = Grain { size_px: 8.0, octaves: 1, ..Grain::default() };
+        let grain = NoiseRelief { size_px: 8.0, octaves: 1, ..NoiseRelief::default() };
         assert_eq!(grain.normal(vec2(5.3, 1.1), 8.0), Vec3::Z);
-        let brushed = Grain { size_px: 8.0, stretch: 20.0, ..Grain::default() };
+        let brushed = NoiseRelief { size_px: 8.0, stretch: 20.0, ..NoiseRelief::default() };
         let sum = |f: fn(Vec3) -> f32| {
             (0..900).map(|i| f(brushed.normal(vec2(i as f32 * 3.7, i as f32 * 0.9), 1.0)).abs()).sum::<f32>()
         };
         assert!(sum(|n| n.y) > 8.0 * sum(|n| n.x));
-        assert!(Grain { size_px: f32::NAN, ..brushed }.normal(vec2(1.0, 1.0), 1.0).is_finite());
+        assert!(NoiseRelief { size_px: f32::NAN, ..brushed }.normal(vec2(1.0, 1.0), 1.0).is_finite());
     }
 }

@@ -7,10 +7,10 @@ mod multigrid;
 
 use crate::math::{Vec3, vec2};
 use crate::raster::Plane;
-use multigrid::Grid;
+use multigrid::SpringGrid;
 
 /// Depth made from normals.
-pub struct Integrated {
+pub struct IntegratedDepth {
     /// 0 near … 1 far; NaN where there is no surface.
     pub depth: Plane<f32>,
     /// How many pixels deep the range 0 … 1 is.
@@ -21,7 +21,7 @@ pub struct Integrated {
 ///
 /// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is exact on circles, and
 /// w = ((n_z,i + n_z,j)/2)² trusts what faces the viewer. Pieces that do not touch are each centred on the same depth.
-pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<Integrated> {
+pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
     let size = normals.size();
     let (w, h) = (size.width as usize, size.height as usize);
     // Slopes beyond 20 px a px are noise at the rim.
@@ -51,8 +51,12 @@ pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option
         }
         b
     });
-    let grid =
-        Grid::new(w, h, right.values().iter().map(|e| e.0).collect(), down.values().iter().map(|e| e.0).collect());
+    let grid = SpringGrid::new(
+        w,
+        h,
+        right.values().iter().map(|e| e.0).collect(),
+        down.values().iter().map(|e| e.0).collect(),
+    );
     let mut heights = multigrid::solve(grid, source.values());
     centre_pieces(&mut heights, inside);
     let held = || heights.iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
@@ -61,7 +65,7 @@ pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option
     let range_px = if far > near { far - near } else { 1.0 };
     let depth =
         Plane::from_fn(size, |x, y| if inside.at(x, y) { (heights[y * w + x] - near) / range_px } else { f32::NAN });
-    Some(Integrated { depth, range_px })
+    Some(IntegratedDepth { depth, range_px })
 }
 
 /// Gives every connected piece the mean 0: the equations leave each a constant of its own.

@@ -2,12 +2,11 @@
 //! Floor 2. Not here: files and their conventions (`io::maps`).
 
 use super::{
-    bounds::Bounds,
+    cache::RecentCache,
     curvature::{Curvature, Kappa},
-    grow,
-    kept::Kept,
-    links,
+    grow, links,
     objects::Objects,
+    pyramid::MapPyramids,
 };
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
@@ -46,14 +45,14 @@ pub struct Surface {
     links: Plane<u8>,
     depth_range_px: f32,
     /// By blur.
-    curvatures: Kept<u32, Curvature>,
+    curvatures: RecentCache<u32, Curvature>,
     /// By the scales that are weighed.
-    kappas: Kept<Vec<[u32; 3]>, Kappa>,
+    kappas: RecentCache<Vec<[u32; 3]>, Kappa>,
     /// What detail was combined onto, if any was: what depth alone tells is its.
     base: Option<Arc<Surface>>,
     /// By radius.
-    occlusions: Kept<u32, Plane<f32>>,
-    bounds: Bounds,
+    occlusions: RecentCache<u32, Plane<f32>>,
+    bounds: MapPyramids,
     objects: OnceLock<Objects>,
 }
 
@@ -93,11 +92,11 @@ impl Surface {
             coverage,
             links,
             depth_range_px,
-            curvatures: Kept::default(),
-            kappas: Kept::default(),
+            curvatures: RecentCache::default(),
+            kappas: RecentCache::default(),
             base: None,
-            occlusions: Kept::default(),
-            bounds: Bounds::default(),
+            occlusions: RecentCache::default(),
+            bounds: MapPyramids::default(),
             objects: OnceLock::new(),
         })
     }
@@ -112,11 +111,11 @@ impl Surface {
             coverage: self.coverage.clone(),
             links: self.links.clone(),
             depth_range_px: self.depth_range_px,
-            curvatures: Kept::default(),
-            kappas: Kept::default(),
+            curvatures: RecentCache::default(),
+            kappas: RecentCache::default(),
             base: Some(self.base.as_ref().unwrap_or(self).clone()),
-            occlusions: Kept::default(),
-            bounds: Bounds::default(),
+            occlusions: RecentCache::default(),
+            bounds: MapPyramids::default(),
             objects: OnceLock::new(),
         }
     }
@@ -162,13 +161,13 @@ impl Surface {
         self.depth_range_px
     }
     /// Min–max pyramids of the maps, for `reach`.
-    pub(super) fn bounds(&self) -> &Bounds {
+    pub(super) fn bounds(&self) -> &MapPyramids {
         &self.bounds
     }
-    pub(super) fn curvatures(&self) -> &Kept<u32, Curvature> {
+    pub(super) fn curvatures(&self) -> &RecentCache<u32, Curvature> {
         &self.curvatures
     }
-    pub(super) fn kappas(&self) -> &Kept<Vec<[u32; 3]>, Kappa> {
+    pub(super) fn kappas(&self) -> &RecentCache<Vec<[u32; 3]>, Kappa> {
         &self.kappas
     }
     /// The surface without the detail that was combined onto it.
@@ -179,7 +178,7 @@ impl Surface {
     pub(super) fn objects_cell(&self) -> &OnceLock<Objects> {
         &self.objects
     }
-    pub(super) fn occlusions(&self) -> &Kept<u32, Plane<f32>> {
+    pub(super) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
         &self.occlusions
     }
     /// The pixel that holds a canvas point, clamped into the map.

@@ -5,7 +5,7 @@
 //! [`deformation`] evaluates them over tiles.
 
 pub mod anchor;
-mod bounds;
+mod cache;
 pub mod combine;
 pub mod curvature;
 pub mod deformation;
@@ -15,23 +15,23 @@ pub mod flow;
 pub mod grain;
 pub mod grow;
 pub mod integrate;
-mod kept;
 pub mod links;
 pub mod maps;
 pub mod objects;
 mod occlusion;
 pub mod operator;
-pub mod reach;
+mod pyramid;
 pub mod scene;
+pub mod support;
 
 pub use anchor::{Anchor, Bend, Weights};
 pub use combine::DetailMap;
 pub use curvature::Curvature;
 pub use deformation::Deformation;
-pub use flow::{Flow, Tensor};
-pub use grain::Grain;
+pub use flow::{FlowField, StructureTensor};
+pub use grain::NoiseRelief;
 pub use maps::{Maps, Surface, SurfaceError};
-pub use objects::{Bounded, Objects};
+pub use objects::{Objects, PaintLimit};
 pub use operator::Operator;
-pub use reach::Reach;
 pub use scene::Scene;
+pub use support::SupportBounds;

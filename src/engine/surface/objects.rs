@@ -24,7 +24,7 @@ pub struct ObjectId(u32);
 impl Objects {
     /// Splits a surface: pixels are of one object where a path of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
-        let mut pieces = Pieces::of(surface);
+        let mut pieces = PieceForest::of(surface);
         pieces.join_crumbs(surface);
         pieces.numbered(surface)
     }
@@ -47,14 +47,14 @@ impl Objects {
 }
 
 /// A forest over the pixels: each knows another of its piece that comes before it, the first itself.
-struct Pieces {
+struct PieceForest {
     parent: Vec<u32>,
     /// Of the piece, at its first pixel.
     area: Vec<u32>,
     width: usize,
 }
 
-impl Pieces {
+impl PieceForest {
     fn of(surface: &Surface) -> Self {
         let size = surface.size();
         let mut pieces =
@@ -144,7 +144,7 @@ impl Surface {
 
 /// How far a mark may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Bounded {
+pub enum PaintLimit {
     /// Everywhere.
     #[default]
     Free,
@@ -154,10 +154,10 @@ pub enum Bounded {
     Object,
 }
 
-impl Bounded {
+impl PaintLimit {
     /// Every choice with its name in documents.
-    pub const ALL: [(Bounded, &'static str); 3] =
-        [(Bounded::Free, "free"), (Bounded::Surface, "surface"), (Bounded::Object, "object")];
+    pub const ALL: [(PaintLimit, &'static str); 3] =
+        [(PaintLimit::Free, "free"), (PaintLimit::Surface, "surface"), (PaintLimit::Object, "object")];
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(bounded, _)| *bounded == self).map_or("free", |(_, name)| name)
     }
@@ -165,16 +165,17 @@ impl Bounded {
         Self::ALL.iter().find(|(_, n)| *n == name).map(|(bounded, _)| *bounded)
     }
     /// The part of the canvas that a mark may touch which begins at `start`, canvas px. Without a surface, all of it.
-    pub fn from(self, surface: Option<&Arc<Surface>>, start: Vec2) -> Part {
-        let Some(surface) = surface else { return Part::Whole };
+    pub fn from(self, surface: Option<&Arc<Surface>>, start: Vec2) -> CanvasPart {
+        let Some(surface) = surface else { return CanvasPart::Whole };
         match self {
-            Bounded::Free => Part::Whole,
-            Bounded::Surface => Part::Surface(surface.clone()),
-            Bounded::Object => {
+            PaintLimit::Free => CanvasPart::Whole,
+            PaintLimit::Surface => CanvasPart::Surface(surface.clone()),
+            PaintLimit::Object => {
                 // Off the canvas, and for what is not a number, there is no surface.
                 let pixel = start.floor().as_ivec2();
                 let object = surface.objects().at(pixel.x, pixel.y).filter(|_| start.is_finite());
-                object.map_or(Part::Backdrop(surface.clone()), |object| Part::Object(surface.clone(), object))
+                object
+                    .map_or(CanvasPart::Backdrop(surface.clone()), |object| CanvasPart::Object(surface.clone(), object))
             }
         }
     }
@@ -182,7 +183,7 @@ impl Bounded {
 
 /// A part of the canvas.
 #[derive(Clone)]
-pub enum Part {
+pub enum CanvasPart {
     Whole,
     Surface(Arc<Surface>),
     Object(Arc<Surface>, ObjectId),
@@ -190,15 +191,15 @@ pub enum Part {
     Backdrop(Arc<Surface>),
 }
 
-impl Part {
+impl CanvasPart {
     /// The share of a pixel that is in the part, `[0, 1]`; off the canvas there is no surface.
     pub fn coverage(&self, x: i32, y: i32) -> f32 {
         let covered = |surface: &Surface| surface.coverage_plane().get(x, y).map_or(0.0, |c| f32::from(c) / 255.0);
         match self {
-            Part::Whole => 1.0,
-            Part::Surface(surface) => covered(surface),
-            Part::Backdrop(surface) => 1.0 - covered(surface),
-            Part::Object(surface, object) => {
+            CanvasPart::Whole => 1.0,
+            CanvasPart::Surface(surface) => covered(surface),
+            CanvasPart::Backdrop(surface) => 1.0 - covered(surface),
+            CanvasPart::Object(surface, object) => {
                 if surface.objects().at(x, y) == Some(*object) {
                     covered(surface)
                 } else {
@@ -208,7 +209,7 @@ impl Part {
         }
     }
     pub fn is_whole(&self) -> bool {
-        matches!(self, Part::Whole)
+        matches!(self, CanvasPart::Whole)
     }
 }
 
@@ -259,18 +260,18 @@ mod tests {
         let surface = plate_and_disc();
         // On the disc, on the plate, off the surface, off the canvas.
         let points = [(60, 40), (30, 70), (3, 3), (-4, 200)];
-        let covered = |bounded: Bounded, start: Vec2| {
+        let covered = |bounded: PaintLimit, start: Vec2| {
             let part = bounded.from(Some(&surface), start);
             points.map(|(x, y)| part.coverage(x, y))
         };
         let disc = vec2(60.5, 40.5);
-        assert_eq!(covered(Bounded::Free, disc), [1.0, 1.0, 1.0, 1.0]);
-        assert_eq!(covered(Bounded::Surface, disc), [1.0, 1.0, 0.0, 0.0]);
-        assert_eq!(covered(Bounded::Object, disc), [1.0, 0.0, 0.0, 0.0]);
-        assert_eq!(covered(Bounded::Object, vec2(30.0, 70.0)), [0.0, 1.0, 0.0, 0.0]);
+        assert_eq!(covered(PaintLimit::Free, disc), [1.0, 1.0, 1.0, 1.0]);
+        assert_eq!(covered(PaintLimit::Surface, disc), [1.0, 1.0, 0.0, 0.0]);
+        assert_eq!(covered(PaintLimit::Object, disc), [1.0, 0.0, 0.0, 0.0]);
+        assert_eq!(covered(PaintLimit::Object, vec2(30.0, 70.0)), [0.0, 1.0, 0.0, 0.0]);
         for off in [vec2(3.0, 3.0), vec2(f32::NAN, 3.0), vec2(-1e30, f32::INFINITY)] {
-            assert_eq!(covered(Bounded::Object, off), [0.0, 0.0, 1.0, 1.0], "{off}");
+            assert_eq!(covered(PaintLimit::Object, off), [0.0, 0.0, 1.0, 1.0], "{off}");
         }
-        assert!(Bounded::Object.from(None, disc).is_whole());
+        assert!(PaintLimit::Object.from(None, disc).is_whole());
     }
 }

@@ -9,7 +9,7 @@ use crate::Budget;
 use crate::math::Size;
 use crate::{Error, Result};
 use image::{DynamicImage, metadata::Orientation};
-use sample::Sample;
+use sample::TiffSample;
 use std::io::Cursor;
 use std::path::Path;
 use tiff::decoder::{BufferLayoutPreference, Decoder, DecodingResult, Limits};
@@ -18,7 +18,7 @@ use tiff::{ColorType, TiffError};
 
 /// What the samples of a pixel stand for, those beyond the colours apart.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Meaning {
+enum ColorModel {
     Grey,
     /// Grey, 0 being white.
     Ink,
@@ -28,31 +28,31 @@ enum Meaning {
     YCbCr,
 }
 
-impl Meaning {
+impl ColorModel {
     /// Of the tag's value; `None` for colours that are not read here.
     fn of(photometric: u16) -> Option<Self> {
         Some(match photometric {
-            0 => Meaning::Ink,
-            1 => Meaning::Grey,
-            2 => Meaning::Rgb,
-            3 => Meaning::Palette,
-            5 => Meaning::Cmyk,
-            6 => Meaning::YCbCr,
+            0 => ColorModel::Ink,
+            1 => ColorModel::Grey,
+            2 => ColorModel::Rgb,
+            3 => ColorModel::Palette,
+            5 => ColorModel::Cmyk,
+            6 => ColorModel::YCbCr,
             _ => return None,
         })
     }
     fn colours(self) -> usize {
         match self {
-            Meaning::Grey | Meaning::Ink | Meaning::Palette => 1,
-            Meaning::Rgb | Meaning::YCbCr => 3,
-            Meaning::Cmyk => 4,
+            ColorModel::Grey | ColorModel::Ink | ColorModel::Palette => 1,
+            ColorModel::Rgb | ColorModel::YCbCr => 3,
+            ColorModel::Cmyk => 4,
         }
     }
 }
 
 /// What the sample behind the colours is.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Alpha {
+enum AlphaKind {
     None,
     Straight,
     /// The colours are multiplied by it.
@@ -64,12 +64,12 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let entry = photometric(bytes);
     let entry =
         entry.ok_or_else(|| Error::decode(file, "the TIFF does not tell its colours; it is damaged or cut short"))?;
-    let meaning = Meaning::of(entry.value);
+    let meaning = ColorModel::of(entry.value);
     let others = "its colours are neither grey, indexed, RGB, YCbCr nor CMYK";
     let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
     // The crate reads no palettes and no white 0 with alpha, but would as grey. Their meaning is told here.
     let as_grey = match meaning {
-        Meaning::Palette | Meaning::Ink => Some(entry.with_value(bytes, 1)),
+        ColorModel::Palette | ColorModel::Ink => Some(entry.with_value(bytes, 1)),
         _ => None,
     };
     let failed = |e: TiffError| failure(file, &e);
@@ -89,18 +89,18 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     }
     let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
     let alpha = match extra.first() {
-        _ if samples(color) <= meaning.colours() => Alpha::None,
-        Some(1) => Alpha::Associated,
-        Some(2) => Alpha::Straight,
-        None if meaning == Meaning::Rgb => Alpha::Straight,
-        _ => Alpha::None,
+        _ if samples(color) <= meaning.colours() => AlphaKind::None,
+        Some(1) => AlphaKind::Associated,
+        Some(2) => AlphaKind::Straight,
+        None if meaning == ColorModel::Rgb => AlphaKind::Straight,
+        _ => AlphaKind::None,
     };
     let map = decoder.find_tag_unsigned_vec::<u16>(Tag::ColorMap).ok().flatten().unwrap_or_default();
     let icc = decoder.get_tag_u8_vec(Tag::IccProfile).ok();
     let turned = decoder.find_tag_unsigned::<u8>(Tag::Orientation).ok().flatten().and_then(Orientation::from_exif);
     let mut values = DecodingResult::U8(Vec::new());
     let layout = decoder.read_image_to_buffer(&mut values).map_err(failed)?;
-    let stored = Stored { size, samples: samples(color), bits: color.bit_depth(), layout, meaning, alpha, map };
+    let stored = TiffLayout { size, samples: samples(color), bits: color.bit_depth(), layout, meaning, alpha, map };
     let image = stored.image(values).map_err(|reason| Error::unsupported(file, reason))?;
     let orientation = turned.unwrap_or(Orientation::NoTransforms);
     Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
@@ -186,21 +186,21 @@ fn photometric(bytes: &[u8]) -> Option<Photometric> {
 }
 
 /// How the samples lie, and what they mean.
-struct Stored {
+struct TiffLayout {
     size: Size,
     samples: usize,
     bits: u8,
     layout: BufferLayoutPreference,
-    meaning: Meaning,
-    alpha: Alpha,
+    meaning: ColorModel,
+    alpha: AlphaKind,
     /// Of a palette: all reds, all greens, all blues.
     map: Vec<u16>,
 }
 
-type Refused = &'static str;
+type Refusal = &'static str;
 
-impl Stored {
-    fn image(&self, values: DecodingResult) -> Result<DynamicImage, Refused> {
+impl TiffLayout {
+    fn image(&self, values: DecodingResult) -> Result<DynamicImage, Refusal> {
         use DecodingResult::{F16, F32, F64, U8, U16, U32, U64};
         match values {
             U8(v) if self.bits < 8 => self.picture(self.unpacked(&v)),
@@ -223,27 +223,29 @@ impl Stored {
         let value = |row: &[u8], i: usize| {
             let byte = row.get(i * bits / 8).copied().unwrap_or(0);
             let value = u32::from(byte) >> (8 - bits - i * bits % 8) & most;
-            if self.meaning == Meaning::Palette { value as u8 } else { (value * 255 / most) as u8 }
+            if self.meaning == ColorModel::Palette { value as u8 } else { (value * 255 / most) as u8 }
         };
         packed.chunks(stride).flat_map(|row| (0..in_row).map(move |i| value(row, i))).collect()
     }
-    fn picture<T: Sample>(&self, values: Vec<T>) -> Result<DynamicImage, Refused> {
+    fn picture<T: TiffSample>(&self, values: Vec<T>) -> Result<DynamicImage, Refusal> {
         let pixels = self.gathered(&values).ok_or("this TIFF holds fewer samples than it promises")?;
         drop(values);
         let channels = self.channels();
         match self.meaning {
-            Meaning::Palette => self.looked_up(&pixels),
-            Meaning::YCbCr => T::rgb_of_ycbcr(pixels).and_then(|rgb| T::image(self.size, channels, rgb)),
-            Meaning::Cmyk => T::image(self.size, channels - 1, self.printed(pixels)),
-            Meaning::Grey | Meaning::Ink | Meaning::Rgb => T::image(self.size, channels, self.straight(pixels)),
+            ColorModel::Palette => self.looked_up(&pixels),
+            ColorModel::YCbCr => T::rgb_of_ycbcr(pixels).and_then(|rgb| T::image(self.size, channels, rgb)),
+            ColorModel::Cmyk => T::image(self.size, channels - 1, self.printed(pixels)),
+            ColorModel::Grey | ColorModel::Ink | ColorModel::Rgb => {
+                T::image(self.size, channels, self.straight(pixels))
+            }
         }
         .ok_or("this TIFF stores its colours in a way that is not read")
     }
     fn channels(&self) -> usize {
-        self.meaning.colours() + usize::from(self.alpha != Alpha::None)
+        self.meaning.colours() + usize::from(self.alpha != AlphaKind::None)
     }
     /// The colours and the alpha of each pixel in turn, further samples left out; `None` where there are too few.
-    fn gathered<T: Sample>(&self, values: &[T]) -> Option<Vec<T>> {
+    fn gathered<T: TiffSample>(&self, values: &[T]) -> Option<Vec<T>> {
         let (area, channels) = (self.size.area(), self.channels());
         let values = values.get(..area.checked_mul(self.samples)?)?;
         let at = |i: usize, c: usize| if self.layout.planes > 1 { c * area + i } else { i * self.samples + c };
@@ -252,14 +254,14 @@ impl Stored {
         })
     }
     /// Light, not ink, and not multiplied by alpha.
-    fn straight<T: Sample>(&self, mut pixels: Vec<T>) -> Vec<T> {
+    fn straight<T: TiffSample>(&self, mut pixels: Vec<T>) -> Vec<T> {
         for pixel in pixels.chunks_exact_mut(self.channels()) {
             let (colours, alpha) = pixel.split_at_mut(self.meaning.colours());
             for colour in colours {
-                if self.meaning == Meaning::Ink {
+                if self.meaning == ColorModel::Ink {
                     *colour = colour.inverted();
                 }
-                if let (Alpha::Associated, Some(alpha)) = (self.alpha, alpha.first()) {
+                if let (AlphaKind::Associated, Some(alpha)) = (self.alpha, alpha.first()) {
                     *colour = colour.divided(*alpha);
                 }
             }
@@ -267,7 +269,7 @@ impl Stored {
         pixels
     }
     /// RGB of cyan, magenta, yellow and black, as if they were printed by an ideal press.
-    fn printed<T: Sample>(&self, pixels: Vec<T>) -> Vec<T> {
+    fn printed<T: TiffSample>(&self, pixels: Vec<T>) -> Vec<T> {
         let rgb = |pixel: &[T]| {
             let [c, m, y] = [pixel[0], pixel[1], pixel[2]].map(|ink| ink.inverted().times(pixel[3].inverted()));
             [Some(c), Some(m), Some(y), pixel.get(4).copied()]
@@ -275,7 +277,7 @@ impl Stored {
         self.straight(pixels).chunks_exact(self.channels()).flat_map(rgb).flatten().collect()
     }
     /// The colours that a palette's numbers stand for.
-    fn looked_up<T: Sample>(&self, pixels: &[T]) -> Option<DynamicImage> {
+    fn looked_up<T: TiffSample>(&self, pixels: &[T]) -> Option<DynamicImage> {
         let count = self.map.len() / 3;
         // Some programs wrote bytes where 16 bits are meant.
         let shift = if self.map.iter().any(|v| *v > 255) { 8 } else { 0 };

@@ -4,12 +4,12 @@
 mod descriptor;
 mod presets;
 
-use super::{Imported, Tips};
+use super::{ImportedBrush, TipNames};
 use crate::Budget;
 use crate::math::Size;
 use crate::paint::{Brush, Tip};
-use crate::psd::channel::{Shape, decode_as};
-use crate::psd::cursor::Cursor;
+use crate::psd::channel::{ChannelLayout, decode_as};
+use crate::psd::cursor::ByteCursor;
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
@@ -20,18 +20,25 @@ const MOST: usize = 4096;
 const SPACING: f32 = 0.25;
 
 /// Every brush of a collection. One that is damaged is left out and told of in the notes of the first that is not.
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Imported>> {
-    let mut cursor = Cursor::new(bytes);
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
+    let mut cursor = ByteCursor::new(bytes);
     let cut = || Error::decode(file, "the collection is cut short");
     let (version, second) = (cursor.u16().ok_or_else(cut)?, cursor.u16().ok_or_else(cut)?);
-    let mut reading =
-        Reading { file, budget, used_px: 0, tips: Tips::default(), brushes: Vec::new(), keys: Vec::new(), damaged: 0 };
+    let mut reading = AbrReader {
+        file,
+        budget,
+        used_px: 0,
+        tips: TipNames::default(),
+        brushes: Vec::new(),
+        keys: Vec::new(),
+        damaged: 0,
+    };
     match version {
         1 | 2 => reading.old(&mut cursor, version, usize::from(second))?,
         6 | 7 | 9 | 10 => reading.later(&mut cursor, second)?,
         _ => return Err(Error::unsupported(file, format!("version {version} of Photoshop's brushes"))),
     }
-    let Reading { mut brushes, damaged, .. } = reading;
+    let AbrReader { mut brushes, damaged, .. } = reading;
     let Some(first) = brushes.first_mut() else {
         let reason = if damaged > 0 { "its brushes are damaged" } else { "it holds no sampled tips" };
         return Err(Error::decode(file, reason));
@@ -43,20 +50,20 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Imported>>
 }
 
 /// A collection being read.
-struct Reading<'a> {
+struct AbrReader<'a> {
     file: &'a Path,
     budget: &'a Budget,
     used_px: u64,
-    tips: Tips,
-    brushes: Vec<Imported>,
+    tips: TipNames,
+    brushes: Vec<ImportedBrush>,
     /// What the sampled tips among them are called by, where the version has that.
     keys: Vec<(String, usize)>,
     damaged: usize,
 }
 
-impl Reading<'_> {
+impl AbrReader<'_> {
     /// Versions 1 and 2: a count, then records that say their kind and length.
-    fn old(&mut self, cursor: &mut Cursor, version: u16, count: usize) -> Result<()> {
+    fn old(&mut self, cursor: &mut ByteCursor, version: u16, count: usize) -> Result<()> {
         for _ in 0..count.min(MOST) {
             let Some((kind, record)) = cursor.u16().zip(cursor.section(false)) else {
                 self.damaged += 1;
@@ -71,7 +78,7 @@ impl Reading<'_> {
         Ok(())
     }
     /// A round or elliptic tip made of numbers.
-    fn computed(&mut self, mut record: Cursor) {
+    fn computed(&mut self, mut record: ByteCursor) {
         let mut number = || {
             let value = record.i16()?;
             Some(f32::from(value))
@@ -90,9 +97,9 @@ impl Reading<'_> {
             ..Brush::default()
         };
         let name = format!("Round {diameter}");
-        self.brushes.push(Imported { name, brush, notes: Vec::new() });
+        self.brushes.push(ImportedBrush { name, brush, notes: Vec::new() });
     }
-    fn old_sample(&mut self, mut record: Cursor, version: u16) -> Result<()> {
+    fn old_sample(&mut self, mut record: ByteCursor, version: u16) -> Result<()> {
         let Some((spacing, name)) = old_header(&mut record, version) else {
             self.damaged += 1;
             return Ok(());
@@ -100,7 +107,7 @@ impl Reading<'_> {
         self.sample(&mut record, name, spacing)
     }
     /// Versions 6 and later: blocks, of which one holds all sampled tips and another says what they are called.
-    fn later(&mut self, cursor: &mut Cursor, subversion: u16) -> Result<()> {
+    fn later(&mut self, cursor: &mut ByteCursor, subversion: u16) -> Result<()> {
         // A key of 37 letters, and then what no document tells.
         let before = match subversion {
             1 => 47,
@@ -121,7 +128,7 @@ impl Reading<'_> {
         self.call(said);
         Ok(())
     }
-    fn samples(&mut self, mut block: Cursor, before: usize) -> Result<()> {
+    fn samples(&mut self, mut block: ByteCursor, before: usize) -> Result<()> {
         while !block.rest().is_empty() && self.brushes.len() < MOST {
             let Some(mut record) = padded_section(&mut block) else {
                 self.damaged += 1;
@@ -131,7 +138,7 @@ impl Reading<'_> {
                 self.damaged += 1;
                 continue;
             };
-            let (index, key) = (self.brushes.len(), Cursor::new(head).pascal(1).map(super::text_of));
+            let (index, key) = (self.brushes.len(), ByteCursor::new(head).pascal(1).map(super::text_of));
             self.sample(&mut record, None, SPACING)?;
             if let Some(key) = key.filter(|key| !key.is_empty() && self.brushes.len() > index) {
                 self.keys.push((key, index));
@@ -140,7 +147,7 @@ impl Reading<'_> {
         Ok(())
     }
     /// Brushes by the names they have in the collection, in its order; tips that nobody names come last.
-    fn call(&mut self, said: Vec<presets::Said>) {
+    fn call(&mut self, said: Vec<presets::AbrPreset>) {
         let tips = std::mem::take(&mut self.brushes);
         let mut is_called = vec![false; tips.len()];
         for said in said {
@@ -159,7 +166,7 @@ impl Reading<'_> {
         self.brushes.extend(rest.map(|(tip, _)| tip));
     }
     /// Bounds, depth, compression, values: 0 is bare, the largest covers wholly.
-    fn sample(&mut self, record: &mut Cursor, name: Option<String>, spacing: f32) -> Result<()> {
+    fn sample(&mut self, record: &mut ByteCursor, name: Option<String>, spacing: f32) -> Result<()> {
         let header = record.rect().zip(record.u16()).zip(record.u8());
         let Some(((bounds, bits), compression)) = header.filter(|((_, bits), _)| [8, 16].contains(bits)) else {
             self.damaged += 1;
@@ -181,7 +188,7 @@ impl Reading<'_> {
             Some(picture) => {
                 let name = name.filter(|n| !n.is_empty()).unwrap_or_else(|| self.next_name());
                 let tip = self.tips.add(self.file, picture, &name);
-                self.brushes.push(Imported::stamp(name, tip, spacing));
+                self.brushes.push(ImportedBrush::stamp(name, tip, spacing));
             }
             None => self.damaged += 1,
         }
@@ -195,7 +202,7 @@ impl Reading<'_> {
 }
 
 /// What stands before the pixels of a tip of versions 1 and 2: its spacing, and its name.
-fn old_header(record: &mut Cursor, version: u16) -> Option<(f32, Option<String>)> {
+fn old_header(record: &mut ByteCursor, version: u16) -> Option<(f32, Option<String>)> {
     record.u32()?;
     let spacing = f32::from(record.u16()?.clamp(1, 1000)) / 100.0;
     let name = if version == 2 { Some(utf16(record)?) } else { None };
@@ -205,7 +212,7 @@ fn old_header(record: &mut Cursor, version: u16) -> Option<(f32, Option<String>)
 }
 
 /// A count of letters, then so many of two bytes, the last a NUL.
-fn utf16(record: &mut Cursor) -> Option<String> {
+fn utf16(record: &mut ByteCursor) -> Option<String> {
     let count = usize::try_from(record.u32()?).ok()?;
     let letters = record.take(count.checked_mul(2)?)?;
     let letters: Vec<u16> = letters.as_chunks().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
@@ -214,7 +221,7 @@ fn utf16(record: &mut Cursor) -> Option<String> {
 }
 
 /// The next block and its key.
-fn next_block<'a>(cursor: &mut Cursor<'a>) -> Option<([u8; 4], Cursor<'a>)> {
+fn next_block<'a>(cursor: &mut ByteCursor<'a>) -> Option<([u8; 4], ByteCursor<'a>)> {
     // Some programs fill blocks up to four bytes, some do not.
     let padding = (0..4).find(|n| cursor.rest().get(*n..n + 4) == Some(b"8BIM"))?;
     cursor.take(padding + 4)?;
@@ -222,15 +229,15 @@ fn next_block<'a>(cursor: &mut Cursor<'a>) -> Option<([u8; 4], Cursor<'a>)> {
 }
 
 /// A section filled up to four bytes; the filling of the last may be missing.
-fn padded_section<'a>(block: &mut Cursor<'a>) -> Option<Cursor<'a>> {
+fn padded_section<'a>(block: &mut ByteCursor<'a>) -> Option<ByteCursor<'a>> {
     let section = block.section(false)?;
     let filling = section.rest().len().next_multiple_of(4) - section.rest().len();
     block.take(filling.min(block.rest().len()))?;
     Some(section)
 }
 
-fn sampled(record: &mut Cursor, size: Size, bits: u16, compression: u8) -> Option<Picture> {
-    let shape = Shape { width: size.width as usize, height: size.height as usize, bits, large: false };
+fn sampled(record: &mut ByteCursor, size: Size, bits: u16, compression: u8) -> Option<Picture> {
+    let shape = ChannelLayout { width: size.width as usize, height: size.height as usize, bits, large: false };
     // Of Photoshop's channels a tip knows only plain rows and run lengths.
     let values = (compression < 2).then(|| decode_as(record, shape, u16::from(compression)))??;
     Picture::srgb8(size, values.into_iter().map(|v| [v, v, v, 255]).collect())

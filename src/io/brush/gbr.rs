@@ -1,16 +1,16 @@
 //! GIMP's brushes, versions 1 to 3: a picture of coverage or of colours, a name, a spacing.
 //! Floor 5.
 
-use super::{Imported, Tips, text_of};
+use super::{ImportedBrush, TipNames, text_of};
 use crate::Budget;
 use crate::math::Size;
-use crate::psd::cursor::Cursor;
+use crate::psd::cursor::ByteCursor;
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
 
 /// One brush of a file.
-pub struct Stamp {
+pub struct GbrBrush {
     pub name: String,
     pub picture: Picture,
     /// Of the longer side; GIMP's own default where the file is older than spacings.
@@ -26,16 +26,16 @@ pub fn is_gbr(bytes: &[u8]) -> bool {
     bytes.get(20..24) == Some(&MAGIC)
 }
 
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Imported> {
-    let mut cursor = Cursor::new(bytes);
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush> {
+    let mut cursor = ByteCursor::new(bytes);
     let stamp = next(file, &mut cursor, budget)?;
-    let mut tips = Tips::default();
+    let mut tips = TipNames::default();
     let tip = tips.add(file, stamp.picture, &stamp.name);
-    Ok(Imported::stamp(stamp.name, tip, stamp.spacing))
+    Ok(ImportedBrush::stamp(stamp.name, tip, stamp.spacing))
 }
 
 /// The brush at the cursor, which then stands behind it.
-pub fn next(file: &Path, cursor: &mut Cursor, budget: &Budget) -> Result<Stamp> {
+pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<GbrBrush> {
     let cut = || Error::decode(file, "the brush is cut short");
     let start = cursor.rest().len();
     let mut number = || cursor.u32().ok_or_else(cut);
@@ -54,18 +54,18 @@ pub fn next(file: &Path, cursor: &mut Cursor, budget: &Budget) -> Result<Stamp> 
     let size = budget.size(file, u64::from(width), u64::from(height))?;
     let name = (header as usize).checked_sub(start - cursor.rest().len()).and_then(|n| cursor.take(n));
     let name = text_of(name.ok_or_else(cut)?);
-    let depth = Depth::of(version, kind).ok_or_else(|| {
+    let depth = GbrDepth::of(version, kind).ok_or_else(|| {
         Error::unsupported(file, format!("a GIMP brush of version {version} with {kind} bytes a pixel"))
     })?;
     let texels = texels(cursor.take(size.area() * depth.bytes()).ok_or_else(cut)?, depth);
     let texels = colored(cursor, size, &texels).unwrap_or(texels);
     let picture = Picture::srgb8(size, texels).ok_or_else(cut)?;
-    Ok(Stamp { name, picture, spacing })
+    Ok(GbrBrush { name, picture, spacing })
 }
 
 /// How a pixel is stored.
 #[derive(Clone, Copy, PartialEq)]
-enum Depth {
+enum GbrDepth {
     /// A byte of coverage.
     Grey,
     /// Straight colours.
@@ -74,31 +74,31 @@ enum Depth {
     Half,
 }
 
-impl Depth {
+impl GbrDepth {
     fn of(version: u32, kind: u32) -> Option<Self> {
         match (version, kind) {
-            (1 | 2, 1) => Some(Depth::Grey),
-            (1 | 2, 4) => Some(Depth::Rgba),
-            (3, 18) => Some(Depth::Half),
+            (1 | 2, 1) => Some(GbrDepth::Grey),
+            (1 | 2, 4) => Some(GbrDepth::Rgba),
+            (3, 18) => Some(GbrDepth::Half),
             _ => None,
         }
     }
     fn bytes(self) -> usize {
         match self {
-            Depth::Grey => 1,
-            Depth::Half => 2,
-            Depth::Rgba => 4,
+            GbrDepth::Grey => 1,
+            GbrDepth::Half => 2,
+            GbrDepth::Rgba => 4,
         }
     }
 }
 
 /// Coverage becomes an opaque grey, which is how tips tell it from colours.
-fn texels(bytes: &[u8], depth: Depth) -> Vec<[u8; 4]> {
+fn texels(bytes: &[u8], depth: GbrDepth) -> Vec<[u8; 4]> {
     let grey = |v: u8| [v, v, v, 255];
     match depth {
-        Depth::Grey => bytes.iter().map(|&v| grey(v)).collect(),
-        Depth::Rgba => bytes.as_chunks().0.to_vec(),
-        Depth::Half => {
+        GbrDepth::Grey => bytes.iter().map(|&v| grey(v)).collect(),
+        GbrDepth::Rgba => bytes.as_chunks().0.to_vec(),
+        GbrDepth::Half => {
             let value = |&[high, low]: &[u8; 2]| f32::from_be_bytes([high, low, 0, 0]);
             let byte = |v: f32| (v.max(0.0).min(1.0) * 255.0 + 0.5) as u8;
             bytes.as_chunks().0.iter().map(|half| grey(byte(value(half)))).collect()
@@ -107,7 +107,7 @@ fn texels(bytes: &[u8], depth: Depth) -> Vec<[u8; 4]> {
 }
 
 /// A grey brush in the colours of the pattern at the cursor, if a pattern of its size stands there.
-fn colored(cursor: &mut Cursor, size: Size, coverage: &[[u8; 4]]) -> Option<Vec<[u8; 4]>> {
+fn colored(cursor: &mut ByteCursor, size: Size, coverage: &[[u8; 4]]) -> Option<Vec<[u8; 4]>> {
     let mut ahead = *cursor;
     let start = ahead.rest().len();
     let [header, _, width, height, channels] = [ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?, ahead.u32()?];

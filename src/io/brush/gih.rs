@@ -1,10 +1,10 @@
 //! GIMP's image hoses: two lines of text, then brushes one after the other.
 //! Floor 5.
 
-use super::{Imported, Tips, gbr, text_of};
+use super::{ImportedBrush, TipNames, gbr, text_of};
 use crate::Budget;
-use crate::paint::tip::{Hose, Rank, Select};
-use crate::psd::cursor::Cursor;
+use crate::paint::tip::{Hose, HoseRank, RankSelect};
+use crate::psd::cursor::ByteCursor;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -13,7 +13,7 @@ const MOST: usize = 1024;
 /// GIMP's own ceiling.
 const MOST_RANKS: usize = 4;
 
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Imported> {
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush> {
     let mut lines = bytes.splitn(3, |b| *b == b'\n');
     let (name, description) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
     let (name, description) = (text_of(name), text_of(description));
@@ -23,8 +23,8 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Imported> {
     if count > MOST {
         return Err(Error::too_large(file, format!("{count} pictures; a hose may have {MOST}")));
     }
-    let mut cursor = Cursor::new(lines.next().unwrap_or_default());
-    let (mut tips, mut pictures, mut spacing, mut used) = (Tips::default(), Vec::new(), 0.0f32, 0);
+    let mut cursor = ByteCursor::new(lines.next().unwrap_or_default());
+    let (mut tips, mut pictures, mut spacing, mut used) = (TipNames::default(), Vec::new(), 0.0f32, 0);
     for i in 0..count {
         let stamp = gbr::next(file, &mut cursor, budget)?;
         used += stamp.picture.size.area() as u64;
@@ -37,30 +37,30 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Imported> {
     }
     let mut notes = Vec::new();
     let ranks = ranks(words, count, &mut notes);
-    Ok(Imported { notes, ..Imported::hose(name, Hose::new(pictures, ranks), spacing) })
+    Ok(ImportedBrush { notes, ..ImportedBrush::hose(name, Hose::new(pictures, ranks), spacing) })
 }
 
 /// `rank0:4 sel0:angular rank1:2 sel1:random …`; one that says nothing of use runs through its pictures.
-fn ranks<'a>(words: impl Iterator<Item = &'a str>, count: usize, notes: &mut Vec<String>) -> Vec<Rank> {
-    let mut ranks = [Rank { count: 0, select: Select::Incremental }; MOST_RANKS];
+fn ranks<'a>(words: impl Iterator<Item = &'a str>, count: usize, notes: &mut Vec<String>) -> Vec<HoseRank> {
+    let mut ranks = [HoseRank { count: 0, select: RankSelect::Incremental }; MOST_RANKS];
     for (key, value) in words.filter_map(|word| word.split_once(':')) {
         let place = |key: &str, stem: &str| key.strip_prefix(stem)?.parse::<usize>().ok().filter(|i| *i < MOST_RANKS);
         if let Some(i) = place(key, "rank") {
             ranks[i].count = value.parse().unwrap_or(0);
         } else if let Some(i) = place(key, "sel") {
-            ranks[i].select = Select::named(value).unwrap_or_else(|| {
+            ranks[i].select = RankSelect::named(value).unwrap_or_else(|| {
                 notes.push(format!("Pictures chosen by “{value}” are chosen one after the other"));
-                Select::Incremental
+                RankSelect::Incremental
             });
         }
     }
-    let ranks: Vec<Rank> = ranks.into_iter().filter(|rank| rank.count > 0).collect();
+    let ranks: Vec<HoseRank> = ranks.into_iter().filter(|rank| rank.count > 0).collect();
     let product = ranks.iter().try_fold(1usize, |n, rank| n.checked_mul(rank.count as usize));
     if ranks.is_empty() || product.is_none_or(|n| n > count) {
         if !ranks.is_empty() {
             notes.push("Its ranks ask for more pictures than it holds; they follow one after the other".into());
         }
-        return vec![Rank { count: count as u32, select: Select::Incremental }];
+        return vec![HoseRank { count: count as u32, select: RankSelect::Incremental }];
     }
     ranks
 }

@@ -29,7 +29,7 @@ use std::path::Path;
 
 /// A brush that was read from another program's file.
 #[derive(Clone)]
-pub struct Imported {
+pub struct ImportedBrush {
     /// As it is called there; not empty.
     pub name: String,
     pub brush: Brush,
@@ -39,7 +39,7 @@ pub struct Imported {
 
 /// Whose file it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum BrushFormat {
     GimpBrush,
     GimpHose,
     MyPaint,
@@ -47,42 +47,46 @@ pub enum Kind {
 }
 
 /// Endings of the files that hold brushes.
-pub const ENDINGS: [(&str, Kind); 4] =
-    [("gbr", Kind::GimpBrush), ("gih", Kind::GimpHose), ("myb", Kind::MyPaint), ("abr", Kind::Photoshop)];
+pub const EXTENSIONS: [(&str, BrushFormat); 4] = [
+    ("gbr", BrushFormat::GimpBrush),
+    ("gih", BrushFormat::GimpHose),
+    ("myb", BrushFormat::MyPaint),
+    ("abr", BrushFormat::Photoshop),
+];
 
-impl Kind {
+impl BrushFormat {
     /// By the content where that tells, else by the ending: most of these formats begin with nothing but numbers.
     pub fn of(file: &Path, bytes: &[u8]) -> Option<Self> {
         if gbr::is_gbr(bytes) {
-            return Some(Kind::GimpBrush);
+            return Some(BrushFormat::GimpBrush);
         }
-        let ending = file.extension()?.to_string_lossy().to_lowercase();
-        ENDINGS.iter().find(|(known, _)| *known == ending).map(|(_, kind)| *kind)
+        let extension = file.extension()?.to_string_lossy().to_lowercase();
+        EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|(_, kind)| *kind)
     }
     /// What such a file is called.
     pub fn name(self) -> &'static str {
         match self {
-            Kind::GimpBrush => "GIMP brush",
-            Kind::GimpHose => "GIMP image hose",
-            Kind::MyPaint => "MyPaint brush",
-            Kind::Photoshop => "Photoshop brushes",
+            BrushFormat::GimpBrush => "GIMP brush",
+            BrushFormat::GimpHose => "GIMP image hose",
+            BrushFormat::MyPaint => "MyPaint brush",
+            BrushFormat::Photoshop => "Photoshop brushes",
         }
     }
 }
 
 /// The brushes of a file, in its order; at least one. Fails with a sentence where the file is of none of these formats,
 /// damaged beyond use, or larger than the budget allows.
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Imported>> {
-    match Kind::of(file, bytes) {
-        Some(Kind::GimpBrush) => gbr::read(file, bytes, budget).map(|brush| vec![brush]),
-        Some(Kind::GimpHose) => gih::read(file, bytes, budget).map(|brush| vec![brush]),
-        Some(Kind::MyPaint) => myb::read(file, bytes, budget).map(|brush| vec![brush]),
-        Some(Kind::Photoshop) => abr::read(file, bytes, budget),
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
+    match BrushFormat::of(file, bytes) {
+        Some(BrushFormat::GimpBrush) => gbr::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(BrushFormat::GimpHose) => gih::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(BrushFormat::MyPaint) => myb::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(BrushFormat::Photoshop) => abr::read(file, bytes, budget),
         None => Err(Error::unsupported(file, "it ends in none of .gbr, .gih, .myb and .abr")),
     }
 }
 
-impl Imported {
+impl ImportedBrush {
     /// A brush that stamps one picture as large as it is. `spacing`: of the longer side.
     fn stamp(name: String, tip: PictureSource, spacing: f32) -> Self {
         let size = tip.picture.size.longer_side();
@@ -101,11 +105,11 @@ impl Imported {
 
 /// Names for the pictures of tips: each once, plain letters only, so that every system can hold such a file.
 #[derive(Default)]
-struct Tips {
+struct TipNames {
     taken: BTreeSet<String>,
 }
 
-impl Tips {
+impl TipNames {
     /// `name`: of the brush; where it has no letters of use the file's own stands in.
     fn add(&mut self, file: &Path, picture: Picture, name: &str) -> PictureSource {
         let of_file = || plain(&file.file_stem().unwrap_or_default().to_string_lossy());

@@ -3,17 +3,17 @@
 
 mod curves;
 
-use super::Imported;
+use super::ImportedBrush;
 use crate::Budget;
 use crate::json;
 use crate::paint::brush::Stabilizer;
 use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
 use crate::paint::{Brush, Tip};
 use crate::{Error, Result};
-use curves::{Driven, Setting, Settings};
+use curves::{DrivenSetting, MyPaintSetting, MyPaintSettings};
 use std::path::Path;
 
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Imported> {
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush> {
     if !bytes.trim_ascii_start().starts_with(b"{") {
         return Err(Error::unsupported(file, "a MyPaint brush that is not JSON; versions before 3 are not read"));
     }
@@ -26,15 +26,15 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Imported> {
     let Some(settings) = value.get("settings").and_then(serde_json::Value::as_object) else {
         return Err(Error::decode(file, "it holds no settings"));
     };
-    let mut settings = Settings::new(settings);
+    let mut settings = MyPaintSettings::new(settings);
     let brush = brush(&mut settings);
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let name = if name.is_empty() { "Brush".to_owned() } else { name };
     let notes = settings.into_notes();
-    Ok(Imported { name, brush, notes })
+    Ok(ImportedBrush { name, brush, notes })
 }
 
-fn brush(settings: &mut Settings) -> Brush {
+fn brush(settings: &mut MyPaintSettings) -> Brush {
     let size = settings.driven("radius_logarithmic", 2.0, |v| 2.0 * v.clamp(-2.0, 8.0).exp());
     let hardness = settings.driven("hardness", 0.8, hardness_of);
     let scatter = settings.driven("offset_by_random", 0.0, |v| v.clamp(0.0, 10.0));
@@ -79,7 +79,7 @@ fn hardness_of(hardness: f32) -> f32 {
 }
 
 /// Dabs a radius, of the brush and of the dab, as a share of the diameter.
-fn spacing(settings: &mut Settings) -> f32 {
+fn spacing(settings: &mut MyPaintSettings) -> f32 {
     let (actual, basic) = (settings.plain("dabs_per_actual_radius", 2.0), settings.plain("dabs_per_basic_radius", 0.0));
     if settings.plain("dabs_per_second", 0.0) > 0.0 {
         settings.note("Dabs that follow the clock are left out; dabs follow the way alone");
@@ -89,7 +89,7 @@ fn spacing(settings: &mut Settings) -> f32 {
 }
 
 /// How much one dab covers: MyPaint's opacity is the stroke's where dabs overlap, to the degree of `opaque_linearize`.
-fn flow(settings: &mut Settings, spacing: f32, dynamics: Dynamics) -> (f32, Dynamics) {
+fn flow(settings: &mut MyPaintSettings, spacing: f32, dynamics: Dynamics) -> (f32, Dynamics) {
     let unit = |v: f32| v.clamp(0.0, 1.0);
     let (opaque, times) = (settings.driven("opaque", 1.0, unit), settings.opaque_multiply());
     let most = unit(opaque.most * times.most);
@@ -100,7 +100,7 @@ fn flow(settings: &mut Settings, spacing: f32, dynamics: Dynamics) -> (f32, Dyna
     (flow, with(with(dynamics, Property::Flow, &opaque), Property::Flow, &times))
 }
 
-fn ellipse(settings: &mut Settings, dynamics: Dynamics) -> (Tip, f32, Dynamics) {
+fn ellipse(settings: &mut MyPaintSettings, dynamics: Dynamics) -> (Tip, f32, Dynamics) {
     let ratio = settings.driven("elliptical_dab_ratio", 1.0, |v| v.max(1.0));
     let angle = settings.setting("elliptical_dab_angle", 90.0);
     if ratio.most <= 1.001 {
@@ -125,7 +125,7 @@ fn ellipse(settings: &mut Settings, dynamics: Dynamics) -> (Tip, f32, Dynamics) 
 }
 
 /// Colours that change at random from dab to dab.
-fn jitter(settings: &mut Settings) -> crate::paint::brush::Jitter {
+fn jitter(settings: &mut MyPaintSettings) -> crate::paint::brush::ColorJitter {
     let mut farthest = |name: &'static str| {
         let setting = settings.setting(name, 0.0);
         for (input, _) in setting.inputs.iter().filter(|(input, _)| input != "random") {
@@ -137,7 +137,7 @@ fn jitter(settings: &mut Settings) -> crate::paint::brush::Jitter {
         let random = setting.inputs.iter().filter(|(input, _)| input == "random").flat_map(|(_, curve)| curve);
         random.map(|p| p.y.abs()).fold(0.0, f32::max)
     };
-    crate::paint::brush::Jitter {
+    crate::paint::brush::ColorJitter {
         hue_degrees: (360.0 * farthest("change_color_h")).min(180.0),
         saturation: farthest("change_color_hsv_s").min(1.0),
         value: farthest("change_color_v").min(1.0),
@@ -145,23 +145,23 @@ fn jitter(settings: &mut Settings) -> crate::paint::brush::Jitter {
 }
 
 /// With the rows of one setting; where an input drives a property twice, both count.
-fn with(dynamics: Dynamics, property: Property, driven: &Driven) -> Dynamics {
+fn with(dynamics: Dynamics, property: Property, driven: &DrivenSetting) -> Dynamics {
     driven.rows.iter().fold(dynamics, |dynamics, (input, curve)| {
         let both = dynamics.curve(property, *input).and_then(|known| curves::product(known, curve));
         dynamics.with(property, *input, both.unwrap_or_else(|| curve.clone()))
     })
 }
 
-impl Settings<'_> {
+impl MyPaintSettings<'_> {
     /// What `opaque` is multiplied by: the pressure, where a file does not say.
-    fn opaque_multiply(&mut self) -> Driven {
+    fn opaque_multiply(&mut self) -> DrivenSetting {
         if self.has("opaque_multiply") {
             return self.driven("opaque_multiply", 0.0, |v| v.clamp(0.0, 2.0));
         }
-        Driven { most: 1.0, rows: vec![(Input::Pressure, Curve::Share(1.0))] }
+        DrivenSetting { most: 1.0, rows: vec![(Input::Pressure, Curve::Share(1.0))] }
     }
     fn plain(&mut self, name: &'static str, default: f32) -> f32 {
-        let Setting { base, inputs } = self.setting(name, default);
+        let MyPaintSetting { base, inputs } = self.setting(name, default);
         if !inputs.is_empty() {
             self.note(&format!("“{name}” follows nothing here"));
         }

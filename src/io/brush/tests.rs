@@ -3,13 +3,13 @@
 use super::*;
 use crate::math::hash;
 use crate::paint::dynamics::{Input, Property};
-use crate::paint::tip::Select;
+use crate::paint::tip::RankSelect;
 use crate::raster::picture::Texels;
 
 fn budget() -> Budget {
     Budget::default()
 }
-fn only(file: &str, bytes: &[u8]) -> Imported {
+fn only(file: &str, bytes: &[u8]) -> ImportedBrush {
     let mut brushes = read(Path::new(file), bytes, &budget()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(brushes.len(), 1);
     brushes.remove(0)
@@ -24,7 +24,7 @@ fn texels(source: &PictureSource) -> Vec<[u8; 4]> {
     }
 }
 /// The pictures of its tip.
-fn tips(imported: &Imported) -> Vec<PictureSource> {
+fn tips(imported: &ImportedBrush) -> Vec<PictureSource> {
     imported.brush.pictures().cloned().collect()
 }
 fn words(numbers: &[u32]) -> Vec<u8> {
@@ -83,12 +83,12 @@ fn a_hose_keeps_its_pictures_and_its_rule() {
     assert_eq!((brush.name.as_str(), brush.brush.spacing, brush.brush.size), ("Leaves", 0.5, 4.0));
     let Tip::Hose(hose) = &brush.brush.tip else { panic!("a hose") };
     let ranks: Vec<_> = hose.ranks().iter().map(|rank| (rank.count, rank.select)).collect();
-    assert_eq!(ranks, [(2, Select::Angular), (2, Select::Random)]);
+    assert_eq!(ranks, [(2, RankSelect::Angular), (2, RankSelect::Random)]);
     assert_eq!(hose.pictures()[3].file, "leaves-4.png");
     assert_eq!(texels(&hose.pictures()[2])[0], [120, 120, 120, 255]);
     let bare = [b"x\n2\n".to_vec(), gbr("a", 1, 1, 1, 9, &[1]), gbr("b", 1, 1, 1, 9, &[2])].concat();
     let Tip::Hose(hose) = only("b.gih", &bare).brush.tip else { panic!("a hose") };
-    assert_eq!((hose.ranks()[0].count, hose.ranks()[0].select), (2, Select::Incremental));
+    assert_eq!((hose.ranks()[0].count, hose.ranks()[0].select), (2, RankSelect::Incremental));
 }
 
 const MYB: &str = r#"{ "version": 3, "group": "", "settings": {
@@ -107,7 +107,7 @@ const MYB: &str = r#"{ "version": 3, "group": "", "settings": {
 
 #[test]
 fn a_mypaint_brush_becomes_numbers_and_curves_and_tells_what_it_could_not() {
-    let Imported { name, brush, notes } = only("ink blot.myb", MYB.as_bytes());
+    let ImportedBrush { name, brush, notes } = only("ink blot.myb", MYB.as_bytes());
     assert_eq!(name, "ink blot");
     let size = |pressure: f32| brush.size * brush.dynamics.curve(Property::Size, Input::Pressure).unwrap().at(pressure);
     for (pressure, log) in [(0.0f32, 1.8f32), (0.5, 2.3), (1.0, 2.8)] {
@@ -285,7 +285,7 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
                     bytes.push(0);
                 }
             }
-            for Imported { name, brush, .. } in read(Path::new(file), &bytes, &small).into_iter().flatten() {
+            for ImportedBrush { name, brush, .. } in read(Path::new(file), &bytes, &small).into_iter().flatten() {
                 assert!(!name.is_empty());
                 let numbers = [brush.size, brush.hardness, brush.flow, brush.spacing, brush.rotation, brush.scatter];
                 assert!(numbers.iter().all(|v| v.is_finite()), "{file}, round {round}");

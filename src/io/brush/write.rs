@@ -9,7 +9,7 @@ use crate::raster::Asset;
 use crate::raster::picture::Texels;
 use crate::recipe::{Preset, write_preset};
 use crate::{Error, Result};
-use crate::{Over, exr, save};
+use crate::{Overwrite, exr, save};
 use std::path::Path;
 
 /// Writes a preset to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder. The preset with these names.
@@ -20,8 +20,8 @@ pub fn write(file: &Path, preset: &Preset) -> Result<Preset> {
     let mut number = 0;
     let brush = preset.brush.with_pictures(|source| {
         number += 1;
-        let (bytes, ending) = encoded(file, source)?;
-        let name = if number == 1 { format!("{stem}.{ending}") } else { format!("{stem}.{number}.{ending}") };
+        let (bytes, extension) = encoded(file, source)?;
+        let name = if number == 1 { format!("{stem}.{extension}") } else { format!("{stem}.{number}.{extension}") };
         replace(&file.with_file_name(&name), bytes.bytes())?;
         Ok::<_, Error>(PictureSource::new(name, source.picture.clone(), source.adjust))
     })?;
@@ -56,5 +56,5 @@ fn encoded(file: &Path, source: &PictureSource) -> Result<(Asset, &'static str)>
 
 fn replace(file: &Path, bytes: &[u8]) -> Result<()> {
     // Nothing here cancels.
-    save::replace(&Disk, file, bytes, Over::Anything, &Progress::default()).map(|_| ())
+    save::replace(&Disk, file, bytes, Overwrite::Anything, &Progress::default()).map(|_| ())
 }

@@ -1,7 +1,7 @@
 //! Pictures of more than 8 bits: PNG and TIFF of 16, EXR of half floats, from what was composed without rounding.
 //! Floor 5.
 
-use super::{Format, Options, png};
+use super::{ExportFormat, ExportOptions, png};
 use crate::math::{Size, srgb};
 use crate::{Error, Result};
 use image::DynamicImage;
@@ -11,7 +11,13 @@ use std::path::Path;
 /// The bytes of a picture file, of pixels as [`crate::document::flatten_deep`] gives them; `file` is for messages.
 ///
 /// Fails for formats of 8 bits.
-pub fn encode(file: &Path, format: Format, pixels: &[[f32; 4]], canvas: Size, options: &Options) -> Result<Vec<u8>> {
+pub fn encode(
+    file: &Path,
+    format: ExportFormat,
+    pixels: &[[f32; 4]],
+    canvas: Size,
+    options: &ExportOptions,
+) -> Result<Vec<u8>> {
     let rect = options.crop.map_or(canvas.rect(), |crop| crop.intersect(canvas.rect()));
     if rect.is_empty() || pixels.len() != canvas.area() {
         return Err(Error::unsupported(file, "the part to be written holds no pixels"));
@@ -22,17 +28,17 @@ pub fn encode(file: &Path, format: Format, pixels: &[[f32; 4]], canvas: Size, op
     let under = options.background.map_or([0.0; 4], |color| color.premultiplied());
     let part: Vec<[f32; 4]> = part.map(|&[r, g, b, a]| over([r, g, b, a], under)).collect();
     match format {
-        Format::Png => {
+        ExportFormat::Png => {
             let values: Vec<u8> = part.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
             png(&values, size, png::BitDepth::Sixteen, options).map_err(|e| Error::unsupported(file, e))
         }
-        Format::Tiff => {
+        ExportFormat::Tiff => {
             let values = part.iter().flat_map(straight16).collect();
             let image = image::ImageBuffer::from_raw(size.width, size.height, values);
             tiff(file, image.map(DynamicImage::ImageRgba16))
         }
-        Format::Exr => exr(size, |i| light(&part[i])).map_err(|e| Error::unsupported(file, e)),
-        Format::Jpeg | Format::WebP => {
+        ExportFormat::Exr => exr(size, |i| light(&part[i])).map_err(|e| Error::unsupported(file, e)),
+        ExportFormat::Jpeg | ExportFormat::WebP => {
             Err(Error::unsupported(file, "this format has 8 bits a channel; PNG, TIFF and EXR have more"))
         }
     }
@@ -97,8 +103,8 @@ mod tests {
     #[test]
     fn sixteen_bits_keep_what_eight_would_round() {
         let (pixels, size) = ramp();
-        for (format, name) in [(Format::Png, "a.png"), (Format::Tiff, "a.tif")] {
-            let bytes = encode(Path::new(name), format, &pixels, size, &Options::default()).unwrap();
+        for (format, name) in [(ExportFormat::Png, "a.png"), (ExportFormat::Tiff, "a.tif")] {
+            let bytes = encode(Path::new(name), format, &pixels, size, &ExportOptions::default()).unwrap();
             let image = image::load_from_memory(&bytes).unwrap().to_rgba16();
             let [r, g, b, a] = image.get_pixel(100, 1).0;
             assert_eq!([r, g, b, a], [(100.0 / 511.0 * 65535.0f32).round() as u16, 32768, 0, 32768], "{name}");
@@ -107,8 +113,8 @@ mod tests {
     #[test]
     fn an_exr_holds_linear_light_of_the_part_that_was_asked_for() {
         let (pixels, size) = ramp();
-        let options = Options { crop: Some(Rect::new(100, 1, 200, 9)), ..Options::default() };
-        let bytes = encode(Path::new("a.exr"), Format::Exr, &pixels, size, &options).unwrap();
+        let options = ExportOptions { crop: Some(Rect::new(100, 1, 200, 9)), ..ExportOptions::default() };
+        let bytes = encode(Path::new("a.exr"), ExportFormat::Exr, &pixels, size, &options).unwrap();
         let read = picture::decode(Path::new("a.exr"), &bytes, &Budget::default()).unwrap();
         assert_eq!(read.size, Size::new(100, 1));
         let expected = srgb::decode(150.0 / 511.0);

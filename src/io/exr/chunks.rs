@@ -18,12 +18,12 @@ use std::{ops::Range, path::Path};
 #[derive(Clone, Debug)]
 pub struct Chunk {
     pub part: usize,
-    place: Place,
+    place: ChunkPlace,
     bytes: Range<usize>,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Place {
+enum ChunkPlace {
     /// The top row, in the file's own coordinates.
     Rows { y: i32 },
     /// A tile of the full resolution.
@@ -31,12 +31,12 @@ enum Place {
 }
 
 /// Little-endian figures read one after another.
-struct Words<'a> {
+struct WordReader<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl Words<'_> {
+impl WordReader<'_> {
     fn next(&mut self) -> Option<i32> {
         let word = self.bytes.get(self.at..)?.first_chunk::<4>()?;
         self.at += 4;
@@ -53,7 +53,7 @@ pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Re
     if tables > bytes.len() {
         return Err(Error::decode(file, format!("the EXR promises {total} chunks but ends at byte {}", bytes.len())));
     }
-    let mut words = Words { bytes, at: tables };
+    let mut words = WordReader { bytes, at: tables };
     let mut seen: Vec<Vec<bool>> = meta.headers.iter().map(|h| vec![false; full_blocks(h)]).collect();
     let mut chunks = Vec::new();
     for number in 0..total {
@@ -69,7 +69,7 @@ pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Re
         let (place, block) = match header.blocks {
             BlockDescription::ScanLines => {
                 let y = words.next().ok_or_else(cut)?;
-                (Some(Place::Rows { y }), scan_block(header, y).ok_or_else(bad)?)
+                (Some(ChunkPlace::Rows { y }), scan_block(header, y).ok_or_else(bad)?)
             }
             BlockDescription::Tiles(_) => {
                 let mut at = [0; 4];
@@ -79,7 +79,7 @@ pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Re
                 let [x, y, level_x, level_y] = at;
                 let full = level_x == 0 && level_y == 0;
                 let block = if full { tile_block(header, x, y).ok_or_else(bad)? } else { 0 };
-                (full.then_some(Place::Tile { x, y }), block)
+                (full.then_some(ChunkPlace::Tile { x, y }), block)
             }
         };
         let length = usize::try_from(words.next().ok_or_else(cut)?).map_err(|_| bad())?;
@@ -169,10 +169,10 @@ pub fn decode(
 fn crate_chunk(chunk: &Chunk, body: &[u8]) -> CrateChunk {
     let compressed_pixels_le = body.to_vec();
     let compressed_block = match chunk.place {
-        Place::Rows { y } => {
+        ChunkPlace::Rows { y } => {
             CompressedBlock::ScanLine(CompressedScanLineBlock { y_coordinate: y, compressed_pixels_le })
         }
-        Place::Tile { x, y } => CompressedBlock::Tile(CompressedTileBlock {
+        ChunkPlace::Tile { x, y } => CompressedBlock::Tile(CompressedTileBlock {
             coordinates: TileCoordinates { tile_index: Vec2(x, y), level_index: Vec2(0, 0) },
             compressed_pixels_le,
         }),

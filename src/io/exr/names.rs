@@ -1,7 +1,7 @@
 //! How EXR channels are called: `layer.channel` names split at the last dot, parts as layers.
 //! Floor 5.
 
-use super::Channel;
+use super::ExrChannel;
 use exr::meta::MetaData;
 use exr::meta::attribute::{SampleType, Text};
 
@@ -26,7 +26,7 @@ const SUFFIXES: [(&str, char); 15] = [
 
 /// Channels that belong together: `ViewLayer.Normal` with its X, Y and Z.
 #[derive(Clone, Debug)]
-pub struct Pass {
+pub struct ExrPass {
     /// Empty for the channels without a layer.
     pub name: String,
     /// Letter of each channel, in the file's order; `None` for names beyond the known ones.
@@ -35,7 +35,7 @@ pub struct Pass {
     pub channels: Vec<usize>,
 }
 
-impl Pass {
+impl ExrPass {
     /// The channels with these lower-case letters, or `None` where one is missing.
     pub fn letters(&self, letters: &str) -> Option<Vec<usize>> {
         let find = |c: char| self.suffixes.iter().position(|s| *s == Some(c)).map(|i| self.channels[i]);
@@ -55,7 +55,7 @@ fn text(name: &Text) -> String {
 
 /// Every channel of every part. A part's name leads a channel's where the channel alone has no layer, or where two parts
 /// have a channel of that name.
-pub fn channels(meta: &MetaData) -> Vec<Channel> {
+pub fn channels(meta: &MetaData) -> Vec<ExrChannel> {
     let several = meta.headers.len() > 1;
     let all = || meta.headers.iter().flat_map(|h| h.channels.list.iter().map(|c| text(&c.name)));
     let mut out = Vec::new();
@@ -70,15 +70,15 @@ pub fn channels(meta: &MetaData) -> Vec<Channel> {
                 SampleType::F32 => "float",
                 SampleType::U32 => "uint",
             };
-            out.push(Channel { name, kind, part, index });
+            out.push(ExrChannel { name, kind, part, index });
         }
     }
     out
 }
 
 /// Groups channels by what stands before the last dot; a name whose end is no known suffix is a pass by itself.
-pub fn passes(channels: &[Channel]) -> Vec<Pass> {
-    let mut out: Vec<Pass> = Vec::new();
+pub fn passes(channels: &[ExrChannel]) -> Vec<ExrPass> {
+    let mut out: Vec<ExrPass> = Vec::new();
     for (i, channel) in channels.iter().enumerate() {
         let (layer, end) = channel.name.rsplit_once('.').unwrap_or(("", &channel.name));
         let letter = SUFFIXES.iter().find(|(name, _)| end.eq_ignore_ascii_case(name)).map(|(_, c)| *c);
@@ -88,7 +88,7 @@ pub fn passes(channels: &[Channel]) -> Vec<Pass> {
                 pass.suffixes.push(letter);
                 pass.channels.push(i);
             }
-            None => out.push(Pass { name: name.into(), suffixes: vec![letter], channels: vec![i] }),
+            None => out.push(ExrPass { name: name.into(), suffixes: vec![letter], channels: vec![i] }),
         }
     }
     out

@@ -3,7 +3,7 @@
 //! Power cut, harsher than any real disk: bytes written since a file's last sync may be lost from any point on; of a
 //! folder's changes since its last sync any may be missing, each by itself.
 
-use super::{Found, Fs, Handle, Lock};
+use super::{EntryKind, FileHandle, FileLock, Fs};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -21,36 +21,36 @@ struct Inode {
 }
 
 /// A change of the folder: names and what they lead to afterwards.
-type Change = Vec<(PathBuf, Option<usize>)>;
+type NameChange = Vec<(PathBuf, Option<usize>)>;
 
 #[derive(Clone, Default)]
-pub struct State {
+pub struct DiskState {
     inodes: Vec<Inode>,
     names: BTreeMap<PathBuf, usize>,
     /// Names on the disk for certain, and the changes since.
     synced_names: BTreeMap<PathBuf, usize>,
-    pending: Vec<Change>,
+    pending: Vec<NameChange>,
     locked: BTreeSet<PathBuf>,
     /// Files held by a handle.
     held: BTreeSet<usize>,
     operations: usize,
     has_no_links: bool,
     /// Fails the operations of these numbers.
-    failing: Option<Failure>,
+    failing: Option<InjectedFailure>,
     /// The state before every operation, if they are recorded.
-    history: Option<Vec<State>>,
+    history: Option<Vec<DiskState>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Failure {
+pub struct InjectedFailure {
     pub at: usize,
-    pub error: Trouble,
+    pub error: InjectedError,
     /// Every later operation fails too.
     pub sticky: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Trouble {
+pub enum InjectedError {
     Code(i32),
     /// Writes less than was asked for.
     Short,
@@ -58,15 +58,15 @@ pub enum Trouble {
 
 /// A disk that is shared by its clones.
 #[derive(Clone, Default)]
-pub struct Memory(Arc<Mutex<State>>);
+pub struct MemoryFs(Arc<Mutex<DiskState>>);
 
-impl Memory {
-    fn state(&self) -> MutexGuard<'_, State> {
+impl MemoryFs {
+    fn state(&self) -> MutexGuard<'_, DiskState> {
         self.0.lock().unwrap()
     }
     /// A disk that has these files for certain.
     pub fn with(files: &[(&str, &[u8])]) -> Self {
-        let memory = Memory::default();
+        let memory = MemoryFs::default();
         let mut state = memory.state();
         for (name, bytes) in files {
             state.inodes.push(Inode { bytes: bytes.to_vec(), synced: bytes.to_vec() });
@@ -77,7 +77,7 @@ impl Memory {
         drop(state);
         memory
     }
-    pub fn fail(&self, failure: Failure) {
+    pub fn fail(&self, failure: InjectedFailure) {
         self.state().failing = Some(failure);
     }
     /// From now on a file has one name.
@@ -93,8 +93,8 @@ impl Memory {
     pub fn record(&self) {
         self.state().history = Some(Vec::new());
     }
-    /// The disk as it was before each operation since [`Memory::record`], and as it is.
-    pub fn moments(&self) -> Vec<State> {
+    /// The disk as it was before each operation since [`MemoryFs::record`], and as it is.
+    pub fn moments(&self) -> Vec<DiskState> {
         let mut state = self.state();
         let mut moments = state.history.take().unwrap_or_default();
         moments.push(state.clone());
@@ -108,36 +108,36 @@ impl Memory {
         self.state().names.keys().map(|name| name.display().to_string()).collect()
     }
     /// One more operation: it fails if it is its turn.
-    fn turn(&self) -> io::Result<Option<Trouble>> {
+    fn turn(&self) -> io::Result<Option<InjectedError>> {
         let mut state = self.state();
         let number = state.operations;
         state.operations += 1;
-        let before = State { history: None, ..state.clone() };
+        let before = DiskState { history: None, ..state.clone() };
         if let Some(history) = &mut state.history {
             history.push(before);
         }
         match state.failing {
             Some(f) if f.at == number || (f.sticky && number > f.at) => match f.error {
-                Trouble::Code(code) => Err(io::Error::from_raw_os_error(code)),
-                Trouble::Short => Ok(Some(Trouble::Short)),
+                InjectedError::Code(code) => Err(io::Error::from_raw_os_error(code)),
+                InjectedError::Short => Ok(Some(InjectedError::Short)),
             },
             _ => Ok(None),
         }
     }
-    fn handle(&self, inode: usize) -> Box<dyn Handle> {
-        Box::new(Open { memory: self.clone(), inode, at: 0, holds: false })
+    fn handle(&self, inode: usize) -> Box<dyn FileHandle> {
+        Box::new(OpenInode { memory: self.clone(), inode, at: 0, holds: false })
     }
     fn inode(&self, path: &Path) -> io::Result<usize> {
         self.state().names.get(path).copied().ok_or_else(|| io::ErrorKind::NotFound.into())
     }
-    fn change(&self, change: Change) {
+    fn change(&self, change: NameChange) {
         let mut state = self.state();
         apply(&mut state.names, &change);
         state.pending.push(change);
     }
 }
 
-fn apply(names: &mut BTreeMap<PathBuf, usize>, change: &Change) {
+fn apply(names: &mut BTreeMap<PathBuf, usize>, change: &NameChange) {
     for (name, inode) in change {
         match inode {
             Some(inode) => drop(names.insert(name.clone(), *inode)),
@@ -146,8 +146,8 @@ fn apply(names: &mut BTreeMap<PathBuf, usize>, change: &Change) {
     }
 }
 
-impl State {
-    /// Values of `luck` that [`State::after_power_cut`] tells apart: all there are, or `most` spread over them.
+impl DiskState {
+    /// Values of `luck` that [`DiskState::after_power_cut`] tells apart: all there are, or `most` spread over them.
     pub fn lucks(&self, most: u64) -> impl Iterator<Item = u64> {
         let unsynced = self.inodes.iter().filter(|inode| inode.bytes != inode.synced).count();
         let all = 1u64 << (self.pending.len() + BITS_A_FILE * unsynced).min(63);
@@ -157,7 +157,7 @@ impl State {
     }
     /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; then some about each file that
     /// is not synced: what arrived of it, and how much.
-    pub fn after_power_cut(&self, luck: u64) -> Memory {
+    pub fn after_power_cut(&self, luck: u64) -> MemoryFs {
         let mut names = self.synced_names.clone();
         let mut bits = luck;
         let mut next = || {
@@ -188,19 +188,19 @@ impl State {
             Inode { synced: bytes.clone(), bytes }
         };
         let inodes = self.inodes.iter().map(&mut one).collect();
-        let state = State { inodes, synced_names: names.clone(), names, ..State::default() };
-        Memory(Arc::new(Mutex::new(state)))
+        let state = DiskState { inodes, synced_names: names.clone(), names, ..DiskState::default() };
+        MemoryFs(Arc::new(Mutex::new(state)))
     }
 }
 
-struct Open {
-    memory: Memory,
+struct OpenInode {
+    memory: MemoryFs,
     inode: usize,
     at: usize,
     holds: bool,
 }
 
-impl Read for Open {
+impl Read for OpenInode {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let short = self.memory.turn()?.is_some();
         let state = self.memory.state();
@@ -212,7 +212,7 @@ impl Read for Open {
     }
 }
 
-impl Write for Open {
+impl Write for OpenInode {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let short = self.memory.turn()?.is_some();
         let n = if short { bytes.len() / 2 } else { bytes.len() };
@@ -224,7 +224,7 @@ impl Write for Open {
     }
 }
 
-impl Handle for Open {
+impl FileHandle for OpenInode {
     fn sync(&mut self) -> io::Result<()> {
         self.memory.turn()?;
         let mut state = self.memory.state();
@@ -240,7 +240,7 @@ impl Handle for Open {
     }
 }
 
-impl Drop for Open {
+impl Drop for OpenInode {
     fn drop(&mut self) {
         if self.holds {
             self.memory.state().held.remove(&self.inode);
@@ -248,18 +248,18 @@ impl Drop for Open {
     }
 }
 
-struct Held(Memory, PathBuf);
+struct MemoryLock(MemoryFs, PathBuf);
 
-impl Lock for Held {}
+impl FileLock for MemoryLock {}
 
-impl Drop for Held {
+impl Drop for MemoryLock {
     fn drop(&mut self) {
         self.0.state().locked.remove(&self.1);
     }
 }
 
-impl Fs for Memory {
-    fn create_new(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+impl Fs for MemoryFs {
+    fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         self.turn()?;
         if self.inode(path).is_ok() {
             return Err(io::ErrorKind::AlreadyExists.into());
@@ -272,7 +272,7 @@ impl Fs for Memory {
         self.change(vec![(path.into(), Some(inode))]);
         Ok(self.handle(inode))
     }
-    fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+    fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         self.turn()?;
         Ok(self.handle(self.inode(path)?))
     }
@@ -303,7 +303,7 @@ impl Fs for Memory {
     fn sync_dir(&self, folder: &Path) -> io::Result<()> {
         self.turn()?;
         let mut state = self.state();
-        let (synced, kept): (Vec<Change>, Vec<Change>) = std::mem::take(&mut state.pending)
+        let (synced, kept): (Vec<NameChange>, Vec<NameChange>) = std::mem::take(&mut state.pending)
             .into_iter()
             .partition(|c| c.iter().all(|(p, _)| p.parent() == Some(folder)));
         synced.iter().for_each(|change| apply(&mut state.synced_names, change));
@@ -318,10 +318,10 @@ impl Fs for Memory {
         }
         self.inode(path).map(|_| path.into())
     }
-    fn found(&self, path: &Path) -> io::Result<Option<Found>> {
+    fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
         self.turn()?;
         let is_folder = self.state().names.keys().any(|name| name != path && name.starts_with(path));
-        Ok(if is_folder { Some(Found::Folder) } else { self.inode(path).ok().map(|_| Found::File) })
+        Ok(if is_folder { Some(EntryKind::Folder) } else { self.inode(path).ok().map(|_| EntryKind::File) })
     }
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
         self.turn()?;
@@ -333,10 +333,10 @@ impl Fs for Memory {
     fn copy_permissions(&self, _: &Path, _: &Path) -> io::Result<()> {
         self.turn().map(drop)
     }
-    fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn Lock>>> {
+    fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn FileLock>>> {
         self.turn()?;
         let is_free = self.state().locked.insert(path.into());
-        Ok(if is_free { Some(Box::new(Held(self.clone(), path.into()))) } else { None })
+        Ok(if is_free { Some(Box::new(MemoryLock(self.clone(), path.into()))) } else { None })
     }
     fn pause(&self, _: Duration) {}
 }

@@ -12,9 +12,9 @@ use std::time::Duration;
 /// A disk. Paths are absolute or relative to the working folder; every error is the system's own.
 pub trait Fs: Send + Sync {
     /// A new file for writing; fails where there is one already.
-    fn create_new(&self, path: &Path) -> io::Result<Box<dyn Handle>>;
+    fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>>;
     /// A file for reading.
-    fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>>;
+    fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>>;
     /// Replaces what stands at `to`, all at once.
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// A second name for the same file; fails where `to` exists.
@@ -25,7 +25,7 @@ pub trait Fs: Send + Sync {
     /// The path with every link resolved; fails where there is nothing.
     fn resolve(&self, path: &Path) -> io::Result<PathBuf>;
     /// What stands at a path, a link not followed; `None` where there is nothing.
-    fn found(&self, path: &Path) -> io::Result<Option<Found>>;
+    fn found(&self, path: &Path) -> io::Result<Option<EntryKind>>;
     /// The files of a folder, in the order of their names.
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>>;
     /// Makes a folder, and those around it.
@@ -33,12 +33,12 @@ pub trait Fs: Send + Sync {
     /// Gives a file the permissions of another.
     fn copy_permissions(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// Holds a file for as long as the lock and the process live; `None` where another holds it.
-    fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn Lock>>>;
+    fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn FileLock>>>;
     fn pause(&self, time: Duration);
 }
 
 /// An open file.
-pub trait Handle: Read + Write + Send {
+pub trait FileHandle: Read + Write + Send {
     /// Returns once the file's bytes are on the disk. Never tried again after it failed: the system may have dropped them.
     fn sync(&mut self) -> io::Result<()>;
     /// Holds the file as long as the handle and the process live; false where another handle holds it.
@@ -46,11 +46,11 @@ pub trait Handle: Read + Write + Send {
 }
 
 /// Given up when it is dropped, and by the system when the process dies, however it dies.
-pub trait Lock: Send {}
+pub trait FileLock: Send {}
 
 /// What stands at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
+pub enum EntryKind {
     File,
     Folder,
     Link,
@@ -61,7 +61,7 @@ pub enum Found {
 /// The computer's own disk.
 pub struct Disk;
 
-impl Handle for File {
+impl FileHandle for File {
     fn sync(&mut self) -> io::Result<()> {
         self.sync_all()
     }
@@ -74,13 +74,13 @@ impl Handle for File {
     }
 }
 
-impl Lock for File {}
+impl FileLock for File {}
 
 impl Fs for Disk {
-    fn create_new(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+    fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         Ok(Box::new(OpenOptions::new().write(true).create_new(true).open(path)?))
     }
-    fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+    fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         Ok(Box::new(File::open(path)?))
     }
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
@@ -99,17 +99,17 @@ impl Fs for Disk {
     fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
         std::fs::canonicalize(path)
     }
-    fn found(&self, path: &Path) -> io::Result<Option<Found>> {
+    fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
         let kind = match std::fs::symlink_metadata(path) {
             Ok(data) => data.file_type(),
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(e) => return Err(e),
         };
         Ok(Some(match kind {
-            kind if kind.is_file() => Found::File,
-            kind if kind.is_dir() => Found::Folder,
-            kind if kind.is_symlink() => Found::Link,
-            _ => Found::Other,
+            kind if kind.is_file() => EntryKind::File,
+            kind if kind.is_dir() => EntryKind::Folder,
+            kind if kind.is_symlink() => EntryKind::Link,
+            _ => EntryKind::Other,
         }))
     }
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
@@ -124,7 +124,7 @@ impl Fs for Disk {
     fn copy_permissions(&self, from: &Path, to: &Path) -> io::Result<()> {
         std::fs::set_permissions(to, std::fs::metadata(from)?.permissions())
     }
-    fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn Lock>>> {
+    fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn FileLock>>> {
         let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         Ok(if file.hold()? { Some(Box::new(file)) } else { None })
     }

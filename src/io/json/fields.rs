@@ -16,13 +16,13 @@ pub fn below(path: &str, key: &str) -> String {
 
 /// One JSON value and the path that leads to it.
 #[derive(Clone)]
-pub struct Node<'a> {
+pub struct JsonNode<'a> {
     file: &'a Path,
     path: String,
     value: &'a Value,
 }
 
-impl<'a> Node<'a> {
+impl<'a> JsonNode<'a> {
     pub fn root(file: &'a Path, value: &'a Value) -> Self {
         Self { file, path: String::new(), value }
     }
@@ -59,13 +59,13 @@ impl<'a> Node<'a> {
         Ok(Fields { node: self.clone(), map, known: Vec::new() })
     }
     /// A list of at most `most` items.
-    pub fn list(&self, most: usize) -> Result<Vec<Node<'a>>> {
+    pub fn list(&self, most: usize) -> Result<Vec<JsonNode<'a>>> {
         let items = self.value.as_array().ok_or_else(|| self.wrong_kind("a list"))?;
         if items.len() > most {
             let reason = format!("{} has {} items; it may have {most}", self.path, items.len());
             return Err(Error::too_large(self.file, reason));
         }
-        let item = |(i, value)| Node { file: self.file, path: format!("{}[{i}]", self.path), value };
+        let item = |(i, value)| JsonNode { file: self.file, path: format!("{}[{i}]", self.path), value };
         Ok(items.iter().enumerate().map(item).collect())
     }
     /// A list of `least` to `most` numbers, as one point, vector or reading.
@@ -132,28 +132,28 @@ impl<'a> Node<'a> {
 
 /// The fields of one object. Each is asked for by name; [`Fields::finish`] refuses those that were never asked for.
 pub struct Fields<'a> {
-    node: Node<'a>,
+    node: JsonNode<'a>,
     map: &'a Map<String, Value>,
     known: Vec<&'static str>,
 }
 
 impl<'a> Fields<'a> {
     /// The object itself.
-    pub fn node(&self) -> &Node<'a> {
+    pub fn node(&self) -> &JsonNode<'a> {
         &self.node
     }
     /// A field, where it is there.
-    pub fn get(&mut self, name: &'static str) -> Option<Node<'a>> {
+    pub fn get(&mut self, name: &'static str) -> Option<JsonNode<'a>> {
         self.known.push(name);
         self.map.get(name).map(|value| self.below(name, value))
     }
     /// A field that has no default.
-    pub fn required(&mut self, name: &'static str) -> Result<Node<'a>> {
+    pub fn required(&mut self, name: &'static str) -> Result<JsonNode<'a>> {
         let found = self.get(name);
         found.ok_or_else(|| self.below(name, &Value::Null).refused("is missing"))
     }
-    fn below(&self, name: &str, value: &'a Value) -> Node<'a> {
-        Node { file: self.node.file, path: below(&self.node.path, name), value }
+    fn below(&self, name: &str, value: &'a Value) -> JsonNode<'a> {
+        JsonNode { file: self.node.file, path: below(&self.node.path, name), value }
     }
     pub fn number(&mut self, name: &'static str, default: f32, range: RangeInclusive<f32>) -> Result<f32> {
         self.get(name).map_or(Ok(default), |node| node.number(range))
@@ -205,7 +205,7 @@ mod tests {
     use serde_json::json;
 
     fn root(value: &Value) -> Fields<'_> {
-        Node::root(Path::new("r.json"), value).fields().unwrap()
+        JsonNode::root(Path::new("r.json"), value).fields().unwrap()
     }
     #[test]
     fn an_unknown_field_is_named_with_the_one_that_was_meant() {

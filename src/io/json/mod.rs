@@ -6,6 +6,6 @@ pub mod fields;
 pub mod object;
 pub mod text;
 
-pub use fields::{Fields, Node};
-pub use object::Object;
+pub use fields::{Fields, JsonNode};
+pub use object::JsonObject;
 pub use text::parse;

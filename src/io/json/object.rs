@@ -6,9 +6,9 @@ use serde_json::{Map, Value};
 
 /// A JSON object being written, its fields in the order they are set.
 #[derive(Default)]
-pub struct Object(Map<String, Value>);
+pub struct JsonObject(Map<String, Value>);
 
-impl Object {
+impl JsonObject {
     pub fn set(&mut self, name: &str, value: Value) {
         self.0.insert(name.to_owned(), value);
     }
@@ -48,7 +48,7 @@ impl Object {
         }
     }
     /// Sets an object unless it is empty.
-    pub fn object(&mut self, name: &str, value: Object) {
+    pub fn object(&mut self, name: &str, value: JsonObject) {
         if !value.0.is_empty() {
             self.set(name, value.done());
         }

@@ -57,7 +57,7 @@ fn measure(file: &Path, text: &str, budget: &Budget) -> Result<()> {
 }
 
 /// One open bracket on the way down.
-enum Open {
+enum OpenBracket {
     List { index: usize },
     Object { keys: HashSet<String>, key: String, awaits_key: bool },
 }
@@ -65,21 +65,21 @@ enum Open {
 /// The path of the first key that its object holds twice. The text must be valid JSON; the parser would keep the last.
 fn first_key_given_twice(text: &str) -> Option<String> {
     let bytes = text.as_bytes();
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenBracket> = Vec::new();
     let mut i = 0;
     while i < bytes.len() {
         match bytes[i] {
-            b'[' => open.push(Open::List { index: 0 }),
-            b'{' => open.push(Open::Object { keys: HashSet::new(), key: String::new(), awaits_key: true }),
+            b'[' => open.push(OpenBracket::List { index: 0 }),
+            b'{' => open.push(OpenBracket::Object { keys: HashSet::new(), key: String::new(), awaits_key: true }),
             b']' | b'}' => drop(open.pop()),
             b',' => match open.last_mut() {
-                Some(Open::List { index }) => *index += 1,
-                Some(Open::Object { awaits_key, .. }) => *awaits_key = true,
+                Some(OpenBracket::List { index }) => *index += 1,
+                Some(OpenBracket::Object { awaits_key, .. }) => *awaits_key = true,
                 None => {}
             },
             b'"' => {
                 let end = end_of_string(bytes, i);
-                if let Some(Open::Object { keys, key, awaits_key }) = open.last_mut()
+                if let Some(OpenBracket::Object { keys, key, awaits_key }) = open.last_mut()
                     && std::mem::take(awaits_key)
                 {
                     // Unescaped, so that "a" and "\u0061" are one key.
@@ -106,12 +106,12 @@ fn end_of_string(bytes: &[u8], start: usize) -> usize {
     (i + 1).min(bytes.len())
 }
 
-fn path_of(open: &[Open]) -> String {
+fn path_of(open: &[OpenBracket]) -> String {
     let mut path = String::new();
     for step in open {
         match step {
-            Open::List { index } => path += &format!("[{index}]"),
-            Open::Object { key, .. } => path = super::fields::below(&path, key),
+            OpenBracket::List { index } => path += &format!("[{index}]"),
+            OpenBracket::Object { key, .. } => path = super::fields::below(&path, key),
         }
     }
     path

@@ -1,14 +1,14 @@
 //! What stands where there is no surface: the value that fills a map's outside, and the values renderers write there.
 //! Floor 5.
 
-use super::stored::Stored;
+use super::stored::StoredMap;
 use crate::math::{Size, Vec3};
 use crate::raster::Plane;
 use std::collections::HashMap;
 
 /// The one texel that fills the outside: outside the mask where there is one, else along the border. `None` where no texel
 /// stands on a third of it.
-pub fn constant(stored: &Stored, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
+pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
     let size = stored.size;
     let outside: Vec<usize> = match coverage {
         Some(c) => (0..size.area()).filter(|&i| c.values()[i] == 0).collect(),

@@ -1,7 +1,7 @@
 //! Depth as renderers, sensors and painters store it: its background, its polarity, its encoding, its range.
 //! Floor 5.
 
-use super::{background, findings::Findings, samples, stored::Stored};
+use super::{background, findings::Findings, samples, stored::StoredMap};
 use crate::document::source::{DepthConvention, DepthEncoding, Near};
 use crate::math::Vec3;
 use crate::raster::Plane;
@@ -13,7 +13,7 @@ const FAR_AWAY: f32 = 1e9;
 const USUAL: [f32; 3] = [0.0, -1.0, 65504.0];
 
 /// Depth as stored, without its background, and what that told.
-pub struct Raw {
+pub struct RawDepth {
     /// NaN where there is no surface.
     pub values: Plane<f32>,
     /// A background value was found that cannot be depth.
@@ -26,11 +26,11 @@ pub struct Raw {
 
 /// Finds the background and what it says of the polarity.
 pub fn read(
-    stored: &Stored,
-    told: &DepthConvention,
+    stored: &StoredMap,
+    overrides: &DepthConvention,
     coverage: Option<&Plane<u8>>,
     findings: &mut Findings,
-) -> Result<Raw> {
+) -> Result<RawDepth> {
     if stored.colours() >= 3 && !stored.is_grey(if stored.lossy { 0.05 } else { 0.004 }) {
         let reason = "the picture is coloured; depth is one grey channel (name one with “channel”)";
         return Err(Error::decode(&stored.file, reason));
@@ -39,7 +39,7 @@ pub fn read(
     let covered = |i: usize| coverage.is_none_or(|c| c.values()[i] > 0);
     let edge = background::constant(stored, coverage).map(|t| t[0]);
     let mut values = plane.map(|v| if v.is_finite() && v.abs() < FAR_AWAY { v } else { f32::NAN });
-    let stray = |v: f32| told.background.iter().any(|b| (v - b).abs() <= 1e-6 * b.abs().max(1.0));
+    let stray = |v: f32| overrides.background.iter().any(|b| (v - b).abs() <= 1e-6 * b.abs().max(1.0));
     values.values_mut().iter_mut().filter(|v| stray(**v)).for_each(|v| *v = f32::NAN);
     let mut sentinels = Vec::new();
     while let Some(sentinel) = sentinels.len().lt(&3).then(|| find_sentinel(&values, covered)).flatten() {
@@ -74,7 +74,7 @@ pub fn read(
     let has_background = !sentinels.is_empty()
         || values.values().iter().zip(plane.values()).any(|(v, p)| v.is_nan() && !p.is_nan())
         || plane.values().iter().any(|v| v.is_nan());
-    Ok(Raw { values, has_background, near_high, near_high_leaning: leaning })
+    Ok(RawDepth { values, has_background, near_high, near_high_leaning: leaning })
 }
 
 /// A number at the end of the range that many pixels hold exactly and a gap sets apart from all others.
@@ -129,8 +129,8 @@ fn range(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option<(f32, f
 }
 
 /// What is fixed or leans before normals are asked: the convention's words, then the encoding's nature.
-pub fn near_told(told: &DepthConvention, raw: &Raw) -> Option<bool> {
-    match (told.near, told.encoding) {
+pub fn near_override(overrides: &DepthConvention, raw: &RawDepth) -> Option<bool> {
+    match (overrides.near, overrides.encoding) {
         (Near::Low, _) => Some(false),
         (Near::High, _) => Some(true),
         (Near::Auto, Some(DepthEncoding::Inverse | DepthEncoding::Disparity)) => Some(true),
@@ -140,14 +140,14 @@ pub fn near_told(told: &DepthConvention, raw: &Raw) -> Option<bool> {
 
 /// Turns stored numbers into planar depth that grows away from the viewer, in any unit; NaN stays.
 pub fn planar(
-    stored: &Stored,
+    stored: &StoredMap,
     values: &Plane<f32>,
-    told: &DepthConvention,
+    overrides: &DepthConvention,
     near_high: bool,
     encoding: DepthEncoding,
 ) -> Plane<f32> {
     let size = values.size();
-    let fov = told.fov_degrees.or(stored.fov_degrees);
+    let fov = overrides.fov_degrees.or(stored.fov_degrees);
     let focal_px = fov.map(|f| size.width as f32 * 0.5 / (f.to_radians() * 0.5).tan());
     let centre = size.center();
     Plane::from_fn(size, |x, y| {
@@ -205,7 +205,7 @@ pub fn looks_inverse(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<
 }
 
 /// Depth in `[0, 1]` and the planar depths at its ends.
-pub struct Normalised {
+pub struct NormalizedDepth {
     pub depth: Plane<f32>,
     pub near: f32,
     pub far: f32,
@@ -221,7 +221,7 @@ pub fn normalise(
     inside: &Plane<bool>,
     coverage: &Plane<u8>,
     findings: &mut Findings,
-) -> Option<Normalised> {
+) -> Option<NormalizedDepth> {
     let pairs = planar.values().iter().zip(inside.values());
     let mut held: Vec<f32> = pairs.filter(|(v, i)| **i && v.is_finite()).map(|(v, _)| *v).collect();
     held.sort_unstable_by(f32::total_cmp);
@@ -246,5 +246,5 @@ pub fn normalise(
         let v = planar.at(x, y);
         if inside.at(x, y) && v.is_finite() { ((v - near) * scale).max(0.0).min(1.0) } else { f32::NAN }
     });
-    Some(Normalised { depth, near, far })
+    Some(NormalizedDepth { depth, near, far })
 }

@@ -1,14 +1,14 @@
 //! How stored numbers become the components of normals: chosen by which reading makes them of length 1.
 //! Floor 5. Not here: which way the axes point (`orientation`).
 
-use super::{findings::Findings, stored::Stored};
+use super::{findings::Findings, stored::StoredMap};
 use crate::document::source::{NormalConvention, NormalEncoding};
 use crate::math::{Vec3, srgb, vec3};
 use crate::{Error, Result};
 
 /// A way to read a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct TexelReading {
     pub encoding: NormalEncoding,
     /// The numbers went through the sRGB curve.
     pub srgb: bool,
@@ -16,7 +16,7 @@ pub struct Reading {
     signed_pair: bool,
 }
 
-impl Reading {
+impl TexelReading {
     /// The vector of a texel, in the file's own order of channels, of any length.
     pub fn vector(&self, texel: [f32; 4]) -> Vec3 {
         let v = if self.srgb { texel.map(srgb::decode) } else { texel };
@@ -38,28 +38,33 @@ fn rebuilt(x: f32, y: f32) -> Vec3 {
 }
 
 /// Chooses the reading that suits the sampled texels; what the convention fixes is kept.
-pub fn choose(stored: &Stored, samples: &[usize], told: &NormalConvention, findings: &mut Findings) -> Result<Reading> {
+pub fn choose(
+    stored: &StoredMap,
+    samples: &[usize],
+    overrides: &NormalConvention,
+    findings: &mut Findings,
+) -> Result<TexelReading> {
     let texels: Vec<[f32; 4]> = samples.iter().map(|&i| stored.texel(i)).collect();
-    let shape = Shape::of(stored, &texels);
-    refuse_grey(stored, told, &shape)?;
+    let shape = TexelStats::of(stored, &texels);
+    refuse_grey(stored, overrides, &shape)?;
     let signed_pair = shape.least < -0.02;
-    let encodings: Vec<NormalEncoding> = match told.encoding {
+    let encodings: Vec<NormalEncoding> = match overrides.encoding {
         Some(encoding) => vec![encoding],
         None => plausible(stored, &shape),
     };
-    let curves = match told.srgb {
+    let curves = match overrides.srgb {
         Some(srgb) => vec![srgb],
         // Only numbers that were a picture's can have gone through its curve.
         None if shape.least >= -0.02 && shape.most <= 1.02 => vec![false, true],
         None => vec![false],
     };
-    let mut scored: Vec<(f32, Reading)> = Vec::new();
+    let mut scored: Vec<(f32, TexelReading)> = Vec::new();
     for &encoding in &encodings {
         for &srgb in &curves {
-            let reading = Reading { encoding, srgb, signed_pair };
+            let reading = TexelReading { encoding, srgb, signed_pair };
             // Rebuilt normals always have length 1; the curve shows in how often x and y leave the unit circle: it does not.
             let rebuilt = matches!(encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
-            if rebuilt && srgb && told.srgb.is_none() {
+            if rebuilt && srgb && overrides.srgb.is_none() {
                 continue;
             }
             scored.push((length_error(&reading, &texels), reading));
@@ -72,20 +77,20 @@ pub fn choose(stored: &Stored, samples: &[usize], told: &NormalConvention, findi
     // A rival counts only where it reads the numbers otherwise.
     let rival = scored.iter().skip(1).map(|s| s.0).next();
     let confidence = rival.map_or(0.95, |r| 1.0 - error / r.max(1e-6));
-    report(told, &reading, confidence, error, findings);
+    report(overrides, &reading, confidence, error, findings);
     Ok(reading)
 }
 
-fn report(told: &NormalConvention, reading: &Reading, confidence: f32, error: f32, findings: &mut Findings) {
-    match told.encoding {
+fn report(overrides: &NormalConvention, reading: &TexelReading, confidence: f32, error: f32, findings: &mut Findings) {
+    match overrides.encoding {
         Some(encoding) => findings.given("normal.encoding", encoding.name()),
         None => findings.found("normal.encoding", reading.encoding.name(), confidence),
     }
-    match told.srgb {
+    match overrides.srgb {
         Some(srgb) => findings.given("normal.srgb", srgb),
         None => findings.found("normal.srgb", reading.srgb, confidence),
     }
-    if reading.srgb && told.srgb.is_none() {
+    if reading.srgb && overrides.srgb.is_none() {
         findings.note("the normals went through the sRGB curve by mistake; it was undone");
     }
     if error > 0.1 {
@@ -95,7 +100,7 @@ fn report(told: &NormalConvention, reading: &Reading, confidence: f32, error: f3
 }
 
 /// Facts about the sampled texels that narrow the choice.
-struct Shape {
+struct TexelStats {
     least: f32,
     most: f32,
     /// Largest minus smallest number of each channel.
@@ -105,8 +110,8 @@ struct Shape {
     grey: bool,
 }
 
-impl Shape {
-    fn of(stored: &Stored, texels: &[[f32; 4]]) -> Self {
+impl TexelStats {
+    fn of(stored: &StoredMap, texels: &[[f32; 4]]) -> Self {
         let fold = |c: usize, start: f32, pick: fn(f32, f32) -> f32| texels.iter().map(|t| t[c]).fold(start, pick);
         let low: [f32; 4] = std::array::from_fn(|c| fold(c, f32::INFINITY, f32::min));
         let high: [f32; 4] = std::array::from_fn(|c| fold(c, f32::NEG_INFINITY, f32::max));
@@ -128,7 +133,7 @@ impl Shape {
     }
 }
 
-fn plausible(stored: &Stored, shape: &Shape) -> Vec<NormalEncoding> {
+fn plausible(stored: &StoredMap, shape: &TexelStats) -> Vec<NormalEncoding> {
     use NormalEncoding::{Dxt5nm, FullZ, Signed, TwoChannel, Unsigned};
     if stored.channels.len() == 2 {
         return vec![TwoChannel];
@@ -150,8 +155,8 @@ fn plausible(stored: &Stored, shape: &Shape) -> Vec<NormalEncoding> {
     }
 }
 
-fn refuse_grey(stored: &Stored, told: &NormalConvention, shape: &Shape) -> Result<()> {
-    let told_pair = matches!(told.encoding, Some(NormalEncoding::Dxt5nm));
+fn refuse_grey(stored: &StoredMap, overrides: &NormalConvention, shape: &TexelStats) -> Result<()> {
+    let told_pair = matches!(overrides.encoding, Some(NormalEncoding::Dxt5nm));
     // A picture of one value is a flat map, or nothing.
     let varies = shape.spread[..3].iter().any(|&s| s > 0.02);
     if stored.colours() == 1 || (shape.grey && varies && !told_pair && !shape.is_dxt5nm()) {
@@ -162,18 +167,18 @@ fn refuse_grey(stored: &Stored, told: &NormalConvention, shape: &Shape) -> Resul
 }
 
 /// Mean of | |n| − 1 |, each capped at 1 so that a few wild pixels do not decide.
-fn length_error(reading: &Reading, texels: &[[f32; 4]]) -> f32 {
+fn length_error(reading: &TexelReading, texels: &[[f32; 4]]) -> f32 {
     let errors = texels.iter().map(|&t| (reading.vector(t).length() - 1.0).abs()).filter(|e| e.is_finite());
     let (sum, count) = errors.fold((0.0f64, 0u32), |(s, n), e| (s + f64::from(e.min(1.0)), n + 1));
     if count == 0 { 1.0 } else { (sum / f64::from(count)) as f32 }
 }
 
 /// Whether a file's alpha is no coverage but the x of normals (DXT5nm).
-pub fn holds_x_in_alpha(stored: &Stored) -> bool {
+pub fn holds_x_in_alpha(stored: &StoredMap) -> bool {
     if stored.channels.len() != 4 || stored.step.is_none() {
         return false;
     }
     let step = (stored.size.area() / 20_000).max(1);
     let texels: Vec<[f32; 4]> = (0..stored.size.area()).step_by(step).map(|i| stored.texel(i)).collect();
-    Shape::of(stored, &texels).is_dxt5nm()
+    TexelStats::of(stored, &texels).is_dxt5nm()
 }

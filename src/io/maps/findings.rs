@@ -5,7 +5,7 @@ use crate::document::source::{DepthConvention, NormalConvention};
 
 /// How a choice was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum How {
+pub enum ChoiceOrigin {
     /// The document says so.
     Given,
     /// The numbers tell.
@@ -14,30 +14,30 @@ pub enum How {
     Assumed,
 }
 
-impl How {
+impl ChoiceOrigin {
     pub fn name(self) -> &'static str {
         match self {
-            How::Given => "given",
-            How::Found => "found",
-            How::Assumed => "assumed",
+            ChoiceOrigin::Given => "given",
+            ChoiceOrigin::Found => "found",
+            ChoiceOrigin::Assumed => "assumed",
         }
     }
 }
 
 /// One choice: `normal.flip_y` is `true`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
+pub struct Finding {
     pub field: &'static str,
     pub value: String,
     /// 0 a guess … 1 certain.
     pub confidence: f32,
-    pub how: How,
+    pub how: ChoiceOrigin,
 }
 
 /// Everything found while maps were read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
-    pub choices: Vec<Choice>,
+    pub choices: Vec<Finding>,
     /// Sentences for people: what was derived, filled, clipped or looks odd.
     pub notes: Vec<String>,
     /// The whole convention by which the normals were read: give it to read them so again.
@@ -55,18 +55,18 @@ impl Findings {
         self.notes.push(sentence.into());
     }
     pub fn given(&mut self, field: &'static str, value: impl ToString) {
-        self.choices.push(Choice { field, value: value.to_string(), confidence: 1.0, how: How::Given });
+        self.choices.push(Finding { field, value: value.to_string(), confidence: 1.0, how: ChoiceOrigin::Given });
     }
     pub fn found(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
-        self.choices.push(Choice { field, value: value.to_string(), confidence, how: How::Found });
+        self.choices.push(Finding { field, value: value.to_string(), confidence, how: ChoiceOrigin::Found });
     }
     pub fn assumed(&mut self, field: &'static str, value: impl ToString, confidence: f32) {
         let confidence = confidence.max(0.0).min(1.0);
-        self.choices.push(Choice { field, value: value.to_string(), confidence, how: How::Assumed });
+        self.choices.push(Finding { field, value: value.to_string(), confidence, how: ChoiceOrigin::Assumed });
     }
     /// The choice made for a field.
-    pub fn choice(&self, field: &str) -> Option<&Choice> {
+    pub fn choice(&self, field: &str) -> Option<&Finding> {
         self.choices.iter().find(|c| c.field == field)
     }
 }

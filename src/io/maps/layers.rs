@@ -1,13 +1,13 @@
 //! Which layer of an EXR holds the normals, the depth or the coverage: by the names that renderers give them.
 //! Floor 5.
 
-use super::stored::Role;
-use crate::exr::{ExrFile, Pass};
+use super::stored::MapRole;
+use crate::exr::{ExrFile, ExrPass};
 use crate::{Error, Result};
 use std::path::Path;
 
 /// The channels to read.
-pub struct Choice {
+pub struct ChannelChoice {
     pub channels: Vec<usize>,
     pub alpha: Option<usize>,
     /// The layer's name.
@@ -15,27 +15,29 @@ pub struct Choice {
 }
 
 /// Chooses by the name given, else by what layers are usually called.
-pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: Role) -> Result<Choice> {
+pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> Result<ChannelChoice> {
     let alpha = coverage(exr);
     let (channels, name) = match (told, role) {
         (Some(told), _) => named(exr, told, role).ok_or_else(|| missing(file, exr, told))?,
-        (None, Role::Normals) => best(exr, normal_rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?,
-        (None, Role::Depth) => best(exr, depth_rank, depth_channels).ok_or_else(|| none(file, exr, "depth"))?,
-        (None, Role::Mask) => match alpha {
+        (None, MapRole::Normals) => {
+            best(exr, normal_rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?
+        }
+        (None, MapRole::Depth) => best(exr, depth_rank, depth_channels).ok_or_else(|| none(file, exr, "depth"))?,
+        (None, MapRole::Mask) => match alpha {
             Some(a) => (vec![a], exr.channels()[a].name.clone()),
             None => best(exr, |p| Some(p.channels.len()), vec_of_first).ok_or_else(|| none(file, exr, "a mask"))?,
         },
     };
-    let alpha = alpha.filter(|a| role != Role::Mask && !channels.contains(a));
-    Ok(Choice { channels, alpha, name })
+    let alpha = alpha.filter(|a| role != MapRole::Mask && !channels.contains(a));
+    Ok(ChannelChoice { channels, alpha, name })
 }
 
 /// The layers that fit a role, best first: a window lists them for the user to pick.
-pub fn fitting(exr: &ExrFile, role: Role) -> Vec<String> {
-    let rank = |p: &Pass| match role {
-        Role::Normals => normal_rank(p).filter(|_| vector_channels(p).is_some()),
-        Role::Depth => depth_rank(p).filter(|_| depth_channels(p).is_some()),
-        Role::Mask => p.letters("a").map(|_| 0),
+pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
+    let rank = |p: &ExrPass| match role {
+        MapRole::Normals => normal_rank(p).filter(|_| vector_channels(p).is_some()),
+        MapRole::Depth => depth_rank(p).filter(|_| depth_channels(p).is_some()),
+        MapRole::Mask => p.letters("a").map(|_| 0),
     };
     let mut found: Vec<(usize, String)> =
         exr.passes().iter().filter_map(|p| Some((rank(p)?, p.name.clone()))).collect();
@@ -45,24 +47,24 @@ pub fn fitting(exr: &ExrFile, role: Role) -> Vec<String> {
 
 fn best(
     exr: &ExrFile,
-    rank: impl Fn(&Pass) -> Option<usize>,
-    channels: impl Fn(&Pass) -> Option<Vec<usize>>,
+    rank: impl Fn(&ExrPass) -> Option<usize>,
+    channels: impl Fn(&ExrPass) -> Option<Vec<usize>>,
 ) -> Option<(Vec<usize>, String)> {
     let fitting = exr.passes().iter().filter_map(|p| Some((rank(p)?, channels(p)?, p)));
     fitting.min_by_key(|(rank, ..)| *rank).map(|(_, channels, pass)| (channels, pass.name.clone()))
 }
 
-fn vec_of_first(pass: &Pass) -> Option<Vec<usize>> {
+fn vec_of_first(pass: &ExrPass) -> Option<Vec<usize>> {
     Some(vec![*pass.channels.first()?])
 }
 
 /// x, y and z; red, green and blue; or x and y alone.
-fn vector_channels(pass: &Pass) -> Option<Vec<usize>> {
+fn vector_channels(pass: &ExrPass) -> Option<Vec<usize>> {
     ["xyz", "rgb", "xy", "rg"].iter().find_map(|letters| pass.letters(letters))
 }
 
 /// Depth's one channel. A layer with x and y is a vector, whose z is not depth.
-fn depth_channels(pass: &Pass) -> Option<Vec<usize>> {
+fn depth_channels(pass: &ExrPass) -> Option<Vec<usize>> {
     if pass.letters("xy").is_some() {
         return None;
     }
@@ -73,7 +75,7 @@ fn depth_channels(pass: &Pass) -> Option<Vec<usize>> {
 }
 
 /// How likely a layer holds normals by its name, 0 surest.
-fn normal_rank(pass: &Pass) -> Option<usize> {
+fn normal_rank(pass: &ExrPass) -> Option<usize> {
     let key = pass.key();
     match key.as_str() {
         "n" | "normal" | "normals" | "nn" | "shnormal" | "shadingnormal" => Some(0),
@@ -87,7 +89,7 @@ fn normal_rank(pass: &Pass) -> Option<usize> {
 }
 
 /// How likely a layer holds depth by its name, 0 surest. A bare `Z` is depth by EXR's own convention, a bare `Y` luminance.
-fn depth_rank(pass: &Pass) -> Option<usize> {
+fn depth_rank(pass: &ExrPass) -> Option<usize> {
     let key = pass.key();
     match key.as_str() {
         "" if pass.letters("z").is_some() => Some(0),
@@ -114,17 +116,17 @@ fn coverage(exr: &ExrFile) -> Option<usize> {
 }
 
 /// A layer or a channel by name, letter case aside.
-fn named(exr: &ExrFile, told: &str, role: Role) -> Option<(Vec<usize>, String)> {
+fn named(exr: &ExrFile, told: &str, role: MapRole) -> Option<(Vec<usize>, String)> {
     if let Some(channel) = exr.channels().iter().position(|c| c.name.eq_ignore_ascii_case(told))
-        && role != Role::Normals
+        && role != MapRole::Normals
     {
         return Some((vec![channel], told.into()));
     }
     let pass = exr.passes().iter().find(|p| p.name.eq_ignore_ascii_case(told))?;
     let channels = match role {
-        Role::Normals => vector_channels(pass),
-        Role::Depth => depth_channels(pass).or_else(|| pass.letters("z")),
-        Role::Mask => pass.letters("a").or_else(|| vec_of_first(pass)),
+        MapRole::Normals => vector_channels(pass),
+        MapRole::Depth => depth_channels(pass).or_else(|| pass.letters("z")),
+        MapRole::Mask => pass.letters("a").or_else(|| vec_of_first(pass)),
     };
     Some((channels?, pass.name.clone()))
 }

@@ -16,11 +16,11 @@ mod steps;
 mod stored;
 mod world;
 
-pub use findings::{Choice, Findings, How};
+pub use findings::{ChoiceOrigin, Finding, Findings};
 pub use layers::fitting;
-pub use stored::Role;
+pub use stored::MapRole;
 
-use super::files::Remembered;
+use super::files::CachedFiles;
 use super::{Budget, Files, picture};
 use crate::document::source::{DepthConvention, DepthEncoding, MapSource, MaskSource, NormalConvention, SurfaceSource};
 use crate::math::{Size, Vec3, srgb};
@@ -28,10 +28,10 @@ use crate::raster::{Asset, Plane};
 use crate::surface::{Maps, Surface, differentiate, integrate};
 use crate::{Error, Result};
 use std::collections::BTreeMap;
-use stored::Stored;
+use stored::StoredMap;
 
 /// A surface and how its maps were understood.
-pub struct Import {
+pub struct ImportedSurface {
     pub surface: Surface,
     pub findings: Findings,
     /// What was read, by the names in the source: a project keeps these very bytes.
@@ -42,12 +42,12 @@ pub struct Import {
 ///
 /// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there is no
 /// surface at all. Where one of normals and depth is missing it is derived from the other, with a note.
-pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<Import> {
-    let files = &Remembered::new(files);
+pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<ImportedSurface> {
+    let files = &CachedFiles::new(files);
     let mut findings = Findings::default();
-    let normal = source.normal.as_ref().map(|m| load(m, Role::Normals, files, budget)).transpose()?;
-    let depth = source.depth.as_ref().map(|m| load(m, Role::Depth, files, budget)).transpose()?;
-    let maps: Vec<&Stored> = normal.iter().chain(&depth).collect();
+    let normal = source.normal.as_ref().map(|m| load(m, MapRole::Normals, files, budget)).transpose()?;
+    let depth = source.depth.as_ref().map(|m| load(m, MapRole::Depth, files, budget)).transpose()?;
+    let maps: Vec<&StoredMap> = normal.iter().chain(&depth).collect();
     let Some(first) = maps.first() else {
         return Err(Error::invalid(files.path(""), "surface", "it names neither normals nor depth"));
     };
@@ -55,24 +55,24 @@ pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Res
     for (map, warning) in maps.iter().filter_map(|m| Some((m, m.warning?))) {
         findings.note(format!("{}: {warning}", map.file.display()));
     }
-    let mask = told_mask(source, normal.as_ref(), files, budget, &mut findings)?;
-    let of = |m: &Stored| (m.file.display().to_string(), m.size);
+    let mask = given_mask(source, normal.as_ref(), files, budget, &mut findings)?;
+    let of = |m: &StoredMap| (m.file.display().to_string(), m.size);
     let sizes = maps.iter().copied().map(of).chain(mask.iter().map(|(name, m)| (name.clone(), m.size())));
     same_size(&file, sizes)?;
-    let told = Told::of(source);
-    let coverage = mask.map(|(_, m)| m).or_else(|| alpha(&maps, &told, &mut findings));
-    let maps = understand(normal.as_ref(), depth.as_ref(), coverage, &told, &mut findings)?;
+    let overrides = ConventionOverrides::of(source);
+    let coverage = mask.map(|(_, m)| m).or_else(|| alpha(&maps, &overrides, &mut findings));
+    let maps = understand(normal.as_ref(), depth.as_ref(), coverage, &overrides, &mut findings)?;
     let surface = Surface::new(maps).map_err(|e| Error::decode(file, e))?;
-    Ok(Import { surface, findings, files: files.assets() })
+    Ok(ImportedSurface { surface, findings, files: files.assets() })
 }
 
 /// The conventions a document tells, the found ones where it is silent.
-struct Told {
+struct ConventionOverrides {
     normal: NormalConvention,
     depth: DepthConvention,
 }
 
-impl Told {
+impl ConventionOverrides {
     fn of(source: &SurfaceSource) -> Self {
         Self {
             normal: source.normal.as_ref().map(|m| m.convention.clone()).unwrap_or_default(),
@@ -81,7 +81,7 @@ impl Told {
     }
 }
 
-fn load<C>(map: &MapSource<C>, role: Role, files: &dyn Files, budget: &Budget) -> Result<Stored> {
+fn load<C>(map: &MapSource<C>, role: MapRole, files: &dyn Files, budget: &Budget) -> Result<StoredMap> {
     let bytes = files.read(&map.file, budget)?;
     stored::load(&files.path(&map.file), &bytes, map.channel.as_deref(), role, budget)
 }
@@ -100,9 +100,9 @@ fn same_size(file: &std::path::Path, sizes: impl Iterator<Item = (String, Size)>
 }
 
 /// The mask that the document names, and the name to blame.
-fn told_mask(
+fn given_mask(
     source: &SurfaceSource,
-    normal: Option<&Stored>,
+    normal: Option<&StoredMap>,
     files: &dyn Files,
     budget: &Budget,
     findings: &mut Findings,
@@ -114,7 +114,7 @@ fn told_mask(
             let plane = match channel {
                 None => picture::decode_coverage(&path, &bytes, budget)?,
                 Some(_) => {
-                    let stored = stored::load(&path, &bytes, channel.as_deref(), Role::Mask, budget)?;
+                    let stored = stored::load(&path, &bytes, channel.as_deref(), MapRole::Mask, budget)?;
                     stored.channels[0].map(srgb::quantise)
                 }
             };
@@ -133,7 +133,7 @@ fn told_mask(
 }
 
 /// 0 where the border's own value goes on from the border inward, 255 elsewhere.
-fn not_flat(normal: &Stored) -> Plane<u8> {
+fn not_flat(normal: &StoredMap) -> Plane<u8> {
     let edge = background::constant(normal, None);
     let flat = background::joined_to_border(normal.size, |i| {
         edge.is_some_and(|e| background::same(normal.texel(i), e, normal.lossy))
@@ -142,9 +142,9 @@ fn not_flat(normal: &Stored) -> Plane<u8> {
 }
 
 /// The files' own coverage.
-fn alpha(maps: &[&Stored], told: &Told, findings: &mut Findings) -> Option<Plane<u8>> {
+fn alpha(maps: &[&StoredMap], overrides: &ConventionOverrides, findings: &mut Findings) -> Option<Plane<u8>> {
     use crate::document::source::NormalEncoding::Dxt5nm;
-    if told.normal.encoding == Some(Dxt5nm) {
+    if overrides.normal.encoding == Some(Dxt5nm) {
         return None;
     }
     let alpha = maps.iter().find_map(|m| m.alpha.as_ref().filter(|_| !encoding::holds_x_in_alpha(m)))?;
@@ -154,20 +154,20 @@ fn alpha(maps: &[&Stored], told: &Told, findings: &mut Findings) -> Option<Plane
 
 /// Brings loaded maps into the program's convention.
 fn understand(
-    normal: Option<&Stored>,
-    depth: Option<&Stored>,
-    told_coverage: Option<Plane<u8>>,
-    told: &Told,
+    normal: Option<&StoredMap>,
+    depth: Option<&StoredMap>,
+    given_coverage: Option<Plane<u8>>,
+    overrides: &ConventionOverrides,
     findings: &mut Findings,
 ) -> Result<Maps> {
-    let raw_depth = depth.map(|d| depth::read(d, &told.depth, told_coverage.as_ref(), findings)).transpose()?;
+    let raw_depth = depth.map(|d| depth::read(d, &overrides.depth, given_coverage.as_ref(), findings)).transpose()?;
     let bare = |i: usize| raw_depth.as_ref().is_some_and(|d| d.values.values()[i].is_nan());
     let raw_normals =
-        normal.map(|n| normals::read(n, &told.normal, told_coverage.as_ref(), bare, findings)).transpose()?;
+        normal.map(|n| normals::read(n, &overrides.normal, given_coverage.as_ref(), bare, findings)).transpose()?;
     let size = normal.or(depth).map_or(Size::new(1, 1), |m| m.size);
     let w = size.width as usize;
-    let explicit = told_coverage.is_some();
-    let mut coverage = told_coverage.unwrap_or_else(|| {
+    let explicit = given_coverage.is_some();
+    let mut coverage = given_coverage.unwrap_or_else(|| {
         let by_normals = raw_normals.as_ref().map(|r| &r.coverage);
         Plane::from_fn(size, |x, y| if bare(y * w + x) { 0 } else { by_normals.map_or(255, |c| c.at(x, y)) })
     });
@@ -178,7 +178,7 @@ fn understand(
     let edge_n = normal.and_then(|m| Some((m, background::constant(m, masked)?)));
     let edge_d = depth.and_then(|m| Some((m, background::constant(m, masked)?)));
     // A partly covered rim pixel that holds the background's value has none of its own.
-    let borrowed = |edge: Option<(&Stored, [f32; 4])>, i: usize| {
+    let borrowed = |edge: Option<(&StoredMap, [f32; 4])>, i: usize| {
         let partly = explicit && coverage.values()[i] < 255;
         partly && edge.is_some_and(|(m, e)| background::same(m.texel(i), e, m.lossy))
     };
@@ -192,7 +192,7 @@ fn understand(
     let judged = Plane::from_fn(size, |x, y| inside.at(x, y) && !fills(y * w + x));
     let enough = judged.values().iter().filter(|j| **j).count() >= 16;
     let judged = if enough { &judged } else { &inside };
-    let (mut unit, planar) = join(normal, depth, raw_normals.as_ref(), raw_depth.as_ref(), judged, told, findings);
+    let (mut unit, planar) = join(normal, depth, raw_normals.as_ref(), raw_depth.as_ref(), judged, overrides, findings);
     let turned_away =
         (0..size.area()).find(|&i| fills(i)).zip(unit.as_ref()).is_some_and(|(i, n)| n.values()[i].z < -0.5);
     if turned_away && enough {
@@ -200,13 +200,13 @@ fn understand(
         (0..size.area()).filter(|&i| fills(i)).for_each(|i| coverage.values_mut()[i] = 0);
     }
     if let (Some(normals), Some(step)) = (&mut unit, normal.and_then(|n| n.step))
-        && told.normal.snap_flat.unwrap_or(step > 0.001)
+        && overrides.normal.snap_flat.unwrap_or(step > 0.001)
     {
         steps::snap_flat(normals);
     }
     let inside = Plane::from_fn(size, |x, y| inside.at(x, y) && coverage.at(x, y) > 0);
     let normals = unit.map(|n| Plane::from_fn(size, |x, y| if inside.at(x, y) { n.at(x, y) } else { Vec3::ZERO }));
-    let (normals, depth) = complete(normals, planar, depth, &inside, &coverage, told, findings);
+    let (normals, depth) = complete(normals, planar, depth, &inside, &coverage, overrides, findings);
     if explicit {
         drop_unknown(&mut coverage, &normals, findings);
     }
@@ -215,66 +215,66 @@ fn understand(
 
 /// Settles axes and polarity together; unit normals and planar depth that grows away from the viewer.
 fn join(
-    normal: Option<&Stored>,
-    depth: Option<&Stored>,
-    raw_normals: Option<&normals::Raw>,
-    raw_depth: Option<&depth::Raw>,
+    normal: Option<&StoredMap>,
+    depth: Option<&StoredMap>,
+    raw_normals: Option<&normals::RawNormals>,
+    raw_depth: Option<&depth::RawDepth>,
     inside: &Plane<bool>,
-    told: &Told,
+    overrides: &ConventionOverrides,
     findings: &mut Findings,
 ) -> (Option<Plane<Vec3>>, Option<Plane<f32>>) {
-    let near_told = raw_depth.and_then(|d| depth::near_told(&told.depth, d));
+    let near_override = raw_depth.and_then(|d| depth::near_override(&overrides.depth, d));
     let leaning = raw_depth.map_or(0.0, |d| d.near_high_leaning);
-    let near = orientation::Fixed { near_high: near_told, near_high_leaning: leaning, ..Default::default() };
-    let values = raw_depth.map(|d| match (told.depth.smooth_steps, depth.and_then(|s| s.step)) {
+    let near = orientation::FixedAxes { near_high: near_override, near_high_leaning: leaning, ..Default::default() };
+    let values = raw_depth.map(|d| match (overrides.depth.smooth_steps, depth.and_then(|s| s.step)) {
         (Some(true), Some(step)) => steps::smooth(&d.values, step, inside),
         _ => d.values.clone(),
     });
     let oriented = normal
         .zip(raw_normals)
-        .map(|(stored, raw)| normals::orient(raw, stored, &told.normal, inside, values.as_ref(), &near, findings));
+        .map(|(stored, raw)| normals::orient(raw, stored, &overrides.normal, inside, values.as_ref(), &near, findings));
     let Some((stored, values)) = depth.zip(values) else { return (oriented.map(|o| o.0), None) };
     let near_high = match &oriented {
         Some((_, near_high)) => *near_high,
-        None => depth_alone(near_told, leaning, findings),
+        None => depth_alone(near_override, leaning, findings),
     };
     let unit = oriented.map(|o| o.0);
-    let encoding = depth_encoding(stored, &values, unit.as_ref(), inside, near_high, told, findings);
-    let planar = depth::planar(stored, &values, &told.depth, near_high, encoding);
+    let encoding = depth_encoding(stored, &values, unit.as_ref(), inside, near_high, overrides, findings);
+    let planar = depth::planar(stored, &values, &overrides.depth, near_high, encoding);
     let near = if near_high { crate::document::source::Near::High } else { crate::document::source::Near::Low };
-    findings.depth = Some(DepthConvention { near, encoding: Some(encoding), ..told.depth.clone() });
+    findings.depth = Some(DepthConvention { near, encoding: Some(encoding), ..overrides.depth.clone() });
     (unit, Some(planar))
 }
 
 /// The polarity of depth without normals: the background is far.
-fn depth_alone(told: Option<bool>, leaning: f32, findings: &mut Findings) -> bool {
+fn depth_alone(overrides: Option<bool>, leaning: f32, findings: &mut Findings) -> bool {
     let name = |high: bool| if high { "high" } else { "low" };
-    match told {
+    match overrides {
         Some(high) => findings.found("depth.near", name(high), 0.95),
         None if leaning != 0.0 => findings.found("depth.near", name(leaning > 0.0), 0.7),
         None => findings.assumed("depth.near", "low", 0.3),
     }
-    told.unwrap_or(leaning > 0.0)
+    overrides.unwrap_or(leaning > 0.0)
 }
 
 fn depth_encoding(
-    stored: &Stored,
+    stored: &StoredMap,
     values: &Plane<f32>,
     unit: Option<&Plane<Vec3>>,
     inside: &Plane<bool>,
     near_high: bool,
-    told: &Told,
+    overrides: &ConventionOverrides,
     findings: &mut Findings,
 ) -> DepthEncoding {
-    if let Some(encoding) = told.depth.encoding {
+    if let Some(encoding) = overrides.depth.encoding {
         findings.given("depth.encoding", encoding.name());
-        if encoding == DepthEncoding::RayDistance && told.depth.fov_degrees.or(stored.fov_degrees).is_none() {
+        if encoding == DepthEncoding::RayDistance && overrides.depth.fov_degrees.or(stored.fov_degrees).is_none() {
             findings.note("depth is measured along the ray; without the field of view (“fov”) it is used as it is");
         }
         return encoding;
     }
     let layer = stored.layer.to_lowercase();
-    if layer.contains("distance") && told.depth.fov_degrees.or(stored.fov_degrees).is_some() {
+    if layer.contains("distance") && overrides.depth.fov_degrees.or(stored.fov_degrees).is_some() {
         findings.found("depth.encoding", "ray-distance", 0.7);
         return DepthEncoding::RayDistance;
     }
@@ -288,10 +288,10 @@ fn depth_encoding(
 fn complete(
     normals: Option<Plane<Vec3>>,
     planar: Option<Plane<f32>>,
-    stored_depth: Option<&Stored>,
+    stored_depth: Option<&StoredMap>,
     inside: &Plane<bool>,
     coverage: &Plane<u8>,
-    told: &Told,
+    overrides: &ConventionOverrides,
     findings: &mut Findings,
 ) -> (Plane<Vec3>, Plane<f32>) {
     let size = inside.size();
@@ -306,8 +306,8 @@ fn complete(
             (normals, depth.unwrap_or_else(nothing))
         }
         (None, Some(n)) => {
-            let fov = told.depth.fov_degrees.or(stored_depth.and_then(|s| s.fov_degrees));
-            let range_px = told.depth.range_px.unwrap_or_else(|| depth_range_px(&n, inside, fov));
+            let fov = overrides.depth.fov_degrees.or(stored_depth.and_then(|s| s.fov_degrees));
+            let range_px = overrides.depth.range_px.unwrap_or_else(|| depth_range_px(&n, inside, fov));
             findings.note(format!("normals were made from depth, taken to be {range_px:.0} pixels deep (“range_px”)"));
             (differentiate::normals_from_depth(&n.depth, range_px), n.depth)
         }
@@ -317,7 +317,7 @@ fn complete(
 
 /// How many pixels deep a surface is: by the camera where depth is metric and the field of view known, else half the longer
 /// side of the surface, as a ball is.
-fn depth_range_px(depth: &depth::Normalised, inside: &Plane<bool>, fov_degrees: Option<f32>) -> f32 {
+fn depth_range_px(depth: &depth::NormalizedDepth, inside: &Plane<bool>, fov_degrees: Option<f32>) -> f32 {
     if let Some(fov) = fov_degrees.filter(|_| depth.near > 0.0) {
         let middle = 0.5 * (depth.near + depth.far);
         let width = 2.0 * middle * (fov.to_radians() * 0.5).tan();
@@ -334,7 +334,12 @@ fn depth_range_px(depth: &depth::Normalised, inside: &Plane<bool>, fov_degrees: 
 }
 
 /// Says where the mask came from, and of a border that looks like background but is not taken for it.
-fn report_mask(normal: Option<&Stored>, depth: Option<&depth::Raw>, coverage: &Plane<u8>, findings: &mut Findings) {
+fn report_mask(
+    normal: Option<&StoredMap>,
+    depth: Option<&depth::RawDepth>,
+    coverage: &Plane<u8>,
+    findings: &mut Findings,
+) {
     let bare = coverage.values().iter().filter(|c| **c == 0).count();
     let how = match (depth.is_some_and(|d| d.has_background), bare) {
         (_, 0) => "none",

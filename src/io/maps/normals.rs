@@ -2,20 +2,20 @@
 //! Floor 5.
 
 use super::background::{self, is_degenerate};
-use super::encoding::{self, Reading};
+use super::encoding::{self, TexelReading};
 use super::findings::Findings;
-use super::orientation::{self, Axes, Fixed};
-use super::{samples, steps, stored::Stored, world};
+use super::orientation::{self, AxisMapping, FixedAxes};
+use super::{samples, steps, stored::StoredMap, world};
 use crate::Result;
 use crate::document::source::{NormalConvention, NormalEncoding, NormalSpace};
 use crate::math::{Mat3, Vec3};
 use crate::raster::Plane;
 
 /// Normals read as vectors, their axes still the file's.
-pub struct Raw {
+pub struct RawNormals {
     /// Zero where there are none; any length.
     pub vectors: Plane<Vec3>,
-    pub reading: Reading,
+    pub reading: TexelReading,
     /// Coverage by the normals alone.
     pub coverage: Plane<u8>,
 }
@@ -25,12 +25,12 @@ pub struct Raw {
 /// * `coverage`: the mask, where something tells one.
 /// * `without`: pixels that depth says are background.
 pub fn read(
-    stored: &Stored,
-    told: &NormalConvention,
+    stored: &StoredMap,
+    overrides: &NormalConvention,
     coverage: Option<&Plane<u8>>,
     without: impl Fn(usize) -> bool + Sync,
     findings: &mut Findings,
-) -> Result<Raw> {
+) -> Result<RawNormals> {
     let size = stored.size;
     let w = size.width as usize;
     let edge = background::constant(stored, coverage);
@@ -45,9 +45,9 @@ pub fn read(
     if at.len() < 4 {
         at = (0..size.area()).filter(|&i| in_mask(i)).collect();
     }
-    let (stored, smoothed) = smooth_if_asked(stored, told, &likely, findings);
+    let (stored, smoothed) = smooth_if_asked(stored, overrides, &likely, findings);
     let stored = smoothed.as_ref().unwrap_or(stored);
-    let reading = encoding::choose(stored, &at, told, findings)?;
+    let reading = encoding::choose(stored, &at, overrides, findings)?;
     let vectors = Plane::from_fn(size, |x, y| {
         let n = reading.vector(stored.texel(y * w + x));
         if n.is_finite() { n } else { Vec3::ZERO }
@@ -60,20 +60,20 @@ pub fn read(
     let outside = |i: usize| strange.is_some_and(|e| background::same(stored.texel(i), e, stored.lossy));
     let interior = at.iter().map(|&i| (vectors.values()[i].length() - 1.0).abs()).sum::<f32>() / at.len().max(1) as f32;
     let coverage = background::coverage_of_normals(&vectors, outside, interior < 0.05);
-    Ok(Raw { vectors, reading, coverage })
+    Ok(RawNormals { vectors, reading, coverage })
 }
 
 /// A copy of the file's numbers without the steps of 8 bits, where that is asked for.
 fn smooth_if_asked<'a>(
-    stored: &'a Stored,
-    told: &NormalConvention,
+    stored: &'a StoredMap,
+    overrides: &NormalConvention,
     inside: &Plane<bool>,
     findings: &mut Findings,
-) -> (&'a Stored, Option<Stored>) {
-    let (Some(true), Some(step)) = (told.smooth_steps, stored.step) else { return (stored, None) };
+) -> (&'a StoredMap, Option<StoredMap>) {
+    let (Some(true), Some(step)) = (overrides.smooth_steps, stored.step) else { return (stored, None) };
     findings.note("the steps of the normals' numbers were smoothed, each within the half step it stands for");
     let channels = stored.channels.iter().map(|c| steps::smooth(c, step, inside)).collect();
-    let copy = Stored { channels, alpha: None, file: stored.file.clone(), layer: stored.layer.clone(), ..*stored };
+    let copy = StoredMap { channels, alpha: None, file: stored.file.clone(), layer: stored.layer.clone(), ..*stored };
     (stored, Some(copy))
 }
 
@@ -82,26 +82,26 @@ fn smooth_if_asked<'a>(
 ///
 /// * `depth`: as stored, NaN where there is none.
 pub fn orient(
-    raw: &Raw,
-    stored: &Stored,
-    told: &NormalConvention,
+    raw: &RawNormals,
+    stored: &StoredMap,
+    overrides: &NormalConvention,
     inside: &Plane<bool>,
     depth: Option<&Plane<f32>>,
-    near: &Fixed,
+    near: &FixedAxes,
     findings: &mut Findings,
 ) -> (Plane<Vec3>, bool) {
     let unit = raw.vectors.map(|n| if is_degenerate(n) { Vec3::ZERO } else { n.normalize_or_zero() });
     let at = samples::spread(inside);
-    let turn = space(&unit, stored, told, inside, &at, depth, near, findings);
+    let turn = space(&unit, stored, overrides, inside, &at, depth, near, findings);
     let turned = turn.map_or_else(|| unit.clone(), |m| unit.map(|n| m * n));
     // Turned normals are already the camera's: only what the user says flips them.
-    let fixed = Fixed {
-        order: told.channels.map(|c| order_of(c, raw.reading.encoding)).or(turn.map(|_| [0, 1, 2])),
-        flip: [0, 1, 2].map(|k| [told.flip_x, told.flip_y, told.flip_z][k].or(turn.map(|_| false))),
+    let fixed = FixedAxes {
+        order: overrides.channels.map(|c| order_of(c, raw.reading.encoding)).or(turn.map(|_| [0, 1, 2])),
+        flip: [0, 1, 2].map(|k| [overrides.flip_x, overrides.flip_y, overrides.flip_z][k].or(turn.map(|_| false))),
         ..*near
     };
     let found = orientation::find(&turned, inside, depth, &fixed);
-    report(told, &found, &fixed, depth.is_some(), findings);
+    report(overrides, &found, &fixed, depth.is_some(), findings);
     findings.normal = Some(NormalConvention {
         encoding: Some(raw.reading.encoding),
         channels: Some(channels_of(found.axes.order, raw.reading.encoding)),
@@ -111,11 +111,11 @@ pub fn orient(
         flip_z: Some(found.axes.flip[2]),
         space: Some(if turn.is_some() { NormalSpace::World } else { NormalSpace::Camera }),
         world_to_camera: turn.map(world::to_rows),
-        snap_flat: told.snap_flat,
-        smooth_steps: told.smooth_steps,
+        snap_flat: overrides.snap_flat,
+        smooth_steps: overrides.smooth_steps,
     });
     let axes = found.axes;
-    (if axes == Axes::PLAIN { turned } else { turned.map(|n| axes.apply(n)) }, found.near_high)
+    (if axes == AxisMapping::PLAIN { turned } else { turned.map(|n| axes.apply(n)) }, found.near_high)
 }
 
 /// Two-channel maps rebuild z themselves, so that no other order makes sense.
@@ -131,18 +131,19 @@ fn channels_of(order: [usize; 3], encoding: NormalEncoding) -> [u8; 3] {
 }
 
 fn report(
-    told: &NormalConvention,
-    found: &orientation::Found,
-    fixed: &Fixed,
+    overrides: &NormalConvention,
+    found: &orientation::FoundAxes,
+    fixed: &FixedAxes,
     has_depth: bool,
     findings: &mut Findings,
 ) {
     let letters = NormalConvention::letters(found.axes.order.map(|c| c as u8));
-    match told.channels {
+    match overrides.channels {
         Some(c) => findings.given("normal.channels", NormalConvention::letters(c)),
         None => findings.found("normal.channels", letters, found.order_confidence),
     }
-    let flips = [("normal.flip_x", told.flip_x), ("normal.flip_y", told.flip_y), ("normal.flip_z", told.flip_z)];
+    let flips =
+        [("normal.flip_x", overrides.flip_x), ("normal.flip_y", overrides.flip_y), ("normal.flip_z", overrides.flip_z)];
     for (k, (field, given)) in flips.into_iter().enumerate() {
         match (given, fixed.flip[k]) {
             (Some(flip), _) => findings.given(field, flip),
@@ -166,19 +167,19 @@ fn report(
 #[expect(clippy::too_many_arguments, reason = "everything that may tell the space")]
 fn space(
     unit: &Plane<Vec3>,
-    stored: &Stored,
-    told: &NormalConvention,
+    stored: &StoredMap,
+    overrides: &NormalConvention,
     inside: &Plane<bool>,
     at: &[usize],
     depth: Option<&Plane<f32>>,
-    near: &Fixed,
+    near: &FixedAxes,
     findings: &mut Findings,
 ) -> Option<Mat3> {
-    if told.space == Some(NormalSpace::Camera) {
+    if overrides.space == Some(NormalSpace::Camera) {
         findings.given("normal.space", "camera");
         return None;
     }
-    if let Some(rows) = told.world_to_camera {
+    if let Some(rows) = overrides.world_to_camera {
         findings.given("normal.space", "world");
         return world::orthonormal(world::from_rows(rows)).or_else(|| {
             findings.note("normal.world_to_camera is no rotation; it was ignored");
@@ -190,7 +191,7 @@ fn space(
     let toward = world::share_away(Mat3::from_diagonal(Vec3::NEG_ONE), &sampled);
     let sided = orientation::one_sided(&sampled);
     let named = stored.layer.to_lowercase().contains("world");
-    let wanted = told.space == Some(NormalSpace::World);
+    let wanted = overrides.space == Some(NormalSpace::World);
     let attribute = stored.world_to_camera.and_then(world::from_attribute).and_then(|m| {
         // Renderers disagree on where their camera's z points.
         let looks_back = Mat3::from_diagonal(Vec3::new(1.0, 1.0, -1.0)) * m;
@@ -216,7 +217,7 @@ fn space(
         return None;
     }
     let by_rim = world::from_rim(unit, inside);
-    let sound = |r: &world::Rotation| world::share_away(r.matrix, &sampled) < 0.1;
+    let sound = |r: &world::FittedRotation| world::share_away(r.matrix, &sampled) < 0.1;
     if let Some(found) = aligned.map(|a| a.free).filter(|r| r.fit > 0.8 && sound(r)) {
         // Depth of unknown polarity leaves half a turn about the view axis open; the rim settles it.
         let matrix = upright(found.matrix, by_rim.as_ref());
@@ -240,7 +241,7 @@ fn space(
 }
 
 /// The matrix or its half turn about the view axis, whichever is nearer to what the silhouette tells.
-fn upright(matrix: Mat3, by_rim: Option<&world::Rotation>) -> Mat3 {
+fn upright(matrix: Mat3, by_rim: Option<&world::FittedRotation>) -> Mat3 {
     let Some(rim) = by_rim else { return matrix };
     let likeness = |m: Mat3| (m.transpose() * rim.matrix).to_cols_array().iter().step_by(4).sum::<f32>();
     let turned = Mat3::from_diagonal(Vec3::new(-1.0, -1.0, 1.0)) * matrix;

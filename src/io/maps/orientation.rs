@@ -10,14 +10,14 @@ use crate::raster::Plane;
 
 /// A way to turn stored vectors into camera space: component k is `sign[k]` · stored\[`order[k]`\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axes {
+pub struct AxisMapping {
     pub order: [usize; 3],
     /// Whether each component is negated.
     pub flip: [bool; 3],
 }
 
-impl Axes {
-    pub const PLAIN: Axes = Axes { order: [0, 1, 2], flip: [false; 3] };
+impl AxisMapping {
+    pub const PLAIN: AxisMapping = AxisMapping { order: [0, 1, 2], flip: [false; 3] };
 
     pub fn apply(&self, v: Vec3) -> Vec3 {
         let sign = |k: usize| if self.flip[k] { -1.0 } else { 1.0 };
@@ -27,7 +27,7 @@ impl Axes {
 
 /// What is fixed beforehand: by the user, or by what a depth map's background tells.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Fixed {
+pub struct FixedAxes {
     pub order: Option<[usize; 3]>,
     pub flip: [Option<bool>; 3],
     /// The stored depth is nearer where it is higher.
@@ -38,8 +38,8 @@ pub struct Fixed {
 
 /// The best way and how sure each part of it is.
 #[derive(Clone, Copy, Debug)]
-pub struct Found {
-    pub axes: Axes,
+pub struct FoundAxes {
+    pub axes: AxisMapping,
     pub near_high: bool,
     /// Of the flips of x, y and z.
     pub confidence: [f32; 3],
@@ -57,18 +57,18 @@ pub fn one_sided(vectors: &[Vec3]) -> [bool; 3] {
 }
 
 /// Weighs every order and flip. `vectors` are as stored, unit length; `depth` as stored, finite over the surface.
-pub fn find(vectors: &Plane<Vec3>, inside: &Plane<bool>, depth: Option<&Plane<f32>>, fixed: &Fixed) -> Found {
+pub fn find(vectors: &Plane<Vec3>, inside: &Plane<bool>, depth: Option<&Plane<f32>>, fixed: &FixedAxes) -> FoundAxes {
     let at: Vec<usize> = samples::spread(inside);
     let sampled: Vec<Vec3> = at.iter().map(|&i| vectors.values()[i]).collect();
     let sided = one_sided(&sampled);
     let orders = orders(fixed, sided);
     let rim = samples::rim(inside);
-    let mut tried: Vec<(f32, Axes, bool)> = Vec::new();
+    let mut tried: Vec<(f32, AxisMapping, bool)> = Vec::new();
     for order in orders {
         let mean_z = sampled.iter().map(|v| v[order[2]]).sum::<f32>();
         let flip_z = fixed.flip[2].unwrap_or(mean_z < 0.0);
-        let axes = Axes { order, flip: [false, false, flip_z] };
-        let evidence = Evidence::gather(vectors, inside, &at, &rim, depth, axes);
+        let axes = AxisMapping { order, flip: [false, false, flip_z] };
+        let evidence = AxisEvidence::gather(vectors, inside, &at, &rim, depth, axes);
         for bits in 0..8u8 {
             let (flip_x, flip_y, near_high) = (bits & 1 != 0, bits & 2 != 0, bits & 4 != 0);
             let forbidden = fixed.flip[0].is_some_and(|f| f != flip_x)
@@ -78,7 +78,7 @@ pub fn find(vectors: &Plane<Vec3>, inside: &Plane<bool>, depth: Option<&Plane<f3
                 let score = evidence.score(flip_x, flip_y, near_high, depth.is_some())
                     + if near_high { fixed.near_high_leaning } else { -fixed.near_high_leaning }
                     - if order == [0, 1, 2] { 0.0 } else { 0.4 };
-                tried.push((score, Axes { order, flip: [flip_x, flip_y, flip_z] }, near_high));
+                tried.push((score, AxisMapping { order, flip: [flip_x, flip_y, flip_z] }, near_high));
             }
         }
     }
@@ -86,7 +86,7 @@ pub fn find(vectors: &Plane<Vec3>, inside: &Plane<bool>, depth: Option<&Plane<f3
 }
 
 /// The orders of channels worth trying: the plain one where blue can be z, else each channel that can.
-fn orders(fixed: &Fixed, sided: [bool; 3]) -> Vec<[usize; 3]> {
+fn orders(fixed: &FixedAxes, sided: [bool; 3]) -> Vec<[usize; 3]> {
     if let Some(order) = fixed.order {
         return vec![order];
     }
@@ -97,17 +97,17 @@ fn orders(fixed: &Fixed, sided: [bool; 3]) -> Vec<[usize; 3]> {
     all.into_iter().filter(|order| sided[order[2]]).collect()
 }
 
-fn decide(tried: &[(f32, Axes, bool)], sampled: &[Vec3]) -> Found {
-    let plain = (0.0, Axes::PLAIN, false);
+fn decide(tried: &[(f32, AxisMapping, bool)], sampled: &[Vec3]) -> FoundAxes {
+    let plain = (0.0, AxisMapping::PLAIN, false);
     let best = *tried.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&plain);
     // How far behind the best way with the other choice falls.
-    let sure = |other: &dyn Fn(&(f32, Axes, bool)) -> bool| {
+    let sure = |other: &dyn Fn(&(f32, AxisMapping, bool)) -> bool| {
         let rival = tried.iter().filter(|t| other(t)).map(|t| t.0).fold(f32::NEG_INFINITY, f32::max);
         1.0 - (-1.5 * (best.0 - rival)).exp()
     };
     let z = best.1.order[2];
     let away = sampled.iter().filter(|v| (v[z] < 0.0) != best.1.flip[2]).count() as f32 / sampled.len().max(1) as f32;
-    Found {
+    FoundAxes {
         axes: best.1,
         near_high: best.2,
         confidence: [
@@ -121,7 +121,7 @@ fn decide(tried: &[(f32, Axes, bool)], sampled: &[Vec3]) -> Found {
 }
 
 /// How well the unflipped axes of one order agree with what is known of the shape.
-struct Evidence {
+struct AxisEvidence {
     /// Slopes of normals against slopes of depth as stored, x and y (up).
     depth: Vec2,
     /// Outward at the rim, x and y.
@@ -130,14 +130,14 @@ struct Evidence {
     handed: f32,
 }
 
-impl Evidence {
+impl AxisEvidence {
     fn gather(
         vectors: &Plane<Vec3>,
         inside: &Plane<bool>,
         at: &[usize],
         rim: &[(usize, Vec2)],
         depth: Option<&Plane<f32>>,
-        axes: Axes,
+        axes: AxisMapping,
     ) -> Self {
         let w = vectors.width();
         let n = |i: usize| axes.apply(vectors.values()[i]);

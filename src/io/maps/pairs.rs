@@ -5,31 +5,31 @@ use std::path::{Path, PathBuf};
 
 /// What a file's name says it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Part {
+pub enum MapPart {
     Normal,
     Depth,
     Mask,
 }
 
-const ENDINGS: [(&str, Part); 13] = [
-    ("normals", Part::Normal),
-    ("normal", Part::Normal),
-    ("nrm", Part::Normal),
-    ("nor", Part::Normal),
-    ("n", Part::Normal),
-    ("depth", Part::Depth),
-    ("zdepth", Part::Depth),
-    ("height", Part::Depth),
-    ("d", Part::Depth),
-    ("z", Part::Depth),
-    ("mask", Part::Mask),
-    ("coverage", Part::Mask),
-    ("alpha", Part::Mask),
+const SUFFIXES: [(&str, MapPart); 13] = [
+    ("normals", MapPart::Normal),
+    ("normal", MapPart::Normal),
+    ("nrm", MapPart::Normal),
+    ("nor", MapPart::Normal),
+    ("n", MapPart::Normal),
+    ("depth", MapPart::Depth),
+    ("zdepth", MapPart::Depth),
+    ("height", MapPart::Depth),
+    ("d", MapPart::Depth),
+    ("z", MapPart::Depth),
+    ("mask", MapPart::Mask),
+    ("coverage", MapPart::Mask),
+    ("alpha", MapPart::Mask),
 ];
 
 /// Files of one object.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Set {
+pub struct MapSet {
     /// The name without its ending.
     pub name: String,
     pub normal: Option<PathBuf>,
@@ -39,20 +39,20 @@ pub struct Set {
 
 /// The object's name and the part: by the ending after the last `_`, `-` or `.`, else by a whole word such as `normal`
 /// anywhere (`normal_gl16.png`). A bare `normal.png` has an empty name.
-pub fn part_of(file: &Path) -> Option<(String, Part)> {
+pub fn part_of(file: &Path) -> Option<(String, MapPart)> {
     let stem = file.file_stem()?.to_string_lossy().to_lowercase();
     let breaks = ['_', '-', '.', ' '];
     let (name, end) = stem.rsplit_once(breaks).unwrap_or(("", &stem));
     // Single letters mean something only after a name.
-    let known = ENDINGS.iter().find(|(ending, _)| *ending == end && (ending.len() > 1 || !name.is_empty()));
+    let known = SUFFIXES.iter().find(|(suffix, _)| *suffix == end && (suffix.len() > 1 || !name.is_empty()));
     if let Some((_, part)) = known {
         return Some((name.into(), *part));
     }
     let words: Vec<&str> = stem.split(breaks).collect();
     let plain = |word: &str| word.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
     let found = words.iter().enumerate().find_map(|(i, word)| {
-        let ending = ENDINGS.iter().find(|(ending, _)| ending.len() > 2 && *ending == plain(word))?;
-        Some((i, ending.1))
+        let suffix = SUFFIXES.iter().find(|(suffix, _)| suffix.len() > 2 && *suffix == plain(word))?;
+        Some((i, suffix.1))
     });
     found.map(|(at, part)| {
         let rest: Vec<&str> = words.iter().enumerate().filter(|(i, _)| *i != at).map(|(_, w)| *w).collect();
@@ -61,24 +61,24 @@ pub fn part_of(file: &Path) -> Option<(String, Part)> {
 }
 
 /// Groups files of the same folder and name; files that say nothing are left out, and so are sets of one file.
-pub fn sets(files: &[PathBuf]) -> Vec<Set> {
-    let mut found: Vec<(PathBuf, Set)> = Vec::new();
+pub fn sets(files: &[PathBuf]) -> Vec<MapSet> {
+    let mut found: Vec<(PathBuf, MapSet)> = Vec::new();
     for file in files {
         let Some((name, part)) = part_of(file) else { continue };
         let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();
         let at = found.iter().position(|(f, s)| *f == folder && s.name == name).unwrap_or_else(|| {
-            found.push((folder.clone(), Set { name: name.clone(), ..Set::default() }));
+            found.push((folder.clone(), MapSet { name: name.clone(), ..MapSet::default() }));
             found.len() - 1
         });
         let set = &mut found[at].1;
         let place = match part {
-            Part::Normal => &mut set.normal,
-            Part::Depth => &mut set.depth,
-            Part::Mask => &mut set.mask,
+            MapPart::Normal => &mut set.normal,
+            MapPart::Depth => &mut set.depth,
+            MapPart::Mask => &mut set.mask,
         };
         place.get_or_insert_with(|| file.clone());
     }
-    let several = |s: &Set| [&s.normal, &s.depth, &s.mask].into_iter().flatten().count() > 1;
+    let several = |s: &MapSet| [&s.normal, &s.depth, &s.mask].into_iter().flatten().count() > 1;
     found.into_iter().map(|(_, set)| set).filter(several).collect()
 }
 
@@ -89,11 +89,11 @@ mod tests {
     #[test]
     fn endings_tell_the_part_and_the_rest_the_object() {
         let part = |name: &str| part_of(Path::new(name));
-        assert_eq!(part("maps/Pot_N.png"), Some(("pot".into(), Part::Normal)));
-        assert_eq!(part("pot-depth.exr"), Some(("pot".into(), Part::Depth)));
-        assert_eq!(part("normal.png"), Some((String::new(), Part::Normal)));
-        assert_eq!(part("normal_gl16.png"), Some(("gl16".into(), Part::Normal)));
-        assert_eq!(part("depth16.png"), Some((String::new(), Part::Depth)));
+        assert_eq!(part("maps/Pot_N.png"), Some(("pot".into(), MapPart::Normal)));
+        assert_eq!(part("pot-depth.exr"), Some(("pot".into(), MapPart::Depth)));
+        assert_eq!(part("normal.png"), Some((String::new(), MapPart::Normal)));
+        assert_eq!(part("normal_gl16.png"), Some(("gl16".into(), MapPart::Normal)));
+        assert_eq!(part("depth16.png"), Some((String::new(), MapPart::Depth)));
         assert_eq!(part("d.png"), None);
         assert_eq!(part("sand.png"), None);
     }

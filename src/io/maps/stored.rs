@@ -10,7 +10,7 @@ use image::DynamicImage;
 use std::path::{Path, PathBuf};
 
 /// What a file holds of one map.
-pub struct Stored {
+pub struct StoredMap {
     pub file: PathBuf,
     pub size: Size,
     /// One to four channels: red, green, blue, alpha of a picture; x, y, z of an EXR layer. `[0, 1]` in integer files.
@@ -31,14 +31,14 @@ pub struct Stored {
 
 /// Which map a file is read for: it decides which EXR layer is looked for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Role {
+pub enum MapRole {
     Normals,
     Depth,
     Mask,
 }
 
 /// Reads one map; `channel` names an EXR layer or channel, or one of `r g b a` of a picture.
-pub fn load(file: &Path, bytes: &[u8], channel: Option<&str>, role: Role, budget: &Budget) -> Result<Stored> {
+pub fn load(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, budget: &Budget) -> Result<StoredMap> {
     if ExrFile::is_exr(bytes) {
         load_exr(file, bytes, channel, role, budget)
     } else {
@@ -46,7 +46,7 @@ pub fn load(file: &Path, bytes: &[u8], channel: Option<&str>, role: Role, budget
     }
 }
 
-fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: Role, budget: &Budget) -> Result<Stored> {
+fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, budget: &Budget) -> Result<StoredMap> {
     let exr = ExrFile::open(file, bytes, budget)?;
     let choice = layers::choose(file, &exr, channel, role)?;
     let wanted: Vec<usize> = choice.channels.iter().chain(&choice.alpha).copied().collect();
@@ -54,7 +54,7 @@ fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: Role, budget
     let alpha = if choice.alpha.is_some() { channels.pop() } else { None };
     // Beyond the data window there is nothing: transparent, and not a number in every other channel.
     let alpha = alpha.map(|a| a.map(|v| if v.is_finite() { v.max(0.0).min(1.0) } else { 0.0 }));
-    Ok(Stored {
+    Ok(StoredMap {
         file: file.into(),
         size: exr.size(),
         channels,
@@ -68,7 +68,7 @@ fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: Role, budget
     })
 }
 
-fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget) -> Result<Stored> {
+fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget) -> Result<StoredMap> {
     let bitmap = bitmap::decode(file, bytes, budget)?;
     let image = bitmap.image;
     let size = Size::new(image.width(), image.height());
@@ -79,7 +79,7 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
     };
     let (colours, has_alpha) = (if image.color().has_color() { 3 } else { 1 }, image.color().has_alpha());
     let planes = planes(image, size, colours, has_alpha);
-    let mut stored = Stored {
+    let mut stored = StoredMap {
         file: file.into(),
         size,
         channels: planes,
@@ -120,7 +120,7 @@ fn planes(image: DynamicImage, size: Size, colours: usize, has_alpha: bool) -> V
     (0..per_pixel).map(at).collect()
 }
 
-impl Stored {
+impl StoredMap {
     /// The first three channels at a pixel, 0 where there are fewer; the fourth is alpha or a fourth channel.
     pub fn texel(&self, i: usize) -> [f32; 4] {
         std::array::from_fn(|c| self.channels.get(c).map_or(0.0, |p| p.values()[i]))

@@ -7,7 +7,7 @@ use crate::raster::Plane;
 
 /// A rotation (or a reflection) and how well it fits: the mean cosine between turned and expected normals.
 #[derive(Clone, Copy, Debug)]
-pub struct Rotation {
+pub struct FittedRotation {
     pub matrix: Mat3,
     pub fit: f32,
 }
@@ -50,13 +50,13 @@ pub fn share_away(matrix: Mat3, normals: &[Vec3]) -> f32 {
 
 /// How the free rotation and the best mere exchange of axes fit a depth map.
 #[derive(Clone, Copy, Debug)]
-pub struct Alignment {
-    pub free: Rotation,
+pub struct WorldAlignment {
+    pub free: FittedRotation,
     /// Fit of the best order and signs of axes.
     pub axes_fit: f32,
 }
 
-impl Alignment {
+impl WorldAlignment {
     /// Whether the normals must have been turned: axes alone leave clearly more unexplained than a rotation does.
     pub fn is_turned(&self) -> bool {
         let (free, axes) = (1.0 - self.free.fit, 1.0 - self.axes_fit);
@@ -67,7 +67,7 @@ impl Alignment {
 /// Finds the rotation from depth: slopes of depth, at the scale that fits best, tell camera-space normals.
 ///
 /// `depth` grows away from the viewer, in any unit.
-pub fn from_depth(vectors: &Plane<Vec3>, depth: &Plane<f32>, at: &[usize]) -> Option<Alignment> {
+pub fn from_depth(vectors: &Plane<Vec3>, depth: &Plane<f32>, at: &[usize]) -> Option<WorldAlignment> {
     let w = vectors.width();
     let mut pairs: Vec<(Vec3, Vec2)> = at
         .iter()
@@ -99,7 +99,7 @@ pub fn from_depth(vectors: &Plane<Vec3>, depth: &Plane<f32>, at: &[usize]) -> Op
     };
     let (tilt, _) = refined(&|s| rotation_of(s).fit)?;
     let (_, axes_fit) = refined(&axes_fit)?;
-    Some(Alignment { free: rotation_of(&fit(tilt)), axes_fit })
+    Some(WorldAlignment { free: rotation_of(&fit(tilt)), axes_fit })
 }
 
 /// The best mean cosine that exchanging and negating axes reaches.
@@ -110,7 +110,7 @@ fn axes_fit(s: &[[f64; 3]; 3]) -> f32 {
 }
 
 /// Finds the rotation from the silhouette: there, normals lie in the picture plane and point outward.
-pub fn from_rim(vectors: &Plane<Vec3>, inside: &Plane<bool>) -> Option<Rotation> {
+pub fn from_rim(vectors: &Plane<Vec3>, inside: &Plane<bool>) -> Option<FittedRotation> {
     let rim = samples::rim(inside);
     let pairs: Vec<(Vec3, Vec3)> =
         rim.iter().filter_map(|&(i, d)| Some((vectors.values()[i].try_normalize()?, d.extend(0.0)))).collect();
@@ -118,7 +118,7 @@ pub fn from_rim(vectors: &Plane<Vec3>, inside: &Plane<bool>) -> Option<Rotation>
 }
 
 /// The rotation that turns the first of each pair best onto the second.
-pub fn best_fit(pairs: impl Iterator<Item = (Vec3, Vec3)>) -> Rotation {
+pub fn best_fit(pairs: impl Iterator<Item = (Vec3, Vec3)>) -> FittedRotation {
     rotation_of(&correlation_matrix(pairs))
 }
 
@@ -138,7 +138,7 @@ fn correlation_matrix(pairs: impl Iterator<Item = (Vec3, Vec3)>) -> [[f64; 3]; 3
 }
 
 /// Horn (1987): the largest eigenvector of a 4 × 4 matrix of the correlations is the rotation's quaternion.
-fn rotation_of(s: &[[f64; 3]; 3]) -> Rotation {
+fn rotation_of(s: &[[f64; 3]; 3]) -> FittedRotation {
     let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = *s;
     let n = [
         [xx + yy + zz, yz - zy, zx - xz, xy - yx],
@@ -148,7 +148,7 @@ fn rotation_of(s: &[[f64; 3]; 3]) -> Rotation {
     ];
     let (value, [w, x, y, z]) = largest_eigenvector(n);
     let q = glam::Quat::from_xyzw(x as f32, y as f32, z as f32, w as f32);
-    Rotation { matrix: Mat3::from_quat(q.normalize()), fit: value as f32 }
+    FittedRotation { matrix: Mat3::from_quat(q.normalize()), fit: value as f32 }
 }
 
 /// The largest eigenvalue of a symmetric matrix and its eigenvector, by Jacobi's rotations.

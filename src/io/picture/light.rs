@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use crate::Budget;
-use crate::exr::{ExrFile, Pass};
+use crate::exr::{ExrFile, ExrPass};
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
@@ -17,7 +17,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
 }
 
 /// A layer of colours.
-pub struct Layer {
+pub struct LightLayer {
     /// Empty for the channels without a layer.
     pub name: String,
     pub picture: Picture,
@@ -28,14 +28,14 @@ pub struct Layer {
 /// Every layer of colours of an EXR, in the file's order; none where there are not several.
 ///
 /// Fails as [`decode`](super::decode) does, and where all of them together are beyond the budget.
-pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Layer>> {
+pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLayer>> {
     if !ExrFile::is_exr(bytes) {
         return Ok(Vec::new());
     }
     let exr = ExrFile::open(file, bytes, budget)?;
     // Cryptomatte keeps numbers of objects under the letters of colours.
-    let is_light = |pass: &&Pass| pass.letters("rgb").is_some() && !pass.key().starts_with("crypto");
-    let passes: Vec<&Pass> = exr.passes().iter().filter(is_light).collect();
+    let is_light = |pass: &&ExrPass| pass.letters("rgb").is_some() && !pass.key().starts_with("crypto");
+    let passes: Vec<&ExrPass> = exr.passes().iter().filter(is_light).collect();
     if passes.len() < 2 {
         return Ok(Vec::new());
     }
@@ -46,9 +46,9 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<Layer>> 
     let whole = passes.iter().enumerate().filter(|(_, p)| rank(p) < WHOLE.len()).min_by_key(|(_, p)| rank(p));
     // Of several parts, such as the views of two eyes, the first is the one to show.
     let whole = whole.map(|(i, _)| i).or((exr.parts() > 1).then_some(0));
-    let one = |(i, pass): (usize, &&Pass)| {
+    let one = |(i, pass): (usize, &&ExrPass)| {
         let picture = picture(file, &exr, texels_of(&exr, pass)?)?;
-        Ok(Layer { name: pass.name.clone(), picture, is_whole: whole == Some(i) })
+        Ok(LightLayer { name: pass.name.clone(), picture, is_whole: whole == Some(i) })
     };
     passes.iter().enumerate().map(one).collect()
 }
@@ -64,7 +64,7 @@ fn picture(file: &Path, exr: &ExrFile, mut texels: Vec<[f32; 4]>) -> Result<Pict
 }
 
 /// The place of a layer's name among those of the whole picture; beyond them for others.
-fn rank(pass: &Pass) -> usize {
+fn rank(pass: &ExrPass) -> usize {
     let last = pass.name.rsplit('.').next().unwrap_or("").to_lowercase();
     WHOLE.iter().position(|known| *known == last).unwrap_or(WHOLE.len())
 }
@@ -72,8 +72,8 @@ fn rank(pass: &Pass) -> usize {
 /// The colour layer of an EXR as stored, alpha 1 where it has none: the unnamed one, else one called colour or beauty,
 /// else the first with R, G and B, else a lone grey channel.
 pub fn texels(file: &Path, exr: &ExrFile) -> Result<Vec<[f32; 4]>> {
-    let colour = |pass: &&Pass| pass.letters("rgb").is_some();
-    let grey = |pass: &&Pass| pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1;
+    let colour = |pass: &&ExrPass| pass.letters("rgb").is_some();
+    let grey = |pass: &&ExrPass| pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1;
     let passes = exr.passes();
     let chosen = passes.iter().filter(colour).min_by_key(|p| rank(p));
     let Some(pass) = chosen.or_else(|| passes.iter().filter(grey).min_by_key(|p| rank(p))) else {
@@ -85,7 +85,7 @@ pub fn texels(file: &Path, exr: &ExrFile) -> Result<Vec<[f32; 4]>> {
 }
 
 /// The colours of a layer as stored, of a grey one thrice the same.
-fn texels_of(exr: &ExrFile, pass: &Pass) -> Result<Vec<[f32; 4]>> {
+fn texels_of(exr: &ExrFile, pass: &ExrPass) -> Result<Vec<[f32; 4]>> {
     let rgb = pass.letters("rgb").or(pass.letters("y").map(|y| vec![y[0]; 3]));
     let rgb = rgb.unwrap_or_else(|| vec![pass.channels[0]; 3]);
     let alpha = pass.letters("a").filter(|a| a[0] != rgb[0]);

@@ -188,10 +188,10 @@ fn header(bytes: &[u8]) -> Option<(String, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::project::packer::Packer;
+    use crate::project::packer::ZipPacker;
 
     fn packed() -> Vec<u8> {
-        let mut packer = Packer::default();
+        let mut packer = ZipPacker::default();
         packer.store("mimetype", b"image/openraster").unwrap();
         packer.deflate("a/text", &[7; 5000]).unwrap();
         packer.finish().unwrap()
@@ -232,7 +232,7 @@ mod tests {
         for (names, part) in
             [(["../a", "b"], "climbs out"), (["/a", "b"], "absolute"), (["a", "A"], "but for capitals")]
         {
-            let mut packer = Packer::default();
+            let mut packer = ZipPacker::default();
             names.iter().for_each(|name| packer.store(name, b"x").unwrap());
             let bytes = packer.finish().unwrap();
             let said = open(&bytes).err().unwrap().to_string();

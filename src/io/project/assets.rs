@@ -3,7 +3,7 @@
 
 use super::pixels;
 use crate::Result;
-use crate::document::kept::Encoded;
+use crate::document::cache::EncodedPixels;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };
@@ -23,16 +23,16 @@ const PIXELS: &str = "rilievo/pixels/";
 
 /// The files of a document in the order they are first named.
 #[derive(Default)]
-pub struct Assets {
+pub struct AssetList {
     files: Vec<(String, Asset)>,
     /// In lower case: names differ in more than capitals.
     taken: BTreeSet<String>,
-    made: Made,
+    made: MadeFiles,
 }
 
 /// Files made of what came from none, by where it lies in memory; kept, so that it is encoded once.
 #[derive(Default)]
-pub struct Made {
+pub struct MadeFiles {
     pictures: BTreeMap<usize, (Picture, Asset)>,
     masks: BTreeMap<usize, (Arc<Plane<u8>>, Asset)>,
     /// The maps and the mask of a surface.
@@ -40,38 +40,38 @@ pub struct Made {
 }
 
 /// The pixels of paint layers, and the names under which they are stored already.
-pub struct Painted<'a> {
-    pub pixels: &'a BTreeMap<LayerId, Encoded>,
+pub struct StoredPixels<'a> {
+    pub pixels: &'a BTreeMap<LayerId, EncodedPixels>,
     /// Files of `data/` that hold all of a layer's pixels.
     pub shared: &'a BTreeMap<LayerId, String>,
 }
 
-impl Assets {
+impl AssetList {
     /// With what was encoded for an earlier version of the document.
-    pub fn again(made: Made) -> Self {
+    pub fn again(made: MadeFiles) -> Self {
         Self { made, ..Self::default() }
     }
-    pub fn into_made(self) -> Made {
+    pub fn into_made(self) -> MadeFiles {
         self.made
     }
     pub fn files(&self) -> &[(String, Asset)] {
         &self.files
     }
     /// The document with every file under its name in the project.
-    pub fn rename(&mut self, file: &Path, document: &Document, painted: &Painted) -> Result<Document> {
+    pub fn rename(&mut self, file: &Path, document: &Document, painted: &StoredPixels) -> Result<Document> {
         let source = document.surface.as_ref().map(|surface| self.surface(file, surface, document)).transpose()?;
         let layers = self.layers(file, &document.layers, painted)?;
         Ok(Document { surface_source: source.map(Arc::new), layers, ..document.clone() })
     }
-    fn layers(&mut self, file: &Path, layers: &[Arc<Layer>], painted: &Painted) -> Result<Vec<Arc<Layer>>> {
+    fn layers(&mut self, file: &Path, layers: &[Arc<Layer>], painted: &StoredPixels) -> Result<Vec<Arc<Layer>>> {
         layers.iter().map(|layer| self.layer(file, layer, painted).map(Arc::new)).collect()
     }
-    fn layer(&mut self, file: &Path, layer: &Layer, painted: &Painted) -> Result<Layer> {
+    fn layer(&mut self, file: &Path, layer: &Layer, painted: &StoredPixels) -> Result<Layer> {
         let mut next = layer.clone();
         if let Some(MaskKind::File { file: name, coverage }) = next.mask.as_mut().map(|mask| &mut mask.kind) {
             *name = {
                 let mask = self.made.mask(file, coverage)?;
-                self.add(&with_ending(name, "mask", "png"), mask)
+                self.add(&name_with_extension(name, "mask", "png"), mask)
             };
         }
         match &mut next.content {
@@ -80,7 +80,9 @@ impl Assets {
                 (paint.x, paint.y) = (encoded.x, encoded.y);
                 paint.file = match painted.shared.get(&layer.id) {
                     Some(shared) => shared.clone(),
-                    None => self.add_in(PIXELS, &with_ending(&layer.name, "paint", "png"), encoded.file.clone()),
+                    None => {
+                        self.add_in(PIXELS, &name_with_extension(&layer.name, "paint", "png"), encoded.file.clone())
+                    }
                 };
             }
             Content::Image(live) => {
@@ -166,12 +168,12 @@ impl Assets {
         if let Some(asset) = &picture.encoded {
             return Ok(self.add(name, asset.clone()));
         }
-        let ending = match &picture.texels {
+        let extension = match &picture.texels {
             Texels::Srgb8(_) => "png",
             Texels::Linear(_) => "exr",
         };
         let asset = self.made.picture(file, picture)?;
-        Ok(self.add(&with_ending(name, "picture", ending), asset))
+        Ok(self.add(&name_with_extension(name, "picture", extension), asset))
     }
     fn add(&mut self, name: &str, asset: Asset) -> String {
         self.add_in(FOLDER, name, asset)
@@ -183,9 +185,9 @@ impl Assets {
             return known.clone();
         }
         let plain = plain_name(name);
-        let (stem, ending) =
+        let (stem, extension) =
             plain.rsplit_once('.').map_or((plain.as_str(), String::new()), |(s, e)| (s, format!(".{e}")));
-        let numbered = |n: usize| if n == 1 { plain.clone() } else { format!("{stem}-{n}{ending}") };
+        let numbered = |n: usize| if n == 1 { plain.clone() } else { format!("{stem}-{n}{extension}") };
         let mut n = 1;
         while !self.taken.insert(format!("{folder}{}", numbered(n)).to_lowercase()) {
             n += 1;
@@ -217,7 +219,7 @@ fn files_of_mut(source: &mut SurfaceSource) -> impl Iterator<Item = &mut String>
     [normal, depth, mask].into_iter().flatten()
 }
 
-impl Made {
+impl MadeFiles {
     /// Without loss: bytes as PNG, light as EXR of 32 bits.
     fn picture(&mut self, file: &Path, picture: &Picture) -> Result<Asset> {
         let key = match &picture.texels {
@@ -272,10 +274,10 @@ fn plain_name(name: &str) -> String {
 }
 
 /// A name that ends as the file does.
-fn with_ending(name: &str, otherwise: &str, ending: &str) -> String {
+fn name_with_extension(name: &str, otherwise: &str, extension: &str) -> String {
     let last = plain_name(if name.is_empty() { otherwise } else { name });
-    let stem = last.strip_suffix(&format!(".{ending}")).unwrap_or(&last);
-    format!("{stem}.{ending}")
+    let stem = last.strip_suffix(&format!(".{extension}")).unwrap_or(&last);
+    format!("{stem}.{extension}")
 }
 
 #[cfg(test)]
@@ -284,7 +286,7 @@ mod tests {
 
     #[test]
     fn a_file_is_stored_once_and_others_of_its_name_beside_it() {
-        let mut assets = Assets::default();
+        let mut assets = AssetList::default();
         let (a, b): (Asset, Asset) = (vec![1].into(), vec![2].into());
         assert_eq!(assets.add("/home/me/Wood.png", a.clone()), "rilievo/files/Wood.png");
         assert_eq!(assets.add("other/wood.png", b), "rilievo/files/wood-2.png");
@@ -299,8 +301,8 @@ mod tests {
             assert!(crate::files::refusal(&plain).is_none(), "{name} became {plain}");
             assert_eq!(plain_name(&plain), plain);
         }
-        assert_eq!(with_ending("a.png", "x", "png"), "a.png");
-        assert_eq!(with_ending("photo.jpg", "x", "png"), "photo.jpg.png");
-        assert_eq!(with_ending("", "x", "png"), "x.png");
+        assert_eq!(name_with_extension("a.png", "x", "png"), "a.png");
+        assert_eq!(name_with_extension("photo.jpg", "x", "png"), "photo.jpg.png");
+        assert_eq!(name_with_extension("", "x", "png"), "x.png");
     }
 }

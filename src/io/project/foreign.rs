@@ -4,9 +4,9 @@
 
 use super::MERGED;
 use super::manifest::Manifest;
-use super::open::Reading;
+use super::open::ProjectReader;
 use super::repair::{layer_mut, name_of, png_size};
-use super::stack::{self, Element, ElementShows, Stack};
+use super::stack::{self, ElementContent, StackElement, StackXml};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};
 use crate::math::Size;
 use crate::picture;
@@ -17,15 +17,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A document of what any program sees.
-pub fn document(reading: &mut Reading, stack: Stack) -> Result<Document> {
+pub fn document(reading: &mut ProjectReader, stack: StackXml) -> Result<Document> {
     let size = size(reading, &stack)?;
-    let mut reader = Foreign { reading, used_px: 0, live: None };
+    let mut reader = ForeignReader { reading, used_px: 0, live: None };
     let layers = reader.layers(stack.layers)?;
     Ok(Document { layers, ..Document::empty(size) })
 }
 
 /// The canvas's size as `stack.xml` tells it, else as the merged picture shows it.
-fn size(reading: &Reading, stack: &Stack) -> Result<Size> {
+fn size(reading: &ProjectReader, stack: &StackXml) -> Result<Size> {
     if let Some(size) = stack.size {
         return Ok(size);
     }
@@ -36,7 +36,7 @@ fn size(reading: &Reading, stack: &Stack) -> Result<Size> {
 
 /// A document that another program saved but left our entries in: its layers are those of `stack.xml`, and those whose
 /// pictures it left alone are as we saved them.
-pub fn restored(reading: &mut Reading, text: &[u8], value: &Value, manifest: &Manifest) -> Result<Document> {
+pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifest: &Manifest) -> Result<Document> {
     let stack = stack::read(reading.file, text, reading.budget)?;
     let size = size(reading, &stack)?;
     reading.note("the layers were changed by another program");
@@ -49,13 +49,14 @@ pub fn restored(reading: &mut Reading, text: &[u8], value: &Value, manifest: &Ma
         reading.lost(format!("the surface is lost: {error}"));
         Ok::<_, Error>(Document::empty(size))
     })?;
-    let mut reader = Foreign { reading, used_px: 0, live: Some(Saved { value: value.clone(), canvas, manifest }) };
+    let mut reader =
+        ForeignReader { reading, used_px: 0, live: Some(SavedState { value: value.clone(), canvas, manifest }) };
     let layers = reader.layers(stack.layers)?;
     Ok(Document { layers, size, ..base })
 }
 
 /// Nothing tells the layers any more: each picture that can be read becomes one, else the merged picture.
-pub fn leftovers(reading: &mut Reading, error: Error) -> Result<Document> {
+pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> {
     let names: Vec<String> = reading.archive.names().into_iter().map(str::to_owned).collect();
     let is_layer = |name: &&String| name.starts_with("data/") && name.to_lowercase().ends_with(".png");
     let mut layers = Vec::new();
@@ -83,20 +84,20 @@ pub fn leftovers(reading: &mut Reading, error: Error) -> Result<Document> {
 }
 
 /// What we saved, for layers that are still as they were.
-struct Saved<'a> {
+struct SavedState<'a> {
     value: Value,
     canvas: Value,
     manifest: &'a Manifest,
 }
 
-struct Foreign<'a, 'b> {
-    reading: &'a mut Reading<'b>,
+struct ForeignReader<'a, 'b> {
+    reading: &'a mut ProjectReader<'b>,
     used_px: u64,
-    live: Option<Saved<'a>>,
+    live: Option<SavedState<'a>>,
 }
 
-impl Foreign<'_, '_> {
-    fn layers(&mut self, elements: Vec<Element>) -> Result<Vec<Arc<Layer>>> {
+impl ForeignReader<'_, '_> {
+    fn layers(&mut self, elements: Vec<StackElement>) -> Result<Vec<Arc<Layer>>> {
         let mut layers = Vec::new();
         for element in elements {
             let is_atop = element.is_atop;
@@ -109,17 +110,17 @@ impl Foreign<'_, '_> {
         }
         Ok(layers)
     }
-    fn layer(&mut self, element: Element) -> Result<Layer> {
-        let Element { mut layer, shows, kind, unknown_op, .. } = element;
+    fn layer(&mut self, element: StackElement) -> Result<Layer> {
+        let StackElement { mut layer, shows, kind, unknown_op, .. } = element;
         if let Some(op) = unknown_op {
             self.reading.note(format!("“{}” is blended by “{op}” elsewhere; here it is blended normally", layer.name));
         }
         match shows {
-            ElementShows::Stack { isolated, layers } => {
+            ElementContent::Stack { isolated, layers } => {
                 let layers = self.layers(layers)?;
                 layer.content = Content::Group(Group { layers, pass_through: !isolated });
             }
-            ElementShows::Picture { src, x, y } => {
+            ElementContent::Picture { src, x, y } => {
                 if let Some(live) = self.live(&src, x, y) {
                     let Layer { name, visible, opacity, blend, .. } = layer;
                     return Ok(Layer { name, visible, opacity, blend, ..live });

@@ -2,9 +2,9 @@
 //! Floor 5. Encoding is `pixels`', composing `document::flatten`'s.
 
 use super::pixels;
-use super::plan::{Item, Shows};
+use super::plan::{ItemContent, PlanItem};
 use crate::Result;
-use crate::document::kept::Encoded;
+use crate::document::cache::EncodedPixels;
 use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layer, flatten_layers};
 use crate::raster::{BlendMode, TileGrid};
 use rayon::prelude::*;
@@ -16,30 +16,37 @@ use std::sync::Arc;
 pub type Cancellable<T> = Result<Option<T>>;
 
 /// The picture of each item that shows one, in the order [`pictures_of`] lists them; `None` if cancelled.
-pub fn render(file: &Path, document: &Document, items: &[Item], progress: &Progress) -> Cancellable<Vec<Encoded>> {
+pub fn render(
+    file: &Path,
+    document: &Document,
+    items: &[PlanItem],
+    progress: &Progress,
+) -> Cancellable<Vec<EncodedPixels>> {
     let shown = pictures_of(items);
     progress.add_total(shown.len() as u64);
-    let one = |item: &&Item| {
+    let one = |item: &&PlanItem| {
         let encoded = match &item.shows {
-            Shows::Layer(layer) => look(file, document, layer, item.mask.is_none(), progress)?,
-            Shows::Composed { document, layers } => flatten_layers(document, layers, progress)
+            ItemContent::Layer(layer) => look(file, document, layer, item.mask.is_none(), progress)?,
+            ItemContent::Composed { document, layers } => flatten_layers(document, layers, progress)
                 .map(|tiles| pixels::encode(file, &tiles, None))
                 .transpose()?,
-            Shows::Nothing(_) | Shows::Stack { .. } => Some(pixels::encode(file, &TileGrid::default(), None)?),
+            ItemContent::Nothing(_) | ItemContent::Stack { .. } => {
+                Some(pixels::encode(file, &TileGrid::default(), None)?)
+            }
         };
         progress.step();
         Ok(encoded)
     };
-    let all: Result<Vec<Option<Encoded>>> = shown.par_iter().map(one).collect();
+    let all: Result<Vec<Option<EncodedPixels>>> = shown.par_iter().map(one).collect();
     Ok(all?.into_iter().collect())
 }
 
 /// Every item that is a picture, bottom first, stacks opened.
-pub fn pictures_of(items: &[Item]) -> Vec<&Item> {
-    fn visit<'a>(items: &'a [Item], out: &mut Vec<&'a Item>) {
+pub fn pictures_of(items: &[PlanItem]) -> Vec<&PlanItem> {
+    fn visit<'a>(items: &'a [PlanItem], out: &mut Vec<&'a PlanItem>) {
         for item in items {
             match &item.shows {
-                Shows::Stack { items, .. } => visit(items, out),
+                ItemContent::Stack { items, .. } => visit(items, out),
                 _ => out.push(item),
             }
         }
@@ -56,7 +63,7 @@ fn look(
     layer: &Arc<Layer>,
     masked: bool,
     progress: &Progress,
-) -> Cancellable<Encoded> {
+) -> Cancellable<EncodedPixels> {
     if let Some(tiles) = bare(document, layer, masked) {
         return pixels_of(file, document, layer, tiles).map(Some);
     }
@@ -69,7 +76,7 @@ fn look(
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
-    let look = layer.kept.look.get(&document.scene(), &seen_by(document, layer), &masked, || {
+    let look = layer.cache.look.get(&document.scene(), &layers_seen_by(document, layer), &masked, || {
         render().unwrap_or_else(|error| {
             failed = Some(error);
             None
@@ -88,28 +95,28 @@ fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a T
 }
 
 /// What a layer's look depends on beside the scene: itself, and any normals that may stand beneath it.
-fn seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
+fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
     let normals = document.walk().into_iter().map(|(_, layer)| layer);
     let normals = normals.filter(|layer| matches!(layer.content, Content::Normals(_)));
     std::iter::once(layer).chain(normals).cloned().collect()
 }
 
 /// Takes pictures that were read with a document for the looks of its layers, so that saving it copies them.
-pub fn remember(document: &Document, looks: &BTreeMap<LayerId, Encoded>) {
+pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
     for (_, layer) in document.walk() {
         if let Some(encoded) = looks.get(&layer.id) {
-            let (scene, seen) = (document.scene(), seen_by(document, layer));
-            layer.kept.look.get(&scene, &seen, &true, || Some(encoded.clone()));
+            let (scene, seen) = (document.scene(), layers_seen_by(document, layer));
+            layer.cache.look.get(&scene, &seen, &true, || Some(encoded.clone()));
             // Nothing hides any of its pixels: they are its look.
             if bare(document, layer, true).is_some() {
-                layer.kept.pixels.get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));
+                layer.cache.pixels.get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));
             }
         }
     }
 }
 
 /// All pixels of each paint layer, also those that a mask or the surface's edge hides.
-pub fn paint(file: &Path, document: &Document) -> Result<BTreeMap<LayerId, Encoded>> {
+pub fn paint(file: &Path, document: &Document) -> Result<BTreeMap<LayerId, EncodedPixels>> {
     let layers: Vec<&Arc<Layer>> = document.walk().into_iter().map(|(_, layer)| layer).collect();
     let one = |layer: &&Arc<Layer>| {
         let Content::Pixels(pixels) = &layer.content else { return Ok(None) };
@@ -119,9 +126,9 @@ pub fn paint(file: &Path, document: &Document) -> Result<BTreeMap<LayerId, Encod
     Ok(all?.into_iter().flatten().collect())
 }
 
-fn pixels_of(file: &Path, document: &Document, layer: &Arc<Layer>, tiles: &TileGrid) -> Result<Encoded> {
+fn pixels_of(file: &Path, document: &Document, layer: &Arc<Layer>, tiles: &TileGrid) -> Result<EncodedPixels> {
     let mut failed = None;
-    let known = layer.kept.pixels.get(&document.scene(), std::slice::from_ref(layer), &(), || {
+    let known = layer.cache.pixels.get(&document.scene(), std::slice::from_ref(layer), &(), || {
         pixels::encode(file, tiles, None).map_err(|error| failed = Some(error)).ok()
     });
     // Without a failure there is a value.

@@ -1,7 +1,7 @@
 //! Which picture of `data/` shows which layer, with checksums: so that a change by another program is seen.
 //! Floor 5.
 
-use crate::document::kept::Encoded;
+use crate::document::cache::EncodedPixels;
 use crate::document::{Document, LayerId};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -16,12 +16,12 @@ pub struct Manifest {
     pub program: String,
     /// CRC-32 of `stack.xml`, or of what tells the layers in another format.
     pub stack: u32,
-    pub pictures: Vec<Shown>,
+    pub pictures: Vec<ManifestPicture>,
 }
 
 /// A picture of one layer alone.
 #[derive(Debug, PartialEq)]
-pub struct Shown {
+pub struct ManifestPicture {
     /// The layer's path in the document, such as `layers[2].layers[0]`.
     pub layer: String,
     pub name: String,
@@ -32,11 +32,11 @@ pub struct Shown {
 }
 
 impl Manifest {
-    pub fn new(document: &Document, stack: u32, shown: &BTreeMap<LayerId, &(String, Encoded)>) -> Self {
+    pub fn new(document: &Document, stack: u32, shown: &BTreeMap<LayerId, &(String, EncodedPixels)>) -> Self {
         let pictures = document.walk().into_iter().filter_map(|(path, layer)| {
             let (name, look) = shown.get(&layer.id)?;
             let crc = crc32fast::hash(look.file.bytes());
-            Some(Shown { layer: path, name: name.clone(), crc, x: look.x, y: look.y })
+            Some(ManifestPicture { layer: path, name: name.clone(), crc, x: look.x, y: look.y })
         });
         Self { program: PROGRAM.into(), stack, pictures: pictures.collect() }
     }
@@ -44,7 +44,8 @@ impl Manifest {
         self.program == PROGRAM
     }
     pub fn write(&self) -> Value {
-        let picture = |p: &Shown| json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
+        let picture =
+            |p: &ManifestPicture| json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
         json!({
             "format": "rilievo-project",
             "version": 1,
@@ -59,7 +60,7 @@ impl Manifest {
         let offset = |value: &Value| value.as_i64().and_then(|v| i32::try_from(v).ok());
         let text = |value: &Value| value.as_str().map(str::to_owned);
         let picture = |p: &Value| {
-            Some(Shown {
+            Some(ManifestPicture {
                 layer: text(&p["layer"])?,
                 name: text(&p["picture"])?,
                 crc: crc(&p["crc32"])?,
@@ -82,7 +83,8 @@ mod tests {
 
     #[test]
     fn a_manifest_reads_back() {
-        let shown = Shown { layer: "layers[0]".into(), name: "data/000.png".into(), crc: u32::MAX, x: -4, y: 5 };
+        let shown =
+            ManifestPicture { layer: "layers[0]".into(), name: "data/000.png".into(), crc: u32::MAX, x: -4, y: 5 };
         let manifest = Manifest { program: "1".into(), stack: 7, pictures: vec![shown] };
         assert_eq!(Manifest::read(&manifest.write()), Some(manifest));
         assert_eq!(Manifest::read(&json!({ "format": "rilievo-project", "pictures": 3 })), None);

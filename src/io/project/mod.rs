@@ -29,18 +29,18 @@ mod tests;
 
 pub use archive::Archive;
 pub use look::Cancellable;
-pub use open::{Contents, read};
+pub use open::{ProjectContents, read};
 
 use super::recipe;
-use crate::document::kept::Encoded;
+use crate::document::cache::EncodedPixels;
 use crate::document::{Document, LayerId, Progress, flatten};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::{Error, Result};
-use assets::{Assets, Painted};
+use assets::{AssetList, StoredPixels};
 use manifest::Manifest;
-use packer::Packer;
-use plan::{Item, Shows, Words};
+use packer::ZipPacker;
+use plan::{FormatSupport, ItemContent, PlanItem};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -58,36 +58,36 @@ const THUMBNAIL_PX: u32 = 256;
 ///
 /// The same document gives the same bytes, and so does the document read back from them.
 pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {
-    let items = plan::plan(document, Words::OPENRASTER);
+    let items = plan::plan(document, FormatSupport::OPENRASTER);
     let paint = look::paint(file, document)?;
     let Some(looks) = look::render(file, document, &items, progress)? else { return Ok(None) };
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
-    let pictures: Vec<(String, Encoded)> =
+    let pictures: Vec<(String, EncodedPixels)> =
         looks.into_iter().enumerate().map(|(i, look)| (format!("data/{i:03}.png"), look)).collect();
     let shown = shown_alone(&items, &pictures);
     let xml = stack::write(document.size, &items, &pictures);
-    let mut entries = vec![Entry::text(MIMETYPE, MIME.as_bytes().to_vec())];
+    let mut entries = vec![ZipEntry::text(MIMETYPE, MIME.as_bytes().to_vec())];
     entries.extend(documents(file, document, &paint, &shown, crc32fast::hash(xml.as_bytes()))?);
     // Behind the document and the manifest, before all pictures.
-    entries.insert(3, Entry::text(STACK, xml.into_bytes()));
-    let layers = pictures.iter().map(|(name, picture)| Entry::bytes(name, picture.file.clone()));
+    entries.insert(3, ZipEntry::text(STACK, xml.into_bytes()));
+    let layers = pictures.iter().map(|(name, picture)| ZipEntry::bytes(name, picture.file.clone()));
     entries.splice(4..4, layers);
     let whole = merged.to_straight_rgba(document.size.rect());
     let (small, size) = thumbnail(&whole, document.size);
     for (name, rgba, size) in [(MERGED, &whole, document.size), (THUMBNAIL, &small, size)] {
-        entries.push(Entry::bytes(name, pixels::encode_texels(file, rgba.as_chunks().0, size)?));
+        entries.push(ZipEntry::bytes(name, pixels::encode_texels(file, rgba.as_chunks().0, size)?));
     }
     packed(file, &entries).map(Some)
 }
 
 /// An entry of the zip.
-pub struct Entry {
+pub struct ZipEntry {
     name: String,
     bytes: Asset,
     is_text: bool,
 }
 
-impl Entry {
+impl ZipEntry {
     fn text(name: &str, bytes: Vec<u8>) -> Self {
         Self { name: name.into(), bytes: bytes.into(), is_text: name != MIMETYPE }
     }
@@ -104,26 +104,26 @@ impl Entry {
 pub fn documents(
     file: &Path,
     document: &Document,
-    paint: &BTreeMap<LayerId, Encoded>,
-    shown: &BTreeMap<LayerId, &(String, Encoded)>,
+    paint: &BTreeMap<LayerId, EncodedPixels>,
+    shown: &BTreeMap<LayerId, &(String, EncodedPixels)>,
     stack: u32,
-) -> Result<Vec<Entry>> {
+) -> Result<Vec<ZipEntry>> {
     let shared = shown.iter().filter(|(id, (_, look))| paint.get(id) == Some(look));
     let shared = shared.map(|(id, (name, _))| (*id, name.clone())).collect();
-    let mut assets = Assets::default();
-    let renamed = assets.rename(file, document, &Painted { pixels: paint, shared: &shared })?;
-    let json = |name, value: serde_json::Value| Entry::text(name, format!("{value:#}\n").into_bytes());
+    let mut assets = AssetList::default();
+    let renamed = assets.rename(file, document, &StoredPixels { pixels: paint, shared: &shared })?;
+    let json = |name, value: serde_json::Value| ZipEntry::text(name, format!("{value:#}\n").into_bytes());
     let manifest = Manifest::new(document, stack, shown);
     let mut entries = vec![json(DOCUMENT, recipe::write(&renamed)), json(MANIFEST, manifest.write())];
-    entries.extend(assets.files().iter().map(|(name, asset)| Entry::bytes(name, asset.clone())));
+    entries.extend(assets.files().iter().map(|(name, asset)| ZipEntry::bytes(name, asset.clone())));
     Ok(entries)
 }
 
 /// Entries as a zip.
-pub fn packed(file: &Path, entries: &[Entry]) -> Result<Vec<u8>> {
+pub fn packed(file: &Path, entries: &[ZipEntry]) -> Result<Vec<u8>> {
     let pack = || {
-        let mut packer = Packer::default();
-        for Entry { name, bytes, is_text } in entries {
+        let mut packer = ZipPacker::default();
+        for ZipEntry { name, bytes, is_text } in entries {
             if *is_text { packer.deflate(name, bytes.bytes())? } else { packer.store(name, bytes.bytes())? }
         }
         packer.finish()
@@ -146,10 +146,13 @@ fn thumbnail(rgba: &[u8], size: Size) -> (Vec<u8>, Size) {
 }
 
 /// The pictures that show one layer alone, with their names.
-fn shown_alone<'a>(items: &[Item], pictures: &'a [(String, Encoded)]) -> BTreeMap<LayerId, &'a (String, Encoded)> {
+fn shown_alone<'a>(
+    items: &[PlanItem],
+    pictures: &'a [(String, EncodedPixels)],
+) -> BTreeMap<LayerId, &'a (String, EncodedPixels)> {
     let shown = look::pictures_of(items).into_iter().zip(pictures);
     let alone = shown.filter_map(|(item, picture)| match &item.shows {
-        Shows::Layer(layer) | Shows::Nothing(layer) => Some((layer.id, picture)),
+        ItemContent::Layer(layer) | ItemContent::Nothing(layer) => Some((layer.id, picture)),
         _ => None,
     });
     alone.collect()

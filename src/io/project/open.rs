@@ -2,13 +2,13 @@
 //! Floor 5.
 
 use super::look::remember;
-use super::manifest::{Manifest, Shown};
+use super::manifest::{Manifest, ManifestPicture};
 use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, pixels, repair, stack};
-use crate::document::kept::Encoded;
+use crate::document::cache::EncodedPixels;
 use crate::document::{Document, LayerId};
 use crate::math::Size;
 use crate::raster::Asset;
-use crate::recipe::{self, Source, Tiles};
+use crate::recipe::{self, RecipeSource, TileGrids};
 use crate::{Budget, json, picture};
 use crate::{Error, Result};
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What a project gave.
-pub struct Contents {
+pub struct ProjectContents {
     pub document: Document,
     /// What is not as it was saved, a sentence each, for the artist.
     pub notes: Vec<String>,
@@ -27,18 +27,18 @@ pub struct Contents {
 }
 
 /// Reads a project of ours, or any OpenRaster file. Fails only where nothing can be given back.
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let archive = Archive::open(file, bytes, budget)?;
-    let mut reading = Reading { file, archive: &archive, budget, notes: Vec::new(), is_whole: true };
+    let mut reading = ProjectReader { file, archive: &archive, budget, notes: Vec::new(), is_whole: true };
     if archive.is_damaged() {
         reading.lost("the file's table of contents is damaged; its entries were found without it");
     }
     let document = reading.document()?;
-    Ok(Contents { document, notes: reading.notes, is_whole: reading.is_whole })
+    Ok(ProjectContents { document, notes: reading.notes, is_whole: reading.is_whole })
 }
 
 /// A project being read, and what there is to say of it.
-pub struct Reading<'a> {
+pub struct ProjectReader<'a> {
     pub file: &'a Path,
     pub archive: &'a Archive<'a>,
     pub budget: &'a Budget,
@@ -46,7 +46,7 @@ pub struct Reading<'a> {
     pub is_whole: bool,
 }
 
-impl Reading<'_> {
+impl ProjectReader<'_> {
     /// Tells what is not as it was, though nothing is lost.
     pub fn note(&mut self, sentence: impl Into<String>) {
         self.notes.push(sentence.into());
@@ -107,7 +107,7 @@ impl Reading<'_> {
     fn own(&mut self, mut value: Value, manifest: Option<&Manifest>) -> Result<Document> {
         let intact = manifest.map(|manifest| repair::check_pictures(self, &mut value, manifest)).unwrap_or_default();
         let path = self.archive_path(DOCUMENT);
-        let source = Source { file: &path, files: self.archive, budget: self.budget, onto: None };
+        let source = RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None };
         let document = match recipe::read_with_tiles(&value, source, self.decoded_ahead(&value)) {
             Ok(document) => document,
             Err(error) => {
@@ -125,7 +125,7 @@ impl Reading<'_> {
         Ok(document)
     }
     /// The pixels of the paint layers, decoded side by side; what cannot be read is left to be told in its turn.
-    fn decoded_ahead(&self, value: &Value) -> Tiles {
+    fn decoded_ahead(&self, value: &Value) -> TileGrids {
         let mut wanted = BTreeSet::new();
         list_paint(&value["layers"], &mut wanted);
         let left_px = AtomicU64::new(self.budget.document_px);
@@ -145,7 +145,7 @@ impl Reading<'_> {
     }
     pub fn read_value(&self, value: &Value) -> Result<Document> {
         let path = self.archive_path(DOCUMENT);
-        recipe::read_value(value, Source { file: &path, files: self.archive, budget: self.budget, onto: None })
+        recipe::read_value(value, RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None })
     }
     /// Without a document: what any program sees.
     fn pictures_only(&mut self, stack: Option<Result<Vec<u8>>>) -> Result<Document> {
@@ -178,10 +178,10 @@ fn list_paint(layers: &Value, out: &mut BTreeSet<(String, i32, i32)>) {
 }
 
 /// The pictures by the layers they show.
-fn looks(document: &Document, intact: Vec<(Shown, Asset, Size)>) -> BTreeMap<LayerId, Encoded> {
-    let mut by_path: BTreeMap<String, Encoded> = intact
+fn looks(document: &Document, intact: Vec<(ManifestPicture, Asset, Size)>) -> BTreeMap<LayerId, EncodedPixels> {
+    let mut by_path: BTreeMap<String, EncodedPixels> = intact
         .into_iter()
-        .map(|(shown, file, size)| (shown.layer, Encoded { file, size, x: shown.x, y: shown.y }))
+        .map(|(shown, file, size)| (shown.layer, EncodedPixels { file, size, x: shown.x, y: shown.y }))
         .collect();
     let walk = document.walk().into_iter();
     walk.filter_map(|(path, layer)| Some((layer.id, by_path.remove(&path)?))).collect()

@@ -8,17 +8,17 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// Entries in the order they are added. No entry carries a date, and every header before an entry its size and checksum, so
 /// that entries can be found without the table of contents.
-pub struct Packer {
+pub struct ZipPacker {
     zip: ZipWriter<Cursor<Vec<u8>>>,
 }
 
-impl Default for Packer {
+impl Default for ZipPacker {
     fn default() -> Self {
         Self { zip: ZipWriter::new(Cursor::default()) }
     }
 }
 
-impl Packer {
+impl ZipPacker {
     /// Adds bytes as they are: pictures are compressed already.
     pub fn store(&mut self, name: &str, bytes: &[u8]) -> ZipResult<()> {
         self.add(name, bytes, CompressionMethod::Stored)

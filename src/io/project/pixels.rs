@@ -2,7 +2,7 @@
 //! Floor 5. Which pixels are stored is `look`'s.
 
 use crate::Budget;
-use crate::document::kept::Encoded;
+use crate::document::cache::EncodedPixels;
 use crate::math::{Rect, Size};
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};
@@ -11,13 +11,13 @@ use std::path::Path;
 /// The tight rectangle around what is not transparent, as a PNG; one transparent pixel where there is nothing.
 ///
 /// Premultiplied bytes come back from straight ones as they were, so nothing is lost.
-pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<Encoded> {
+pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<EncodedPixels> {
     let bounds = painted(tiles, within);
     let rect = if bounds.is_empty() { Rect::new(0, 0, 1, 1) } else { bounds };
     let size = Size::new(rect.width() as u32, rect.height() as u32);
     let straight = tiles.to_straight_rgba(rect);
     let png = checked(file, &straight, size, png::ColorType::Rgba)?;
-    Ok(Encoded { file: png, size, x: rect.x0, y: rect.y0 })
+    Ok(EncodedPixels { file: png, size, x: rect.x0, y: rect.y0 })
 }
 
 /// A mask as a grey PNG.

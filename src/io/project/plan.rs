@@ -10,27 +10,27 @@
 //! * a layer that changes or reads what lies beneath in a way that cannot be said (radiance scaling, exclusion, plus,
 //!   blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies beneath it in its scope.
 
-use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, Lock, MaskKind};
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind};
 use crate::raster::BlendMode;
 use std::sync::Arc;
 
 /// A picture or a stack of them, and how it meets what lies beneath.
-pub struct Item {
+pub struct PlanItem {
     pub name: String,
     pub visible: bool,
     pub opacity: f32,
     pub blend: BlendMode,
-    pub lock: Lock,
+    pub lock: LayerLock,
     /// Clipped to the item beneath, where the format has a word for it.
     pub clipped: bool,
     /// Not in the pixels, where the format has a word for it.
     pub mask: Option<LayerMask>,
-    pub shows: Shows,
+    pub shows: ItemContent,
 }
 
 /// What a format has words for.
 #[derive(Clone, Copy)]
-pub struct Words {
+pub struct FormatSupport {
     /// Layers clipped to one beneath.
     pub clipping: bool,
     /// Masks that are pictures.
@@ -39,12 +39,13 @@ pub struct Words {
     pub says: fn(BlendMode) -> bool,
 }
 
-impl Words {
-    pub const OPENRASTER: Words = Words { clipping: false, masks: false, says: BlendMode::is_said_by_openraster };
-    pub const PHOTOSHOP: Words = Words { clipping: true, masks: true, says: |_| true };
+impl FormatSupport {
+    pub const OPENRASTER: FormatSupport =
+        FormatSupport { clipping: false, masks: false, says: BlendMode::is_said_by_openraster };
+    pub const PHOTOSHOP: FormatSupport = FormatSupport { clipping: true, masks: true, says: |_| true };
 }
 
-pub enum Shows {
+pub enum ItemContent {
     /// Nothing: the layer has no pixels of its own.
     Nothing(Arc<Layer>),
     /// A layer alone, wholly opaque, its mask in its pixels.
@@ -52,22 +53,22 @@ pub enum Shows {
     /// Some layers composed on transparency, in a document where the first's own opacity and blend mode are taken away.
     Composed { document: Document, layers: Vec<LayerId> },
     /// Bottom first.
-    Stack { isolated: bool, items: Vec<Item> },
+    Stack { isolated: bool, items: Vec<PlanItem> },
 }
 
 /// The items of a document, bottom first.
-pub fn plan(document: &Document, words: Words) -> Vec<Item> {
+pub fn plan(document: &Document, words: FormatSupport) -> Vec<PlanItem> {
     Planner { document, words }.scope(&document.layers)
 }
 
 struct Planner<'a> {
     document: &'a Document,
-    words: Words,
+    words: FormatSupport,
 }
 
 impl Planner<'_> {
     /// Layers that are composed with each other.
-    fn scope(&self, layers: &[Arc<Layer>]) -> Vec<Item> {
+    fn scope(&self, layers: &[Arc<Layer>]) -> Vec<PlanItem> {
         let runs = runs(layers);
         let last = runs.iter().rposition(|run| self.reads_beneath(run));
         let mut items = Vec::new();
@@ -79,40 +80,40 @@ impl Planner<'_> {
         items
     }
     /// A layer that reads what lies beneath it, and all that lies beneath it, as one picture.
-    fn composed_with_beneath(&self, runs: &[&[Arc<Layer>]]) -> [Item; 2] {
+    fn composed_with_beneath(&self, runs: &[&[Arc<Layer>]]) -> [PlanItem; 2] {
         let parts = runs.iter().flat_map(|run| self.run(run)).collect();
         let top = runs.last().and_then(|run| run.first());
         let name = top.map_or(String::new(), |layer| layer.name.clone());
         // Without a base, what is clipped paints nothing.
         let visible = runs.iter().filter(|run| run.first().is_some_and(|base| base.visible && is_base(base)));
         let layers = visible.flat_map(|run| run.iter()).filter(|l| l.visible).map(|layer| layer.id).collect();
-        [hidden_parts(&name, parts), picture(name, Shows::Composed { document: self.document.clone(), layers })]
+        [hidden_parts(&name, parts), picture(name, ItemContent::Composed { document: self.document.clone(), layers })]
     }
     /// A layer and those clipped to it.
-    fn run(&self, run: &[Arc<Layer>]) -> Vec<Item> {
+    fn run(&self, run: &[Arc<Layer>]) -> Vec<PlanItem> {
         let Some((base, rest)) = run.split_first() else { return Vec::new() };
         let is_base = is_base(base);
         let clipped = rest.iter().any(|layer| layer.clip_below && layer.visible);
         if is_base && self.words.clipping && !matches!(base.content, Content::Group(_)) {
-            let item = |layer: &Arc<Layer>| Item { clipped: layer.clip_below, ..self.single(layer) };
+            let item = |layer: &Arc<Layer>| PlanItem { clipped: layer.clip_below, ..self.single(layer) };
             return run.iter().map(item).collect();
         }
         if is_base && base.visible && clipped {
             return vec![self.clipping_stack(base, run)];
         }
-        let mut items: Vec<Item> = run.iter().map(|layer| self.single(layer)).collect();
+        let mut items: Vec<PlanItem> = run.iter().map(|layer| self.single(layer)).collect();
         for (item, layer) in items.iter_mut().zip(run) {
             // Clipped to what is not there, a layer paints nothing.
             item.visible &= !layer.clip_below;
         }
         items
     }
-    fn clipping_stack(&self, base: &Arc<Layer>, run: &[Arc<Layer>]) -> Item {
+    fn clipping_stack(&self, base: &Arc<Layer>, run: &[Arc<Layer>]) -> PlanItem {
         let parts = run.iter().map(|layer| self.single(layer)).collect();
         let layers = run.iter().filter(|layer| layer.visible).map(|layer| layer.id).collect();
-        let composed = Shows::Composed { document: self.plain(base.id), layers };
+        let composed = ItemContent::Composed { document: self.plain(base.id), layers };
         let items = vec![hidden_parts(&base.name, parts), picture(base.name.clone(), composed)];
-        Item { shows: Shows::Stack { isolated: true, items }, ..item(base) }
+        PlanItem { shows: ItemContent::Stack { isolated: true, items }, ..item(base) }
     }
     /// The document with one layer as it is before it meets what lies beneath.
     fn plain(&self, id: LayerId) -> Document {
@@ -121,34 +122,34 @@ impl Planner<'_> {
         });
         plain.unwrap_or_else(|| self.document.clone())
     }
-    fn single(&self, layer: &Arc<Layer>) -> Item {
+    fn single(&self, layer: &Arc<Layer>) -> PlanItem {
         let shows = match &layer.content {
-            Content::RadianceScaling(_) | Content::Normals(_) => Shows::Nothing(layer.clone()),
+            Content::RadianceScaling(_) | Content::Normals(_) => ItemContent::Nothing(layer.clone()),
             Content::Group(group) => return self.group(layer, group),
-            _ => Shows::Layer(layer.clone()),
+            _ => ItemContent::Layer(layer.clone()),
         };
         let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
-        Item { shows, mask, ..item(layer) }
+        PlanItem { shows, mask, ..item(layer) }
     }
     fn has_word_for(&self, mask: &LayerMask) -> bool {
         self.words.masks && matches!(mask.kind, MaskKind::File { .. })
     }
-    fn group(&self, layer: &Arc<Layer>, group: &Group) -> Item {
+    fn group(&self, layer: &Arc<Layer>, group: &Group) -> PlanItem {
         let parts = self.scope(&group.layers);
         if group.pass_through {
-            let shows = Shows::Stack { isolated: false, items: parts };
-            return Item { opacity: 1.0, blend: BlendMode::Normal, shows, ..item(layer) };
+            let shows = ItemContent::Stack { isolated: false, items: parts };
+            return PlanItem { opacity: 1.0, blend: BlendMode::Normal, shows, ..item(layer) };
         }
         let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
         let items = match &layer.mask {
             _ if mask.is_some() => parts,
             None => parts,
             Some(_) => {
-                let composed = Shows::Composed { document: self.plain(layer.id), layers: vec![layer.id] };
+                let composed = ItemContent::Composed { document: self.plain(layer.id), layers: vec![layer.id] };
                 vec![hidden_parts(&layer.name, parts), picture(layer.name.clone(), composed)]
             }
         };
-        Item { shows: Shows::Stack { isolated: true, items }, mask, ..item(layer) }
+        PlanItem { shows: ItemContent::Stack { isolated: true, items }, mask, ..item(layer) }
     }
 
     /// A visible run that cannot be shown without composing it with what lies beneath.
@@ -188,8 +189,8 @@ fn runs(layers: &[Arc<Layer>]) -> Vec<&[Arc<Layer>]> {
     runs
 }
 
-fn item(layer: &Layer) -> Item {
-    Item {
+fn item(layer: &Layer) -> PlanItem {
+    PlanItem {
         name: layer.name.clone(),
         visible: layer.visible,
         opacity: layer.opacity,
@@ -197,17 +198,17 @@ fn item(layer: &Layer) -> Item {
         lock: layer.lock,
         clipped: false,
         mask: None,
-        shows: Shows::Stack { isolated: true, items: Vec::new() },
+        shows: ItemContent::Stack { isolated: true, items: Vec::new() },
     }
 }
 
-fn picture(name: String, shows: Shows) -> Item {
-    Item {
+fn picture(name: String, shows: ItemContent) -> PlanItem {
+    PlanItem {
         name,
         visible: true,
         opacity: 1.0,
         blend: BlendMode::Normal,
-        lock: Lock::None,
+        lock: LayerLock::None,
         clipped: false,
         mask: None,
         shows,
@@ -215,9 +216,9 @@ fn picture(name: String, shows: Shows) -> Item {
 }
 
 /// The layers that a composed picture shows, kept out of sight.
-fn hidden_parts(name: &str, items: Vec<Item>) -> Item {
-    let shows = Shows::Stack { isolated: true, items };
-    Item { visible: false, ..picture(format!("{name} (parts)"), shows) }
+fn hidden_parts(name: &str, items: Vec<PlanItem>) -> PlanItem {
+    let shows = ItemContent::Stack { isolated: true, items };
+    PlanItem { visible: false, ..picture(format!("{name} (parts)"), shows) }
 }
 
 #[cfg(test)]
@@ -236,16 +237,16 @@ mod tests {
     fn planned(layers: Vec<Layer>) -> String {
         let layers = layers.into_iter().map(Arc::new).collect();
         let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
-        text(&plan(&document, Words::OPENRASTER))
+        text(&plan(&document, FormatSupport::OPENRASTER))
     }
     /// Names; hidden ones in lower case brackets, composed ones with a star, stacks with what they hold.
-    fn text(items: &[Item]) -> String {
-        let one = |item: &Item| {
+    fn text(items: &[PlanItem]) -> String {
+        let one = |item: &PlanItem| {
             let what = match &item.shows {
-                Shows::Nothing(_) => "0".into(),
-                Shows::Layer(_) => String::new(),
-                Shows::Composed { layers, .. } => format!("*{}", layers.len()),
-                Shows::Stack { isolated, items } => {
+                ItemContent::Nothing(_) => "0".into(),
+                ItemContent::Layer(_) => String::new(),
+                ItemContent::Composed { layers, .. } => format!("*{}", layers.len()),
+                ItemContent::Stack { isolated, items } => {
                     format!("{}[{}]", if *isolated { "" } else { "through" }, text(items))
                 }
             };

@@ -1,15 +1,19 @@
 //! A project of which something is damaged or was changed elsewhere: every intact layer is kept, the others are named.
 //! Floor 5. Works on the document's JSON, before it is read.
 
-use super::manifest::{Manifest, Shown};
-use super::open::Reading;
+use super::manifest::{Manifest, ManifestPicture};
+use super::open::ProjectReader;
 use crate::math::Size;
 use crate::raster::Asset;
 use serde_json::{Map, Value, json};
 
 /// Compares the layers' pictures with the manifest. A layer whose picture another program changed becomes that picture.
 /// The intact ones are given back.
-pub fn check_pictures(reading: &mut Reading, document: &mut Value, manifest: &Manifest) -> Vec<(Shown, Asset, Size)> {
+pub fn check_pictures(
+    reading: &mut ProjectReader,
+    document: &mut Value,
+    manifest: &Manifest,
+) -> Vec<(ManifestPicture, Asset, Size)> {
     let mut intact = Vec::new();
     for shown in &manifest.pictures {
         let Some(layer) = layer_mut(document, &shown.layer) else { continue };
@@ -17,7 +21,7 @@ pub fn check_pictures(reading: &mut Reading, document: &mut Value, manifest: &Ma
         match reading.archive.bytes(&shown.name, reading.budget.file_bytes) {
             Ok(bytes) if crc32fast::hash(&bytes) == shown.crc => {
                 let Some(size) = png_size(&bytes) else { continue };
-                let shown = Shown { layer: shown.layer.clone(), name: shown.name.clone(), ..*shown };
+                let shown = ManifestPicture { layer: shown.layer.clone(), name: shown.name.clone(), ..*shown };
                 intact.push((shown, bytes.into(), size));
             }
             Ok(_) if layer["kind"] == "group" => {}
@@ -36,7 +40,7 @@ pub fn check_pictures(reading: &mut Reading, document: &mut Value, manifest: &Ma
 
 /// Replaces every layer that cannot be read by its picture, or by an empty one, and leaves out maps that cannot be read;
 /// whether there was any.
-pub fn leave_out_damaged(reading: &mut Reading, document: &mut Value, manifest: Option<&Manifest>) -> bool {
+pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, manifest: Option<&Manifest>) -> bool {
     let mut left_out = false;
     if let Some(surface) = document.get("surface").cloned() {
         let alone = json!({ "format": "rilievo", "version": document["version"], "surface": surface });
@@ -75,7 +79,7 @@ pub fn leave_out_damaged(reading: &mut Reading, document: &mut Value, manifest: 
 }
 
 /// Why a layer by itself cannot be read. A group is only what it is without its layers.
-fn trouble(reading: &Reading, canvas: &Value, layer: &Value) -> Option<crate::Error> {
+fn trouble(reading: &ProjectReader, canvas: &Value, layer: &Value) -> Option<crate::Error> {
     let mut layer = layer.clone();
     if layer["kind"] == "group"
         && let Value::Object(fields) = &mut layer
@@ -86,7 +90,7 @@ fn trouble(reading: &Reading, canvas: &Value, layer: &Value) -> Option<crate::Er
 }
 
 /// A layer as its picture, or as nothing; how it meets what lies beneath stays.
-fn as_picture(layer: &Value, shown: Option<&Shown>) -> Value {
+fn as_picture(layer: &Value, shown: Option<&ManifestPicture>) -> Value {
     let mut out = Map::new();
     for field in ["name", "kind", "visible", "opacity", "blend", "blend_space", "clip_below", "lock"] {
         if let Some(value) = layer.get(field) {

@@ -1,7 +1,7 @@
 //! Documents for tests: every kind of layer, small.
 
 use crate::document::Document;
-use crate::recipe::{self, Source};
+use crate::recipe::{self, RecipeSource};
 use crate::{Budget, Files};
 use crate::{Error, Result};
 use serde_json::{Value, json};
@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 
 /// Files in memory.
 #[derive(Default)]
-pub struct InMemory(pub BTreeMap<String, Vec<u8>>);
+pub struct MemoryFiles(pub BTreeMap<String, Vec<u8>>);
 
-impl Files for InMemory {
+impl Files for MemoryFiles {
     fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
         let missing = || Error::io(name, std::io::Error::from(std::io::ErrorKind::NotFound));
         self.0.get(name).cloned().ok_or_else(missing)
@@ -44,7 +44,7 @@ fn dome(side: u32) -> Vec<u8> {
     })
 }
 
-pub fn files(side: u32) -> InMemory {
+pub fn files(side: u32) -> MemoryFiles {
     let noise = |x: u32, y: u32| (crate::math::hash::mix(x * 7919 + y) >> 8) as u8;
     let files = [
         ("maps/n.png", dome(side)),
@@ -54,13 +54,13 @@ pub fn files(side: u32) -> InMemory {
         ("tip.png", png(9, 9, |x, y| [if (x + y) % 3 == 0 { 255 } else { 30 }; 4].map(|v| v.max(1)))),
         ("sky.png", png(16, 8, |x, y| [x as u8 * 15, y as u8 * 30, 220, 255])),
     ];
-    InMemory(files.map(|(name, bytes)| (name.to_owned(), bytes)).into())
+    MemoryFiles(files.map(|(name, bytes)| (name.to_owned(), bytes)).into())
 }
 
 pub fn read(json: &Value, files: &dyn Files) -> Document {
     let text = json.to_string();
     let budget = Budget::default();
-    let source = Source { file: Path::new("sample.json"), files, budget: &budget, onto: None };
+    let source = RecipeSource { file: Path::new("sample.json"), files, budget: &budget, onto: None };
     recipe::read(text.as_bytes(), source).unwrap_or_else(|e| panic!("{e}"))
 }
 

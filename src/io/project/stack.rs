@@ -3,11 +3,11 @@
 
 mod read;
 
-pub use read::{Element, ElementShows, Stack, read};
+pub use read::{ElementContent, StackElement, StackXml, read};
 
-use super::plan::{Item, Shows};
-use crate::document::kept::Encoded;
-use crate::document::{Content, Lock};
+use super::plan::{ItemContent, PlanItem};
+use crate::document::cache::EncodedPixels;
+use crate::document::{Content, LayerLock};
 use crate::math::Size;
 
 /// Marks what is ours; other programs pass it by.
@@ -15,7 +15,7 @@ const NAMESPACE: &str = "xmlns:rilievo=\"urn:rilievo:project\"";
 const KIND: &str = "rilievo:kind";
 
 /// The XML of a plan; `pictures` are those of [`super::look::pictures_of`] with their names, in that order.
-pub fn write(size: Size, items: &[Item], pictures: &[(String, Encoded)]) -> String {
+pub fn write(size: Size, items: &[PlanItem], pictures: &[(String, EncodedPixels)]) -> String {
     let mut xml = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<image version=\"0.0.6\" w=\"{}\" h=\"{}\" {NAMESPACE}>\n<stack>\n",
         size.width, size.height
@@ -25,13 +25,13 @@ pub fn write(size: Size, items: &[Item], pictures: &[(String, Encoded)]) -> Stri
 }
 
 /// The topmost first, as OpenRaster has them; `pictures` come bottom first.
-fn write_items(xml: &mut String, items: &[Item], pictures: &mut dyn Iterator<Item = &(String, Encoded)>) {
+fn write_items(xml: &mut String, items: &[PlanItem], pictures: &mut dyn Iterator<Item = &(String, EncodedPixels)>) {
     let mut parts: Vec<String> = items.iter().map(|item| write_item(item, pictures)).collect();
     parts.reverse();
     xml.push_str(&parts.concat());
 }
 
-fn write_item(item: &Item, pictures: &mut dyn Iterator<Item = &(String, Encoded)>) -> String {
+fn write_item(item: &PlanItem, pictures: &mut dyn Iterator<Item = &(String, EncodedPixels)>) -> String {
     let op = item.blend.openraster();
     let visibility = if item.visible { "visible" } else { "hidden" };
     let mut common = format!(
@@ -39,22 +39,24 @@ fn write_item(item: &Item, pictures: &mut dyn Iterator<Item = &(String, Encoded)
         escaped(&item.name),
         item.opacity
     );
-    if item.lock == Lock::All {
+    if item.lock == LayerLock::All {
         common += " edit-locked=\"true\"";
     }
     match &item.shows {
-        Shows::Stack { isolated, items } => {
+        ItemContent::Stack { isolated, items } => {
             let isolation = if *isolated { "isolate" } else { "auto" };
             let mut xml = format!("<stack {common} isolation=\"{isolation}\">\n");
             write_items(&mut xml, items, pictures);
             xml + "</stack>\n"
         }
-        Shows::Layer(layer) | Shows::Nothing(layer) => write_layer(&common, kind(&layer.content), pictures.next()),
-        Shows::Composed { .. } => write_layer(&common, "composed", pictures.next()),
+        ItemContent::Layer(layer) | ItemContent::Nothing(layer) => {
+            write_layer(&common, kind(&layer.content), pictures.next())
+        }
+        ItemContent::Composed { .. } => write_layer(&common, "composed", pictures.next()),
     }
 }
 
-fn write_layer(common: &str, kind: &str, picture: Option<&(String, Encoded)>) -> String {
+fn write_layer(common: &str, kind: &str, picture: Option<&(String, EncodedPixels)>) -> String {
     let Some((name, encoded)) = picture else { return String::new() };
     let kind = if kind.is_empty() { String::new() } else { format!(" {KIND}=\"{kind}\"") };
     format!("<layer {common} src=\"{name}\" x=\"{}\" y=\"{}\"{kind}/>\n", encoded.x, encoded.y)

@@ -10,7 +10,7 @@ use std::sync::Arc;
 fn written(document: &Document) -> Vec<u8> {
     write(Path::new("a.ora"), document, &Progress::default()).unwrap().unwrap()
 }
-fn read_back(bytes: &[u8]) -> Contents {
+fn read_back(bytes: &[u8]) -> ProjectContents {
     read(Path::new("a.ora"), bytes, &Budget::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 /// The entries of a zip, in their order.
@@ -26,7 +26,7 @@ fn entries(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
     (0..count).map(one).collect()
 }
 fn packed(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
-    let mut packer = Packer::default();
+    let mut packer = ZipPacker::default();
     entries.iter().for_each(|(name, bytes)| packer.store(name, bytes).unwrap());
     packer.finish().unwrap()
 }
@@ -63,7 +63,7 @@ fn an_unchanged_layer_is_copied_and_a_changed_one_is_not() {
     let first = written(&document);
     let layer = document.layer_named("last").unwrap();
     let look = || {
-        layer.kept.pixels.get(&document.scene(), std::slice::from_ref(layer), &(), || panic!("encoded again")).unwrap()
+        layer.cache.pixels.get(&document.scene(), std::slice::from_ref(layer), &(), || panic!("encoded again")).unwrap()
     };
     let before = look();
     assert!(first == written(&document));

@@ -1,14 +1,14 @@
 //! One channel's values, row by row: plain, run lengths (PackBits), or ZIP with and without prediction.
 //! Floor 5.
 
-use super::cursor::Cursor;
+use super::cursor::ByteCursor;
 use std::io::Read;
 use zip::ZipReadOptions;
 use zip::read::read_zipfile_from_stream_with_options;
 
 /// How a channel's values are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shape {
+pub struct ChannelLayout {
     pub width: usize,
     pub height: usize,
     /// 8 or 16.
@@ -17,7 +17,7 @@ pub struct Shape {
     pub large: bool,
 }
 
-impl Shape {
+impl ChannelLayout {
     fn row_bytes(self) -> usize {
         self.width * usize::from(self.bits / 8)
     }
@@ -28,13 +28,13 @@ impl Shape {
 
 /// The 8-bit values of a channel: its compression, then its data. `None` where the data is damaged, or too short to hold
 /// what the shape promises.
-pub fn decode(data: &mut Cursor, shape: Shape) -> Option<Vec<u8>> {
+pub fn decode(data: &mut ByteCursor, shape: ChannelLayout) -> Option<Vec<u8>> {
     let compression = data.u16()?;
     decode_as(data, shape, compression)
 }
 
 /// As [`decode`], for data whose compression was told before; leaves the cursor behind the channel.
-pub fn decode_as(data: &mut Cursor, shape: Shape, compression: u16) -> Option<Vec<u8>> {
+pub fn decode_as(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) -> Option<Vec<u8>> {
     match compression {
         0 => Some(to_bytes(data.take(shape.bytes())?, shape)),
         1 => {
@@ -54,7 +54,7 @@ pub fn decode_as(data: &mut Cursor, shape: Shape, compression: u16) -> Option<Ve
 }
 
 /// Several channels in one zlib stream, as a merged picture has them.
-pub fn inflate_planes(zlib: &[u8], shape: Shape, count: usize, is_predicted: bool) -> Option<Vec<Vec<u8>>> {
+pub fn inflate_planes(zlib: &[u8], shape: ChannelLayout, count: usize, is_predicted: bool) -> Option<Vec<Vec<u8>>> {
     let mut values = inflate(zlib, shape.bytes().checked_mul(count)?)?;
     if is_predicted {
         undo_prediction(&mut values, shape);
@@ -63,15 +63,15 @@ pub fn inflate_planes(zlib: &[u8], shape: Shape, count: usize, is_predicted: boo
 }
 
 /// How long each packed row is.
-pub fn row_lengths(data: &mut Cursor, shape: Shape, rows: usize) -> Option<Vec<usize>> {
+pub fn row_lengths(data: &mut ByteCursor, shape: ChannelLayout, rows: usize) -> Option<Vec<usize>> {
     // The table is there before room is made for it.
     let width = if shape.large { 4 } else { 2 };
-    let mut table = Cursor::new(data.take(rows.checked_mul(width)?)?);
+    let mut table = ByteCursor::new(data.take(rows.checked_mul(width)?)?);
     (0..rows).map(|_| if shape.large { table.length(false) } else { table.u16().map(usize::from) }).collect()
 }
 
 /// Rows of run lengths.
-pub fn unpack_rows(data: &mut Cursor, shape: Shape, lengths: &[usize]) -> Option<Vec<u8>> {
+pub fn unpack_rows(data: &mut ByteCursor, shape: ChannelLayout, lengths: &[usize]) -> Option<Vec<u8>> {
     let packed: usize = lengths.iter().sum();
     // Two bytes hold at most 128.
     if shape.bytes() / 64 > packed + shape.height {
@@ -149,7 +149,7 @@ fn inflate(zlib: &[u8], wanted: usize) -> Option<Vec<u8>> {
 }
 
 /// Each value was stored as what it differs by from its left neighbour.
-fn undo_prediction(values: &mut [u8], shape: Shape) {
+fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
     for row in values.chunks_exact_mut(shape.row_bytes().max(1)) {
         if shape.bits == 16 {
             for i in (2..row.len()).step_by(2) {
@@ -166,7 +166,7 @@ fn undo_prediction(values: &mut [u8], shape: Shape) {
 }
 
 /// 16 bits to 8, rounded.
-fn to_bytes(values: &[u8], shape: Shape) -> Vec<u8> {
+fn to_bytes(values: &[u8], shape: ChannelLayout) -> Vec<u8> {
     if shape.bits == 8 {
         return values.to_vec();
     }
@@ -179,8 +179,8 @@ mod tests {
     use super::*;
     use crate::math::hash;
 
-    fn shape(width: usize, height: usize, bits: u16) -> Shape {
-        Shape { width, height, bits, large: false }
+    fn shape(width: usize, height: usize, bits: u16) -> ChannelLayout {
+        ChannelLayout { width, height, bits, large: false }
     }
 
     #[test]
@@ -209,7 +209,7 @@ mod tests {
         let mut zlib = vec![0x78, 1, 1, 8, 0, 0xf7, 0xff];
         zlib.extend(&bytes);
         let data = [&[0, 3][..], &zlib].concat();
-        let decoded = decode(&mut Cursor::new(&data), shape(4, 1, 16)).unwrap();
+        let decoded = decode(&mut ByteCursor::new(&data), shape(4, 1, 16)).unwrap();
         assert_eq!(decoded, [0, 100, 101, 255]);
     }
     #[test]
@@ -217,9 +217,9 @@ mod tests {
         let mut out = Vec::new();
         assert_eq!(unpack(&[5, 1, 2], 6, &mut out), None);
         assert_eq!(unpack(&[129, 7], 3, &mut Vec::new()), None, "a run beyond the row");
-        let huge = Shape { width: 300_000, height: 300_000, bits: 8, large: true };
+        let huge = ChannelLayout { width: 300_000, height: 300_000, bits: 8, large: true };
         for compression in 0..5 {
-            assert_eq!(decode_as(&mut Cursor::new(&[0; 100]), huge, compression), None);
+            assert_eq!(decode_as(&mut ByteCursor::new(&[0; 100]), huge, compression), None);
         }
     }
 }

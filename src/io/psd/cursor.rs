@@ -5,11 +5,11 @@ use crate::math::Rect;
 
 /// A place in bytes. Each reading is `None` where it would go beyond the end.
 #[derive(Clone, Copy)]
-pub struct Cursor<'a> {
+pub struct ByteCursor<'a> {
     rest: &'a [u8],
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> ByteCursor<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
         Self { rest: bytes }
     }
@@ -47,9 +47,9 @@ impl<'a> Cursor<'a> {
         if large { usize::try_from(u64::from_be_bytes(self.array()?)).ok() } else { usize::try_from(self.u32()?).ok() }
     }
     /// A part that says its own length.
-    pub fn section(&mut self, large: bool) -> Option<Cursor<'a>> {
+    pub fn section(&mut self, large: bool) -> Option<ByteCursor<'a>> {
         let length = self.length(large)?;
-        self.take(length).map(Cursor::new)
+        self.take(length).map(ByteCursor::new)
     }
     /// Top, left, bottom, right.
     pub fn rect(&mut self) -> Option<Rect> {

@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use super::channel::pack;
-use super::{ICC_PROFILE, MAGIC, Mask, OURS, RESOLUTION, Record, Section, VERSION_INFO};
+use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO};
 use crate::math::{Rect, Size};
 use crate::picture;
 
@@ -10,7 +10,7 @@ use crate::picture;
 const DOTS_PER_INCH: u32 = 72;
 
 /// The whole file. `merged` is straight RGBA of the canvas, `ours` our own resource.
-pub fn emit(size: Size, records: &[Record], merged: &[u8], ours: &[u8]) -> Vec<u8> {
+pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], ours: &[u8]) -> Vec<u8> {
     let mut out = MAGIC.to_vec();
     short(&mut out, 1);
     out.extend([0; 6]);
@@ -88,7 +88,7 @@ fn resources(ours: &[u8]) -> Vec<u8> {
     out
 }
 
-fn layer_info(records: &[Record]) -> Vec<u8> {
+fn layer_info(records: &[LayerRecord]) -> Vec<u8> {
     if records.is_empty() {
         return Vec::new();
     }
@@ -105,7 +105,7 @@ fn layer_info(records: &[Record]) -> Vec<u8> {
 }
 
 /// The channels of a layer with their numbers: transparency, red, green, blue, mask.
-fn channels(record: &Record) -> Vec<(i16, Vec<u8>)> {
+fn channels(record: &LayerRecord) -> Vec<(i16, Vec<u8>)> {
     let one = |values: Vec<u8>, width: usize| {
         let mut out = Vec::new();
         packed(&mut out, &[values], width);
@@ -140,7 +140,7 @@ fn packed(out: &mut Vec<u8>, planes: &[Vec<u8>], width: usize) {
     out.extend(data);
 }
 
-fn header(out: &mut Vec<u8>, record: &Record, channels: &[(i16, Vec<u8>)], id: u32) {
+fn header(out: &mut Vec<u8>, record: &LayerRecord, channels: &[(i16, Vec<u8>)], id: u32) {
     rect(out, record.rect);
     short(out, channels.len() as u16);
     for (number, data) in channels {
@@ -151,7 +151,7 @@ fn header(out: &mut Vec<u8>, record: &Record, channels: &[(i16, Vec<u8>)], id: u
     out.extend(record.blend);
     let hidden = if record.visible { 0 } else { 2 };
     // Bit 3: bit 4 tells that a record has pixels of its own, which a group's has not.
-    let no_pixels = if record.section == Section::Layer { 8 } else { 24 };
+    let no_pixels = if record.section == RecordSection::Layer { 8 } else { 24 };
     out.extend([record.opacity, u8::from(record.clipped), u8::from(record.lock_alpha) | hidden | no_pixels, 0]);
     let mut extra = Vec::new();
     mask_data(&mut extra, record.mask.as_ref());
@@ -166,9 +166,9 @@ fn header(out: &mut Vec<u8>, record: &Record, channels: &[(i16, Vec<u8>)], id: u
         block(&mut extra, b"lspf", &7u32.to_be_bytes());
     }
     let kind: u32 = match record.section {
-        Section::Layer => 0,
-        Section::Group => 1,
-        Section::End => 3,
+        RecordSection::Layer => 0,
+        RecordSection::Group => 1,
+        RecordSection::End => 3,
     };
     if kind > 0 {
         let mut divider = kind.to_be_bytes().to_vec();
@@ -188,7 +188,7 @@ fn block(out: &mut Vec<u8>, key: &[u8; 4], data: &[u8]) {
     out.extend(std::iter::repeat_n(0, padded - data.len()));
 }
 
-fn mask_data(out: &mut Vec<u8>, mask: Option<&Mask>) {
+fn mask_data(out: &mut Vec<u8>, mask: Option<&RecordMask>) {
     let Some(mask) = mask else { return long(out, 0) };
     long(out, 20);
     rect(out, mask.rect);

@@ -1,10 +1,10 @@
 //! The layers of a Photoshop file as records: what each says of itself, the blocks behind it, its channels and its mask.
 //! Floor 5. Where they stand in the file is `parse`'s.
 
-use super::channel::{self, Shape};
-use super::cursor::Cursor;
-use super::parse::{Header, interleaved};
-use super::{Mask, Record, Section};
+use super::channel::{self, ChannelLayout};
+use super::cursor::ByteCursor;
+use super::parse::{PsdHeader, interleaved};
+use super::{LayerRecord, RecordMask, RecordSection};
 use crate::Budget;
 use crate::math::Rect;
 use crate::{Error, Result};
@@ -26,7 +26,7 @@ const ADJUSTMENTS: [[u8; 4]; 17] = [
 ];
 
 /// A block of additional information. Some programs pad them to four bytes, some to two, some not at all.
-pub fn block<'a>(rest: &mut Cursor<'a>, large: bool) -> Option<([u8; 4], Cursor<'a>)> {
+pub fn block<'a>(rest: &mut ByteCursor<'a>, large: bool) -> Option<([u8; 4], ByteCursor<'a>)> {
     const LONG: [[u8; 4]; 13] = [
         *b"LMsk", *b"Lr16", *b"Lr32", *b"Layr", *b"Mt16", *b"Mt32", *b"Mtrn", *b"Alph", *b"FMsk", *b"lnk2", *b"FEid",
         *b"FXid", *b"PxSD",
@@ -46,8 +46,8 @@ pub fn block<'a>(rest: &mut Cursor<'a>, large: bool) -> Option<([u8; 4], Cursor<
 }
 
 /// A record whose channels are still to be read.
-struct Pending {
-    record: Record,
+struct PendingRecord {
+    record: LayerRecord,
     /// Each channel's number, and how many bytes it has.
     channels: Vec<(i16, usize)>,
     /// Its rectangle, what is outside, whether it is in use.
@@ -55,21 +55,21 @@ struct Pending {
 }
 
 /// The reader of layers' records.
-pub struct Layers<'a> {
+pub struct RecordReader<'a> {
     file: &'a Path,
     budget: &'a Budget,
-    header: &'a Header,
+    header: &'a PsdHeader,
     used_px: u64,
     /// What could not be read.
     pub damage: Vec<String>,
 }
 
-impl<'a> Layers<'a> {
-    pub fn new(file: &'a Path, budget: &'a Budget, header: &'a Header) -> Self {
+impl<'a> RecordReader<'a> {
+    pub fn new(file: &'a Path, budget: &'a Budget, header: &'a PsdHeader) -> Self {
         Self { file, budget, header, used_px: 0, damage: Vec::new() }
     }
     /// All of them, bottom first; those that cannot be read are told.
-    pub fn records(&mut self, mut rest: Cursor) -> Result<Vec<Record>> {
+    pub fn records(&mut self, mut rest: ByteCursor) -> Result<Vec<LayerRecord>> {
         let count = usize::from(rest.i16().map_or(0, i16::unsigned_abs));
         if count > self.budget.layers * 2 {
             let reason = format!("it has {count} layers; {} are allowed", self.budget.layers);
@@ -85,7 +85,7 @@ impl<'a> Layers<'a> {
         }
         pending.into_iter().map(|pending| self.filled(pending, &mut rest)).collect()
     }
-    fn record(&self, rest: &mut Cursor) -> Option<Pending> {
+    fn record(&self, rest: &mut ByteCursor) -> Option<PendingRecord> {
         let rect = rest.rect()?;
         let count = rest.u16().filter(|count| *count <= 64)?;
         let large = self.header.large;
@@ -97,7 +97,7 @@ impl<'a> Layers<'a> {
         let mask = mask_data(extra.section(false)?);
         extra.section(false)?;
         let name = extra.pascal(4)?;
-        let mut record = Record {
+        let mut record = LayerRecord {
             name: String::from_utf8_lossy(name).into_owned(),
             rect,
             blend,
@@ -105,16 +105,16 @@ impl<'a> Layers<'a> {
             clipped: clipping == 1,
             visible: flags & 2 == 0,
             lock_alpha: flags & 1 == 1,
-            ..Record::default()
+            ..LayerRecord::default()
         };
         while let Some((key, data)) = block(&mut extra, large) {
             note_block(&mut record, key, data);
         }
-        Some(Pending { record, channels, mask })
+        Some(PendingRecord { record, channels, mask })
     }
     /// Reads a record's channels.
-    fn filled(&mut self, pending: Pending, rest: &mut Cursor) -> Result<Record> {
-        let Pending { mut record, channels, mask } = pending;
+    fn filled(&mut self, pending: PendingRecord, rest: &mut ByteCursor) -> Result<LayerRecord> {
+        let PendingRecord { mut record, channels, mask } = pending;
         if let Some(rect) = self.affordable(&record.name, record.rect)? {
             record.rect = rect;
         } else {
@@ -124,7 +124,7 @@ impl<'a> Layers<'a> {
         let mut planes: [Option<Vec<u8>>; 4] = [None, None, None, None];
         let mut is_damaged = false;
         for (id, length) in channels {
-            let mut data = Cursor::new(match rest.take(length) {
+            let mut data = ByteCursor::new(match rest.take(length) {
                 Some(data) => data,
                 None => {
                     is_damaged = true;
@@ -157,8 +157,8 @@ impl<'a> Layers<'a> {
         record.rgba = interleaved(&planes, area, self.header.is_grey);
         Ok(record)
     }
-    fn shape(&self, rect: Rect) -> Shape {
-        Shape { width: rect.width(), height: rect.height(), bits: self.header.bits, large: self.header.large }
+    fn shape(&self, rect: Rect) -> ChannelLayout {
+        ChannelLayout { width: rect.width(), height: rect.height(), bits: self.header.bits, large: self.header.large }
     }
     /// The rectangle if it is one, and there is room for it; `None` where it holds nothing.
     fn affordable(&mut self, name: &str, rect: Rect) -> Result<Option<Rect>> {
@@ -181,27 +181,27 @@ impl<'a> Layers<'a> {
         }
         Ok(())
     }
-    fn mask(&mut self, name: &str, data: &mut Cursor, rect: Rect, outside: u8) -> Result<Option<Mask>> {
+    fn mask(&mut self, name: &str, data: &mut ByteCursor, rect: Rect, outside: u8) -> Result<Option<RecordMask>> {
         // Here it will cover the canvas, a byte a pixel, however small it is in the file.
         self.spend(self.header.size.area() as u64 / 4)?;
         let Some(rect) = self.affordable(name, rect)? else {
-            return Ok(Some(Mask { rect: Rect::EMPTY, outside, values: Vec::new() }));
+            return Ok(Some(RecordMask { rect: Rect::EMPTY, outside, values: Vec::new() }));
         };
         let values = channel::decode(data, self.shape(rect));
         if values.is_none() {
             self.damage.push(format!("the mask of “{name}” is damaged"));
         }
-        Ok(values.map(|values| Mask { rect, outside, values }))
+        Ok(values.map(|values| RecordMask { rect, outside, values }))
     }
 }
 
 /// Rectangle, what is outside, whether it is in use.
-fn mask_data(mut data: Cursor) -> Option<(Rect, u8, bool)> {
+fn mask_data(mut data: ByteCursor) -> Option<(Rect, u8, bool)> {
     let (rect, outside, flags) = (data.rect()?, data.u8()?, data.u8()?);
     Some((rect, outside, flags & 2 == 0))
 }
 
-fn note_block(record: &mut Record, key: [u8; 4], mut data: Cursor) {
+fn note_block(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
     match &key {
         b"luni" => {
             let count = data.u32().unwrap_or(0) as usize;
@@ -211,9 +211,9 @@ fn note_block(record: &mut Record, key: [u8; 4], mut data: Cursor) {
         }
         b"lsct" | b"lsdk" => {
             record.section = match data.u32() {
-                Some(1 | 2) => Section::Group,
-                Some(3) => Section::End,
-                _ => Section::Layer,
+                Some(1 | 2) => RecordSection::Group,
+                Some(3) => RecordSection::End,
+                _ => RecordSection::Layer,
             };
             if data.key() == Some(*b"8BIM")
                 && let Some(blend) = data.key()

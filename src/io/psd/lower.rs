@@ -1,12 +1,12 @@
 //! A document into records: what Photoshop has words for as such, the rest as pixels, with the document itself beside them.
 //! Floor 5. Laying the records out as bytes is `emit`'s.
 
-use super::{Mask, PASS_THROUGH, Record, Section, emit, signature};
-use crate::document::kept::Encoded;
-use crate::document::{Content, Document, LayerId, LayerMask, Lock, MaskKind, Progress, flatten};
+use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, emit, signature};
+use crate::document::cache::EncodedPixels;
+use crate::document::{Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten};
 use crate::math::{Rect, Size};
 use crate::project::look::{self, Cancellable};
-use crate::project::plan::{Item, Shows, Words, plan};
+use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
 use crate::project::{self, pixels};
 use crate::raster::BlendMode;
 use crate::{Error, Result};
@@ -17,60 +17,64 @@ use std::path::Path;
 const LONGEST_PX: u32 = 30_000;
 
 /// A Photoshop file and what other programs see otherwise than here.
-pub struct Written {
+pub struct WrittenPsd {
     pub bytes: Vec<u8>,
     pub notes: Vec<String>,
 }
 
 /// The bytes of a Photoshop file, 8 bits a channel; `None` if cancelled. `file` is for messages.
-pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Written> {
+pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<WrittenPsd> {
     if document.size.width.max(document.size.height) > LONGEST_PX {
         let reason = format!("a Photoshop file has at most {LONGEST_PX} pixels a side, not {}", document.size);
         return Err(Error::unsupported(file, reason));
     }
-    let items = plan(document, Words::PHOTOSHOP);
+    let items = plan(document, FormatSupport::PHOTOSHOP);
     let paint = look::paint(file, document)?;
     let Some(looks) = look::render(file, document, &items, progress)? else { return Ok(None) };
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
-    let mut lowering = Lowering { size: document.size, looks: looks.into_iter(), ..Lowering::default() };
+    let mut lowering = RecordBuilder { size: document.size, looks: looks.into_iter(), ..RecordBuilder::default() };
     lowering.items(file, &items)?;
-    let Lowering { records, shown, notes, .. } = lowering;
-    let shown: BTreeMap<LayerId, &(String, Encoded)> = shown.iter().map(|(id, picture)| (*id, picture)).collect();
+    let RecordBuilder { records, shown, notes, .. } = lowering;
+    let shown: BTreeMap<LayerId, &(String, EncodedPixels)> = shown.iter().map(|(id, picture)| (*id, picture)).collect();
     let ours = project::documents(file, document, &paint, &shown, signature(&records))?;
     let ours = project::packed(file, &ours)?;
     let merged = merged.to_straight_rgba(document.size.rect());
-    Ok(Some(Written { bytes: emit::emit(document.size, &records, &merged, &ours), notes }))
+    Ok(Some(WrittenPsd { bytes: emit::emit(document.size, &records, &merged, &ours), notes }))
 }
 
 /// Records in the making.
-struct Lowering {
+struct RecordBuilder {
     size: Size,
     /// Of the plan's pictures, in their order.
-    looks: std::vec::IntoIter<Encoded>,
-    records: Vec<Record>,
+    looks: std::vec::IntoIter<EncodedPixels>,
+    records: Vec<LayerRecord>,
     /// Which record shows a layer alone, as the manifest names it.
-    shown: Vec<(LayerId, (String, Encoded))>,
+    shown: Vec<(LayerId, (String, EncodedPixels))>,
     notes: Vec<String>,
 }
 
-impl Default for Lowering {
+impl Default for RecordBuilder {
     fn default() -> Self {
         let looks = Vec::new().into_iter();
         Self { size: Size::new(1, 1), looks, records: Vec::new(), shown: Vec::new(), notes: Vec::new() }
     }
 }
 
-impl Lowering {
-    fn items(&mut self, file: &Path, items: &[Item]) -> Result<()> {
+impl RecordBuilder {
+    fn items(&mut self, file: &Path, items: &[PlanItem]) -> Result<()> {
         items.iter().try_for_each(|item| self.item(file, item))
     }
-    fn item(&mut self, file: &Path, item: &Item) -> Result<()> {
-        if let Shows::Stack { isolated, items } = &item.shows {
-            self.records.push(Record { name: "</Layer group>".into(), section: Section::End, ..Record::default() });
+    fn item(&mut self, file: &Path, item: &PlanItem) -> Result<()> {
+        if let ItemContent::Stack { isolated, items } = &item.shows {
+            self.records.push(LayerRecord {
+                name: "</Layer group>".into(),
+                section: RecordSection::End,
+                ..LayerRecord::default()
+            });
             self.items(file, items)?;
             let blend = if *isolated { item.blend.photoshop() } else { PASS_THROUGH };
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
-            self.records.push(Record { blend, mask, section: Section::Group, ..record(item) });
+            self.records.push(LayerRecord { blend, mask, section: RecordSection::Group, ..record(item) });
             return Ok(());
         }
         let damaged = || Error::unsupported(file, "a layer could not be encoded; nothing was saved");
@@ -81,7 +85,7 @@ impl Lowering {
         let (rect, rgba) = if is_empty { (Rect::EMPTY, Vec::new()) } else { (Rect::new(look.x, look.y, x1, y1), rgba) };
         let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
         match &item.shows {
-            Shows::Layer(layer) | Shows::Nothing(layer) => {
+            ItemContent::Layer(layer) | ItemContent::Nothing(layer) => {
                 if !matches!(layer.content, Content::Pixels(_)) {
                     self.notes.push(format!("“{}” is live here and pixels for other programs", item.name));
                 }
@@ -93,31 +97,31 @@ impl Lowering {
         if item.blend == BlendMode::Plus {
             self.notes.push(format!("“{}”: “plus” is Linear Dodge for other programs", item.name));
         }
-        self.records.push(Record { rect, rgba, mask, ..record(item) });
+        self.records.push(LayerRecord { rect, rgba, mask, ..record(item) });
         Ok(())
     }
     /// A mask of a picture; derived ones are in the layer's pixels.
-    fn mask(&self, mask: &LayerMask) -> Option<Mask> {
+    fn mask(&self, mask: &LayerMask) -> Option<RecordMask> {
         let MaskKind::File { coverage, .. } = &mask.kind else { return None };
         if mask.disabled {
             return None;
         }
         let way = |v: &u8| if mask.invert { 255 - v } else { *v };
-        Some(Mask { rect: self.size.rect(), outside: 0, values: coverage.values().iter().map(way).collect() })
+        Some(RecordMask { rect: self.size.rect(), outside: 0, values: coverage.values().iter().map(way).collect() })
     }
 }
 
 /// What an item says of itself.
-fn record(item: &Item) -> Record {
-    Record {
+fn record(item: &PlanItem) -> LayerRecord {
+    LayerRecord {
         name: item.name.clone(),
         blend: item.blend.photoshop(),
         opacity: (item.opacity * 255.0).round() as u8,
         clipped: item.clipped,
         visible: item.visible,
         // Who may change nothing may not change the transparency either.
-        lock_alpha: item.lock != Lock::None,
-        lock_all: item.lock == Lock::All,
-        ..Record::default()
+        lock_alpha: item.lock != LayerLock::None,
+        lock_all: item.lock == LayerLock::All,
+        ..LayerRecord::default()
     }
 }

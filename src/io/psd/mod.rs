@@ -41,7 +41,7 @@ const PASS_THROUGH: [u8; 4] = *b"pass";
 
 /// A layer as it stands in the file; groups are records too, around those of their layers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Record {
+pub struct LayerRecord {
     pub name: String,
     pub rect: Rect,
     pub blend: [u8; 4],
@@ -50,8 +50,8 @@ pub struct Record {
     pub visible: bool,
     pub lock_alpha: bool,
     pub lock_all: bool,
-    pub section: Section,
-    pub mask: Option<Mask>,
+    pub section: RecordSection,
+    pub mask: Option<RecordMask>,
     /// Straight RGBA of `rect`, row by row.
     pub rgba: Vec<u8>,
     /// What the layer has that is not carried.
@@ -59,7 +59,7 @@ pub struct Record {
 }
 
 /// A visible layer without a name, without pixels.
-impl Default for Record {
+impl Default for LayerRecord {
     fn default() -> Self {
         Self {
             name: String::new(),
@@ -70,7 +70,7 @@ impl Default for Record {
             visible: true,
             lock_alpha: false,
             lock_all: false,
-            section: Section::Layer,
+            section: RecordSection::Layer,
             mask: None,
             rgba: Vec::new(),
             lost: Vec::new(),
@@ -80,23 +80,23 @@ impl Default for Record {
 
 /// What a record stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Section {
+pub enum RecordSection {
     Layer,
-    /// The bottom of a group; its layers follow, then its [`Section::Group`].
+    /// The bottom of a group; its layers follow, then its [`RecordSection::Group`].
     End,
     Group,
 }
 
 /// A layer's mask: coverage in its rectangle, and everywhere else.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mask {
+pub struct RecordMask {
     pub rect: Rect,
     pub outside: u8,
     pub values: Vec<u8>,
 }
 
 /// What tells whether another program changed the layers: all of them but their pixels.
-fn signature(records: &[Record]) -> u32 {
+fn signature(records: &[LayerRecord]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     for r in records {
         let flags = [r.clipped, r.visible, r.lock_alpha, r.lock_all].map(u8::from);

@@ -1,17 +1,17 @@
 //! A Photoshop file into its parts: header, resources, where the layers stand, merged picture.
 //! Floor 5. The layers' records are `layers`', what they make together `tree`'s.
 
-use super::channel::{self, Shape};
-use super::cursor::Cursor;
-use super::layers::{Layers, block};
-use super::{ICC_PROFILE, MAGIC, OURS, Record};
+use super::channel::{self, ChannelLayout};
+use super::cursor::ByteCursor;
+use super::layers::{RecordReader, block};
+use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS};
 use crate::Budget;
 use crate::math::Size;
 use crate::{Error, Result};
 use std::path::Path;
 
 /// A file's parts.
-pub struct Parsed<'a> {
+pub struct ParsedPsd<'a> {
     pub size: Size,
     pub is_deep: bool,
     pub is_grey: bool,
@@ -19,7 +19,7 @@ pub struct Parsed<'a> {
     /// Our own resource.
     pub ours: Option<&'a [u8]>,
     /// Bottom first.
-    pub records: Vec<Record>,
+    pub records: Vec<LayerRecord>,
     /// Straight RGBA of the merged picture; absent where it is damaged.
     pub merged: Option<Vec<u8>>,
     /// What could not be read.
@@ -27,7 +27,7 @@ pub struct Parsed<'a> {
 }
 
 /// What the file says of itself.
-pub struct Header {
+pub struct PsdHeader {
     pub large: bool,
     pub size: Size,
     pub channels: u16,
@@ -38,14 +38,14 @@ pub struct Header {
 }
 
 /// Reads a file. Damaged layers are told and left out; fails where there is nothing to give back.
-pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed<'a>> {
+pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<ParsedPsd<'a>> {
     let cut = || Error::decode(file, "the file is cut short");
-    let mut rest = Cursor::new(bytes);
+    let mut rest = ByteCursor::new(bytes);
     let header = header(file, &mut rest, budget)?;
     let table = rest.section(false).ok_or_else(cut)?;
     let resources = rest.section(false).ok_or_else(cut)?;
     let (icc, ours) = (resource(resources, ICC_PROFILE), resource(resources, OURS));
-    let mut parsed = Parsed {
+    let mut parsed = ParsedPsd {
         size: header.size,
         is_deep: header.bits > 8,
         is_grey: header.is_grey,
@@ -56,11 +56,11 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
         damage: Vec::new(),
     };
     let length = rest.length(header.large).ok_or_else(cut)?;
-    let layers = Cursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
+    let layers = ByteCursor::new(rest.rest().get(..length).unwrap_or(rest.rest()));
     let mut alpha_is_ours = false;
-    let mut reader = Layers::new(file, budget, &header);
+    let mut reader = RecordReader::new(file, budget, &header);
     if let Some(info) = layer_info(layers, header.large) {
-        alpha_is_ours = Cursor::new(info.rest()).i16().is_some_and(|count| count < 0);
+        alpha_is_ours = ByteCursor::new(info.rest()).i16().is_some_and(|count| count < 0);
         parsed.records = reader.records(info)?;
     }
     parsed.damage = reader.damage;
@@ -87,7 +87,7 @@ fn looked_up(rgba: &mut [u8], table: &[u8]) {
     }
 }
 
-fn header(file: &Path, rest: &mut Cursor, budget: &Budget) -> Result<Header> {
+fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<PsdHeader> {
     let mut read = || {
         let magic = rest.key()?;
         let version = rest.u16()?;
@@ -113,11 +113,11 @@ fn header(file: &Path, rest: &mut Cursor, budget: &Budget) -> Result<Header> {
     if channels < if is_grey { 1 } else { 3 } || channels > 56 {
         return Err(Error::decode(file, format!("it has {channels} channels")));
     }
-    Ok(Header { large: version == 2, size, channels, bits, is_grey, is_indexed: mode == 2 })
+    Ok(PsdHeader { large: version == 2, size, channels, bits, is_grey, is_indexed: mode == 2 })
 }
 
 /// The data of a resource.
-fn resource(mut rest: Cursor<'_>, wanted: u16) -> Option<&[u8]> {
+fn resource(mut rest: ByteCursor<'_>, wanted: u16) -> Option<&[u8]> {
     while rest.key().is_some() {
         let id = rest.u16()?;
         rest.pascal(2)?;
@@ -132,10 +132,10 @@ fn resource(mut rest: Cursor<'_>, wanted: u16) -> Option<&[u8]> {
 }
 
 /// Where the layers stand: in their own section, or, of deep files, in a block behind it.
-fn layer_info(mut section: Cursor<'_>, large: bool) -> Option<Cursor<'_>> {
+fn layer_info(mut section: ByteCursor<'_>, large: bool) -> Option<ByteCursor<'_>> {
     let length = section.length(large)?;
     if length > 0 {
-        return Some(Cursor::new(section.rest().get(..length).unwrap_or(section.rest())));
+        return Some(ByteCursor::new(section.rest().get(..length).unwrap_or(section.rest())));
     }
     section.section(false)?;
     while let Some((key, data)) = block(&mut section, large) {
@@ -159,10 +159,14 @@ pub fn interleaved(planes: &[Option<Vec<u8>>; 4], area: usize, is_grey: bool) ->
 }
 
 /// The merged picture; `with_alpha`: a channel beyond the colours is its transparency.
-fn merged(rest: &mut Cursor, header: &Header, with_alpha: bool) -> Option<Vec<u8>> {
+fn merged(rest: &mut ByteCursor, header: &PsdHeader, with_alpha: bool) -> Option<Vec<u8>> {
     let size = header.size;
-    let shape =
-        Shape { width: size.width as usize, height: size.height as usize, bits: header.bits, large: header.large };
+    let shape = ChannelLayout {
+        width: size.width as usize,
+        height: size.height as usize,
+        bits: header.bits,
+        large: header.large,
+    };
     let colours = if header.is_grey { 1 } else { 3 };
     let wanted = usize::from(header.channels).min(colours + usize::from(with_alpha));
     let compression = rest.u16()?;

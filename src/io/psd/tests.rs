@@ -2,7 +2,7 @@ use super::*;
 use crate::Budget;
 use crate::document::{Content, Document, Group, Layer, MaskKind, PixelLayer, Progress, flatten};
 use crate::math::Size;
-use crate::project::Contents;
+use crate::project::ProjectContents;
 use crate::project::sample::{assert_same, everything, files, read as read_recipe};
 use crate::raster::{BlendMode, TileGrid};
 use serde_json::json;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 fn written(document: &Document) -> Vec<u8> {
     write(Path::new("a.psd"), document, &Progress::default()).unwrap().unwrap().bytes
 }
-fn read_back(bytes: &[u8]) -> Contents {
+fn read_back(bytes: &[u8]) -> ProjectContents {
     read(Path::new("a.psd"), bytes, &Budget::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 /// The file with our own resource under a number that nobody knows, as a program leaves it that does.
@@ -161,9 +161,10 @@ fn groups_that_are_never_closed_or_never_opened_lose_no_layer() {
 }
 #[test]
 fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
-    let mark = |section| Record { name: "g".into(), section, ..Record::default() };
-    let leaf = Record { name: "leaf".into(), ..Record::default() };
-    let deep: Vec<Record> = [vec![mark(Section::End); 100], vec![leaf], vec![mark(Section::Group); 100]].concat();
+    let mark = |section| LayerRecord { name: "g".into(), section, ..LayerRecord::default() };
+    let leaf = LayerRecord { name: "leaf".into(), ..LayerRecord::default() };
+    let deep: Vec<LayerRecord> =
+        [vec![mark(RecordSection::End); 100], vec![leaf], vec![mark(RecordSection::Group); 100]].concat();
     let size = Size::new(4, 4);
     let back = read_back(&emit::emit(size, &deep, &[0; 64], &[]));
     assert!(back.notes.iter().any(|note| note.contains("nested too deep")), "{:?}", back.notes);
@@ -172,8 +173,8 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
     assert_eq!(walk.iter().map(|(path, _)| depth(path)).max(), Some(Budget::default().group_depth + 1));
     assert!(walk.iter().any(|(_, layer)| layer.name == "leaf"));
     // Each covers the canvas once it is read, though it takes no room in the file.
-    let mask = Some(Mask { rect: Rect::EMPTY, outside: 9, values: Vec::new() });
-    let masked = vec![Record { mask, ..Record::default() }; 50];
+    let mask = Some(RecordMask { rect: Rect::EMPTY, outside: 9, values: Vec::new() });
+    let masked = vec![LayerRecord { mask, ..LayerRecord::default() }; 50];
     let bytes = emit::emit(size, &masked, &[0; 64], &[]);
     let budget = Budget { document_px: 100, ..Budget::default() };
     let said = read(Path::new("a.psd"), &bytes, &budget).err().unwrap().to_string();

@@ -1,14 +1,14 @@
 //! A Photoshop file's records into a document: ours as it was written, others' as far as both programs agree.
 //! Floor 5. Parsing is `parse`'s.
 
-use super::parse::{Parsed, parse};
-use super::{Mask, PASS_THROUGH, Record, Section, signature};
-use crate::document::{Content, Document, Group, Layer, LayerMask, Lock, MaskKind, PixelLayer};
+use super::parse::{ParsedPsd, parse};
+use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, signature};
+use crate::document::{Content, Document, Group, Layer, LayerLock, LayerMask, MaskKind, PixelLayer};
 use crate::math::Size;
 use crate::project::archive::Archive;
 use crate::project::manifest::Manifest;
-use crate::project::packer::Packer;
-use crate::project::{self, Contents, pixels};
+use crate::project::packer::ZipPacker;
+use crate::project::{self, ProjectContents, pixels};
 use crate::raster::{BlendMode, Plane, TileGrid};
 use crate::{Budget, picture};
 use crate::{Error, Result};
@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Reads a Photoshop file; what was not carried over stands in the notes.
-pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
+pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let mut parsed = parse(file, bytes, budget)?;
     let damage = std::mem::take(&mut parsed.damage);
     let mut notes = damage.clone();
@@ -24,7 +24,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
         match restored(file, ours, &parsed.records, budget) {
             Ok(Some(contents)) => {
                 notes.extend(contents.notes);
-                return Ok(Contents { is_whole: contents.is_whole && damage.is_empty(), notes, ..contents });
+                return Ok(ProjectContents { is_whole: contents.is_whole && damage.is_empty(), notes, ..contents });
             }
             Ok(None) => notes.push("the layers were changed by another program: live layers became pixels".into()),
             Err(error) => notes.push(format!("live layers became pixels: {error}")),
@@ -34,15 +34,15 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Contents> {
         notes.push("its 16 bits a channel became 8".into());
     }
     let records = layers_of(&mut parsed);
-    let mut builder = Builder { size: parsed.size, deepest: budget.group_depth, open: vec![Vec::new()], notes };
+    let mut builder = TreeBuilder { size: parsed.size, deepest: budget.group_depth, open: vec![Vec::new()], notes };
     records.into_iter().for_each(|record| builder.add(record));
     let (layers, notes) = builder.done();
     let document = Document { layers, ..Document::empty(parsed.size) };
-    Ok(Contents { document, notes, is_whole: damage.is_empty() })
+    Ok(ProjectContents { document, notes, is_whole: damage.is_empty() })
 }
 
 /// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are others.
-fn restored(file: &Path, ours: &[u8], records: &[Record], budget: &Budget) -> Result<Option<Contents>> {
+fn restored(file: &Path, ours: &[u8], records: &[LayerRecord], budget: &Budget) -> Result<Option<ProjectContents>> {
     let archive = Archive::open(file, ours, budget)?;
     let damaged = |e: zip::result::ZipError| Error::decode(file, format!("our part of the file is damaged ({e})"));
     let text = archive.bytes(project::MANIFEST, budget.json_bytes)?;
@@ -51,7 +51,7 @@ fn restored(file: &Path, ours: &[u8], records: &[Record], budget: &Budget) -> Re
     if manifest.stack != signature(records) {
         return Ok(None);
     }
-    let mut packer = Packer::default();
+    let mut packer = ZipPacker::default();
     for name in archive.names() {
         packer.store(name, &archive.bytes(name, budget.file_bytes)?).map_err(damaged)?;
     }
@@ -65,7 +65,7 @@ fn restored(file: &Path, ours: &[u8], records: &[Record], budget: &Budget) -> Re
 }
 
 /// A record's pixels as a project would store them.
-fn png(file: &Path, record: &Record) -> Result<crate::raster::Asset> {
+fn png(file: &Path, record: &LayerRecord) -> Result<crate::raster::Asset> {
     if record.rect.is_empty() {
         return pixels::encode_texels(file, &[[0; 4]], Size::new(1, 1));
     }
@@ -74,10 +74,11 @@ fn png(file: &Path, record: &Record) -> Result<crate::raster::Asset> {
 }
 
 /// The records, in the colours of this program; of a file without layers its picture.
-fn layers_of(parsed: &mut Parsed) -> Vec<Record> {
+fn layers_of(parsed: &mut ParsedPsd) -> Vec<LayerRecord> {
     let mut records = std::mem::take(&mut parsed.records);
     if let (true, Some(rgba)) = (records.is_empty(), parsed.merged.take()) {
-        let background = Record { name: "Background".into(), rect: parsed.size.rect(), rgba, ..Record::default() };
+        let background =
+            LayerRecord { name: "Background".into(), rect: parsed.size.rect(), rgba, ..LayerRecord::default() };
         records.push(background);
     }
     if let Some(icc) = parsed.icc.filter(|icc| !picture::is_own_srgb(icc)) {
@@ -90,7 +91,7 @@ fn layers_of(parsed: &mut Parsed) -> Vec<Record> {
 }
 
 /// Layers gathered bottom first, each open group a list of its own.
-struct Builder {
+struct TreeBuilder {
     size: Size,
     /// Groups may lie within each other so many times.
     deepest: usize,
@@ -98,14 +99,14 @@ struct Builder {
     notes: Vec<String>,
 }
 
-impl Builder {
-    fn add(&mut self, record: Record) {
+impl TreeBuilder {
+    fn add(&mut self, record: LayerRecord) {
         for what in &record.lost {
             self.notes.push(format!("“{}”: {what}", record.name));
         }
         let layer = match record.section {
-            Section::End => return self.open.push(Vec::new()),
-            Section::Group => {
+            RecordSection::End => return self.open.push(Vec::new()),
+            RecordSection::Group => {
                 // Without a beginning, a group holds nothing.
                 let layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
                 if self.open.len() > self.deepest {
@@ -116,7 +117,7 @@ impl Builder {
                 let group = Group { layers, pass_through: record.blend == PASS_THROUGH };
                 self.layer(record, Content::Group(group))
             }
-            Section::Layer => {
+            RecordSection::Layer => {
                 let (w, h) = (record.rect.width(), record.rect.height());
                 let (x, y) = (record.rect.x0, record.rect.y0);
                 let tiles = match record.rect.is_empty() {
@@ -130,7 +131,7 @@ impl Builder {
             list.push(Arc::new(layer));
         }
     }
-    fn layer(&mut self, record: Record, content: Content) -> Layer {
+    fn layer(&mut self, record: LayerRecord, content: Content) -> Layer {
         let known = BlendMode::from_photoshop(record.blend);
         if known.is_none() && record.blend != PASS_THROUGH {
             let key = String::from_utf8_lossy(&record.blend).into_owned();
@@ -144,16 +145,16 @@ impl Builder {
             blend: known.unwrap_or(BlendMode::Normal),
             clip_below: record.clipped,
             lock: match (record.lock_all, record.lock_alpha) {
-                (true, _) => Lock::All,
-                (false, true) => Lock::Alpha,
-                (false, false) => Lock::None,
+                (true, _) => LayerLock::All,
+                (false, true) => LayerLock::Alpha,
+                (false, false) => LayerLock::None,
             },
             mask: record.mask.as_ref().map(|mask| self.mask(mask)),
             clip_to_surface: false,
             ..Layer::new(record.name, content)
         }
     }
-    fn mask(&self, mask: &Mask) -> LayerMask {
+    fn mask(&self, mask: &RecordMask) -> LayerMask {
         let rect = mask.rect;
         let value = |x: i32, y: i32| {
             let at = (y - rect.y0) as usize * rect.width() + (x - rect.x0) as usize;

@@ -4,12 +4,12 @@
 use super::images::TURNS;
 use super::tips;
 use crate::Result;
-use crate::json::{Fields, Node, Object, object};
+use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::vec2;
 use crate::paint::dynamics::MAX_POINTS;
-use crate::paint::{Brush, Curve, Dynamics, Facing, Input, Jitter, Mark, Property, Stabilizer};
+use crate::paint::{Brush, BrushMode, ColorJitter, Curve, Dynamics, Input, Property, Stabilizer, StrokeFrame};
 use crate::raster::BlendMode;
-use crate::surface::Bounded;
+use crate::surface::PaintLimit;
 use serde_json::{Value, json};
 
 /// A brush's fields; what is not said stays as it is in `base`.
@@ -29,8 +29,8 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         blend: fields.one_of("blend", &BlendMode::ALL, base.blend)?,
         erases: fields.boolean("erases", base.erases)?,
         keeps_alpha: fields.boolean("keeps_alpha", base.keeps_alpha)?,
-        bounded: fields.one_of("bounded", &Bounded::ALL, base.bounded)?,
-        mark: fields.get("mark").map_or(Ok(base.mark), |node| mark(&node))?,
+        bounded: fields.one_of("bounded", &PaintLimit::ALL, base.bounded)?,
+        mode: fields.get("mark").map_or(Ok(base.mode), |node| mode(&node))?,
         stabilizer: fields.get("stabilizer").map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
         dynamics: fields.get("dynamics").map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics))?,
         seed: fields.get("seed").map_or(Ok(base.seed), |node| seed(&node))?,
@@ -40,17 +40,18 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
 }
 
 /// `{ "turn": 0, "mirrored": false }`: how symmetry turned the stroke, degrees counter-clockwise as seen.
-fn facing(node: &Node) -> Result<Facing> {
+fn facing(node: &JsonNode) -> Result<StrokeFrame> {
     let mut fields = node.fields()?;
-    let facing = Facing { turn: fields.number("turn", 0.0, TURNS)?, is_mirrored: fields.boolean("mirrored", false)? };
+    let facing =
+        StrokeFrame { turn: fields.number("turn", 0.0, TURNS)?, is_mirrored: fields.boolean("mirrored", false)? };
     fields.finish()?;
     Ok(facing)
 }
 
 /// `{ "hue": 0, "saturation": 0, "value": 0 }`: how far a dab's colour may be from the stroke's, hue in degrees.
-fn jitter(node: &Node, base: Jitter) -> Result<Jitter> {
+fn jitter(node: &JsonNode, base: ColorJitter) -> Result<ColorJitter> {
     let mut fields = node.fields()?;
-    let jitter = Jitter {
+    let jitter = ColorJitter {
         hue_degrees: fields.number("hue", base.hue_degrees, 0.0..=180.0)?,
         saturation: fields.number("saturation", base.saturation, 0.0..=1.0)?,
         value: fields.number("value", base.value, 0.0..=1.0)?,
@@ -61,32 +62,32 @@ fn jitter(node: &Node, base: Jitter) -> Result<Jitter> {
 
 /// `{ "kind": "smudge", "length": 0.8 }`, `{ "kind": "blur", "width": 0.3 }` or `{ "kind": "clone", "aligned": true, "picture":
 /// false }`; `{ "kind": "paint" }` is what is not said.
-fn mark(node: &Node) -> Result<Mark> {
+fn mode(node: &JsonNode) -> Result<BrushMode> {
     const KINDS: [(usize, &str); 4] = [(0, "paint"), (1, "smudge"), (2, "blur"), (3, "clone")];
     let mut fields = node.fields()?;
-    let mark = match fields.one_of("kind", &KINDS, 0)? {
-        0 => Mark::Paint,
-        1 => Mark::Smudge { length: fields.number("length", Mark::SMUDGE_LENGTH, 0.0..=1.0)? },
-        2 => Mark::Blur { width: fields.number("width", Mark::BLUR_WIDTH, 0.0..=1.0)? },
-        _ => Mark::Clone { aligned: fields.boolean("aligned", true)?, picture: fields.boolean("picture", false)? },
+    let mode = match fields.one_of("kind", &KINDS, 0)? {
+        0 => BrushMode::Paint,
+        1 => BrushMode::Smudge { length: fields.number("length", BrushMode::SMUDGE_LENGTH, 0.0..=1.0)? },
+        2 => BrushMode::Blur { width: fields.number("width", BrushMode::BLUR_WIDTH, 0.0..=1.0)? },
+        _ => BrushMode::Clone { aligned: fields.boolean("aligned", true)?, picture: fields.boolean("picture", false)? },
     };
     fields.finish()?;
-    Ok(mark)
+    Ok(mode)
 }
 
-fn write_mark(mark: Mark) -> Object {
-    let mut out = Object::default();
-    match mark {
-        Mark::Paint => {}
-        Mark::Smudge { length } => {
+fn write_mode(mode: BrushMode) -> JsonObject {
+    let mut out = JsonObject::default();
+    match mode {
+        BrushMode::Paint => {}
+        BrushMode::Smudge { length } => {
             out.set("kind", "smudge".into());
-            out.number("length", length, Mark::SMUDGE_LENGTH);
+            out.number("length", length, BrushMode::SMUDGE_LENGTH);
         }
-        Mark::Blur { width } => {
+        BrushMode::Blur { width } => {
             out.set("kind", "blur".into());
-            out.number("width", width, Mark::BLUR_WIDTH);
+            out.number("width", width, BrushMode::BLUR_WIDTH);
         }
-        Mark::Clone { aligned, picture } => {
+        BrushMode::Clone { aligned, picture } => {
             out.set("kind", "clone".into());
             out.flag("aligned", aligned, true);
             out.flag("picture", picture, false);
@@ -96,7 +97,7 @@ fn write_mark(mark: Mark) -> Object {
 }
 
 /// `{ "average": 0.8 }`, `{ "string": 20 }`, or `{}` for none.
-fn stabilizer(node: &Node) -> Result<Stabilizer> {
+fn stabilizer(node: &JsonNode) -> Result<Stabilizer> {
     let mut fields = node.fields()?;
     let average = fields.get("average").map(|weight| weight.number(0.0..=1.0)).transpose()?;
     let string = fields.get("string").map(|length| length.number(0.0..=10_000.0)).transpose()?;
@@ -109,13 +110,13 @@ fn stabilizer(node: &Node) -> Result<Stabilizer> {
     }
 }
 
-fn seed(node: &Node) -> Result<u32> {
+fn seed(node: &JsonNode) -> Result<u32> {
     node.integer(0..=i64::from(u32::MAX)).map(|seed| seed as u32)
 }
 
 /// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]] } }`: what each property follows, and how. A number p is the line
 /// from 1 − p to 1.
-fn dynamics(node: &Node, base: Dynamics) -> Result<Dynamics> {
+fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
     let mut fields = node.fields()?;
     let mut dynamics = base;
     for (property, name) in Property::ALL {
@@ -132,7 +133,7 @@ fn dynamics(node: &Node, base: Dynamics) -> Result<Dynamics> {
     Ok(dynamics)
 }
 
-fn curve(node: &Node) -> Result<Curve> {
+fn curve(node: &JsonNode) -> Result<Curve> {
     if node.value().is_number() {
         return node.number(0.0..=1.0).map(Curve::Share);
     }
@@ -142,22 +143,22 @@ fn curve(node: &Node) -> Result<Curve> {
     curve.ok_or_else(|| node.refused("is no curve; it must have points whose first numbers do not fall"))
 }
 
-pub fn write_brush(brush: &Brush) -> Object {
+pub fn write_brush(brush: &Brush) -> JsonObject {
     let plain = Brush::default();
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.number("size", brush.size, plain.size);
     out.number("hardness", brush.hardness, plain.hardness);
     out.number("opacity", brush.opacity, plain.opacity);
     out.number("flow", brush.flow, plain.flow);
     out.number("spacing", brush.spacing, plain.spacing);
     out.number("rotation", brush.rotation, plain.rotation);
-    let mut facing = Object::default();
+    let mut facing = JsonObject::default();
     facing.number("turn", brush.facing.turn, 0.0);
     facing.flag("mirrored", brush.facing.is_mirrored, false);
     out.object("facing", facing);
     out.number("softness", brush.softness, plain.softness);
     out.number("scatter", brush.scatter, plain.scatter);
-    let mut jitter = Object::default();
+    let mut jitter = JsonObject::default();
     jitter.number("hue", brush.jitter.hue_degrees, 0.0);
     jitter.number("saturation", brush.jitter.saturation, 0.0);
     jitter.number("value", brush.jitter.value, 0.0);
@@ -165,8 +166,8 @@ pub fn write_brush(brush: &Brush) -> Object {
     out.word("blend", &BlendMode::ALL, brush.blend, plain.blend);
     out.flag("erases", brush.erases, plain.erases);
     out.flag("keeps_alpha", brush.keeps_alpha, plain.keeps_alpha);
-    out.word("bounded", &Bounded::ALL, brush.bounded, plain.bounded);
-    out.object("mark", write_mark(brush.mark));
+    out.word("bounded", &PaintLimit::ALL, brush.bounded, plain.bounded);
+    out.object("mark", write_mode(brush.mode));
     tips::write_tip(&mut out, &brush.tip);
     tips::write_grain(&mut out, brush.grain.as_ref());
     match brush.stabilizer {
@@ -182,11 +183,11 @@ pub fn write_brush(brush: &Brush) -> Object {
 }
 
 /// What differs from the plain brush's: what that follows and this does not is said to be 0.
-fn write_dynamics(dynamics: &Dynamics) -> Object {
+fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
     let plain = Dynamics::default();
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     for (property, property_name) in Property::ALL {
-        let mut inputs = Object::default();
+        let mut inputs = JsonObject::default();
         for (input, name) in Input::ALL {
             match (dynamics.curve(property, input), plain.curve(property, input)) {
                 (own, plain) if own == plain => {}
@@ -211,7 +212,7 @@ mod tests {
     use std::path::Path;
 
     fn read(value: &Value) -> Result<Brush> {
-        let mut fields = Node::root(Path::new("r.json"), value).fields()?;
+        let mut fields = JsonNode::root(Path::new("r.json"), value).fields()?;
         let brush = settings(&mut fields, Brush::default())?;
         fields.finish()?;
         Ok(brush)

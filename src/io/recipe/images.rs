@@ -2,12 +2,12 @@
 //! placement, source. Read and written.
 //! Floor 5.
 
-use super::Reader;
+use super::LayerReader;
 use super::names::{FILTERS, OUTSIDES};
 use crate::Result;
-use crate::json::{Fields, Node, Object, object};
+use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{Size, Vec2, srgb::Color, vec2};
-use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
+use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::Outside;
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use serde_json::Value;
@@ -17,7 +17,7 @@ const MOST_STOPS: usize = 1_000;
 /// Turns either way, degrees.
 pub const TURNS: std::ops::RangeInclusive<f32> = -36_000.0..=36_000.0;
 
-impl Reader<'_> {
+impl LayerReader<'_> {
     pub fn image(&mut self, fields: &mut Fields) -> Result<PlacedImage> {
         let source = self.picture_source(&fields.required("source")?)?;
         let placement = self.placement(fields)?;
@@ -26,19 +26,20 @@ impl Reader<'_> {
             placement,
             outside: fields.one_of("outside", &OUTSIDES, Outside::Mirror)?,
             bend: self.bend(fields, placement.center)?,
-            filter: fields.one_of("filter", &FILTERS, Filter::Antialias)?,
+            filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
         })
     }
     /// From the middle of the left side to the middle of the right one, black to white, unless told otherwise.
     pub fn gradient(&mut self, fields: &mut Fields) -> Result<Gradient> {
         let (w, h) = (self.size.width as f32, self.size.height as f32);
-        let black_to_white = || vec![Stop { t: 0.0, color: Color::BLACK }, Stop { t: 1.0, color: Color::WHITE }];
+        let black_to_white =
+            || vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
         Ok(Gradient {
             from: fields.point("from", vec2(0.0, h / 2.0))?,
             to: fields.point("to", vec2(w, h / 2.0))?,
             stops: fields.get("stops").map_or_else(|| Ok(black_to_white()), |node| stops(&node))?,
             operator: operator(fields)?.unwrap_or_default(),
-            filter: fields.one_of("filter", &FILTERS, Filter::Antialias)?,
+            filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
         })
     }
     /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`; an empty list pins nothing.
@@ -63,7 +64,7 @@ impl Reader<'_> {
         fields.finish()?;
         Ok(placement)
     }
-    pub fn picture_source(&mut self, node: &Node) -> Result<PictureSource> {
+    pub fn picture_source(&mut self, node: &JsonNode) -> Result<PictureSource> {
         let mut fields = node.fields()?;
         let file = fields.required("file")?;
         let plain = Adjust::default();
@@ -89,34 +90,34 @@ pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
 }
 
 #[derive(Clone, Copy)]
-enum OperatorKind {
+enum RecipeOperator {
     None,
     Depth,
     Normal,
     Reflection,
 }
 
-const OPERATORS: [(OperatorKind, &str); 4] = [
-    (OperatorKind::None, "none"),
-    (OperatorKind::Depth, "depth"),
-    (OperatorKind::Normal, "normal"),
-    (OperatorKind::Reflection, "reflection"),
+const OPERATORS: [(RecipeOperator, &str); 4] = [
+    (RecipeOperator::None, "none"),
+    (RecipeOperator::Depth, "depth"),
+    (RecipeOperator::Normal, "normal"),
+    (RecipeOperator::Reflection, "reflection"),
 ];
 
 /// The field `operator`, where it is there.
 pub fn operator(fields: &mut Fields) -> Result<Option<Operator>> {
     let Some(node) = fields.get("operator") else { return Ok(None) };
     let mut fields = node.fields()?;
-    let operator = match fields.one_of("kind", &OPERATORS, OperatorKind::None)? {
-        OperatorKind::None => Operator::None,
+    let operator = match fields.one_of("kind", &OPERATORS, RecipeOperator::None)? {
+        RecipeOperator::None => Operator::None,
         // e^20 is half a thousand million: a stronger bend only loses digits.
-        OperatorKind::Depth => Operator::Depth { gamma: fields.number("gamma", 1.0, 0.0..=20.0)? },
-        OperatorKind::Normal => Operator::Normal {
+        RecipeOperator::Depth => Operator::Depth { gamma: fields.number("gamma", 1.0, 0.0..=20.0)? },
+        RecipeOperator::Normal => Operator::Normal {
             alpha: fields.number("alpha", 0.5, -100.0..=100.0)?,
             beta: fields.number("beta", 1.5, 0.0..=50.0)?,
             detail: fields.number("detail", 0.0, 0.0..=100.0)?,
         },
-        OperatorKind::Reflection => Operator::Reflection {
+        RecipeOperator::Reflection => Operator::Reflection {
             alpha: fields.number("alpha", 0.5, -100.0..=100.0)?,
             detail: fields.number("detail", 0.0, 0.0..=100.0)?,
         },
@@ -125,7 +126,7 @@ pub fn operator(fields: &mut Fields) -> Result<Option<Operator>> {
     Ok(Some(operator))
 }
 
-fn anchor(node: &Node) -> Result<Anchor> {
+fn anchor(node: &JsonNode) -> Result<Anchor> {
     let mut fields = node.fields()?;
     let at = fields.required("at")?.point()?;
     let source = fields.point("source", at)?;
@@ -133,22 +134,22 @@ fn anchor(node: &Node) -> Result<Anchor> {
     Ok(Anchor { at, source })
 }
 
-fn weights(node: &Node) -> Result<Weights> {
+fn weights(node: &JsonNode) -> Result<Weights> {
     let mut fields = node.fields()?;
     let power = fields.number("power", 2.0, 0.1..=16.0)?;
     fields.finish()?;
     Ok(Weights::Shepard { power })
 }
 
-fn stops(node: &Node) -> Result<Vec<Stop>> {
+fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
     let items = node.list(MOST_STOPS)?;
     if items.is_empty() {
         return Err(node.refused("is empty; a gradient needs at least one stop"));
     }
-    let mut stops: Vec<Stop> = Vec::with_capacity(items.len());
+    let mut stops: Vec<GradientStop> = Vec::with_capacity(items.len());
     for item in &items {
         let [t, color] = &item.list(2)?[..] else { return Err(item.refused("must be [t, colour]")) };
-        let stop = Stop { t: t.number(0.0..=1.0)?, color: color.color()? };
+        let stop = GradientStop { t: t.number(0.0..=1.0)?, color: color.color()? };
         if stops.last().is_some_and(|before| before.t > stop.t) {
             return Err(t.refused("is less than the stop before it; stops go from 0 to 1"));
         }
@@ -157,37 +158,37 @@ fn stops(node: &Node) -> Result<Vec<Stop>> {
     Ok(stops)
 }
 
-pub fn write_image(out: &mut Object, image: &PlacedImage, canvas: Size) {
+pub fn write_image(out: &mut JsonObject, image: &PlacedImage, canvas: Size) {
     out.set("source", write_source(&image.source));
     out.object("placement", write_placement(&image.placement, canvas));
     out.word("outside", &OUTSIDES, image.outside, Outside::Mirror);
     write_bend(out, &image.bend, image.placement.center);
-    out.word("filter", &FILTERS, image.filter, Filter::Antialias);
+    out.word("filter", &FILTERS, image.filter, ImageFilter::Antialias);
 }
 
-pub fn write_gradient(out: &mut Object, gradient: &Gradient) {
+pub fn write_gradient(out: &mut JsonObject, gradient: &Gradient) {
     out.set("from", object::point(gradient.from));
     out.set("to", object::point(gradient.to));
-    let stop = |s: &Stop| Value::Array(vec![object::number(s.t), object::color(s.color)]);
+    let stop = |s: &GradientStop| Value::Array(vec![object::number(s.t), object::color(s.color)]);
     out.set("stops", gradient.stops.iter().map(stop).collect());
     out.object("operator", write_operator(gradient.operator));
-    out.word("filter", &FILTERS, gradient.filter, Filter::Antialias);
+    out.word("filter", &FILTERS, gradient.filter, ImageFilter::Antialias);
 }
 
-fn write_bend(out: &mut Object, bend: &Bend, center: Vec2) {
+fn write_bend(out: &mut JsonObject, bend: &Bend, center: Vec2) {
     out.object("operator", write_operator(bend.operator));
     if bend.anchors != default_anchors(bend.operator, center) {
         out.set("anchors", bend.anchors.iter().map(write_anchor).collect());
     }
     if let Weights::Shepard { power } = bend.weights {
-        let mut weights = Object::default();
+        let mut weights = JsonObject::default();
         weights.number("power", power, 2.0);
         out.object("weights", weights);
     }
 }
 
 fn write_anchor(anchor: &Anchor) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.set("at", object::point(anchor.at));
     if anchor.source != anchor.at {
         out.set("source", object::point(anchor.source));
@@ -196,8 +197,8 @@ fn write_anchor(anchor: &Anchor) -> Value {
 }
 
 /// Empty for the operator that does nothing.
-pub fn write_operator(operator: Operator) -> Object {
-    let mut out = Object::default();
+pub fn write_operator(operator: Operator) -> JsonObject {
+    let mut out = JsonObject::default();
     match operator {
         Operator::None => {}
         Operator::Depth { gamma } => {
@@ -220,9 +221,9 @@ pub fn write_operator(operator: Operator) -> Object {
 }
 
 /// Empty for the placement that covers the canvas.
-pub fn write_placement(placement: &Placement, canvas: Size) -> Object {
+pub fn write_placement(placement: &Placement, canvas: Size) -> JsonObject {
     let covering = Placement::covering(canvas);
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     if placement.center != covering.center {
         out.set("center", object::point(placement.center));
     }
@@ -234,7 +235,7 @@ pub fn write_placement(placement: &Placement, canvas: Size) -> Object {
 pub fn write_source(source: &PictureSource) -> Value {
     let plain = Adjust::default();
     let Adjust { blur, exposure, hue, saturation, brightness, contrast } = source.adjust;
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.set("file", source.file.as_str().into());
     out.number("blur", blur, plain.blur);
     out.number("exposure", exposure, plain.exposure);

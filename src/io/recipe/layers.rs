@@ -1,11 +1,11 @@
 //! Layers: what each has whatever its kind, and the kinds that need no more than a line; read and written.
 //! Floor 5.
 
-use super::Reader;
+use super::LayerReader;
 use super::names::{BLEND_SPACES, LOCKS, name_of};
 use super::{images, masks, normals, shading, strokes};
-use crate::document::{Content, Group, Layer, Live, Lock, PixelLayer};
-use crate::json::{Fields, Node, Object, object};
+use crate::document::{Content, Group, Layer, LayerLock, Live, PixelLayer};
+use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
 use crate::raster::{BlendMode, TileGrid};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// The kinds of layers, as the document calls them.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum LayerKind {
     Fill,
     Pixels,
     Image,
@@ -27,26 +27,26 @@ enum Kind {
     Group,
 }
 
-const KINDS: [(Kind, &str); 9] = [
-    (Kind::Fill, "fill"),
-    (Kind::Pixels, "pixels"),
-    (Kind::Image, "image"),
-    (Kind::Gradient, "gradient"),
-    (Kind::Strokes, "strokes"),
-    (Kind::Shading, "shading"),
-    (Kind::RadianceScaling, "radiance-scaling"),
-    (Kind::Normals, "normals"),
-    (Kind::Group, "group"),
+const KINDS: [(LayerKind, &str); 9] = [
+    (LayerKind::Fill, "fill"),
+    (LayerKind::Pixels, "pixels"),
+    (LayerKind::Image, "image"),
+    (LayerKind::Gradient, "gradient"),
+    (LayerKind::Strokes, "strokes"),
+    (LayerKind::Shading, "shading"),
+    (LayerKind::RadianceScaling, "radiance-scaling"),
+    (LayerKind::Normals, "normals"),
+    (LayerKind::Group, "group"),
 ];
 
-impl Reader<'_> {
+impl LayerReader<'_> {
     /// A list of layers, bottom first; `depth` is how many groups stand around it.
-    pub fn layers(&mut self, node: &Node, depth: usize) -> Result<Vec<Arc<Layer>>> {
+    pub fn layers(&mut self, node: &JsonNode, depth: usize) -> Result<Vec<Arc<Layer>>> {
         let items = node.list(self.layers_left)?;
         self.layers_left -= items.len();
         items.iter().map(|item| self.layer(item, depth).map(Arc::new)).collect()
     }
-    fn layer(&mut self, node: &Node, depth: usize) -> Result<Layer> {
+    fn layer(&mut self, node: &JsonNode, depth: usize) -> Result<Layer> {
         let mut fields = node.fields()?;
         let kind = fields.required("kind")?.one_of(&KINDS)?;
         let name = fields.get("name").map_or(Ok(""), |name| name.text())?.to_owned();
@@ -55,7 +55,7 @@ impl Reader<'_> {
         let blend = fields.one_of("blend", &BlendMode::ALL, BlendMode::Normal)?;
         let blend_linear = fields.one_of("blend_space", &BLEND_SPACES, false)?;
         let clip_below = fields.boolean("clip_below", false)?;
-        let lock = fields.one_of("lock", &LOCKS, Lock::None)?;
+        let lock = fields.one_of("lock", &LOCKS, LayerLock::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
         let content = self.content(kind, &mut fields, depth)?;
@@ -63,17 +63,17 @@ impl Reader<'_> {
         let layer = Layer::new(name, content);
         Ok(Layer { visible, opacity, blend, blend_linear, clip_below, lock, mask, clip_to_surface, ..layer })
     }
-    fn content(&mut self, kind: Kind, fields: &mut Fields, depth: usize) -> Result<Content> {
+    fn content(&mut self, kind: LayerKind, fields: &mut Fields, depth: usize) -> Result<Content> {
         Ok(match kind {
-            Kind::Fill => Content::Fill(fields.color("color", Color::BLACK)?),
-            Kind::Pixels => Content::Pixels(self.pixels(fields)?),
-            Kind::Image => Content::Image(Live::new(self.image(fields)?)),
-            Kind::Gradient => Content::Gradient(Live::new(self.gradient(fields)?)),
-            Kind::Strokes => Content::Strokes(Live::new(self.strokes(fields)?)),
-            Kind::Normals => Content::Normals(self.normals(fields)?),
-            Kind::Group => Content::Group(self.group(fields, depth)?),
-            Kind::Shading => Content::Shading(Live::new(self.shading(fields)?)),
-            Kind::RadianceScaling => Content::RadianceScaling(shading::radiance_scaling(fields)?),
+            LayerKind::Fill => Content::Fill(fields.color("color", Color::BLACK)?),
+            LayerKind::Pixels => Content::Pixels(self.pixels(fields)?),
+            LayerKind::Image => Content::Image(Live::new(self.image(fields)?)),
+            LayerKind::Gradient => Content::Gradient(Live::new(self.gradient(fields)?)),
+            LayerKind::Strokes => Content::Strokes(Live::new(self.strokes(fields)?)),
+            LayerKind::Normals => Content::Normals(self.normals(fields)?),
+            LayerKind::Group => Content::Group(self.group(fields, depth)?),
+            LayerKind::Shading => Content::Shading(Live::new(self.shading(fields)?)),
+            LayerKind::RadianceScaling => Content::RadianceScaling(shading::radiance_scaling(fields)?),
         })
     }
     fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
@@ -103,7 +103,7 @@ pub fn write(layers: &[Arc<Layer>], canvas: Size) -> Value {
 }
 
 fn write_layer(layer: &Layer, canvas: Size) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.text("name", &layer.name, "");
     out.set("kind", name_of(&KINDS, kind_of(&layer.content)).into());
     out.flag("visible", layer.visible, true);
@@ -111,7 +111,7 @@ fn write_layer(layer: &Layer, canvas: Size) -> Value {
     out.word("blend", &BlendMode::ALL, layer.blend, BlendMode::Normal);
     out.word("blend_space", &BLEND_SPACES, layer.blend_linear, false);
     out.flag("clip_below", layer.clip_below, false);
-    out.word("lock", &LOCKS, layer.lock, Lock::None);
+    out.word("lock", &LOCKS, layer.lock, LayerLock::None);
     out.flag("clip_to_surface", layer.clip_to_surface, true);
     if let Some(mask) = &layer.mask {
         out.set("mask", masks::write(mask));
@@ -120,7 +120,7 @@ fn write_layer(layer: &Layer, canvas: Size) -> Value {
     out.done()
 }
 
-fn write_content(out: &mut Object, content: &Content, canvas: Size) {
+fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
     match content {
         Content::Fill(color) => out.set("color", object::color(*color)),
         Content::Pixels(pixels) => {
@@ -141,16 +141,16 @@ fn write_content(out: &mut Object, content: &Content, canvas: Size) {
     }
 }
 
-fn kind_of(content: &Content) -> Kind {
+fn kind_of(content: &Content) -> LayerKind {
     match content {
-        Content::Fill(_) => Kind::Fill,
-        Content::Pixels(_) => Kind::Pixels,
-        Content::Image(_) => Kind::Image,
-        Content::Gradient(_) => Kind::Gradient,
-        Content::Strokes(_) => Kind::Strokes,
-        Content::Shading(_) => Kind::Shading,
-        Content::RadianceScaling(_) => Kind::RadianceScaling,
-        Content::Normals(_) => Kind::Normals,
-        Content::Group(_) => Kind::Group,
+        Content::Fill(_) => LayerKind::Fill,
+        Content::Pixels(_) => LayerKind::Pixels,
+        Content::Image(_) => LayerKind::Image,
+        Content::Gradient(_) => LayerKind::Gradient,
+        Content::Strokes(_) => LayerKind::Strokes,
+        Content::Shading(_) => LayerKind::Shading,
+        Content::RadianceScaling(_) => LayerKind::RadianceScaling,
+        Content::Normals(_) => LayerKind::Normals,
+        Content::Group(_) => LayerKind::Group,
     }
 }

@@ -1,24 +1,27 @@
 //! Layer masks: a picture of coverage, or one derived from the surface; read and written.
 //! Floor 5.
 
-use super::Reader;
+use super::LayerReader;
 use crate::Result;
 use crate::document::{LayerMask, MaskKind};
-use crate::json::{Fields, Node, Object};
+use crate::json::{Fields, JsonNode, JsonObject};
 use serde_json::Value;
 
 #[derive(Clone, Copy)]
-enum Derived {
+enum DerivedMaskKind {
     Fresnel,
     Curvature,
     Depth,
 }
 
-const DERIVED: [(Derived, &str); 3] =
-    [(Derived::Fresnel, "fresnel"), (Derived::Curvature, "curvature"), (Derived::Depth, "depth")];
+const DERIVED: [(DerivedMaskKind, &str); 3] = [
+    (DerivedMaskKind::Fresnel, "fresnel"),
+    (DerivedMaskKind::Curvature, "curvature"),
+    (DerivedMaskKind::Depth, "depth"),
+];
 
-impl Reader<'_> {
-    pub fn mask(&mut self, node: &Node) -> Result<LayerMask> {
+impl LayerReader<'_> {
+    pub fn mask(&mut self, node: &JsonNode) -> Result<LayerMask> {
         let mut fields = node.fields()?;
         let (invert, disabled) = (fields.boolean("invert", false)?, fields.boolean("disabled", false)?);
         let kind = match fields.get("kind") {
@@ -33,18 +36,18 @@ impl Reader<'_> {
     }
 }
 
-fn derived(kind: Derived, fields: &mut Fields) -> Result<MaskKind> {
+fn derived(kind: DerivedMaskKind, fields: &mut Fields) -> Result<MaskKind> {
     Ok(match kind {
-        Derived::Fresnel => MaskKind::Fresnel {
+        DerivedMaskKind::Fresnel => MaskKind::Fresnel {
             f0: fields.number("f0", 0.04, 0.0..=1.0)?,
             power: fields.number("power", 5.0, 0.0..=64.0)?,
         },
-        Derived::Curvature => {
+        DerivedMaskKind::Curvature => {
             let (scale, blur) = (fields.number("scale", 4.0, 0.0..=1000.0)?, fields.number("blur", 0.0, 0.0..=256.0)?);
             let (from, to) = ramp(fields, -1.0, 1.0)?;
             MaskKind::Curvature { scale, blur, from, to }
         }
-        Derived::Depth => {
+        DerivedMaskKind::Depth => {
             let (from, to) = ramp(fields, 0.0, 1.0)?;
             MaskKind::Depth { from, to }
         }
@@ -62,7 +65,7 @@ fn ramp(fields: &mut Fields, from: f32, to: f32) -> Result<(f32, f32)> {
 }
 
 pub fn write(mask: &LayerMask) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     match &mask.kind {
         MaskKind::File { file, .. } => out.set("file", file.as_str().into()),
         MaskKind::Fresnel { f0, power } => {

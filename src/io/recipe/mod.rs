@@ -29,19 +29,20 @@ pub mod surface;
 mod tips;
 
 pub use presets::{
-    Group, Preset, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset, written_brush,
+    Preset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,
+    written_brush,
 };
 pub use strokes::write_stroke;
 
-use super::json::{self, Fields, Node, Object};
-use super::{Budget, Files, Folder, files, maps};
+use super::json::{self, Fields, JsonNode, JsonObject};
+use super::{Budget, Files, RecipeFolder, files, maps};
 use crate::document::{Document, SurfaceSource};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::surface::{Surface, SurfaceError};
 use crate::{Error, Result};
-use pictures::Pictures;
-pub use pictures::Tiles;
+use pictures::PictureCache;
+pub use pictures::TileGrids;
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
@@ -50,19 +51,19 @@ pub const VERSION: i64 = 1;
 
 /// What a document is read from.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct RecipeSource<'a> {
     /// The recipe, for messages.
     pub file: &'a Path,
     /// What it may name.
     pub files: &'a dyn Files,
     pub budget: &'a Budget,
     /// Another object to put the painting on, in place of the document's own.
-    pub onto: Option<Onto<'a>>,
+    pub onto: Option<OtherSurface<'a>>,
 }
 
 /// A surface that is not the document's own, and where its maps are.
 #[derive(Clone, Copy)]
-pub struct Onto<'a> {
+pub struct OtherSurface<'a> {
     pub surface: &'a SurfaceSource,
     pub files: &'a dyn Files,
 }
@@ -73,42 +74,43 @@ pub fn load(file: &Path, budget: &Budget) -> Result<Document> {
 }
 
 /// Loads a recipe and puts it on another object; its canvas stays, the maps are fitted to it.
-pub fn load_onto(file: &Path, budget: &Budget, onto: Option<Onto>) -> Result<Document> {
+pub fn load_onto(file: &Path, budget: &Budget, onto: Option<OtherSurface>) -> Result<Document> {
     let text = files::read_file(file, budget.json_bytes)?;
-    read(&text, Source { file, files: &Folder::beside(file), budget, onto })
+    read(&text, RecipeSource { file, files: &RecipeFolder::beside(file), budget, onto })
 }
 
 /// Reads a document from its JSON.
-pub fn read(text: &[u8], source: Source) -> Result<Document> {
+pub fn read(text: &[u8], source: RecipeSource) -> Result<Document> {
     read_value(&json::parse(source.file, text, source.budget)?, source)
 }
 
 /// The same, with what was found in its maps and could not be carried over, a sentence each.
-pub fn read_noting(text: &[u8], source: Source) -> Result<(Document, Vec<String>)> {
-    read_parts(&json::parse(source.file, text, source.budget)?, source, Tiles::new())
+pub fn read_noting(text: &[u8], source: RecipeSource) -> Result<(Document, Vec<String>)> {
+    read_parts(&json::parse(source.file, text, source.budget)?, source, TileGrids::new())
 }
 
 /// Reads a document from JSON that is parsed already.
-pub fn read_value(value: &Value, source: Source) -> Result<Document> {
-    read_with_tiles(value, source, Tiles::new())
+pub fn read_value(value: &Value, source: RecipeSource) -> Result<Document> {
+    read_with_tiles(value, source, TileGrids::new())
 }
 
 /// As [`read_value`], with the pixels of some paint layers known already; they were within the budget.
-pub fn read_with_tiles(value: &Value, source: Source, tiles: Tiles) -> Result<Document> {
+pub fn read_with_tiles(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<Document> {
     read_parts(value, source, tiles).map(|(document, _)| document)
 }
 
-fn read_parts(value: &Value, source: Source, tiles: Tiles) -> Result<(Document, Vec<String>)> {
-    let mut root = Node::root(source.file, value).fields()?;
+fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(Document, Vec<String>)> {
+    let mut root = JsonNode::root(source.file, value).fields()?;
     check_version(&mut root)?;
     let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
     let own = root.get("surface").map(|node| Ok::<_, Error>((surface::read(&node)?, node))).transpose()?;
     let layers = root.get("layers");
     root.finish()?;
 
-    let Shape { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
+    let CanvasAndSurface { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
-    let mut reader = Reader { source, size, layers_left: source.budget.layers, pictures: Pictures::knowing(tiles) };
+    let mut reader =
+        LayerReader { source, size, layers_left: source.budget.layers, pictures: PictureCache::knowing(tiles) };
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
     Ok((Document { size, surface, surface_source, surface_files: Arc::new(files), layers }, notes))
 }
@@ -124,7 +126,7 @@ fn check_version(root: &mut Fields) -> Result<()> {
     Ok(())
 }
 
-fn canvas(node: &Node, source: Source) -> Result<Size> {
+fn canvas(node: &JsonNode, source: RecipeSource) -> Result<Size> {
     let mut fields = node.fields()?;
     let mut side = |name| fields.required(name)?.integer(1..=i64::from(u32::MAX));
     let (width, height) = (side("width")?, side("height")?);
@@ -133,14 +135,14 @@ fn canvas(node: &Node, source: Source) -> Result<Size> {
 }
 
 /// A document put on another object; its canvas stays, the maps are fitted to it.
-pub fn put_onto(document: &Document, file: &Path, onto: Onto, budget: &Budget) -> Result<Document> {
-    let maps::Import { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
+pub fn put_onto(document: &Document, file: &Path, onto: OtherSurface, budget: &Budget) -> Result<Document> {
+    let maps::ImportedSurface { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
     let surface = fitted(surface, document.size).map_err(|e| Error::unsupported(file, e))?;
     let surface_source = Some(Arc::new(onto.surface.clone()));
     Ok(Document { surface: Some(surface), surface_source, surface_files: Arc::new(files), ..document.clone() })
 }
 
-struct Shape {
+struct CanvasAndSurface {
     size: Size,
     surface: Option<Arc<Surface>>,
     /// The files of its maps.
@@ -149,7 +151,11 @@ struct Shape {
 }
 
 /// The canvas's size, where nothing is said that of the document's own maps; and the surface fitted to it.
-fn shape(canvas: Option<Size>, own: Option<&(SurfaceSource, Node)>, source: Source) -> Result<Shape> {
+fn shape(
+    canvas: Option<Size>,
+    own: Option<&(SurfaceSource, JsonNode)>,
+    source: RecipeSource,
+) -> Result<CanvasAndSurface> {
     // Another object keeps the document's canvas, so its own maps are read only where they tell the size.
     let own = match own {
         Some((own, node)) if canvas.is_none() || source.onto.is_none() => {
@@ -167,15 +173,15 @@ fn shape(canvas: Option<Size>, own: Option<&(SurfaceSource, Node)>, source: Sour
     let (import, node) = match (other, own) {
         (Some(other), _) => (other, None),
         (None, Some((own, node))) => (own, Some(node)),
-        (None, None) => return Ok(Shape { size, surface: None, files: BTreeMap::new(), notes: Vec::new() }),
+        (None, None) => return Ok(CanvasAndSurface { size, surface: None, files: BTreeMap::new(), notes: Vec::new() }),
     };
-    let maps::Import { surface, findings, files } = import;
+    let maps::ImportedSurface { surface, findings, files } = import;
     let refused = |e: SurfaceError| match node {
         Some(node) => node.refused(e),
         None => Error::unsupported(source.file, e),
     };
     let surface = Some(fitted(surface, size).map_err(refused)?);
-    Ok(Shape { size, surface, files, notes: findings.notes })
+    Ok(CanvasAndSurface { size, surface, files, notes: findings.notes })
 }
 
 fn fitted(map: Surface, canvas: Size) -> std::result::Result<Arc<Surface>, SurfaceError> {
@@ -183,18 +189,18 @@ fn fitted(map: Surface, canvas: Size) -> std::result::Result<Arc<Surface>, Surfa
 }
 
 /// Reads layers: what is known once the canvas is.
-struct Reader<'a> {
-    source: Source<'a>,
+struct LayerReader<'a> {
+    source: RecipeSource<'a>,
     size: Size,
     /// How many more layers the budget allows.
     layers_left: usize,
-    pictures: Pictures,
+    pictures: PictureCache,
 }
 
 /// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project puts its pixels
 /// beside it under the same names.
 pub fn write(document: &Document) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.set("format", "rilievo".into());
     out.set("version", VERSION.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));

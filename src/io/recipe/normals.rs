@@ -1,18 +1,18 @@
 //! Normal layers: detail from a map, or grain; read and written.
 //! Floor 5. Reading a map's numbers is `io::maps::detail`'s work.
 
-use super::Reader;
+use super::LayerReader;
 use super::images::{write_placement, write_source};
 use super::names::OUTSIDES;
 use super::surface::{normal_convention, write_normal_convention};
 use crate::Result;
 use crate::document::{DetailSource, NormalLayer, source::NormalConvention};
-use crate::json::{Fields, Node, Object};
+use crate::json::{Fields, JsonNode, JsonObject};
 use crate::math::Size;
 use crate::raster::Outside;
-use crate::surface::Grain;
+use crate::surface::NoiseRelief;
 
-impl Reader<'_> {
+impl LayerReader<'_> {
     pub fn normals(&mut self, fields: &mut Fields) -> Result<NormalLayer> {
         let source = fields.required("source")?;
         let convention = fields.get("convention").map(|c| normal_convention(&c)).transpose()?;
@@ -31,7 +31,7 @@ impl Reader<'_> {
             strength: fields.number("strength", 1.0, 0.0..=100.0)?,
         })
     }
-    fn detail_map(&mut self, node: &Node, convention: NormalConvention) -> Result<DetailSource> {
+    fn detail_map(&mut self, node: &JsonNode, convention: NormalConvention) -> Result<DetailSource> {
         let picture = self.picture_source(node)?;
         let file = node.fields()?.required("file")?;
         let map = self.pictures.detail(self.source, &file, &convention, picture.adjust.blur)?;
@@ -39,9 +39,9 @@ impl Reader<'_> {
     }
 }
 
-fn grain(node: &Node) -> Result<Grain> {
-    let (mut fields, base) = (node.fields()?, Grain::default());
-    let grain = Grain {
+fn grain(node: &JsonNode) -> Result<NoiseRelief> {
+    let (mut fields, base) = (node.fields()?, NoiseRelief::default());
+    let grain = NoiseRelief {
         size_px: fields.number("size", base.size_px, 0.1..=100_000.0)?,
         octaves: fields.get("octaves").map_or(Ok(base.octaves as i64), |node| node.integer(1..=12))? as u32,
         roughness: fields.number("roughness", base.roughness, 0.0..=2.0)?,
@@ -52,14 +52,14 @@ fn grain(node: &Node) -> Result<Grain> {
     Ok(grain)
 }
 
-pub fn write(out: &mut Object, normals: &NormalLayer, canvas: Size) {
+pub fn write(out: &mut JsonObject, normals: &NormalLayer, canvas: Size) {
     match &normals.source {
         DetailSource::Map { picture, convention, .. } => {
             out.set("source", write_source(picture));
             write_normal_convention(out, convention);
         }
         DetailSource::Grain(grain) => {
-            let mut source = Object::default();
+            let mut source = JsonObject::default();
             source.set("noise", write_grain(grain).done());
             out.set("source", source.done());
         }
@@ -69,9 +69,9 @@ pub fn write(out: &mut Object, normals: &NormalLayer, canvas: Size) {
     out.number("strength", normals.strength, 1.0);
 }
 
-fn write_grain(grain: &Grain) -> Object {
-    let base = Grain::default();
-    let mut out = Object::default();
+fn write_grain(grain: &NoiseRelief) -> JsonObject {
+    let base = NoiseRelief::default();
+    let mut out = JsonObject::default();
     out.number("size", grain.size_px, base.size_px);
     out.number("octaves", grain.octaves as f32, base.octaves as f32);
     out.number("roughness", grain.roughness, base.roughness);

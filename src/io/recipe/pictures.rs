@@ -1,9 +1,9 @@
 //! The files that layers name: each is read and decoded once, however many layers use it.
 //! Floor 5. Decoding is `io::picture`'s.
 
-use super::Source;
+use super::RecipeSource;
 use crate::document::source::NormalConvention;
-use crate::json::Node;
+use crate::json::JsonNode;
 use crate::maps::detail;
 use crate::math::{Size, Vec3};
 use crate::paint::{Adjust, PictureSource};
@@ -14,34 +14,34 @@ use crate::{files, picture};
 use std::{collections::HashMap, sync::Arc};
 
 /// The pixels of paint layers by file and corner.
-pub type Tiles = HashMap<(String, i32, i32), TileGrid>;
+pub type TileGrids = HashMap<(String, i32, i32), TileGrid>;
 
 /// What has been decoded in one load, by name.
 #[derive(Default)]
-pub struct Pictures {
+pub struct PictureCache {
     pictures: HashMap<String, Picture>,
     /// With each set of adjustments in use, so that layers share the adjusted texture as well.
     sources: HashMap<String, Vec<PictureSource>>,
     coverages: HashMap<String, Arc<Plane<u8>>>,
-    tiles: Tiles,
-    details: Vec<Detail>,
+    tiles: TileGrids,
+    details: Vec<CachedDetail>,
     used_px: u64,
 }
 
 /// A detail map as it was read.
-struct Detail {
+struct CachedDetail {
     file: String,
     convention: NormalConvention,
     blur_px: f32,
     map: Arc<DetailMap>,
 }
 
-impl Pictures {
-    pub fn knowing(tiles: Tiles) -> Self {
+impl PictureCache {
+    pub fn knowing(tiles: TileGrids) -> Self {
         Self { tiles, ..Self::default() }
     }
     /// The picture that a field names, with its adjustments.
-    pub fn source(&mut self, source: Source, name: &Node, adjust: Adjust) -> Result<PictureSource> {
+    pub fn source(&mut self, source: RecipeSource, name: &JsonNode, adjust: Adjust) -> Result<PictureSource> {
         let picture = self.picture(source, name)?;
         let name = name.text()?;
         let known = self.sources.entry(name.to_owned()).or_default();
@@ -52,7 +52,7 @@ impl Pictures {
         Ok(known[known.len() - 1].clone())
     }
     /// The picture that a field names, as it is.
-    pub fn picture(&mut self, source: Source, name: &Node) -> Result<Picture> {
+    pub fn picture(&mut self, source: RecipeSource, name: &JsonNode) -> Result<Picture> {
         if let Some(known) = self.pictures.get(name.text()?) {
             return Ok(known.clone());
         }
@@ -66,13 +66,13 @@ impl Pictures {
     /// The detail normals of a picture that a field names, blurred by `blur_px` texels; read anew for each convention.
     pub fn detail(
         &mut self,
-        source: Source,
-        name: &Node,
+        source: RecipeSource,
+        name: &JsonNode,
         convention: &NormalConvention,
         blur_px: f32,
     ) -> Result<Arc<DetailMap>> {
         let file = name.text()?;
-        let is_same = |d: &&Detail| d.file == file && d.convention == *convention && d.blur_px == blur_px;
+        let is_same = |d: &&CachedDetail| d.file == file && d.convention == *convention && d.blur_px == blur_px;
         if let Some(known) = self.details.iter().find(is_same) {
             return Ok(known.map.clone());
         }
@@ -82,11 +82,11 @@ impl Pictures {
         self.spend(source, normals.size())?;
         let map = Arc::new(DetailMap::new(blurred(normals, blur_px)));
         let (file, convention) = (file.to_owned(), convention.clone());
-        self.details.push(Detail { file, convention, blur_px, map: map.clone() });
+        self.details.push(CachedDetail { file, convention, blur_px, map: map.clone() });
         Ok(map)
     }
     /// Counts what a document holds: many pictures, each within its own ceiling, would fill the memory together.
-    fn spend(&mut self, source: Source, size: Size) -> Result<()> {
+    fn spend(&mut self, source: RecipeSource, size: Size) -> Result<()> {
         self.used_px += size.area() as u64;
         if self.used_px > source.budget.document_px {
             let reason = format!("its pictures hold more than {} pixels together", source.budget.document_px);
@@ -95,7 +95,7 @@ impl Pictures {
         Ok(())
     }
     /// The pixels that a field names, cut into tiles at an offset on the canvas.
-    pub fn tiles(&mut self, source: Source, name: &Node, x: i32, y: i32) -> Result<(String, TileGrid)> {
+    pub fn tiles(&mut self, source: RecipeSource, name: &JsonNode, x: i32, y: i32) -> Result<(String, TileGrid)> {
         let key = (name.text()?.to_owned(), x, y);
         if !self.tiles.contains_key(&key) {
             let picture = self.picture(source, name)?;
@@ -106,7 +106,12 @@ impl Pictures {
         Ok((key.0, tiles))
     }
     /// The mask that a field names; it has the canvas's size.
-    pub fn coverage(&mut self, source: Source, name: &Node, canvas: Size) -> Result<(String, Arc<Plane<u8>>)> {
+    pub fn coverage(
+        &mut self,
+        source: RecipeSource,
+        name: &JsonNode,
+        canvas: Size,
+    ) -> Result<(String, Arc<Plane<u8>>)> {
         let file = name.text()?.to_owned();
         if let Some(known) = self.coverages.get(&file) {
             return Ok((file, known.clone()));
@@ -130,7 +135,7 @@ fn blurred(normals: Plane<Vec3>, blur_px: f32) -> Plane<Vec3> {
 }
 
 /// The bytes of a file that a field names. A name that leaves the document's folder is refused before anything is opened.
-fn bytes(source: Source, name: &Node) -> Result<Vec<u8>> {
+fn bytes(source: RecipeSource, name: &JsonNode) -> Result<Vec<u8>> {
     let text = name.text()?;
     if let Some(reason) = files::refusal(text) {
         return Err(name.refused(format!("“{text}” is refused: {reason}")));

@@ -3,14 +3,14 @@
 
 use super::brush::{settings, write_brush};
 use super::images::{operator, write_operator};
-use super::pictures::Pictures;
-use super::{Source, tips};
+use super::pictures::PictureCache;
+use super::{RecipeSource, tips};
 use crate::Result;
-use crate::json::{self, Node, Object, object};
+use crate::json::{self, JsonNode, JsonObject, object};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, PictureSource};
 use crate::surface::Operator;
-use crate::{Budget, Files, Folder, files};
+use crate::{Budget, Files, RecipeFolder, files};
 use rilievo_brushes::BRUSHES;
 use serde_json::Value;
 use std::path::Path;
@@ -22,7 +22,7 @@ pub struct Preset {
     pub key: String,
     /// What people call it.
     pub name: String,
-    pub group: Group,
+    pub group: PresetGroup,
     /// One sentence.
     pub about: String,
     /// The colour it is shown in; choosing it changes no colour.
@@ -34,7 +34,7 @@ pub struct Preset {
 
 /// Where a preset stands in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub enum Group {
+pub enum PresetGroup {
     Drawing,
     Inking,
     Painting,
@@ -47,17 +47,17 @@ pub enum Group {
     Imported,
 }
 
-impl Group {
+impl PresetGroup {
     /// Every group with its name, in the order of the list.
-    pub const ALL: [(Group, &'static str); 8] = [
-        (Group::Drawing, "Drawing"),
-        (Group::Inking, "Inking"),
-        (Group::Painting, "Painting"),
-        (Group::WetAndDry, "Wet and dry"),
-        (Group::Light, "Light"),
-        (Group::Surface, "Surface"),
-        (Group::Retouch, "Retouch"),
-        (Group::Imported, "Your own"),
+    pub const ALL: [(PresetGroup, &'static str); 8] = [
+        (PresetGroup::Drawing, "Drawing"),
+        (PresetGroup::Inking, "Inking"),
+        (PresetGroup::Painting, "Painting"),
+        (PresetGroup::WetAndDry, "Wet and dry"),
+        (PresetGroup::Light, "Light"),
+        (PresetGroup::Surface, "Surface"),
+        (PresetGroup::Retouch, "Retouch"),
+        (PresetGroup::Imported, "Your own"),
     ];
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, name)| name)
@@ -89,7 +89,7 @@ pub fn preset_brush(key: &str) -> Option<(Brush, Operator)> {
 }
 
 /// The preset that a field names.
-pub(super) fn named(key: &Node) -> Result<(Brush, Operator)> {
+pub(super) fn named(key: &JsonNode) -> Result<(Brush, Operator)> {
     let wanted = key.text()?;
     let Some((_, text)) = BRUSHES.iter().find(|(known, _)| *known == wanted) else {
         let names: Vec<_> = preset_names().collect();
@@ -100,7 +100,7 @@ pub(super) fn named(key: &Node) -> Result<(Brush, Operator)> {
 }
 
 fn built_in(key: &str, text: &str) -> Result<Preset> {
-    let mut none = |node: &Node| Err(node.refused("is a file; the brushes of the program have none"));
+    let mut none = |node: &JsonNode| Err(node.refused("is a file; the brushes of the program have none"));
     read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
 }
 
@@ -108,9 +108,9 @@ fn built_in(key: &str, text: &str) -> Result<Preset> {
 ///
 /// Fails with a sentence that names the field.
 pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
-    let mut fields = Node::root(Path::new("brush"), value).fields()?;
+    let mut fields = JsonNode::root(Path::new("brush"), value).fields()?;
     let mut brush = settings(&mut fields, Brush::default())?;
-    let mut picture = |node: &Node| {
+    let mut picture = |node: &JsonNode| {
         let named = node.text()?;
         let found = like.pictures().find(|source| source.file == named).cloned();
         found.ok_or_else(|| node.refused(format!("is “{named}”; the brush in hand has no such picture")))
@@ -128,10 +128,10 @@ pub fn written_brush(brush: &Brush) -> Value {
 /// A preset in a file of its own; its pictures lie beside it.
 pub fn load_preset(file: &Path, budget: &Budget) -> Result<Preset> {
     let text = files::read_file(file, budget.json_bytes)?;
-    let folder = Folder::beside(file);
-    let source = Source { file, files: &folder as &dyn Files, budget, onto: None };
-    let mut pictures = Pictures::default();
-    let mut picture = |node: &Node| pictures.source(source, node, Adjust::default());
+    let folder = RecipeFolder::beside(file);
+    let source = RecipeSource { file, files: &folder as &dyn Files, budget, onto: None };
+    let mut pictures = PictureCache::default();
+    let mut picture = |node: &JsonNode| pictures.source(source, node, Adjust::default());
     let key = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     read(file, &key, &text, budget, &mut picture)
 }
@@ -142,14 +142,14 @@ fn read(
     key: &str,
     text: &[u8],
     budget: &Budget,
-    picture: &mut dyn FnMut(&Node) -> Result<PictureSource>,
+    picture: &mut dyn FnMut(&JsonNode) -> Result<PictureSource>,
 ) -> Result<Preset> {
     let value = json::parse(file, text, budget)?;
-    let mut root = Node::root(file, &value).fields()?;
+    let mut root = JsonNode::root(file, &value).fields()?;
     let mut text = |name| root.get(name).map_or(Ok(String::new()), |node| node.text().map(str::to_owned));
     let (name, about) = (text("name")?, text("about")?);
     let name = if name.is_empty() { key.to_owned() } else { name };
-    let group = root.one_of("group", &Group::ALL, Group::Imported)?;
+    let group = root.one_of("group", &PresetGroup::ALL, PresetGroup::Imported)?;
     let color = root.color("color", SHOWN)?;
     let operator = operator(&mut root)?.unwrap_or_default();
     let mut fields = root.required("brush")?.fields()?;
@@ -162,9 +162,9 @@ fn read(
 
 /// A preset as [`load_preset`] reads it back. Its pictures are named, not written.
 pub fn write_preset(preset: &Preset) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.set("name", preset.name.as_str().into());
-    out.word("group", &Group::ALL, preset.group, Group::Imported);
+    out.word("group", &PresetGroup::ALL, preset.group, PresetGroup::Imported);
     out.text("about", &preset.about, "");
     if preset.color != SHOWN {
         out.set("color", object::color(preset.color));
@@ -182,15 +182,15 @@ mod tests {
     fn every_preset_reads_and_has_a_name_a_group_and_a_sentence() {
         for (key, text) in BRUSHES {
             let preset = built_in(key, text).unwrap_or_else(|e| panic!("{key}: {e}"));
-            assert!(!preset.name.is_empty() && preset.group != Group::Imported, "{key}");
+            assert!(!preset.name.is_empty() && preset.group != PresetGroup::Imported, "{key}");
             assert!(preset.about.ends_with('.') && preset.about.len() > 20, "{key}");
             assert_eq!(*key, crate::brush::plain(key));
             assert_eq!(built_in(key, &write_preset(&preset).to_string()).map(|p| p.name).ok(), Some(preset.name));
         }
-        let mut groups: Vec<Group> = presets().map(|preset| preset.group).collect();
+        let mut groups: Vec<PresetGroup> = presets().map(|preset| preset.group).collect();
         assert!(groups.is_sorted(), "a group's presets stand together");
         groups.dedup();
-        assert_eq!(groups.len(), Group::ALL.len() - 1);
+        assert_eq!(groups.len(), PresetGroup::ALL.len() - 1);
     }
     #[test]
     fn there_are_thirty_presets_and_more_and_no_two_share_a_name() {

@@ -1,10 +1,10 @@
 //! Light: shading layers and radiance scaling; read and written.
 //! Floor 5.
 
-use super::Reader;
+use super::LayerReader;
 use super::images::TURNS;
 use crate::Result;
-use crate::json::{Fields, Node, Object, fields::COORDINATE, object};
+use crate::json::{Fields, JsonNode, JsonObject, fields::COORDINATE, object};
 use crate::math::Vec3;
 use crate::shading::{
     Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection, RadianceScaling, Reference,
@@ -21,7 +21,7 @@ const INVARIANT: RangeInclusive<f32> = 0.001..=0.999;
 /// Factors of light.
 const FACTOR: RangeInclusive<f32> = 0.0..=10_000.0;
 
-impl Reader<'_> {
+impl LayerReader<'_> {
     /// What is not said is as the model has it by default ([`Shading::new`]).
     pub fn shading(&mut self, fields: &mut Fields) -> Result<Shading> {
         let base = Shading::new(fields.one_of("model", &Model::ALL, Model::Phong)?);
@@ -57,7 +57,7 @@ impl Reader<'_> {
             )?,
         })
     }
-    fn environment(&mut self, node: &Node) -> Result<Environment> {
+    fn environment(&mut self, node: &JsonNode) -> Result<Environment> {
         let mut fields = node.fields()?;
         let file = fields.required("file")?;
         let mut environment = Environment::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
@@ -111,7 +111,7 @@ fn features(fields: &mut Fields) -> Result<Features> {
     if items.is_empty() {
         return Err(node.refused("is empty; at least one scale is needed"));
     }
-    let one = |item: &Node| {
+    let one = |item: &JsonNode| {
         let mut fields = item.fields()?;
         let scale = feature_scale(&mut fields)?;
         let weight = fields.number("weight", scale.weight, 0.0..=1000.0)?;
@@ -175,21 +175,21 @@ fn specular(fields: &mut Fields, base: &Shading) -> Result<(Term, f32)> {
 }
 
 #[derive(Clone, Copy)]
-enum Stands {
+enum RecipeLightKind {
     FarAway,
     Here,
 }
 
-fn light(node: &Node) -> Result<Light> {
+fn light(node: &JsonNode) -> Result<Light> {
     let mut fields = node.fields()?;
     let base = Light::default();
-    let kinds = [(Stands::FarAway, "directional"), (Stands::Here, "point")];
-    let kind = match fields.one_of("kind", &kinds, Stands::FarAway)? {
-        Stands::FarAway => match fields.get("direction") {
+    let kinds = [(RecipeLightKind::FarAway, "directional"), (RecipeLightKind::Here, "point")];
+    let kind = match fields.one_of("kind", &kinds, RecipeLightKind::FarAway)? {
+        RecipeLightKind::FarAway => match fields.get("direction") {
             Some(node) => LightKind::Directional { direction: direction(&node)? },
             None => base.kind,
         },
-        Stands::Here => LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? },
+        RecipeLightKind::Here => LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? },
     };
     let color = fields.color("color", base.color)?;
     let intensity = fields.number("intensity", base.intensity, FACTOR)?;
@@ -198,7 +198,7 @@ fn light(node: &Node) -> Result<Light> {
 }
 
 /// A direction of any length but 0, which is nowhere.
-fn direction(node: &Node) -> Result<Vec3> {
+fn direction(node: &JsonNode) -> Result<Vec3> {
     let v = node.vector(-1e6..=1e6)?;
     if v.abs().max_element() < 1e-6 {
         return Err(node.refused("has no length, so it points nowhere"));
@@ -206,7 +206,7 @@ fn direction(node: &Node) -> Result<Vec3> {
     Ok(v)
 }
 
-pub fn write(out: &mut Object, shading: &Shading) {
+pub fn write(out: &mut JsonObject, shading: &Shading) {
     let base = Shading::new(shading.model);
     out.set("model", shading.model.name().into());
     if shading.lights != base.lights {
@@ -235,7 +235,7 @@ pub fn write(out: &mut Object, shading: &Shading) {
     out.number("occlusion_radius", shading.occlusion_radius_px, base.occlusion_radius_px);
 }
 
-pub fn write_radiance_scaling(out: &mut Object, scaling: &RadianceScaling) {
+pub fn write_radiance_scaling(out: &mut JsonObject, scaling: &RadianceScaling) {
     let base = RadianceScaling::default();
     write_scaling(out, &scaling.scaling, &base.scaling);
     write_features(out, &scaling.features);
@@ -246,7 +246,7 @@ pub fn write_radiance_scaling(out: &mut Object, scaling: &RadianceScaling) {
     out.flag("keep_mean", scaling.keep_mean, base.keep_mean);
 }
 
-fn write_scaling(out: &mut Object, scaling: &Scaling, base: &Scaling) {
+fn write_scaling(out: &mut JsonObject, scaling: &Scaling, base: &Scaling) {
     out.number("alpha", scaling.alpha, base.alpha);
     if scaling.gamma_convex == scaling.gamma_concave && base.gamma_convex == base.gamma_concave {
         out.number("gamma", scaling.gamma_convex, base.gamma_convex);
@@ -256,10 +256,10 @@ fn write_scaling(out: &mut Object, scaling: &Scaling, base: &Scaling) {
     }
 }
 
-fn write_features(out: &mut Object, features: &Features) {
+fn write_features(out: &mut JsonObject, features: &Features) {
     out.number("lambda", features.lambda, 0.0);
     let base = FeatureScale::default();
-    let write_scale = |out: &mut Object, scale: &FeatureScale| {
+    let write_scale = |out: &mut JsonObject, scale: &FeatureScale| {
         out.number("curvature_scale", scale.curvature_scale_px, base.curvature_scale_px);
         out.number("blur", scale.blur_px, base.blur_px);
     };
@@ -268,7 +268,7 @@ fn write_features(out: &mut Object, features: &Features) {
         [scale] if scale.weight == base.weight => write_scale(out, scale),
         scales => {
             let one = |scale: &FeatureScale| {
-                let mut out = Object::default();
+                let mut out = JsonObject::default();
                 write_scale(&mut out, scale);
                 out.number("weight", scale.weight, base.weight);
                 out.done()
@@ -278,17 +278,17 @@ fn write_features(out: &mut Object, features: &Features) {
     }
 }
 
-fn write_reference(out: &mut Object, reference: Reference) {
+fn write_reference(out: &mut JsonObject, reference: Reference) {
     if let Reference::Value(value) = reference {
         out.set("reference", object::number(value));
     }
 }
 
-fn write_term(term: &Term, base: &Term) -> Object {
-    let mut out = Object::default();
+fn write_term(term: &Term, base: &Term) -> JsonObject {
+    let mut out = JsonObject::default();
     out.color("color", term.color, base.color);
     out.number("weight", term.weight, base.weight);
-    let mut scaling = Object::default();
+    let mut scaling = JsonObject::default();
     write_scaling(&mut scaling, &term.scaling, &base.scaling);
     out.object("scaling", scaling);
     out
@@ -296,7 +296,7 @@ fn write_term(term: &Term, base: &Term) -> Object {
 
 fn write_light(light: &Light) -> Value {
     let base = Light::default();
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     match light.kind {
         LightKind::Directional { direction } => {
             out.set("kind", "directional".into());
@@ -313,7 +313,7 @@ fn write_light(light: &Light) -> Value {
 }
 
 fn write_environment(environment: &Environment) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.set("file", environment.file.as_str().into());
     out.word("projection", &Projection::ALL, environment.projection, Projection::LatLong);
     out.number("rotation", environment.rotation, 0.0);

@@ -1,13 +1,13 @@
 //! Strokes: samples of the pen, each stroke with its brush, operator and colour. Read and written.
 //! Floor 5. Not here: brushes (`brush`, `tips`), the ones that come with the program (`presets`).
 
-use super::Reader;
+use super::LayerReader;
 use super::brush::{settings, write_brush};
 use super::images::{operator, write_operator};
 use super::{presets, tips};
 use crate::Result;
 use crate::document::StrokeList;
-use crate::json::{Fields, Node, Object, fields::COORDINATE, object};
+use crate::json::{Fields, JsonNode, JsonObject, fields::COORDINATE, object};
 use crate::math::{srgb::Color, vec2};
 use crate::paint::{Adjust, Brush, Sample, Stroke};
 use crate::surface::Operator;
@@ -17,17 +17,17 @@ use std::sync::Arc;
 /// A reading of the pen whose last fields are absent.
 const UNSAID: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
 
-impl Reader<'_> {
+impl LayerReader<'_> {
     pub fn strokes(&mut self, fields: &mut Fields) -> Result<StrokeList> {
         let Some(node) = fields.get("strokes") else { return Ok(StrokeList::default()) };
         let items = node.list(usize::MAX)?;
         let strokes = items.iter().map(|item| self.stroke(item).map(Arc::new)).collect::<Result<_>>()?;
         Ok(StrokeList { strokes })
     }
-    fn stroke(&mut self, node: &Node) -> Result<Stroke> {
+    fn stroke(&mut self, node: &JsonNode) -> Result<Stroke> {
         let mut fields = node.fields()?;
         let (brush, preset) = fields.get("brush").map_or(Ok(Default::default()), |brush| self.brush(&brush))?;
-        if brush.mark.is_retouching() {
+        if brush.mode.is_retouching() {
             return Err(node.refused("has a brush that smudges, blurs or clones; strokes of a stroke layer paint"));
         }
         let operator = operator(&mut fields)?.unwrap_or(preset);
@@ -41,11 +41,11 @@ impl Reader<'_> {
         Ok(Stroke::new(brush, operator, color, samples))
     }
     /// A preset, an inline brush, or a preset with some of its fields changed.
-    fn brush(&mut self, node: &Node) -> Result<(Brush, Operator)> {
+    fn brush(&mut self, node: &JsonNode) -> Result<(Brush, Operator)> {
         let mut fields = node.fields()?;
         let (base, operator) = fields.get("preset").map_or(Ok(Default::default()), |name| presets::named(&name))?;
         let mut brush = settings(&mut fields, base)?;
-        let mut picture = |node: &Node| self.pictures.source(self.source, node, Adjust::default());
+        let mut picture = |node: &JsonNode| self.pictures.source(self.source, node, Adjust::default());
         tips::read(&mut fields, &mut brush, &mut picture)?;
         fields.finish()?;
         Ok((brush, operator))
@@ -53,7 +53,7 @@ impl Reader<'_> {
 }
 
 /// [x, y, pressure 1, tilt_x 0, tilt_y 0, time_secs 0]; the last four may be absent.
-fn sample(node: &Node) -> Result<Sample> {
+fn sample(node: &JsonNode) -> Result<Sample> {
     let values = node.numbers(2, 6, COORDINATE)?;
     let value = |i: usize| values.get(i).copied().unwrap_or(UNSAID[i - 2]);
     let (pressure, tilt, time_secs) = (value(2), vec2(value(3), value(4)), value(5));
@@ -69,13 +69,13 @@ fn sample(node: &Node) -> Result<Sample> {
     Ok(Sample { at: vec2(values[0], values[1]), pressure, tilt, time_secs })
 }
 
-pub fn write(out: &mut Object, list: &StrokeList) {
+pub fn write(out: &mut JsonObject, list: &StrokeList) {
     out.set("strokes", list.strokes.iter().map(|stroke| write_stroke(stroke)).collect());
 }
 
 /// One stroke, as it stands in a layer's `strokes`.
 pub fn write_stroke(stroke: &Stroke) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.object("brush", write_brush(stroke.brush()));
     out.object("operator", write_operator(stroke.operator()));
     out.set("color", object::color(stroke.color()));

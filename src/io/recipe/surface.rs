@@ -7,14 +7,14 @@ use crate::document::source::{
     SurfaceSource,
 };
 use crate::files;
-use crate::json::{Fields, Node, Object, object};
+use crate::json::{Fields, JsonNode, JsonObject, object};
 use serde_json::{Value, json};
 
 /// Stored values that mean "no surface".
 const MOST_BACKGROUNDS: usize = 64;
 
 /// Reads the object `surface`.
-pub fn read(node: &Node) -> Result<SurfaceSource> {
+pub fn read(node: &JsonNode) -> Result<SurfaceSource> {
     let mut fields = node.fields()?;
     let source = SurfaceSource {
         normal: fields.get("normal").map(|node| normal(&node)).transpose()?,
@@ -28,7 +28,7 @@ pub fn read(node: &Node) -> Result<SurfaceSource> {
     Ok(source)
 }
 
-fn normal(node: &Node) -> Result<MapSource<NormalConvention>> {
+fn normal(node: &JsonNode) -> Result<MapSource<NormalConvention>> {
     let mut fields = node.fields()?;
     let map = MapSource {
         file: file(&mut fields)?,
@@ -40,7 +40,7 @@ fn normal(node: &Node) -> Result<MapSource<NormalConvention>> {
 }
 
 /// A word, or an object that says each choice it does not leave to be found.
-pub fn normal_convention(node: &Node) -> Result<NormalConvention> {
+pub fn normal_convention(node: &JsonNode) -> Result<NormalConvention> {
     if node.value().is_string() {
         let words = NormalConvention::WORDS.map(|word| (word, word));
         return Ok(NormalConvention::from_word(node.one_of(&words)?).unwrap_or_default());
@@ -63,14 +63,14 @@ pub fn normal_convention(node: &Node) -> Result<NormalConvention> {
     Ok(convention)
 }
 
-fn channels(node: &Node) -> Result<[u8; 3]> {
+fn channels(node: &JsonNode) -> Result<[u8; 3]> {
     let letters = node.text()?;
     let read = NormalConvention::channels_from_letters(letters);
     read.ok_or_else(|| node.refused(format!("is “{letters}”; it must be three different letters of rgba")))
 }
 
 /// The upper left 3 × 3 of a matrix of three or four rows. Its translation moves no normal.
-fn rotation(node: &Node) -> Result<[[f32; 3]; 3]> {
+fn rotation(node: &JsonNode) -> Result<[[f32; 3]; 3]> {
     let rows = node.list(4)?;
     if rows.len() < 3 {
         return Err(node.refused(format!("has {} rows; it must have 3 or 4", rows.len())));
@@ -82,7 +82,7 @@ fn rotation(node: &Node) -> Result<[[f32; 3]; 3]> {
     Ok(rotation)
 }
 
-fn depth(node: &Node) -> Result<MapSource<DepthConvention>> {
+fn depth(node: &JsonNode) -> Result<MapSource<DepthConvention>> {
     let mut fields = node.fields()?;
     let file = file(&mut fields)?;
     let channel = channel(&mut fields)?;
@@ -102,7 +102,7 @@ fn depth(node: &Node) -> Result<MapSource<DepthConvention>> {
     Ok(MapSource { file, channel, convention })
 }
 
-fn mask(node: &Node) -> Result<MaskSource> {
+fn mask(node: &JsonNode) -> Result<MaskSource> {
     let mut fields = node.fields()?;
     let mask = match fields.get("from") {
         Some(from) => from.one_of(&[((), "flat")]).map(|()| MaskSource::Flat)?,
@@ -131,7 +131,7 @@ fn channel(fields: &mut Fields) -> Result<Option<String>> {
 
 /// The object `surface` back to JSON.
 pub fn write(source: &SurfaceSource) -> Value {
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     if let Some(normal) = &source.normal {
         let mut map = start(&normal.file, normal.channel.as_deref());
         write_normal_convention(&mut map, &normal.convention);
@@ -154,19 +154,19 @@ pub fn write(source: &SurfaceSource) -> Value {
     out.done()
 }
 
-fn start(file: &str, channel: Option<&str>) -> Object {
-    let mut out = Object::default();
+fn start(file: &str, channel: Option<&str>) -> JsonObject {
+    let mut out = JsonObject::default();
     out.set("file", file.into());
     out.said("channel", channel, Value::from);
     out
 }
 
 /// The field `convention`: the word that stands for it, or each choice that was made.
-pub fn write_normal_convention(into: &mut Object, c: &NormalConvention) {
+pub fn write_normal_convention(into: &mut JsonObject, c: &NormalConvention) {
     if let Some(word) = c.word() {
         return into.text("convention", word, "auto");
     }
-    let mut out = Object::default();
+    let mut out = JsonObject::default();
     out.said("encoding", c.encoding, |e| e.name().into());
     out.said("channels", c.channels, |c| NormalConvention::letters(c).into());
     for (name, flag) in [("srgb", c.srgb), ("flip_x", c.flip_x), ("flip_y", c.flip_y), ("flip_z", c.flip_z)] {
@@ -180,7 +180,7 @@ pub fn write_normal_convention(into: &mut Object, c: &NormalConvention) {
     into.object("convention", out);
 }
 
-fn write_depth_convention(out: &mut Object, convention: &DepthConvention) {
+fn write_depth_convention(out: &mut JsonObject, convention: &DepthConvention) {
     out.word("near", Near::ALL, convention.near, Near::Auto);
     out.said("encoding", convention.encoding, |e| e.name().into());
     out.said("fov", convention.fov_degrees, object::number);

@@ -3,10 +3,10 @@
 
 use super::images::TURNS;
 use crate::Result;
-use crate::json::{Fields, Node, Object, object};
-use crate::paint::grain::{Grain, GrainSource, Lies};
+use crate::json::{Fields, JsonNode, JsonObject, object};
+use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
 use crate::paint::pattern::Pattern;
-use crate::paint::tip::{Bristles, Hose, Noise, Rank, Select};
+use crate::paint::tip::{Bristles, Hose, HoseRank, Noise, RankSelect};
 use crate::paint::{Brush, PictureSource, Tip};
 use serde_json::{Value, json};
 
@@ -16,11 +16,11 @@ const MAX_PICTURES: usize = 1024;
 const MAX_RANKS: usize = 4;
 
 /// Reads the picture that a field names.
-pub type ReadPicture<'a> = dyn FnMut(&Node) -> Result<PictureSource> + 'a;
+pub type ReadPicture<'a> = dyn FnMut(&JsonNode) -> Result<PictureSource> + 'a;
 
 /// The kinds of tips that are made, not drawn.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum TipKind {
     Round,
     Ellipse,
     Square,
@@ -30,14 +30,14 @@ enum Kind {
     Hose,
 }
 
-const KINDS: [(Kind, &str); 7] = [
-    (Kind::Round, "round"),
-    (Kind::Ellipse, "ellipse"),
-    (Kind::Square, "square"),
-    (Kind::Bristles, "bristles"),
-    (Kind::Noise, "noise"),
-    (Kind::Picture, "picture"),
-    (Kind::Hose, "hose"),
+const KINDS: [(TipKind, &str); 7] = [
+    (TipKind::Round, "round"),
+    (TipKind::Ellipse, "ellipse"),
+    (TipKind::Square, "square"),
+    (TipKind::Bristles, "bristles"),
+    (TipKind::Noise, "noise"),
+    (TipKind::Picture, "picture"),
+    (TipKind::Hose, "hose"),
 ];
 const LIES: [(bool, &str); 2] = [(false, "canvas"), (true, "surface")];
 
@@ -53,30 +53,30 @@ pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut ReadPicture) -
 }
 
 /// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files": […], "ranks": […] }` and so on.
-fn tip(node: &Node, picture: &mut ReadPicture) -> Result<Tip> {
+fn tip(node: &JsonNode, picture: &mut ReadPicture) -> Result<Tip> {
     let mut fields = node.fields()?;
     let kind = match fields.get("kind") {
         Some(kind) => kind.one_of(&KINDS)?,
-        None => Kind::Picture,
+        None => TipKind::Picture,
     };
     let tip = match kind {
-        Kind::Round => Tip::Round,
-        Kind::Ellipse => Tip::Ellipse { ratio: fields.number("ratio", 0.5, 0.01..=1.0)? },
-        Kind::Square => Tip::Square { ratio: fields.number("ratio", 1.0, 0.01..=1.0)? },
-        Kind::Bristles => {
+        TipKind::Round => Tip::Round,
+        TipKind::Ellipse => Tip::Ellipse { ratio: fields.number("ratio", 0.5, 0.01..=1.0)? },
+        TipKind::Square => Tip::Square { ratio: fields.number("ratio", 1.0, 0.01..=1.0)? },
+        TipKind::Bristles => {
             let plain = Bristles::default();
             let count = whole(&mut fields, "count", plain.count, 1..=1000)?;
             Tip::Bristles(Bristles { count, seed: whole(&mut fields, "seed", plain.seed, 0..=i64::from(u32::MAX))? })
         }
-        Kind::Noise => {
+        TipKind::Noise => {
             let plain = Noise::default();
             let cells = whole(&mut fields, "cells", plain.cells, 1..=200)?;
             let density = fields.number("density", plain.density, 0.0..=1.0)?;
             let seed = whole(&mut fields, "seed", plain.seed, 0..=i64::from(u32::MAX))?;
             Tip::Noise(Noise { cells, density, seed })
         }
-        Kind::Picture => Tip::Picture(picture(&fields.required("file")?)?),
-        Kind::Hose => Tip::Hose(hose(&mut fields, picture)?),
+        TipKind::Picture => Tip::Picture(picture(&fields.required("file")?)?),
+        TipKind::Hose => Tip::Hose(hose(&mut fields, picture)?),
     };
     fields.finish()?;
     Ok(tip)
@@ -94,22 +94,22 @@ fn hose(fields: &mut Fields, picture: &mut ReadPicture) -> Result<Hose> {
     }
     let ranks = match fields.get("ranks") {
         Some(node) => node.list(MAX_RANKS)?.iter().map(rank).collect::<Result<_>>()?,
-        None => vec![Rank { count: pictures.len() as u32, select: Select::default() }],
+        None => vec![HoseRank { count: pictures.len() as u32, select: RankSelect::default() }],
     };
     Ok(Hose::new(pictures, ranks))
 }
 
-fn rank(node: &Node) -> Result<Rank> {
+fn rank(node: &JsonNode) -> Result<HoseRank> {
     let mut fields = node.fields()?;
     let count = fields.required("count")?.integer(1..=MAX_PICTURES as i64)? as u32;
-    let select = fields.one_of("select", &Select::ALL, Select::default())?;
+    let select = fields.one_of("select", &RankSelect::ALL, RankSelect::default())?;
     fields.finish()?;
-    Ok(Rank { count, select })
+    Ok(HoseRank { count, select })
 }
 
 /// `{ "kind": "paper", "size": 6, … }` or `{ "file": "canvas.png", "size": 200, … }`.
-fn grain(node: &Node, picture: &mut ReadPicture) -> Result<Grain> {
-    let plain = Grain::default();
+fn grain(node: &JsonNode, picture: &mut ReadPicture) -> Result<BrushGrain> {
+    let plain = BrushGrain::default();
     let mut fields = node.fields()?;
     let seed = whole(&mut fields, "seed", 0, 0..=i64::from(u32::MAX))?;
     let pattern = fields.one_of("kind", &Pattern::ALL, Pattern::default())?;
@@ -126,20 +126,20 @@ fn grain(node: &Node, picture: &mut ReadPicture) -> Result<Grain> {
     })?;
     let gamma = fields.number("gamma", 1.0, 0.0..=8.0)?;
     let on_surface = fields.one_of("lies", &LIES, false)?;
-    let grain = Grain {
+    let grain = BrushGrain {
         source,
         size_px: fields.number("size", plain.size_px, 0.5..=20_000.0)?,
         rotation: fields.number("rotation", plain.rotation, TURNS)?,
         strength: fields.number("strength", plain.strength, 0.0..=1.0)?,
         levels,
-        lies: if on_surface { Lies::Surface { gamma } } else { Lies::Canvas },
+        lies: if on_surface { GrainSpace::Surface { gamma } } else { GrainSpace::Canvas },
     };
     fields.finish()?;
     Ok(grain)
 }
 
-pub fn write_tip(out: &mut Object, tip: &Tip) {
-    let mut written = Object::default();
+pub fn write_tip(out: &mut JsonObject, tip: &Tip) {
+    let mut written = JsonObject::default();
     let mut kind = |word: &str| written.set("kind", word.into());
     match tip {
         Tip::Round => {}
@@ -172,15 +172,16 @@ pub fn write_tip(out: &mut Object, tip: &Tip) {
     out.object("tip", written);
 }
 
-fn write_rank(rank: &Rank) -> Value {
-    let word = Select::ALL.iter().find(|(select, _)| *select == rank.select).map_or("incremental", |(_, word)| word);
+fn write_rank(rank: &HoseRank) -> Value {
+    let word =
+        RankSelect::ALL.iter().find(|(select, _)| *select == rank.select).map_or("incremental", |(_, word)| word);
     json!({ "count": rank.count, "select": word })
 }
 
-pub fn write_grain(out: &mut Object, grain: Option<&Grain>) {
+pub fn write_grain(out: &mut JsonObject, grain: Option<&BrushGrain>) {
     let Some(grain) = grain else { return };
-    let plain = Grain::default();
-    let mut written = Object::default();
+    let plain = BrushGrain::default();
+    let mut written = JsonObject::default();
     match &grain.source {
         GrainSource::Pattern { pattern, seed } => {
             let word = Pattern::ALL.iter().find(|(known, _)| known == pattern).map_or("paper", |(_, word)| word);
@@ -197,7 +198,7 @@ pub fn write_grain(out: &mut Object, grain: Option<&Grain>) {
     if grain.levels != plain.levels {
         written.set("levels", grain.levels.map(object::number).to_vec().into());
     }
-    if let Lies::Surface { gamma } = grain.lies {
+    if let GrainSpace::Surface { gamma } = grain.lies {
         written.set("lies", "surface".into());
         written.number("gamma", gamma, 1.0);
     }
@@ -213,9 +214,9 @@ mod tests {
     use std::path::Path;
 
     fn read_brush(value: &Value) -> Result<Brush> {
-        let mut fields = Node::root(Path::new("r.json"), value).fields()?;
+        let mut fields = JsonNode::root(Path::new("r.json"), value).fields()?;
         let mut brush = Brush::default();
-        let mut picture = |node: &Node| {
+        let mut picture = |node: &JsonNode| {
             let picture = Picture::srgb8(Size::new(1, 1), vec![[255; 4]]).unwrap();
             Ok(PictureSource::new(node.text()?.into(), picture, Adjust::default()))
         };
@@ -240,7 +241,7 @@ mod tests {
             json!({ "grain": { "file": "canvas.png", "size": 200 } }),
         ] {
             let brush = read_brush(&text).unwrap();
-            let mut out = Object::default();
+            let mut out = JsonObject::default();
             write_tip(&mut out, &brush.tip);
             write_grain(&mut out, brush.grain.as_ref());
             assert_eq!(out.done(), text);

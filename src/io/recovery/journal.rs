@@ -1,11 +1,11 @@
 //! One drawing's recovery log on a disk: appended to after every edit, written anew when it has grown to twice its use.
 //! Floor 5. Called from one thread; the thread is `mod`'s.
 
-use super::log::{self, Kind};
-use super::state::{self, Known};
+use super::log::{self, RecordKind};
+use super::state::{self, LoggedParts};
 use crate::document::Document;
-use crate::fs::{Fs, Handle};
-use crate::save::Stamp;
+use crate::fs::{FileHandle, Fs};
+use crate::save::FileStamp;
 use crate::{Error, Result};
 use serde_json::{Value, json};
 use std::io::Write;
@@ -22,9 +22,9 @@ pub struct Journal {
     /// `…/ID.log`
     path: PathBuf,
     head: Value,
-    known: Known,
+    known: LoggedParts,
     /// Absent after a failure: what was half written makes all that would follow unreadable.
-    handle: Option<Box<dyn Handle>>,
+    handle: Option<Box<dyn FileHandle>>,
     bytes: u64,
     /// Its length when it was last written anew.
     fresh_bytes: u64,
@@ -42,7 +42,7 @@ impl Journal {
             fs,
             path,
             head,
-            known: Known::default(),
+            known: LoggedParts::default(),
             handle: None,
             bytes: 0,
             fresh_bytes: 0,
@@ -54,12 +54,12 @@ impl Journal {
     /// The version recorded last is what a file holds, or with no file what the drawing was made as.
     ///
     /// A log that could not be written does not tell; then the drawing is offered once more than it need be.
-    pub fn saved(&mut self, title: &str, file: Option<&Path>, stamp: Option<Stamp>) -> Result<()> {
+    pub fn saved(&mut self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) -> Result<()> {
         (self.head["title"], self.head["file"]) = (json!(title), json!(file));
         let stamp = stamp.map(|stamp| json!([stamp.bytes, stamp.crc]));
         let said = json!({ "title": title, "file": file, "stamp": stamp }).to_string();
         let mut out = Vec::new();
-        let is_short = log::push(&mut out, Kind::Saved, &[said.as_bytes()]);
+        let is_short = log::push(&mut out, RecordKind::Saved, &[said.as_bytes()]);
         debug_assert!(is_short, "it has a few hundred bytes");
         self.append(&out)
     }
@@ -102,9 +102,9 @@ impl Journal {
     /// Writes a log of this one document beside the old one, and puts it in its place.
     fn write_anew(&mut self, document: &Document) -> Result<()> {
         let failed = |e| Error::io(&self.path, e);
-        let mut known = Known::default();
+        let mut known = LoggedParts::default();
         let mut out = log::MAGIC.to_vec();
-        let is_short = log::push(&mut out, Kind::Head, &[self.head.to_string().as_bytes()]);
+        let is_short = log::push(&mut out, RecordKind::Head, &[self.head.to_string().as_bytes()]);
         debug_assert!(is_short, "a head has a few hundred bytes");
         state::write(&self.path, document, &mut known, &mut out, &self.given_up)?;
         let part = self.path.with_extension("new");

@@ -11,7 +11,7 @@ const HEADER: usize = 4 + 1 + 4;
 /// What a record holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Kind {
+pub enum RecordKind {
     /// JSON: whose drawing it is.
     Head = 1,
     /// Eight bytes of key, then bytes that states refer to by it.
@@ -22,9 +22,11 @@ pub enum Kind {
     Saved = 4,
 }
 
-impl Kind {
+impl RecordKind {
     fn from_byte(byte: u8) -> Option<Self> {
-        [Kind::Head, Kind::Blob, Kind::State, Kind::Saved].into_iter().find(|kind| *kind as u8 == byte)
+        [RecordKind::Head, RecordKind::Blob, RecordKind::State, RecordKind::Saved]
+            .into_iter()
+            .find(|kind| *kind as u8 == byte)
     }
 }
 
@@ -32,7 +34,7 @@ impl Kind {
 ///
 /// A payload is shorter than 4 GiB; of a longer one nothing is written, and it is `false`.
 #[must_use]
-pub fn push(log: &mut Vec<u8>, kind: Kind, payload: &[&[u8]]) -> bool {
+pub fn push(log: &mut Vec<u8>, kind: RecordKind, payload: &[&[u8]]) -> bool {
     let Ok(length) = u32::try_from(payload.iter().map(|part| part.len()).sum::<usize>()) else { return false };
     log.extend(length.to_le_bytes());
     log.push(kind as u8);
@@ -55,12 +57,12 @@ pub fn records(log: &[u8]) -> Records<'_> {
 }
 
 impl<'a> Iterator for Records<'a> {
-    type Item = (Kind, &'a [u8]);
+    type Item = (RecordKind, &'a [u8]);
 
     fn next(&mut self) -> Option<Self::Item> {
         let (header, rest) = self.rest.split_at_checked(HEADER)?;
         let length = u32::from_le_bytes(header[..4].try_into().ok()?);
-        let kind = Kind::from_byte(header[4])?;
+        let kind = RecordKind::from_byte(header[4])?;
         let crc = u32::from_le_bytes(header[5..9].try_into().ok()?);
         let (payload, rest) = rest.split_at_checked(usize::try_from(length).ok()?)?;
         let mut found = crc32fast::Hasher::new();
@@ -76,10 +78,10 @@ impl<'a> Iterator for Records<'a> {
 }
 
 /// How a log ends, if every byte of it holds: the kind of its last record, and what stood in the last one of kind
-/// [`Kind::Saved`].
+/// [`RecordKind::Saved`].
 ///
 /// Reads piece by piece: a broken log may be long.
-pub fn end(log: &mut dyn Read) -> Option<(Kind, Option<Vec<u8>>)> {
+pub fn end(log: &mut dyn Read) -> Option<(RecordKind, Option<Vec<u8>>)> {
     let mut log = BufReader::with_capacity(1 << 16, log);
     let mut magic = [0; MAGIC.len()];
     log.read_exact(&mut magic).ok().filter(|()| magic == MAGIC)?;
@@ -90,7 +92,7 @@ pub fn end(log: &mut dyn Read) -> Option<(Kind, Option<Vec<u8>>)> {
             Ok([]) => return last.map(|kind| (kind, saved)),
             _ => log.read_exact(&mut header).ok()?,
         }
-        let kind = Kind::from_byte(header[4])?;
+        let kind = RecordKind::from_byte(header[4])?;
         let length = u32::from_le_bytes(header[..4].try_into().ok()?);
         let (mut found, mut kept) = (crc32fast::Hasher::new(), Vec::new());
         found.update(&[kind as u8]);
@@ -101,7 +103,7 @@ pub fn end(log: &mut dyn Read) -> Option<(Kind, Option<Vec<u8>>)> {
                 break;
             }
             found.update(piece);
-            if kind == Kind::Saved && kept.len() < SAVED_BYTES {
+            if kind == RecordKind::Saved && kept.len() < SAVED_BYTES {
                 kept.extend_from_slice(piece);
             }
             let n = piece.len();
@@ -111,11 +113,11 @@ pub fn end(log: &mut dyn Read) -> Option<(Kind, Option<Vec<u8>>)> {
             return None;
         }
         last = Some(kind);
-        saved = if kind == Kind::Saved { Some(kept) } else { saved };
+        saved = if kind == RecordKind::Saved { Some(kept) } else { saved };
     }
 }
 
-/// What a record of kind [`Kind::Saved`] holds is a name and a few figures.
+/// What a record of kind [`RecordKind::Saved`] holds is a name and a few figures.
 const SAVED_BYTES: usize = 1 << 16;
 
 #[cfg(test)]
@@ -124,28 +126,28 @@ mod tests {
 
     fn log() -> Vec<u8> {
         let mut log = MAGIC.to_vec();
-        assert!(push(&mut log, Kind::Head, &[b"{}"]));
-        assert!(push(&mut log, Kind::Blob, &[&7u64.to_le_bytes(), b"pixels"]));
-        assert!(push(&mut log, Kind::State, &[b""]));
+        assert!(push(&mut log, RecordKind::Head, &[b"{}"]));
+        assert!(push(&mut log, RecordKind::Blob, &[&7u64.to_le_bytes(), b"pixels"]));
+        assert!(push(&mut log, RecordKind::State, &[b""]));
         log
     }
 
     #[test]
     fn records_come_back_in_their_order() {
         let log = log();
-        let kinds: Vec<Kind> = records(&log).map(|(kind, _)| kind).collect();
-        assert_eq!(kinds, [Kind::Head, Kind::Blob, Kind::State]);
+        let kinds: Vec<RecordKind> = records(&log).map(|(kind, _)| kind).collect();
+        assert_eq!(kinds, [RecordKind::Head, RecordKind::Blob, RecordKind::State]);
         assert_eq!(records(&log).nth(1).unwrap().1[8..], *b"pixels");
     }
     #[test]
     fn the_end_is_known_only_of_a_log_that_is_whole() {
         let mut log = log();
-        assert_eq!(end(&mut &log[..]), Some((Kind::State, None)));
-        assert!(push(&mut log, Kind::Saved, &[b"{}"]));
-        assert_eq!(end(&mut &log[..]), Some((Kind::Saved, Some(b"{}".to_vec()))));
+        assert_eq!(end(&mut &log[..]), Some((RecordKind::State, None)));
+        assert!(push(&mut log, RecordKind::Saved, &[b"{}"]));
+        assert_eq!(end(&mut &log[..]), Some((RecordKind::Saved, Some(b"{}".to_vec()))));
         for n in 0..log.len() {
             let seen = end(&mut &log[..n]);
-            assert!(seen.is_none_or(|(kind, saved)| kind != Kind::Saved && saved.is_none()), "cut at {n}");
+            assert!(seen.is_none_or(|(kind, saved)| kind != RecordKind::Saved && saved.is_none()), "cut at {n}");
         }
         for bit in 0..log.len() * 8 {
             let mut broken = log.clone();

@@ -16,10 +16,10 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use sessions::{Recovered, Session, held_by_others, read, sessions};
+pub use sessions::{LostSession, RecoveredDocument, held_by_others, read, sessions};
 
-use super::fs::{Fs, Lock};
-use super::save::Stamp;
+use super::fs::{FileLock, Fs};
+use super::save::FileStamp;
 use crate::document::Document;
 use crate::{Error, Result};
 use journal::Journal;
@@ -35,25 +35,25 @@ const FLUSH_AFTER: Duration = Duration::from_secs(3);
 
 /// The recovery of one open drawing: a worker that writes what it is told, and a lock that says the session lives.
 ///
-/// Dropped without [`Recovery::close`], it leaves the log, as a crash does.
-pub struct Recovery {
-    tasks: Option<Sender<Task>>,
+/// Dropped without [`RecoveryLog::close`], it leaves the log, as a crash does.
+pub struct RecoveryLog {
+    tasks: Option<Sender<RecoveryTask>>,
     given_up: Arc<AtomicBool>,
     worker: Option<JoinHandle<()>>,
     trouble: Arc<Mutex<Option<String>>>,
     fs: Arc<dyn Fs>,
     path: PathBuf,
-    lock: Option<Box<dyn Lock>>,
+    lock: Option<Box<dyn FileLock>>,
 }
 
-enum Task {
+enum RecoveryTask {
     Record(Document),
-    Saved(String, Option<PathBuf>, Option<Stamp>),
+    Saved(String, Option<PathBuf>, Option<FileStamp>),
     /// Tells when all before it is written, `true`: and on the disk.
     Tell(Sender<()>, bool),
 }
 
-impl Recovery {
+impl RecoveryLog {
     /// Begins a session for a drawing, in a folder that [`folder`] names.
     ///
     /// * `file`: where it was opened from or saved to; `None` for an untitled one.
@@ -81,24 +81,24 @@ impl Recovery {
     }
     /// Writes a version of the drawing; called after every edit, undo and redo. Returns at once.
     pub fn record(&self, document: &Document) {
-        self.send(Task::Record(document.clone()));
+        self.send(RecoveryTask::Record(document.clone()));
     }
     /// The version recorded last is what a file holds; with no file, what the drawing was made as. Nothing would be lost.
-    pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<Stamp>) {
-        self.send(Task::Saved(title.into(), file.map(Path::to_owned), stamp));
+    pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
+        self.send(RecoveryTask::Saved(title.into(), file.map(Path::to_owned), stamp));
     }
     /// Waits until all that was recorded is with the system, where neither a crash nor `kill -9` takes it; no longer than
     /// `patience`. Whether it is.
     pub fn settle(&self, patience: Duration) -> bool {
         let (done, is_done) = channel();
-        self.send(Task::Tell(done, false));
+        self.send(RecoveryTask::Tell(done, false));
         // The worker tells by letting go, and lets go when it is gone, too.
         !matches!(is_done.recv_timeout(patience), Err(RecvTimeoutError::Timeout))
     }
     /// Waits until all that was recorded is on the disk, where a power cut does not take it.
     pub fn flush(&self) {
         let (done, is_done) = channel();
-        self.send(Task::Tell(done, true));
+        self.send(RecoveryTask::Tell(done, true));
         let _ = is_done.recv();
     }
     /// Why the last version could not be written, until one can.
@@ -109,8 +109,8 @@ impl Recovery {
     pub fn close(mut self) -> Result<()> {
         self.given_up.store(true, Ordering::Relaxed);
         self.stop();
-        for ending in ["new", "log", "lock"] {
-            let path = self.path.with_extension(ending);
+        for extension in ["new", "log", "lock"] {
+            let path = self.path.with_extension(extension);
             match self.fs.remove(&path) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(path, e)),
                 _ => {}
@@ -118,7 +118,7 @@ impl Recovery {
         }
         Ok(())
     }
-    fn send(&self, task: Task) {
+    fn send(&self, task: RecoveryTask) {
         if let Some(tasks) = &self.tasks {
             // A worker that is gone has told its trouble.
             let _ = tasks.send(task);
@@ -133,7 +133,7 @@ impl Recovery {
     }
 }
 
-impl Drop for Recovery {
+impl Drop for RecoveryLog {
     fn drop(&mut self) {
         self.stop();
         self.lock = None;
@@ -149,7 +149,7 @@ pub fn folder() -> Option<PathBuf> {
 }
 
 /// A name that no session has, and the lock that makes it ours. The name begins with the time, so that sessions sort.
-fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn Lock>)> {
+fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn FileLock>)> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
     for attempt in 0..1000 {
         let path = folder.join(format!("{now:016x}-{}-{attempt}.log", std::process::id()));
@@ -164,7 +164,7 @@ fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn Lock>)>
 }
 
 /// Writes versions as they come, and flushes them in time. Of versions that came while one was written only the last counts.
-fn work(mut journal: Journal, tasks: &Receiver<Task>, trouble: &Mutex<Option<String>>) {
+fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Option<String>>) {
     let mut waiting_since: Option<Instant> = None;
     let mut next = None;
     let say = |what: Option<Error>| {
@@ -179,16 +179,16 @@ fn work(mut journal: Journal, tasks: &Receiver<Task>, trouble: &Mutex<Option<Str
     loop {
         let patience = waiting_since.map_or(Duration::MAX, |since| FLUSH_AFTER.saturating_sub(since.elapsed()));
         match next.take().map_or_else(|| tasks.recv_timeout(patience), Ok) {
-            Ok(Task::Record(document)) => {
+            Ok(RecoveryTask::Record(document)) => {
                 next = tasks.try_recv().ok();
-                if matches!(next, Some(Task::Record(_))) {
+                if matches!(next, Some(RecoveryTask::Record(_))) {
                     continue;
                 }
                 say(journal.record(&document).err());
                 waiting_since.get_or_insert_with(Instant::now);
             }
-            Ok(Task::Saved(title, file, stamp)) => tell(journal.saved(&title, file.as_deref(), stamp)),
-            Ok(Task::Tell(done, flushed)) => {
+            Ok(RecoveryTask::Saved(title, file, stamp)) => tell(journal.saved(&title, file.as_deref(), stamp)),
+            Ok(RecoveryTask::Tell(done, flushed)) => {
                 if flushed {
                     tell(journal.sync());
                     waiting_since = None;

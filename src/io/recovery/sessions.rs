@@ -1,12 +1,12 @@
 //! The sessions that ended without being closed: what they left, and how it is brought back.
 //! Floor 5. Nothing here is deleted unasked, and nothing here can keep the program from starting.
 
-use super::log::{self, Kind};
-use super::state::Last;
+use super::log::{self, RecordKind};
+use super::state::LastState;
 use crate::Budget;
 use crate::document::Document;
-use crate::fs::{Fs, Lock};
-use crate::save::Stamp;
+use crate::fs::{FileLock, Fs};
+use crate::save::FileStamp;
 use crate::{Error, Result};
 use serde_json::Value;
 use std::io::Read;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// A session that nobody holds any more. While this lives, no other window takes it.
-pub struct Session {
+pub struct LostSession {
     fs: Arc<dyn Fs>,
     path: PathBuf,
     /// What the drawing was called.
@@ -24,11 +24,11 @@ pub struct Session {
     pub file: Option<PathBuf>,
     /// Bringing it back was begun once and not finished: only to be tried when the user asks for this very one.
     pub has_failed: bool,
-    _lock: Box<dyn Lock>,
+    _lock: Box<dyn FileLock>,
 }
 
 /// A drawing brought back. It has no name: saving asks for one.
-pub struct Recovered {
+pub struct RecoveredDocument {
     pub document: Document,
     pub title: String,
     /// Versions that the log told of, the first being the drawing as it was opened.
@@ -36,9 +36,9 @@ pub struct Recovered {
 }
 
 /// The sessions below a folder that are not alive, oldest first. What cannot be read is left where it is.
-pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<Session> {
+pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<LostSession> {
     let paths = fs.list(folder).unwrap_or_default();
-    let logs = paths.into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "log"));
+    let logs = paths.into_iter().filter(|path| path.extension().is_some_and(|extension| extension == "log"));
     logs.filter_map(|path| session(fs, path)).collect()
 }
 
@@ -46,14 +46,14 @@ pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<Session> {
 /// killed, whose locks the system takes back only when the last of its threads has ended.
 pub fn held_by_others(fs: &Arc<dyn Fs>, folder: &Path) -> usize {
     let ours = format!("-{}-", std::process::id());
-    let is_log = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "log");
+    let is_log = |path: &&PathBuf| path.extension().is_some_and(|extension| extension == "log");
     let is_theirs = |path: &&PathBuf| path.file_name().is_some_and(|name| !name.to_string_lossy().contains(&ours));
     let is_held = |path: &&PathBuf| matches!(fs.lock(&path.with_extension("lock")), Ok(None));
     fs.list(folder).unwrap_or_default().iter().filter(is_log).filter(is_theirs).filter(is_held).count()
 }
 
 /// `None` while its own process, or another window, holds it.
-fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<Session> {
+fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<LostSession> {
     let lock = fs.lock(&path.with_extension("lock")).ok()??;
     let has_failed = !matches!(fs.found(&path.with_extension("trying")), Ok(None));
     // Only the beginning: a broken log may be long.
@@ -61,9 +61,9 @@ fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<Session> {
     if let Ok(handle) = fs.open(&path) {
         let _ = handle.take(1 << 16).read_to_end(&mut start);
     }
-    let head = Last::of(&start).head.unwrap_or_default();
+    let head = LastState::of(&start).head.unwrap_or_default();
     let (title, file) = named(&head);
-    Some(Session { fs: fs.clone(), path, title, file, has_failed, _lock: lock })
+    Some(LostSession { fs: fs.clone(), path, title, file, has_failed, _lock: lock })
 }
 
 /// What a drawing is called, and where it is kept.
@@ -73,15 +73,15 @@ fn named(head: &Value) -> (String, Option<PathBuf>) {
 }
 
 /// The last whole version in the bytes of a log.
-pub fn read(file: &Path, log: &[u8], budget: &Budget) -> Result<Recovered> {
-    let last = Last::of(log);
+pub fn read(file: &Path, log: &[u8], budget: &Budget) -> Result<RecoveredDocument> {
+    let last = LastState::of(log);
     let document = last.document(file, budget)?;
     let document = document.ok_or_else(|| Error::decode(file, "it holds no whole version of the drawing"))?;
     let (title, _) = named(&last.head.unwrap_or_default());
-    Ok(Recovered { document, title, versions: last.states })
+    Ok(RecoveredDocument { document, title, versions: last.states })
 }
 
-impl Session {
+impl LostSession {
     /// When the session was begun, as its name tells.
     pub fn begun(&self) -> Option<SystemTime> {
         let name = self.path.file_stem()?.to_str()?;
@@ -91,7 +91,7 @@ impl Session {
     /// The last whole version in the log.
     ///
     /// Leaves a mark while it works: should it bring the program down, `has_failed` says so the next time.
-    pub fn recover(&mut self, budget: &Budget) -> Result<Recovered> {
+    pub fn recover(&mut self, budget: &Budget) -> Result<RecoveredDocument> {
         let mark = self.path.with_extension("trying");
         // Without the mark nothing would be lost but the warning.
         let _ = self.fs.create_new(&mark).and_then(|mut mark| mark.sync());
@@ -108,14 +108,14 @@ impl Session {
         let Some((last, Some(saved))) = end else { return false };
         let Ok(saved) = serde_json::from_slice::<Value>(&saved) else { return false };
         (self.title, self.file) = named(&saved);
-        let Some(file) = &self.file else { return last == Kind::Saved };
+        let Some(file) = &self.file else { return last == RecordKind::Saved };
         let number = |i: usize| saved["stamp"][i].as_u64();
         let held = number(0).zip(number(1).and_then(|crc| u32::try_from(crc).ok()));
-        let found = self.fs.open(file).and_then(|mut handle| Stamp::read(&mut *handle));
-        let is_held = |found| held.is_none_or(|(bytes, crc)| found == Stamp { bytes, crc });
-        last == Kind::Saved && found.is_ok_and(is_held)
+        let found = self.fs.open(file).and_then(|mut handle| FileStamp::read(&mut *handle));
+        let is_held = |found| held.is_none_or(|(bytes, crc)| found == FileStamp { bytes, crc });
+        last == RecordKind::Saved && found.is_ok_and(is_held)
     }
-    fn read(&self, budget: &Budget) -> Result<Recovered> {
+    fn read(&self, budget: &Budget) -> Result<RecoveredDocument> {
         let io = |e| Error::io(&self.path, e);
         let mut log = Vec::new();
         let handle = self.fs.open(&self.path).map_err(io)?;
@@ -124,8 +124,8 @@ impl Session {
     }
     /// Deletes what the session left. Only when the user says so, or once the drawing is safe in a session of its own.
     pub fn discard(self) -> Result<()> {
-        for ending in ["trying", "new", "log", "lock"] {
-            let path = self.path.with_extension(ending);
+        for extension in ["trying", "new", "log", "lock"] {
+            let path = self.path.with_extension(extension);
             match self.fs.remove(&path) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(path, e)),
                 _ => {}

@@ -1,15 +1,15 @@
 //! A document as a recovery log holds it: small JSON after every edit, and what is large in it once, by keys.
 //! Floor 5. The schema is the recipe's; tiles, strokes and files stand in it as keys of blobs.
 
-use super::log::{self, Kind};
+use super::log::{self, RecordKind};
 use crate::document::{Content, Document, Layer, Live, PixelLayer, StrokeList};
 use crate::math::Size;
 use crate::paint::Stroke;
-use crate::project::assets::{Assets, Made, Painted};
+use crate::project::assets::{AssetList, MadeFiles, StoredPixels};
 use crate::project::pixels;
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, TILE, Tile, TileAt, TileGrid};
-use crate::recipe::{self, Source};
+use crate::recipe::{self, RecipeSource};
 use crate::{Budget, Files, picture};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
@@ -20,14 +20,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What a log holds already, by where it lies in memory; kept alive, so that no other thing takes its place.
 #[derive(Default)]
-pub struct Known {
-    keys: HashMap<usize, (u64, Held)>,
+pub struct LoggedParts {
+    keys: HashMap<usize, (u64, LoggedPart)>,
     next: u64,
-    made: Made,
+    made: MadeFiles,
 }
 
 #[derive(Clone)]
-enum Held {
+enum LoggedPart {
     Tile { _tile: Arc<Tile> },
     Stroke { _stroke: Arc<Stroke> },
     Asset { _asset: Asset },
@@ -39,26 +39,26 @@ enum Held {
 pub fn write(
     file: &Path,
     document: &Document,
-    known: &mut Known,
+    known: &mut LoggedParts,
     out: &mut Vec<u8>,
     given_up: &AtomicBool,
 ) -> Result<()> {
     let (pixels, shared) = (BTreeMap::new(), BTreeMap::new());
-    let mut assets = Assets::again(std::mem::take(&mut known.made));
-    let renamed = assets.rename(file, document, &Painted { pixels: &pixels, shared: &shared })?;
+    let mut assets = AssetList::again(std::mem::take(&mut known.made));
+    let renamed = assets.rename(file, document, &StoredPixels { pixels: &pixels, shared: &shared })?;
     let bare = Document { layers: renamed.layers.iter().map(without_large_parts).collect(), ..renamed.clone() };
-    let mut writer = Writer { file, known, used: HashMap::new(), out, given_up };
+    let mut writer = StateWriter { file, known, used: HashMap::new(), out, given_up };
     let mut value = recipe::write(&bare);
     writer.layers(&renamed.layers, &mut value)?;
     let mut files = Map::new();
     for (name, asset) in assets.files() {
-        let held = Held::Asset { _asset: asset.clone() };
+        let held = LoggedPart::Asset { _asset: asset.clone() };
         let key = writer.key(asset.address(), held, || Ok(asset.bytes().to_vec()))?;
         files.insert(name.clone(), key.into());
     }
     let used = std::mem::take(&mut writer.used);
     let state = json!({ "document": value, "files": files }).to_string();
-    if !log::push(out, Kind::State, &[state.as_bytes()]) {
+    if !log::push(out, RecordKind::State, &[state.as_bytes()]) {
         return Err(Error::too_large(file, "the document's description has more than 4 GiB"));
     }
     // What the document no longer holds may be freed; should it come back, it is written again.
@@ -78,15 +78,15 @@ fn without_large_parts(layer: &Arc<Layer>) -> Arc<Layer> {
     Arc::new(next)
 }
 
-struct Writer<'a> {
+struct StateWriter<'a> {
     file: &'a Path,
-    known: &'a mut Known,
-    used: HashMap<usize, (u64, Held)>,
+    known: &'a mut LoggedParts,
+    used: HashMap<usize, (u64, LoggedPart)>,
     out: &'a mut Vec<u8>,
     given_up: &'a AtomicBool,
 }
 
-impl Writer<'_> {
+impl StateWriter<'_> {
     /// Puts keys in the places of tiles and strokes; `value` holds `layers` as JSON.
     fn layers(&mut self, layers: &[Arc<Layer>], value: &mut Value) -> Result<()> {
         for (i, layer) in layers.iter().enumerate() {
@@ -106,19 +106,19 @@ impl Writer<'_> {
     fn tiles(&mut self, tiles: &TileGrid) -> Result<Value> {
         let file = self.file;
         let one = |(at, tile): (TileAt, &Arc<Tile>)| {
-            let held = Held::Tile { _tile: tile.clone() };
+            let held = LoggedPart::Tile { _tile: tile.clone() };
             let key = self.key(Arc::as_ptr(tile) as usize, held, || encode_tile(file, at, tile))?;
             Ok(json!([at.col, at.row, key]))
         };
         tiles.iter().map(one).collect()
     }
     fn stroke(&mut self, stroke: &Arc<Stroke>) -> Result<Value> {
-        let held = Held::Stroke { _stroke: stroke.clone() };
+        let held = LoggedPart::Stroke { _stroke: stroke.clone() };
         let bytes = || Ok(recipe::write_stroke(stroke).to_string().into_bytes());
         Ok(self.key(Arc::as_ptr(stroke) as usize, held, bytes)?.into())
     }
     /// The key of a thing in memory; its bytes are written where the log does not hold them.
-    fn key(&mut self, address: usize, held: Held, bytes: impl FnOnce() -> Result<Vec<u8>>) -> Result<u64> {
+    fn key(&mut self, address: usize, held: LoggedPart, bytes: impl FnOnce() -> Result<Vec<u8>>) -> Result<u64> {
         if let Some((key, _)) = self.used.get(&address) {
             return Ok(*key);
         }
@@ -130,7 +130,7 @@ impl Writer<'_> {
                 }
                 let key = self.known.next;
                 self.known.next += 1;
-                if !log::push(self.out, Kind::Blob, &[&key.to_le_bytes(), &bytes()?]) {
+                if !log::push(self.out, RecordKind::Blob, &[&key.to_le_bytes(), &bytes()?]) {
                     return Err(Error::too_large(self.file, "a part of the drawing has more than 4 GiB"));
                 }
                 key
@@ -150,7 +150,7 @@ fn encode_tile(file: &Path, at: TileAt, tile: &Arc<Tile>) -> Result<Vec<u8>> {
 }
 
 /// The last document in a log; `None` where there is none.
-pub struct Last<'a> {
+pub struct LastState<'a> {
     /// Whose drawing it is, as it was told last.
     pub head: Option<Value>,
     /// How many edits the log tells of, the first being the document as it was opened.
@@ -159,14 +159,14 @@ pub struct Last<'a> {
     blobs: HashMap<u64, &'a [u8]>,
 }
 
-impl<'a> Last<'a> {
+impl<'a> LastState<'a> {
     pub fn of(log: &'a [u8]) -> Self {
-        let mut last = Last { head: None, states: 0, state: None, blobs: HashMap::new() };
+        let mut last = LastState { head: None, states: 0, state: None, blobs: HashMap::new() };
         for (kind, payload) in log::records(log) {
             match kind {
-                Kind::Head | Kind::Saved => last.head = serde_json::from_slice(payload).ok().or(last.head),
-                Kind::State => (last.state, last.states) = (Some(payload), last.states + 1),
-                Kind::Blob => {
+                RecordKind::Head | RecordKind::Saved => last.head = serde_json::from_slice(payload).ok().or(last.head),
+                RecordKind::State => (last.state, last.states) = (Some(payload), last.states + 1),
+                RecordKind::Blob => {
                     if let Some((key, bytes)) = payload.split_first_chunk() {
                         last.blobs.insert(u64::from_le_bytes(*key), bytes);
                     }
@@ -182,8 +182,8 @@ impl<'a> Last<'a> {
         let mut tiles = Vec::new();
         self.fill_in(file, &mut state["document"], "", &mut tiles)?;
         let document = state["document"].take();
-        let blobs = Blobs { file, names: &state["files"], last: self };
-        let mut document = recipe::read_value(&document, Source { file, files: &blobs, budget, onto: None })?;
+        let blobs = BlobFiles { file, names: &state["files"], last: self };
+        let mut document = recipe::read_value(&document, RecipeSource { file, files: &blobs, budget, onto: None })?;
         for (path, grid) in tiles {
             let id = document.walk().into_iter().find(|(known, _)| *known == path).map(|(_, layer)| layer.id);
             let put = |layer: &mut Layer| {
@@ -240,13 +240,13 @@ impl<'a> Last<'a> {
 }
 
 /// The files of a document by their names in its state.
-struct Blobs<'a> {
+struct BlobFiles<'a> {
     file: &'a Path,
     names: &'a Value,
-    last: &'a Last<'a>,
+    last: &'a LastState<'a>,
 }
 
-impl Files for Blobs<'_> {
+impl Files for BlobFiles<'_> {
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>> {
         let bytes = self.last.blob(&self.path(name), &self.names[name])?;
         if bytes.len() as u64 > budget.file_bytes {

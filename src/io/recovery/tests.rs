@@ -1,10 +1,10 @@
 use super::journal::Journal;
-use super::state::Last;
+use super::state::LastState;
 use super::*;
 use crate::Budget;
 use crate::document::{Content, Layer, PixelLayer};
 use crate::fs::Disk;
-use crate::fs::memory::{Failure, Memory, Trouble};
+use crate::fs::memory::{InjectedError, InjectedFailure, MemoryFs};
 use crate::math::{Size, srgb::Color};
 use crate::project::sample::{assert_same, everything};
 use crate::raster::TileGrid;
@@ -22,11 +22,11 @@ fn dotted(strokes: usize) -> Document {
     let layer = Layer::new("dots", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
     Document { layers: vec![Arc::new(layer)], ..base }
 }
-fn journal(fs: &Memory) -> Journal {
+fn journal(fs: &MemoryFs) -> Journal {
     Journal::new(Arc::new(fs.clone()), LOG.into(), "dots", None)
 }
 fn read(log: &[u8]) -> (usize, Option<Document>) {
-    let last = Last::of(log);
+    let last = LastState::of(log);
     (last.states, last.document(Path::new(LOG), &Budget::default()).unwrap())
 }
 fn disk() -> Arc<dyn Fs> {
@@ -35,7 +35,7 @@ fn disk() -> Arc<dyn Fs> {
 
 #[test]
 fn every_kind_of_layer_comes_back() {
-    let fs = Memory::with(&[("/r/other", b"")]);
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
     let document = everything(64);
     journal.record(&document).unwrap();
@@ -45,7 +45,7 @@ fn every_kind_of_layer_comes_back() {
 }
 #[test]
 fn an_edit_adds_what_it_changed_and_no_more() {
-    let fs = Memory::with(&[("/r/other", b"")]);
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
     let document = everything(64);
     journal.record(&document).unwrap();
@@ -59,7 +59,7 @@ fn an_edit_adds_what_it_changed_and_no_more() {
 }
 #[test]
 fn a_log_cut_anywhere_loses_the_last_edit_at_most() {
-    let fs = Memory::with(&[("/r/other", b"")]);
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
     let versions: Vec<Document> = (1..5).map(dotted).collect();
     // How long the log was after each version.
@@ -82,7 +82,7 @@ fn a_log_cut_anywhere_loses_the_last_edit_at_most() {
 }
 #[test]
 fn a_log_with_any_bit_flipped_gives_a_version_that_was() {
-    let fs = Memory::with(&[("/r/other", b"")]);
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
     let pictures: Vec<Vec<u8>> = (1..4)
         .map(|i| {
@@ -109,7 +109,7 @@ fn pixels_of(document: &Document) -> Vec<u8> {
 }
 #[test]
 fn a_log_that_has_grown_is_written_anew() {
-    let fs = Memory::with(&[("/r/other", b"")]);
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
     journal.least_compacted = 1000;
     let mut longest = 0;
@@ -125,18 +125,18 @@ fn a_log_that_has_grown_is_written_anew() {
 /// Every operation of three records fails with every error, once and for ever: what was recorded before stays.
 #[test]
 fn a_failing_disk_costs_at_most_what_could_not_be_written() {
-    let run = |fs: &Memory| {
+    let run = |fs: &MemoryFs| {
         let mut journal = journal(fs);
         journal.least_compacted = 2000;
         (1..12).filter(|&i| journal.record(&dotted(i)).and_then(|()| journal.sync()).is_ok()).last()
     };
-    let whole = Memory::with(&[("/r/other", b"")]);
+    let whole = MemoryFs::with(&[("/r/other", b"")]);
     assert_eq!(run(&whole), Some(11));
     for at in 0..whole.operations() {
-        for error in [28, 5, 30, 13, 24].map(Trouble::Code).into_iter().chain([Trouble::Short]) {
+        for error in [28, 5, 30, 13, 24].map(InjectedError::Code).into_iter().chain([InjectedError::Short]) {
             for sticky in [false, true] {
-                let fs = Memory::with(&[("/r/other", b"")]);
-                fs.fail(Failure { at, error, sticky });
+                let fs = MemoryFs::with(&[("/r/other", b"")]);
+                fs.fail(InjectedFailure { at, error, sticky });
                 let last = run(&fs);
                 fs.heal();
                 let back = fs.file(LOG).and_then(|log| read(&log).1);
@@ -153,7 +153,7 @@ fn a_failing_disk_costs_at_most_what_could_not_be_written() {
 }
 #[test]
 fn a_power_cut_takes_nothing_that_was_flushed() {
-    let fs = Memory::with(&[("/r/other", b"")]);
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);
     journal.record(&dotted(1)).unwrap();
     journal.record(&dotted(2)).unwrap();
@@ -170,7 +170,7 @@ fn a_power_cut_takes_nothing_that_was_flushed() {
 #[test]
 fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
     let folder = tempfile::tempdir().unwrap();
-    let start = |i, title| Recovery::start(disk(), folder.path(), &dotted(i), title, None).unwrap();
+    let start = |i, title| RecoveryLog::start(disk(), folder.path(), &dotted(i), title, None).unwrap();
     let (first, second) = (start(1, "one"), start(2, "two"));
     assert!(sessions(&disk(), folder.path()).is_empty(), "both live");
     assert!(second.settle(Duration::from_secs(60)));
@@ -192,7 +192,7 @@ fn sessions_that_live_are_left_alone_and_those_that_died_come_back() {
 #[test]
 fn a_closed_session_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let recovery = Recovery::start(disk(), folder.path(), &dotted(3), "one", Some(Path::new("/a.ora"))).unwrap();
+    let recovery = RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", Some(Path::new("/a.ora"))).unwrap();
     recovery.flush();
     assert_eq!(recovery.trouble(), None);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
@@ -218,9 +218,9 @@ fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
 #[test]
 fn a_process_number_that_came_again_hides_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    drop(Recovery::start(disk(), folder.path(), &dotted(3), "one", None).unwrap());
+    drop(RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", None).unwrap());
     let paths = std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path());
-    let log = paths.into_iter().find(|path| path.extension().is_some_and(|ending| ending == "log")).unwrap();
+    let log = paths.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "log")).unwrap();
     // The proof can fail: who asks whether the process in the name lives finds that it does, and hides the drawing.
     let number = log.file_name().unwrap().to_string_lossy().split('-').nth(1).unwrap().to_owned();
     assert_eq!(number, std::process::id().to_string());

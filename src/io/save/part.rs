@@ -1,7 +1,7 @@
 //! The new file while it is being written: beside its target, under a name of its own, held so that others know it is in use.
 //! Floor 5.
 
-use crate::fs::{Fs, Handle};
+use crate::fs::{FileHandle, Fs};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -12,12 +12,12 @@ const PART: &str = "part";
 pub const SPARE: &str = "old";
 
 /// `.rilievo-PROCESS-NUMBER.part`, and the handle that holds it.
-pub struct Part {
+pub struct PartFile {
     pub path: PathBuf,
-    pub handle: Box<dyn Handle>,
+    pub handle: Box<dyn FileHandle>,
 }
 
-impl Part {
+impl PartFile {
     /// A new one, empty.
     pub fn create(fs: &dyn Fs, folder: &Path) -> io::Result<Self> {
         static NEXT: AtomicU32 = AtomicU32::new(0);
@@ -59,27 +59,27 @@ pub fn sweep(fs: &dyn Fs, folder: &Path) {
 /// `.rilievo-12-3.part` or `.old`, and nothing else.
 fn is_ours(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_prefix(PREFIX));
-    let Some((numbers, ending)) = name.and_then(|name| name.split_once('.')) else { return false };
+    let Some((numbers, extension)) = name.and_then(|name| name.split_once('.')) else { return false };
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let is_pair = numbers.split_once('-').is_some_and(|(process, number)| is_number(process) && is_number(number));
-    is_pair && (ending == PART || ending == SPARE)
+    is_pair && (extension == PART || extension == SPARE)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fs::memory::Memory;
+    use crate::fs::memory::MemoryFs;
 
     #[test]
     fn what_no_process_holds_is_swept_and_nothing_else() {
-        let fs = Memory::with(&[
+        let fs = MemoryFs::with(&[
             ("/d/.rilievo-1-7.part", b"killed"),
             ("/d/.rilievo-1-8.part", b"killed later"),
             ("/d/.rilievo-1-8.old", b"the same"),
             ("/d/.rilievo-notes.part", b"somebody's"),
             ("/d/a.part", b"somebody's"),
         ]);
-        let ours = Part::create(&fs, Path::new("/d")).unwrap();
+        let ours = PartFile::create(&fs, Path::new("/d")).unwrap();
         sweep(&fs, Path::new("/d"));
         sweep(&fs, Path::new("/d"));
         let name = ours.path.display().to_string();

@@ -1,4 +1,4 @@
-use super::super::fs::memory::{Failure, Memory, Trouble};
+use super::super::fs::memory::{InjectedError, InjectedFailure, MemoryFs};
 use super::*;
 use std::io::Read;
 
@@ -8,35 +8,35 @@ const OLD: &[u8] = b"the old drawing";
 /// Longer, so that many lengths of it may arrive.
 const NEW: &[u8] = &[b'n'; 300];
 
-fn save_on(fs: &Memory, over: Over) -> Result<Option<Saved>> {
+fn save_on(fs: &MemoryFs, over: Overwrite) -> Result<Option<SavedDocument>> {
     replace(fs, Path::new(FILE), NEW, over, &Progress::default())
 }
-fn this() -> Over {
-    Over::This(Stamp::of(OLD))
+fn this() -> Overwrite {
+    Overwrite::This(FileStamp::of(OLD))
 }
-fn disk() -> Memory {
-    Memory::with(&[(FILE, OLD), (KEPT, b"older still")])
+fn disk() -> MemoryFs {
+    MemoryFs::with(&[(FILE, OLD), (KEPT, b"older still")])
 }
 
 #[test]
 fn the_new_file_stands_in_the_old_ones_place_and_the_old_one_is_kept() {
-    for over in [this(), Over::Anything] {
+    for over in [this(), Overwrite::Anything] {
         let fs = disk();
         let saved = save_on(&fs, over).unwrap().unwrap();
-        assert_eq!(saved.stamp, Stamp::of(NEW));
+        assert_eq!(saved.stamp, FileStamp::of(NEW));
         assert_eq!((fs.file(FILE).unwrap(), fs.file(KEPT).unwrap()), (NEW.to_vec(), OLD.to_vec()));
         assert_eq!(fs.names(), [FILE, KEPT], "nothing else is left");
     }
 }
 #[test]
 fn a_file_that_is_not_what_was_opened_is_not_replaced() {
-    let fs = Memory::with(&[(FILE, b"somebody else's")]);
-    for (over, part) in [(this(), "another program changed it"), (Over::Nothing, "already")] {
+    let fs = MemoryFs::with(&[(FILE, b"somebody else's")]);
+    for (over, part) in [(this(), "another program changed it"), (Overwrite::Nothing, "already")] {
         let said = save_on(&fs, over).unwrap_err();
         assert!(matches!(said, Error::Changed { .. }) && said.to_string().contains(part), "{said}");
         assert_eq!(fs.file(FILE).unwrap(), b"somebody else's");
     }
-    let gone = Memory::with(&[("/d/other", b"")]);
+    let gone = MemoryFs::with(&[("/d/other", b"")]);
     assert!(save_on(&gone, this()).unwrap().is_some(), "a file that is gone can be saved again");
 }
 #[test]
@@ -60,12 +60,12 @@ fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
     save_on(&whole, this()).unwrap();
     let operations = whole.operations();
     assert!(operations > 12, "{operations}");
-    let codes = [ENOSPC, EIO, EROFS, EACCES, EMFILE].map(Trouble::Code);
+    let codes = [ENOSPC, EIO, EROFS, EACCES, EMFILE].map(InjectedError::Code);
     for at in 0..operations {
-        for error in codes.into_iter().chain([Trouble::Short]) {
+        for error in codes.into_iter().chain([InjectedError::Short]) {
             for sticky in [false, true] {
                 let fs = disk();
-                fs.fail(Failure { at, error, sticky });
+                fs.fail(InjectedFailure { at, error, sticky });
                 let result = save_on(&fs, this());
                 fs.heal();
                 let (now, kept) = (fs.file(FILE).unwrap(), fs.file(KEPT).unwrap());
@@ -91,7 +91,7 @@ fn a_file_held_for_a_moment_is_waited_for() {
     const EBUSY: i32 = 16;
     let saved = (0..whole.operations()).filter(|&at| {
         let fs = disk();
-        fs.fail(Failure { at, error: Trouble::Code(EBUSY), sticky: false });
+        fs.fail(InjectedFailure { at, error: InjectedError::Code(EBUSY), sticky: false });
         save_on(&fs, this()).is_ok()
     });
     assert!(saved.count() >= 1, "the rename is tried again");
@@ -103,14 +103,14 @@ fn where_files_cannot_have_two_names_the_old_one_is_copied() {
     const EPERM: i32 = 1;
     let kept_by_copy = (0..whole.operations()).any(|at| {
         let fs = disk();
-        fs.fail(Failure { at, error: Trouble::Code(EPERM), sticky: false });
+        fs.fail(InjectedFailure { at, error: InjectedError::Code(EPERM), sticky: false });
         save_on(&fs, this()).is_ok() && fs.operations() > whole.operations() && fs.file(KEPT).unwrap() == OLD
     });
     assert!(kept_by_copy);
 }
 
 /// Power cuts before every operation of a save, with every combination of what may be lost; the number of states.
-fn power_cuts(fs: Memory, save: impl Fn(&Memory) -> bool) -> std::result::Result<usize, String> {
+fn power_cuts(fs: MemoryFs, save: impl Fn(&MemoryFs) -> bool) -> std::result::Result<usize, String> {
     let is_new = fs.file(FILE).is_none();
     fs.record();
     let saved = save(&fs);
@@ -133,7 +133,7 @@ fn power_cuts(fs: Memory, save: impl Fn(&Memory) -> bool) -> std::result::Result
     Ok(states)
 }
 /// A disk that knows no second names, so that the old file is copied.
-fn disk_without_links() -> Memory {
+fn disk_without_links() -> MemoryFs {
     let fs = disk();
     fs.refuse_links();
     fs
@@ -145,8 +145,8 @@ fn a_power_cut_leaves_the_old_file_or_the_new_one() {
     for (fs, over) in [
         (disk(), this()),
         (disk_without_links(), this()),
-        (Memory::with(&left), Over::Anything),
-        (Memory::with(&[("/d/other", b"")]), Over::Nothing),
+        (MemoryFs::with(&left), Overwrite::Anything),
+        (MemoryFs::with(&[("/d/other", b"")]), Overwrite::Nothing),
     ] {
         states += power_cuts(fs, |fs| save_on(fs, over).is_ok()).unwrap();
     }
@@ -156,7 +156,7 @@ fn a_power_cut_leaves_the_old_file_or_the_new_one() {
 /// The proof can fail: saving without any one of its steps is caught.
 #[test]
 fn the_power_cuts_catch_a_save_that_leaves_out_a_step() {
-    let write = |fs: &Memory, path: &str, sync: bool| {
+    let write = |fs: &MemoryFs, path: &str, sync: bool| {
         let mut handle = fs.create_new(Path::new(path)).unwrap();
         handle.write_all(NEW).unwrap();
         if sync {
@@ -184,8 +184,8 @@ fn the_power_cuts_catch_a_save_that_leaves_out_a_step() {
 #[test]
 fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
     /// Forgets a bit of everything that is written.
-    struct Lying(Memory);
-    struct LyingHandle(Box<dyn Handle>);
+    struct Lying(MemoryFs);
+    struct LyingHandle(Box<dyn FileHandle>);
     impl Read for LyingHandle {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             self.0.read(buffer)
@@ -201,7 +201,7 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
             Ok(())
         }
     }
-    impl Handle for LyingHandle {
+    impl FileHandle for LyingHandle {
         fn sync(&mut self) -> io::Result<()> {
             self.0.sync()
         }
@@ -210,10 +210,10 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
         }
     }
     impl Fs for Lying {
-        fn create_new(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+        fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
             Ok(Box::new(LyingHandle(self.0.create_new(path)?)))
         }
-        fn open(&self, path: &Path) -> io::Result<Box<dyn Handle>> {
+        fn open(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
             self.0.open(path)
         }
         fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
@@ -231,7 +231,7 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
         fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
             self.0.resolve(path)
         }
-        fn found(&self, path: &Path) -> io::Result<Option<Found>> {
+        fn found(&self, path: &Path) -> io::Result<Option<EntryKind>> {
             self.0.found(path)
         }
         fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
@@ -243,7 +243,7 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
         fn copy_permissions(&self, from: &Path, to: &Path) -> io::Result<()> {
             self.0.copy_permissions(from, to)
         }
-        fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn super::super::fs::Lock>>> {
+        fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn super::super::fs::FileLock>>> {
             self.0.lock(path)
         }
         fn pause(&self, _: Duration) {}
@@ -271,13 +271,13 @@ mod on_the_disk {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.ora");
         let document = sample::everything(32);
-        let first = save(&document, &file, Over::Nothing, &Progress::default()).unwrap().unwrap();
+        let first = save(&document, &file, Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
         let opened = open(&file, &Budget::default()).unwrap();
         assert_eq!(opened.stamp, first.stamp);
         sample::assert_same(&document, &opened.document);
-        save(&opened.document, &file, Over::This(opened.stamp), &Progress::default()).unwrap().unwrap();
+        save(&opened.document, &file, Overwrite::This(opened.stamp), &Progress::default()).unwrap().unwrap();
         std::fs::write(&file, "another program's").unwrap();
-        let said = save(&document, &file, Over::This(opened.stamp), &Progress::default()).unwrap_err();
+        let said = save(&document, &file, Overwrite::This(opened.stamp), &Progress::default()).unwrap_err();
         assert!(matches!(said, Error::Changed { .. }), "{said}");
         assert_eq!(std::fs::read(&file).unwrap(), b"another program's");
     }
@@ -300,11 +300,11 @@ mod on_the_disk {
         let link = folder.path().join("link.ora");
         symlink("nowhere", &link).unwrap();
         for (file, part) in [(link.as_path(), "leads nowhere"), (folder.path(), "is a folder")] {
-            let said = replace(&Disk, file, NEW, Over::Anything, &Progress::default()).unwrap_err().to_string();
+            let said = replace(&Disk, file, NEW, Overwrite::Anything, &Progress::default()).unwrap_err().to_string();
             assert!(said.contains(part), "{said}");
         }
         let lost = folder.path().join("no/such/a.ora");
-        let said = replace(&Disk, &lost, NEW, Over::Nothing, &Progress::default()).unwrap_err().to_string();
+        let said = replace(&Disk, &lost, NEW, Overwrite::Nothing, &Progress::default()).unwrap_err().to_string();
         assert!(said.contains("its folder cannot be reached"), "{said}");
     }
 }

@@ -1,8 +1,8 @@
 //! `rilievo brush`: brushes of other programs as files of this one, and pictures of what a brush paints.
 //! Floor 7.
 
-use super::Limits;
-use crate::io::export::{Options, Target};
+use super::LimitArgs;
+use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::recipe::{Preset, preset};
 use crate::io::{brush, picture};
 use crate::math::Size;
@@ -27,7 +27,7 @@ pub struct BrushArgs {
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(16..=4096))]
     side: u32,
     #[command(flatten)]
-    limits: Limits,
+    limits: LimitArgs,
 }
 
 pub fn run(args: &BrushArgs) -> Result<()> {
@@ -50,21 +50,21 @@ pub fn run(args: &BrushArgs) -> Result<()> {
 /// `set.json` as `set-3.json`.
 fn numbered(file: &Path, number: usize) -> PathBuf {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-    let ending = file.extension().unwrap_or_default().to_string_lossy();
-    file.with_file_name(format!("{stem}-{number}.{ending}"))
+    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    file.with_file_name(format!("{stem}-{number}.{extension}"))
 }
 
 fn write(from: &Path, to: &Path, preset: Preset, side: u32) -> Result<()> {
-    let ending = to.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    if ending == "json" {
+    let extension = to.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if extension == "json" {
         if to == from {
             return Err(Error::unsupported(to, "it is read by this very command; write to another file"));
         }
         return brush::write(to, &preset).map(drop);
     }
-    let target = Target::new(to, &[from.to_owned()])?;
+    let target = OutputFile::new(to, &[from.to_owned()])?;
     let none = || Error::unsupported(to, "the brush cannot be shown");
     let (pixels, size) = (swatch::painted(&preset, side).ok_or_else(none)?, Size::new(side, side));
     let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;
-    target.write(&picture::to_tiles(&picture, 0, 0), size, &Options::default())
+    target.write(&picture::to_tiles(&picture, 0, 0), size, &ExportOptions::default())
 }

@@ -1,11 +1,11 @@
 //! `rilievo convert`: from any file that can be opened to any that can be written.
 //! Floor 7. What each format can hold is the formats' own knowledge (`io`); what is left behind is told.
 
-use super::{Limits, progress, render};
+use super::{LimitArgs, progress, render};
 use crate::Result;
 use crate::document::{Content, Document, flatten, flatten_deep, flatten_layer};
-use crate::io::export::{Format, Options, Target, deep, layers};
-use crate::io::{Opened, Over, open, psd, save};
+use crate::io::export::{ExportFormat, ExportOptions, OutputFile, deep, layers};
+use crate::io::{OpenedDocument, Overwrite, open, psd, save};
 use crate::math::{Rect, srgb::Color};
 use std::path::{Path, PathBuf};
 
@@ -37,10 +37,10 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "COLOUR", value_parser = render::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
-    #[arg(long, value_name = "N", default_value_t = Options::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
     #[command(flatten)]
-    limits: Limits,
+    limits: LimitArgs,
 }
 
 fn bits(text: &str) -> std::result::Result<u8, String> {
@@ -54,42 +54,42 @@ fn dots_per_inch(text: &str) -> std::result::Result<f32, String> {
 }
 
 /// What a name asks for.
-enum Output {
+enum OutputKind {
     Project,
     Psd,
-    Picture(Format),
+    Picture(ExportFormat),
 }
 
-impl Output {
+impl OutputKind {
     fn of(file: &Path) -> Result<Self> {
-        let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        Ok(match ending.as_str() {
-            "ora" => Output::Project,
-            "psd" => Output::Psd,
-            _ => Output::Picture(Format::of(file)?),
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        Ok(match extension.as_str() {
+            "ora" => OutputKind::Project,
+            "psd" => OutputKind::Psd,
+            _ => OutputKind::Picture(ExportFormat::of(file)?),
         })
     }
 }
 
 pub fn run(args: &ConvertArgs) -> Result<()> {
     args.limits.install(|| {
-        let output = Output::of(&args.to)?;
-        let target = Target::new(&args.to, std::slice::from_ref(&args.from))?;
-        let Opened { document, notes, .. } = open(&args.from, &args.limits.budget())?;
+        let output = OutputKind::of(&args.to)?;
+        let target = OutputFile::new(&args.to, std::slice::from_ref(&args.from))?;
+        let OpenedDocument { document, notes, .. } = open(&args.from, &args.limits.budget())?;
         let document = render::scaled(&args.from, args.scale, &args.limits, document)?;
         match output {
-            Output::Project => {
+            OutputKind::Project => {
                 // Nothing here cancels, so it is always saved.
-                progress::shown(|progress| save(&document, &args.to, Over::Anything, progress))?;
+                progress::shown(|progress| save(&document, &args.to, Overwrite::Anything, progress))?;
             }
-            Output::Psd => {
+            OutputKind::Psd => {
                 let written = progress::shown(|progress| psd::write(&args.to, &document, progress))?;
                 // As above.
                 let Some(written) = written else { return Ok(()) };
                 target.replace(&written.bytes)?;
                 tell(&args.to, &written.notes);
             }
-            Output::Picture(format) => {
+            OutputKind::Picture(format) => {
                 render::refuse_incomplete(&args.from, &document)?;
                 picture(args, &document, format, &target)?;
             }
@@ -100,10 +100,10 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
     })
 }
 
-fn picture(args: &ConvertArgs, document: &Document, format: Format, target: &Target) -> Result<()> {
+fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, target: &OutputFile) -> Result<()> {
     let crop = args.crop_to_surface.then(|| covered(document)).flatten();
-    let options = Options { background: args.background, quality: args.quality, dots_per_inch: args.dpi, crop };
-    let is_exr = format == Format::Exr;
+    let options = ExportOptions { background: args.background, quality: args.quality, dots_per_inch: args.dpi, crop };
+    let is_exr = format == ExportFormat::Exr;
     if args.layers && is_exr {
         let bytes = progress::shown(|progress| layers::encode(&args.to, document, progress))?;
         return target.replace(&bytes.unwrap_or_default());
@@ -120,17 +120,17 @@ fn picture(args: &ConvertArgs, document: &Document, format: Format, target: &Tar
 }
 
 /// Every layer with pixels, hidden ones too, beside the name that was asked for: `out-00-sky.png`.
-fn each_layer(args: &ConvertArgs, document: &Document, options: &Options) -> Result<()> {
+fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions) -> Result<()> {
     let stem = args.to.file_stem().unwrap_or_default().to_string_lossy();
-    let ending = args.to.extension().unwrap_or_default().to_string_lossy();
+    let extension = args.to.extension().unwrap_or_default().to_string_lossy();
     for (i, (_, layer)) in document.walk().into_iter().enumerate() {
         if matches!(layer.content, Content::Group(_) | Content::Normals(_) | Content::RadianceScaling(_)) {
             continue;
         }
         let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
         let name: String = layer.name.chars().take(60).map(plain).collect();
-        let file = args.to.with_file_name(format!("{stem}-{i:02}-{name}.{ending}"));
-        let target = Target::new(&file, std::slice::from_ref(&args.from))?;
+        let file = args.to.with_file_name(format!("{stem}-{i:02}-{name}.{extension}"));
+        let target = OutputFile::new(&file, std::slice::from_ref(&args.from))?;
         let pixels = progress::shown(|progress| flatten_layer(document, layer.id, progress)).unwrap_or_default();
         target.write(&pixels, document.size, options)?;
     }

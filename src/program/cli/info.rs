@@ -29,15 +29,15 @@
 mod brushes;
 mod documents;
 
-use super::{Limits, print};
+use super::{LimitArgs, print};
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
-use crate::io::inspect::{Description, describe};
-use crate::io::maps::{self, Findings, Import, pairs};
-use crate::io::open::Kind;
-use crate::io::{Files, Given, open, recipe};
+use crate::io::inspect::{FileDescription, describe};
+use crate::io::maps::{self, Findings, ImportedSurface, pairs};
+use crate::io::open::FileKind;
+use crate::io::{Files, UserFiles, open, recipe};
 use crate::{Error, Result};
-use brushes::BrushFile;
-use documents::DocumentFile;
+use brushes::BrushReport;
+use documents::DocumentReport;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -51,32 +51,32 @@ pub struct InfoArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    limits: Limits,
+    limits: LimitArgs,
 }
 
 /// Describes every file that can be read; then fails with the sentence of the first that cannot.
 pub fn run(args: &InfoArgs) -> Result<()> {
     args.limits.install(|| {
         let budget = args.limits.budget();
-        let mut report = Report::default();
-        let mut given = Given::default();
+        let mut report = InfoReport::default();
+        let mut given = UserFiles::default();
         for path in &args.files {
             let name = given.add(path);
             let bytes = given.read(&name, &budget);
-            if let Some(found) = bytes.as_ref().ok().and_then(|bytes| BrushFile::of(&name, path, bytes, &budget)) {
+            if let Some(found) = bytes.as_ref().ok().and_then(|bytes| BrushReport::of(&name, path, bytes, &budget)) {
                 report.brushes.push(found);
                 continue;
             }
-            if bytes.as_ref().is_ok_and(|bytes| Kind::of(bytes) != Kind::Picture) {
-                report.documents.push(DocumentFile { name, opened: open(path, &budget) });
+            if bytes.as_ref().is_ok_and(|bytes| FileKind::of(bytes) != FileKind::Picture) {
+                report.documents.push(DocumentReport { name, opened: open(path, &budget) });
                 continue;
             }
             let described = bytes.and_then(|bytes| describe(path, &bytes, &budget));
-            report.files.push(File { name, path: path.clone(), described });
+            report.files.push(PictureReport { name, path: path.clone(), described });
         }
         for source in report.sources() {
             let import = maps::import(&source.source, &given, &budget);
-            report.surfaces.push(Surface { source, import });
+            report.surfaces.push(SurfaceReport { source, import });
         }
         print(&if args.json { report.json() } else { report.text() })?;
         report.first_error().map_or(Ok(()), Err)
@@ -84,32 +84,32 @@ pub fn run(args: &InfoArgs) -> Result<()> {
 }
 
 #[derive(Default)]
-struct Report {
-    brushes: Vec<BrushFile>,
-    documents: Vec<DocumentFile>,
-    files: Vec<File>,
-    surfaces: Vec<Surface>,
+struct InfoReport {
+    brushes: Vec<BrushReport>,
+    documents: Vec<DocumentReport>,
+    files: Vec<PictureReport>,
+    surfaces: Vec<SurfaceReport>,
 }
 
-struct File {
+struct PictureReport {
     name: String,
     path: PathBuf,
-    described: Result<Description>,
+    described: Result<FileDescription>,
 }
 
 /// Maps that make a surface.
-struct Source {
+struct MapFiles {
     name: String,
     files: Vec<String>,
     source: SurfaceSource,
 }
 
-struct Surface {
-    source: Source,
-    import: Result<Import>,
+struct SurfaceReport {
+    source: MapFiles,
+    import: Result<ImportedSurface>,
 }
 
-impl File {
+impl PictureReport {
     /// What the file is for, by its name, then by what it holds.
     fn role(&self) -> &'static str {
         let Ok(d) = &self.described else { return "unreadable" };
@@ -122,27 +122,27 @@ impl File {
             };
         }
         match pairs::part_of(&self.path).map(|(_, part)| part) {
-            Some(pairs::Part::Normal) => "normal",
-            Some(pairs::Part::Depth) => "depth",
-            Some(pairs::Part::Mask) => "mask",
+            Some(pairs::MapPart::Normal) => "normal",
+            Some(pairs::MapPart::Depth) => "depth",
+            Some(pairs::MapPart::Mask) => "mask",
             None if d.looks_like_normals => "normal",
             None => "picture",
         }
     }
 }
 
-impl Report {
+impl InfoReport {
     /// The surfaces these files make: sets by name, then what is left by itself.
-    fn sources(&self) -> Vec<Source> {
-        let readable: Vec<&File> = self.files.iter().filter(|f| f.described.is_ok()).collect();
+    fn sources(&self) -> Vec<MapFiles> {
+        let readable: Vec<&PictureReport> = self.files.iter().filter(|f| f.described.is_ok()).collect();
         let paths: Vec<PathBuf> = readable.iter().map(|f| f.path.clone()).collect();
         let name_of = |path: &PathBuf| readable.iter().find(|f| f.path == *path).map(|f| f.name.clone());
         let sets = pairs::sets(&paths);
-        let mut out: Vec<Source> = Vec::new();
+        let mut out: Vec<MapFiles> = Vec::new();
         for set in &sets {
             let [normal, depth, mask] = [&set.normal, &set.depth, &set.mask].map(|p| p.as_ref().and_then(&name_of));
             if normal.is_some() || depth.is_some() {
-                out.push(Source::new(&set.name, normal, depth, mask));
+                out.push(MapFiles::new(&set.name, normal, depth, mask));
             }
         }
         // One normal map, one depth map and nothing else of their kind belong together whatever they are called.
@@ -153,16 +153,16 @@ impl Report {
         };
         if let (Some(normal), Some(depth)) = (only("normal"), only("depth")) {
             let mask = only("mask");
-            out.push(Source::new("", Some(normal), Some(depth), mask));
+            out.push(MapFiles::new("", Some(normal), Some(depth), mask));
         }
         for file in readable {
             let used = out.iter().any(|s| s.files.contains(&file.name));
             let (own, name) = (|| Some(file.name.clone()), file.path.file_stem().unwrap_or_default().to_string_lossy());
             match file.role() {
                 _ if used => {}
-                "layers" => out.push(Source::new(&name, own(), own(), None)),
-                "normal" => out.push(Source::new(&name, own(), None, None)),
-                "depth" => out.push(Source::new(&name, None, own(), None)),
+                "layers" => out.push(MapFiles::new(&name, own(), own(), None)),
+                "normal" => out.push(MapFiles::new(&name, own(), None, None)),
+                "depth" => out.push(MapFiles::new(&name, None, own(), None)),
                 _ => {}
             }
         }
@@ -178,23 +178,23 @@ impl Report {
         let value = json!({
             "format": "rilievo-info",
             "version": 1,
-            "brushes": self.brushes.iter().map(BrushFile::json).collect::<Vec<_>>(),
-            "documents": self.documents.iter().map(DocumentFile::json).collect::<Vec<_>>(),
-            "files": self.files.iter().map(File::json).collect::<Vec<_>>(),
-            "surfaces": self.surfaces.iter().map(Surface::json).collect::<Vec<_>>(),
+            "brushes": self.brushes.iter().map(BrushReport::json).collect::<Vec<_>>(),
+            "documents": self.documents.iter().map(DocumentReport::json).collect::<Vec<_>>(),
+            "files": self.files.iter().map(PictureReport::json).collect::<Vec<_>>(),
+            "surfaces": self.surfaces.iter().map(SurfaceReport::json).collect::<Vec<_>>(),
         });
         format!("{value:#}\n")
     }
     fn text(&self) -> String {
-        let brushes: String = self.brushes.iter().map(BrushFile::text).collect();
-        let documents: String = self.documents.iter().map(DocumentFile::text).collect();
-        let files: String = self.files.iter().map(File::text).collect();
-        let surfaces: String = self.surfaces.iter().map(Surface::text).collect();
+        let brushes: String = self.brushes.iter().map(BrushReport::text).collect();
+        let documents: String = self.documents.iter().map(DocumentReport::text).collect();
+        let files: String = self.files.iter().map(PictureReport::text).collect();
+        let surfaces: String = self.surfaces.iter().map(SurfaceReport::text).collect();
         brushes + &documents + &files + &surfaces
     }
 }
 
-impl Source {
+impl MapFiles {
     fn new(name: &str, normal: Option<String>, depth: Option<String>, mask: Option<String>) -> Self {
         let mut files: Vec<String> = [&normal, &depth, &mask].into_iter().flatten().cloned().collect();
         files.dedup();
@@ -221,7 +221,7 @@ impl Source {
     }
 }
 
-impl File {
+impl PictureReport {
     fn json(&self) -> Value {
         let d = match &self.described {
             Ok(d) => d,
@@ -264,8 +264,8 @@ impl File {
     }
 }
 
-impl Surface {
-    fn covered(import: &Import) -> f64 {
+impl SurfaceReport {
+    fn covered(import: &ImportedSurface) -> f64 {
         let coverage = import.surface.coverage_plane().values();
         coverage.iter().map(|c| f64::from(*c)).sum::<f64>() / 255.0 / coverage.len().max(1) as f64
     }

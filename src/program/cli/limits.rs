@@ -6,7 +6,7 @@ use crate::{Error, Result};
 
 /// How much a command may use.
 #[derive(clap::Args)]
-pub struct Limits {
+pub struct LimitArgs {
     /// Longest side of any picture, in pixels
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     max_side: Option<u32>,
@@ -18,7 +18,7 @@ pub struct Limits {
     threads: Option<u16>,
 }
 
-impl Limits {
+impl LimitArgs {
     /// The budget that readers are given.
     pub fn budget(&self) -> Budget {
         let usual = Budget::default();

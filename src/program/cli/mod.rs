@@ -13,7 +13,7 @@ mod render;
 mod replay;
 mod view;
 
-pub use limits::Limits;
+pub use limits::LimitArgs;
 
 use crate::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -28,11 +28,11 @@ pub type OpenWindow = fn(Vec<PathBuf>) -> Result<()>;
 #[command(name = "rilievo", version, max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
 }
 
 #[derive(Subcommand)]
-enum Command {
+enum CliCommand {
     Brush(brush::BrushArgs),
     Convert(convert::ConvertArgs),
     Info(info::InfoArgs),
@@ -55,13 +55,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
         }
     };
     let done = crash::caught(|| match parsed.command {
-        Some(Command::Brush(args)) => brush::run(&args),
-        Some(Command::Convert(args)) => convert::run(&args),
-        Some(Command::Info(args)) => info::run(&args),
-        Some(Command::Open(args)) => open::run(args, window),
-        Some(Command::Render(args)) => render::run(&args),
-        Some(Command::Replay(args)) => replay::run(&args),
-        Some(Command::View(args)) => view::run(&args),
+        Some(CliCommand::Brush(args)) => brush::run(&args),
+        Some(CliCommand::Convert(args)) => convert::run(&args),
+        Some(CliCommand::Info(args)) => info::run(&args),
+        Some(CliCommand::Open(args)) => open::run(args, window),
+        Some(CliCommand::Render(args)) => render::run(&args),
+        Some(CliCommand::Replay(args)) => replay::run(&args),
+        Some(CliCommand::View(args)) => view::run(&args),
         None => print(&Arguments::command().render_help().to_string()),
     });
     match done {

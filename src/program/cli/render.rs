@@ -1,14 +1,14 @@
 //! `rilievo render`: a document to a picture.
 //! Floor 7.
 
-use super::{Limits, convert, progress};
+use super::{LimitArgs, convert, progress};
 use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
 use crate::document::{Content, Document, SurfaceSource, flatten, flatten_layer};
-use crate::io::export::{Format, Options, Target};
-use crate::io::files::{Noted, read_file};
-use crate::io::open::Kind;
-use crate::io::recipe::{self, Onto, Source};
-use crate::io::{Folder, Given, open};
+use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
+use crate::io::files::{TrackedFiles, read_file};
+use crate::io::open::FileKind;
+use crate::io::recipe::{self, OtherSurface, RecipeSource};
+use crate::io::{RecipeFolder, UserFiles, open};
 use crate::math::srgb::Color;
 use crate::raster::TileGrid;
 use crate::{Error, Result};
@@ -50,10 +50,10 @@ pub struct RenderArgs {
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
-    #[arg(long, value_name = "N", default_value_t = Options::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
     #[command(flatten)]
-    limits: Limits,
+    limits: LimitArgs,
 }
 
 pub(super) fn scale(text: &str) -> std::result::Result<f32, String> {
@@ -76,11 +76,11 @@ pub(super) fn color(text: &str) -> std::result::Result<Color, String> {
 
 pub fn run(args: &RenderArgs) -> Result<()> {
     // A misspelt ending is told before the work, not after it.
-    Format::of(&args.output)?;
+    ExportFormat::of(&args.output)?;
     args.limits.install(|| {
-        let Loaded { document, notes, inputs } = load(args)?;
+        let LoadedDocument { document, notes, inputs } = load(args)?;
         refuse_incomplete(&args.document, &document)?;
-        let target = Target::new(&args.output, &inputs)?;
+        let target = OutputFile::new(&args.output, &inputs)?;
         let document = scaled(&args.document, args.scale, &args.limits, document)?;
         let pixels = progress::shown(|progress| match &args.layer {
             None => Ok(flatten(&document, progress)),
@@ -91,7 +91,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         target.write(
             &pixels,
             document.size,
-            &Options { background: args.background, quality: args.quality, ..Options::default() },
+            &ExportOptions { background: args.background, quality: args.quality, ..ExportOptions::default() },
         )?;
         // Beside an error they would only hide it.
         convert::tell(&args.document, &notes);
@@ -99,24 +99,24 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     })
 }
 
-struct Loaded {
+struct LoadedDocument {
     document: Document,
     notes: Vec<String>,
     /// Every file it was made from.
     inputs: Vec<PathBuf>,
 }
 
-fn load(args: &RenderArgs) -> Result<Loaded> {
+fn load(args: &RenderArgs) -> Result<LoadedDocument> {
     let budget = args.limits.budget();
-    let files = Noted::new(Folder::beside(&args.document));
-    let mut given = Given::default();
+    let files = TrackedFiles::new(RecipeFolder::beside(&args.document));
+    let mut given = UserFiles::default();
     let surface = other_object(args, &mut given);
-    let given = Noted::new(given);
-    let onto = surface.as_ref().map(|surface| Onto { surface, files: &given });
+    let given = TrackedFiles::new(given);
+    let onto = surface.as_ref().map(|surface| OtherSurface { surface, files: &given });
     let bytes = read_file(&args.document, budget.file_bytes)?;
-    let (document, notes) = match Kind::of(&bytes) {
-        Kind::Recipe => {
-            let source = Source { file: &args.document, files: &files, budget: &budget, onto };
+    let (document, notes) = match FileKind::of(&bytes) {
+        FileKind::Recipe => {
+            let source = RecipeSource { file: &args.document, files: &files, budget: &budget, onto };
             recipe::read_noting(&bytes, source)?
         }
         _ => {
@@ -130,7 +130,7 @@ fn load(args: &RenderArgs) -> Result<Loaded> {
     let mut inputs = vec![args.document.clone()];
     inputs.extend(files.read_paths());
     inputs.extend(given.read_paths());
-    Ok(Loaded { document, notes, inputs })
+    Ok(LoadedDocument { document, notes, inputs })
 }
 
 /// Layers that would paint black for want of what they show: better a sentence.
@@ -146,7 +146,7 @@ pub(super) fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> 
 }
 
 /// The object that the command line names, if it names one.
-fn other_object(args: &RenderArgs, given: &mut Given) -> Option<SurfaceSource> {
+fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSource> {
     let mut name = |path: &Option<PathBuf>| path.as_deref().map(|path: &Path| given.add(path));
     let (normal, depth, mask) = (name(&args.normal), name(&args.depth), name(&args.mask));
     (normal.is_some() || depth.is_some()).then(|| SurfaceSource {
@@ -161,7 +161,7 @@ fn other_object(args: &RenderArgs, given: &mut Given) -> Option<SurfaceSource> {
 }
 
 /// The document at another size, within the limits.
-pub(super) fn scaled(file: &Path, factor: f32, limits: &Limits, document: Document) -> Result<Document> {
+pub(super) fn scaled(file: &Path, factor: f32, limits: &LimitArgs, document: Document) -> Result<Document> {
     if factor == 1.0 {
         return Ok(document);
     }

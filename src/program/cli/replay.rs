@@ -26,11 +26,11 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     session.autosave = args.recover_in.clone().map(Autosave::new);
     let (mut steps, mut last) = (0, None);
     session.replay_telling(&args.file, &text, |session| {
-        let Session { autosave: Some(autosave), tabs, .. } = session else { return Ok(()) };
-        if let Some(trouble) = autosave.follow(tabs) {
+        let Session { autosave: Some(autosave), open_documents, .. } = session else { return Ok(()) };
+        if let Some(trouble) = autosave.follow(open_documents) {
             return Err(Error::unsupported(&args.file, trouble));
         }
-        let now = session.tab().map(|tab| tab.document().clone());
+        let now = session.active().map(|tab| tab.document().clone());
         if last.as_ref().zip(now.as_ref()).is_some_and(|(last, now)| !is_same(last, now)) {
             steps += 1;
             session.autosave.iter().for_each(Autosave::settle);

@@ -1,15 +1,15 @@
 //! `rilievo view`: the maps of a document, or of loose files, as pictures.
 //! Floor 7. What the pictures show is `document::view`'s.
 
-use super::Limits;
+use super::LimitArgs;
 use crate::document::source::{MapSource, MaskSource};
-use crate::document::view::{self, View, ViewOptions};
+use crate::document::view::{self, SurfaceView, ViewOptions};
 use crate::document::{Document, Layer, SurfaceSource};
-use crate::io::export::{Options, Target};
-use crate::io::files::{Noted, read_file};
+use crate::io::export::{ExportOptions, OutputFile};
+use crate::io::files::{TrackedFiles, read_file};
 use crate::io::maps::{self, pairs};
-use crate::io::recipe::{self, Source};
-use crate::io::{Budget, Folder, Given};
+use crate::io::recipe::{self, RecipeSource};
+use crate::io::{Budget, RecipeFolder, UserFiles};
 use crate::math::{Size, srgb::Color};
 use crate::raster::{Picture, TileGrid, picture::Texels};
 use crate::{Error, Result};
@@ -25,7 +25,7 @@ pub struct ViewArgs {
     files: Vec<PathBuf>,
     /// What to show; “sheet” is all of it side by side
     #[arg(long, value_name = "VIEW", default_value = "sheet", value_parser = shown())]
-    show: Show,
+    show: ShowArg,
     /// Where the picture goes; a folder gets one picture for every view
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -51,19 +51,19 @@ pub struct ViewArgs {
     #[arg(long, value_name = "COLOUR", value_parser = super::render::color)]
     background: Option<Color>,
     #[command(flatten)]
-    limits: Limits,
+    limits: LimitArgs,
 }
 
 /// One view, or all of them on a sheet.
 #[derive(Clone, Copy)]
-enum Show {
-    One(View),
+enum ShowArg {
+    One(SurfaceView),
     Sheet,
 }
 
-fn shown() -> impl TypedValueParser<Value = Show> {
-    let names = View::ALL.iter().map(|(_, name)| PossibleValue::new(*name)).chain([PossibleValue::new("sheet")]);
-    PossibleValuesParser::new(names).map(|name| View::from_name(&name).map_or(Show::Sheet, Show::One))
+fn shown() -> impl TypedValueParser<Value = ShowArg> {
+    let names = SurfaceView::ALL.iter().map(|(_, name)| PossibleValue::new(*name)).chain([PossibleValue::new("sheet")]);
+    PossibleValuesParser::new(names).map(|name| SurfaceView::from_name(&name).map_or(ShowArg::Sheet, ShowArg::One))
 }
 
 fn not_negative(text: &str) -> std::result::Result<f32, String> {
@@ -77,27 +77,27 @@ fn not_negative(text: &str) -> std::result::Result<f32, String> {
 pub fn run(args: &ViewArgs) -> Result<()> {
     args.limits.install(|| {
         let (document, inputs) = match args.show {
-            Show::One(view) if view.is_of_nothing() => (Document::empty(Size::new(1, 1)), Vec::new()),
+            ShowArg::One(view) if view.is_of_nothing() => (Document::empty(Size::new(1, 1)), Vec::new()),
             _ => opened(args)?,
         };
         let layer = args.layer.as_deref().map(|name| named(args, &document, name)).transpose()?;
         let options = ViewOptions { curvature_scale_px: args.curvature_scale, blur_px: args.blur };
-        let draw = |view: View| {
+        let draw = |view: SurfaceView| {
             view::draw(&document, layer, view, &options)
                 .map_err(|why| Error::invalid(named_file(args), format!("--show {}", view.name()), why))
         };
-        let write = |target: &Target, picture: &Picture| write(target, picture, args.background);
+        let write = |target: &OutputFile, picture: &Picture| write(target, picture, args.background);
         if args.output.is_dir() {
             for view in view::available(&document, layer) {
-                let target = Target::new(&args.output.join(view.name()).with_extension("png"), &inputs)?;
+                let target = OutputFile::new(&args.output.join(view.name()).with_extension("png"), &inputs)?;
                 write(&target, &draw(view)?)?;
             }
             return Ok(());
         }
-        let target = Target::new(&args.output, &inputs)?;
+        let target = OutputFile::new(&args.output, &inputs)?;
         match args.show {
-            Show::One(view) => write(&target, &draw(view)?),
-            Show::Sheet => {
+            ShowArg::One(view) => write(&target, &draw(view)?),
+            ShowArg::Sheet => {
                 let views = view::available(&document, layer).into_iter().map(draw).collect::<Result<Vec<_>>>()?;
                 let nothing = || Error::invalid(named_file(args), "--show", "there is nothing to show");
                 write(&target, &view::sheet(&views).ok_or_else(nothing)?)
@@ -111,11 +111,11 @@ fn named_file(args: &ViewArgs) -> &Path {
     args.files.first().or(args.normal.as_ref()).or(args.depth.as_ref()).unwrap_or(&args.output)
 }
 
-fn write(target: &Target, picture: &Picture, background: Option<Color>) -> Result<()> {
+fn write(target: &OutputFile, picture: &Picture, background: Option<Color>) -> Result<()> {
     let Texels::Srgb8(texels) = &picture.texels else { return Ok(()) };
     let (width, height) = (picture.size.width as usize, picture.size.height as usize);
     let grid = TileGrid::from_straight_rgba(texels.as_flattened(), width, height, 0, 0);
-    target.write(&grid, picture.size, &Options { background, ..Options::default() })
+    target.write(&grid, picture.size, &ExportOptions { background, ..ExportOptions::default() })
 }
 
 /// The document, and every file that was read for it.
@@ -124,9 +124,10 @@ fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
     let loose = args.normal.is_some() || args.depth.is_some() || args.mask.is_some();
     match args.files.as_slice() {
         [recipe] if !loose && recipe.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) => {
-            let files = Noted::new(Folder::beside(recipe));
+            let files = TrackedFiles::new(RecipeFolder::beside(recipe));
             let text = read_file(recipe, budget.json_bytes)?;
-            let document = recipe::read(&text, Source { file: recipe, files: &files, budget: &budget, onto: None })?;
+            let document =
+                recipe::read(&text, RecipeSource { file: recipe, files: &files, budget: &budget, onto: None })?;
             Ok((document, [vec![recipe.clone()], files.read_paths()].concat()))
         }
         _ => of_maps(args, &budget),
@@ -135,9 +136,9 @@ fn opened(args: &ViewArgs) -> Result<(Document, Vec<PathBuf>)> {
 
 /// A document of nothing but a surface.
 fn of_maps(args: &ViewArgs, budget: &Budget) -> Result<(Document, Vec<PathBuf>)> {
-    let mut files = Given::default();
+    let mut files = UserFiles::default();
     let sources = sources(args, &mut files)?;
-    let files = Noted::new(files);
+    let files = TrackedFiles::new(files);
     let mut imports = sources.iter().map(|source| maps::import(source, &files, budget));
     // The first way to read them counts, and its sentence where none succeeds.
     let first = imports.next().unwrap_or_else(|| Err(Error::invalid(named_file(args), "FILES", "no map is named")));
@@ -147,7 +148,7 @@ fn of_maps(args: &ViewArgs, budget: &Budget) -> Result<(Document, Vec<PathBuf>)>
 }
 
 /// Which file is which, in the order in which readings are tried.
-fn sources(args: &ViewArgs, files: &mut Given) -> Result<Vec<SurfaceSource>> {
+fn sources(args: &ViewArgs, files: &mut UserFiles) -> Result<Vec<SurfaceSource>> {
     let mut parts = [args.normal.clone(), args.depth.clone(), args.mask.clone()];
     if let ([layers], [None, None, _]) = (args.files.as_slice(), &parts)
         && layers.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr"))
@@ -164,9 +165,9 @@ fn sources(args: &ViewArgs, files: &mut Given) -> Result<Vec<SurfaceSource>> {
     }
     for file in &args.files {
         let part = match pairs::part_of(file).map(|(_, part)| part) {
-            Some(pairs::Part::Depth) => 1,
-            Some(pairs::Part::Mask) => 2,
-            Some(pairs::Part::Normal) => 0,
+            Some(pairs::MapPart::Depth) => 1,
+            Some(pairs::MapPart::Mask) => 2,
+            Some(pairs::MapPart::Normal) => 0,
             // A picture alone is taken for normals: that is what there is most of.
             None if args.files.len() == 1 => 0,
             None => {
@@ -182,7 +183,7 @@ fn sources(args: &ViewArgs, files: &mut Given) -> Result<Vec<SurfaceSource>> {
     Ok(vec![source(parts, files)])
 }
 
-fn source(parts: [Option<PathBuf>; 3], files: &mut Given) -> SurfaceSource {
+fn source(parts: [Option<PathBuf>; 3], files: &mut UserFiles) -> SurfaceSource {
     let [normal, depth, mask] = parts.map(|part| part.map(|path| files.add(&path)));
     SurfaceSource {
         normal: normal.map(|file| MapSource { file, ..MapSource::default() }),

@@ -2,13 +2,13 @@
 //! left is brought back.
 //! Floor 6. Logs and their workers are `io::recovery`'s (docs/PROJECTS.md).
 
-use super::{Tab, is_same};
+use super::{OpenDocument, is_same};
 use crate::Result;
 use crate::document::Document;
 use crate::io::Budget;
 use crate::io::fs::{Disk, Fs};
-use crate::io::recovery::{self, Recovery};
-use crate::io::save::Stamp;
+use crate::io::recovery::{self, RecoveryLog};
+use crate::io::save::FileStamp;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,25 +26,25 @@ const LOOK_AGAIN: Duration = Duration::from_millis(200);
 pub struct Autosave {
     fs: Arc<dyn Fs>,
     folder: PathBuf,
-    followed: BTreeMap<usize, Followed>,
+    followed: BTreeMap<usize, FollowedDocument>,
     /// The trouble that was told last.
     told: Option<String>,
 }
 
 /// The log of a document, and what it was told last.
-struct Followed {
+struct FollowedDocument {
     /// Absent where none could be begun.
-    recovery: Option<Recovery>,
+    recovery: Option<RecoveryLog>,
     document: Document,
     /// Where the file holds the very same.
-    held: Option<(String, Option<PathBuf>, Option<Stamp>)>,
+    held: Option<(String, Option<PathBuf>, Option<FileStamp>)>,
 }
 
-impl Followed {
+impl FollowedDocument {
     /// The first word is all of the document; `saved` follows by itself.
-    fn begin(fs: &Arc<dyn Fs>, folder: &Path, tab: &Tab) -> (Self, Option<String>) {
+    fn begin(fs: &Arc<dyn Fs>, folder: &Path, tab: &OpenDocument) -> (Self, Option<String>) {
         let document = tab.document().clone();
-        let begun = Recovery::start(fs.clone(), folder, &document, &tab.title(), tab.file.as_deref());
+        let begun = RecoveryLog::start(fs.clone(), folder, &document, &tab.title(), tab.file.as_deref());
         let (recovery, trouble) = match begun {
             Ok(recovery) => (Some(recovery), None),
             Err(error) => (None, Some(error.to_string())),
@@ -52,7 +52,7 @@ impl Followed {
         (Self { recovery, document, held: None }, trouble)
     }
     /// Tells the log what became of the document; whether there was anything to tell.
-    fn follow(&mut self, tab: &Tab) -> bool {
+    fn follow(&mut self, tab: &OpenDocument) -> bool {
         let Some(recovery) = &self.recovery else { return false };
         let is_edited = !is_same(&self.document, tab.document());
         if is_edited {
@@ -76,16 +76,16 @@ impl Autosave {
     /// Brings the logs up to the open documents; called after whatever may have changed them. A new trouble as a sentence.
     ///
     /// An edit waits a few milliseconds for being written, so that what is seen as done is safe from `kill -9`.
-    pub fn follow(&mut self, tabs: &[Tab]) -> Option<String> {
+    pub fn follow(&mut self, open_documents: &[OpenDocument]) -> Option<String> {
         let mut trouble = None;
-        for tab in tabs {
+        for tab in open_documents {
             let is_edited = match self.followed.get_mut(&tab.key) {
                 Some(followed) if followed.recovery.is_some() || is_same(&followed.document, tab.document()) => {
                     followed.follow(tab)
                 }
                 // Not known yet, or edited since its log could not be begun: perhaps now it can.
                 _ => {
-                    let (mut followed, why) = Followed::begin(&self.fs, &self.folder, tab);
+                    let (mut followed, why) = FollowedDocument::begin(&self.fs, &self.folder, tab);
                     trouble = trouble.or(why);
                     followed.follow(tab);
                     self.followed.insert(tab.key, followed);
@@ -100,7 +100,7 @@ impl Autosave {
                 trouble = trouble.or_else(|| recovery.trouble());
             }
         }
-        let is_open = |key: &usize| tabs.iter().any(|tab| tab.key == *key);
+        let is_open = |key: &usize| open_documents.iter().any(|tab| tab.key == *key);
         let closed: Vec<usize> = self.followed.keys().copied().filter(|key| !is_open(key)).collect();
         for key in closed {
             trouble = self.end(key).err().map(|error| error.to_string()).or(trouble);
@@ -111,9 +111,9 @@ impl Autosave {
         trouble.filter(|_| is_new).map(sentence)
     }
     /// A document that has a log already, such as a recovered one.
-    pub fn adopt(&mut self, tab: &Tab, recovery: Recovery) {
+    pub fn adopt(&mut self, tab: &OpenDocument, recovery: RecoveryLog) {
         let document = tab.document().clone();
-        self.followed.insert(tab.key, Followed { recovery: Some(recovery), document, held: None });
+        self.followed.insert(tab.key, FollowedDocument { recovery: Some(recovery), document, held: None });
     }
     /// Waits until all edits are written.
     pub fn settle(&self) {
@@ -122,40 +122,40 @@ impl Autosave {
         }
     }
     /// The program ends as it should: what is saved, or never was touched, needs no log. Others stay, to be offered.
-    pub fn close(&mut self, tabs: &[Tab]) {
-        self.follow(tabs);
-        for tab in tabs.iter().filter(|tab| !tab.is_dirty()) {
+    pub fn close(&mut self, open_documents: &[OpenDocument]) {
+        self.follow(open_documents);
+        for tab in open_documents.iter().filter(|tab| !tab.is_dirty()) {
             // What cannot be deleted is found to be safe the next time.
             let _ = self.end(tab.key);
         }
     }
     fn end(&mut self, key: usize) -> Result<()> {
         let recovery = self.followed.remove(&key).and_then(|followed| followed.recovery);
-        recovery.map_or(Ok(()), Recovery::close)
+        recovery.map_or(Ok(()), RecoveryLog::close)
     }
     /// For a thread that looks after what was left, or brings it back.
-    pub fn lost(&self) -> Lost {
-        Lost { fs: self.fs.clone(), folder: self.folder.clone() }
+    pub fn lost(&self) -> LostSessions {
+        LostSessions { fs: self.fs.clone(), folder: self.folder.clone() }
     }
 }
 
 /// What accidents left.
-pub struct Lost {
+pub struct LostSessions {
     fs: Arc<dyn Fs>,
     folder: PathBuf,
 }
 
 /// A document that was brought back, and the log it has now.
-pub struct Found {
-    pub tab: Tab,
-    pub recovery: Option<Recovery>,
+pub struct RecoveredTab {
+    pub tab: OpenDocument,
+    pub recovery: Option<RecoveryLog>,
 }
 
-impl Lost {
+impl LostSessions {
     /// The drawings to offer, oldest first. Logs of which a file holds the very last version are deleted.
     ///
     /// Where there are none it looks again for some seconds as long as other processes hold logs: one may be just dying.
-    pub fn list(&self) -> Vec<recovery::Session> {
+    pub fn list(&self) -> Vec<recovery::LostSession> {
         for _ in 0..DYING.as_millis() / LOOK_AGAIN.as_millis() {
             let lost = self.list_now();
             if !lost.is_empty() || recovery::held_by_others(&self.fs, &self.folder) == 0 {
@@ -165,7 +165,7 @@ impl Lost {
         }
         self.list_now()
     }
-    fn list_now(&self) -> Vec<recovery::Session> {
+    fn list_now(&self) -> Vec<recovery::LostSession> {
         let mut lost = Vec::new();
         for mut session in recovery::sessions(&self.fs, &self.folder) {
             // One that failed is not so much as read unasked.
@@ -179,12 +179,12 @@ impl Lost {
         lost
     }
     /// Brings a drawing back: untitled, with something to save. What was left of it is deleted once another log holds it.
-    pub fn bring_back(&self, mut session: recovery::Session) -> Result<Found> {
+    pub fn bring_back(&self, mut session: recovery::LostSession) -> Result<RecoveredTab> {
         let recovered = session.recover(&Budget::default())?;
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
-        let mut tab = Tab::new(format!("{name} (recovered)"), recovered.document, None);
+        let mut tab = OpenDocument::new(format!("{name} (recovered)"), recovered.document, None);
         tab.mark_unsaved();
-        let begun = Recovery::start(self.fs.clone(), &self.folder, tab.document(), &tab.title(), None);
+        let begun = RecoveryLog::start(self.fs.clone(), &self.folder, tab.document(), &tab.title(), None);
         let recovery = begun.ok().filter(|recovery| {
             recovery.flush();
             recovery.trouble().is_none()
@@ -193,7 +193,7 @@ impl Lost {
             // What stays is offered once more; nothing is lost by that.
             let _ = session.discard();
         }
-        Ok(Found { tab, recovery })
+        Ok(RecoveredTab { tab, recovery })
     }
 }
 

@@ -2,8 +2,8 @@
 //! Floor 6. Formats are `io`'s. The user's own lie in a folder, where there is one, a preset's file each.
 
 use super::Session;
-use crate::io::brush::{self, Imported, plain};
-use crate::io::recipe::{Group, Preset, load_preset};
+use crate::io::brush::{self, ImportedBrush, plain};
+use crate::io::recipe::{Preset, PresetGroup, load_preset};
 use crate::io::{Budget, files::read_file, picture};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, PictureSource, Tip};
@@ -12,17 +12,17 @@ use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Endings of the files that brushes come from: five of brushes, then pictures.
-pub const ENDINGS: [&str; 12] =
+pub const EXTENSIONS: [&str; 12] =
     ["gbr", "gih", "myb", "abr", "json", "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp"];
 
 /// Reads the brushes of a file: another program's, a preset's own, or a picture as a tip. At least one.
 pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(Preset, Vec<String>)>> {
-    let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    if ending == "json" {
+    let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if extension == "json" {
         return load_preset(file, budget).map(|preset| vec![(preset, Vec::new())]);
     }
     let bytes = read_file(file, budget.file_bytes)?;
-    if ENDINGS[5..].contains(&ending.as_str()) {
+    if EXTENSIONS[5..].contains(&extension.as_str()) {
         return picture_tip(file, &bytes, budget).map(|preset| vec![(preset, Vec::new())]);
     }
     let brushes = brush::read(file, &bytes, budget)?;
@@ -30,12 +30,12 @@ pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(Preset, Vec<String>)>> 
 }
 
 /// A brush of another program as one that can be chosen, and what could not be carried over.
-fn preset_of(file: &Path, imported: Imported) -> (Preset, Vec<String>) {
-    let Imported { name, brush, notes } = imported;
+fn preset_of(file: &Path, imported: ImportedBrush) -> (Preset, Vec<String>) {
+    let ImportedBrush { name, brush, notes } = imported;
     let about = format!("From {}.", file.file_name().unwrap_or_default().to_string_lossy());
     let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
     let color = Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 };
-    (Preset { key, name, group: Group::Imported, about, color, brush, operator: Operator::None }, notes)
+    (Preset { key, name, group: PresetGroup::Imported, about, color, brush, operator: Operator::None }, notes)
 }
 
 /// The brushes of a file join the list, and the first of them goes to hand.
@@ -58,7 +58,7 @@ pub fn keep(session: &mut Session, name: &str) -> Result<()> {
     let name = if name.is_empty() { "My brush".to_owned() } else { name };
     let key = Some(plain(&name)).filter(|key| !key.is_empty()).unwrap_or_else(|| "brush".into());
     let (brush, color, operator) = (session.brush.clone(), session.color, session.operator);
-    let preset = Preset { key, name, group: Group::Imported, about: String::new(), color, brush, operator };
+    let preset = Preset { key, name, group: PresetGroup::Imported, about: String::new(), color, brush, operator };
     session.preset = add(session, preset)?;
     Ok(())
 }
@@ -66,7 +66,7 @@ pub fn keep(session: &mut Session, name: &str) -> Result<()> {
 /// A brush joins the list and the folder; the key that it got.
 fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
     preset.key = free_key(session, &preset.key);
-    preset.group = Group::Imported;
+    preset.group = PresetGroup::Imported;
     if let Some(folder) = &session.brush_folder {
         std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         preset = brush::write(&file_of(folder, &preset.key), &preset)?;
@@ -78,7 +78,7 @@ fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
 
 /// One of the user's own brushes leaves the list and the folder. Its pictures go with it.
 pub fn remove(session: &mut Session, key: &str) -> Result<()> {
-    let is_it = |preset: &Preset| preset.key == key && preset.group == Group::Imported;
+    let is_it = |preset: &Preset| preset.key == key && preset.group == PresetGroup::Imported;
     let Some(at) = session.presets.iter().position(is_it) else { return Ok(()) };
     if let Some(folder) = &session.brush_folder {
         brush::remove(&file_of(folder, key), &session.presets[at])?;
@@ -100,7 +100,7 @@ pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
     let (mut presets, mut notes) = (Vec::new(), Vec::new());
     for file in files {
         match load_preset(&file, &Budget::default()) {
-            Ok(preset) => presets.push(Preset { group: Group::Imported, ..preset }),
+            Ok(preset) => presets.push(Preset { group: PresetGroup::Imported, ..preset }),
             Err(error) => notes.push(error.to_string()),
         }
     }
@@ -126,7 +126,7 @@ fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Preset> {
     let tip = PictureSource::new(format!("{}.png", plain(&stem)), picture, Adjust::default());
     let size = tip.picture.size.longer_side();
     let brush = Brush { size, spacing: 0.25, tip: Tip::Picture(tip), ..Brush::default() };
-    let imported = Imported { name: stem, brush, notes: Vec::new() };
+    let imported = ImportedBrush { name: stem, brush, notes: Vec::new() };
     Ok(preset_of(file, imported).0)
 }
 

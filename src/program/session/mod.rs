@@ -4,20 +4,20 @@
 pub mod actions;
 pub mod autosave;
 pub mod brushes;
+mod open_document;
 mod path;
 pub mod property;
 pub mod replay;
 pub mod storage;
 pub mod swatch;
-mod tab;
 pub mod view;
 
 pub use actions::Action;
 pub use autosave::Autosave;
+pub use open_document::{CloneSource, Edit, OpenDocument, is_same};
 pub use path::LayerPath;
 pub use property::Property;
-pub use tab::{CloneSource, Edit, Tab, is_same};
-pub use view::View;
+pub use view::CanvasView;
 
 use crate::Result;
 use crate::document::{Document, Layer};
@@ -28,14 +28,14 @@ use crate::surface::Operator;
 use crate::tools::{Gesture, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use storage::Opened;
+use storage::OpenedTab;
 
 /// Colours remembered.
 const RECENT: usize = 16;
 
 /// Everything but the window.
 pub struct Session {
-    pub tabs: Vec<Tab>,
+    pub open_documents: Vec<OpenDocument>,
     /// The one in front, if any.
     pub current: usize,
     pub tool: ToolKind,
@@ -76,7 +76,7 @@ impl Default for Session {
         let presets: Vec<Preset> = presets().collect();
         let brush = presets.iter().find(|known| known.key == preset).map(|known| known.brush.clone());
         Self {
-            tabs: Vec::new(),
+            open_documents: Vec::new(),
             current: 0,
             tool: ToolKind::default(),
             presets,
@@ -103,48 +103,48 @@ impl Default for Session {
 
 impl Session {
     /// The document in front.
-    pub fn tab(&self) -> Option<&Tab> {
-        self.tabs.get(self.current)
+    pub fn active(&self) -> Option<&OpenDocument> {
+        self.open_documents.get(self.current)
     }
-    pub fn tab_mut(&mut self) -> Option<&mut Tab> {
-        self.tabs.get_mut(self.current)
+    pub fn active_mut(&mut self) -> Option<&mut OpenDocument> {
+        self.open_documents.get_mut(self.current)
     }
     /// The document in front, as it is to be seen.
     pub fn shown(&self) -> Option<&Document> {
-        self.tab().map(Tab::shown)
+        self.active().map(OpenDocument::shown)
     }
     /// The selected layer, as it is to be seen.
     pub fn layer(&self) -> Option<&Arc<Layer>> {
-        let tab = self.tab()?;
+        let tab = self.active()?;
         tab.shown().layer(tab.selected?)
     }
     /// Where the selected layer stands.
     pub fn layer_path(&self) -> Option<LayerPath> {
-        let tab = self.tab()?;
+        let tab = self.active()?;
         LayerPath::of(tab.document(), tab.selected?)
     }
     /// A tool is between press and release.
     pub fn is_drawing(&self) -> bool {
         self.gesture.is_some()
     }
-    pub fn add_tab(&mut self, tab: Tab) {
+    pub fn add_document(&mut self, tab: OpenDocument) {
         self.drop_gesture();
-        self.tabs.push(tab);
-        self.current = self.tabs.len() - 1;
+        self.open_documents.push(tab);
+        self.current = self.open_documents.len() - 1;
     }
     /// A document that was opened elsewhere, perhaps on another thread.
-    pub fn adopt(&mut self, opened: Opened) {
-        let Opened { mut tab, notes } = opened;
+    pub fn adopt(&mut self, opened: OpenedTab) {
+        let OpenedTab { mut tab, notes } = opened;
         if tab.file.is_none() && tab.name.is_empty() {
             tab.name = self.untitled();
         }
-        self.add_tab(tab);
+        self.add_document(tab);
         self.notes.extend(notes);
     }
-    pub fn close_tab(&mut self, index: usize) {
-        if index < self.tabs.len() {
-            self.tabs.remove(index);
-            if self.current > index || self.current >= self.tabs.len() {
+    pub fn close_document(&mut self, index: usize) {
+        if index < self.open_documents.len() {
+            self.open_documents.remove(index);
+            if self.current > index || self.current >= self.open_documents.len() {
                 self.current = self.current.saturating_sub(1);
             }
         }
@@ -167,7 +167,7 @@ impl Session {
     /// What was begun is forgotten, and what it showed with it.
     pub fn drop_gesture(&mut self) {
         if self.gesture.take().is_some()
-            && let Some(tab) = self.tab_mut()
+            && let Some(tab) = self.active_mut()
         {
             tab.forget_preview();
         }
@@ -181,13 +181,13 @@ impl Session {
     }
     /// Brings the recovery logs up to the documents; called after whatever may have changed them.
     pub fn keep(&mut self) {
-        let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.tabs));
+        let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.open_documents));
         self.notes.extend(trouble);
     }
     /// The program ends: see [`Autosave::close`].
     pub fn close(&mut self) {
         if let Some(autosave) = &mut self.autosave {
-            autosave.close(&self.tabs);
+            autosave.close(&self.open_documents);
         }
     }
     /// Does what a replay file says, line by line; the first that fails ends it with a sentence.

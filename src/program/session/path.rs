@@ -1,7 +1,7 @@
 //! Which layer, in words that hold from one run to the next: its place from the bottom, groups opened.
 //! Floor 6. In memory layers have ids; those are new with every run.
 
-use super::replay::Replayed;
+use super::replay::ReplayValue;
 use crate::document::{Content, Document, Layer, LayerId};
 use serde_json::Value;
 use std::sync::Arc;
@@ -37,7 +37,7 @@ impl LayerPath {
     }
 }
 
-impl Replayed for LayerPath {
+impl ReplayValue for LayerPath {
     fn written(&self) -> Value {
         self.0.iter().map(ToString::to_string).collect::<Vec<_>>().join(".").into()
     }

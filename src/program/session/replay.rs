@@ -1,5 +1,5 @@
 //! Actions as text: one JSON object a line, so that what was done in the window can be done again without it.
-//! Floor 6. [`Replayed`] is how a value is written and read; `actions!`, `record!` and `names!` derive it.
+//! Floor 6. [`ReplayValue`] is how a value is written and read; `actions!`, `record!` and `names!` derive it.
 
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
@@ -7,17 +7,17 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// A value of an action's field. Reading fails with what is wrong, for a sentence that names the line.
-pub trait Replayed: Sized {
+pub trait ReplayValue: Sized {
     fn written(&self) -> Value;
     fn read(value: &Value) -> std::result::Result<Self, String>;
 }
 
 /// A field of an object; absent counts as `null`.
-pub fn field<T: Replayed>(object: &Value, name: &str) -> std::result::Result<T, String> {
+pub fn field<T: ReplayValue>(object: &Value, name: &str) -> std::result::Result<T, String> {
     T::read(object.get(name).unwrap_or(&Value::Null)).map_err(|reason| format!("“{name}” {reason}"))
 }
 
-impl Replayed for bool {
+impl ReplayValue for bool {
     fn written(&self) -> Value {
         (*self).into()
     }
@@ -26,7 +26,7 @@ impl Replayed for bool {
     }
 }
 
-impl Replayed for f32 {
+impl ReplayValue for f32 {
     fn written(&self) -> Value {
         // Through its shortest decimal form: 0.1 reads 0.1, not 0.10000000149.
         self.to_string().parse::<f64>().map_or(Value::Null, Value::from)
@@ -39,7 +39,7 @@ impl Replayed for f32 {
 
 /// Whole numbers.
 macro_rules! whole {
-    ($($ty:ty),+) => { $(impl Replayed for $ty {
+    ($($ty:ty),+) => { $(impl ReplayValue for $ty {
         fn written(&self) -> Value {
             json!(self)
         }
@@ -51,7 +51,7 @@ macro_rules! whole {
 }
 whole!(usize, u32, i32, u8);
 
-impl Replayed for String {
+impl ReplayValue for String {
     fn written(&self) -> Value {
         self.as_str().into()
     }
@@ -61,7 +61,7 @@ impl Replayed for String {
 }
 
 /// Whatever has a form of its own in files.
-impl Replayed for Value {
+impl ReplayValue for Value {
     fn written(&self) -> Value {
         self.clone()
     }
@@ -70,7 +70,7 @@ impl Replayed for Value {
     }
 }
 
-impl Replayed for PathBuf {
+impl ReplayValue for PathBuf {
     fn written(&self) -> Value {
         self.to_string_lossy().into()
     }
@@ -79,7 +79,7 @@ impl Replayed for PathBuf {
     }
 }
 
-impl Replayed for Color {
+impl ReplayValue for Color {
     fn written(&self) -> Value {
         self.to_string().into()
     }
@@ -88,9 +88,9 @@ impl Replayed for Color {
     }
 }
 
-impl Replayed for Vec2 {
+impl ReplayValue for Vec2 {
     fn written(&self) -> Value {
-        Value::Array(self.to_array().iter().map(Replayed::written).collect())
+        Value::Array(self.to_array().iter().map(ReplayValue::written).collect())
     }
     fn read(value: &Value) -> std::result::Result<Self, String> {
         match Vec::<f32>::read(value)?[..] {
@@ -100,9 +100,9 @@ impl Replayed for Vec2 {
     }
 }
 
-impl Replayed for Vec3 {
+impl ReplayValue for Vec3 {
     fn written(&self) -> Value {
-        Value::Array(self.to_array().iter().map(Replayed::written).collect())
+        Value::Array(self.to_array().iter().map(ReplayValue::written).collect())
     }
     fn read(value: &Value) -> std::result::Result<Self, String> {
         match Vec::<f32>::read(value)?[..] {
@@ -112,18 +112,18 @@ impl Replayed for Vec3 {
     }
 }
 
-impl<T: Replayed> Replayed for Vec<T> {
+impl<T: ReplayValue> ReplayValue for Vec<T> {
     fn written(&self) -> Value {
-        Value::Array(self.iter().map(Replayed::written).collect())
+        Value::Array(self.iter().map(ReplayValue::written).collect())
     }
     fn read(value: &Value) -> std::result::Result<Self, String> {
         value.as_array().ok_or("must be a list")?.iter().map(T::read).collect()
     }
 }
 
-impl<T: Replayed> Replayed for Option<T> {
+impl<T: ReplayValue> ReplayValue for Option<T> {
     fn written(&self) -> Value {
-        self.as_ref().map_or(Value::Null, Replayed::written)
+        self.as_ref().map_or(Value::Null, ReplayValue::written)
     }
     fn read(value: &Value) -> std::result::Result<Self, String> {
         if value.is_null() { Ok(None) } else { T::read(value).map(Some) }
@@ -138,7 +138,7 @@ macro_rules! actions {
         $(#[$meta])*
         #[derive(Clone)]
         pub enum $name { $($(#[$about])* $variant { $($field: $ty),* }),+ }
-        impl $crate::session::replay::Replayed for $name {
+        impl $crate::session::replay::ReplayValue for $name {
             fn written(&self) -> serde_json::Value {
                 let mut object = serde_json::Map::new();
                 match self { $(Self::$variant { $($field),* } => {
@@ -164,7 +164,7 @@ pub(crate) use actions;
 /// Replays a struct of another floor field by field.
 macro_rules! record {
     ($name:ty { $($field:ident),+ $(,)? }) => {
-        impl $crate::session::replay::Replayed for $name {
+        impl $crate::session::replay::ReplayValue for $name {
             fn written(&self) -> serde_json::Value {
                 let mut object = serde_json::Map::new();
                 $(object.insert(stringify!($field).into(), self.$field.written());)+
@@ -183,7 +183,7 @@ pub(crate) use record;
 /// `name` and `from_name`: `names!(BlendMode)`.
 macro_rules! names {
     ($name:ty) => {
-        impl $crate::session::replay::Replayed for $name {
+        impl $crate::session::replay::ReplayValue for $name {
             fn written(&self) -> serde_json::Value {
                 self.name().into()
             }
@@ -194,7 +194,7 @@ macro_rules! names {
         }
     };
     ($name:ty, [$($choice:path => $word:literal),+ $(,)?]) => {
-        impl $crate::session::replay::Replayed for $name {
+        impl $crate::session::replay::ReplayValue for $name {
             fn written(&self) -> serde_json::Value {
                 match self { $($choice => $word,)+ }.into()
             }
@@ -210,7 +210,7 @@ macro_rules! names {
 pub(crate) use names;
 
 /// The lines of a replay as values. Empty lines and lines that begin with `#` say nothing.
-pub fn lines<T: Replayed>(file: &Path, text: &str) -> Result<Vec<T>> {
+pub fn lines<T: ReplayValue>(file: &Path, text: &str) -> Result<Vec<T>> {
     let told = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     told.map(|(i, line)| {
         let value: std::result::Result<Value, _> = serde_json::from_str(line);

@@ -1,15 +1,15 @@
 //! Where documents come from and go to: projects, recipes, pictures, maps.
 //! Floor 6. Formats are `io`'s; here is which of them a file is.
 
-use super::Tab;
+use super::OpenDocument;
 use crate::Result;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::document::{Content, Document, Layer, Live, Progress};
-use crate::io::maps::pairs::{self, Part};
-use crate::io::save::Stamp;
-use crate::io::{self, Budget, Given, Over, files::read_file, inspect, maps};
+use crate::io::maps::pairs::{self, MapPart};
+use crate::io::save::FileStamp;
+use crate::io::{self, Budget, Overwrite, UserFiles, files::read_file, inspect, maps};
 use crate::math::{Size, Vec2, srgb::Color};
-use crate::paint::{Filter, Gradient, Stop};
+use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::surface::Operator;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub const PICTURES: [&str; 10] = ["png", "jpg", "jpeg", "webp", "tif", "tiff", "
 
 /// What a file is good for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FileUse {
     Document,
     /// To paint with.
     Picture,
@@ -32,8 +32,8 @@ pub enum Kind {
 }
 
 /// A document that was opened, ready to become a tab.
-pub struct Opened {
-    pub tab: Tab,
+pub struct OpenedTab {
+    pub tab: OpenDocument,
     /// Sentences about what was found and what could not be kept.
     pub notes: Vec<String>,
 }
@@ -42,44 +42,44 @@ pub fn is_document(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS)
 }
 
-fn ends_in(file: &Path, endings: &[&str]) -> bool {
-    let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    endings.contains(&ending.as_str())
+fn ends_in(file: &Path, extensions: &[&str]) -> bool {
+    let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    extensions.contains(&extension.as_str())
 }
 
 /// What a dropped or opened file is, by its ending, its contents and its name.
-pub fn kind_of(file: &Path) -> Result<Kind> {
+pub fn kind_of(file: &Path) -> Result<FileUse> {
     if is_document(file) {
-        return Ok(Kind::Document);
+        return Ok(FileUse::Document);
     }
     let budget = Budget::default();
     let bytes = read_file(file, budget.file_bytes)?;
     let found = inspect::describe(file, &bytes, &budget)?;
     let named = pairs::part_of(file).map(|(_, part)| part);
-    Ok(if found.looks_like_normals || !found.normals.is_empty() || (named == Some(Part::Normal) && !found.is_grey) {
-        Kind::Normals
-    } else if !found.depths.is_empty() || (found.is_grey && named == Some(Part::Depth)) {
-        Kind::Depth
+    Ok(if found.looks_like_normals || !found.normals.is_empty() || (named == Some(MapPart::Normal) && !found.is_grey) {
+        FileUse::Normals
+    } else if !found.depths.is_empty() || (found.is_grey && named == Some(MapPart::Depth)) {
+        FileUse::Depth
     } else {
-        Kind::Picture
+        FileUse::Picture
     })
 }
 
 /// Opens a document, a map, or a picture as a document of its own.
-pub fn open(file: &Path) -> Result<Opened> {
+pub fn open(file: &Path) -> Result<OpenedTab> {
     match kind_of(file)? {
-        Kind::Document | Kind::Picture => {
+        FileUse::Document | FileUse::Picture => {
             io::save::tidy(file);
-            let io::Opened { document, notes, is_whole, kind, stamp } = io::open(file, &Budget::default())?;
+            let io::OpenedDocument { document, notes, is_whole, kind, stamp } = io::open(file, &Budget::default())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let is_project = kind == io::open::Kind::Project;
-            let mut tab = Tab::new(name, document, is_project.then(|| file.into()));
+            let is_project = kind == io::open::FileKind::Project;
+            let mut tab = OpenDocument::new(name, document, is_project.then(|| file.into()));
             // What is not whole must not replace its file unasked.
             tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
-            Ok(Opened { tab, notes })
+            Ok(OpenedTab { tab, notes })
         }
-        Kind::Normals => open_maps(&maps_of(Some(file), None)),
-        Kind::Depth => open_maps(&maps_of(None, Some(file))),
+        FileUse::Normals => open_maps(&maps_of(Some(file), None)),
+        FileUse::Depth => open_maps(&maps_of(None, Some(file))),
     }
 }
 
@@ -94,14 +94,14 @@ pub fn maps_of(normal: Option<&Path>, depth: Option<&Path>) -> SurfaceSource {
 }
 
 /// Reads a surface from the user's own files.
-pub fn import(source: &SurfaceSource) -> Result<maps::Import> {
-    maps::import(source, &Given::default(), &Budget::default())
+pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
+    maps::import(source, &UserFiles::default(), &Budget::default())
 }
 
 /// The maps that belong to a file by their names: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its folder.
-pub fn maps_beside(file: &Path, kind: Kind) -> SurfaceSource {
+pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     let part = pairs::part_of(file);
-    let mut source = if kind == Kind::Depth { maps_of(None, Some(file)) } else { maps_of(Some(file), None) };
+    let mut source = if kind == FileUse::Depth { maps_of(None, Some(file)) } else { maps_of(Some(file), None) };
     let Some((name, _)) = part else { return source };
     let beside = file.parent().and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
     let mut others: Vec<PathBuf> =
@@ -110,13 +110,13 @@ pub fn maps_beside(file: &Path, kind: Kind) -> SurfaceSource {
     for other in others {
         let text = other.to_string_lossy().into_owned();
         match pairs::part_of(&other).filter(|(other, _)| *other == name) {
-            Some((_, Part::Normal)) if source.normal.is_none() => {
+            Some((_, MapPart::Normal)) if source.normal.is_none() => {
                 source.normal = Some(MapSource { file: text, ..MapSource::default() });
             }
-            Some((_, Part::Depth)) if source.depth.is_none() => {
+            Some((_, MapPart::Depth)) if source.depth.is_none() => {
                 source.depth = Some(MapSource { file: text, ..MapSource::default() });
             }
-            Some((_, Part::Mask)) if source.mask.is_none() => {
+            Some((_, MapPart::Mask)) if source.mask.is_none() => {
                 source.mask = Some(MaskSource::File { file: text, channel: None, invert: false });
             }
             _ => {}
@@ -127,22 +127,22 @@ pub fn maps_beside(file: &Path, kind: Kind) -> SurfaceSource {
 
 /// Files that came together, sorted: the maps of each object, and what is opened by itself, in their order.
 #[derive(Debug, Default, PartialEq)]
-pub struct Sorted {
+pub struct SortedFiles {
     pub objects: Vec<SurfaceSource>,
-    pub others: Vec<(PathBuf, Kind)>,
+    pub others: Vec<(PathBuf, FileUse)>,
 }
 
 /// Sorts files of known kinds. A normal map, a depth map and a mask that come together are one object's, whatever they are
 /// called; a second normal map begins another object. What is missing is looked for beside each file (see [`maps_beside`]).
-pub fn sorted(files: Vec<(PathBuf, Kind)>) -> Sorted {
-    let mut sorted = Sorted::default();
+pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
+    let mut sorted = SortedFiles::default();
     let text = |file: &Path| file.to_string_lossy().into_owned();
     let map = |file: &Path| Some(MapSource { file: text(file), ..MapSource::default() });
     let (maps, others): (Vec<_>, Vec<_>) =
-        files.into_iter().partition(|(_, kind)| matches!(kind, Kind::Normals | Kind::Depth));
+        files.into_iter().partition(|(_, kind)| matches!(kind, FileUse::Normals | FileUse::Depth));
     // Normals first: depth joins them.
-    let (normals, depths): (Vec<_>, Vec<_>) = maps.into_iter().partition(|(_, kind)| *kind == Kind::Normals);
-    sorted.objects.extend(normals.iter().map(|(file, _)| maps_beside(file, Kind::Normals)));
+    let (normals, depths): (Vec<_>, Vec<_>) = maps.into_iter().partition(|(_, kind)| *kind == FileUse::Normals);
+    sorted.objects.extend(normals.iter().map(|(file, _)| maps_beside(file, FileUse::Normals)));
     for (file, _) in depths {
         let is_taken = |source: &SurfaceSource| source.depth.as_ref().is_some_and(|map| map.file == text(&file));
         if sorted.objects.iter().any(is_taken) {
@@ -150,12 +150,12 @@ pub fn sorted(files: Vec<(PathBuf, Kind)>) -> Sorted {
         }
         match sorted.objects.iter_mut().find(|source| source.depth.is_none()) {
             Some(source) => source.depth = map(&file),
-            None => sorted.objects.push(maps_beside(&file, Kind::Depth)),
+            None => sorted.objects.push(maps_beside(&file, FileUse::Depth)),
         }
     }
     for (file, kind) in others {
-        let is_mask = pairs::part_of(&file).is_some_and(|(_, part)| part == Part::Mask);
-        match sorted.objects.iter_mut().find(|_| is_mask && kind == Kind::Picture) {
+        let is_mask = pairs::part_of(&file).is_some_and(|(_, part)| part == MapPart::Mask);
+        match sorted.objects.iter_mut().find(|_| is_mask && kind == FileUse::Picture) {
             Some(source) => source.mask = Some(MaskSource::File { file: text(&file), channel: None, invert: false }),
             None => sorted.others.push((file, kind)),
         }
@@ -164,48 +164,53 @@ pub fn sorted(files: Vec<(PathBuf, Kind)>) -> Sorted {
 }
 
 /// A new document on a surface, with a plain ground to paint on.
-pub fn open_maps(source: &SurfaceSource) -> Result<Opened> {
+pub fn open_maps(source: &SurfaceSource) -> Result<OpenedTab> {
     Ok(of_import(source, import(source)?))
 }
 
 /// The same of maps that were read already.
-pub fn of_import(source: &SurfaceSource, import: maps::Import) -> Opened {
-    let maps::Import { surface, findings, files } = import;
+pub fn of_import(source: &SurfaceSource, import: maps::ImportedSurface) -> OpenedTab {
+    let maps::ImportedSurface { surface, findings, files } = import;
     let size = surface.size();
-    let ground = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Fill(GROUND)) };
+    let background = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Fill(BACKGROUND)) };
     let clay = Layer::new("Base", Content::Gradient(Live::new(clay(size))));
     let document = Document {
         surface: Some(Arc::new(surface)),
         surface_source: Some(Arc::new(source.clone())),
         surface_files: Arc::new(files),
-        layers: vec![Arc::new(ground), Arc::new(clay)],
+        layers: vec![Arc::new(background), Arc::new(clay)],
         ..Document::empty(size)
     };
     let file = source.normal.as_ref().map(|map| &map.file).or(source.depth.as_ref().map(|map| &map.file));
     let stem = file.map(|file| Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned());
-    Opened { tab: Tab::new(stem.unwrap_or_default(), document, None), notes: findings.notes }
+    OpenedTab { tab: OpenDocument::new(stem.unwrap_or_default(), document, None), notes: findings.notes }
 }
 
-const GROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
+const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
 
 /// What a new surface is covered with: light to dark from above left, bent by the normals, so that the shape is seen before
 /// the first stroke.
 fn clay(size: Size) -> Gradient {
     let side = Vec2::new(size.width as f32, size.height as f32);
-    let stop = |t: f32, [r, g, b]: [u8; 3]| Stop { t, color: Color { r, g, b, a: 255 } };
+    let stop = |t: f32, [r, g, b]: [u8; 3]| GradientStop { t, color: Color { r, g, b, a: 255 } };
     Gradient {
         from: side * Vec2::new(0.30, 0.22),
         to: side * Vec2::new(0.66, 0.78),
         stops: vec![stop(0.0, [0xc9, 0xc3, 0xbb]), stop(0.55, [0x84, 0x7d, 0x76]), stop(1.0, [0x3a, 0x36, 0x34])],
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
-        filter: Filter::Antialias,
+        filter: ImageFilter::Antialias,
     }
 }
 
 /// Saves a document as a project. `stamp`: of the file as it was last read or written here, if it was.
 /// `None` if it was given up.
-pub fn save(file: &Path, document: &Document, stamp: Option<Stamp>, progress: &Progress) -> Result<Option<Stamp>> {
-    let over = stamp.map_or(Over::Anything, Over::This);
+pub fn save(
+    file: &Path,
+    document: &Document,
+    stamp: Option<FileStamp>,
+    progress: &Progress,
+) -> Result<Option<FileStamp>> {
+    let over = stamp.map_or(Overwrite::Anything, Overwrite::This);
     Ok(io::save(document, file, over, progress)?.map(|saved| saved.stamp))
 }
 
@@ -215,6 +220,6 @@ pub fn is_openable(file: &Path) -> bool {
 }
 
 /// With the ending that a project has.
-pub fn with_ending(file: PathBuf) -> PathBuf {
+pub fn with_document_extension(file: PathBuf) -> PathBuf {
     if ends_in(&file, &DOCUMENTS[..1]) { file } else { file.with_extension(DOCUMENTS[0]) }
 }

@@ -6,8 +6,8 @@ mod retouched;
 use crate::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
 use crate::io::recipe::Preset;
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
-use crate::paint::grain::Grain;
-use crate::paint::{Brush, Filter, Gradient, Input, Sample, Stop, Stroke};
+use crate::paint::grain::BrushGrain;
+use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, Input, Sample, Stroke};
 use crate::raster::{BlendMode, Plane};
 use crate::surface::{Maps, Operator, Surface};
 use std::f32::consts::{PI, TAU};
@@ -35,8 +35,8 @@ pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     let size = surface.size();
     let side = size.width.min(size.height) as f32;
     let Preset { operator, brush, .. } = preset;
-    let ground = if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
-    if brush.mark.is_retouching() {
+    let background = if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
+    if brush.mode.is_retouching() {
         let drawn = retouched::drawn(preset, surface, side / NATURAL_SIDE, SLATE)?;
         return Some(flatten(&drawn, &Progress::default())?.to_straight_rgba(size.rect()));
     }
@@ -45,10 +45,10 @@ pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     // An eraser is shown by what it takes away.
     let under = if brush.erases { preset.color } else { Color::TRANSPARENT };
     let brush = Brush { erases: false, ..brush };
-    let stroke = Arc::new(Stroke::new(brush, *operator, shown(preset, ground), wave(size)));
+    let stroke = Arc::new(Stroke::new(brush, *operator, shown(preset, background), wave(size)));
     let strokes = Content::Strokes(Live::new(StrokeList { strokes: vec![stroke] }));
     let layers = [
-        Layer::new("ground", Content::Gradient(Live::new(clay(ground, size)))),
+        Layer::new("ground", Content::Gradient(Live::new(clay(background, size)))),
         Layer::new("under", Content::Fill(under)),
         Layer { blend, ..Layer::new("stroke", strokes) },
     ];
@@ -59,19 +59,19 @@ pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
 }
 
 /// Light from the upper left, so that the shape is seen.
-fn clay(ground: Color, size: Size) -> Gradient {
+fn clay(background: Color, size: Size) -> Gradient {
     let (middle, side) = (size.center(), size.width.min(size.height) as f32);
     let lit = |factor: f32| {
         let channel = |c: u8| (f32::from(c) * factor).min(255.0) as u8;
-        Color { r: channel(ground.r), g: channel(ground.g), b: channel(ground.b), a: 255 }
+        Color { r: channel(background.r), g: channel(background.g), b: channel(background.b), a: 255 }
     };
-    let stops = [(0.0, 1.3), (0.45, 1.0), (1.0, 0.62)].map(|(t, factor)| Stop { t, color: lit(factor) });
+    let stops = [(0.0, 1.3), (0.45, 1.0), (1.0, 0.62)].map(|(t, factor)| GradientStop { t, color: lit(factor) });
     Gradient {
         from: middle - 0.36 * side,
         to: middle + 0.36 * side,
         stops: stops.to_vec(),
         operator: Operator::Normal { alpha: 0.35, beta: 0.5, detail: 0.0 },
-        filter: Filter::Antialias,
+        filter: ImageFilter::Antialias,
     }
 }
 
@@ -79,8 +79,8 @@ fn clay(ground: Color, size: Size) -> Gradient {
 const GROOVES: f32 = 0.055;
 
 /// An eraser paints the ground back.
-fn shown(preset: &Preset, ground: Color) -> Color {
-    if preset.brush.erases { ground } else { preset.color }
+fn shown(preset: &Preset, background: Color) -> Color {
+    if preset.brush.erases { background } else { preset.color }
 }
 
 const SLATE: Color = Color { r: 0x54, g: 0x58, b: 0x60, a: 255 };
@@ -94,8 +94,10 @@ fn is_dark(color: Color) -> bool {
 pub fn scaled(brush: &Brush, scale: f32, side: f32) -> Brush {
     let size = (brush.size * scale).max(SIZES[0] * side).min(SIZES[1] * side);
     let shrunk = size / brush.size;
-    let grain =
-        brush.grain.clone().map(|grain| Grain { size_px: (grain.size_px * shrunk.max(0.5 * scale)).max(1.6), ..grain });
+    let grain = brush
+        .grain
+        .clone()
+        .map(|grain| BrushGrain { size_px: (grain.size_px * shrunk.max(0.5 * scale)).max(1.6), ..grain });
     Brush { size, grain, ..brush.clone() }
 }
 

@@ -3,7 +3,7 @@
 mod steps;
 
 use super::actions::{Action, LayerAction};
-use super::replay::Replayed;
+use super::replay::ReplayValue;
 use super::*;
 use crate::document::{Content, Progress, flatten};
 use crate::raster::BlendMode;
@@ -14,10 +14,10 @@ fn told(lines: &str) -> Session {
     session
 }
 fn names(session: &Session) -> Vec<String> {
-    session.tab().unwrap().document().walk().iter().map(|(_, layer)| layer.name.clone()).collect()
+    session.active().unwrap().document().walk().iter().map(|(_, layer)| layer.name.clone()).collect()
 }
 fn pixel(session: &Session, x: i32, y: i32) -> [u8; 4] {
-    flatten(&session.tab().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y)
+    flatten(&session.active().unwrap().drawn(), &Progress::default()).unwrap().pixel(x, y)
 }
 
 const PAPER: &str = r##"{"in":"file","do":"new","width":200,"height":150,"background":"#ffffff"}"##;
@@ -33,12 +33,12 @@ const STROKE: &str = r##"
 fn a_stroke_on_paper_is_one_named_step_that_can_be_undone() {
     let mut session = told(&format!("{PAPER}{STROKE}"));
     assert_eq!(names(&session), ["Background", "Strokes"]);
-    assert_eq!(session.tab().unwrap().history.done(), Some("Brush stroke"));
+    assert_eq!(session.active().unwrap().history.done(), Some("Brush stroke"));
     assert_eq!(pixel(&session, 100, 70), [0xc0, 0x20, 0x10, 255]);
-    assert!(session.tab().unwrap().is_dirty());
+    assert!(session.active().unwrap().is_dirty());
     session.replay(Path::new("story"), r#"{"in":"edit","do":"undo"}"#).unwrap();
     assert_eq!(pixel(&session, 100, 70), [255; 4]);
-    assert!(!session.tab().unwrap().is_dirty(), "back to what was opened, there is nothing to save");
+    assert!(!session.active().unwrap().is_dirty(), "back to what was opened, there is nothing to save");
     assert_eq!(session.recent_colors, [session.color]);
 }
 #[test]
@@ -49,10 +49,10 @@ fn a_slider_shows_as_it_moves_and_is_one_step_when_it_is_let_go() {
     };
     session.replay(Path::new("story"), &set(0.2, false)).unwrap();
     assert_eq!(session.layer().unwrap().opacity, 0.2);
-    assert_eq!(session.tab().unwrap().document().layers[1].opacity, 1.0);
+    assert_eq!(session.active().unwrap().document().layers[1].opacity, 1.0);
     session.replay(Path::new("story"), &format!("{}\n{}", set(0.4, false), set(0.5, true))).unwrap();
-    assert_eq!(session.tab().unwrap().history.past().collect::<Vec<_>>(), ["Brush stroke", "Opacity"]);
-    assert_eq!(session.tab().unwrap().document().layers[1].opacity, 0.5);
+    assert_eq!(session.active().unwrap().history.past().collect::<Vec<_>>(), ["Brush stroke", "Opacity"]);
+    assert_eq!(session.active().unwrap().document().layers[1].opacity, 0.5);
 }
 #[test]
 fn layers_are_made_grouped_moved_and_merged() {
@@ -65,7 +65,7 @@ fn layers_are_made_grouped_moved_and_merged() {
         {{"in":"layer","do":"set","layer":"1","to":{{"do":"blend","mode":"multiply"}},"done":true}}"#
     ));
     assert_eq!(names(&session), ["Background", "Strokes", "Strokes copy", "Gradient", "Group"]);
-    assert_eq!(session.tab().unwrap().document().layers[1].blend, BlendMode::Multiply);
+    assert_eq!(session.active().unwrap().document().layers[1].blend, BlendMode::Multiply);
     let mut session = session;
     session
         .replay(
@@ -78,10 +78,10 @@ fn layers_are_made_grouped_moved_and_merged() {
 #[test]
 fn baking_changes_what_a_layer_is_and_no_pixel() {
     let mut session = told(&format!("{PAPER}{STROKE}"));
-    let before = flatten(session.tab().unwrap().document(), &Progress::default()).unwrap();
+    let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
     let bake = Action::Layer(LayerAction::Bake { layer: session.layer_path().unwrap() });
     bake.apply(&mut session).unwrap();
-    let after = session.tab().unwrap().document();
+    let after = session.active().unwrap().document();
     assert!(matches!(after.layers[1].content, Content::Pixels(_)));
     let after = flatten(after, &Progress::default()).unwrap();
     let rect = crate::math::Rect::new(0, 0, 200, 150);
@@ -99,7 +99,7 @@ fn a_layer_alone_hides_the_others_until_it_is_no_longer() {
 #[test]
 fn what_cannot_be_done_changes_nothing() {
     let mut session = told(PAPER);
-    let before = session.tab().unwrap().document().clone();
+    let before = session.active().unwrap().document().clone();
     let hopeless = r#"
         {"in":"layer","do":"delete","layer":"7"}
         {"in":"layer","do":"move","layer":"0","group":"0","index":0}
@@ -108,8 +108,8 @@ fn what_cannot_be_done_changes_nothing() {
         {"in":"pointer","do":"release"}
         {"in":"file","do":"tab","index":9}"#;
     session.replay(Path::new("story"), hopeless).unwrap();
-    assert!(is_same(&before, session.tab().unwrap().document()));
-    assert_eq!(session.tab().unwrap().history.past().len(), 0);
+    assert!(is_same(&before, session.active().unwrap().document()));
+    assert_eq!(session.active().unwrap().history.past().len(), 0);
     let wrong = session.replay(Path::new("story"), "{\"in\":\"layer\",\"do\":\"paint it black\"}").unwrap_err();
     assert_eq!(wrong.to_string(), "story: line 1: “do” is “paint it black”, which is not known here");
 }
@@ -130,9 +130,9 @@ fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
         {{"in":"stroke","do":"restyle","layer":"1","strokes":[1],"to":{{"do":"color","color":"#0000ff"}},"done":true}}
         {{"in":"stroke","do":"move","layer":"1","strokes":[1],"by":[0,40]}}"##
     ));
-    assert_eq!(session.tab().unwrap().chosen_strokes(), [1]);
+    assert_eq!(session.active().unwrap().chosen_strokes(), [1]);
     assert_eq!((pixel(&session, 100, 70), pixel(&session, 112, 123)), ([0xc0, 0x20, 0x10, 255], [0, 0, 255, 255]));
-    let past: Vec<&str> = session.tab().unwrap().history.past().collect();
+    let past: Vec<&str> = session.active().unwrap().history.past().collect();
     assert_eq!(past[1..], ["Duplicate stroke", "Restyle stroke", "Move stroke"]);
     let rest = r#"
         {"in":"stroke","do":"take","layer":"1","stroke":1}
@@ -155,7 +155,7 @@ fn a_fill_stops_at_a_stroke_and_is_one_step() {
         {{"in":"pointer","do":"release"}}"##
     ));
     assert_eq!(names(&session), ["Background", "Strokes", "Paint"]);
-    assert_eq!(session.tab().unwrap().history.done(), Some("Fill"));
+    assert_eq!(session.active().unwrap().history.done(), Some("Fill"));
     assert_eq!((pixel(&session, 100, 20), pixel(&session, 100, 70)), ([0, 255, 0, 255], [0xc0, 0x20, 0x10, 255]));
     assert_eq!(pixel(&session, 5, 140), [0, 255, 0, 255], "around the stroke's ends");
 }

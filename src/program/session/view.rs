@@ -7,7 +7,7 @@ use crate::math::{Affine2, Mat2, Size, Vec2, vec2};
 
 /// Where the canvas is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct CanvasView {
     /// The canvas point in the middle of the window, px.
     pub center: Vec2,
     /// Screen points to a canvas pixel.
@@ -17,12 +17,12 @@ pub struct View {
     /// Left and right change places on the screen; the document stays.
     pub mirrored: bool,
 }
-record!(View { center, zoom, turn_rad, mirrored });
+record!(CanvasView { center, zoom, turn_rad, mirrored });
 
 /// From a canvas that is a speck to pixels as large as a hand.
 pub const ZOOMS: [f32; 2] = [0.01, 64.0];
 
-impl View {
+impl CanvasView {
     /// The whole canvas, in the middle of a window.
     pub fn fitting(canvas: Size, window_pt: Vec2) -> Self {
         let side = vec2(canvas.width as f32, canvas.height as f32);
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn zooming_leaves_the_point_under_the_cursor_where_it_is() {
-        let view = View { center: vec2(300.0, 200.0), zoom: 1.5, turn_rad: 0.7, mirrored: true };
+        let view = CanvasView { center: vec2(300.0, 200.0), zoom: 1.5, turn_rad: 0.7, mirrored: true };
         let about = vec2(-120.0, 45.0);
         let before = view.canvas_from_screen().transform_point2(about);
         let after = view.zoomed(3.0, about).canvas_from_screen().transform_point2(about);
@@ -78,7 +78,7 @@ mod tests {
     }
     #[test]
     fn panning_moves_the_canvas_with_the_hand() {
-        let view = View { center: vec2(300.0, 200.0), zoom: 2.0, turn_rad: 0.4, mirrored: false };
+        let view = CanvasView { center: vec2(300.0, 200.0), zoom: 2.0, turn_rad: 0.4, mirrored: false };
         let by = vec2(30.0, -8.0);
         let held = vec2(310.0, 190.0);
         let before = view.screen_from_canvas().transform_point2(held);
@@ -87,13 +87,13 @@ mod tests {
     }
     #[test]
     fn a_mirrored_view_turns_the_way_it_is_asked() {
-        let view = View { center: Vec2::ZERO, zoom: 1.0, turn_rad: 0.0, mirrored: true };
+        let view = CanvasView { center: Vec2::ZERO, zoom: 1.0, turn_rad: 0.0, mirrored: true };
         let turned = view.turned(0.1).screen_from_canvas().transform_vector2(vec2(0.0, -1.0));
         assert!(turned.x > 0.0, "clockwise as seen: what was up leans right");
     }
     #[test]
     fn the_fitted_view_shows_every_corner() {
-        let view = View::fitting(Size::new(4000, 100), vec2(800.0, 600.0));
+        let view = CanvasView::fitting(Size::new(4000, 100), vec2(800.0, 600.0));
         let corner = view.screen_from_canvas().transform_point2(vec2(4000.0, 100.0));
         assert!(corner.x <= 400.0 && corner.y <= 300.0);
     }

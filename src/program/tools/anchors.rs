@@ -1,9 +1,9 @@
 //! The anchor tool: where an image is pinned to the surface, and which of its points is pinned there.
 //! Floor 5. What anchors do is `surface::deformation`'s.
 
-use super::gradient::{self, End};
-use super::{Begun, Context, GRAB_PT, Gesture, Outcome, Pen, lights};
-use crate::document::{Content, Document, Layer, LayerId, Live, Lock};
+use super::gradient::{self, GradientEnd};
+use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, lights};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock, Live};
 use crate::math::{Size, Vec2};
 use crate::paint::PlacedImage;
 use crate::surface::{Anchor, Deformation, Surface};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// What dragging an anchor changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum How {
+pub enum AnchorDrag {
     /// The anchor moves along the surface and takes its content with it: `at` changes, `source` stays.
     Carry,
     /// The anchor stays, the content moves under it: `source` changes.
@@ -38,8 +38,8 @@ pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Optio
     near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= GRAB_PT * px_per_pt).map(|(i, _)| i)
 }
 
-pub fn press(context: &Context, pen: Pen) -> Begun {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != Lock::All);
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
     let Some(layer) = layer else { return (None, Outcome::Idle) };
     let taken = handle_at(layer, context.document.size, pen.place(), context.px_per_pt);
     let document = context.document.clone();
@@ -48,14 +48,14 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
         (Content::Image(live), Some(index)) if pen.keys.alt => (None, remove(&document, layer, live.params(), index)),
         (Content::Image(live), Some(index)) => {
             let how = match pen.keys {
-                keys if keys.ctrl => How::Content,
-                keys if keys.shift => How::Repin,
-                _ => How::Carry,
+                keys if keys.ctrl => AnchorDrag::Content,
+                keys if keys.shift => AnchorDrag::Repin,
+                _ => AnchorDrag::Carry,
             };
             let image = live.params().clone();
             let (before, from, label) = (image.clone(), pen.place(), "Move anchor");
             (
-                Some(Box::new(Dragged {
+                Some(Box::new(AnchorGesture {
                     document,
                     layer: layer.id,
                     image,
@@ -70,28 +70,28 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
             )
         }
         (Content::Gradient(live), Some(index)) => {
-            let end = if index == 0 { End::From } else { End::To };
+            let end = if index == 0 { GradientEnd::From } else { GradientEnd::To };
             let gradient = live.params().clone();
             gradient::drag_end(document, layer.id, gradient, end)
         }
         (Content::Shading(live), Some(index)) => {
             let (layer, shading) = (layer.id, live.params().clone());
-            (Some(Box::new(lights::Dragged { document, layer, shading, index, moved: false })), Outcome::Idle)
+            (Some(Box::new(lights::LightGesture { document, layer, shading, index, moved: false })), Outcome::Idle)
         }
         _ => (None, Outcome::Idle),
     }
 }
 
 /// A new anchor that changes nothing yet: it pins what is shown there.
-fn add(document: Document, layer: &Layer, mut image: PlacedImage, pen: Pen) -> Begun {
+fn add(document: Document, layer: &Layer, mut image: PlacedImage, pen: PenSample) -> GestureStart {
     let surface = document.surface.clone();
     let at = pen.place();
     let source = shown_at(&image, surface.as_deref(), &document, at);
     image.bend.anchors.push(Anchor { at, source });
     let index = image.bend.anchors.len() - 1;
-    let (before, how, from) = (image.clone(), How::Carry, at);
+    let (before, how, from) = (image.clone(), AnchorDrag::Carry, at);
     let mut dragged =
-        Dragged { document, layer: layer.id, image, before, index, how, from, moved: true, label: "Add anchor" };
+        AnchorGesture { document, layer: layer.id, image, before, index, how, from, moved: true, label: "Add anchor" };
     let outcome = dragged.show();
     (Some(Box::new(dragged)), outcome)
 }
@@ -113,20 +113,20 @@ fn shown_at(image: &PlacedImage, surface: Option<&Surface>, document: &Document,
     deformation.at(center.x as i32, center.y as i32) + (at - center - 0.5)
 }
 
-struct Dragged {
+struct AnchorGesture {
     document: Document,
     layer: LayerId,
     image: PlacedImage,
     /// Before the drag.
     before: PlacedImage,
     index: usize,
-    how: How,
+    how: AnchorDrag,
     from: Vec2,
     moved: bool,
     label: &'static str,
 }
 
-impl Dragged {
+impl AnchorGesture {
     fn with(&self) -> Option<Document> {
         let content = Content::Image(Live::new(self.image.clone()));
         self.document.with_layer(self.layer, |layer| layer.content = content)
@@ -136,16 +136,16 @@ impl Dragged {
     }
 }
 
-impl Gesture for Dragged {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for AnchorGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let Some(&start) = self.before.bend.anchors.get(self.index) else { return Outcome::Idle };
         let by = pen.place() - self.from;
         let anchor = match self.how {
-            How::Carry => Anchor { at: start.at + by, source: start.source },
+            AnchorDrag::Carry => Anchor { at: start.at + by, source: start.source },
             // The content follows the pen, so what is pinned lies the other way.
-            How::Content => Anchor { at: start.at, source: start.source - by },
-            How::Repin => {
+            AnchorDrag::Content => Anchor { at: start.at, source: start.source - by },
+            AnchorDrag::Repin => {
                 let at = start.at + by;
                 let surface: Option<Arc<Surface>> = self.document.surface.clone();
                 Anchor { at, source: shown_at(&self.before, surface.as_deref(), &self.document, at) }
@@ -159,9 +159,9 @@ impl Gesture for Dragged {
     }
     fn release(&mut self) -> Outcome {
         let label = match self.how {
-            How::Content => "Move content under anchor",
-            How::Repin => "Re-pin anchor",
-            How::Carry => self.label,
+            AnchorDrag::Content => "Move content under anchor",
+            AnchorDrag::Repin => "Re-pin anchor",
+            AnchorDrag::Carry => self.label,
         };
         match self.with() {
             Some(document) if self.moved => Outcome::Commit { label: label.into(), document, select: None },
@@ -174,10 +174,10 @@ impl Gesture for Dragged {
 mod tests {
     use super::*;
     use crate::math::{Size, vec2};
-    use crate::paint::{Adjust, Brush, Filter, PictureSource, Placement};
+    use crate::paint::{Adjust, Brush, ImageFilter, PictureSource, Placement};
     use crate::raster::{Outside, Picture};
     use crate::surface::{Bend, Operator, Weights};
-    use crate::tools::Keys;
+    use crate::tools::ModifierKeys;
 
     fn document(anchors: Vec<Anchor>) -> Document {
         let size = Size::new(100, 80);
@@ -187,18 +187,18 @@ mod tests {
             placement: Placement::covering(size),
             outside: Outside::Mirror,
             bend: Bend { operator: Operator::None, anchors, weights: Weights::default() },
-            filter: Filter::Antialias,
+            filter: ImageFilter::Antialias,
         };
         let layers = vec![Arc::new(Layer::new("image", Content::Image(Live::new(image))))];
         Document { layers, ..Document::empty(size) }
     }
-    fn dragged(document: &Document, keys: Keys, from: Vec2, to: Vec2) -> Option<Vec<Anchor>> {
+    fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Option<Vec<Anchor>> {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
-        let context = Context { layer, ..Context::new(document, &brush) };
-        let (gesture, begun) = press(&context, Pen { keys, ..Pen::at(from) });
+        let context = ToolContext { layer, ..ToolContext::new(document, &brush) };
+        let (gesture, begun) = press(&context, PenSample { keys, ..PenSample::at(from) });
         let outcome = match gesture {
             Some(mut gesture) => {
-                gesture.drag(&[Pen { keys, ..Pen::at(to) }]);
+                gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
                 gesture.release()
             }
             None => begun,
@@ -211,29 +211,30 @@ mod tests {
     #[test]
     fn dragging_an_anchor_takes_its_content_along() {
         let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
-        let anchors = dragged(&pinned, Keys::default(), vec2(33.0, 30.0), vec2(53.0, 40.0)).unwrap();
+        let anchors = dragged(&pinned, ModifierKeys::default(), vec2(33.0, 30.0), vec2(53.0, 40.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(50.0, 40.0), source: vec2(30.0, 30.0) }]);
     }
     #[test]
     fn dragging_content_leaves_the_anchor_where_it_is() {
         let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
-        let keys = Keys { ctrl: true, ..Keys::default() };
+        let keys = ModifierKeys { ctrl: true, ..ModifierKeys::default() };
         let anchors = dragged(&pinned, keys, vec2(30.0, 30.0), vec2(35.0, 32.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(30.0, 30.0), source: vec2(25.0, 28.0) }]);
     }
     #[test]
     fn a_new_or_repinned_anchor_changes_no_pixel() {
         let moved = Anchor { at: vec2(30.0, 30.0), source: vec2(20.0, 30.0) };
-        let anchors = dragged(&document(vec![moved]), Keys::default(), vec2(80.0, 60.5), vec2(80.0, 60.5)).unwrap();
+        let anchors =
+            dragged(&document(vec![moved]), ModifierKeys::default(), vec2(80.0, 60.5), vec2(80.0, 60.5)).unwrap();
         assert_eq!(anchors[1], Anchor { at: vec2(80.0, 60.5), source: vec2(70.0, 60.5) });
-        let keys = Keys { shift: true, ..Keys::default() };
+        let keys = ModifierKeys { shift: true, ..ModifierKeys::default() };
         let anchors = dragged(&document(vec![moved]), keys, vec2(30.0, 30.0), vec2(50.0, 30.0)).unwrap();
         assert_eq!(anchors, [Anchor { at: vec2(50.0, 30.0), source: vec2(40.0, 30.0) }]);
     }
     #[test]
     fn alt_takes_an_anchor_away_and_nothing_else() {
         let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0)), Anchor::fixed(vec2(60.0, 30.0))]);
-        let keys = Keys { alt: true, ..Keys::default() };
+        let keys = ModifierKeys { alt: true, ..ModifierKeys::default() };
         assert_eq!(dragged(&pinned, keys, vec2(61.0, 30.0), vec2(61.0, 30.0)).unwrap().len(), 1);
         assert_eq!(dragged(&pinned, keys, vec2(10.0, 70.0), vec2(10.0, 70.0)), None);
     }

@@ -1,34 +1,38 @@
 //! The brush and the eraser: the pen's readings become one stroke, live on a stroke layer, pixels on a paint layer.
 //! Floor 5. Dabs and tiles are `paint`'s.
 
-use super::retouch::{self, Work};
-use super::symmetry::Image;
-use super::{Begun, Context, Gesture, Outcome, Pen};
-use crate::document::{Content, Document, Layer, LayerId, Live, Lock, PixelLayer, Place, StrokeList};
+use super::retouch::{self, ActiveWork};
+use super::symmetry::SymmetryImage;
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live, PixelLayer, StrokeList};
 use crate::math::{Vec2, hash, srgb::Color};
-use crate::paint::{Calm, Ground, InHand, Mark, Sample, Scene, Stroke, Tip};
+use crate::paint::{ActiveStrokes, Backdrop, BrushMode, Sample, Scene, StabilizedPen, Stroke, Tip};
 use crate::raster::{Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
 /// What the stroke is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum StrokePurpose {
     Paint,
     Erase,
 }
 
 /// The pen comes down with the brush. A selected layer that cannot hold strokes gets a stroke layer above it.
-pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
+pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
     if let Some(refused) = retouch::refused(context, pen, purpose) {
         return (None, refused);
     }
     let Some((document, id)) = paintable(context, purpose) else { return (None, Outcome::Idle) };
     let Some(layer) = document.layer(id) else { return (None, Outcome::Idle) };
     let scene = document.scene_of(id).unwrap_or_else(|| document.scene());
-    let (target, ground) = match (&layer.content, purpose) {
-        (Content::Strokes(list), Purpose::Erase) if pen.keys.ctrl => {
-            let taken =
-                TakenAway { document: context.document.clone(), layer: id, list: list.clone(), gone: Vec::new() };
+    let (target, backdrop) = match (&layer.content, purpose) {
+        (Content::Strokes(list), StrokePurpose::Erase) if pen.keys.ctrl => {
+            let taken = EraseStrokesGesture {
+                document: context.document.clone(),
+                layer: id,
+                list: list.clone(),
+                gone: Vec::new(),
+            };
             return begin(taken, pen);
         }
         (Content::Strokes(list), _) => {
@@ -36,39 +40,39 @@ pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
             // Of an empty layer everything is known.
             let blank = TileAt::covering(scene.size.rect()).filter(|_| strokes.is_empty()).map(|at| (at, None));
             let shown = list.with_tiles(list.params().clone(), &scene, blank);
-            (Target::Strokes { beneath: strokes.clone(), shown }, Ground::Strokes(strokes))
+            (StrokeTarget::Strokes { beneath: strokes.clone(), shown }, Backdrop::Strokes(strokes))
         }
         (Content::Pixels(pixels), _) => {
             let mut shown = pixels.tiles.clone();
             shown.reserve(scene.size.rect());
             let base = PixelLayer { file: String::new(), ..pixels.clone() };
-            (Target::Pixels { base, shown }, Ground::Pixels(pixels.tiles.clone()))
+            (StrokeTarget::Pixels { base, shown }, Backdrop::Pixels(pixels.tiles.clone()))
         }
         _ => return (None, Outcome::Idle),
     };
-    let is_eraser = purpose == Purpose::Erase;
+    let is_eraser = purpose == StrokePurpose::Erase;
     let mut brush = context.brush.clone();
     if is_eraser {
-        brush.mark = Mark::Paint;
+        brush.mode = BrushMode::Paint;
     }
     brush.erases |= is_eraser;
-    brush.keeps_alpha |= layer.lock == Lock::Alpha;
+    brush.keeps_alpha |= layer.lock == LayerLock::Alpha;
     if brush.is_random() {
         // Whoever draws the same stroke again gets the same one.
         brush.seed = hash::mix(pen.place().x.to_bits() ^ hash::mix(pen.place().y.to_bits()));
     }
     let color = if is_eraser { Color { a: 255, ..context.color } } else { context.color };
     let images = context.symmetry.images(document.size);
-    let like = |image: &Image| Stroke::new(image.brush(&brush), context.operator, color, Vec::new());
+    let like = |image: &SymmetryImage| Stroke::new(image.brush(&brush), context.operator, color, Vec::new());
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
     let work = retouch::begun(context, &images, pen, layer, &strokes, &scene);
     // With Shift a straight line from where the last stroke ended, its pressure that of this pen.
     let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
     let line = start.flat_map(|last| (0..8).map(move |i| last.lerp(pen.place(), i as f32 / 8.0)));
-    let painting = Painting {
+    let painting = StrokeGesture {
         lead: line.map(|at| Sample { at, ..pen.sample }).collect(),
-        in_hand: Some(work.unwrap_or_else(|| Work::Strokes(InHand::new(&strokes, ground, &scene)))),
-        calm: Calm::new(brush.stabilizer),
+        active: Some(work.unwrap_or_else(|| ActiveWork::Strokes(ActiveStrokes::new(&strokes, backdrop, &scene)))),
+        stabilized: StabilizedPen::new(brush.stabilizer),
         label: if is_eraser { "Erase" } else { "Brush stroke" },
         document,
         layer: id,
@@ -79,33 +83,33 @@ pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
     begin(painting, pen)
 }
 
-fn begin(mut gesture: impl Gesture + 'static, pen: Pen) -> Begun {
+fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {
     let outcome = gesture.drag(&[pen]);
     (Some(Box::new(gesture)), outcome)
 }
 
 /// The document with a layer that a stroke can go to. `None` where the layer in hand is locked, or there is nothing to erase.
-fn paintable(context: &Context, purpose: Purpose) -> Option<(Document, LayerId)> {
+fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Option<(Document, LayerId)> {
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));
     if let Some(layer) = selected {
         let holds = match &layer.content {
-            Content::Strokes(list) => purpose == Purpose::Paint || !list.params().strokes.is_empty(),
+            Content::Strokes(list) => purpose == StrokePurpose::Paint || !list.params().strokes.is_empty(),
             content => matches!(content, Content::Pixels(_)),
         };
-        if layer.lock == Lock::All {
+        if layer.lock == LayerLock::All {
             return None;
         }
         if holds {
             return Some((document.clone(), layer.id));
         }
     }
-    if purpose == Purpose::Erase {
+    if purpose == StrokePurpose::Erase {
         return None;
     }
     let place = selected
         .and_then(|layer| document.place_of(layer.id))
-        .map_or(Place::top_level(usize::MAX), |place| Place { index: place.index + 1, ..place });
+        .map_or(LayerSlot::top_level(usize::MAX), |place| LayerSlot { index: place.index + 1, ..place });
     let layer = Layer::new(free_name(document, "Strokes"), Content::Strokes(Live::new(StrokeList::default())));
     let id = layer.id;
     Some((document.with_inserted(layer, place)?, id))
@@ -125,36 +129,36 @@ pub fn free_name(document: &Document, base: &str) -> String {
 }
 
 /// Where the strokes go.
-enum Target {
+enum StrokeTarget {
     Strokes { beneath: Vec<Arc<Stroke>>, shown: Live<StrokeList> },
     Pixels { base: PixelLayer, shown: TileGrid },
 }
 
 /// A stroke in the making, and its mirror images.
-struct Painting {
+struct StrokeGesture {
     /// As it was before the stroke, with the layer that the stroke goes to.
     document: Document,
     layer: LayerId,
     /// What the layer sees.
     scene: Scene,
-    target: Target,
+    target: StrokeTarget,
     /// `None` once it is finished.
-    in_hand: Option<Work>,
-    images: Vec<Image>,
-    calm: Calm,
+    active: Option<ActiveWork>,
+    images: Vec<SymmetryImage>,
+    stabilized: StabilizedPen,
     /// Samples before the pen's first.
     lead: Vec<Sample>,
     label: &'static str,
 }
 
-impl Painting {
+impl StrokeGesture {
     /// Draws on to more samples; the tiles that changed.
     fn draw(&mut self, samples: Vec<Sample>) -> Vec<(TileAt, Option<Arc<Tile>>)> {
-        let Some(in_hand) = &mut self.in_hand else { return Vec::new() };
-        let of_image = |image: &Image| samples.iter().map(|sample| image.sample(sample)).collect();
+        let Some(active) = &mut self.active else { return Vec::new() };
+        let of_image = |image: &SymmetryImage| samples.iter().map(|sample| image.sample(sample)).collect();
         let samples: Vec<Vec<Sample>> = self.images.iter().map(of_image).collect();
-        let tiles = in_hand.draw(&samples);
-        if let Target::Pixels { shown, .. } = &mut self.target {
+        let tiles = active.draw(&samples);
+        if let StrokeTarget::Pixels { shown, .. } = &mut self.target {
             tiles.iter().for_each(|(at, tile)| shown.set(*at, tile.clone()));
         }
         tiles
@@ -162,44 +166,46 @@ impl Painting {
     /// The document with the strokes, of which these tiles changed.
     fn with(&mut self, strokes: Vec<Stroke>, tiles: Vec<(TileAt, Option<Arc<Tile>>)>) -> Option<Document> {
         let content = match &mut self.target {
-            Target::Strokes { beneath, shown } => {
+            StrokeTarget::Strokes { beneath, shown } => {
                 let strokes = beneath.iter().cloned().chain(strokes.into_iter().map(Arc::new)).collect();
                 *shown = shown.with_tiles(StrokeList { strokes }, &self.scene, tiles);
                 Content::Strokes(shown.clone())
             }
             // What was painted here is no longer what the file holds.
-            Target::Pixels { base, shown } => Content::Pixels(PixelLayer { tiles: shown.clone(), ..base.clone() }),
+            StrokeTarget::Pixels { base, shown } => {
+                Content::Pixels(PixelLayer { tiles: shown.clone(), ..base.clone() })
+            }
         };
         self.document.with_layer(self.layer, |layer| layer.content = content)
     }
 }
 
-impl Gesture for Painting {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for StrokeGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let mut samples = std::mem::take(&mut self.lead);
-        samples.extend(pens.iter().filter_map(|pen| self.calm.push(pen.sample)));
+        samples.extend(pens.iter().filter_map(|pen| self.stabilized.push(pen.sample)));
         let tiles = self.draw(samples);
-        let strokes = self.in_hand.as_ref().map_or(Vec::new(), Work::strokes);
+        let strokes = self.active.as_ref().map_or(Vec::new(), ActiveWork::strokes);
         self.with(strokes, tiles).map_or(Outcome::Idle, Outcome::Preview)
     }
     fn release(&mut self) -> Outcome {
-        let rest = self.calm.finish().into_iter().collect();
+        let rest = self.stabilized.finish().into_iter().collect();
         let tiles = self.draw(rest);
-        let strokes = self.in_hand.take().map_or(Vec::new(), Work::finish);
+        let strokes = self.active.take().map_or(Vec::new(), ActiveWork::finish);
         let Some(document) = self.with(strokes, tiles) else { return Outcome::Cancel };
         Outcome::Commit { label: self.label.into(), document, select: Some(self.layer) }
     }
 }
 
 /// The eraser with Ctrl on a stroke layer: a stroke that is touched is gone.
-struct TakenAway {
+struct EraseStrokesGesture {
     document: Document,
     layer: LayerId,
     list: Live<StrokeList>,
     gone: Vec<usize>,
 }
 
-impl TakenAway {
+impl EraseStrokesGesture {
     fn without(&self) -> Option<Document> {
         let kept = |i: &usize| !self.gone.contains(i);
         let strokes = &self.list.params().strokes;
@@ -209,8 +215,8 @@ impl TakenAway {
     }
 }
 
-impl Gesture for TakenAway {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for EraseStrokesGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let strokes = &self.list.params().strokes;
         for pen in pens {
             let touched = (0..strokes.len()).rev().find(|i| !self.gone.contains(i) && is_on(&strokes[*i], pen.place()));
@@ -255,16 +261,16 @@ mod tests {
     use crate::math::{Size, vec2};
     use crate::paint::{Brush, Stabilizer};
     use crate::surface::Operator;
-    use crate::tools::{Keys, Symmetry};
+    use crate::tools::{ModifierKeys, Symmetry};
 
-    fn context<'a>(document: &'a Document, layer: Option<LayerId>, brush: &'a Brush) -> Context<'a> {
-        Context { layer, ..Context::new(document, brush) }
+    fn context<'a>(document: &'a Document, layer: Option<LayerId>, brush: &'a Brush) -> ToolContext<'a> {
+        ToolContext { layer, ..ToolContext::new(document, brush) }
     }
-    fn drawn(context: &Context, purpose: Purpose, points: &[Vec2]) -> (Document, Option<LayerId>) {
-        let (gesture, _) = press(context, Pen::at(points[0]), purpose);
+    fn drawn(context: &ToolContext, purpose: StrokePurpose, points: &[Vec2]) -> (Document, Option<LayerId>) {
+        let (gesture, _) = press(context, PenSample::at(points[0]), purpose);
         let mut gesture = gesture.unwrap();
         for &point in &points[1..] {
-            gesture.drag(&[Pen::at(point)]);
+            gesture.drag(&[PenSample::at(point)]);
         }
         match gesture.release() {
             Outcome::Commit { document, select, .. } => (document, select),
@@ -294,19 +300,19 @@ mod tests {
     #[test]
     fn the_first_stroke_makes_a_layer_to_hold_it() {
         let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush::default());
-        let (document, select) = drawn(&context(&empty, None, &brush), Purpose::Paint, &LINE);
+        let (document, select) = drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &LINE);
         assert_eq!(document.layers.len(), 1);
         assert_eq!(select, Some(document.layers[0].id));
         let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
         assert_eq!(list.params().strokes[0].samples().len(), LINE.len());
-        let (again, _) = drawn(&context(&document, select, &brush), Purpose::Paint, &LINE);
+        let (again, _) = drawn(&context(&document, select, &brush), StrokePurpose::Paint, &LINE);
         assert_eq!(again.layers.len(), 1, "the next one goes to the same layer");
     }
     #[test]
     fn pixels_painted_step_by_step_are_those_painted_at_once() {
         let (document, brush) = (paint_layer(), Brush { size: 30.0, ..Brush::default() });
         let id = Some(document.layers[0].id);
-        let (steps, _) = drawn(&context(&document, id, &brush), Purpose::Paint, &LINE);
+        let (steps, _) = drawn(&context(&document, id, &brush), StrokePurpose::Paint, &LINE);
         let stroke = Stroke::new(brush, Operator::None, Color::BLACK, LINE.map(Sample::at).to_vec());
         let scene = document.scene();
         for at in TileAt::covering(scene.size.rect()) {
@@ -320,30 +326,34 @@ mod tests {
         let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
         let document = paint_layer();
         let id = Some(document.layers[0].id);
-        let (painted, _) = drawn(&context(&document, id, &brush), Purpose::Paint, &LINE);
+        let (painted, _) = drawn(&context(&document, id, &brush), StrokePurpose::Paint, &LINE);
         assert_eq!(tiles(&painted).pixel(60, 52), [0, 0, 0, 255]);
-        let (erased, _) = drawn(&context(&painted, id, &brush), Purpose::Erase, &LINE);
+        let (erased, _) = drawn(&context(&painted, id, &brush), StrokePurpose::Erase, &LINE);
         assert_eq!(tiles(&erased).pixel(60, 52), [0; 4]);
-        let locked = painted.with_layer(painted.layers[0].id, |layer| layer.lock = Lock::Alpha).unwrap();
+        let locked = painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
         let wide = Brush { size: 90.0, ..brush };
-        let white = Context { color: Color::WHITE, ..context(&locked, id, &wide) };
-        let (atop, _) = drawn(&white, Purpose::Paint, &LINE);
+        let white = ToolContext { color: Color::WHITE, ..context(&locked, id, &wide) };
+        let (atop, _) = drawn(&white, StrokePurpose::Paint, &LINE);
         assert_eq!((tiles(&atop).pixel(60, 52), tiles(&atop).pixel(60, 90)), ([255; 4], [0; 4]));
     }
     #[test]
     fn a_locked_layer_takes_no_paint() {
         let (document, brush) = (paint_layer(), Brush::default());
         let id = document.layers[0].id;
-        let locked = document.with_layer(id, |layer| layer.lock = Lock::All).unwrap();
-        assert!(press(&context(&locked, Some(id), &brush), Pen::at(LINE[0]), Purpose::Paint).0.is_none());
+        let locked = document.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
+        assert!(press(&context(&locked, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Paint).0.is_none());
     }
     #[test]
     fn the_eraser_with_ctrl_takes_whole_strokes_from_a_stroke_layer() {
         let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
-        let (one, id) = drawn(&context(&empty, None, &brush), Purpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
-        let (two, _) = drawn(&context(&one, id, &brush), Purpose::Paint, &[vec2(10.0, 90.0), vec2(90.0, 90.0)]);
-        let ctrl = Pen { keys: Keys { ctrl: true, ..Keys::default() }, ..Pen::at(vec2(50.0, 91.0)) };
-        let (gesture, _) = press(&context(&two, id, &brush), ctrl, Purpose::Erase);
+        let (one, id) =
+            drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
+        let (two, _) = drawn(&context(&one, id, &brush), StrokePurpose::Paint, &[vec2(10.0, 90.0), vec2(90.0, 90.0)]);
+        let ctrl = PenSample {
+            keys: ModifierKeys { ctrl: true, ..ModifierKeys::default() },
+            ..PenSample::at(vec2(50.0, 91.0))
+        };
+        let (gesture, _) = press(&context(&two, id, &brush), ctrl, StrokePurpose::Erase);
         let Outcome::Commit { document: left, .. } = gesture.unwrap().release() else { panic!("one is gone") };
         let Content::Strokes(list) = &left.layers[0].content else { panic!("a stroke layer") };
         assert_eq!(list.params().strokes.len(), 1);
@@ -352,13 +362,14 @@ mod tests {
     #[test]
     fn the_eraser_lays_a_stroke_that_takes_paint_away_where_there_are_strokes() {
         let (empty, brush) = (Document::empty(Size::new(200, 150)), Brush { size: 8.0, ..Brush::default() });
-        let (one, id) = drawn(&context(&empty, None, &brush), Purpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
-        let (cut, _) = drawn(&context(&one, id, &brush), Purpose::Erase, &[vec2(50.0, 5.0), vec2(50.0, 60.0)]);
+        let (one, id) =
+            drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &[vec2(10.0, 20.0), vec2(90.0, 20.0)]);
+        let (cut, _) = drawn(&context(&one, id, &brush), StrokePurpose::Erase, &[vec2(50.0, 5.0), vec2(50.0, 60.0)]);
         let Content::Strokes(list) = &cut.layers[0].content else { panic!("a stroke layer") };
         let erases: Vec<bool> = list.params().strokes.iter().map(|stroke| stroke.brush().erases).collect();
         assert_eq!(erases, [false, true]);
         let (none, id) = (one.with_layer(one.layers[0].id, |layer| layer.content = blank()).unwrap(), id.unwrap());
-        assert!(press(&context(&none, Some(id), &brush), Pen::at(LINE[0]), Purpose::Erase).0.is_none());
+        assert!(press(&context(&none, Some(id), &brush), PenSample::at(LINE[0]), StrokePurpose::Erase).0.is_none());
     }
     fn blank() -> Content {
         Content::Strokes(Live::new(StrokeList::default()))
@@ -368,14 +379,15 @@ mod tests {
         let empty = Document::empty(Size::new(200, 150));
         let brush = Brush { size: 8.0, hardness: 1.0, ..Brush::default() };
         let plain = context(&empty, None, &brush);
-        let mirrored = Context { symmetry: Symmetry::Vertical, ..plain };
-        let (document, _) = drawn(&mirrored, Purpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
+        let mirrored = ToolContext { symmetry: Symmetry::Vertical, ..plain };
+        let (document, _) = drawn(&mirrored, StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(60.0, 90.0)]);
         let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
         let ends: Vec<Vec2> = list.params().strokes.iter().map(|stroke| stroke.samples()[1].at).collect();
         assert_eq!(ends, [vec2(60.0, 90.0), vec2(140.0, 90.0)]);
-        let on_paint = Context { document: &paint_layer(), layer: None, ..mirrored };
+        let on_paint = ToolContext { document: &paint_layer(), layer: None, ..mirrored };
         let id = on_paint.document.layers[0].id;
-        let (painted, _) = drawn(&Context { layer: Some(id), ..on_paint }, Purpose::Paint, &[vec2(20.0, 40.0)]);
+        let (painted, _) =
+            drawn(&ToolContext { layer: Some(id), ..on_paint }, StrokePurpose::Paint, &[vec2(20.0, 40.0)]);
         assert_eq!((tiles(&painted).pixel(20, 40)[3], tiles(&painted).pixel(179, 40)[3]), (255, 255));
     }
     #[test]
@@ -383,7 +395,7 @@ mod tests {
         let empty = Document::empty(Size::new(200, 150));
         let brush = Brush { size: 8.0, stabilizer: Stabilizer::String { length_px: 40.0 }, ..Brush::default() };
         let (document, _) =
-            drawn(&context(&empty, None, &brush), Purpose::Paint, &[vec2(20.0, 40.0), vec2(120.0, 40.0)]);
+            drawn(&context(&empty, None, &brush), StrokePurpose::Paint, &[vec2(20.0, 40.0), vec2(120.0, 40.0)]);
         let Content::Strokes(list) = &document.layers[0].content else { panic!("a stroke layer") };
         let places: Vec<f32> = list.params().strokes[0].samples().iter().map(|s| s.at.x).collect();
         assert_eq!(places, [20.0, 80.0, 120.0]);
@@ -393,19 +405,20 @@ mod tests {
         let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
         let document = paint_layer();
         let id = Some(document.layers[0].id);
-        let (painted, _) = drawn(&context(&document, id, &brush), Purpose::Paint, &LINE);
-        let locked = painted.with_layer(painted.layers[0].id, |layer| layer.lock = Lock::Alpha).unwrap();
-        let (erased, _) = drawn(&context(&locked, id, &brush), Purpose::Erase, &LINE);
+        let (painted, _) = drawn(&context(&document, id, &brush), StrokePurpose::Paint, &LINE);
+        let locked = painted.with_layer(painted.layers[0].id, |layer| layer.lock = LayerLock::Alpha).unwrap();
+        let (erased, _) = drawn(&context(&locked, id, &brush), StrokePurpose::Erase, &LINE);
         assert_eq!(tiles(&erased).pixel(60, 52), [0, 0, 0, 255]);
     }
     #[test]
     fn what_is_redrawn_while_drawing_does_not_grow_with_the_stroke() {
         use crate::document::diff::diff;
         let (empty, brush) = (Document::empty(Size::new(2000, 500)), Brush { size: 20.0, ..Brush::default() });
-        let (gesture, first) = press(&context(&empty, None, &brush), Pen::at(vec2(20.0, 100.0)), Purpose::Paint);
+        let (gesture, first) =
+            press(&context(&empty, None, &brush), PenSample::at(vec2(20.0, 100.0)), StrokePurpose::Paint);
         let (mut gesture, Outcome::Preview(mut before)) = (gesture.unwrap(), first) else { panic!("it shows") };
         for i in 1..90 {
-            let Outcome::Preview(next) = gesture.drag(&[Pen::at(vec2(20.0 + 20.0 * i as f32, 100.0))]) else {
+            let Outcome::Preview(next) = gesture.drag(&[PenSample::at(vec2(20.0 + 20.0 * i as f32, 100.0))]) else {
                 panic!("it shows")
             };
             let redrawn = diff(&before, &next).len();

@@ -1,24 +1,24 @@
 //! The eyedropper: the colour that the flattened picture shows under the pen.
 //! Floor 5.
 
-use super::{Begun, Context, Gesture, Outcome, Pen};
-use crate::document::{Document, Prepared, Progress};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::{Document, PreparedDocument, Progress};
 use crate::math::{Vec2, srgb::Color};
 use crate::raster::grid::unpremultiply;
 use crate::raster::{TILE, TileAt};
 
-pub fn press(context: &Context, pen: Pen) -> Begun {
-    let mut picking = Picking { document: context.document.clone() };
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let mut picking = EyedropperGesture { document: context.document.clone() };
     let outcome = picking.drag(&[pen]);
     (Some(Box::new(picking)), outcome)
 }
 
-struct Picking {
+struct EyedropperGesture {
     document: Document,
 }
 
-impl Gesture for Picking {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for EyedropperGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let color = pens.last().and_then(|pen| color_at(&self.document, pen.place()));
         color.map_or(Outcome::Idle, Outcome::Picked)
     }
@@ -34,7 +34,7 @@ pub fn color_at(document: &Document, at: Vec2) -> Option<Color> {
         return None;
     }
     let here = TileAt::of_pixel(x, y);
-    let tile = Prepared::new(document, &Progress::default())?.flatten_tile(here)?;
+    let tile = PreparedDocument::new(document, &Progress::default())?.flatten_tile(here)?;
     let i = ((y - here.rect().y0) as usize * TILE + (x - here.rect().x0) as usize) * 4;
     let mut straight = [0; 4];
     unpremultiply(tile.bytes().get(i..i + 4)?, &mut straight);

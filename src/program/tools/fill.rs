@@ -2,20 +2,22 @@
 //! Floor 5. How far it goes is `paint::fill`'s.
 
 use super::brush::free_name;
-use super::{Begun, Context, Outcome, Pen};
-use crate::document::{Content, Document, Layer, LayerId, Lock, PixelLayer, Place, Prepared, Progress};
+use super::{GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::{
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, PreparedDocument, Progress,
+};
 use crate::math::srgb::Color;
-use crate::paint::fill::Filled;
-use crate::raster::{Coverage, Mix, Paint, PlanarTile, Tile, TileAt, TileGrid};
+use crate::paint::fill::FilledArea;
+use crate::raster::{Mix, PlanarTile, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The pen comes down: all is done at once. A selected layer that holds no pixels gets a paint layer above it.
-pub fn press(context: &Context, pen: Pen) -> Begun {
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     (None, filled(context, pen).unwrap_or(Outcome::Idle))
 }
 
-fn filled(context: &Context, pen: Pen) -> Option<Outcome> {
+fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
     let (document, id) = fillable(context)?;
     let layer = document.layer(id)?;
     let Content::Pixels(pixels) = &layer.content else { return None };
@@ -23,10 +25,10 @@ fn filled(context: &Context, pen: Pen) -> Option<Outcome> {
     let filled = if context.fill.layer_alone {
         context.fill.from(pen.place(), document.size, &part, |at| pixels.tiles.tile(at).cloned())
     } else {
-        let picture = Prepared::new(context.document, &Progress::default())?;
+        let picture = PreparedDocument::new(context.document, &Progress::default())?;
         context.fill.from(pen.place(), document.size, &part, |at| picture.flatten_tile(at))
     }?;
-    let mix = Mix { atop: layer.lock == Lock::Alpha, ..Mix::default() };
+    let mix = Mix { atop: layer.lock == LayerLock::Alpha, ..Mix::default() };
     let tiles = painted(&pixels.tiles, &filled, context.color, mix);
     let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
     let document = document.with_layer(id, |layer| layer.content = Content::Pixels(next))?;
@@ -34,15 +36,15 @@ fn filled(context: &Context, pen: Pen) -> Option<Outcome> {
 }
 
 /// The document with a paint layer to fill; `None` where the layer in hand is locked.
-fn fillable(context: &Context) -> Option<(Document, LayerId)> {
+fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));
     if let Some(layer) = selected.filter(|layer| matches!(layer.content, Content::Pixels(_))) {
-        return (layer.lock != Lock::All).then(|| (document.clone(), layer.id));
+        return (layer.lock != LayerLock::All).then(|| (document.clone(), layer.id));
     }
     let place = selected
         .and_then(|layer| document.place_of(layer.id))
-        .map_or(Place::top_level(usize::MAX), |place| Place { index: place.index + 1, ..place });
+        .map_or(LayerSlot::top_level(usize::MAX), |place| LayerSlot { index: place.index + 1, ..place });
     let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() };
     let layer = Layer::new(free_name(document, "Paint"), Content::Pixels(pixels));
     let id = layer.id;
@@ -50,7 +52,7 @@ fn fillable(context: &Context) -> Option<(Document, LayerId)> {
 }
 
 /// The layer's pixels with a colour laid over them as far as they are filled.
-fn painted(base: &TileGrid, filled: &Filled, color: Color, mix: Mix) -> TileGrid {
+fn painted(base: &TileGrid, filled: &FilledArea, color: Color, mix: Mix) -> TileGrid {
     let tiles: Vec<TileAt> = TileAt::covering(filled.rect).collect();
     let made: Vec<Option<Arc<Tile>>> =
         tiles.par_iter().map(|&at| tile(base.tile(at), at, filled, color, mix)).collect();
@@ -60,18 +62,18 @@ fn painted(base: &TileGrid, filled: &Filled, color: Color, mix: Mix) -> TileGrid
     grid
 }
 
-fn tile(base: Option<&Arc<Tile>>, at: TileAt, filled: &Filled, color: Color, mix: Mix) -> Option<Arc<Tile>> {
+fn tile(base: Option<&Arc<Tile>>, at: TileAt, filled: &FilledArea, color: Color, mix: Mix) -> Option<Arc<Tile>> {
     let corner = at.rect();
     let covered = |x: usize, y: usize| filled.coverage(corner.x0 + x as i32, corner.y0 + y as i32);
-    let coverage = Coverage::FULL.times(covered);
+    let coverage = TileCoverage::FULL.times(covered);
     if coverage.is_none() {
         return base.cloned();
     }
     let mut pixels = PlanarTile::transparent();
     if let Some(base) = base {
-        pixels.blend(Mix::default(), Paint::Bytes(base), &Coverage::FULL);
+        pixels.blend(Mix::default(), TilePaint::Bytes(base), &TileCoverage::FULL);
     }
-    pixels.blend(mix, Paint::Solid(color.premultiplied()), &coverage);
+    pixels.blend(mix, TilePaint::Solid(color.premultiplied()), &coverage);
     pixels.quantised().map(Arc::new)
 }
 
@@ -80,7 +82,7 @@ mod tests {
     use super::*;
     use crate::math::{Size, Vec2, vec2};
     use crate::paint::{Brush, Fill};
-    use crate::surface::Bounded;
+    use crate::surface::PaintLimit;
 
     const BLUE: Color = Color { r: 0, g: 0, b: 255, a: 255 };
 
@@ -97,9 +99,13 @@ mod tests {
     }
     fn click(document: &Document, layer: usize, fill: Fill, at: Vec2) -> Option<Document> {
         let (brush, white) = (Brush::default(), Color::WHITE);
-        let context =
-            Context { layer: Some(document.layers[layer].id), color: white, fill, ..Context::new(document, &brush) };
-        match press(&context, Pen::at(at)).1 {
+        let context = ToolContext {
+            layer: Some(document.layers[layer].id),
+            color: white,
+            fill,
+            ..ToolContext::new(document, &brush)
+        };
+        match press(&context, PenSample::at(at)).1 {
             Outcome::Commit { document, .. } => Some(document),
             _ => None,
         }
@@ -114,7 +120,7 @@ mod tests {
         grow_px: 0.0,
         antialias: false,
         layer_alone: false,
-        bounded: Bounded::Free,
+        bounded: PaintLimit::Free,
     };
 
     #[test]
@@ -133,11 +139,11 @@ mod tests {
     #[test]
     fn locked_alpha_fills_only_what_is_painted_and_a_locked_layer_nothing() {
         let document = document();
-        let lock = |lock: Lock| document.with_layer(document.layers[1].id, |layer| layer.lock = lock).unwrap();
+        let lock = |lock: LayerLock| document.with_layer(document.layers[1].id, |layer| layer.lock = lock).unwrap();
         let all = Fill { tolerance: 1.0, ..SHARP };
-        let filled = click(&lock(Lock::Alpha), 1, all, vec2(10.0, 40.0)).unwrap();
+        let filled = click(&lock(LayerLock::Alpha), 1, all, vec2(10.0, 40.0)).unwrap();
         assert_eq!((pixel(&filled, 1, 30, 30), pixel(&filled, 1, 90, 30)), ([255; 4], [0; 4]));
-        assert!(click(&lock(Lock::All), 1, all, vec2(10.0, 40.0)).is_none());
+        assert!(click(&lock(LayerLock::All), 1, all, vec2(10.0, 40.0)).is_none());
         let alone = Fill { layer_alone: true, ..SHARP };
         let filled = click(&document, 1, alone, vec2(90.0, 40.0)).unwrap();
         assert_eq!(pixel(&filled, 1, 60, 30), [255; 4], "beside the paint the layer is empty");

@@ -2,63 +2,65 @@
 //! Floor 5.
 
 use super::brush::free_name;
-use super::{Begun, Context, GRAB_PT, Gesture, Outcome, Pen};
-use crate::document::{Content, Document, Layer, LayerId, Live, Lock, Place};
+use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live};
 use crate::math::Vec2;
-use crate::paint::{Filter, Gradient, Stop};
+use crate::paint::{Gradient, GradientStop, ImageFilter};
 
 /// Which end of a gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum GradientEnd {
     From,
     To,
 }
 
-pub fn press(context: &Context, pen: Pen) -> Begun {
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let at = pen.place();
     let selected = context.layer.and_then(|id| context.document.layer(id));
     if let Some(layer) = selected
         && let Content::Gradient(live) = &layer.content
     {
-        if layer.lock == Lock::All {
+        if layer.lock == LayerLock::All {
             return (None, Outcome::Idle);
         }
         let gradient = live.params().clone();
         let near = |end: Vec2| end.distance(at) <= GRAB_PT * context.px_per_pt;
-        let end = [(End::To, gradient.to), (End::From, gradient.from)].into_iter().find(|(_, p)| near(*p));
+        let end =
+            [(GradientEnd::To, gradient.to), (GradientEnd::From, gradient.from)].into_iter().find(|(_, p)| near(*p));
         if let Some((end, _)) = end {
             return drag_end(context.document.clone(), layer.id, gradient, end);
         }
     }
-    let stops = vec![Stop { t: 0.0, color: context.color }, Stop { t: 1.0, color: context.second_color }];
-    let gradient = Gradient { from: at, to: at, stops, operator: context.operator, filter: Filter::Antialias };
+    let stops =
+        vec![GradientStop { t: 0.0, color: context.color }, GradientStop { t: 1.0, color: context.second_color }];
+    let gradient = Gradient { from: at, to: at, stops, operator: context.operator, filter: ImageFilter::Antialias };
     let place = selected.and_then(|layer| context.document.place_of(layer.id));
-    let laid = Laid { document: context.document.clone(), place, gradient, layer: None };
+    let laid = NewGradientGesture { document: context.document.clone(), place, gradient, layer: None };
     (Some(Box::new(laid)), Outcome::Idle)
 }
 
 /// A new gradient, from where the pen came down.
-struct Laid {
+struct NewGradientGesture {
     document: Document,
     /// Of the layer it goes above.
-    place: Option<Place>,
+    place: Option<LayerSlot>,
     gradient: Gradient,
     layer: Option<Layer>,
 }
 
-impl Laid {
+impl NewGradientGesture {
     fn with(&mut self) -> Option<Document> {
         let name = free_name(&self.document, "Gradient");
         let content = Content::Gradient(Live::new(self.gradient.clone()));
         let layer = self.layer.get_or_insert_with(|| Layer::new(name, content.clone()));
         layer.content = content;
-        let place = self.place.map_or(Place::top_level(usize::MAX), |p| Place { index: p.index + 1, ..p });
+        let place = self.place.map_or(LayerSlot::top_level(usize::MAX), |p| LayerSlot { index: p.index + 1, ..p });
         self.document.with_inserted(layer.clone(), place)
     }
 }
 
-impl Gesture for Laid {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for NewGradientGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         self.gradient.to = if pen.keys.shift { upright(self.gradient.from, pen.place()) } else { pen.place() };
         self.with().map_or(Outcome::Idle, Outcome::Preview)
@@ -80,34 +82,34 @@ fn upright(from: Vec2, to: Vec2) -> Vec2 {
 }
 
 /// Takes hold of one end of a gradient.
-pub(super) fn drag_end(document: Document, layer: LayerId, gradient: Gradient, end: End) -> Begun {
-    (Some(Box::new(Dragged { document, layer, gradient, end, moved: false })), Outcome::Idle)
+pub(super) fn drag_end(document: Document, layer: LayerId, gradient: Gradient, end: GradientEnd) -> GestureStart {
+    (Some(Box::new(GradientEndGesture { document, layer, gradient, end, moved: false })), Outcome::Idle)
 }
 
 /// One end of a gradient in hand.
-struct Dragged {
+struct GradientEndGesture {
     document: Document,
     layer: LayerId,
     gradient: Gradient,
-    end: End,
+    end: GradientEnd,
     moved: bool,
 }
 
-impl Dragged {
+impl GradientEndGesture {
     fn with(&self) -> Option<Document> {
         let content = Content::Gradient(Live::new(self.gradient.clone()));
         self.document.with_layer(self.layer, |layer| layer.content = content)
     }
 }
 
-impl Gesture for Dragged {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for GradientEndGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        let fixed = if self.end == End::From { self.gradient.to } else { self.gradient.from };
+        let fixed = if self.end == GradientEnd::From { self.gradient.to } else { self.gradient.from };
         let at = if pen.keys.shift { upright(fixed, pen.place()) } else { pen.place() };
         match self.end {
-            End::From => self.gradient.from = at,
-            End::To => self.gradient.to = at,
+            GradientEnd::From => self.gradient.from = at,
+            GradientEnd::To => self.gradient.to = at,
         }
         self.moved = true;
         self.with().map_or(Outcome::Idle, Outcome::Preview)
@@ -131,16 +133,16 @@ mod tests {
     #[test]
     fn a_drag_lays_a_gradient_and_a_second_one_moves_its_end() {
         let (empty, brush) = (Document::empty(Size::new(100, 100)), Brush::default());
-        let context = Context::new(&empty, &brush);
-        let drag = |context: &Context, from: Vec2, to: Vec2| {
-            let mut gesture = press(context, Pen::at(from)).0.unwrap();
-            gesture.drag(&[Pen::at(to)]);
+        let context = ToolContext::new(&empty, &brush);
+        let drag = |context: &ToolContext, from: Vec2, to: Vec2| {
+            let mut gesture = press(context, PenSample::at(from)).0.unwrap();
+            gesture.drag(&[PenSample::at(to)]);
             gesture.release()
         };
         let Outcome::Commit { document, select, .. } = drag(&context, vec2(10.0, 10.0), vec2(80.0, 20.0)) else {
             panic!("laid")
         };
-        let context = Context { document: &document, layer: select, ..context };
+        let context = ToolContext { document: &document, layer: select, ..context };
         let Outcome::Commit { document, .. } = drag(&context, vec2(82.0, 21.0), vec2(50.0, 90.0)) else {
             panic!("moved")
         };

@@ -2,7 +2,7 @@
 //! is the half sphere of directions seen from the front; one at a point stands there.
 //! Floor 5. What light does is `shading`'s.
 
-use super::{Gesture, Outcome, Pen};
+use super::{Gesture, Outcome, PenSample};
 use crate::document::{Content, Document, LayerId, Live};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::shading::{Light, LightKind, Shading};
@@ -40,7 +40,7 @@ fn dragged(light: Light, to: Vec2, canvas: Size) -> Light {
 }
 
 /// A light in hand.
-pub struct Dragged {
+pub struct LightGesture {
     pub document: Document,
     pub layer: LayerId,
     pub shading: Shading,
@@ -48,15 +48,15 @@ pub struct Dragged {
     pub moved: bool,
 }
 
-impl Dragged {
+impl LightGesture {
     fn with(&self) -> Option<Document> {
         let content = Content::Shading(Live::new(self.shading.clone()));
         self.document.with_layer(self.layer, |layer| layer.content = content)
     }
 }
 
-impl Gesture for Dragged {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for LightGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let canvas = self.document.size;
         if let Some(light) = self.shading.lights.get_mut(self.index) {

@@ -2,17 +2,17 @@
 //! those of the brush, on a paint layer that holds the mask's greys while the hand moves.
 //! Floor 5. Strokes are `brush`'s.
 
-use super::brush::{self, Purpose};
-use super::{Begun, Context, Gesture, Outcome, Pen};
-use crate::document::{Content, Document, Layer, LayerId, LayerMask, Lock, MaskKind, PixelLayer};
+use super::brush::{self, StrokePurpose};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerMask, MaskKind, PixelLayer};
 use crate::math::srgb::{Color, luminance, quantise};
 use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The pen comes down. Nothing begins where the layer is locked, or has no mask that is a picture.
-pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != Lock::All);
+pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
+    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
     let Some(layer) = layer else { return (None, Outcome::Idle) };
     let Some(LayerMask { kind: MaskKind::File { coverage, .. }, .. }) = &layer.mask else {
         return (None, Outcome::Idle);
@@ -25,7 +25,7 @@ pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
     let sheet = Layer::new("mask", Content::Pixels(pixels));
     // The strokes bend over what the layer itself sees: the surface with the detail beneath it.
     let surface = context.document.scene_of(layer.id).map_or(context.document.surface.clone(), |scene| scene.surface);
-    let on_sheet = Context {
+    let on_sheet = ToolContext {
         layer: Some(sheet.id),
         color: Color { r: grey, g: grey, b: grey, a },
         document: &Document { surface, layers: vec![Arc::new(sheet)], ..Document::empty(context.document.size) },
@@ -33,13 +33,13 @@ pub fn press(context: &Context, pen: Pen, purpose: Purpose) -> Begun {
     };
     let (Some(stroke), first) = brush::press(&on_sheet, pen, purpose) else { return (None, Outcome::Idle) };
     let (document, layer, mask) = (context.document.clone(), layer.id, coverage.clone());
-    let mut painting = Painting { document, layer, mask, shown, stroke };
+    let mut painting = MaskGesture { document, layer, mask, shown, stroke };
     let outcome = painting.took(first);
     (Some(Box::new(painting)), outcome)
 }
 
 /// A stroke in the making.
-struct Painting {
+struct MaskGesture {
     document: Document,
     layer: LayerId,
     /// The mask with the stroke as far as it is drawn, and the tiles that hold the same.
@@ -49,7 +49,7 @@ struct Painting {
     stroke: Box<dyn Gesture>,
 }
 
-impl Painting {
+impl MaskGesture {
     /// What the brush did to the sheet, done to the mask.
     fn took(&mut self, outcome: Outcome) -> Outcome {
         match outcome {
@@ -79,8 +79,8 @@ impl Painting {
     }
 }
 
-impl Gesture for Painting {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for MaskGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let outcome = self.stroke.drag(pens);
         self.took(outcome)
     }
@@ -149,12 +149,12 @@ mod tests {
         let layer = Layer { mask: Some(LayerMask::new(kind)), ..fill };
         Document { layers: vec![Arc::new(layer)], ..Document::empty(size) }
     }
-    fn drawn(document: &Document, color: Color, purpose: Purpose) -> Document {
+    fn drawn(document: &Document, color: Color, purpose: StrokePurpose) -> Document {
         let (brush, layer) = (Brush { size: 20.0, hardness: 1.0, ..Brush::default() }, Some(document.layers[0].id));
-        let context = Context { layer, color, ..Context::new(document, &brush) };
-        let mut gesture = press(&context, Pen::at(vec2(40.0, 40.0)), purpose).0.unwrap();
-        gesture.drag(&[Pen::at(vec2(90.0, 40.0))]);
-        gesture.drag(&[Pen::at(vec2(120.0, 40.0))]);
+        let context = ToolContext { layer, color, ..ToolContext::new(document, &brush) };
+        let mut gesture = press(&context, PenSample::at(vec2(40.0, 40.0)), purpose).0.unwrap();
+        gesture.drag(&[PenSample::at(vec2(90.0, 40.0))]);
+        gesture.drag(&[PenSample::at(vec2(120.0, 40.0))]);
         match gesture.release() {
             Outcome::Commit { document, .. } => document,
             _ => panic!("kept"),
@@ -167,10 +167,10 @@ mod tests {
     #[test]
     fn white_shows_the_layer_and_black_and_the_eraser_hide_it() {
         let hidden = masked(0);
-        let shown = drawn(&hidden, Color::WHITE, Purpose::Paint);
+        let shown = drawn(&hidden, Color::WHITE, StrokePurpose::Paint);
         assert_eq!((alpha(&shown, 80, 40), alpha(&shown, 80, 80)), (255, 0));
         let whole = masked(255);
-        for (color, purpose) in [(Color::BLACK, Purpose::Paint), (Color::WHITE, Purpose::Erase)] {
+        for (color, purpose) in [(Color::BLACK, StrokePurpose::Paint), (Color::WHITE, StrokePurpose::Erase)] {
             let cut = drawn(&whole, color, purpose);
             assert_eq!((alpha(&cut, 80, 40), alpha(&cut, 80, 80)), (0, 255));
         }
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn only_the_tiles_of_the_stroke_are_drawn_again() {
         let hidden = masked(0);
-        let changed = diff(&hidden, &drawn(&hidden, Color::WHITE, Purpose::Paint));
+        let changed = diff(&hidden, &drawn(&hidden, Color::WHITE, StrokePurpose::Paint));
         let expected = [TileAt::new(0, 0), TileAt::new(1, 0), TileAt::new(2, 0)];
         assert!(!changed.is_empty() && changed.iter().all(|at| expected.contains(at)), "{changed:?}");
     }
@@ -188,7 +188,7 @@ mod tests {
         document.layers = vec![Arc::new(Layer { mask: None, ..Layer::clone(&document.layers[0]) })];
         let brush = Brush::default();
         let layer = Some(document.layers[0].id);
-        let context = Context { layer, ..Context::new(&document, &brush) };
-        assert!(press(&context, Pen::at(vec2(9.0, 9.0)), Purpose::Paint).0.is_none());
+        let context = ToolContext { layer, ..ToolContext::new(&document, &brush) };
+        assert!(press(&context, PenSample::at(vec2(9.0, 9.0)), StrokePurpose::Paint).0.is_none());
     }
 }

@@ -10,9 +10,9 @@ pub mod gradient;
 pub mod image;
 pub mod lights;
 pub mod mask;
+pub mod move_content;
 pub mod outline;
 mod retouch;
-pub mod shift;
 pub mod strokes;
 pub mod symmetry;
 
@@ -141,24 +141,24 @@ impl ToolKind {
 
 /// One reading of the pen with what else is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pen {
+pub struct PenSample {
     pub sample: Sample,
-    pub keys: Keys,
+    pub keys: ModifierKeys,
 }
 
 /// The modifier keys, as they are called on most keyboards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Keys {
+pub struct ModifierKeys {
     pub shift: bool,
     /// Ctrl, or Command.
     pub ctrl: bool,
     pub alt: bool,
 }
 
-impl Pen {
+impl PenSample {
     /// A mouse without keys.
     pub fn at(at: Vec2) -> Self {
-        Self { sample: Sample::at(at), keys: Keys::default() }
+        Self { sample: Sample::at(at), keys: ModifierKeys::default() }
     }
     pub fn place(&self) -> Vec2 {
         self.sample.at
@@ -166,7 +166,7 @@ impl Pen {
 }
 
 /// What a tool works on and with, as it is when the pen comes down.
-pub struct Context<'a> {
+pub struct ToolContext<'a> {
     pub document: &'a Document,
     /// The selected layer.
     pub layer: Option<LayerId>,
@@ -190,7 +190,7 @@ pub struct Context<'a> {
     pub clone_offset: Option<Vec2>,
 }
 
-impl<'a> Context<'a> {
+impl<'a> ToolContext<'a> {
     /// As it is when nothing was chosen yet: no layer, black before white, flat, a pixel to a point.
     pub fn new(document: &'a Document, brush: &'a Brush) -> Self {
         Self {
@@ -237,23 +237,23 @@ pub enum Outcome {
 /// A tool between the pen's coming down and its lifting. It holds what it began with: documents are cheap to clone.
 pub trait Gesture: Send {
     /// The pen's readings since the last call, in their order.
-    fn drag(&mut self, pens: &[Pen]) -> Outcome;
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome;
     fn release(&mut self) -> Outcome;
 }
 
 /// What a tool begins with.
-pub type Begun = (Option<Box<dyn Gesture>>, Outcome);
+pub type GestureStart = (Option<Box<dyn Gesture>>, Outcome);
 
 /// The pen comes down. Hand and zoom have nothing to do with documents: they begin nothing.
-pub fn press(kind: ToolKind, context: &Context, pen: Pen) -> Begun {
+pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {
     match kind {
-        ToolKind::Brush => brush::press(context, pen, brush::Purpose::Paint),
-        ToolKind::Eraser => brush::press(context, pen, brush::Purpose::Erase),
+        ToolKind::Brush => brush::press(context, pen, brush::StrokePurpose::Paint),
+        ToolKind::Eraser => brush::press(context, pen, brush::StrokePurpose::Erase),
         ToolKind::Fill => fill::press(context, pen),
         ToolKind::Gradient => gradient::press(context, pen),
         ToolKind::Image => image::press(context, pen),
         ToolKind::Anchors => anchors::press(context, pen),
-        ToolKind::Move => shift::press(context, pen),
+        ToolKind::Move => move_content::press(context, pen),
         ToolKind::Strokes => strokes::press(context, pen),
         ToolKind::Eyedropper => eyedropper::press(context, pen),
         ToolKind::Hand | ToolKind::Zoom => (None, Outcome::Idle),

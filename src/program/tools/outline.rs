@@ -4,7 +4,7 @@
 use crate::document::Document;
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::{Scene, Stroke};
-use crate::surface::reach::{Extent, Reach};
+use crate::surface::support::{DabExtent, SupportBounds};
 use crate::surface::{Deformation, Operator};
 use std::sync::Arc;
 
@@ -18,9 +18,10 @@ pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32
     if deformation.is_identity() || !at.is_finite() {
         return circle(at, radius_px);
     }
-    let extent = Extent { radius_px, filter_px: 0.0 };
+    let extent = DabExtent { radius_px, filter_px: 0.0 };
     let mut touched = Rect::EMPTY;
-    Reach::new(surface, document.size, operator, at, extent).for_each_tile(|tile| touched = touched.union(tile.rect()));
+    SupportBounds::new(surface, document.size, operator, at, extent)
+        .for_each_tile(|tile| touched = touched.union(tile.rect()));
     let area = touched.intersect(document.size.rect()).grown(1);
     if area.is_empty() {
         return circle(at, radius_px);

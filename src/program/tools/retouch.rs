@@ -1,58 +1,58 @@
 //! The brush as smudge, blur and clone: what it needs before it begins, and what is in its hand.
 //! Floor 5. What it does to pixels is `paint::retouch`'s; the pen's readings become samples in `brush`.
 
-use super::brush::Purpose;
-use super::symmetry::Image;
-use super::{Context, Outcome, Pen};
+use super::brush::StrokePurpose;
+use super::symmetry::SymmetryImage;
+use super::{Outcome, PenSample, ToolContext};
 use crate::document::{Content, Layer, Progress, flatten};
 use crate::math::Vec2;
-use crate::paint::{InHand, Mark, Retouching, Sample, Scene, Stroke};
+use crate::paint::{ActiveRetouching, ActiveStrokes, BrushMode, Sample, Scene, Stroke};
 use crate::raster::{Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
 /// Strokes in the making: of paint, or of what is there.
-pub(super) enum Work {
-    Strokes(InHand),
-    Retouching(Box<Retouching>),
+pub(super) enum ActiveWork {
+    Strokes(ActiveStrokes),
+    Retouching(Box<ActiveRetouching>),
 }
 
-impl Work {
+impl ActiveWork {
     /// The tiles that the next samples of each stroke change.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         match self {
-            Work::Strokes(in_hand) => in_hand.draw(samples),
-            Work::Retouching(retouching) => retouching.draw(samples),
+            ActiveWork::Strokes(active) => active.draw(samples),
+            ActiveWork::Retouching(retouching) => retouching.draw(samples),
         }
     }
     /// The strokes so far, for a layer that keeps them.
     pub fn strokes(&self) -> Vec<Stroke> {
         match self {
-            Work::Strokes(in_hand) => in_hand.strokes(),
-            Work::Retouching(_) => Vec::new(),
+            ActiveWork::Strokes(active) => active.strokes(),
+            ActiveWork::Retouching(_) => Vec::new(),
         }
     }
     pub fn finish(self) -> Vec<Stroke> {
         match self {
-            Work::Strokes(in_hand) => in_hand.finish(),
-            Work::Retouching(_) => Vec::new(),
+            ActiveWork::Strokes(active) => active.finish(),
+            ActiveWork::Retouching(_) => Vec::new(),
         }
     }
 }
 
 /// What comes of a press instead of a stroke: a source point for clones, or why there is none; `None` where one can begin.
-pub(super) fn refused(context: &Context, pen: Pen, purpose: Purpose) -> Option<Outcome> {
-    let mark = context.brush.mark;
-    if purpose != Purpose::Paint || !mark.is_retouching() {
+pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> Option<Outcome> {
+    let mode = context.brush.mode;
+    if purpose != StrokePurpose::Paint || !mode.is_retouching() {
         return None;
     }
-    if mark.is_clone() && pen.keys.alt {
+    if mode.is_clone() && pen.keys.alt {
         return Some(Outcome::CloneFrom(pen.place()));
     }
     let layer = context.layer.and_then(|id| context.document.layer(id));
     if !layer.is_some_and(|layer| matches!(layer.content, Content::Pixels(_))) {
         return Some(Outcome::Refused("Smudge, blur and clone work on paint layers: choose one, or bake this layer."));
     }
-    let has_source = !mark.is_clone() || context.clone_offset.is_some();
+    let has_source = !mode.is_clone() || context.clone_offset.is_some();
     (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush is to copy from, then paint."))
 }
 
@@ -60,27 +60,27 @@ pub(super) fn refused(context: &Context, pen: Pen, purpose: Purpose) -> Option<O
 ///
 /// * `strokes`: one for each image.
 pub(super) fn begun(
-    context: &Context,
-    images: &[Image],
-    pen: Pen,
+    context: &ToolContext,
+    images: &[SymmetryImage],
+    pen: PenSample,
     layer: &Layer,
     strokes: &[Stroke],
     scene: &Scene,
-) -> Option<Work> {
-    let mark = strokes.first().map(|stroke| stroke.brush().mark).filter(|mark| mark.is_retouching())?;
+) -> Option<ActiveWork> {
+    let mode = strokes.first().map(|stroke| stroke.brush().mode).filter(|mode| mode.is_retouching())?;
     let Content::Pixels(pixels) = &layer.content else { return None };
     let offset = context.clone_offset.unwrap_or(Vec2::ZERO);
     // An image of the stroke copies from the image of its source.
-    let there = |image: &Image, at: Vec2| image.sample(&Sample::at(at)).at;
+    let there = |image: &SymmetryImage, at: Vec2| image.sample(&Sample::at(at)).at;
     let offsets: Vec<Vec2> =
         images.iter().map(|image| there(image, pen.place() + offset) - there(image, pen.place())).collect();
-    let source = match mark {
-        Mark::Clone { picture: true, .. } => flatten(context.document, &Progress::default())?,
-        Mark::Clone { .. } => pixels.tiles.clone(),
+    let source = match mode {
+        BrushMode::Clone { picture: true, .. } => flatten(context.document, &Progress::default())?,
+        BrushMode::Clone { .. } => pixels.tiles.clone(),
         _ => TileGrid::default(),
     };
-    let retouching = Retouching::new(strokes, &offsets, pixels.tiles.clone(), source, scene);
-    Some(Work::Retouching(Box::new(retouching)))
+    let retouching = ActiveRetouching::new(strokes, &offsets, pixels.tiles.clone(), source, scene);
+    Some(ActiveWork::Retouching(Box::new(retouching)))
 }
 
 #[cfg(test)]
@@ -89,7 +89,7 @@ mod tests {
     use crate::document::{Document, PixelLayer};
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::Brush;
-    use crate::tools::{Keys, Symmetry, ToolKind, press};
+    use crate::tools::{ModifierKeys, Symmetry, ToolKind, press};
 
     /// A red square at the left of a paint layer, over a blue ground.
     fn document() -> Document {
@@ -100,25 +100,25 @@ mod tests {
         let layers = vec![Arc::new(ground), Arc::new(Layer::new("Paint", Content::Pixels(pixels)))];
         Document { layers, ..Document::empty(Size::new(200, 120)) }
     }
-    fn brush(mark: Mark) -> Brush {
-        Brush { size: 20.0, hardness: 1.0, mark, ..Brush::default() }
+    fn brush(mode: BrushMode) -> Brush {
+        Brush { size: 20.0, hardness: 1.0, mode, ..Brush::default() }
     }
     /// The paint layer after a stroke.
-    fn drawn(context: &Context, from: Vec2, to: Vec2) -> TileGrid {
-        let mut gesture = press(ToolKind::Brush, context, Pen::at(from)).0.unwrap();
-        gesture.drag(&[Pen::at(from.lerp(to, 0.4)), Pen::at(to)]);
+    fn drawn(context: &ToolContext, from: Vec2, to: Vec2) -> TileGrid {
+        let mut gesture = press(ToolKind::Brush, context, PenSample::at(from)).0.unwrap();
+        gesture.drag(&[PenSample::at(from.lerp(to, 0.4)), PenSample::at(to)]);
         let Outcome::Commit { document, .. } = gesture.release() else { panic!("kept") };
         let Content::Pixels(pixels) = &document.layers[1].content else { panic!("paint") };
         pixels.tiles.clone()
     }
-    fn on_paint<'a>(document: &'a Document, brush: &'a Brush) -> Context<'a> {
-        Context { layer: Some(document.layers[1].id), ..Context::new(document, brush) }
+    fn on_paint<'a>(document: &'a Document, brush: &'a Brush) -> ToolContext<'a> {
+        ToolContext { layer: Some(document.layers[1].id), ..ToolContext::new(document, brush) }
     }
 
     #[test]
     fn a_smudge_drags_the_layers_paint_and_its_mirror_image() {
-        let (document, brush) = (document(), brush(Mark::Smudge { length: 1.0 }));
-        let context = Context { symmetry: Symmetry::Vertical, ..on_paint(&document, &brush) };
+        let (document, brush) = (document(), brush(BrushMode::Smudge { length: 1.0 }));
+        let context = ToolContext { symmetry: Symmetry::Vertical, ..on_paint(&document, &brush) };
         let tiles = drawn(&context, vec2(50.0, 60.0), vec2(90.0, 60.0));
         assert!(tiles.pixel(80, 60)[3] > 200 && tiles.pixel(80, 80)[3] == 0);
         // The image drags nothing onto nothing, from the right.
@@ -128,8 +128,8 @@ mod tests {
     fn a_clone_copies_the_layer_or_the_picture_from_so_far_away() {
         let document = document();
         for (picture, outside) in [(false, [0; 4]), (true, [0, 0, 255, 255])] {
-            let brush = brush(Mark::Clone { aligned: true, picture });
-            let context = Context { clone_offset: Some(vec2(-100.0, 0.0)), ..on_paint(&document, &brush) };
+            let brush = brush(BrushMode::Clone { aligned: true, picture });
+            let context = ToolContext { clone_offset: Some(vec2(-100.0, 0.0)), ..on_paint(&document, &brush) };
             let tiles = drawn(&context, vec2(140.0, 60.0), vec2(175.0, 60.0));
             assert_eq!((tiles.pixel(140, 60), tiles.pixel(175, 60)), ([255, 0, 0, 255], outside));
         }
@@ -137,16 +137,18 @@ mod tests {
     #[test]
     fn what_cannot_begin_says_why_and_alt_sets_the_source() {
         let document = document();
-        let clone = brush(Mark::Clone { aligned: true, picture: false });
-        let begun = |context: &Context, keys: Keys| {
-            let pen = Pen { keys, ..Pen::at(vec2(30.0, 50.0)) };
+        let clone = brush(BrushMode::Clone { aligned: true, picture: false });
+        let begun = |context: &ToolContext, keys: ModifierKeys| {
+            let pen = PenSample { keys, ..PenSample::at(vec2(30.0, 50.0)) };
             press(ToolKind::Brush, context, pen).1
         };
         let plain = on_paint(&document, &clone);
-        assert!(matches!(begun(&plain, Keys::default()), Outcome::Refused(why) if why.contains("Alt-click")));
-        let alt = Keys { alt: true, ..Keys::default() };
+        assert!(matches!(begun(&plain, ModifierKeys::default()), Outcome::Refused(why) if why.contains("Alt-click")));
+        let alt = ModifierKeys { alt: true, ..ModifierKeys::default() };
         assert!(matches!(begun(&plain, alt), Outcome::CloneFrom(at) if at == vec2(30.0, 50.0)));
-        let on_fill = Context { layer: Some(document.layers[0].id), ..plain };
-        assert!(matches!(begun(&on_fill, Keys::default()), Outcome::Refused(why) if why.contains("paint layers")));
+        let on_fill = ToolContext { layer: Some(document.layers[0].id), ..plain };
+        assert!(
+            matches!(begun(&on_fill, ModifierKeys::default()), Outcome::Refused(why) if why.contains("paint layers"))
+        );
     }
 }

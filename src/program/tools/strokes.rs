@@ -1,16 +1,16 @@
 //! The stroke tool: strokes of a stroke layer are chosen on the canvas and moved along the surface.
 //! Floor 5. The edits are `document`'s; which strokes are chosen is remembered by the session.
 
-use super::{Begun, Context, Gesture, Outcome, Pen};
-use crate::document::{Content, Document, LayerId, Lock};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::{Content, Document, LayerId, LayerLock};
 use crate::math::Vec2;
 use crate::paint::picking;
 
 /// The pen comes down: on a stroke it chooses it (with Shift, it as well, or no longer), beside all it lets go of them.
-pub fn press(context: &Context, pen: Pen) -> Begun {
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let nothing = (None, Outcome::Idle);
     let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return nothing };
-    if layer.lock == Lock::All || !matches!(layer.content, Content::Strokes(_)) {
+    if layer.lock == LayerLock::All || !matches!(layer.content, Content::Strokes(_)) {
         return nothing;
     }
     let strokes = context.document.strokes(layer.id);
@@ -26,7 +26,7 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
         (false, true) => context.strokes.to_vec(),
         (false, false) => vec![hit],
     };
-    let moving = Moving {
+    let moving = MoveStrokesGesture {
         document: context.document.clone(),
         layer: layer.id,
         chosen: chosen.clone(),
@@ -41,7 +41,7 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
 /// A hand that chooses trembles: nearer than this nothing is moved, screen points.
 const SLOP_PT: f32 = 3.0;
 
-struct Moving {
+struct MoveStrokesGesture {
     document: Document,
     layer: LayerId,
     chosen: Vec<usize>,
@@ -51,14 +51,14 @@ struct Moving {
     moves: bool,
 }
 
-impl Moving {
+impl MoveStrokesGesture {
     fn with(&self) -> Option<Document> {
         self.document.with_moved_strokes(self.layer, &self.chosen, self.by)
     }
 }
 
-impl Gesture for Moving {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for MoveStrokesGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         self.by = pen.place() - self.from;
         self.moves |= self.by.length() > self.slop_px;
@@ -82,7 +82,7 @@ mod tests {
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::{Brush, Sample, Stroke};
     use crate::surface::Operator;
-    use crate::tools::Keys;
+    use crate::tools::ModifierKeys;
     use std::sync::Arc;
 
     /// Lines at y = 20, 60 and 100.
@@ -99,12 +99,12 @@ mod tests {
     fn dragged(strokes: &[usize], shift: bool, from: Vec2, to: Vec2) -> (Option<Vec<usize>>, Option<Vec<f32>>) {
         let (document, brush) = (document(), Brush::default());
         let layer = Some(document.layers[0].id);
-        let context = Context { layer, strokes, ..Context::new(&document, &brush) };
-        let keys = Keys { shift, ..Keys::default() };
-        let (gesture, begun) = press(&context, Pen { keys, ..Pen::at(from) });
+        let context = ToolContext { layer, strokes, ..ToolContext::new(&document, &brush) };
+        let keys = ModifierKeys { shift, ..ModifierKeys::default() };
+        let (gesture, begun) = press(&context, PenSample { keys, ..PenSample::at(from) });
         let chosen = if let Outcome::Chosen(chosen) = begun { Some(chosen) } else { None };
         let moved = gesture.and_then(|mut gesture| {
-            gesture.drag(&[Pen { keys, ..Pen::at(to) }]);
+            gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
             match gesture.release() {
                 Outcome::Commit { document, .. } => {
                     let strokes = document.strokes(document.layers[0].id);

@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use crate::math::{Mat2, Size, Vec2};
-use crate::paint::{Brush, Facing, Sample};
+use crate::paint::{Brush, Sample, StrokeFrame};
 
 /// How strokes repeat about the middle of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -24,7 +24,7 @@ pub const MOST_ROUND: u32 = 64;
 
 /// Where one of the strokes goes: turned or mirrored about the canvas's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Image {
+pub struct SymmetryImage {
     center: Vec2,
     /// Orthogonal.
     turn: Mat2,
@@ -32,7 +32,7 @@ pub struct Image {
 
 impl Symmetry {
     /// The images of a stroke, itself first.
-    pub fn images(self, canvas: Size) -> Vec<Image> {
+    pub fn images(self, canvas: Size) -> Vec<SymmetryImage> {
         let mirror = |x: f32, y: f32| Mat2::from_diagonal(Vec2::new(x, y));
         let turns = match self {
             Symmetry::None => vec![Mat2::IDENTITY],
@@ -44,7 +44,7 @@ impl Symmetry {
                 (0..n).map(|i| Mat2::from_angle(std::f32::consts::TAU * i as f32 / n as f32)).collect()
             }
         };
-        turns.into_iter().map(|turn| Image { center: canvas.center(), turn }).collect()
+        turns.into_iter().map(|turn| SymmetryImage { center: canvas.center(), turn }).collect()
     }
     /// The lines across which strokes repeat, or that part the turns; canvas px, as far as the canvas's corners.
     pub fn axes(self, canvas: Size) -> Vec<[Vec2; 2]> {
@@ -64,7 +64,7 @@ impl Symmetry {
     }
 }
 
-impl Image {
+impl SymmetryImage {
     pub fn sample(&self, sample: &Sample) -> Sample {
         let at = self.center + self.turn * (sample.at - self.center);
         // The stroke itself, to the bit.
@@ -73,7 +73,7 @@ impl Image {
     }
     /// The brush that paints the image: whatever turns or scatters its dabs does so in the mirror.
     pub fn brush(&self, brush: &Brush) -> Brush {
-        Brush { facing: Facing::of(self.turn * brush.facing.map()), ..brush.clone() }
+        Brush { facing: StrokeFrame::of(self.turn * brush.facing.map()), ..brush.clone() }
     }
 }
 
@@ -121,10 +121,10 @@ mod tests {
     #[test]
     fn brushes_face_as_their_image_does() {
         let facing = |symmetry: Symmetry| symmetry.images(CANVAS)[1].brush(&Brush::default()).facing;
-        assert_eq!(facing(Symmetry::Vertical), Facing { turn: 0.0, is_mirrored: true });
-        assert_eq!(facing(Symmetry::Horizontal), Facing { turn: 180.0, is_mirrored: true });
+        assert_eq!(facing(Symmetry::Vertical), StrokeFrame { turn: 0.0, is_mirrored: true });
+        assert_eq!(facing(Symmetry::Horizontal), StrokeFrame { turn: 180.0, is_mirrored: true });
         // A quarter turn to the right, in image axes, is one clockwise as seen.
-        assert_eq!(facing(Symmetry::Radial(4)), Facing { turn: -90.0, is_mirrored: false });
+        assert_eq!(facing(Symmetry::Radial(4)), StrokeFrame { turn: -90.0, is_mirrored: false });
     }
     /// Paint on a level canvas of 200 × 100 px, row by row.
     fn painted(brush: &Brush, samples: &[Sample]) -> Vec<[u8; 4]> {

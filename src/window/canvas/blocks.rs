@@ -14,13 +14,13 @@ pub const BLOCK: i32 = 512;
 
 /// The blocks of one picture.
 #[derive(Default)]
-pub struct Blocks {
+pub struct TextureBlocks {
     size: Option<Size>,
     textures: BTreeMap<(i32, i32), TextureHandle>,
     sharp: bool,
 }
 
-impl Blocks {
+impl TextureBlocks {
     /// Another picture: nothing of the last one stays.
     pub fn begin(&mut self, size: Size) {
         if self.size != Some(size) {

@@ -3,7 +3,7 @@
 
 use crate::document::Content;
 use crate::math::{Affine2, Vec2};
-use crate::paint::{Mark as PaintMark, Stroke as PaintStroke};
+use crate::paint::{BrushMode, Stroke as PaintStroke};
 use crate::session::Session;
 use crate::tools::{ToolKind, anchors, outline};
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
@@ -64,8 +64,8 @@ fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2)
 
 /// A cross where a clone brush would copy from.
 fn clone_source(painter: &Painter, session: &Session, under: Vec2, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let PaintMark::Clone { aligned, .. } = session.brush.mark else { return };
-    let Some(source) = session.tab().and_then(|tab| tab.clone_source) else { return };
+    let BrushMode::Clone { aligned, .. } = session.brush.mode else { return };
+    let Some(source) = session.active().and_then(|tab| tab.clone_source) else { return };
     let offset = source.offset.filter(|_| aligned || session.is_drawing());
     let at = to_screen(offset.map_or(source.at, |offset| under + offset));
     for look in [Stroke::new(3.0, Color32::from_black_alpha(140)), Stroke::new(1.2, Color32::WHITE)] {
@@ -76,17 +76,17 @@ fn clone_source(painter: &Painter, session: &Session, under: Vec2, to_screen: &i
 }
 
 /// Pairs of points to be joined.
-type Lines = Arc<Vec<[Vec2; 2]>>;
+type OutlineSegments = Arc<Vec<[Vec2; 2]>>;
 
 /// What was found out about the strokes that are chosen: kept by egui between frames.
 #[derive(Clone, Default)]
-struct Outlines {
-    kept: Vec<(Arc<PaintStroke>, Lines)>,
+struct OutlineCache {
+    cache: Vec<(Arc<PaintStroke>, OutlineSegments)>,
 }
 
 /// The chosen strokes: their outlines, or the lines through their samples while they move.
 fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let Some((tab, layer)) = session.tab().zip(session.layer()) else { return };
+    let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
     let document = tab.shown();
     let strokes = document.strokes(layer.id);
     let chosen: Vec<&Arc<PaintStroke>> = tab.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
@@ -99,14 +99,14 @@ fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos
         return;
     }
     let id = eframe::egui::Id::unique("outlines of strokes");
-    let old: Outlines = painter.ctx().data_mut(|data| data.get_temp(id).unwrap_or_default());
+    let old: OutlineCache = painter.ctx().data_mut(|data| data.get_temp(id).unwrap_or_default());
     let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
-    let kept = |stroke: &Arc<PaintStroke>| old.kept.iter().find(|(known, _)| Arc::ptr_eq(known, stroke)).cloned();
+    let kept = |stroke: &Arc<PaintStroke>| old.cache.iter().find(|(known, _)| Arc::ptr_eq(known, stroke)).cloned();
     let made = |stroke: &Arc<PaintStroke>| (stroke.clone(), Arc::new(outline::of_stroke(stroke, &scene)));
     let now =
-        Outlines { kept: chosen.into_iter().map(|stroke| kept(stroke).unwrap_or_else(|| made(stroke))).collect() };
+        OutlineCache { cache: chosen.into_iter().map(|stroke| kept(stroke).unwrap_or_else(|| made(stroke))).collect() };
     for look in looks {
-        let lines = now.kept.iter().flat_map(|(_, lines)| lines.iter());
+        let lines = now.cache.iter().flat_map(|(_, lines)| lines.iter());
         painter.extend(lines.map(|line| Shape::line_segment(line.map(to_screen), look)));
     }
     painter.ctx().data_mut(|data| data.insert_temp(id, now));

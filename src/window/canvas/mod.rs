@@ -1,47 +1,47 @@
 //! The canvas: the picture in its view, and the pen on it.
-//! Floor 7. `sheet` holds the picture and its copy on the graphics card, `hand` turns events into actions, `marks` and
+//! Floor 7. `sheet` holds the picture and its copy on the graphics card, `pointer` turns events into actions, `marks` and
 //! `overlay` draw what lies over the picture. Pixels come from the painter's thread.
 
 mod blocks;
-mod hand;
 mod marks;
 mod overlay;
+mod pointer;
 mod sheet;
 
 pub use marks::color32;
 pub use overlay::loaded;
 
-use super::painter::{Painter, Wanted};
 use super::pen::SharedTablet;
+use super::render_thread::{RenderRequest, RenderThread};
 use super::theme;
 use crate::Error;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::session::actions::ViewAction;
-use crate::session::{Action, Session, View, is_same};
+use crate::session::{Action, CanvasView, Session, is_same};
 use crate::tools::ToolKind;
 use blocks::{corners, on_screen, quad};
 use eframe::egui::{
     self, Color32, ColorImage, Sense, Stroke, TextureHandle, TextureOptions, TextureWrapMode, Ui, pos2,
 };
-use hand::Hand;
 use overlay::{Insets, Overlay};
-use sheet::Sheet;
+use pointer::PointerState;
+use sheet::TileSheet;
 use std::time::Duration;
 
 /// What the window knows of the canvas.
 pub struct Canvas {
     /// Absent where the system starts no thread.
-    painter: Option<Painter>,
+    render_thread: Option<RenderThread>,
     /// The picture in whole pixels.
-    whole: Sheet,
+    whole: TileSheet,
     /// The same, smaller, while something is dragged that takes long to redraw.
-    draft: Sheet,
+    draft: TileSheet,
     is_draft_in_front: bool,
     /// Which tab's picture it is, and what was asked for last.
     picture: u64,
     tab: Option<usize>,
     wanted: Option<(crate::document::Document, bool)>,
-    hand: Hand,
+    hand: PointerState,
     checker: Option<TextureHandle>,
     overlay: Overlay,
     insets: Insets,
@@ -62,19 +62,19 @@ pub struct Canvas {
 impl Canvas {
     pub fn new(ctx: &egui::Context) -> Self {
         let waker = ctx.clone();
-        let (painter, trouble) = match Painter::new(move || waker.request_repaint()) {
-            Ok(painter) => (Some(painter), None),
+        let (render_thread, trouble) = match RenderThread::new(move || waker.request_repaint()) {
+            Ok(thread) => (Some(thread), None),
             Err(error) => (None, Some(Error::io("painter", error))),
         };
         Self {
-            painter,
-            whole: Sheet::default(),
-            draft: Sheet::default(),
+            render_thread,
+            whole: TileSheet::default(),
+            draft: TileSheet::default(),
             is_draft_in_front: false,
             picture: 0,
             tab: None,
             wanted: None,
-            hand: Hand::default(),
+            hand: PointerState::default(),
             checker: None,
             overlay: Overlay::default(),
             insets: Insets::default(),
@@ -98,7 +98,7 @@ impl Canvas {
         self.area_pt = vec2(rect.width(), rect.height());
         let dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(rect, 0.0, theme::SURROUND[usize::from(!dark)]);
-        let Some(tab) = session.tab() else { return invite(ui, rect) };
+        let Some(tab) = session.active() else { return invite(ui, rect) };
         let Some(view) = tab.view else {
             // The first time it is seen, it is seen whole.
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
@@ -137,25 +137,26 @@ impl Canvas {
         }
     }
     /// Asks for what is to be shown, and takes what was painted.
-    fn follow(&mut self, ctx: &egui::Context, session: &Session, view: &View, area: egui::Rect) {
-        let Some(tab) = session.tab() else { return };
+    fn follow(&mut self, ctx: &egui::Context, session: &Session, view: &CanvasView, area: egui::Rect) {
+        let Some(tab) = session.active() else { return };
         let drawn = tab.drawn();
         if self.tab != Some(tab.key) || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size) {
             self.tab = Some(tab.key);
             self.picture += 1;
             self.whole.begin(drawn.size);
-            (self.wanted, self.is_draft_in_front, self.draft) = (None, false, Sheet::default());
+            (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
         }
         let is_dragged = is_dragged(session);
         if !self.wanted.as_ref().is_some_and(|(old, dragged)| *dragged == is_dragged && is_same(old, &drawn)) {
-            let (picture, document, visible) = (self.picture, drawn.clone(), seen(view, area));
-            if let Some(painter) = &self.painter {
-                painter.want(Wanted { picture, document, visible, is_dragged });
+            let (picture, document, visible) = (self.picture, drawn.clone(), visible_rect(view, area));
+            if let Some(thread) = &self.render_thread {
+                thread.want(RenderRequest { picture, document, visible, is_dragged });
                 self.is_busy = true;
             }
             self.wanted = Some((drawn, is_dragged));
         }
-        let painted = self.painter.iter().flat_map(Painter::painted).filter(|painted| painted.picture == self.picture);
+        let painted =
+            self.render_thread.iter().flat_map(RenderThread::painted).filter(|painted| painted.picture == self.picture);
         let mut is_draft_next = self.is_draft_in_front;
         for painted in painted {
             (self.took, self.is_busy) = (painted.took, !painted.is_settled);
@@ -213,7 +214,7 @@ impl Canvas {
             Ok(None) => return,
             Err(error) => return self.trouble = Some(error),
         };
-        let Some(tab) = session.tab() else { return };
+        let Some(tab) = session.active() else { return };
         let uv = [pos2(0.0, 0.0), pos2(1.0, 0.0), pos2(1.0, 1.0), pos2(0.0, 1.0)];
         let at = corners(tab.document().size.rect()).map(|(x, y)| on_screen(screen_from_canvas, x, y));
         let corners = [0, 1, 2, 3].map(|i| (at[i], uv[i]));
@@ -224,11 +225,11 @@ impl Canvas {
 /// A slider, a handle or a layer is in hand. A brush is not: its strokes change few tiles, and are looked at closely.
 fn is_dragged(session: &Session) -> bool {
     let paints = session.is_drawing() && matches!(session.tool, ToolKind::Brush | ToolKind::Eraser);
-    !paints && session.tab().is_some_and(|tab| tab.is_previewing())
+    !paints && session.active().is_some_and(|tab| tab.is_previewing())
 }
 
 /// The canvas pixels in sight.
-fn seen(view: &View, area: egui::Rect) -> Rect {
+fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
     let inverse = view.canvas_from_screen();
     let half = vec2(area.width(), area.height()) * 0.5;
     let corners = [vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)];

@@ -3,7 +3,7 @@
 //! Floor 7. What views show is `document::view`'s.
 
 use super::marks::anchor_color;
-use crate::document::view::{View as SurfaceView, draw};
+use crate::document::view::{SurfaceView, draw};
 use crate::document::{Content, Document, Layer};
 use crate::jobs;
 use crate::raster::Picture;
@@ -18,19 +18,19 @@ use std::sync::mpsc::{Receiver, channel};
 
 /// What a view shows, as far as it can change.
 #[derive(Clone)]
-struct Shows {
+struct ViewInputs {
     view: SurfaceView,
     document: Document,
     /// Of a layer's view.
     layer: Option<Arc<Layer>>,
 }
 
-impl Shows {
+impl ViewInputs {
     fn of(session: &Session, view: SurfaceView) -> Option<Self> {
         let layer = session.layer().cloned().filter(|_| view.is_of_layer());
         Some(Self { view, document: session.shown()?.clone(), layer })
     }
-    fn is_same(&self, other: &Shows) -> bool {
+    fn is_same(&self, other: &ViewInputs) -> bool {
         let layers = [&self.layer, &other.layer].map(|layer| layer.as_ref().map(Arc::as_ptr));
         self.view == other.view && layers[0] == layers[1] && self.document.scene().is_same(&other.document.scene())
     }
@@ -49,19 +49,19 @@ impl Shows {
 
 /// A view as it was drawn last, and the one that is coming.
 #[derive(Default)]
-struct Drawn {
-    of: Option<Shows>,
+struct DrawnView {
+    of: Option<ViewInputs>,
     coming: Option<Receiver<Option<Picture>>>,
     texture: Option<TextureHandle>,
 }
 
-impl Drawn {
+impl DrawnView {
     /// The view that is wanted, or the one before until it is drawn.
     fn texture(
         &mut self,
         ctx: &egui::Context,
-        wanted: Shows,
-        make: fn(Shows) -> Option<Picture>,
+        wanted: ViewInputs,
+        make: fn(ViewInputs) -> Option<Picture>,
     ) -> Result<Option<&TextureHandle>> {
         if self.coming.is_none() && !self.of.as_ref().is_some_and(|of| of.is_same(&wanted)) {
             self.of = Some(wanted.clone());
@@ -86,15 +86,15 @@ impl Drawn {
 /// The view over all of the picture.
 #[derive(Default)]
 pub struct Overlay {
-    drawn: Drawn,
+    drawn: DrawnView,
 }
 
 impl Overlay {
     /// The view that is wanted, once it is drawn.
     pub fn texture(&mut self, ctx: &egui::Context, session: &Session) -> Result<Option<egui::TextureId>> {
         let view = session.overlay.as_deref().and_then(SurfaceView::from_name);
-        let Some(shows) = view.and_then(|view| Shows::of(session, view)) else { return Ok(None) };
-        let make: fn(Shows) -> Option<Picture> = |shows| shows.picture();
+        let Some(shows) = view.and_then(|view| ViewInputs::of(session, view)) else { return Ok(None) };
+        let make: fn(ViewInputs) -> Option<Picture> = |shows| shows.picture();
         Ok(self.drawn.texture(ctx, shows, make)?.map(TextureHandle::id))
     }
 }
@@ -102,7 +102,7 @@ impl Overlay {
 /// How the anchors of the selected image share the surface, small, in a corner, each in its colour (SF fig. 9).
 #[derive(Default)]
 pub struct Insets {
-    drawn: Drawn,
+    drawn: DrawnView,
     pub trouble: Option<Error>,
 }
 
@@ -119,8 +119,8 @@ impl Insets {
         if anchors < 2 {
             return;
         }
-        let Some(shows) = Shows::of(session, SurfaceView::Weights) else { return };
-        let make: fn(Shows) -> Option<Picture> = |shows| shows.small(2.0 * INSET_PT);
+        let Some(shows) = ViewInputs::of(session, SurfaceView::Weights) else { return };
+        let make: fn(ViewInputs) -> Option<Picture> = |shows| shows.small(2.0 * INSET_PT);
         match self.drawn.texture(ctx, shows, make) {
             Ok(Some(texture)) => inset(painter, texture, anchors),
             Ok(None) => {}

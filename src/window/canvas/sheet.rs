@@ -2,18 +2,18 @@
 //! for what is being dragged.
 //! Floor 7.
 
-use super::blocks::Blocks;
+use super::blocks::TextureBlocks;
 use crate::math::{Affine2, Size, vec2};
-use crate::painter::Painted;
 use crate::raster::{TileAt, TileGrid};
+use crate::render_thread::RenderedTileBatch;
 use eframe::egui;
 use std::time::{Duration, Instant};
 
 #[derive(Default)]
-pub struct Sheet {
+pub struct TileSheet {
     /// The picture as far as it is painted.
     pub grid: TileGrid,
-    blocks: Blocks,
+    blocks: TextureBlocks,
     size: Option<Size>,
     /// Tiles that were painted and are not on the graphics card yet, and since when.
     unsent: Vec<TileAt>,
@@ -23,7 +23,7 @@ pub struct Sheet {
 /// A redraw that takes no longer is shown at once.
 const WHOLE: Duration = Duration::from_millis(160);
 
-impl Sheet {
+impl TileSheet {
     /// Another picture: nothing of the last one stays.
     pub fn begin(&mut self, size: Size) {
         self.grid = TileGrid::default();
@@ -37,7 +37,7 @@ impl Sheet {
         self.size
     }
     /// Takes what was painted.
-    pub fn take(&mut self, painted: Painted) {
+    pub fn take(&mut self, painted: RenderedTileBatch) {
         for (at, tile) in painted.tiles {
             self.grid.set(at, tile);
             self.unsent.push(at);

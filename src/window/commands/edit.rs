@@ -1,28 +1,28 @@
 //! The Edit menu.
 //! Floor 7.
 
-use super::{Command, LINE, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
-use crate::asked::WindowAsk;
+use super::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
 use crate::document::Content;
+use crate::requests::WindowRequest;
 use crate::session::Action;
 use crate::session::actions::{EditAction, HandAction, LayerAction};
 use crate::tools::ToolKind;
 use eframe::egui::Key;
 
-pub const COMMANDS: &[Command] = &[
+pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Undo",
         &[ctrl(Key::Z)],
         "Take the last step back",
-        |session| session.tab().is_some_and(|tab| tab.history.done().is_some()),
-        |_, asked| asked.act(Action::Edit(EditAction::Undo {})),
+        |session| session.active().is_some_and(|tab| tab.history.done().is_some()),
+        |_, requests| requests.act(Action::Edit(EditAction::Undo {})),
     ),
     row(
         "Redo",
         &[ctrl_shift(Key::Z), ctrl(Key::Y)],
         "Make the last undone step again",
-        |session| session.tab().is_some_and(|tab| tab.history.undone().is_some()),
-        |_, asked| asked.act(Action::Edit(EditAction::Redo {})),
+        |session| session.active().is_some_and(|tab| tab.history.undone().is_some()),
+        |_, requests| requests.act(Action::Edit(EditAction::Redo {})),
     ),
     LINE,
     row(
@@ -30,10 +30,10 @@ pub const COMMANDS: &[Command] = &[
         &[ctrl_shift(Key::C)],
         "The finished picture to the clipboard",
         has_document,
-        |_, asked| asked.ask(WindowAsk::CopyMerged),
+        |_, requests| requests.request(WindowRequest::CopyMerged),
     ),
-    row("Paste picture", &[ctrl(Key::V)], "A picture from the clipboard as an image layer", always, |_, asked| {
-        asked.ask(WindowAsk::Paste)
+    row("Paste picture", &[ctrl(Key::V)], "A picture from the clipboard as an image layer", always, |_, requests| {
+        requests.request(WindowRequest::Paste)
     }),
     LINE,
     row(
@@ -41,10 +41,10 @@ pub const COMMANDS: &[Command] = &[
         &[ctrl(Key::T)],
         "The image tool for an image: drag moves, Shift scales, Ctrl turns. For all else the move tool",
         has_layer,
-        |session, asked| {
+        |session, requests| {
             let is_image = session.layer().is_some_and(|layer| matches!(layer.content, Content::Image(_)));
             let tool = if is_image { ToolKind::Image } else { ToolKind::Move };
-            asked.act(Action::Hand(HandAction::Tool { tool }));
+            requests.act(Action::Hand(HandAction::Tool { tool }));
         },
     ),
     row(
@@ -52,9 +52,9 @@ pub const COMMANDS: &[Command] = &[
         &[key(Key::Delete)],
         "Take the paint or the strokes out of the selected layer",
         has_layer,
-        |session, asked| {
+        |session, requests| {
             if let Some(layer) = session.layer_path() {
-                asked.act(Action::Layer(LayerAction::Clear { layer }));
+                requests.act(Action::Layer(LayerAction::Clear { layer }));
             }
         },
     ),

@@ -1,14 +1,16 @@
 //! The Help menu.
 //! Floor 7.
 
-use super::{Command, LINE, always, row};
-use crate::asked::WindowAsk;
+use super::{LINE, MenuCommand, always, row};
+use crate::requests::WindowRequest;
 
-pub const COMMANDS: &[Command] = &[
-    row("Open the sample", &[], "A ball with everything on it, to try things out", always, |_, asked| {
-        asked.ask(WindowAsk::OpenSample)
+pub const COMMANDS: &[MenuCommand] = &[
+    row("Open the sample", &[], "A ball with everything on it, to try things out", always, |_, requests| {
+        requests.request(WindowRequest::OpenSample)
     }),
-    row("Keyboard shortcuts…", &[], "Every command and its keys", always, |_, asked| asked.ask(WindowAsk::Shortcuts)),
+    row("Keyboard shortcuts…", &[], "Every command and its keys", always, |_, requests| {
+        requests.request(WindowRequest::Shortcuts)
+    }),
     LINE,
-    row("About Rilievo…", &[], "What this program is", always, |_, asked| asked.ask(WindowAsk::About)),
+    row("About Rilievo…", &[], "What this program is", always, |_, requests| requests.request(WindowRequest::About)),
 ];

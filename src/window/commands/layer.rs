@@ -1,28 +1,28 @@
 //! The Layer menu.
 //! Floor 7.
 
-use super::{Command, LINE, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift};
-use crate::asked::{Asked, WindowAsk};
-use crate::document::{Content, Layer, LayerMask, Lock, MaskKind};
-use crate::files::Purpose;
-use crate::session::actions::pictures::Part;
+use super::{LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift};
+use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
+use crate::files::FilePurpose;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::pictures::PicturePart;
 use crate::session::actions::{LayerAction, NewLayer};
 use crate::session::{Action, LayerPath, Property, Session};
 use eframe::egui::Key;
 
 /// Does something with the selected layer.
-fn with_selected(session: &Session, asked: &mut Asked, action: impl FnOnce(LayerPath) -> LayerAction) {
-    asked.actions.extend(session.layer_path().map(action).map(Action::Layer));
+fn with_selected(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPath) -> LayerAction) {
+    requests.actions.extend(session.layer_path().map(action).map(Action::Layer));
 }
-fn set(session: &Session, asked: &mut Asked, to: Property) {
-    with_selected(session, asked, |layer| LayerAction::Set { layer, to, done: true });
+fn set(session: &Session, requests: &mut UiRequests, to: Property) {
+    with_selected(session, requests, |layer| LayerAction::Set { layer, to, done: true });
 }
-fn add(asked: &mut Asked, kind: NewLayer) {
-    asked.act(Action::Layer(LayerAction::Add { kind }));
+fn add(requests: &mut UiRequests, kind: NewLayer) {
+    requests.act(Action::Layer(LayerAction::Add { kind }));
 }
-fn toggle_lock(session: &Session, asked: &mut Asked, lock: Lock) {
-    let lock = if is_locked(session, lock) { Lock::None } else { lock };
-    set(session, asked, Property::Locked { lock });
+fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
+    let lock = if is_locked(session, lock) { LayerLock::None } else { lock };
+    set(session, requests, Property::Locked { lock });
 }
 
 /// Whether something is so of the selected layer.
@@ -41,11 +41,11 @@ fn is_shown(session: &Session) -> bool {
 fn is_clipped(session: &Session) -> bool {
     layer_is(session, |layer| layer.clip_below)
 }
-fn is_locked(session: &Session, lock: Lock) -> bool {
+fn is_locked(session: &Session, lock: LayerLock) -> bool {
     layer_is(session, |layer| layer.lock == lock)
 }
 fn is_alone(session: &Session) -> bool {
-    session.tab().is_some_and(|tab| tab.solo.is_some() && tab.solo == tab.selected)
+    session.active().is_some_and(|tab| tab.solo.is_some() && tab.solo == tab.selected)
 }
 fn has_mask(session: &Session) -> bool {
     layer_is(session, |layer| layer.mask.is_some())
@@ -54,69 +54,73 @@ fn mask_is(session: &Session, is: impl FnOnce(&LayerMask) -> bool) -> bool {
     layer_is(session, |layer| layer.mask.as_ref().is_some_and(is))
 }
 fn is_on_mask(session: &Session) -> bool {
-    session.tab().is_some_and(|tab| tab.on_mask)
+    session.active().is_some_and(|tab| tab.on_mask)
 }
 
-pub const COMMANDS: &[Command] = &[
+pub const COMMANDS: &[MenuCommand] = &[
     row(
         "New paint layer",
         &[key(Key::Insert), ctrl_shift(Key::N)],
         "Pixels; strokes on it cannot be moved later, but it can be erased",
         has_document,
-        |_, asked| add(asked, NewLayer::Paint),
+        |_, requests| add(requests, NewLayer::Paint),
     ),
     row(
         "New stroke layer",
         &[],
         "Strokes stay strokes: each can be moved along the surface later",
         has_document,
-        |_, asked| add(asked, NewLayer::Strokes),
+        |_, requests| add(requests, NewLayer::Strokes),
     ),
-    row("New fill layer", &[], "One colour everywhere", has_document, |_, asked| add(asked, NewLayer::Fill)),
+    row("New fill layer", &[], "One colour everywhere", has_document, |_, requests| add(requests, NewLayer::Fill)),
     row(
         "New gradient layer",
         &[],
         "From the first colour to the second, bent by the operator in hand",
         has_document,
-        |_, asked| add(asked, NewLayer::Gradient),
+        |_, requests| add(requests, NewLayer::Gradient),
     ),
     row(
         "New radiance scaling",
         &[],
         "Brings out the relief of whatever is painted beneath it",
         has_document,
-        |_, asked| add(asked, NewLayer::RadianceScaling),
+        |_, requests| add(requests, NewLayer::RadianceScaling),
     ),
     row(
         "New detail normals",
         &[],
         "Grain or a map of normals laid onto the surface, for everything above it",
         has_document,
-        |_, asked| add(asked, NewLayer::Normals),
+        |_, requests| add(requests, NewLayer::Normals),
     ),
-    row("New group", &[], "Layers flattened together", has_document, |_, asked| add(asked, NewLayer::Group)),
+    row("New group", &[], "Layers flattened together", has_document, |_, requests| add(requests, NewLayer::Group)),
     LINE,
-    row("Duplicate layer", &[ctrl(Key::J)], "A copy above it", has_layer, |session, asked| {
-        with_selected(session, asked, |layer| LayerAction::Duplicate { layer })
+    row("Duplicate layer", &[ctrl(Key::J)], "A copy above it", has_layer, |session, requests| {
+        with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
     }),
-    row("Delete layer", &[shift(Key::Delete)], "With all that is in it", has_layer, |session, asked| {
-        with_selected(session, asked, |layer| LayerAction::Delete { layer })
+    row("Delete layer", &[shift(Key::Delete)], "With all that is in it", has_layer, |session, requests| {
+        with_selected(session, requests, |layer| LayerAction::Delete { layer })
     }),
     row(
         "Group layer",
         &[ctrl(Key::G)],
         "Put the selected layer into a group of its own",
         has_layer,
-        |session, asked| with_selected(session, asked, |layer| LayerAction::Group { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Group { layer }),
     ),
-    row("Ungroup", &[ctrl_shift(Key::G)], "Take the layers out of the selected group", is_group, |session, asked| {
-        with_selected(session, asked, |layer| LayerAction::Ungroup { layer })
+    row(
+        "Ungroup",
+        &[ctrl_shift(Key::G)],
+        "Take the layers out of the selected group",
+        is_group,
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Ungroup { layer }),
+    ),
+    row("Move layer up", &[ctrl(Key::PageUp)], "Above the next one", has_layer, |session, requests| {
+        with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: 1 })
     }),
-    row("Move layer up", &[ctrl(Key::PageUp)], "Above the next one", has_layer, |session, asked| {
-        with_selected(session, asked, |layer| LayerAction::Nudge { layer, by: 1 })
-    }),
-    row("Move layer down", &[ctrl(Key::PageDown)], "Beneath the next one", has_layer, |session, asked| {
-        with_selected(session, asked, |layer| LayerAction::Nudge { layer, by: -1 })
+    row("Move layer down", &[ctrl(Key::PageDown)], "Beneath the next one", has_layer, |session, requests| {
+        with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 })
     }),
     LINE,
     row(
@@ -124,57 +128,61 @@ pub const COMMANDS: &[Command] = &[
         &[ctrl_shift(Key::M)],
         "This layer and the one beneath it become one paint layer",
         has_layer,
-        |session, asked| with_selected(session, asked, |layer| LayerAction::MergeDown { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::MergeDown { layer }),
     ),
     row(
         "Bake layer",
         &[ctrl_shift(Key::B)],
         "A live layer becomes paint: as it looks now, and no longer bent when the surface changes",
         is_live,
-        |session, asked| with_selected(session, asked, |layer| LayerAction::Bake { layer }),
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Bake { layer }),
     ),
-    row("Flatten picture", &[ctrl_shift(Key::E)], "All that shows becomes one paint layer", has_layer, |_, asked| {
-        asked.act(Action::Layer(LayerAction::Flatten {}))
-    }),
+    row(
+        "Flatten picture",
+        &[ctrl_shift(Key::E)],
+        "All that shows becomes one paint layer",
+        has_layer,
+        |_, requests| requests.act(Action::Layer(LayerAction::Flatten {})),
+    ),
     LINE,
     row(
         "Paint on mask",
         &[],
         "The brush changes the mask of the layer, made if there is none: white shows, black hides. Or the layer again",
         has_layer,
-        |session, asked| {
+        |session, requests| {
             let mask = session.layer().and_then(|layer| layer.mask.clone());
             let is_on = is_on_mask(session);
-            with_selected(session, asked, |layer| match mask {
+            with_selected(session, requests, |layer| match mask {
                 Some(mask) if matches!(mask.kind, MaskKind::File { .. }) => LayerAction::OnMask { layer, on: !is_on },
                 _ => LayerAction::PaintMask { layer, hides: false },
             });
         },
     )
     .ticked(|session, _| is_on_mask(session)),
-    row("Mask from a picture…", &[], "Its light parts show the layer", has_layer, |_, asked| {
-        asked.ask(WindowAsk::Choose(Purpose::Part(Part::Mask)))
+    row("Mask from a picture…", &[], "Its light parts show the layer", has_layer, |_, requests| {
+        requests.request(WindowRequest::Choose(FilePurpose::Part(PicturePart::Mask)))
     }),
-    row("Invert mask", &[], "Show what it hides, and hide what it shows", has_mask, |session, asked| {
+    row("Invert mask", &[], "Show what it hides, and hide what it shows", has_mask, |session, requests| {
         let on = !mask_is(session, |mask| mask.invert);
-        set(session, asked, Property::MaskInverted { on });
+        set(session, requests, Property::MaskInverted { on });
     })
     .ticked(|session, _| mask_is(session, |mask| mask.invert)),
-    row("Use mask", &[], "Put the mask aside, or use it again", has_mask, |session, asked| {
+    row("Use mask", &[], "Put the mask aside, or use it again", has_mask, |session, requests| {
         let on = mask_is(session, |mask| !mask.disabled);
-        set(session, asked, Property::MaskDisabled { on });
+        set(session, requests, Property::MaskDisabled { on });
     })
     .ticked(|session, _| mask_is(session, |mask| !mask.disabled)),
-    row("Delete mask", &[], "The layer shows whole again", has_mask, |session, asked| {
-        set(session, asked, Property::Mask { mask: None })
+    row("Delete mask", &[], "The layer shows whole again", has_mask, |session, requests| {
+        set(session, requests, Property::Mask { mask: None })
     }),
     LINE,
-    row("Show or hide layer", &[], "The eye of the selected layer", has_layer, |session, asked| {
-        set(session, asked, Property::Visible { on: !is_shown(session) });
+    row("Show or hide layer", &[], "The eye of the selected layer", has_layer, |session, requests| {
+        set(session, requests, Property::Visible { on: !is_shown(session) });
     })
     .ticked(|session, _| is_shown(session)),
-    row("Show layer alone", &[], "Hide all others until it is chosen again", has_layer, |session, asked| {
-        with_selected(session, asked, |layer| LayerAction::Solo { layer })
+    row("Show layer alone", &[], "Hide all others until it is chosen again", has_layer, |session, requests| {
+        with_selected(session, requests, |layer| LayerAction::Solo { layer })
     })
     .ticked(|session, _| is_alone(session)),
     row(
@@ -182,7 +190,7 @@ pub const COMMANDS: &[Command] = &[
         &[ctrl_alt(Key::G)],
         "Paint only where the layer beneath has paint",
         has_layer,
-        |session, asked| set(session, asked, Property::ClipBelow { on: !is_clipped(session) }),
+        |session, requests| set(session, requests, Property::ClipBelow { on: !is_clipped(session) }),
     )
     .ticked(|session, _| is_clipped(session)),
     row(
@@ -190,9 +198,11 @@ pub const COMMANDS: &[Command] = &[
         &[key(Key::Slash)],
         "Paint only where the layer has paint already",
         has_layer,
-        |session, asked| toggle_lock(session, asked, Lock::Alpha),
+        |session, requests| toggle_lock(session, requests, LayerLock::Alpha),
     )
-    .ticked(|session, _| is_locked(session, Lock::Alpha)),
-    row("Lock layer", &[], "No tool changes it", has_layer, |session, asked| toggle_lock(session, asked, Lock::All))
-        .ticked(|session, _| is_locked(session, Lock::All)),
+    .ticked(|session, _| is_locked(session, LayerLock::Alpha)),
+    row("Lock layer", &[], "No tool changes it", has_layer, |session, requests| {
+        toggle_lock(session, requests, LayerLock::All)
+    })
+    .ticked(|session, _| is_locked(session, LayerLock::All)),
 ];

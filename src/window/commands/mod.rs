@@ -10,13 +10,13 @@ mod paint;
 mod shading;
 mod view;
 
-use super::asked::Asked;
+use super::requests::UiRequests;
 use super::settings::Settings;
 use crate::session::Session;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A command.
-pub struct Command {
+pub struct MenuCommand {
     /// As menus show it; `…` where a dialog follows. Empty is a line between two.
     pub name: &'static str,
     /// The first is shown.
@@ -24,7 +24,7 @@ pub struct Command {
     /// What it does, in a sentence.
     pub hint: &'static str,
     pub can: fn(&Session) -> bool,
-    pub run: fn(&Session, &mut Asked),
+    pub run: fn(&Session, &mut UiRequests),
     /// Of one that switches something on and off: whether it is on.
     pub is_on: Option<fn(&Session, &Settings) -> bool>,
 }
@@ -35,12 +35,12 @@ const fn row(
     keys: &'static [KeyboardShortcut],
     hint: &'static str,
     can: fn(&Session) -> bool,
-    run: fn(&Session, &mut Asked),
-) -> Command {
-    Command { name, keys, hint, can, run, is_on: None }
+    run: fn(&Session, &mut UiRequests),
+) -> MenuCommand {
+    MenuCommand { name, keys, hint, can, run, is_on: None }
 }
 
-impl Command {
+impl MenuCommand {
     /// Marked in the menu while this is so.
     const fn ticked(self, is_on: fn(&Session, &Settings) -> bool) -> Self {
         Self { is_on: Some(is_on), ..self }
@@ -51,10 +51,10 @@ impl Command {
 }
 
 /// A line between two commands of a menu.
-const LINE: Command = row("", &[], "", always, |_, _| {});
+const LINE: MenuCommand = row("", &[], "", always, |_, _| {});
 
 /// The menus and what is in them.
-pub const MENUS: [(&str, &[Command]); 6] = [
+pub const MENUS: [(&str, &[MenuCommand]); 6] = [
     ("File", file::COMMANDS),
     ("Edit", edit::COMMANDS),
     ("Layer", layer::COMMANDS),
@@ -63,17 +63,17 @@ pub const MENUS: [(&str, &[Command]); 6] = [
     ("Help", help::COMMANDS),
 ];
 /// A menu within Layer.
-pub const SHADING: &[Command] = shading::COMMANDS;
+pub const SHADING: &[MenuCommand] = shading::COMMANDS;
 
 /// Every command, menu by menu.
-pub fn all() -> impl Iterator<Item = &'static Command> {
-    const EVERY: [(&str, &[Command]); 6] = MENUS;
+pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
+    const EVERY: [(&str, &[MenuCommand]); 6] = MENUS;
     let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
     menus.chain(SHADING).filter(|command| !command.is_line())
 }
 
 /// A command by its name.
-pub fn named(name: &str) -> Option<&'static Command> {
+pub fn named(name: &str) -> Option<&'static MenuCommand> {
     all().find(|command| command.name == name)
 }
 
@@ -102,7 +102,7 @@ fn always(_: &Session) -> bool {
     true
 }
 fn has_document(session: &Session) -> bool {
-    session.tab().is_some()
+    session.active().is_some()
 }
 fn has_layer(session: &Session) -> bool {
     session.layer().is_some()

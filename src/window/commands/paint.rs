@@ -1,9 +1,9 @@
 //! The Paint menu: what is in hand.
 //! Floor 7.
 
-use super::{Command, LINE, always, key, row, shift};
-use crate::asked::Asked;
+use super::{LINE, MenuCommand, always, key, row, shift};
 use crate::panels::options;
+use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use crate::surface::Operator;
@@ -25,58 +25,58 @@ pub const OPERATORS: [(&str, Operator, &str); 4] = [
     ),
 ];
 
-fn hand(asked: &mut Asked, action: HandAction) {
-    asked.act(Action::Hand(action));
+fn hand(requests: &mut UiRequests, action: HandAction) {
+    requests.act(Action::Hand(action));
 }
-fn resize(session: &Session, asked: &mut Asked, factor: f32) {
+fn resize(session: &Session, requests: &mut UiRequests, factor: f32) {
     let size = session.brush.size;
     let to = if factor > 1.0 { (size * factor).max(size + 1.0) } else { (size * factor).min(size - 1.0) };
-    hand(asked, HandAction::Size { to: to.round() });
+    hand(requests, HandAction::Size { to: to.round() });
 }
 
-pub const COMMANDS: &[Command] = &[
+pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Larger brush",
         &[key(Key::CloseBracket)],
         "Or drag with the right button on the canvas",
         always,
-        |session, asked| resize(session, asked, 1.2),
+        |session, requests| resize(session, requests, 1.2),
     ),
     row(
         "Smaller brush",
         &[key(Key::OpenBracket)],
         "Or drag with the right button on the canvas",
         always,
-        |session, asked| resize(session, asked, 1.0 / 1.2),
+        |session, requests| resize(session, requests, 1.0 / 1.2),
     ),
-    row("Harder brush", &[shift(Key::CloseBracket)], "A sharper rim", always, |session, asked| {
-        hand(asked, HandAction::Hardness { to: session.brush.hardness + 0.1 })
+    row("Harder brush", &[shift(Key::CloseBracket)], "A sharper rim", always, |session, requests| {
+        hand(requests, HandAction::Hardness { to: session.brush.hardness + 0.1 })
     }),
-    row("Softer brush", &[shift(Key::OpenBracket)], "A smoother rim", always, |session, asked| {
-        hand(asked, HandAction::Hardness { to: session.brush.hardness - 0.1 })
-    }),
-    LINE,
-    row("Swap colours", &[key(Key::X)], "The second colour to the front", always, |_, asked| {
-        hand(asked, HandAction::SwapColors {})
-    }),
-    row("Default colours", &[key(Key::D)], "Black in front of white", always, |_, asked| {
-        hand(asked, HandAction::DefaultColors {})
+    row("Softer brush", &[shift(Key::OpenBracket)], "A smoother rim", always, |session, requests| {
+        hand(requests, HandAction::Hardness { to: session.brush.hardness - 0.1 })
     }),
     LINE,
-    row("Operator: flat", &[key(Key::F1)], OPERATORS[0].2, always, |session, asked| {
-        options::give(session, asked, OPERATORS[0].1)
+    row("Swap colours", &[key(Key::X)], "The second colour to the front", always, |_, requests| {
+        hand(requests, HandAction::SwapColors {})
+    }),
+    row("Default colours", &[key(Key::D)], "Black in front of white", always, |_, requests| {
+        hand(requests, HandAction::DefaultColors {})
+    }),
+    LINE,
+    row("Operator: flat", &[key(Key::F1)], OPERATORS[0].2, always, |session, requests| {
+        options::give(session, requests, OPERATORS[0].1)
     })
     .ticked(|session, _| options::has(session, OPERATORS[0].1)),
-    row("Operator: texture", &[key(Key::F2)], OPERATORS[1].2, always, |session, asked| {
-        options::give(session, asked, OPERATORS[1].1)
+    row("Operator: texture", &[key(Key::F2)], OPERATORS[1].2, always, |session, requests| {
+        options::give(session, requests, OPERATORS[1].1)
     })
     .ticked(|session, _| options::has(session, OPERATORS[1].1)),
-    row("Operator: shading", &[key(Key::F3)], OPERATORS[2].2, always, |session, asked| {
-        options::give(session, asked, OPERATORS[2].1)
+    row("Operator: shading", &[key(Key::F3)], OPERATORS[2].2, always, |session, requests| {
+        options::give(session, requests, OPERATORS[2].1)
     })
     .ticked(|session, _| options::has(session, OPERATORS[2].1)),
-    row("Operator: reflection", &[key(Key::F4)], OPERATORS[3].2, always, |session, asked| {
-        options::give(session, asked, OPERATORS[3].1)
+    row("Operator: reflection", &[key(Key::F4)], OPERATORS[3].2, always, |session, requests| {
+        options::give(session, requests, OPERATORS[3].1)
     })
     .ticked(|session, _| options::has(session, OPERATORS[3].1)),
 ];

@@ -1,42 +1,44 @@
 //! New shading layers, one for each model.
 //! Floor 7.
 
-use super::{Command, has_document, row};
-use crate::asked::Asked;
+use super::{MenuCommand, has_document, row};
+use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::LayerAction;
 use crate::shading::Model;
 
-fn add(asked: &mut Asked, model: Model) {
-    asked.act(Action::Layer(LayerAction::AddShading { model }));
+fn add(requests: &mut UiRequests, model: Model) {
+    requests.act(Action::Layer(LayerAction::AddShading { model }));
 }
 
-pub const COMMANDS: &[Command] = &[
-    row("New Phong layer", &[], "Matt and glossy under lights", has_document, |_, asked| add(asked, Model::Phong)),
-    row("New toon layer", &[], "The same in flat bands", has_document, |_, asked| add(asked, Model::Toon)),
-    row("New sub-Lambertian layer", &[], "Flatter than matt, like the moon", has_document, |_, asked| {
-        add(asked, Model::SubLambertian)
+pub const COMMANDS: &[MenuCommand] = &[
+    row("New Phong layer", &[], "Matt and glossy under lights", has_document, |_, requests| {
+        add(requests, Model::Phong)
+    }),
+    row("New toon layer", &[], "The same in flat bands", has_document, |_, requests| add(requests, Model::Toon)),
+    row("New sub-Lambertian layer", &[], "Flatter than matt, like the moon", has_document, |_, requests| {
+        add(requests, Model::SubLambertian)
     }),
     row(
         "New Ashikhmin layer",
         &[],
         "Brushed metal: a highlight longer one way than the other",
         has_document,
-        |_, asked| add(asked, Model::Ashikhmin),
+        |_, requests| add(requests, Model::Ashikhmin),
     ),
-    row("New lit-sphere layer", &[], "A painted ball tells the colour of every normal", has_document, |_, asked| {
-        add(asked, Model::LitSphere)
+    row("New lit-sphere layer", &[], "A painted ball tells the colour of every normal", has_document, |_, requests| {
+        add(requests, Model::LitSphere)
     }),
-    row("New mirror layer", &[], "An environment mirrored in the surface", has_document, |_, asked| {
-        add(asked, Model::Mirror)
+    row("New mirror layer", &[], "An environment mirrored in the surface", has_document, |_, requests| {
+        add(requests, Model::Mirror)
     }),
-    row("New glass layer", &[], "An environment seen through the surface", has_document, |_, asked| {
-        add(asked, Model::Refraction)
+    row("New glass layer", &[], "An environment seen through the surface", has_document, |_, requests| {
+        add(requests, Model::Refraction)
     }),
-    row("New layer lit by an environment", &[], "Matt, lit from all around", has_document, |_, asked| {
-        add(asked, Model::DiffuseEnvironment)
+    row("New layer lit by an environment", &[], "Matt, lit from all around", has_document, |_, requests| {
+        add(requests, Model::DiffuseEnvironment)
     }),
-    row("New ambient occlusion layer", &[], "Darker where little of the sky is seen", has_document, |_, asked| {
-        add(asked, Model::AmbientOcclusion)
+    row("New ambient occlusion layer", &[], "Darker where little of the sky is seen", has_document, |_, requests| {
+        add(requests, Model::AmbientOcclusion)
     }),
 ];

@@ -1,24 +1,24 @@
 //! Export: format and what shows through, then where to.
 //! Floor 7.
 
-use super::{Answer, buttons};
-use crate::asked::WindowAsk;
+use super::{DialogAnswer, buttons};
 use crate::math::{Size, srgb::Color};
+use crate::requests::WindowRequest;
 use crate::session::Session;
 use crate::theme;
 use eframe::egui::{Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2};
 
 /// What was chosen, kept for the next time.
 #[derive(Clone)]
-pub struct Export {
-    pub ending: &'static str,
+pub struct ExportDialog {
+    pub extension: &'static str,
     pub background: Option<Color>,
     pub quality: u8,
 }
 
-impl Default for Export {
+impl Default for ExportDialog {
     fn default() -> Self {
-        Self { ending: "png", background: None, quality: 92 }
+        Self { extension: "png", background: None, quality: 92 }
     }
 }
 
@@ -29,9 +29,9 @@ const FORMATS: [(&str, &str); 4] = [
     ("webp", "WebP: lossless, small"),
 ];
 
-impl Export {
+impl ExportDialog {
     /// `preview`: the picture, small.
-    pub fn show(&mut self, ui: &mut Ui, session: &Session, preview: Option<TextureId>) -> Answer {
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, preview: Option<TextureId>) -> DialogAnswer {
         ui.set_width(320.0);
         ui.heading("Export the picture");
         if let (Some(preview), Some(document)) = (preview, session.shown()) {
@@ -40,19 +40,19 @@ impl Export {
         if let Some(document) = session.shown() {
             ui.weak(format!("{} pixels", document.size));
         }
-        for (ending, about) in FORMATS {
-            ui.radio_value(&mut self.ending, ending, about);
+        for (extension, about) in FORMATS {
+            ui.radio_value(&mut self.extension, extension, about);
         }
-        let mut opaque = self.background.is_some() || self.ending == "jpg";
-        ui.add_enabled_ui(self.ending != "jpg", |ui| ui.checkbox(&mut opaque, "Lay it on white"));
+        let mut opaque = self.background.is_some() || self.extension == "jpg";
+        ui.add_enabled_ui(self.extension != "jpg", |ui| ui.checkbox(&mut opaque, "Lay it on white"));
         self.background = opaque.then_some(Color::WHITE);
-        ui.add_enabled_ui(self.ending == "jpg", |ui| {
+        ui.add_enabled_ui(self.extension == "jpg", |ui| {
             ui.add(Slider::new(&mut self.quality, 1..=100).text("Quality"));
         });
         match buttons(ui, "Export…", session.shown().is_some()) {
-            Some(true) => Answer::Ask(WindowAsk::Export(self.ending)),
-            Some(false) => Answer::Close,
-            None => Answer::Open,
+            Some(true) => DialogAnswer::Ask(WindowRequest::Export(self.extension)),
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
         }
     }
     /// The picture on what it will be laid on: white, or nothing.

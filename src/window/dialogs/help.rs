@@ -1,10 +1,10 @@
 //! What this program is.
 //! Floor 7.
 
-use super::{Answer, close};
+use super::{DialogAnswer, close};
 use eframe::egui::Ui;
 
-pub fn about(ui: &mut Ui) -> Answer {
+pub fn about(ui: &mut Ui) -> DialogAnswer {
     ui.set_width(360.0);
     ui.heading("Rilievo");
     ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));

@@ -2,16 +2,16 @@
 //! everything can be seen and corrected before the first stroke.
 //! Floor 7. Reading the maps is `io::maps`', on a thread of its own.
 
-use super::{Answer, buttons};
+use super::{DialogAnswer, buttons};
 use crate::Result;
 use crate::canvas::loaded;
 use crate::document::SurfaceSource;
 use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
-use crate::files::Purpose;
+use crate::files::FilePurpose;
 use crate::io::maps;
 use crate::math::{Size, srgb::quantise, vec3};
 use crate::raster::Picture;
-use crate::session::storage::{self, Opened};
+use crate::session::storage::{self, OpenedTab};
 use crate::surface::Surface;
 use crate::widgets::{choice_row, named, sentence};
 use eframe::egui::{self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2};
@@ -19,12 +19,12 @@ use std::path::{Path, PathBuf};
 
 /// The dialog's state.
 #[derive(Default)]
-pub struct Import {
+pub struct ImportDialog {
     source: SurfaceSource,
     /// As it was when the maps were read last.
     read: Option<SurfaceSource>,
     is_reading: bool,
-    found: Option<Result<maps::Import>>,
+    found: Option<Result<maps::ImportedSurface>>,
     /// Lit as found, with red, green, and both flipped.
     lit: Vec<TextureHandle>,
     /// For the document in front, not for a new one.
@@ -35,7 +35,7 @@ pub struct Import {
 const FLIPS: [(&str, bool, bool); 4] =
     [("As it is", false, false), ("Flip red", true, false), ("Flip green", false, true), ("Flip both", true, true)];
 
-impl Import {
+impl ImportDialog {
     /// With the files that are known.
     pub fn of(source: SurfaceSource) -> Self {
         Self { source, ..Self::default() }
@@ -51,20 +51,20 @@ impl Import {
         Self { source: source.filter(is_there).cloned().unwrap_or_default(), replaces: true, ..Self::default() }
     }
     /// A file was chosen for one of the maps.
-    pub fn take_file(&mut self, purpose: Purpose, file: PathBuf) {
+    pub fn take_file(&mut self, purpose: FilePurpose, file: PathBuf) {
         let file = file.to_string_lossy().into_owned();
         match purpose {
-            Purpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
-            Purpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
+            FilePurpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
+            FilePurpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
             // The first file brings those that belong to it.
             _ if self.source == SurfaceSource::default() => {
-                self.source = storage::maps_beside(Path::new(&file), storage::Kind::Normals);
+                self.source = storage::maps_beside(Path::new(&file), storage::FileUse::Normals);
             }
             _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
         }
     }
     /// The maps were read.
-    pub fn take(&mut self, ctx: &Context, found: Result<maps::Import>) {
+    pub fn take(&mut self, ctx: &Context, found: Result<maps::ImportedSurface>) {
         self.is_reading = false;
         // A flat border is background, unless the user says otherwise; then everything is read once more.
         let is_first = self.found.is_none() && self.source.mask.is_none();
@@ -78,18 +78,18 @@ impl Import {
         }
         self.found = Some(found);
     }
-    pub fn show(&mut self, ui: &mut Ui) -> Answer {
+    pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(560.0);
         ui.heading(if self.replaces { "Other maps for this document" } else { "New document from maps" });
         let mut ask = None;
         self.files(ui, &mut ask);
         if let Some(purpose) = ask {
-            return Answer::Ask(crate::asked::WindowAsk::Choose(purpose));
+            return DialogAnswer::Ask(crate::requests::WindowRequest::Choose(purpose));
         }
         let is_some = self.source.normal.is_some() || self.source.depth.is_some();
         if is_some && !self.is_reading && self.read.as_ref() != Some(&self.source) {
             (self.read, self.is_reading) = (Some(self.source.clone()), true);
-            return Answer::Import(Box::new(self.source.clone()));
+            return DialogAnswer::Import(Box::new(self.source.clone()));
         }
         if self.is_reading {
             ui.horizontal(|ui| {
@@ -105,21 +105,21 @@ impl Import {
         let is_ready = !self.is_reading && matches!(self.found, Some(Ok(_)));
         match buttons(ui, if self.replaces { "Replace" } else { "Create" }, is_ready) {
             Some(true) => self.create(),
-            Some(false) => Answer::Close,
-            None => Answer::Open,
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
         }
     }
     /// The three files, each to be chosen or left out.
-    fn files(&mut self, ui: &mut Ui, ask: &mut Option<Purpose>) {
+    fn files(&mut self, ui: &mut Ui, ask: &mut Option<FilePurpose>) {
         let name = |file: &str| Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
         let mask = match &self.source.mask {
             Some(MaskSource::File { file, .. }) => Some(file.clone()),
             _ => None,
         };
         let rows = [
-            ("Normal map", Purpose::NormalMap, self.source.normal.as_ref().map(|map| map.file.clone())),
-            ("Depth map", Purpose::DepthMap, self.source.depth.as_ref().map(|map| map.file.clone())),
-            ("Mask", Purpose::MaskMap, mask),
+            ("Normal map", FilePurpose::NormalMap, self.source.normal.as_ref().map(|map| map.file.clone())),
+            ("Depth map", FilePurpose::DepthMap, self.source.depth.as_ref().map(|map| map.file.clone())),
+            ("Mask", FilePurpose::MaskMap, mask),
         ];
         for (label, purpose, file) in rows {
             ui.horizontal(|ui| {
@@ -136,13 +136,13 @@ impl Import {
                         named(&response, &format!("Leave out {}", label.to_lowercase()));
                         if response.clicked() {
                             match purpose {
-                                Purpose::DepthMap => self.source.depth = None,
-                                Purpose::MaskMap => self.source.mask = None,
+                                FilePurpose::DepthMap => self.source.depth = None,
+                                FilePurpose::MaskMap => self.source.mask = None,
                                 _ => self.source.normal = None,
                             }
                         }
                     }
-                    None => drop(ui.weak(if purpose == Purpose::MaskMap {
+                    None => drop(ui.weak(if purpose == FilePurpose::MaskMap {
                         "found from the maps"
                     } else {
                         "derived from the other map"
@@ -174,7 +174,7 @@ impl Import {
         {
             self.source.mask = out.then_some(MaskSource::Flat);
         }
-        let Some(Ok(maps::Import { surface, findings, .. })) = &self.found else { return };
+        let Some(Ok(maps::ImportedSurface { surface, findings, .. })) = &self.found else { return };
         ui.weak(format!("{} pixels, about {:.0} px deep", surface.size(), surface.depth_range_px()));
         ui.collapsing("What was found", |ui| {
             ScrollArea::vertical().max_height(150.0).show(ui, |ui| {
@@ -228,17 +228,17 @@ impl Import {
             map.convention.flip_y = Some(now.flip_y.unwrap_or(false) != y);
         }
     }
-    fn create(&mut self) -> Answer {
+    fn create(&mut self) -> DialogAnswer {
         match self.found.take() {
-            Some(Ok(import)) if self.replaces => Answer::Replaced(Box::new((self.source.clone(), import))),
-            Some(Ok(import)) => Answer::Imported(Box::new(storage::of_import(&self.source, import))),
-            _ => Answer::Open,
+            Some(Ok(import)) if self.replaces => DialogAnswer::Replaced(Box::new((self.source.clone(), import))),
+            Some(Ok(import)) => DialogAnswer::Imported(Box::new(storage::of_import(&self.source, import))),
+            _ => DialogAnswer::Open,
         }
     }
 }
 
 /// A document made of maps, boxed: it is large.
-pub type Made = Box<Opened>;
+pub type MadeDocument = Box<OpenedTab>;
 
 /// The surface under one light from above left, its normals flipped.
 fn lit(surface: &Surface, flip_x: bool, flip_y: bool) -> Option<Picture> {

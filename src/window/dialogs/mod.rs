@@ -11,55 +11,55 @@ pub mod recovery;
 pub mod shortcuts;
 pub mod unsaved;
 
-use super::asked::{Asked, WindowAsk};
-use super::files::Purpose;
+use super::files::FilePurpose;
 use super::keymap::Keymap;
+use super::requests::{UiRequests, WindowRequest};
 use crate::document::SurfaceSource;
 use crate::io::maps;
-use crate::io::recovery::Session as Lost;
+use crate::io::recovery::LostSession;
 use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
 use std::path::PathBuf;
 
 /// The dialog that is open.
 pub enum Dialog {
-    New(new::New),
-    Export(export::Export),
-    Import(Box<import::Import>),
+    New(new::NewDialog),
+    Export(export::ExportDialog),
+    Import(Box<import::ImportDialog>),
     Path(path::PathDialog),
-    Recovery(recovery::Recovery),
-    Unsaved(unsaved::Unsaved),
-    Palette(palette::Palette),
-    Shortcuts(shortcuts::Shortcuts),
+    Recovery(recovery::RecoveryDialog),
+    Unsaved(unsaved::UnsavedDialog),
+    Palette(palette::CommandPalette),
+    Shortcuts(shortcuts::ShortcutsDialog),
     About,
 }
 
 /// What a dialog came to.
-pub enum Answer {
+pub enum DialogAnswer {
     /// It stays open.
     Open,
     Close,
-    Chosen(Purpose, PathBuf),
+    Chosen(FilePurpose, PathBuf),
     /// These maps are to be read.
     Import(Box<SurfaceSource>),
     /// The document that was made of them.
-    Imported(import::Made),
+    Imported(import::MadeDocument),
     /// The maps that the document in front is to have.
-    Replaced(Box<(SurfaceSource, maps::Import)>),
+    Replaced(Box<(SurfaceSource, maps::ImportedSurface)>),
     /// Lose what is not saved, and do this.
-    Discard(Then),
+    Discard(AfterUnsaved),
     /// Save first, then do this.
-    SaveThen(Then),
-    Ask(WindowAsk),
+    SaveThen(AfterUnsaved),
+    Ask(WindowRequest),
     /// Bring these drawings back.
-    Recover(Vec<Lost>),
+    Recover(Vec<LostSession>),
     /// The user said that this drawing is to be deleted.
-    Delete(Lost),
+    Delete(LostSession),
 }
 
 /// What follows a question about unsaved work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Then {
+pub enum AfterUnsaved {
     Close(usize),
     Quit,
 }
@@ -72,33 +72,37 @@ impl Dialog {
         session: &Session,
         keymap: &mut Keymap,
         preview: Option<egui::TextureId>,
-        asked: &mut Asked,
-    ) -> Answer {
+        requests: &mut UiRequests,
+    ) -> DialogAnswer {
         let modal = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
             ui.spacing_mut().item_spacing.y = 7.0;
             match self {
-                Dialog::New(new) => new.show(ui, asked),
+                Dialog::New(new) => new.show(ui, requests),
                 Dialog::Export(export) => export.show(ui, session, preview),
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),
                 Dialog::Recovery(recovery) => recovery.show(ui),
                 Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
-                Dialog::Palette(palette) => palette.show(ui, session, keymap, asked),
+                Dialog::Palette(palette) => palette.show(ui, session, keymap, requests),
                 Dialog::Shortcuts(shortcuts) => shortcuts.show(ui, keymap),
                 Dialog::About => help::about(ui),
             }
         });
-        if modal.should_close() && matches!(modal.inner, Answer::Open) { Answer::Close } else { modal.inner }
+        if modal.should_close() && matches!(modal.inner, DialogAnswer::Open) {
+            DialogAnswer::Close
+        } else {
+            modal.inner
+        }
     }
 }
 
 /// The button at the foot of a dialog that only shows something.
-fn close(ui: &mut Ui) -> Answer {
+fn close(ui: &mut Ui) -> DialogAnswer {
     ui.add_space(4.0);
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
     let right = egui::Layout::right_to_left(egui::Align::Center);
     let closed = ui.allocate_ui_with_layout(row, right, |ui| ui.button("Close").clicked()).inner;
-    if closed { Answer::Close } else { Answer::Open }
+    if closed { DialogAnswer::Close } else { DialogAnswer::Open }
 }
 
 /// The two buttons at a dialog's foot, the affirmative one last; true for it, false for the other.

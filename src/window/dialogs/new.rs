@@ -1,49 +1,49 @@
 //! A new document: an empty canvas, or one on an object's maps.
 //! Floor 7.
 
-use super::{Answer, buttons};
-use crate::asked::{Asked, WindowAsk};
+use super::{DialogAnswer, buttons};
 use crate::math::srgb::Color;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Action;
 use crate::session::actions::FileAction;
 use eframe::egui::{DragValue, Ui};
 
-pub struct New {
+pub struct NewDialog {
     width: u32,
     height: u32,
-    background: Background,
+    background: CanvasBackground,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Background {
+enum CanvasBackground {
     White,
     Dark,
     Transparent,
 }
 
-impl Default for New {
+impl Default for NewDialog {
     fn default() -> Self {
-        Self { width: 1024, height: 1024, background: Background::White }
+        Self { width: 1024, height: 1024, background: CanvasBackground::White }
     }
 }
 
-impl New {
-    pub fn show(&mut self, ui: &mut Ui, asked: &mut Asked) -> Answer {
+impl NewDialog {
+    pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(340.0);
         ui.heading("New document");
         ui.label("To paint on an object, begin with its normal map, depth map or both. Or begin with a picture.");
         let mut begins = None;
         ui.horizontal(|ui| {
             if ui.button("From maps…").clicked() {
-                begins = Some(WindowAsk::OpenMapsDialog);
+                begins = Some(WindowRequest::OpenMapsDialog);
             }
             if ui.button("From a picture…").on_hover_text("As large as the picture, which is its first layer").clicked()
             {
-                begins = Some(WindowAsk::OpenDialog);
+                begins = Some(WindowRequest::OpenDialog);
             }
         });
         if let Some(begins) = begins {
-            return Answer::Ask(begins);
+            return DialogAnswer::Ask(begins);
         }
         ui.separator();
         ui.label("An empty canvas");
@@ -62,24 +62,26 @@ impl New {
         });
         ui.horizontal(|ui| {
             ui.label("Background");
-            for (choice, name) in
-                [(Background::White, "White"), (Background::Dark, "Dark"), (Background::Transparent, "Transparent")]
-            {
+            for (choice, name) in [
+                (CanvasBackground::White, "White"),
+                (CanvasBackground::Dark, "Dark"),
+                (CanvasBackground::Transparent, "Transparent"),
+            ] {
                 ui.radio_value(&mut self.background, choice, name);
             }
         });
         match buttons(ui, "Create", true) {
             Some(true) => {
                 let background = match self.background {
-                    Background::White => Some(Color::WHITE),
-                    Background::Dark => Some(Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 }),
-                    Background::Transparent => None,
+                    CanvasBackground::White => Some(Color::WHITE),
+                    CanvasBackground::Dark => Some(Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 }),
+                    CanvasBackground::Transparent => None,
                 };
-                asked.act(Action::File(FileAction::New { width: self.width, height: self.height, background }));
-                Answer::Close
+                requests.act(Action::File(FileAction::New { width: self.width, height: self.height, background }));
+                DialogAnswer::Close
             }
-            Some(false) => Answer::Close,
-            None => Answer::Open,
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
         }
     }
 }

@@ -1,23 +1,23 @@
 //! The command palette: every command by a few letters of its name.
 //! Floor 7.
 
-use super::Answer;
-use crate::asked::Asked;
-use crate::commands::{self, Command};
+use super::DialogAnswer;
+use crate::commands::{self, MenuCommand};
 use crate::keymap::{Keymap, shown};
+use crate::requests::UiRequests;
 use crate::session::Session;
 use crate::widgets::{list, named};
 use eframe::egui::{Button, Key, TextEdit, Ui};
 
 #[derive(Default)]
-pub struct Palette {
+pub struct CommandPalette {
     typed: String,
     /// Which of the commands found.
     at: usize,
 }
 
-impl Palette {
-    pub fn show(&mut self, ui: &mut Ui, session: &Session, keymap: &Keymap, asked: &mut Asked) -> Answer {
+impl CommandPalette {
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) -> DialogAnswer {
         ui.set_width(420.0);
         let field =
             ui.add(TextEdit::singleline(&mut self.typed).hint_text("Type a command").desired_width(f32::INFINITY));
@@ -26,7 +26,7 @@ impl Palette {
         if field.changed() {
             self.at = 0;
         }
-        let mut found: Vec<&'static Command> =
+        let mut found: Vec<&'static MenuCommand> =
             commands::all().filter(|command| matches(command.name, &self.typed)).collect();
         // What begins with it first; all else as in the menus.
         let typed = self.typed.trim().to_lowercase();
@@ -58,10 +58,10 @@ impl Palette {
         });
         match chosen {
             Some(command) if (command.can)(session) => {
-                (command.run)(session, asked);
-                Answer::Close
+                (command.run)(session, requests);
+                DialogAnswer::Close
             }
-            _ => Answer::Open,
+            _ => DialogAnswer::Open,
         }
     }
 }

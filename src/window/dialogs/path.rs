@@ -1,8 +1,8 @@
 //! A file dialog of the window's own, for systems that have none.
 //! Floor 7.
 
-use super::{Answer, buttons};
-use crate::files::Purpose;
+use super::{DialogAnswer, buttons};
+use crate::files::FilePurpose;
 use crate::session::storage;
 use crate::widgets::{list, named};
 use eframe::egui::{Button, TextEdit, Ui};
@@ -10,11 +10,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 pub struct PathDialog {
-    purpose: Purpose,
+    purpose: FilePurpose,
     folder: PathBuf,
     /// What is typed: a name in the folder, or a whole path.
     name: String,
-    listed: Listed,
+    listed: FolderListing,
     /// The name has been given the keyboard once.
     is_begun: bool,
     /// The file that is there already, once that was said.
@@ -23,21 +23,21 @@ pub struct PathDialog {
 
 /// What is in the folder that is shown.
 #[derive(Default)]
-struct Listed {
+struct FolderListing {
     folder: PathBuf,
     folders: Vec<String>,
     files: Vec<String>,
 }
 
 impl PathDialog {
-    pub fn new(purpose: Purpose, folder: PathBuf, name: &str) -> Self {
-        Self { purpose, folder, name: name.into(), listed: Listed::default(), is_begun: false, replaces: None }
+    pub fn new(purpose: FilePurpose, folder: PathBuf, name: &str) -> Self {
+        Self { purpose, folder, name: name.into(), listed: FolderListing::default(), is_begun: false, replaces: None }
     }
-    pub fn show(&mut self, ui: &mut Ui) -> Answer {
+    pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(460.0);
         ui.heading(self.purpose.title());
         if self.listed.folder != self.folder {
-            self.listed = Listed::of(&self.folder, self.purpose);
+            self.listed = FolderListing::of(&self.folder, self.purpose);
         }
         ui.horizontal(|ui| {
             let up = self.folder.parent().map(Path::to_owned);
@@ -86,36 +86,40 @@ impl PathDialog {
         match (buttons(ui, yes, can), chosen) {
             (_, Some(file)) => self.choose(file),
             (Some(true), None) => self.choose(typed),
-            (Some(false), None) => Answer::Close,
-            (None, None) => Answer::Open,
+            (Some(false), None) => DialogAnswer::Close,
+            (None, None) => DialogAnswer::Open,
         }
     }
     /// A file that would be lost is asked for twice.
-    fn choose(&mut self, file: PathBuf) -> Answer {
-        let named = if self.purpose == Purpose::Save { storage::with_ending(file.clone()) } else { file.clone() };
+    fn choose(&mut self, file: PathBuf) -> DialogAnswer {
+        let named = if self.purpose == FilePurpose::Save {
+            storage::with_document_extension(file.clone())
+        } else {
+            file.clone()
+        };
         if self.purpose.is_saving() && named.is_file() && self.replaces.as_ref() != Some(&file) {
             self.name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             self.folder = file.parent().map_or_else(|| self.folder.clone(), Path::to_owned);
             self.replaces = Some(file);
-            return Answer::Open;
+            return DialogAnswer::Open;
         }
-        Answer::Chosen(self.purpose, file)
+        DialogAnswer::Chosen(self.purpose, file)
     }
 }
 
-impl Listed {
-    fn of(folder: &Path, purpose: Purpose) -> Self {
-        let endings: Vec<&str> = purpose.filters().into_iter().flat_map(|(_, endings)| endings).collect();
+impl FolderListing {
+    fn of(folder: &Path, purpose: FilePurpose) -> Self {
+        let extensions: Vec<&str> = purpose.filters().into_iter().flat_map(|(_, extensions)| extensions).collect();
         let mut listed = Self { folder: folder.into(), ..Self::default() };
         for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
             let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
-            let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+            let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
             if name.starts_with('.') {
                 continue;
             }
             if path.is_dir() {
                 listed.folders.push(name);
-            } else if endings.contains(&ending.as_str()) {
+            } else if extensions.contains(&extension.as_str()) {
                 listed.files.push(name);
             }
         }

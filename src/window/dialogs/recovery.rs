@@ -1,26 +1,26 @@
 //! What an accident left, offered once at the start: to be brought back, deleted, or left for later.
 //! Floor 7.
 
-use super::Answer;
-use crate::io::recovery::Session as Lost;
+use super::DialogAnswer;
+use crate::io::recovery::LostSession;
 use crate::widgets::list;
 use eframe::egui::{RichText, Ui};
 use std::time::{Duration, SystemTime};
 
-pub struct Recovery {
+pub struct RecoveryDialog {
     /// Oldest first, each with whether its deletion was asked for once.
-    lost: Vec<(Lost, bool)>,
+    lost: Vec<(LostSession, bool)>,
 }
 
-impl Recovery {
-    pub fn new(lost: Vec<Lost>) -> Self {
+impl RecoveryDialog {
+    pub fn new(lost: Vec<LostSession>) -> Self {
         Self { lost: lost.into_iter().map(|lost| (lost, false)).collect() }
     }
     pub fn is_empty(&self) -> bool {
         self.lost.is_empty()
     }
     /// Closed, it leaves everything for the next start.
-    pub fn show(&mut self, ui: &mut Ui) -> Answer {
+    pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(460.0);
         ui.heading("Recover unsaved drawings?");
         ui.label("Rilievo ended unexpectedly. What is recovered opens as a new drawing; no file is replaced.");
@@ -44,29 +44,30 @@ impl Recovery {
             }
         });
         ui.separator();
-        let mut answer = Answer::Open;
+        let mut answer = DialogAnswer::Open;
         ui.horizontal(|ui| {
             let can = self.lost.iter().any(|(lost, _)| !lost.has_failed);
             if ui.add_enabled(can, eframe::egui::Button::new("Recover all")).clicked() {
-                answer = Answer::Recover(self.lost.extract_if(.., |(lost, _)| !lost.has_failed).map(first).collect());
+                answer =
+                    DialogAnswer::Recover(self.lost.extract_if(.., |(lost, _)| !lost.has_failed).map(first).collect());
             }
             if ui.button("Later").clicked() {
-                answer = Answer::Close;
+                answer = DialogAnswer::Close;
             }
         });
         if let Some(i) = recover {
-            return Answer::Recover(vec![self.lost.remove(i).0]);
+            return DialogAnswer::Recover(vec![self.lost.remove(i).0]);
         }
-        delete.map_or(answer, |i| Answer::Delete(self.lost.remove(i).0))
+        delete.map_or(answer, |i| DialogAnswer::Delete(self.lost.remove(i).0))
     }
 }
 
-fn first((lost, _): (Lost, bool)) -> Lost {
+fn first((lost, _): (LostSession, bool)) -> LostSession {
     lost
 }
 
 /// When it was begun, where it was kept, and whether to be careful.
-fn described(lost: &Lost) -> String {
+fn described(lost: &LostSession) -> String {
     let age = lost.begun().and_then(|begun| SystemTime::now().duration_since(begun).ok());
     let begun = age.map(|age| format!("Begun {} ago", spoken(age)));
     let place = lost.file.as_ref().map_or("never saved".into(), |file| format!("last saved as {}", file.display()));

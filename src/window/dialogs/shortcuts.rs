@@ -1,13 +1,13 @@
 //! The keys: every command and tool with its own, each to be changed; what already has a key is said before it is taken.
 //! Floor 7.
 
-use super::{Answer, close};
-use crate::keymap::{Keyed, Keymap, shown};
+use super::{DialogAnswer, close};
+use crate::keymap::{KeyTarget, Keymap, shown};
 use crate::widgets::{list, named};
 use eframe::egui::{Event, Grid, Key, KeyboardShortcut, Modifiers, RichText, TextEdit, Ui};
 
 #[derive(Default)]
-pub struct Shortcuts {
+pub struct ShortcutsDialog {
     filter: String,
     /// What waits for a key.
     waiting: Option<&'static str>,
@@ -31,19 +31,19 @@ pub const ON_CANVAS: [(&str, &str); 12] = [
     ("Give a stroke up", "Escape"),
 ];
 
-impl Shortcuts {
-    pub fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) -> Answer {
+impl ShortcutsDialog {
+    pub fn show(&mut self, ui: &mut Ui, keymap: &mut Keymap) -> DialogAnswer {
         ui.set_width(520.0);
         ui.heading("Keyboard shortcuts");
         let field = ui.add(TextEdit::singleline(&mut self.filter).hint_text("Find").desired_width(f32::INFINITY));
         named(&field, "Find a shortcut");
         self.listen(ui, keymap);
-        self.ask(ui, keymap);
+        self.request(ui, keymap);
         let wanted = self.filter.to_lowercase();
         let shown = |name: &str| name.to_lowercase().contains(&wanted);
         list(ui, 460.0).auto_shrink([false, false]).show(ui, |ui| {
             Grid::new("shortcuts").num_columns(2).striped(true).spacing([24.0, 4.0]).show(ui, |ui| {
-                for keyed in Keyed::all().filter(|keyed| shown(keyed.name())) {
+                for keyed in KeyTarget::all().filter(|keyed| shown(keyed.name())) {
                     ui.label(keyed.name()).on_hover_text(keyed.hint());
                     ui.horizontal(|ui| self.keys(ui, keymap, keyed));
                     ui.end_row();
@@ -58,7 +58,7 @@ impl Shortcuts {
         close(ui)
     }
     /// The keys of one thing, and what is done to them.
-    fn keys(&mut self, ui: &mut Ui, keymap: &mut Keymap, keyed: Keyed) {
+    fn keys(&mut self, ui: &mut Ui, keymap: &mut Keymap, keyed: KeyTarget) {
         let name = keyed.name();
         let keys = keymap.of(keyed);
         for &one in &keys {
@@ -111,7 +111,7 @@ impl Shortcuts {
         }
     }
     /// Whether a key may be taken from what has it.
-    fn ask(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
+    fn request(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         let Some((name, keys)) = self.conflict else { return };
         let Some(keyed) = keyed(name) else { return };
         let Some(other) = keymap.conflict(keys, keyed) else { return self.conflict = None };
@@ -129,6 +129,6 @@ impl Shortcuts {
     }
 }
 
-fn keyed(name: &str) -> Option<Keyed> {
-    Keyed::all().find(|keyed| keyed.name() == name)
+fn keyed(name: &str) -> Option<KeyTarget> {
+    KeyTarget::all().find(|keyed| keyed.name() == name)
 }

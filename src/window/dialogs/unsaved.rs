@@ -1,28 +1,28 @@
 //! “Save changes?”, before anything is lost.
 //! Floor 7.
 
-use super::{Answer, Then, buttons};
+use super::{AfterUnsaved, DialogAnswer, buttons};
 use crate::session::Session;
 use eframe::egui::Ui;
 
-pub struct Unsaved {
+pub struct UnsavedDialog {
     /// The tab with unsaved work.
     pub tab: usize,
-    pub then: Then,
+    pub then: AfterUnsaved,
 }
 
-impl Unsaved {
-    pub fn show(&self, ui: &mut Ui, session: &Session) -> Answer {
+impl UnsavedDialog {
+    pub fn show(&self, ui: &mut Ui, session: &Session) -> DialogAnswer {
         ui.set_width(360.0);
-        let title = session.tabs.get(self.tab).map_or_else(String::new, |tab| tab.title());
+        let title = session.open_documents.get(self.tab).map_or_else(String::new, |tab| tab.title());
         ui.heading(format!("Save the changes to “{title}”?"));
         ui.label("What is not saved is lost when the document is closed.");
         ui.add_space(4.0);
         ui.horizontal(|ui| match (ui.button("Do not save").clicked(), buttons(ui, "Save", true)) {
-            (true, _) => Answer::Discard(self.then),
-            (_, Some(true)) => Answer::SaveThen(self.then),
-            (_, Some(false)) => Answer::Close,
-            (_, None) => Answer::Open,
+            (true, _) => DialogAnswer::Discard(self.then),
+            (_, Some(true)) => DialogAnswer::SaveThen(self.then),
+            (_, Some(false)) => DialogAnswer::Close,
+            (_, None) => DialogAnswer::Open,
         })
         .inner
     }

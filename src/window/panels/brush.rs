@@ -2,20 +2,20 @@
 //! Floor 7. The list of brushes is `brushes`'; what a curve looks like is `curve`'s.
 
 use super::curve;
-use crate::asked::Asked;
 use crate::io::recipe::written_brush;
-use crate::paint::grain::{Grain, GrainSource, Lies};
+use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
 use crate::paint::pattern::Pattern;
 use crate::paint::tip::{Bristles, Noise};
 use crate::paint::{Brush, Curve, Drive, Dynamics, Input, Property, Stabilizer, Tip};
 use crate::raster::BlendMode;
+use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::widgets::{Number, check, choice_row, named, sentence};
+use crate::widgets::{NumberField, check, choice_row, named, sentence};
 use eframe::egui::{self, Ui};
 
 /// The parts of a brush that are opened when they are wanted.
-pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.brush;
     let mut changed = None;
     let mut part = |ui: &mut Ui, label: &str, show: fn(&mut Ui, &Brush) -> Option<Brush>| {
@@ -28,13 +28,13 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     part(ui, "Stroke", stroke);
     part(ui, "What follows what", dynamics);
     if let Some(brush) = changed {
-        asked.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
+        requests.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
     }
 }
 
 /// The tips that need no file. A picture comes by importing it.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum TipChoice {
     Round,
     Ellipse,
     Square,
@@ -43,45 +43,45 @@ enum Kind {
     Pictures,
 }
 
-const KINDS: [(Kind, &str); 5] = [
-    (Kind::Round, "round"),
-    (Kind::Ellipse, "ellipse"),
-    (Kind::Square, "square"),
-    (Kind::Bristles, "bristles"),
-    (Kind::Noise, "specks"),
+const KINDS: [(TipChoice, &str); 5] = [
+    (TipChoice::Round, "round"),
+    (TipChoice::Ellipse, "ellipse"),
+    (TipChoice::Square, "square"),
+    (TipChoice::Bristles, "bristles"),
+    (TipChoice::Noise, "specks"),
 ];
 
 fn tip(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let kind = match brush.tip {
-        Tip::Round => Kind::Round,
-        Tip::Ellipse { .. } => Kind::Ellipse,
-        Tip::Square { .. } => Kind::Square,
-        Tip::Bristles(_) => Kind::Bristles,
-        Tip::Noise(_) => Kind::Noise,
-        Tip::Picture(_) | Tip::Hose(_) => Kind::Pictures,
+        Tip::Round => TipChoice::Round,
+        Tip::Ellipse { .. } => TipChoice::Ellipse,
+        Tip::Square { .. } => TipChoice::Square,
+        Tip::Bristles(_) => TipChoice::Bristles,
+        Tip::Noise(_) => TipChoice::Noise,
+        Tip::Picture(_) | Tip::Hose(_) => TipChoice::Pictures,
     };
     let chosen = choice_row(ui, "Shape", kind, &KINDS).map(|kind| match kind {
-        Kind::Round | Kind::Pictures => Tip::Round,
-        Kind::Ellipse => Tip::Ellipse { ratio: 0.5 },
-        Kind::Square => Tip::Square { ratio: 1.0 },
-        Kind::Bristles => Tip::Bristles(Bristles::default()),
-        Kind::Noise => Tip::Noise(Noise::default()),
+        TipChoice::Round | TipChoice::Pictures => Tip::Round,
+        TipChoice::Ellipse => Tip::Ellipse { ratio: 0.5 },
+        TipChoice::Square => Tip::Square { ratio: 1.0 },
+        TipChoice::Bristles => Tip::Bristles(Bristles::default()),
+        TipChoice::Noise => Tip::Noise(Noise::default()),
     });
-    let ratios = || Number::new("Ratio", 0.01..=1.0, "Of the shorter side to the longer one");
+    let ratios = || NumberField::new("Ratio", 0.01..=1.0, "Of the shorter side to the longer one");
     let whole = |v: f32| v.round().max(1.0) as u32;
     let numbers = match &brush.tip {
         Tip::Round => None,
         Tip::Ellipse { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Ellipse { ratio: c.to }),
         Tip::Square { ratio } => ratios().row(ui, *ratio).map(|c| Tip::Square { ratio: c.to }),
         Tip::Bristles(bristles) => {
-            let number = Number::new("Hairs", 1.0..=400.0, "How many hairs the brush has").decimals(0);
+            let number = NumberField::new("Hairs", 1.0..=400.0, "How many hairs the brush has").decimals(0);
             let count = number.row(ui, bristles.count as f32).map(|c| whole(c.to));
             count.map(|count| Tip::Bristles(Bristles { count, ..*bristles }))
         }
         Tip::Noise(noise) => {
-            let cells = Number::new("Specks", 1.0..=100.0, "How many stand along the diameter").decimals(0);
+            let cells = NumberField::new("Specks", 1.0..=100.0, "How many stand along the diameter").decimals(0);
             let cells = cells.row(ui, noise.cells as f32).map(|c| Noise { cells: whole(c.to), ..*noise });
-            let density = Number::new("Density", 0.0..=1.0, "How much of the tip they cover");
+            let density = NumberField::new("Density", 0.0..=1.0, "How much of the tip they cover");
             let density = density.row(ui, noise.density).map(|c| Noise { density: c.to, ..*noise });
             cells.or(density).map(Tip::Noise)
         }
@@ -96,21 +96,25 @@ fn tip(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
 fn spread(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to = brush.clone();
     let mut changed = false;
-    let mut number = |ui: &mut Ui, number: Number, value: &mut f32| {
+    let mut number = |ui: &mut Ui, number: NumberField, value: &mut f32| {
         if let Some(c) = number.row(ui, *value) {
             (*value, changed) = (c.to, true);
         }
     };
     number(
         ui,
-        Number::new("Scatter", 0.0..=4.0, "How far a dab may stand from the stroke, in diameters"),
+        NumberField::new("Scatter", 0.0..=4.0, "How far a dab may stand from the stroke, in diameters"),
         &mut to.scatter,
     );
     let jitter = &mut to.jitter;
-    let hues = Number::new("Hue ±", 0.0..=180.0, "How far a dab's hue may be from the colour in hand").degrees();
+    let hues = NumberField::new("Hue ±", 0.0..=180.0, "How far a dab's hue may be from the colour in hand").degrees();
     number(ui, hues, &mut jitter.hue_degrees);
-    number(ui, Number::new("Saturation ±", 0.0..=1.0, "How far a dab's saturation may be"), &mut jitter.saturation);
-    number(ui, Number::new("Value ±", 0.0..=1.0, "How much lighter or darker a dab may be"), &mut jitter.value);
+    number(
+        ui,
+        NumberField::new("Saturation ±", 0.0..=1.0, "How far a dab's saturation may be"),
+        &mut jitter.saturation,
+    );
+    number(ui, NumberField::new("Value ±", 0.0..=1.0, "How much lighter or darker a dab may be"), &mut jitter.value);
     changed.then_some(to)
 }
 
@@ -131,27 +135,27 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     };
     let chosen = choice_row(ui, "Pattern", pattern, &PATTERNS).map(|pattern| {
         let like = brush.grain.clone().unwrap_or_default();
-        pattern.map(|pattern| Grain { source: GrainSource::Pattern { pattern, seed: 0 }, ..like })
+        pattern.map(|pattern| BrushGrain { source: GrainSource::Pattern { pattern, seed: 0 }, ..like })
     });
-    let of_grain = |grain: Option<Grain>| Brush { grain, ..brush.clone() };
+    let of_grain = |grain: Option<BrushGrain>| Brush { grain, ..brush.clone() };
     let Some(grain) = &brush.grain else { return chosen.map(of_grain) };
     let mut to = grain.clone();
     let mut changed = false;
-    let mut number = |ui: &mut Ui, number: Number, value: &mut f32| {
+    let mut number = |ui: &mut Ui, number: NumberField, value: &mut f32| {
         if let Some(c) = number.row(ui, *value) {
             (*value, changed) = (c.to, true);
         }
     };
-    number(ui, Number::new("Size", 1.0..=400.0, "Of one feature of the pattern").px(), &mut to.size_px);
-    number(ui, Number::new("Strength", 0.0..=1.0, "How much paint its valleys lose"), &mut to.strength);
-    number(ui, Number::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(), &mut to.rotation);
-    let on_surface = matches!(grain.lies, Lies::Surface { .. });
+    number(ui, NumberField::new("Size", 1.0..=400.0, "Of one feature of the pattern").px(), &mut to.size_px);
+    number(ui, NumberField::new("Strength", 0.0..=1.0, "How much paint its valleys lose"), &mut to.strength);
+    number(ui, NumberField::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(), &mut to.rotation);
+    let on_surface = matches!(grain.lies, GrainSpace::Surface { .. });
     let hint = "Carried by the shape as a texture is; else it lies on the flat canvas";
     if let Some(on) = check(ui, "On the surface", hint, on_surface) {
-        (to.lies, changed) = (if on { Lies::Surface { gamma: 1.0 } } else { Lies::Canvas }, true);
+        (to.lies, changed) = (if on { GrainSpace::Surface { gamma: 1.0 } } else { GrainSpace::Canvas }, true);
     }
-    if let Lies::Surface { gamma } = &mut to.lies {
-        let gammas = Number::new("Depth γ", 0.0..=4.0, "How strongly the grain follows the depth");
+    if let GrainSpace::Surface { gamma } = &mut to.lies {
+        let gammas = NumberField::new("Depth γ", 0.0..=4.0, "How strongly the grain follows the depth");
         if let Some(c) = gammas.row(ui, *gamma) {
             (*gamma, changed) = (c.to, true);
         }
@@ -161,34 +165,37 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
 
 /// How the hand is calmed, by its kinds.
 #[derive(Clone, Copy, PartialEq)]
-enum Calming {
+enum StabilizerChoice {
     None,
     Average,
     String,
 }
 
-const CALMINGS: [(Calming, &str); 3] =
-    [(Calming::None, "none"), (Calming::Average, "trailing average"), (Calming::String, "pulled string")];
+const CALMINGS: [(StabilizerChoice, &str); 3] = [
+    (StabilizerChoice::None, "none"),
+    (StabilizerChoice::Average, "trailing average"),
+    (StabilizerChoice::String, "pulled string"),
+];
 
 fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let kind = match brush.stabilizer {
-        Stabilizer::None => Calming::None,
-        Stabilizer::Average { .. } => Calming::Average,
-        Stabilizer::String { .. } => Calming::String,
+        Stabilizer::None => StabilizerChoice::None,
+        Stabilizer::Average { .. } => StabilizerChoice::Average,
+        Stabilizer::String { .. } => StabilizerChoice::String,
     };
     let chosen = choice_row(ui, "Stabiliser", kind, &CALMINGS).map(|kind| match kind {
-        Calming::None => Stabilizer::None,
-        Calming::Average => Stabilizer::Average { weight: 0.7 },
-        Calming::String => Stabilizer::String { length_px: 30.0 },
+        StabilizerChoice::None => Stabilizer::None,
+        StabilizerChoice::Average => Stabilizer::Average { weight: 0.7 },
+        StabilizerChoice::String => Stabilizer::String { length_px: 30.0 },
     });
     let amount = match brush.stabilizer {
         Stabilizer::None => None,
         Stabilizer::Average { weight } => {
-            let number = Number::new("Weight", 0.0..=0.98, "How much of the past is left after ten pixels");
+            let number = NumberField::new("Weight", 0.0..=0.98, "How much of the past is left after ten pixels");
             number.row(ui, weight).map(|c| Stabilizer::Average { weight: c.to })
         }
         Stabilizer::String { length_px } => {
-            let number = Number::new("Length", 1.0..=300.0, "The pen pulls the line on a string this long").px();
+            let number = NumberField::new("Length", 1.0..=300.0, "The pen pulls the line on a string this long").px();
             number.row(ui, length_px).map(|c| Stabilizer::String { length_px: c.to })
         }
     };

@@ -2,20 +2,20 @@
 //! Floor 7.
 
 use super::brush;
-use crate::asked::{Asked, WindowAsk};
-use crate::files::Purpose;
-use crate::io::recipe::{Group, Preset};
+use crate::files::FilePurpose;
+use crate::io::recipe::{Preset, PresetGroup};
 use crate::paint::Property;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::hand::SIZES;
 use crate::session::actions::{FileAction, HandAction};
 use crate::session::brushes::is_found;
 use crate::session::{Action, Session};
 use crate::swatches::Swatches;
-use crate::widgets::{Number, named, title};
+use crate::widgets::{NumberField, named, title};
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{self, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
 
-pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
     let id = Id::unique("brush in hand");
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
@@ -24,17 +24,17 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut
     });
     ui.data_mut(|data| data.insert_temp(id, edits));
     if edits {
-        numbers(ui, session, asked);
-        brush::show(ui, session, asked);
-        keep(ui, asked);
+        numbers(ui, session, requests);
+        brush::show(ui, session, requests);
+        keep(ui, requests);
     } else {
-        presets(ui, session, swatches, asked);
+        presets(ui, session, swatches, requests);
     }
 }
 
-fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut Asked) {
-    let search = search(ui, asked);
-    for (group, name) in Group::ALL {
+fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
+    let search = search(ui, requests);
+    for (group, name) in PresetGroup::ALL {
         let presets = session.presets.iter().filter(|preset| preset.group == group && is_found(preset, &search));
         let presets: Vec<&Preset> = presets.collect();
         if presets.is_empty() {
@@ -46,10 +46,10 @@ fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut 
             for known in presets {
                 let response = preset(ui, known, session.preset == known.key, swatches);
                 if response.clicked() {
-                    asked.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
+                    requests.act(Action::Hand(HandAction::Preset { name: known.key.clone() }));
                 }
-                if known.group == Group::Imported {
-                    remove(&response, known, asked);
+                if known.group == PresetGroup::Imported {
+                    remove(&response, known, requests);
                 }
             }
         });
@@ -57,17 +57,17 @@ fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, asked: &mut 
 }
 
 /// A right click on a brush of the user's own.
-fn remove(response: &Response, known: &Preset, asked: &mut Asked) {
+fn remove(response: &Response, known: &Preset, requests: &mut UiRequests) {
     response.context_menu(|ui| {
         if ui.button("Remove brush").clicked() {
-            asked.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
+            requests.act(Action::File(FileAction::RemoveBrush { name: known.key.clone() }));
             ui.close();
         }
     });
 }
 
 /// The brush in hand under a name of its own.
-fn keep(ui: &mut Ui, asked: &mut Asked) {
+fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     let id = Id::unique("brush name");
     let mut name = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     ui.add_space(4.0);
@@ -76,14 +76,14 @@ fn keep(ui: &mut Ui, asked: &mut Asked) {
         named(&ui.add(field), "Name of the brush to keep");
         let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Keep brush"));
         if button.on_hover_text("The brush as it is now joins the list").clicked() {
-            asked.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
+            requests.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
         }
     });
     ui.data_mut(|data| data.insert_temp(id, name));
 }
 
 /// The row above the list; what is searched for.
-fn search(ui: &mut Ui, asked: &mut Asked) -> String {
+fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     let id = Id::unique("brush search");
     let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
@@ -94,7 +94,7 @@ fn search(ui: &mut Ui, asked: &mut Asked) -> String {
         );
         named(&import, "Import a brush…");
         if import.clicked() {
-            asked.ask(WindowAsk::Choose(Purpose::Brush));
+            requests.request(WindowRequest::Choose(FilePurpose::Brush));
         }
     });
     ui.data_mut(|data| data.insert_temp(id, search.clone()));
@@ -125,27 +125,27 @@ fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) ->
     response.on_hover_text(format!("{label}\n{}", preset.about))
 }
 
-fn numbers(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.brush;
-    let mut push = |action: Option<HandAction>| asked.actions.extend(action.map(Action::Hand));
-    let size = Number::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
+    let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
+    let size = NumberField::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
     push(size.row(ui, brush.size).map(|c| HandAction::Size { to: c.to }));
-    let hardness = Number::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered");
+    let hardness = NumberField::new("Hardness", 0.0..=1.0, "Share of the radius that is fully covered");
     push(hardness.row(ui, brush.hardness).map(|c| HandAction::Hardness { to: c.to }));
-    let softness = Number::new("Softness", 0.0..=1.0, "Blur of the footprint: a rougher, less glossy mark");
+    let softness = NumberField::new("Softness", 0.0..=1.0, "Blur of the footprint: a rougher, less glossy mark");
     push(softness.row(ui, brush.softness).map(|c| HandAction::Softness { to: c.to }));
-    let opacity = Number::new("Opacity", 0.0..=1.0, "Of the whole stroke");
+    let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke");
     push(opacity.row(ui, brush.opacity).map(|c| HandAction::Opacity { to: c.to }));
-    let flow = Number::new("Flow", 0.0..=1.0, "What one dab adds");
+    let flow = NumberField::new("Flow", 0.0..=1.0, "What one dab adds");
     push(flow.row(ui, brush.flow).map(|c| HandAction::Flow { to: c.to }));
-    let spacing = Number::new("Spacing", 0.01..=4.0, "Distance between dabs, in diameters").logarithmic();
+    let spacing = NumberField::new("Spacing", 0.01..=4.0, "Distance between dabs, in diameters").logarithmic();
     push(spacing.row(ui, brush.spacing).map(|c| HandAction::Spacing { to: c.to }));
-    let rotation = Number::new("Rotation", -180.0..=180.0, "Of the tip, counter-clockwise").degrees();
+    let rotation = NumberField::new("Rotation", -180.0..=180.0, "Of the tip, counter-clockwise").degrees();
     push(rotation.row(ui, brush.rotation).map(|c| HandAction::Rotation { to: c.to }));
     title(ui, "Pen pressure");
     let [size, flow] = [Property::Size, Property::Flow].map(|property| brush.dynamics.pressure_share(property));
-    let drives = Number::new("Size", 0.0..=1.0, "How much the size follows the pressure");
+    let drives = NumberField::new("Size", 0.0..=1.0, "How much the size follows the pressure");
     push(drives.row(ui, size).map(|c| HandAction::Pressure { size: c.to, flow }));
-    let drives = Number::new("Flow", 0.0..=1.0, "How much the flow follows the pressure");
+    let drives = NumberField::new("Flow", 0.0..=1.0, "How much the flow follows the pressure");
     push(drives.row(ui, flow).map(|c| HandAction::Pressure { size, flow: c.to }));
 }

@@ -1,26 +1,31 @@
 //! Colour: a square of saturation and value beside a bar of hues, numbers, and the last ones used.
 //! Floor 7.
 
-use crate::asked::Asked;
 use crate::canvas::color32;
 use crate::math::srgb::Color;
+use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::widgets::{Changed, Number, named, swatch};
+use crate::widgets::{NumberField, ValueChange, named, swatch};
 use eframe::egui::{self, Color32, Id, Mesh, Rect, Sense, Shape, Stroke, TextEdit, Ui, pos2, vec2};
 
-pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if let Some(changed) = picker(ui, "Colour in hand", session.color) {
-        asked.act(Action::Hand(HandAction::Color { color: changed.to }));
+        requests.act(Action::Hand(HandAction::Color { color: changed.to }));
     }
     let recent = session.recent_colors.iter().enumerate();
-    swatches(ui, "Recent", recent.map(|(i, &color)| (format!("Recent colour {}", i + 1), color)), asked);
+    swatches(ui, "Recent", recent.map(|(i, &color)| (format!("Recent colour {}", i + 1), color)), requests);
     let palette = PALETTE.iter().map(|&[r, g, b]| ("Palette".to_owned(), Color { r, g, b, a: 255 }));
-    swatches(ui, "Palette", palette, asked);
+    swatches(ui, "Palette", palette, requests);
 }
 
 /// Colours to be taken to hand by a click.
-fn swatches(ui: &mut Ui, name: &str, colors: impl ExactSizeIterator<Item = (String, Color)>, asked: &mut Asked) {
+fn swatches(
+    ui: &mut Ui,
+    name: &str,
+    colors: impl ExactSizeIterator<Item = (String, Color)>,
+    requests: &mut UiRequests,
+) {
     if colors.len() == 0 {
         return;
     }
@@ -29,7 +34,7 @@ fn swatches(ui: &mut Ui, name: &str, colors: impl ExactSizeIterator<Item = (Stri
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
         for (label, color) in colors {
             if swatch(ui, &label, color, vec2(18.0, 18.0)).clicked() {
-                asked.act(Action::Hand(HandAction::Color { color }));
+                requests.act(Action::Hand(HandAction::Color { color }));
             }
         }
     });
@@ -77,7 +82,7 @@ fn hsv(color: Color) -> [f32; 3] {
 }
 
 /// The picker; `label` names it for tests and keeps its hue while the colour is grey.
-pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> {
+pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>> {
     let kept = Id::unique(("hue", label.to_owned()));
     let mut now = hsv(color);
     if let Some((seen, hsv)) = ui.data(|data| data.get_temp::<(Color, [f32; 3])>(kept))
@@ -89,7 +94,7 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> 
     let mut put = |ui: &Ui, hsv: [f32; 3], done: bool| {
         let to = srgb(hsv, color.a);
         ui.data_mut(|data| data.insert_temp(kept, (to, hsv)));
-        out = Some(Changed { to, done });
+        out = Some(ValueChange { to, done });
     };
     let side = (ui.available_width() - 30.0).clamp(60.0, 190.0);
     ui.horizontal(|ui| {
@@ -106,23 +111,24 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> 
             [("H", "Hue", 360.0), ("S", "Saturation", 100.0), ("V", "Value", 100.0)].into_iter().enumerate()
         {
             ui.weak(letter);
-            if let Some(changed) = Number::new(name, 0.0..=scale, name).decimals(0).field(ui, now[i] * scale) {
+            if let Some(changed) = NumberField::new(name, 0.0..=scale, name).decimals(0).field(ui, now[i] * scale) {
                 let mut hsv = now;
                 hsv[i] = changed.to / scale;
                 let to = srgb(hsv, color.a);
                 ui.data_mut(|data| data.insert_temp(kept, (to, hsv)));
-                out = Some(Changed { to, done: changed.done });
+                out = Some(ValueChange { to, done: changed.done });
             }
         }
         ui.end_row();
         let bytes = [color.r, color.g, color.b];
         for (i, (letter, name)) in [("R", "Red"), ("G", "Green"), ("B", "Blue")].into_iter().enumerate() {
             ui.weak(letter);
-            if let Some(changed) = Number::new(name, 0.0..=255.0, name).decimals(0).field(ui, f32::from(bytes[i])) {
+            if let Some(changed) = NumberField::new(name, 0.0..=255.0, name).decimals(0).field(ui, f32::from(bytes[i]))
+            {
                 let mut next = bytes;
                 next[i] = changed.to as u8;
                 let [r, g, b] = next;
-                out = Some(Changed { to: Color { r, g, b, a: color.a }, done: changed.done });
+                out = Some(ValueChange { to: Color { r, g, b, a: color.a }, done: changed.done });
             }
         }
         ui.end_row();
@@ -130,14 +136,14 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> 
     ui.horizontal(|ui| {
         ui.weak("Hex");
         if let Some(to) = hex(ui, color) {
-            out = Some(Changed { to, done: true });
+            out = Some(ValueChange { to, done: true });
         }
     });
     out
 }
 
 /// Saturation to the right, value upward.
-fn square(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Changed<[f32; 3]>> {
+fn square(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<ValueChange<[f32; 3]>> {
     let (rect, response) = ui.allocate_exact_size(vec2(side, side * 0.62), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ColorWell, true, label));
     let mut mesh = Mesh::default();
@@ -157,7 +163,7 @@ fn square(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Ch
 }
 
 /// The hues from top to bottom.
-fn hues(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<Changed<[f32; 3]>> {
+fn hues(ui: &mut Ui, label: &str, [h, s, v]: [f32; 3], side: f32) -> Option<ValueChange<[f32; 3]>> {
     let (rect, response) = ui.allocate_exact_size(vec2(18.0, side * 0.62), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, format!("Hue of {label}")));
     let mut mesh = Mesh::default();
@@ -189,11 +195,11 @@ fn grid(mesh: &mut Mesh, cols: u32, rows: u32) {
 }
 
 /// Where a rectangle was pressed or dragged, each side in `[0, 1]`.
-fn picked(response: &egui::Response, rect: Rect) -> Option<Changed<[f32; 2]>> {
+fn picked(response: &egui::Response, rect: Rect) -> Option<ValueChange<[f32; 2]>> {
     let is_held = response.is_pointer_button_down_on() || response.clicked() || response.drag_stopped();
     let pos = response.interact_pointer_pos().filter(|_| is_held)?;
     let along = ((pos - rect.min) / rect.size()).clamp(vec2(0.0, 0.0), vec2(1.0, 1.0));
-    Some(Changed { to: [along.x, along.y], done: response.drag_stopped() || response.clicked() })
+    Some(ValueChange { to: [along.x, along.y], done: response.drag_stopped() || response.clicked() })
 }
 
 /// `#rrggbb`, read when the field is left.
@@ -214,7 +220,7 @@ fn hex(ui: &mut Ui, color: Color) -> Option<Color> {
 }
 
 /// A swatch that opens a picker.
-pub fn button(ui: &mut Ui, label: &str, color: Color) -> Option<Changed<Color>> {
+pub fn button(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Color>> {
     let response = swatch(ui, label, color, vec2(44.0, 19.0));
     let mut out = None;
     egui::Popup::menu(&response).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {

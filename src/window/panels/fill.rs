@@ -1,27 +1,27 @@
 //! The options of the fill tool.
 //! Floor 7.
 
-use crate::asked::Asked;
 use crate::paint::Fill;
 use crate::paint::fill::{FARTHEST_GROWTH_PX, WIDEST_GAP_PX};
+use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::HandAction;
-use crate::surface::Bounded;
-use crate::widgets::{Number, check, choice};
+use crate::surface::PaintLimit;
+use crate::widgets::{NumberField, check, choice};
 use eframe::egui::Ui;
 
 /// How far a mark may go, as menus say it.
-pub const BOUNDS: [(Bounded, &str); 3] =
-    [(Bounded::Free, "everywhere"), (Bounded::Surface, "on the surface"), (Bounded::Object, "on one object")];
+pub const BOUNDS: [(PaintLimit, &str); 3] =
+    [(PaintLimit::Free, "everywhere"), (PaintLimit::Surface, "on the surface"), (PaintLimit::Object, "on one object")];
 
 /// In a bar.
-pub fn options(ui: &mut Ui, fill: Fill, asked: &mut Asked) {
-    let mut push = |to: Option<Fill>| asked.actions.extend(to.map(|fill| Action::Hand(HandAction::Fill { fill })));
-    let tolerance = Number::new("Tolerance", 0.0..=1.0, "How different a colour may be from the one you click");
+pub fn options(ui: &mut Ui, fill: Fill, requests: &mut UiRequests) {
+    let mut push = |to: Option<Fill>| requests.actions.extend(to.map(|fill| Action::Hand(HandAction::Fill { fill })));
+    let tolerance = NumberField::new("Tolerance", 0.0..=1.0, "How different a colour may be from the one you click");
     push(tolerance.inline(ui, fill.tolerance, 60.0).map(|c| Fill { tolerance: c.to, ..fill }));
-    let gap = Number::new("Close gaps", 0.0..=WIDEST_GAP_PX, "Gaps in the border up to this wide are closed");
+    let gap = NumberField::new("Close gaps", 0.0..=WIDEST_GAP_PX, "Gaps in the border up to this wide are closed");
     push(gap.pixels().inline(ui, fill.gap_px, 60.0).map(|c| Fill { gap_px: c.to, ..fill }));
-    let grow = Number::new("Grow", -FARTHEST_GROWTH_PX..=FARTHEST_GROWTH_PX, "Under the softened edge of a line");
+    let grow = NumberField::new("Grow", -FARTHEST_GROWTH_PX..=FARTHEST_GROWTH_PX, "Under the softened edge of a line");
     push(grow.pixels().inline(ui, fill.grow_px, 60.0).map(|c| Fill { grow_px: c.to, ..fill }));
     let hint = "Smooth the edge of the fill";
     push(check(ui, "Smooth edge", hint, fill.antialias).map(|antialias| Fill { antialias, ..fill }));

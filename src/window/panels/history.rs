@@ -1,13 +1,13 @@
 //! The history: every step by its name; a click goes there.
 //! Floor 7.
 
-use crate::asked::Asked;
+use crate::requests::UiRequests;
 use crate::session::actions::EditAction;
 use crate::session::{Action, Session};
 use eframe::egui::{self, Button, RichText, Ui};
 
-pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
-    let Some(tab) = session.tab() else {
+pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let Some(tab) = session.active() else {
         ui.weak("No document is open.");
         return;
     };
@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
             let text = if steps > 0 { RichText::new(label).weak() } else { RichText::new(label) };
             let row = Button::selectable(steps == 0, text).min_size(egui::vec2(ui.available_width(), 0.0));
             if ui.add(row).clicked() && steps != 0 {
-                asked.act(Action::Edit(EditAction::Walk { steps }));
+                requests.act(Action::Edit(EditAction::Walk { steps }));
             }
         }
     });

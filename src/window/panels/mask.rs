@@ -1,13 +1,13 @@
 //! The mask of the selected layer.
 //! Floor 7.
 
-use super::properties::Setter;
+use super::properties::LayerSetter;
 use crate::document::{Layer, MaskKind};
 use crate::session::Property;
 use crate::session::actions::LayerAction;
-use crate::session::actions::pictures::Part;
-use crate::session::property::{DerivedMask, MaskNumbers};
-use crate::widgets::{Changed, Number, check, choice_row, title};
+use crate::session::actions::pictures::PicturePart;
+use crate::session::property::{DerivedMask, DerivedMaskNumbers};
+use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::Ui;
 
 /// The kinds of mask that a panel makes; a picture's is kept as it is.
@@ -21,7 +21,7 @@ enum MaskChoice {
 }
 
 /// The mask of a layer: of what it is made, whether it counts, and whether the brush paints on it.
-pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut Setter) {
+pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter) {
     title(ui, "Mask");
     let current = match layer.mask.as_ref().map(|mask| &mask.kind) {
         None => MaskChoice::None,
@@ -40,9 +40,9 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut Setter) {
     let offered = if current == MaskChoice::File { &all[..] } else { &all[..4] };
     if let Some(to) = choice_row(ui, "Made of", current, offered) {
         let numbers = match to {
-            MaskChoice::Fresnel => Some(MaskNumbers::Fresnel { f0: 0.04, power: 5.0 }),
-            MaskChoice::Curvature => Some(MaskNumbers::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 }),
-            MaskChoice::Depth => Some(MaskNumbers::Depth { from: 0.0, to: 1.0 }),
+            MaskChoice::Fresnel => Some(DerivedMaskNumbers::Fresnel { f0: 0.04, power: 5.0 }),
+            MaskChoice::Curvature => Some(DerivedMaskNumbers::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 }),
+            MaskChoice::Depth => Some(DerivedMaskNumbers::Depth { from: 0.0, to: 1.0 }),
             MaskChoice::None | MaskChoice::File => None,
         };
         setter.set(Property::Mask { mask: numbers.map(DerivedMask) }, true);
@@ -72,7 +72,7 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut Setter) {
                 }
             }
         }
-        setter.choose(ui, Part::Mask, "From a picture…");
+        setter.choose(ui, PicturePart::Mask, "From a picture…");
         if layer.mask.is_some() && ui.button("Delete mask").clicked() {
             setter.set(Property::Mask { mask: None }, true);
         }
@@ -89,30 +89,30 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut Setter) {
     }
 }
 
-fn mask_numbers(ui: &mut Ui, kind: &MaskKind) -> Option<Changed<MaskNumbers>> {
+fn mask_numbers(ui: &mut Ui, kind: &MaskKind) -> Option<ValueChange<DerivedMaskNumbers>> {
     match *kind {
         MaskKind::File { .. } => None,
         MaskKind::Fresnel { f0, power } => {
-            let a = Number::new("Facing", 0.0..=1.0, "Coverage where the surface faces you").row(ui, f0);
-            let b = Number::new("Power", 0.2..=10.0, "How near the rim it stays").row(ui, power);
-            a.map(|c| c.map(|f0| MaskNumbers::Fresnel { f0, power }))
-                .or(b.map(|c| c.map(|power| MaskNumbers::Fresnel { f0, power })))
+            let a = NumberField::new("Facing", 0.0..=1.0, "Coverage where the surface faces you").row(ui, f0);
+            let b = NumberField::new("Power", 0.2..=10.0, "How near the rim it stays").row(ui, power);
+            a.map(|c| c.map(|f0| DerivedMaskNumbers::Fresnel { f0, power }))
+                .or(b.map(|c| c.map(|power| DerivedMaskNumbers::Fresnel { f0, power })))
         }
         MaskKind::Curvature { scale, blur, from, to } => {
-            let a = Number::new("Scale", 0.0..=40.0, "Features this wide count in full, px").row(ui, scale);
-            let b = Number::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, blur);
-            let c = Number::new("From", -1.0..=1.0, "Curvature where nothing is painted").row(ui, from);
-            let d = Number::new("To", -1.0..=1.0, "Curvature where all is painted").row(ui, to);
-            a.map(|v| v.map(|scale| MaskNumbers::Curvature { scale, blur, from, to }))
-                .or(b.map(|v| v.map(|blur| MaskNumbers::Curvature { scale, blur, from, to })))
-                .or(c.map(|v| v.map(|from| MaskNumbers::Curvature { scale, blur, from, to })))
-                .or(d.map(|v| v.map(|to| MaskNumbers::Curvature { scale, blur, from, to })))
+            let a = NumberField::new("Scale", 0.0..=40.0, "Features this wide count in full, px").row(ui, scale);
+            let b = NumberField::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, blur);
+            let c = NumberField::new("From", -1.0..=1.0, "Curvature where nothing is painted").row(ui, from);
+            let d = NumberField::new("To", -1.0..=1.0, "Curvature where all is painted").row(ui, to);
+            a.map(|v| v.map(|scale| DerivedMaskNumbers::Curvature { scale, blur, from, to }))
+                .or(b.map(|v| v.map(|blur| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
+                .or(c.map(|v| v.map(|from| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
+                .or(d.map(|v| v.map(|to| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
         }
         MaskKind::Depth { from, to } => {
-            let a = Number::new("From", 0.0..=1.0, "Depth where nothing is painted").row(ui, from);
-            let b = Number::new("To", 0.0..=1.0, "Depth where all is painted").row(ui, to);
-            a.map(|c| c.map(|from| MaskNumbers::Depth { from, to }))
-                .or(b.map(|c| c.map(|to| MaskNumbers::Depth { from, to })))
+            let a = NumberField::new("From", 0.0..=1.0, "Depth where nothing is painted").row(ui, from);
+            let b = NumberField::new("To", 0.0..=1.0, "Depth where all is painted").row(ui, to);
+            a.map(|c| c.map(|from| DerivedMaskNumbers::Depth { from, to }))
+                .or(b.map(|c| c.map(|to| DerivedMaskNumbers::Depth { from, to })))
         }
     }
 }

@@ -2,18 +2,18 @@
 //! Floor 7.
 
 use super::colors;
-use super::properties::Setter;
+use super::properties::LayerSetter;
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::session::Property;
-use crate::session::actions::pictures::Part;
+use crate::session::actions::pictures::PicturePart;
 use crate::shading::{
     Environment, FeatureScale, Features, Light, LightKind, Model, Projection, RadianceScaling, Scaling, Shading, Term,
 };
-use crate::widgets::{Changed, Number, check, choice_row, title};
+use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::{self, Color32, Sense, Shape, Stroke, Ui};
 
 /// `canvas`: its sides, px.
-pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut Setter) {
+pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerSetter) {
     if let Some(model) = choice_row(ui, "Model", shading.model, &Model::ALL) {
         setter.set(Property::ShadingModel { model }, true);
     }
@@ -22,32 +22,33 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut Setter
     term(ui, "Specular", shading.specular, setter, |term| Property::Specular { term });
     match shading.model {
         Model::Phong | Model::Toon => {
-            let number = Number::new("Shininess", 1.0..=400.0, "How small the highlight is").logarithmic().decimals(0);
+            let number =
+                NumberField::new("Shininess", 1.0..=400.0, "How small the highlight is").logarithmic().decimals(0);
             setter.take(number.row(ui, shading.shininess).map(|c| c.map(|to| Property::Shininess { to })));
         }
         Model::SubLambertian => {
-            let number = Number::new("Flatness", 0.0..=1.0, "1 is matt, 0 flat like the moon");
+            let number = NumberField::new("Flatness", 0.0..=1.0, "1 is matt, 0 flat like the moon");
             setter.take(number.row(ui, shading.exponent).map(|c| c.map(|to| Property::Exponent { to })));
         }
         Model::Ashikhmin => {
             let (nu, nv) = (shading.nu, shading.nv);
-            let a = Number::new("Along x", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nu);
+            let a = NumberField::new("Along x", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nu);
             setter.take(a.map(|c| c.map(|nu| Property::Anisotropy { nu, nv })));
-            let b = Number::new("Along y", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nv);
+            let b = NumberField::new("Along y", 1.0..=1000.0, "How narrow the highlight is").logarithmic().row(ui, nv);
             setter.take(b.map(|c| c.map(|nv| Property::Anisotropy { nu, nv })));
         }
         Model::Refraction => {
-            let number = Number::new("Index", 1.0..=3.0, "Glass is 1.5");
+            let number = NumberField::new("Index", 1.0..=3.0, "Glass is 1.5");
             setter.take(number.row(ui, shading.index).map(|c| c.map(|to| Property::RefractiveIndex { to })));
         }
         _ => {}
     }
     if shading.model == Model::Toon {
-        let number = Number::new("Tones", 2.0..=12.0, "Flat bands of light").decimals(0);
+        let number = NumberField::new("Tones", 2.0..=12.0, "Flat bands of light").decimals(0);
         setter.take(number.row(ui, shading.bands as f32).map(|c| c.map(|to| Property::Bands { to: to as u32 })));
     }
     if matches!(shading.model, Model::AmbientOcclusion | Model::DiffuseEnvironment) {
-        let number = Number::new("Reach", 0.0..=400.0, "How far away occluders still count, px").decimals(0);
+        let number = NumberField::new("Reach", 0.0..=400.0, "How far away occluders still count, px").decimals(0);
         setter.take(number.row(ui, shading.occlusion_radius_px).map(|c| c.map(|to| Property::Occlusion { to })));
     }
     pictures(ui, shading, setter);
@@ -58,8 +59,8 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut Setter
 }
 
 /// The environment or the lit spheres, where the model knows them.
-fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut Setter) {
-    let mut picture = |ui: &mut Ui, part: Part, file: Option<&str>, none: &str| {
+fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
+    let mut picture = |ui: &mut Ui, part: PicturePart, file: Option<&str>, none: &str| {
         title(ui, part.title());
         ui.horizontal_wrapped(|ui| {
             setter.choose(ui, part, "Choose…");
@@ -77,41 +78,47 @@ fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut Setter) {
     if shading.model.needs_environment() || shading.model == Model::Ashikhmin {
         let file = shading.environment.as_ref().map(|environment| &*environment.file);
         let none = if shading.lacks_environment() { "None yet: the layer is black" } else { "None: lit by the lights" };
-        picture(ui, Part::Environment, file, none);
+        picture(ui, PicturePart::Environment, file, none);
         if let Some(environment) = &shading.environment {
             surroundings(ui, environment, setter);
         }
     } else if shading.model == Model::LitSphere {
-        picture(ui, Part::Sphere, shading.sphere.as_ref().map(|sphere| &*sphere.file), "Grey clay");
-        picture(ui, Part::ConcaveSphere, shading.sphere_concave.as_ref().map(|sphere| &*sphere.file), "The same");
+        picture(ui, PicturePart::Sphere, shading.sphere.as_ref().map(|sphere| &*sphere.file), "Grey clay");
+        picture(
+            ui,
+            PicturePart::ConcaveSphere,
+            shading.sphere_concave.as_ref().map(|sphere| &*sphere.file),
+            "The same",
+        );
     }
 }
 
-fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut Setter) {
+fn surroundings(ui: &mut Ui, environment: &Environment, setter: &mut LayerSetter) {
     let Environment { projection, rotation, exposure, .. } = *environment;
     if let Some(projection) = choice_row(ui, "Lies as", projection, &Projection::ALL) {
         setter.set(Property::Surrounded { projection, rotation, exposure }, true);
     }
-    let turn = Number::new("Turn", -180.0..=180.0, "About the vertical axis").degrees().row(ui, rotation);
+    let turn = NumberField::new("Turn", -180.0..=180.0, "About the vertical axis").degrees().row(ui, rotation);
     setter.take(turn.map(|c| c.map(|rotation| Property::Surrounded { projection, rotation, exposure })));
-    let stops = Number::new("Exposure", -8.0..=8.0, "In stops").row(ui, exposure);
+    let stops = NumberField::new("Exposure", -8.0..=8.0, "In stops").row(ui, exposure);
     setter.take(stops.map(|c| c.map(|exposure| Property::Surrounded { projection, rotation, exposure })));
 }
 
-fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut Setter, put: fn(Term) -> Property) {
+fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut LayerSetter, put: fn(Term) -> Property) {
     ui.horizontal(|ui| {
         let color = colors::button(ui, &format!("{label} colour"), term.color);
         setter.take(color.map(|c| c.map(|color| put(Term { color, ..term }))));
-        let weight = Number::new(label, 0.0..=2.0, "How much of it there is; 0 leaves it out").row(ui, term.weight);
+        let weight =
+            NumberField::new(label, 0.0..=2.0, "How much of it there is; 0 leaves it out").row(ui, term.weight);
         setter.take(weight.map(|c| c.map(|weight| put(Term { weight, ..term }))));
     });
     let gamma = format!("{label} relief");
-    let number = Number::new(&gamma, 0.0..=8.0, "How strongly features are brought out in this term (γ)");
+    let number = NumberField::new(&gamma, 0.0..=8.0, "How strongly features are brought out in this term (γ)");
     let changed = number.row(ui, term.scaling.gamma_convex);
     setter.take(changed.map(|c| c.map(|gamma| put(Term { scaling: Scaling::new(term.scaling.alpha, gamma), ..term }))));
 }
 
-fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut Setter) {
+fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter) {
     title(ui, "Lights");
     let with = |i: usize, light: Light| {
         let mut lights = lights.to_vec();
@@ -144,11 +151,11 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut Setter) {
                     }
                 });
                 let label = format!("Light {}", i + 1);
-                let number = Number::new(&label, 0.0..=4.0, "Intensity").row(ui, light.intensity);
+                let number = NumberField::new(&label, 0.0..=4.0, "Intensity").row(ui, light.intensity);
                 setter.take(number.map(|c| c.map(|intensity| with(i, Light { intensity, ..*light }))));
                 if let LightKind::Point { position } = light.kind {
                     let label = format!("Height {}", i + 1);
-                    let height = Number::new(&label, 0.0..=4000.0, "Over the nearest point, px").decimals(0);
+                    let height = NumberField::new(&label, 0.0..=4000.0, "Over the nearest point, px").decimals(0);
                     let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
                     let height = height.row(ui, position.z);
                     setter.take(height.map(|c| c.map(|z| with(i, Light { kind: kind(z), ..*light }))));
@@ -170,7 +177,7 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut Setter) {
 }
 
 /// A ball on which a direction is dragged: toward the light, camera space (y up).
-fn ball(ui: &mut Ui, label: &str, direction: Vec3) -> Option<Changed<Vec3>> {
+fn ball(ui: &mut Ui, label: &str, direction: Vec3) -> Option<ValueChange<Vec3>> {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(58.0, 58.0), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, label));
     let (center, radius) = (rect.center(), 26.0);
@@ -196,10 +203,10 @@ fn ball(ui: &mut Ui, label: &str, direction: Vec3) -> Option<Changed<Vec3>> {
     let at = (pos - center) / radius;
     let flat = vec2(at.x, -at.y).clamp_length_max(0.999);
     let to = vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt());
-    Some(Changed { to, done: response.drag_stopped() || response.clicked() })
+    Some(ValueChange { to, done: response.drag_stopped() || response.clicked() })
 }
 
-fn features(ui: &mut Ui, features: &Features, setter: &mut Setter) {
+fn features(ui: &mut Ui, features: &Features, setter: &mut LayerSetter) {
     title(ui, "Features");
     let Some(&scale) = features.scales.first() else { return };
     let with = |scale: FeatureScale| {
@@ -209,27 +216,29 @@ fn features(ui: &mut Ui, features: &Features, setter: &mut Setter) {
         }
         Property::Features { features }
     };
-    let number = Number::new("Width", 0.0..=40.0, "Features this many pixels wide count in full");
+    let number = NumberField::new("Width", 0.0..=40.0, "Features this many pixels wide count in full");
     let changed = number.row(ui, scale.curvature_scale_px);
     setter.take(changed.map(|c| c.map(|curvature_scale_px| with(FeatureScale { curvature_scale_px, ..scale }))));
-    let changed = Number::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, scale.blur_px);
+    let changed = NumberField::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, scale.blur_px);
     setter.take(changed.map(|c| c.map(|blur_px| with(FeatureScale { blur_px, ..scale }))));
     let hint = "0 all features, 1 those along the light, −1 those across it";
-    let changed = Number::new("Direction", -1.0..=1.0, hint).row(ui, features.lambda);
+    let changed = NumberField::new("Direction", -1.0..=1.0, hint).row(ui, features.lambda);
     setter.take(
         changed.map(|c| c.map(|lambda| Property::Features { features: Features { lambda, ..features.clone() } })),
     );
 }
 
-pub fn radiance_scaling(ui: &mut Ui, scaling: &RadianceScaling, setter: &mut Setter) {
+pub fn radiance_scaling(ui: &mut Ui, scaling: &RadianceScaling, setter: &mut LayerSetter) {
     let now = scaling.scaling;
-    let gamma = Number::new("Strength", 0.0..=12.0, "How strongly relief is brought out (γ)").row(ui, now.gamma_convex);
+    let gamma =
+        NumberField::new("Strength", 0.0..=12.0, "How strongly relief is brought out (γ)").row(ui, now.gamma_convex);
     setter.take(gamma.map(|c| c.map(|gamma| Property::Scaled { scaling: Scaling::new(now.alpha, gamma) })));
-    let concave = Number::new("In hollows", 0.0..=12.0, "The strength on concave features").row(ui, now.gamma_concave);
+    let concave =
+        NumberField::new("In hollows", 0.0..=12.0, "The strength on concave features").row(ui, now.gamma_concave);
     let with = |gamma_concave| Property::Scaled { scaling: Scaling { gamma_concave, ..now } };
     setter.take(concave.map(|c| c.map(with)));
     let hint = "Light of this brightness stays as it is (α)";
-    let alpha = Number::new("Still tone", 0.02..=0.98, hint).row(ui, now.alpha);
+    let alpha = NumberField::new("Still tone", 0.02..=0.98, hint).row(ui, now.alpha);
     setter.take(alpha.map(|c| c.map(|alpha| Property::Scaled { scaling: Scaling { alpha, ..now } })));
     let hint = "Keep the mean brightness over the surface";
     if let Some(on) = check(ui, "Keep brightness", hint, scaling.keep_mean) {

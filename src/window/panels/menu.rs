@@ -1,10 +1,10 @@
 //! The menu bar and the documents' tabs.
 //! Floor 7.
 
-use crate::asked::{Asked, WindowAsk};
-use crate::commands::{Command, MENUS, SHADING};
+use crate::commands::{MENUS, MenuCommand, SHADING};
 use crate::icons::{Icon, sized_button};
 use crate::keymap::shown;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::FileAction;
 use crate::session::{Action, Session};
 use crate::settings::Settings;
@@ -12,7 +12,7 @@ use eframe::egui::{self, Button, RichText, Ui};
 use std::path::PathBuf;
 
 /// The menus, made from the commands.
-pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut UiRequests) {
     egui::MenuBar::new().ui(ui, |ui| {
         for (title, commands) in MENUS {
             ui.menu_button(title, |ui| {
@@ -21,12 +21,12 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, asked: &mut Ask
                 let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 12.0;
                 egui::ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
                     for command in commands {
-                        entry(ui, session, settings, command, asked);
+                        entry(ui, session, settings, command, requests);
                         match command.name {
                             "New gradient layer" => drop(ui.menu_button("New shading layer", |ui| {
-                                SHADING.iter().for_each(|command| entry(ui, session, settings, command, asked));
+                                SHADING.iter().for_each(|command| entry(ui, session, settings, command, requests));
                             })),
-                            "Open…" => recent_files(ui, &settings.recent, asked),
+                            "Open…" => recent_files(ui, &settings.recent, requests),
                             _ => {}
                         }
                     }
@@ -36,7 +36,13 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, asked: &mut Ask
     });
 }
 
-fn entry(ui: &mut Ui, session: &Session, settings: &Settings, command: &'static Command, asked: &mut Asked) {
+fn entry(
+    ui: &mut Ui,
+    session: &Session,
+    settings: &Settings,
+    command: &'static MenuCommand,
+    requests: &mut UiRequests,
+) {
     if command.is_line() {
         return drop(ui.separator());
     }
@@ -47,18 +53,18 @@ fn entry(ui: &mut Ui, session: &Session, settings: &Settings, command: &'static 
     }
     let response = ui.add_enabled((command.can)(session), button);
     if response.on_hover_text(command.hint).clicked() {
-        (command.run)(session, asked);
+        (command.run)(session, requests);
         ui.close();
     }
 }
 
-fn recent_files(ui: &mut Ui, recent: &[PathBuf], asked: &mut Asked) {
+fn recent_files(ui: &mut Ui, recent: &[PathBuf], requests: &mut UiRequests) {
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for file in recent {
                 let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 if ui.button(name).on_hover_text(file.display().to_string()).clicked() {
-                    asked.ask(WindowAsk::Open(file.clone()));
+                    requests.request(WindowRequest::Open(file.clone()));
                     ui.close();
                 }
             }
@@ -67,21 +73,21 @@ fn recent_files(ui: &mut Ui, recent: &[PathBuf], asked: &mut Asked) {
 }
 
 /// One tab a document, a dot before what is not saved.
-pub fn tabs(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        for (index, tab) in session.tabs.iter().enumerate() {
+        for (index, tab) in session.open_documents.iter().enumerate() {
             let is_front = index == session.current;
             let title = format!("{}{}", if tab.is_dirty() { "• " } else { "" }, tab.title());
             let text = if is_front { RichText::new(title).strong() } else { RichText::new(title) };
             let path = tab.file.as_ref().map_or_else(|| "Not saved yet".to_owned(), |file| file.display().to_string());
             let response = ui.add(Button::selectable(is_front, text)).on_hover_text(path);
             if response.clicked() {
-                asked.act(Action::File(FileAction::Tab { index }));
+                requests.act(Action::File(FileAction::Tab { index }));
             }
             let close = sized_button(ui, Icon::Close, &format!("Close {}", tab.title()), false, 18.0);
             if close.clicked() || response.middle_clicked() {
-                asked.ask(WindowAsk::Close(index));
+                requests.request(WindowRequest::Close(index));
             }
             ui.add_space(8.0);
         }

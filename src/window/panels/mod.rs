@@ -3,13 +3,13 @@
 //! Floor 7.
 
 mod brush;
+pub mod brush_mode;
 pub mod brushes;
 pub mod colors;
 mod curve;
 pub mod fill;
 pub mod history;
 pub mod layers;
-pub mod marks;
 pub mod mask;
 pub mod material;
 pub mod menu;
@@ -23,7 +23,7 @@ pub mod tools;
 
 /// A panel that can stand beside the canvas or in a window of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Front {
+pub enum PanelKind {
     Color,
     Brushes,
     Properties,
@@ -34,16 +34,16 @@ pub enum Front {
     Layers,
 }
 
-impl Front {
+impl PanelKind {
     /// Every panel with what it is called.
-    pub const ALL: [(Front, &'static str); 7] = [
-        (Front::Color, "Colour"),
-        (Front::Brushes, "Brushes"),
-        (Front::Properties, "Properties"),
-        (Front::Surface, "Surface"),
-        (Front::History, "History"),
-        (Front::Navigator, "Navigator"),
-        (Front::Layers, "Layers"),
+    pub const ALL: [(PanelKind, &'static str); 7] = [
+        (PanelKind::Color, "Colour"),
+        (PanelKind::Brushes, "Brushes"),
+        (PanelKind::Properties, "Properties"),
+        (PanelKind::Surface, "Surface"),
+        (PanelKind::History, "History"),
+        (PanelKind::Navigator, "Navigator"),
+        (PanelKind::Layers, "Layers"),
     ];
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(front, _)| *front == self).map_or("", |(_, name)| name)

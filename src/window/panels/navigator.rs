@@ -1,17 +1,17 @@
 //! The navigator: the whole picture small, with what the window shows of it; a click looks there.
 //! Floor 7.
 
-use crate::asked::{Asked, WindowAsk};
 use crate::canvas::Canvas;
 use crate::math::{Vec2, vec2};
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::view::ZOOMS;
 use crate::session::{Action, Session};
-use crate::widgets::Number;
+use crate::widgets::NumberField;
 use eframe::egui::{self, Color32, Rect, Sense, Shape, Stroke, Ui, pos2};
 
-pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, asked: &mut Asked) {
-    let Some(tab) = session.tab() else {
+pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut UiRequests) {
+    let Some(tab) = session.active() else {
         ui.weak("No document is open.");
         return;
     };
@@ -41,30 +41,30 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, asked: &mut Ask
         }
         if let Some(pos) = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on()) {
             let at = (pos - rect.min) / scale;
-            asked.act(Action::View(ViewAction::LookAt { center: vec2(at.x, at.y) }));
+            requests.act(Action::View(ViewAction::LookAt { center: vec2(at.x, at.y) }));
         }
     });
     ui.horizontal(|ui| {
         let per_point = ui.ctx().pixels_per_point();
         let [least, most] = ZOOMS.map(|zoom| zoom * 100.0);
         let zoom =
-            Number::new("Zoom", least..=most, "Screen pixels to a hundred of the canvas").percent().logarithmic();
+            NumberField::new("Zoom", least..=most, "Screen pixels to a hundred of the canvas").percent().logarithmic();
         if let Some(changed) = zoom.inline(ui, view.zoom * per_point * 100.0, 90.0) {
-            asked.act(Action::View(ViewAction::ZoomTo { zoom: changed.to / (100.0 * per_point) }));
+            requests.act(Action::View(ViewAction::ZoomTo { zoom: changed.to / (100.0 * per_point) }));
         }
     });
     ui.horizontal(|ui| {
         if ui.button("Fit").on_hover_text("The whole canvas in the window").clicked() {
-            asked.ask(WindowAsk::Scale(0.0));
+            requests.request(WindowRequest::Scale(0.0));
         }
         if ui.button("100 %").on_hover_text("Actual pixels").clicked() {
-            asked.ask(WindowAsk::Scale(1.0));
+            requests.request(WindowRequest::Scale(1.0));
         }
         if ui.selectable_label(view.mirrored, "Mirror").on_hover_text("See the picture mirrored (M)").clicked() {
-            asked.act(Action::View(ViewAction::Mirror {}));
+            requests.act(Action::View(ViewAction::Mirror {}));
         }
         if ui.selectable_label(view.turn_rad != 0.0, "Upright").on_hover_text("Turn the canvas back (5)").clicked() {
-            asked.act(Action::View(ViewAction::Upright {}));
+            requests.act(Action::View(ViewAction::Upright {}));
         }
     });
 }

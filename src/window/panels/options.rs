@@ -1,25 +1,25 @@
 //! The bar above the canvas: the operator with its numbers, and the options of the tool in hand.
 //! Floor 7.
 
-use super::{fill, marks};
-use crate::asked::Asked;
+use super::{brush_mode, fill};
 use crate::commands::operators;
 use crate::document::Content;
+use crate::requests::UiRequests;
 use crate::session::actions::hand::SIZES;
 use crate::session::actions::{HandAction, LayerAction};
 use crate::session::{Action, LayerPath, Property, Session};
 use crate::surface::Operator;
 use crate::tools::{Symmetry, ToolKind};
-use crate::widgets::{Changed, Number};
+use crate::widgets::{NumberField, ValueChange};
 use eframe::egui::{Button, RichText, Ui};
 
 /// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the hand's.
-enum Whose {
+enum OperatorOwner {
     Hand,
     Layer(LayerPath),
 }
 
-fn whose(session: &Session) -> (Whose, Operator) {
+fn whose(session: &Session) -> (OperatorOwner, Operator) {
     let of_layer = matches!(session.tool, ToolKind::Image | ToolKind::Anchors | ToolKind::Move | ToolKind::Gradient);
     let operator = session.layer().filter(|_| of_layer).and_then(|layer| match &layer.content {
         Content::Image(live) => Some(live.params().bend.operator),
@@ -27,8 +27,8 @@ fn whose(session: &Session) -> (Whose, Operator) {
         _ => None,
     });
     match (operator, session.layer_path()) {
-        (Some(operator), Some(path)) => (Whose::Layer(path), operator),
-        _ => (Whose::Hand, session.operator),
+        (Some(operator), Some(path)) => (OperatorOwner::Layer(path), operator),
+        _ => (OperatorOwner::Hand, session.operator),
     }
 }
 
@@ -38,57 +38,57 @@ pub fn has(session: &Session, operator: Operator) -> bool {
 }
 
 /// Another operator for what the bar shows.
-pub fn give(session: &Session, asked: &mut Asked, operator: Operator) {
-    set(asked, &whose(session).0, Changed { to: operator, done: true });
+pub fn give(session: &Session, requests: &mut UiRequests, operator: Operator) {
+    set(requests, &whose(session).0, ValueChange { to: operator, done: true });
 }
 
-fn set(asked: &mut Asked, whose: &Whose, operator: Changed<Operator>) {
-    let Changed { to, done } = operator;
-    asked.act(match whose {
-        Whose::Hand => Action::Hand(HandAction::Operator { operator: to }),
-        Whose::Layer(layer) => {
+fn set(requests: &mut UiRequests, whose: &OperatorOwner, operator: ValueChange<Operator>) {
+    let ValueChange { to, done } = operator;
+    requests.act(match whose {
+        OperatorOwner::Hand => Action::Hand(HandAction::Operator { operator: to }),
+        OperatorOwner::Layer(layer) => {
             Action::Layer(LayerAction::Set { layer: layer.clone(), to: Property::Bend { operator: to }, done })
         }
     });
 }
 
-pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal_wrapped(|ui| {
         // It lays pixels where they are: nothing is bent.
         if session.tool == ToolKind::Fill {
-            return fill::options(ui, session.fill, asked);
+            return fill::options(ui, session.fill, requests);
         }
         let (whose, operator) = whose(session);
         let about = match whose {
-            Whose::Hand => "New marks",
-            Whose::Layer(_) => "Selected layer",
+            OperatorOwner::Hand => "New marks",
+            OperatorOwner::Layer(_) => "Selected layer",
         };
         ui.label(RichText::new(about).weak());
         for (label, begins, hint) in operators() {
             let is_on = has(session, begins);
             if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
-                give(session, asked, begins);
+                give(session, requests, begins);
             }
         }
         ui.add_space(6.0);
         if let Some(changed) = numbers(ui, operator) {
-            set(asked, &whose, changed);
+            set(requests, &whose, changed);
         }
         if matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) {
             ui.separator();
-            brush(ui, session, asked);
-            symmetry(ui, session, asked);
+            brush(ui, session, requests);
+            symmetry(ui, session, requests);
             let mut by_speed = session.presses_by_speed;
             let hint = "A mouse or finger without pressure presses less the faster it goes";
             if ui.checkbox(&mut by_speed, "Speed presses").on_hover_text(hint).changed() {
-                asked.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
+                requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
             }
         }
     });
 }
 
 /// How strokes repeat, as a menu.
-fn symmetry(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     const CHOICES: [(Symmetry, &str); 8] = [
         (Symmetry::None, "No symmetry"),
         (Symmetry::Vertical, "Left and right"),
@@ -103,7 +103,7 @@ fn symmetry(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     let menu = ui.menu_button(known.unwrap_or("Symmetry"), |ui| {
         for (choice, label) in CHOICES {
             if ui.selectable_label(choice == session.symmetry, label).clicked() {
-                asked.act(Action::Hand(HandAction::Symmetry { symmetry: choice }));
+                requests.act(Action::Hand(HandAction::Symmetry { symmetry: choice }));
                 ui.close();
             }
         }
@@ -112,26 +112,26 @@ fn symmetry(ui: &mut Ui, session: &Session, asked: &mut Asked) {
 }
 
 /// The live sliders of an operator, in a bar.
-fn numbers(ui: &mut Ui, operator: Operator) -> Option<Changed<Operator>> {
+fn numbers(ui: &mut Ui, operator: Operator) -> Option<ValueChange<Operator>> {
     numbers_by(operator, |number, value| number.inline(ui, value, 96.0))
 }
 
 /// The same, one below the other.
-pub fn number_rows(ui: &mut Ui, operator: Operator) -> Option<Changed<Operator>> {
+pub fn number_rows(ui: &mut Ui, operator: Operator) -> Option<ValueChange<Operator>> {
     numbers_by(operator, |number, value| number.row(ui, value))
 }
 
 fn numbers_by(
     operator: Operator,
-    mut show: impl FnMut(Number<'static>, f32) -> Option<Changed<f32>>,
-) -> Option<Changed<Operator>> {
-    let alphas = || Number::new("α", -1.5..=1.5, "Strength: a mirror above 0, flat at 0, glass below");
-    let betas = || Number::new("β", 0.0..=5.0, "How much faster the middle of the surface bends than its rim");
-    let details = || Number::new("Detail", 0.0..=2.0, "How much small bumps bend the image beyond the large form");
+    mut show: impl FnMut(NumberField<'static>, f32) -> Option<ValueChange<f32>>,
+) -> Option<ValueChange<Operator>> {
+    let alphas = || NumberField::new("α", -1.5..=1.5, "Strength: a mirror above 0, flat at 0, glass below");
+    let betas = || NumberField::new("β", 0.0..=5.0, "How much faster the middle of the surface bends than its rim");
+    let details = || NumberField::new("Detail", 0.0..=2.0, "How much small bumps bend the image beyond the large form");
     match operator {
         Operator::None => None,
         Operator::Depth { gamma } => {
-            let gammas = Number::new("γ", 0.0..=4.0, "How strongly the texture follows the depth");
+            let gammas = NumberField::new("γ", 0.0..=4.0, "How strongly the texture follows the depth");
             show(gammas, gamma).map(|changed| changed.map(|gamma| Operator::Depth { gamma }))
         }
         Operator::Normal { alpha, beta, detail } => {
@@ -148,17 +148,18 @@ fn numbers_by(
     }
 }
 
-fn brush(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.brush;
-    let mut push = |action: Option<HandAction>| asked.actions.extend(action.map(Action::Hand));
+    let mut push = |action: Option<HandAction>| requests.actions.extend(action.map(Action::Hand));
     let size =
-        Number::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab ([ and ], or drag with the right button)").px();
+        NumberField::new("Size", SIZES[0]..=SIZES[1], "Diameter of a dab ([ and ], or drag with the right button)")
+            .px();
     push(size.inline(ui, brush.size, 90.0).map(|c| HandAction::Size { to: c.to }));
-    let opacity = Number::new("Opacity", 0.0..=1.0, "Of the whole stroke");
+    let opacity = NumberField::new("Opacity", 0.0..=1.0, "Of the whole stroke");
     push(opacity.inline(ui, brush.opacity, 60.0).map(|c| HandAction::Opacity { to: c.to }));
-    let hardness = Number::new("Hardness", 0.0..=1.0, "How much of the dab is fully covered (Shift with [ and ])");
+    let hardness = NumberField::new("Hardness", 0.0..=1.0, "How much of the dab is fully covered (Shift with [ and ])");
     push(hardness.inline(ui, brush.hardness, 60.0).map(|c| HandAction::Hardness { to: c.to }));
     if session.tool == ToolKind::Brush {
-        marks::options(ui, session, asked);
+        brush_mode::options(ui, session, requests);
     }
 }

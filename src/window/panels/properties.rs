@@ -2,54 +2,54 @@
 //! Floor 7. Materials and lights are `material`'s.
 
 use super::{colors, mask, material, options, strokes};
-use crate::asked::{Asked, WindowAsk};
 use crate::document::{Content, DetailSource, Layer, NormalLayer};
-use crate::files::Purpose;
+use crate::files::FilePurpose;
 use crate::math::{Vec2, vec2};
-use crate::paint::{Adjust, Filter, Gradient, PlacedImage, Placement, Stop};
+use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PlacedImage, Placement};
 use crate::raster::Outside;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::LayerAction;
-use crate::session::actions::pictures::Part;
+use crate::session::actions::pictures::PicturePart;
 use crate::session::{Action, LayerPath, Property, Session};
-use crate::surface::{Grain, Weights};
-use crate::widgets::{Changed, Number, check, choice_row, named, title};
+use crate::surface::{NoiseRelief, Weights};
+use crate::widgets::{NumberField, ValueChange, check, choice_row, named, title};
 use eframe::egui::Ui;
 
 /// Pushes changes of one layer.
-pub struct Setter<'a> {
+pub struct LayerSetter<'a> {
     layer: LayerPath,
-    asked: &'a mut Asked,
+    requests: &'a mut UiRequests,
 }
 
-impl Setter<'_> {
+impl LayerSetter<'_> {
     pub fn set(&mut self, to: Property, done: bool) {
-        self.asked.act(Action::Layer(LayerAction::Set { layer: self.layer.clone(), to, done }));
+        self.requests.act(Action::Layer(LayerAction::Set { layer: self.layer.clone(), to, done }));
     }
     /// Does something else to the layer.
     pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
-        self.asked.act(Action::Layer(action(self.layer.clone())));
+        self.requests.act(Action::Layer(action(self.layer.clone())));
     }
     /// A button that asks for a picture of the layer's.
-    pub fn choose(&mut self, ui: &mut Ui, part: Part, text: &str) {
+    pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
         let response = ui.button(text);
         named(&response, &format!("Choose {}", part.title().to_lowercase()));
         if response.clicked() {
-            self.asked.ask(WindowAsk::Choose(Purpose::Part(part)));
+            self.requests.request(WindowRequest::Choose(FilePurpose::Part(part)));
         }
     }
-    pub fn take(&mut self, changed: Option<Changed<Property>>) {
-        if let Some(Changed { to, done }) = changed {
+    pub fn take(&mut self, changed: Option<ValueChange<Property>>) {
+        if let Some(ValueChange { to, done }) = changed {
             self.set(to, done);
         }
     }
 }
 
-pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {
         ui.weak("No layer is selected.");
         return;
     };
-    let mut setter = Setter { layer: path, asked };
+    let mut setter = LayerSetter { layer: path, requests };
     let has_surface = session.shown().is_some_and(|document| document.surface.is_some());
     match &layer.content {
         Content::Fill(color) => {
@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
             ui.weak("Paint. Strokes on it are pixels.");
         }
         Content::Strokes(live) => {
-            strokes::show(ui, session, &setter.layer, &live.params().strokes, setter.asked);
+            strokes::show(ui, session, &setter.layer, &live.params().strokes, setter.requests);
         }
         Content::Image(live) => image(ui, live.params(), &mut setter),
         Content::Gradient(live) => gradient(ui, live.params(), &mut setter),
@@ -78,11 +78,11 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         }
     }
     ui.separator();
-    let on_mask = session.tab().is_some_and(|tab| tab.on_mask);
+    let on_mask = session.active().is_some_and(|tab| tab.on_mask);
     common(ui, layer, has_surface, on_mask, &mut setter);
 }
 
-fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: &mut Setter) {
+fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: &mut LayerSetter) {
     if has_surface {
         let hint = "Paint nothing outside the surface";
         if let Some(on) = check(ui, "Clip to surface", hint, layer.clip_to_surface) {
@@ -96,12 +96,12 @@ fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: 
     mask::show(ui, layer, on_mask, setter);
 }
 
-const FILTERS: [(Filter, &str); 2] = [(Filter::Antialias, "antialias"), (Filter::Bilinear, "bilinear")];
+const FILTERS: [(ImageFilter, &str); 2] = [(ImageFilter::Antialias, "antialias"), (ImageFilter::Bilinear, "bilinear")];
 
-fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut Setter) {
+fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
     ui.horizontal_wrapped(|ui| {
         ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
-        setter.choose(ui, Part::Image, "Replace…");
+        setter.choose(ui, PicturePart::Image, "Replace…");
     });
     operator(ui, image.bend.operator, setter);
     placement(ui, image.placement, setter);
@@ -122,7 +122,7 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut Setter) {
     if let Weights::Shepard { power } = image.bend.weights
         && n > 1
     {
-        let number = Number::new("Sharpness", 0.5..=8.0, "How sharply the anchors divide the surface");
+        let number = NumberField::new("Sharpness", 0.5..=8.0, "How sharply the anchors divide the surface");
         setter.take(number.row(ui, power).map(|c| c.map(|to| Property::Power { to })));
     }
     title(ui, "Adjust");
@@ -130,9 +130,9 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut Setter) {
 }
 
 /// Detail: noise, or a map of normals.
-fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut Setter) {
+fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
     ui.label("Normals combined onto the surface: what stands above sees them.");
-    let number = Number::new("Strength", 0.0..=4.0, "1 is the map as it is");
+    let number = NumberField::new("Strength", 0.0..=4.0, "1 is the map as it is");
     setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
     ui.horizontal_wrapped(|ui| {
         let source = match &normals.source {
@@ -140,24 +140,24 @@ fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut Setter) {
             DetailSource::Grain(_) => "Grain, made of noise".into(),
         };
         ui.weak(source);
-        setter.choose(ui, Part::Detail, "Normal map…");
+        setter.choose(ui, PicturePart::Detail, "Normal map…");
         if matches!(normals.source, DetailSource::Map { .. }) && ui.button("Grain").clicked() {
-            setter.set(Property::Grained { grain: Grain::default() }, true);
+            setter.set(Property::Grained { grain: NoiseRelief::default() }, true);
         }
     });
     if let DetailSource::Grain(grain) = normals.source {
-        let size = Number::new("Bump size", 1.0..=400.0, "Of the largest bumps, px").logarithmic().decimals(0);
-        let size = size.row(ui, grain.size_px).map(|c| c.map(|size_px| Grain { size_px, ..grain }));
-        let rough = Number::new("Roughness", 0.0..=1.5, "0 is smooth, 1 rough").row(ui, grain.roughness);
-        let stretch = Number::new("Stretch", 0.05..=40.0, "How much longer along x: brushed").logarithmic();
-        let stretch = stretch.row(ui, grain.stretch).map(|c| c.map(|stretch| Grain { stretch, ..grain }));
-        let changed = size.or(rough.map(|c| c.map(|roughness| Grain { roughness, ..grain }))).or(stretch);
+        let size = NumberField::new("Bump size", 1.0..=400.0, "Of the largest bumps, px").logarithmic().decimals(0);
+        let size = size.row(ui, grain.size_px).map(|c| c.map(|size_px| NoiseRelief { size_px, ..grain }));
+        let rough = NumberField::new("Roughness", 0.0..=1.5, "0 is smooth, 1 rough").row(ui, grain.roughness);
+        let stretch = NumberField::new("Stretch", 0.05..=40.0, "How much longer along x: brushed").logarithmic();
+        let stretch = stretch.row(ui, grain.stretch).map(|c| c.map(|stretch| NoiseRelief { stretch, ..grain }));
+        let changed = size.or(rough.map(|c| c.map(|roughness| NoiseRelief { roughness, ..grain }))).or(stretch);
         setter.take(changed.map(|c| c.map(|grain| Property::Grained { grain })));
     }
     placement(ui, normals.placement, setter);
 }
 
-fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut Setter) {
+fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut LayerSetter) {
     ui.horizontal_wrapped(|ui| {
         for (label, begins, hint) in crate::commands::operators() {
             let is_on = std::mem::discriminant(&operator) == std::mem::discriminant(&begins);
@@ -171,22 +171,22 @@ fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut Setter
     }
 }
 
-fn placement(ui: &mut Ui, placement: Placement, setter: &mut Setter) {
-    let scale = Number::new("Scale", 0.05..=10.0, "1 covers the canvas").logarithmic().row(ui, placement.scale);
+fn placement(ui: &mut Ui, placement: Placement, setter: &mut LayerSetter) {
+    let scale = NumberField::new("Scale", 0.05..=10.0, "1 covers the canvas").logarithmic().row(ui, placement.scale);
     setter.take(scale.map(|c| c.map(|scale| Property::Place { placement: Placement { scale, ..placement } })));
-    let turn = Number::new("Rotation", -180.0..=180.0, "Counter-clockwise").degrees().row(ui, placement.rotation);
+    let turn = NumberField::new("Rotation", -180.0..=180.0, "Counter-clockwise").degrees().row(ui, placement.rotation);
     setter.take(turn.map(|c| c.map(|rotation| Property::Place { placement: Placement { rotation, ..placement } })));
     ui.horizontal(|ui| {
         crate::widgets::name(ui, "Centre");
         let at = placement.center;
-        let x = Number::new("Centre x", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.x);
-        let y = Number::new("Centre y", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.y);
+        let x = NumberField::new("Centre x", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.x);
+        let y = NumberField::new("Centre y", -20000.0..=20000.0, "Canvas px").decimals(0).field(ui, at.y);
         let center = x.map(|c| c.map(|x| vec2(x, at.y))).or(y.map(|c| c.map(|y| vec2(at.x, y))));
         setter.take(center.map(|c| c.map(|center| Property::Place { placement: Placement { center, ..placement } })));
     });
 }
 
-fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut Setter) {
+fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut LayerSetter) {
     type Put = fn(Adjust, f32) -> Adjust;
     let rows: [(&str, f32, std::ops::RangeInclusive<f32>, &str, Put); 6] = [
         ("Blur", adjust.blur, 0.0..=80.0, "A rougher material, in pixels of the picture", |a, blur| Adjust {
@@ -200,15 +200,15 @@ fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut Setter) {
         ("Contrast", adjust.contrast, 0.0..=2.0, "1 leaves it", |a, contrast| Adjust { contrast, ..a }),
     ];
     for (label, value, range, hint, put) in rows {
-        let changed = Number::new(label, range, hint).row(ui, value);
+        let changed = NumberField::new(label, range, hint).row(ui, value);
         setter.take(changed.map(|c| c.map(|to| Property::Adjusted { adjust: put(adjust, to) })));
     }
 }
 
-fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut Setter) {
+fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut LayerSetter) {
     operator(ui, gradient.operator, setter);
     title(ui, "Stops");
-    let with = |i: usize, stop: Stop| {
+    let with = |i: usize, stop: GradientStop| {
         let mut stops = gradient.stops.clone();
         if let Some(slot) = stops.get_mut(i) {
             *slot = stop;
@@ -220,10 +220,10 @@ fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut Setter) {
     for (i, stop) in gradient.stops.iter().enumerate() {
         ui.horizontal(|ui| {
             let color = colors::button(ui, &format!("Colour of stop {}", i + 1), stop.color);
-            setter.take(color.map(|c| c.map(|color| with(i, Stop { color, ..*stop }))));
+            setter.take(color.map(|c| c.map(|color| with(i, GradientStop { color, ..*stop }))));
             let place = format!("Place of stop {}", i + 1);
-            let t = Number::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second").field(ui, stop.t);
-            setter.take(t.map(|c| c.map(|t| with(i, Stop { t, ..*stop }))));
+            let t = NumberField::new(&place, 0.0..=1.0, "0 at the first end, 1 at the second").field(ui, stop.t);
+            setter.take(t.map(|c| c.map(|t| with(i, GradientStop { t, ..*stop }))));
             if gradient.stops.len() > 1 && ui.small_button("Remove").clicked() {
                 gone = Some(i);
             }
@@ -238,7 +238,7 @@ fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut Setter) {
         if ui.button("Add stop").clicked() {
             let mut stops = gradient.stops.clone();
             let color = stops.last().map_or(crate::math::srgb::Color::WHITE, |stop| stop.color);
-            stops.push(Stop { t: 0.5, color });
+            stops.push(GradientStop { t: 0.5, color });
             stops.sort_by(|a, b| a.t.total_cmp(&b.t));
             setter.set(Property::Stops { stops }, true);
         }

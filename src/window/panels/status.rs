@@ -2,18 +2,25 @@
 //! took, and what the tool in hand does.
 //! Floor 7.
 
-use crate::asked::{Asked, WindowAsk};
 use crate::canvas::Canvas;
-use crate::jobs::{Jobs, While};
+use crate::jobs::{JobKind, Jobs};
 use crate::math::Vec2;
-use crate::memory::{Memory, spoken};
+use crate::memory::{MemoryMeter, spoken};
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Session;
 use crate::widgets::bar;
 use eframe::egui::{self, Button, RichText, Ui};
 
-pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, memory: &mut Memory, asked: &mut Asked) {
+pub fn show(
+    ui: &mut Ui,
+    session: &Session,
+    canvas: &Canvas,
+    jobs: &Jobs,
+    memory: &mut MemoryMeter,
+    requests: &mut UiRequests,
+) {
     ui.horizontal(|ui| {
-        for job in jobs.under_way.iter().filter(|job| job.kind == While::Working && job.is_long()) {
+        for job in jobs.under_way.iter().filter(|job| job.kind == JobKind::Working && job.is_long()) {
             ui.label(&job.name);
             bar(ui, job.share(), 90.0);
             if ui.small_button("Cancel").on_hover_text(format!("Give up: {}", job.name)).clicked() {
@@ -24,7 +31,7 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, memory
         if !jobs.under_way.is_empty() {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(80));
         }
-        let Some(tab) = session.tab() else {
+        let Some(tab) = session.active() else {
             ui.weak("Open a document, or drop a picture or a normal map on the window");
             return;
         };
@@ -35,7 +42,7 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &Canvas, jobs: &Jobs, memory
             .on_hover_text("Click for actual pixels")
             .clicked()
         {
-            asked.ask(WindowAsk::Scale(1.0));
+            requests.request(WindowRequest::Scale(1.0));
         }
         ui.weak(document.size.to_string());
         ui.separator();

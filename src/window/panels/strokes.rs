@@ -2,15 +2,15 @@
 //! Floor 7.
 
 use super::{colors, options};
-use crate::asked::Asked;
 use crate::commands::operators;
 use crate::icons::{Icon, icon_button};
 use crate::paint::Stroke;
+use crate::requests::UiRequests;
 use crate::session::actions::hand::SIZES;
 use crate::session::actions::{HandAction, StrokeAction, Style};
 use crate::session::{Action, LayerPath, Session};
 use crate::tools::ToolKind;
-use crate::widgets::{Changed, Number, swatch, title};
+use crate::widgets::{NumberField, ValueChange, swatch, title};
 use eframe::egui::{Button, ScrollArea, Ui, vec2};
 use std::sync::Arc;
 
@@ -18,25 +18,25 @@ use std::sync::Arc;
 const ROWS: usize = 6;
 
 /// The list, and what can be done to the strokes that are chosen in it.
-pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<Stroke>], asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<Stroke>], requests: &mut UiRequests) {
     let n = strokes.len();
     ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
-    let chosen = session.tab().map(|tab| tab.chosen_strokes()).unwrap_or_default();
-    list(ui, layer, strokes, &chosen, asked);
+    let chosen = session.active().map(|tab| tab.chosen_strokes()).unwrap_or_default();
+    list(ui, layer, strokes, &chosen, requests);
     let Some(first) = chosen.first().and_then(|&index| strokes.get(index)) else {
         ui.weak("Choose strokes here or, with the stroke tool (S), on the canvas.");
         return;
     };
-    buttons(ui, layer, n, &chosen, asked);
+    buttons(ui, layer, n, &chosen, requests);
     title(ui, if chosen.len() == 1 { "Stroke" } else { "Strokes" });
     styles(ui, first, |to, done| {
         let (layer, strokes) = (layer.clone(), chosen.clone());
-        asked.act(Action::Stroke(StrokeAction::Restyle { layer, strokes, to, done }));
+        requests.act(Action::Stroke(StrokeAction::Restyle { layer, strokes, to, done }));
     });
 }
 
 /// The topmost stroke first.
-fn list(ui: &mut Ui, layer: &LayerPath, strokes: &[Arc<Stroke>], chosen: &[usize], asked: &mut Asked) {
+fn list(ui: &mut Ui, layer: &LayerPath, strokes: &[Arc<Stroke>], chosen: &[usize], requests: &mut UiRequests) {
     let height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt("strokes").max_height((height + 2.0) * ROWS as f32);
     ui.spacing_mut().item_spacing.y = 2.0;
@@ -51,8 +51,8 @@ fn list(ui: &mut Ui, layer: &LayerPath, strokes: &[Arc<Stroke>], chosen: &[usize
                 if ui.add(row).clicked() {
                     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
                     let strokes = toggled(chosen, index, adds);
-                    asked.act(Action::Stroke(StrokeAction::Choose { layer: layer.clone(), strokes }));
-                    asked.act(Action::Hand(HandAction::Tool { tool: ToolKind::Strokes }));
+                    requests.act(Action::Stroke(StrokeAction::Choose { layer: layer.clone(), strokes }));
+                    requests.act(Action::Hand(HandAction::Tool { tool: ToolKind::Strokes }));
                 }
             });
         }
@@ -68,9 +68,9 @@ fn toggled(chosen: &[usize], index: usize, adds: bool) -> Vec<usize> {
     }
 }
 
-fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], asked: &mut Asked) {
+fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], requests: &mut UiRequests) {
     let (layer, strokes) = (|| layer.clone(), || chosen.to_vec());
-    let mut act = |action: StrokeAction| asked.act(Action::Stroke(action));
+    let mut act = |action: StrokeAction| requests.act(Action::Stroke(action));
     ui.horizontal(|ui| {
         if let [stroke] = *chosen {
             if stroke + 1 < count && icon_button(ui, Icon::Up, "Stroke up", false).clicked() {
@@ -106,13 +106,13 @@ fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], asked
 /// What the first of the chosen strokes is painted with; a change goes to all of them.
 fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
     let brush = stroke.brush();
-    let mut give = |changed: Option<Changed<Style>>| {
-        if let Some(Changed { to, done }) = changed {
+    let mut give = |changed: Option<ValueChange<Style>>| {
+        if let Some(ValueChange { to, done }) = changed {
             set(to, done);
         }
     };
-    let unit = |label, hint| Number::new(label, 0.0..=1.0, hint);
-    let size = Number::new("Stroke size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
+    let unit = |label, hint| NumberField::new(label, 0.0..=1.0, hint);
+    let size = NumberField::new("Stroke size", SIZES[0]..=SIZES[1], "Diameter of a dab").px();
     give(size.row(ui, brush.size).map(|c| c.map(|to| Style::Size { to })));
     let opacity = unit("Opacity", "Of the whole stroke").row(ui, brush.opacity);
     give(opacity.map(|c| c.map(|to| Style::Opacity { to })));
@@ -126,7 +126,7 @@ fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
         for (label, begins, hint) in operators() {
             let is_on = std::mem::discriminant(&stroke.operator()) == std::mem::discriminant(&begins);
             if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
-                give(Some(Changed { to: Style::Operator { operator: begins }, done: true }));
+                give(Some(ValueChange { to: Style::Operator { operator: begins }, done: true }));
             }
         }
     });

@@ -1,14 +1,14 @@
 //! The surface: its maps and what is derived from them, over the picture.
 //! Floor 7.
 
-use crate::asked::{Asked, WindowAsk};
-use crate::document::view::{View, available};
+use crate::document::view::{SurfaceView, available};
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session};
-use crate::widgets::{Number, sentence, title};
+use crate::widgets::{NumberField, sentence, title};
 use eframe::egui::{Button, Ui};
 
-pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(document) = session.shown() else {
         ui.weak("No document is open.");
         return;
@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     let Some(surface) = &document.surface else {
         ui.label("This document has no surface: marks lie flat.");
         if ui.button("Give it maps…").clicked() {
-            asked.ask(WindowAsk::ReplaceMapsDialog);
+            requests.request(WindowRequest::ReplaceMapsDialog);
         }
         return;
     };
@@ -24,20 +24,20 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     let is_off = session.overlay.is_none();
     ui.horizontal_wrapped(|ui| {
         if ui.add(Button::selectable(is_off, "Nothing")).clicked() {
-            asked.act(Action::View(ViewAction::Overlay { view: None }));
+            requests.act(Action::View(ViewAction::Overlay { view: None }));
         }
-        let seen = available(document, session.layer().map(|layer| &**layer));
-        for &view in &seen {
+        let views = available(document, session.layer().map(|layer| &**layer));
+        for &view in &views {
             let is_on = session.overlay.as_deref() == Some(view.name());
             if ui.add(Button::selectable(is_on, sentence(view.name()))).on_hover_text(about(view)).clicked() {
-                asked.act(Action::View(ViewAction::Overlay { view: Some(view.name().into()) }));
+                requests.act(Action::View(ViewAction::Overlay { view: Some(view.name().into()) }));
             }
         }
     });
     if !is_off {
-        let number = Number::new("Opacity", 0.0..=1.0, "Of the view over the picture");
+        let number = NumberField::new("Opacity", 0.0..=1.0, "Of the view over the picture");
         if let Some(changed) = number.row(ui, session.overlay_opacity) {
-            asked.act(Action::View(ViewAction::OverlayOpacity { to: changed.to }));
+            requests.act(Action::View(ViewAction::OverlayOpacity { to: changed.to }));
         }
     }
     title(ui, "Maps");
@@ -54,28 +54,30 @@ pub fn show(ui: &mut Ui, session: &Session, asked: &mut Asked) {
     ui.horizontal_wrapped(|ui| {
         let hint = "What is live bends over the new shape: a painting on another object, or in another pose";
         if ui.button("Replace maps…").on_hover_text(hint).clicked() {
-            asked.ask(WindowAsk::ReplaceMapsDialog);
+            requests.request(WindowRequest::ReplaceMapsDialog);
         }
         if ui.button("New from maps…").clicked() {
-            asked.ask(WindowAsk::OpenMapsDialog);
+            requests.request(WindowRequest::OpenMapsDialog);
         }
     });
 }
 
-fn about(view: View) -> &'static str {
+fn about(view: SurfaceView) -> &'static str {
     match view {
-        View::Normals => "Red to the right, green up, blue toward you",
-        View::Depth => "Black near, white far",
-        View::Mask => "White where the surface is",
-        View::Objects => "A colour for each object: what depth jumps tear apart",
-        View::Curvature => "Convex blue, concave red, flat yellow",
-        View::CurvatureGrey => "Convex light, concave dark",
-        View::Directions => "Lines along the direction that curves most",
-        View::Weights => "How the anchors of the selected layer share the surface",
-        View::FlowDepth => "How a texture on the surface is squeezed",
-        View::FlowNormals => "How a reflection is squeezed",
-        View::FlowOperator => "How the selected layer's operator squeezes its image",
-        View::Scaling => "Radiance scaling: how much light of each strength is raised on bulges and lowered in hollows",
-        View::Lit => "The surface and a ball under one light: if they agree, the maps are the right way round",
+        SurfaceView::Normals => "Red to the right, green up, blue toward you",
+        SurfaceView::Depth => "Black near, white far",
+        SurfaceView::Mask => "White where the surface is",
+        SurfaceView::Objects => "A colour for each object: what depth jumps tear apart",
+        SurfaceView::Curvature => "Convex blue, concave red, flat yellow",
+        SurfaceView::CurvatureGrey => "Convex light, concave dark",
+        SurfaceView::Directions => "Lines along the direction that curves most",
+        SurfaceView::Weights => "How the anchors of the selected layer share the surface",
+        SurfaceView::FlowDepth => "How a texture on the surface is squeezed",
+        SurfaceView::FlowNormals => "How a reflection is squeezed",
+        SurfaceView::FlowOperator => "How the selected layer's operator squeezes its image",
+        SurfaceView::Scaling => {
+            "Radiance scaling: how much light of each strength is raised on bulges and lowered in hollows"
+        }
+        SurfaceView::Lit => "The surface and a ball under one light: if they agree, the maps are the right way round",
     }
 }

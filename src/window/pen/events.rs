@@ -2,15 +2,15 @@
 //! a pointer whose tablet tells pressure and tilt beside it (pens on X11).
 //! Floor 7.
 
-use super::tablet::Held;
-use super::{PenSource, Phase, Report, SharedTablet};
+use super::tablet::PenState;
+use super::{PenPhase, PenReport, PenSource, SharedTablet};
 use eframe::egui::{Event, Pos2, TouchPhase};
 use std::collections::VecDeque;
 
 /// The pen in the window's events.
 #[derive(Default)]
 pub struct WindowPen {
-    reports: VecDeque<Report>,
+    reports: VecDeque<PenReport>,
     at: Pos2,
     /// Of the touch that is down.
     force: Option<f32>,
@@ -18,7 +18,7 @@ pub struct WindowPen {
     touches: usize,
     tablet: Option<SharedTablet>,
     /// What the tablet told last.
-    held: Held,
+    held: PenState,
     is_down: bool,
 }
 
@@ -38,19 +38,19 @@ impl WindowPen {
                 }
                 self.force = force.filter(|_| self.touches > 0);
                 // The pointer's own events follow, except where the touch was taken away.
-                (phase == TouchPhase::Cancel).then_some(Phase::Lost)
+                (phase == TouchPhase::Cancel).then_some(PenPhase::Lost)
             }
             Event::PointerMoved(at) => {
                 self.moved(at, px_per_pt, now_secs);
-                Some(Phase::Move)
+                Some(PenPhase::Move)
             }
             Event::PointerButton { pos, button, pressed, .. } => {
                 self.at = pos;
                 self.is_down = pressed;
-                Some(if pressed { Phase::Down(button) } else { Phase::Up })
+                Some(if pressed { PenPhase::Down(button) } else { PenPhase::Up })
             }
             // A mouse's button goes up elsewhere when the window loses the keyboard, and nobody tells.
-            Event::WindowFocused(false) => Some(Phase::Lost),
+            Event::WindowFocused(false) => Some(PenPhase::Lost),
             _ => None,
         };
         let report = phase.map(|phase| self.report(phase, now_secs));
@@ -68,15 +68,15 @@ impl WindowPen {
             // Another device took the pointer: what a pen drew ends where it was. Which of several mice moves may be told late.
             if self.is_down && self.held.pressure.is_some() && held.device != self.held.device {
                 self.is_down = false;
-                self.reports.push_back(self.report(Phase::Lost, now_secs));
+                self.reports.push_back(self.report(PenPhase::Lost, now_secs));
             }
             self.held = held;
         }
         self.at = at;
     }
-    fn report(&self, phase: Phase, secs: f64) -> Report {
-        let Held { pressure, tilt, is_eraser, .. } = self.held;
-        Report { phase, at: self.at, pressure: self.force.or(pressure), tilt, secs, is_eraser }
+    fn report(&self, phase: PenPhase, secs: f64) -> PenReport {
+        let PenState { pressure, tilt, is_eraser, .. } = self.held;
+        PenReport { phase, at: self.at, pressure: self.force.or(pressure), tilt, secs, is_eraser }
     }
     /// How many fingers and pens are on the glass: two or more look, they do not paint.
     pub fn touches(&self) -> usize {
@@ -85,21 +85,21 @@ impl WindowPen {
 }
 
 impl PenSource for WindowPen {
-    fn next(&mut self) -> Option<Report> {
+    fn next(&mut self) -> Option<PenReport> {
         self.reports.pop_front()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Axes, Axis, Reads};
+    use super::super::{AxisMeaning, PenAxes, PenAxis};
     use super::*;
     use eframe::egui::{Modifiers, PointerButton, TouchDeviceId, TouchId, pos2};
 
     fn touch(phase: TouchPhase, force: Option<f32>) -> Event {
         Event::Touch { device_id: TouchDeviceId(1), id: TouchId(1), phase, pos: pos2(3.0, 4.0), force }
     }
-    fn reports(events: &[Event]) -> Vec<(Phase, Option<f32>)> {
+    fn reports(events: &[Event]) -> Vec<(PenPhase, Option<f32>)> {
         let mut pen = WindowPen::default();
         events.iter().for_each(|event| pen.hear(event, 1.0, 0.0));
         std::iter::from_fn(|| pen.next()).map(|report| (report.phase, report.pressure)).collect()
@@ -119,20 +119,20 @@ mod tests {
             touch(TouchPhase::End, None),
             button(false),
         ];
-        let down = Phase::Down(PointerButton::Primary);
-        assert_eq!(reports(&events), [(down, Some(0.25)), (Phase::Move, Some(0.5)), (Phase::Up, None)]);
+        let down = PenPhase::Down(PointerButton::Primary);
+        assert_eq!(reports(&events), [(down, Some(0.25)), (PenPhase::Move, Some(0.5)), (PenPhase::Up, None)]);
     }
     #[test]
     fn a_touch_that_is_taken_away_is_lost_and_a_mouse_has_no_pressure() {
         let events = [touch(TouchPhase::Start, Some(1.0)), button(true), touch(TouchPhase::Cancel, None)];
-        assert_eq!(reports(&events).last(), Some(&(Phase::Lost, None)));
-        assert_eq!(reports(&[button(true)]), [(Phase::Down(PointerButton::Primary), None)]);
+        assert_eq!(reports(&events).last(), Some(&(PenPhase::Lost, None)));
+        assert_eq!(reports(&[button(true)]), [(PenPhase::Down(PointerButton::Primary), None)]);
     }
     #[test]
     fn a_tablets_pressure_is_that_of_its_motion_at_any_scale_of_the_screen() {
         let tablet = SharedTablet::default();
-        let axes = Axis::new(2, Reads::Pressure, (0.0, 1000.0), 0.0);
-        tablet.borrow_mut().follow(Axes { device: 7, axes: axes.into_iter().collect(), is_eraser: true });
+        let axes = PenAxis::new(2, AxisMeaning::Pressure, (0.0, 1000.0), 0.0);
+        tablet.borrow_mut().follow(PenAxes { device: 7, axes: axes.into_iter().collect(), is_eraser: true });
         let mut pen = WindowPen::default();
         pen.on(tablet.clone());
         for (at_px, pressure) in [([33.25, 10.5], 250.0), ([36.0, 12.0], 500.0)] {
@@ -146,21 +146,24 @@ mod tests {
     }
     #[test]
     fn another_device_that_takes_the_pointer_ends_a_pens_stroke_and_no_mouses() {
-        let ends = |first: Option<Axis>| {
+        let ends = |first: Option<PenAxis>| {
             let tablet = SharedTablet::default();
             let mut pen = WindowPen::default();
             pen.on(tablet.clone());
-            tablet.borrow_mut().follow(Axes { device: 7, axes: first.into_iter().collect(), is_eraser: false });
+            tablet.borrow_mut().follow(PenAxes { device: 7, axes: first.into_iter().collect(), is_eraser: false });
             tablet.borrow_mut().moved([3.0, 4.0]);
             pen.hear(&Event::PointerMoved(pos2(3.0, 4.0)), 1.0, 0.0);
             pen.hear(&button(true), 1.0, 0.0);
-            tablet.borrow_mut().follow(Axes { device: 8, ..Axes::default() });
+            tablet.borrow_mut().follow(PenAxes { device: 8, ..PenAxes::default() });
             tablet.borrow_mut().moved([50.0, 60.0]);
             pen.hear(&Event::PointerMoved(pos2(50.0, 60.0)), 1.0, 0.0);
             std::iter::from_fn(|| pen.next()).skip(2).map(|r| (r.phase, r.at)).collect::<Vec<_>>()
         };
-        let moved = (Phase::Move, pos2(50.0, 60.0));
-        assert_eq!(ends(Axis::new(2, Reads::Pressure, (0.0, 1.0), 0.5)), [(Phase::Lost, pos2(3.0, 4.0)), moved]);
+        let moved = (PenPhase::Move, pos2(50.0, 60.0));
+        assert_eq!(
+            ends(PenAxis::new(2, AxisMeaning::Pressure, (0.0, 1.0), 0.5)),
+            [(PenPhase::Lost, pos2(3.0, 4.0)), moved]
+        );
         assert_eq!(ends(None), [moved]);
     }
 }

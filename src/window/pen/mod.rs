@@ -1,14 +1,14 @@
-//! The pen as a platform reports it, whichever that is: a [`PenSource`] says what the pen did, [`Watch`] makes good readings of
+//! The pen as a platform reports it, whichever that is: a [`PenSource`] says what the pen did, [`ReportFilter`] makes good readings of
 //! it and ends a stroke whose pen went bad.
 //! Floor 7. Sources: `events`, the window's own (mouse, touch with its force, pens that come as touch, pens that come as a
-//! pointer with a `tablet`'s axes); `recorded`, for tests. What the axes mean is told by a platform's [`Devices`]: `x11`.
+//! pointer with a `tablet`'s axes); `recorded`, for tests. What the axes mean is told by a platform's [`PenDevices`]: `x11`.
 //! Not here: what the reports do (`canvas::hand`).
 
 mod events;
 #[cfg(test)]
 mod recorded;
+mod report_filter;
 mod tablet;
-mod watch;
 #[cfg(all(unix, not(target_os = "macos")))]
 mod x11;
 
@@ -17,13 +17,13 @@ use eframe::egui::{PointerButton, Pos2};
 pub use events::WindowPen;
 #[cfg(test)]
 pub use recorded::RecordedPen;
-pub use tablet::{Axes, Axis, Reads, SharedTablet};
-pub use watch::{Reading, Watch};
+pub use report_filter::{FilteredReport, ReportFilter};
+pub use tablet::{AxisMeaning, PenAxes, PenAxis, SharedTablet};
 
 /// One report.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
-    pub phase: Phase,
+pub struct PenReport {
+    pub phase: PenPhase,
     /// Screen pt.
     pub at: Pos2,
     /// `[0, 1]`; `None` of what cannot tell.
@@ -38,7 +38,7 @@ pub struct Report {
 
 /// What the pen did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
+pub enum PenPhase {
     /// A barrel button comes as the mouse's that it stands for.
     Down(PointerButton),
     /// Above the canvas or on it.
@@ -51,24 +51,24 @@ pub enum Phase {
 /// Something that a pen's reports come from, in their order.
 pub trait PenSource {
     /// The next report; `None` while there is none.
-    fn next(&mut self) -> Option<Report>;
+    fn next(&mut self) -> Option<PenReport>;
 }
 
 /// Whatever knows which pen moves the pointer.
-pub trait Devices {
+pub trait PenDevices {
     /// The axes of the device that moves the pointer now, where they are not those it last told.
-    fn change(&mut self) -> Option<Axes>;
+    fn change(&mut self) -> Option<PenAxes>;
 }
 
 /// What the platform of the window knows of pens beyond its events; `None` where that is all there is.
 #[cfg(all(unix, not(target_os = "macos")))]
-pub fn devices<T>(events: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn Devices>> {
+pub fn devices<T>(events: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn PenDevices>> {
     let is_x11 = winit::platform::x11::EventLoopExtX11::is_x11(events);
-    let server = is_x11.then(x11::Server::connect).flatten()?;
+    let server = is_x11.then(x11::X11Server::connect).flatten()?;
     Some(Box::new(server))
 }
 /// What the platform of the window knows of pens beyond its events.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
-pub fn devices<T>(_: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn Devices>> {
+pub fn devices<T>(_: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn PenDevices>> {
     None
 }

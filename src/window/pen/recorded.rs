@@ -2,14 +2,14 @@
 //! for what is no number.
 //! Floor 7.
 
-use super::{PenSource, Phase, Report};
+use super::{PenPhase, PenReport, PenSource};
 use eframe::egui::{PointerButton, pos2};
 use serde_json::Value;
 use std::collections::VecDeque;
 
 /// Reports to be given one by one: the first comes down, the others move.
 pub struct RecordedPen {
-    reports: VecDeque<Report>,
+    reports: VecDeque<PenReport>,
 }
 
 impl RecordedPen {
@@ -17,8 +17,8 @@ impl RecordedPen {
         let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
         let report = |(i, line): (usize, &str)| {
             let value: Value = serde_json::from_str(line).expect("a list of numbers");
-            Report {
-                phase: if i == 0 { Phase::Down(PointerButton::Primary) } else { Phase::Move },
+            PenReport {
+                phase: if i == 0 { PenPhase::Down(PointerButton::Primary) } else { PenPhase::Move },
                 at: pos2(number(&value[0]) as f32, number(&value[1]) as f32),
                 pressure: (!value[2].is_null()).then(|| number(&value[2]) as f32),
                 tilt: (0.0, 0.0),
@@ -31,7 +31,7 @@ impl RecordedPen {
 }
 
 impl PenSource for RecordedPen {
-    fn next(&mut self) -> Option<Report> {
+    fn next(&mut self) -> Option<PenReport> {
         self.reports.pop_front()
     }
 }

@@ -1,5 +1,5 @@
 //! A pen that moves the pointer as a mouse does and tells its pressure and tilt on axes of its own: what it held at each motion.
-//! Floor 7. Which axes those are is [`Devices`](super::Devices)' to say.
+//! Floor 7. Which axes those are is [`Devices`](super::PenDevices)' to say.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -18,7 +18,7 @@ const FARTHEST_DEGREES: f64 = 60.0;
 
 /// What one axis of a device tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reads {
+pub enum AxisMeaning {
     Pressure,
     /// Degrees from upright, to the right.
     TiltX,
@@ -28,17 +28,17 @@ pub enum Reads {
 
 /// One axis of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub struct PenAxis {
     pub number: u32,
-    pub reads: Reads,
+    pub reads: AxisMeaning,
     pub range: (f64, f64),
     /// When the device was found.
     pub value: f64,
 }
 
-impl Axis {
+impl PenAxis {
     /// `None` where the device tells a range that nothing lies in.
-    pub fn new(number: u32, reads: Reads, range: (f64, f64), value: f64) -> Option<Self> {
+    pub fn new(number: u32, reads: AxisMeaning, range: (f64, f64), value: f64) -> Option<Self> {
         (range.1 > range.0).then_some(Self { number, reads, range, value })
     }
     /// Of the range, `[0, 1]`. What is no number stays so, and ends the stroke it comes in.
@@ -54,17 +54,17 @@ impl Axis {
 
 /// The axes of one device that are a pen's; a mouse has none.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Axes {
+pub struct PenAxes {
     /// Which device, by the platform's count.
     pub device: u32,
-    pub axes: Vec<Axis>,
+    pub axes: Vec<PenAxis>,
     /// The device is the other end of a pen.
     pub is_eraser: bool,
 }
 
 /// What a pen held at one motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Held {
+pub struct PenState {
     pub device: u32,
     /// `[0, 1]`; `None` of a mouse.
     pub pressure: Option<f32>,
@@ -76,16 +76,16 @@ pub struct Held {
 /// What the pen held at each motion of the pointer that the window has not yet read.
 #[derive(Debug, Default)]
 pub struct Tablet {
-    axes: Axes,
-    held: Held,
+    axes: PenAxes,
+    held: PenState,
     /// Where, px, and what was held there.
-    motions: VecDeque<([f64; 2], Held)>,
+    motions: VecDeque<([f64; 2], PenState)>,
 }
 
 impl Tablet {
     /// Another device moves the pointer from now on.
-    pub fn follow(&mut self, axes: Axes) {
-        self.held = Held { device: axes.device, is_eraser: axes.is_eraser, ..Held::default() };
+    pub fn follow(&mut self, axes: PenAxes) {
+        self.held = PenState { device: axes.device, is_eraser: axes.is_eraser, ..PenState::default() };
         self.axes = axes;
         for axis in self.axes.axes.clone() {
             self.read(&axis, axis.value);
@@ -107,15 +107,15 @@ impl Tablet {
             *held = self.held;
         }
     }
-    fn read(&mut self, axis: &Axis, value: f64) {
+    fn read(&mut self, axis: &PenAxis, value: f64) {
         match axis.reads {
-            Reads::Pressure => self.held.pressure = Some(axis.ratio(value) as f32),
-            Reads::TiltX => self.held.tilt.0 = axis.degrees(value) as f32,
-            Reads::TiltY => self.held.tilt.1 = axis.degrees(value) as f32,
+            AxisMeaning::Pressure => self.held.pressure = Some(axis.ratio(value) as f32),
+            AxisMeaning::TiltX => self.held.tilt.0 = axis.degrees(value) as f32,
+            AxisMeaning::TiltY => self.held.tilt.1 = axis.degrees(value) as f32,
         }
     }
     /// What was held at the window's next motion, which went to this place, px; `None` where no device told of it.
-    pub fn take(&mut self, at_px: [f64; 2]) -> Option<Held> {
+    pub fn take(&mut self, at_px: [f64; 2]) -> Option<PenState> {
         let is_here = |at: [f64; 2]| (at[0] - at_px[0]).abs() < SAME_PX && (at[1] - at_px[1]).abs() < SAME_PX;
         let found = self.motions.iter().position(|&(at, _)| is_here(at))?;
         self.motions.drain(..=found).next_back().map(|(_, held)| held)
@@ -131,15 +131,15 @@ mod tests {
     use super::*;
 
     fn pen() -> Tablet {
-        let axis = |number, reads, range| Axis::new(number, reads, range, 0.0);
+        let axis = |number, reads, range| PenAxis::new(number, reads, range, 0.0);
         let axes = [
-            axis(2, Reads::Pressure, (0.0, 2000.0)),
-            axis(3, Reads::TiltX, (-64.0, 63.0)),
-            axis(4, Reads::TiltY, (0.0, 100.0)),
-            axis(5, Reads::Pressure, (7.0, 7.0)),
+            axis(2, AxisMeaning::Pressure, (0.0, 2000.0)),
+            axis(3, AxisMeaning::TiltX, (-64.0, 63.0)),
+            axis(4, AxisMeaning::TiltY, (0.0, 100.0)),
+            axis(5, AxisMeaning::Pressure, (7.0, 7.0)),
         ];
         let mut tablet = Tablet::default();
-        tablet.follow(Axes { device: 9, axes: axes.into_iter().flatten().collect(), is_eraser: false });
+        tablet.follow(PenAxes { device: 9, axes: axes.into_iter().flatten().collect(), is_eraser: false });
         tablet
     }
 
@@ -152,7 +152,7 @@ mod tests {
         }
         pen.axis(3, 30.0);
         pen.axis(4, 75.0);
-        let pressure = |held: Option<Held>| held.and_then(|held| held.pressure);
+        let pressure = |held: Option<PenState>| held.and_then(|held| held.pressure);
         assert_eq!(pressure(pen.take([1.0, 0.0])), Some(0.25));
         // The window put two motions together: the second is what it read.
         let last = pen.take([3.0, 0.001]).unwrap();
@@ -162,11 +162,11 @@ mod tests {
     #[test]
     fn a_mouse_has_no_pressure_after_a_pen_had() {
         let mut tablet = pen();
-        tablet.follow(Axes::default());
+        tablet.follow(PenAxes::default());
         tablet.moved([5.0, 5.0]);
         // A wheel's axis is nobody's.
         tablet.axis(3, 120.0);
-        assert_eq!(tablet.take([5.0, 5.0]), Some(Held::default()));
+        assert_eq!(tablet.take([5.0, 5.0]), Some(PenState::default()));
     }
     #[test]
     fn what_is_no_number_stays_none_and_an_empty_range_is_no_axis() {
@@ -174,7 +174,7 @@ mod tests {
         pen.moved([0.0, 0.0]);
         pen.axis(2, f64::NAN);
         assert!(pen.take([0.0, 0.0]).unwrap().pressure.unwrap().is_nan());
-        assert_eq!(Axis::new(1, Reads::Pressure, (f64::NAN, 1.0), 0.0), None);
+        assert_eq!(PenAxis::new(1, AxisMeaning::Pressure, (f64::NAN, 1.0), 0.0), None);
     }
     #[test]
     fn motions_that_nobody_reads_do_not_pile_up() {

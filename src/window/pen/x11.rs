@@ -2,7 +2,7 @@
 //! tells. How the axes move comes with the window's own events.
 //! Floor 7. Particular to X11. A server that does not answer leaves a mouse.
 
-use super::{Axes, Axis, Devices, Reads};
+use super::{AxisMeaning, PenAxes, PenAxis, PenDevices};
 use x11rb::connection::Connection;
 use x11rb::errors::ReplyError;
 use x11rb::protocol::Event;
@@ -14,20 +14,23 @@ use x11rb::rust_connection::RustConnection;
 const ALL_MASTERS: DeviceId = 1;
 
 /// What the server calls the axes of a pen.
-const LABELS: [(&[u8], Reads); 3] =
-    [(b"Abs Pressure", Reads::Pressure), (b"Abs Tilt X", Reads::TiltX), (b"Abs Tilt Y", Reads::TiltY)];
+const LABELS: [(&[u8], AxisMeaning); 3] = [
+    (b"Abs Pressure", AxisMeaning::Pressure),
+    (b"Abs Tilt X", AxisMeaning::TiltX),
+    (b"Abs Tilt Y", AxisMeaning::TiltY),
+];
 
 /// The X server, asked on a connection of its own.
-pub struct Server {
+pub struct X11Server {
     connection: RustConnection,
-    labels: Vec<(Atom, Reads)>,
+    labels: Vec<(Atom, AxisMeaning)>,
     /// Found when connecting, not yet told.
-    first: Option<Axes>,
+    first: Option<PenAxes>,
     /// The connection broke: no more is known.
     is_gone: bool,
 }
 
-impl Server {
+impl X11Server {
     /// `None` where there is no server, or none that knows of pens.
     pub fn connect() -> Option<Self> {
         let (connection, screen) = x11rb::connect(None).ok()?;
@@ -51,19 +54,19 @@ impl Server {
         });
         Ok(server)
     }
-    fn axes(&self, source: DeviceId, classes: &[DeviceClass]) -> Axes {
+    fn axes(&self, source: DeviceId, classes: &[DeviceClass]) -> PenAxes {
         let axis = |class: &DeviceClass| match class.data {
             DeviceClassData::Valuator(valuator) => {
                 let (_, reads) = self.labels.iter().find(|(label, _)| *label == valuator.label)?;
                 let range = (number(valuator.min), number(valuator.max));
-                Axis::new(valuator.number.into(), *reads, range, number(valuator.value))
+                PenAxis::new(valuator.number.into(), *reads, range, number(valuator.value))
             }
             _ => None,
         };
         let axes: Vec<_> = classes.iter().filter_map(axis).collect();
         // The server tells a pen's two ends apart by their names alone.
         let is_eraser = !axes.is_empty() && self.name(source).to_lowercase().contains("eraser");
-        Axes { device: source.into(), axes, is_eraser }
+        PenAxes { device: source.into(), axes, is_eraser }
     }
     /// Empty of a device that is gone.
     fn name(&self, device: DeviceId) -> String {
@@ -73,8 +76,8 @@ impl Server {
     }
 }
 
-impl Devices for Server {
-    fn change(&mut self) -> Option<Axes> {
+impl PenDevices for X11Server {
+    fn change(&mut self) -> Option<PenAxes> {
         let mut last = self.first.take();
         while !self.is_gone {
             match self.connection.poll_for_event() {

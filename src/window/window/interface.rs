@@ -1,7 +1,7 @@
 //! How the window looks: light or dark, and how large its controls are.
 //! Floor 7. The colours themselves are `theme`'s.
 
-use super::Window;
+use super::MainWindow;
 use eframe::egui::{self, Theme};
 
 /// Sizes of the interface to choose from; 1 is what the system asks for.
@@ -9,7 +9,7 @@ const SCALES: [f32; 10] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0];
 /// A screen so many points high that the system did not scale is likely dense.
 const DENSE_PT: f32 = 1800.0;
 
-impl Window {
+impl MainWindow {
     /// The look that is remembered, or one that fits the screen.
     pub(super) fn dress(&mut self, ctx: &egui::Context) {
         if std::mem::replace(&mut self.is_dressed, true) {
@@ -40,7 +40,7 @@ impl Window {
     fn show_at(&mut self, ctx: &egui::Context, scale: f32) {
         let kept = ctx.zoom_factor() / scale;
         ctx.set_zoom_factor(scale);
-        for view in self.session.tabs.iter_mut().filter_map(|tab| tab.view.as_mut()) {
+        for view in self.session.open_documents.iter_mut().filter_map(|tab| tab.view.as_mut()) {
             view.zoom *= kept;
         }
     }

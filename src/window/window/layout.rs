@@ -1,10 +1,10 @@
 //! Where the panels stand: beside the canvas, in a window together, or each in one of its own.
 //! Floor 7. What is in them is `panels`'.
 
-use super::Window;
-use crate::asked::Asked;
-use crate::panels::{self, Front};
-use crate::settings::Side;
+use super::MainWindow;
+use crate::panels::{self, PanelKind};
+use crate::requests::UiRequests;
+use crate::settings::PanelSide;
 use crate::theme::ACCENT;
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
@@ -12,83 +12,85 @@ use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};
 /// How wide the panels may be, points.
 const WIDTHS_PT: std::ops::RangeInclusive<f32> = 230.0..=460.0;
 
-impl Window {
-    pub(super) fn lay_out(&mut self, ui: &mut Ui, asked: &mut Asked) {
+impl MainWindow {
+    pub(super) fn lay_out(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let bar = |ui: &Ui| Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(6, 3));
         let settings = &self.settings;
-        Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, asked));
+        Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, requests));
         if !self.settings.layout.is_hidden {
-            Panel::top("options").frame(bar(ui)).show(ui, |ui| panels::options::show(ui, &self.session, asked));
+            Panel::top("options").frame(bar(ui)).show(ui, |ui| panels::options::show(ui, &self.session, requests));
             Panel::bottom("status").frame(bar(ui)).show(ui, |ui| {
-                panels::status::show(ui, &self.session, &self.canvas, &self.jobs, &mut self.memory, asked)
+                panels::status::show(ui, &self.session, &self.canvas, &self.jobs, &mut self.memory, requests)
             });
             let keymap = &self.settings.keymap;
             Panel::left("tools").exact_size(44.0).resizable(false).frame(bar(ui)).show(ui, |ui| {
                 // A low window scrolls them.
                 let area = egui::ScrollArea::vertical().scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
-                area.show(ui, |ui| panels::tools::show(ui, &self.session, keymap, asked));
+                area.show(ui, |ui| panels::tools::show(ui, &self.session, keymap, requests));
             });
-            self.side(ui, asked);
-            self.apart(ui.ctx(), asked);
+            self.side(ui, requests);
+            self.apart(ui.ctx(), requests);
         }
-        if !self.session.tabs.is_empty() {
-            Panel::top("tabs").frame(bar(ui)).show(ui, |ui| panels::menu::tabs(ui, &self.session, asked));
+        if !self.session.open_documents.is_empty() {
+            Panel::top("tabs").frame(bar(ui)).show(ui, |ui| panels::menu::tabs(ui, &self.session, requests));
         }
         self.show_messages(ui);
         CentralPanel::no_frame().show(ui, |ui| {
             let area = ui.max_rect();
-            self.canvas.show(ui, &self.session, &mut asked.actions);
+            self.canvas.show(ui, &self.session, &mut requests.actions);
             self.show_steps(ui);
-            show_hovered(ui, area, self.session.tab().is_some());
+            show_hovered(ui, area, self.session.active().is_some());
         });
     }
     /// The panels that are together.
-    fn side(&mut self, ui: &mut Ui, asked: &mut Asked) {
+    fn side(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let side = self.settings.layout.side;
         let beside = match side {
-            Side::Left => Panel::left("panels left"),
-            Side::Right => Panel::right("panels right"),
-            Side::Apart => {
+            PanelSide::Left => Panel::left("panels left"),
+            PanelSide::Right => Panel::right("panels right"),
+            PanelSide::Apart => {
                 let window = egui::Window::new("Panels").id(Id::unique("panels apart")).constrain(true);
                 let corner = ui.max_rect().right_top() + egui::vec2(-310.0, 60.0);
                 let window = window.default_pos(corner).min_size([230.0, 300.0]);
                 let window = window.default_size([self.settings.layout.width_pt, 640.0]);
-                return drop(window.show(ui.ctx(), |ui| self.together(ui, asked)));
+                return drop(window.show(ui.ctx(), |ui| self.together(ui, requests)));
             }
         };
         let beside = beside.default_size(self.settings.layout.width_pt).size_range(WIDTHS_PT);
-        let shown = beside.show(ui, |ui| self.together(ui, asked));
+        let shown = beside.show(ui, |ui| self.together(ui, requests));
         self.settings.layout.width_pt = shown.response.rect.width().round();
     }
     /// One of those that share a place above, the layers below.
-    fn together(&mut self, ui: &mut Ui, asked: &mut Asked) {
+    fn together(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let apart = &self.settings.layout.apart;
-        let strip: Vec<_> =
-            Front::ALL.into_iter().filter(|(front, _)| *front != Front::Layers && !apart.contains(front)).collect();
+        let strip: Vec<_> = PanelKind::ALL
+            .into_iter()
+            .filter(|(front, _)| *front != PanelKind::Layers && !apart.contains(front))
+            .collect();
         let front = match self.settings.layout.front {
             front if strip.iter().any(|(known, _)| *known == front) => Some(front),
             _ => strip.first().map(|(front, _)| *front),
         };
-        let has_layers = !apart.contains(&Front::Layers);
+        let has_layers = !apart.contains(&PanelKind::Layers);
         if let Some(front) = front {
             if has_layers {
                 let above = Panel::top("front").resizable(true).default_size(372.0).size_range(140.0..=640.0);
                 // At the same left as the layers beneath.
                 let above = above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
-                above.show(ui, |ui| self.fronted(ui, &strip, front, asked));
+                above.show(ui, |ui| self.fronted(ui, &strip, front, requests));
             } else {
-                self.fronted(ui, &strip, front, asked);
+                self.fronted(ui, &strip, front, requests);
             }
         }
         if has_layers {
             CentralPanel::no_frame().show(ui, |ui| {
                 ui.add_space(4.0);
-                panels::layers::show(ui, &self.session, &mut self.thumbnails, asked);
+                panels::layers::show(ui, &self.session, &mut self.thumbnails, requests);
             });
         }
     }
     /// The names of the panels that share a place, and the one in front.
-    fn fronted(&mut self, ui: &mut Ui, strip: &[(Front, &str)], mut front: Front, asked: &mut Asked) {
+    fn fronted(&mut self, ui: &mut Ui, strip: &[(PanelKind, &str)], mut front: PanelKind, requests: &mut UiRequests) {
         let mut gone = None;
         ui.horizontal_wrapped(|ui| {
             for &(choice, name) in strip {
@@ -106,21 +108,21 @@ impl Window {
         self.settings.layout.apart.extend(gone);
         ui.add_space(2.0);
         let area = egui::ScrollArea::vertical().id_salt("front").auto_shrink([false, false]);
-        area.show(ui, |ui| self.panel(ui, front, asked));
+        area.show(ui, |ui| self.panel(ui, front, requests));
     }
-    fn panel(&mut self, ui: &mut Ui, front: Front, asked: &mut Asked) {
+    fn panel(&mut self, ui: &mut Ui, front: PanelKind, requests: &mut UiRequests) {
         match front {
-            Front::Color => panels::colors::show(ui, &self.session, asked),
-            Front::Brushes => panels::brushes::show(ui, &self.session, &mut self.swatches, asked),
-            Front::Properties => panels::properties::show(ui, &self.session, asked),
-            Front::Surface => panels::surface::show(ui, &self.session, asked),
-            Front::History => panels::history::show(ui, &self.session, asked),
-            Front::Navigator => panels::navigator::show(ui, &self.session, &mut self.canvas, asked),
-            Front::Layers => panels::layers::show(ui, &self.session, &mut self.thumbnails, asked),
+            PanelKind::Color => panels::colors::show(ui, &self.session, requests),
+            PanelKind::Brushes => panels::brushes::show(ui, &self.session, &mut self.swatches, requests),
+            PanelKind::Properties => panels::properties::show(ui, &self.session, requests),
+            PanelKind::Surface => panels::surface::show(ui, &self.session, requests),
+            PanelKind::History => panels::history::show(ui, &self.session, requests),
+            PanelKind::Navigator => panels::navigator::show(ui, &self.session, &mut self.canvas, requests),
+            PanelKind::Layers => panels::layers::show(ui, &self.session, &mut self.thumbnails, requests),
         }
     }
     /// The panels in windows of their own; closing one puts it back.
-    fn apart(&mut self, ctx: &egui::Context, asked: &mut Asked) {
+    fn apart(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         for (i, front) in self.settings.layout.apart.clone().into_iter().enumerate() {
             let mut is_open = true;
             // Over the canvas, so that none covers where it came from.
@@ -130,7 +132,7 @@ impl Window {
                 window.default_size([268.0, 340.0]).min_size([230.0, 160.0]).default_pos(corner).open(&mut is_open);
             let area = |ui: &mut Ui| {
                 let area = egui::ScrollArea::vertical().id_salt(front.name()).auto_shrink([false, false]);
-                area.show(ui, |ui| self.panel(ui, front, asked));
+                area.show(ui, |ui| self.panel(ui, front, requests));
             };
             window.show(ctx, area);
             if !is_open {

@@ -1,30 +1,30 @@
 //! Closing and leaving, and what comes in by other doors: dropped files.
 //! Floor 7.
 
-use super::Window;
-use crate::dialogs::{Dialog, Then, unsaved};
-use crate::jobs::Where;
+use super::MainWindow;
+use crate::dialogs::{AfterUnsaved, Dialog, unsaved};
+use crate::jobs::PinPosition;
 use crate::session::Action;
 use crate::session::actions::FileAction;
 use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
 
-impl Window {
+impl MainWindow {
     pub(super) fn close(&mut self, ctx: &egui::Context, tab: usize) {
-        if self.session.tabs.get(tab).is_some_and(|tab| tab.is_dirty()) {
+        if self.session.open_documents.get(tab).is_some_and(|tab| tab.is_dirty()) {
             self.session.current = tab;
-            self.dialogs.push(Dialog::Unsaved(unsaved::Unsaved { tab, then: Then::Close(tab) }));
+            self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog { tab, then: AfterUnsaved::Close(tab) }));
         } else {
-            self.proceed(ctx, Then::Close(tab), false);
+            self.proceed(ctx, AfterUnsaved::Close(tab), false);
         }
     }
     /// After the question about unsaved work. `discarding`: the tab asked about is given up.
-    pub(super) fn proceed(&mut self, ctx: &egui::Context, then: Then, discarding: bool) {
+    pub(super) fn proceed(&mut self, ctx: &egui::Context, then: AfterUnsaved, discarding: bool) {
         match then {
-            Then::Close(index) => self.apply(&Action::File(FileAction::Close { index })),
-            Then::Quit => {
+            AfterUnsaved::Close(index) => self.apply(&Action::File(FileAction::Close { index })),
+            AfterUnsaved::Quit => {
                 if discarding {
-                    self.session.close_tab(self.session.current);
+                    self.session.close_document(self.session.current);
                 }
                 ctx.send_viewport_cmd(ViewportCommand::Close);
             }
@@ -35,11 +35,11 @@ impl Window {
         if self.leaving || !ctx.input(|i| i.viewport().close_requested()) {
             return;
         }
-        match self.session.tabs.iter().position(|tab| tab.is_dirty()) {
+        match self.session.open_documents.iter().position(|tab| tab.is_dirty()) {
             Some(tab) => {
                 ctx.send_viewport_cmd(ViewportCommand::CancelClose);
                 self.session.current = tab;
-                self.dialogs.push(Dialog::Unsaved(unsaved::Unsaved { tab, then: Then::Quit }));
+                self.dialogs.push(Dialog::Unsaved(unsaved::UnsavedDialog { tab, then: AfterUnsaved::Quit }));
             }
             None => self.leaving = true,
         }
@@ -52,6 +52,6 @@ impl Window {
         }
     }
     pub(super) fn take_files(&mut self, files: Vec<PathBuf>) {
-        self.jobs.open(files, self.session.tab().map(|_| Where::Pointer));
+        self.jobs.open(files, self.session.active().map(|_| PinPosition::Pointer));
     }
 }

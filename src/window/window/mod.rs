@@ -8,27 +8,27 @@ mod leaving;
 mod steps;
 mod work;
 
-use super::asked::{Asked, WindowAsk};
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
-use super::dialogs::{Answer, Dialog, Then, export, import, new, palette, shortcuts};
-use super::files::Purpose;
-use super::jobs::{Done, Jobs, While};
-use super::memory::Memory;
+use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, export, import, new, palette, shortcuts};
+use super::files::FilePurpose;
+use super::jobs::{JobKind, JobResult, Jobs};
+use super::memory::MemoryMeter;
 use super::pen::SharedTablet;
-use super::settings::{Keeper, Settings, Side};
+use super::requests::{UiRequests, WindowRequest};
+use super::settings::{PanelSide, Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
 use crate::document::Progress;
 use crate::session::actions::ViewAction;
-use crate::session::replay::Replayed;
+use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
 use eframe::egui::{self, Ui, ViewportCommand};
 use std::path::PathBuf;
 
 /// The program's one window.
-pub struct Window {
+pub struct MainWindow {
     pub session: Session,
     canvas: Canvas,
     thumbnails: Thumbnails,
@@ -39,12 +39,12 @@ pub struct Window {
     /// Sentences that stay until they are read.
     pub(super) messages: Vec<String>,
     settings: Settings,
-    keeper: Keeper,
+    keeper: SettingsFile,
     /// Not with the dialogs of the system.
     asks_itself: bool,
     /// The program was started without a file, so the sample is open.
     is_first_start: bool,
-    export: export::Export,
+    export: export::ExportDialog,
     /// What the file dialog of the system is asked for with this name.
     title: String,
     /// The look that is remembered was put on.
@@ -52,22 +52,22 @@ pub struct Window {
     /// The user agreed to leave.
     leaving: bool,
     /// What is to be done once the document is saved.
-    after_saving: Option<Then>,
-    memory: Memory,
+    after_saving: Option<AfterUnsaved>,
+    memory: MemoryMeter,
     /// What was copied last; kept, so that it stays in the system's clipboard.
     clipboard: Option<Clipboard>,
     /// What was done, while that is written down.
     recorded: Option<Vec<Action>>,
 }
 
-impl Window {
+impl MainWindow {
     /// A window that remembers nothing.
     pub fn new(ctx: &egui::Context) -> Self {
         Self::remembering(ctx, None)
     }
     /// A window with the settings of a file, kept there from now on.
     pub fn remembering(ctx: &egui::Context, file: Option<PathBuf>) -> Self {
-        let (settings, keeper, trouble) = Keeper::new(file);
+        let (settings, keeper, trouble) = SettingsFile::new(file);
         ctx.set_theme(if settings.is_light { egui::Theme::Light } else { egui::Theme::Dark });
         Self {
             session: Session::default(),
@@ -81,12 +81,12 @@ impl Window {
             keeper,
             asks_itself: false,
             is_first_start: false,
-            export: export::Export::default(),
+            export: export::ExportDialog::default(),
             title: String::new(),
             is_dressed: false,
             leaving: false,
             after_saving: None,
-            memory: Memory::default(),
+            memory: MemoryMeter::default(),
             clipboard: None,
             recorded: None,
         }
@@ -95,7 +95,7 @@ impl Window {
     pub fn asking_itself(self) -> Self {
         Self { asks_itself: true, ..self }
     }
-    /// A window that writes down what is done, see [`Window::recorded`].
+    /// A window that writes down what is done, see [`MainWindow::recorded`].
     pub fn recording(self) -> Self {
         Self { recorded: Some(Vec::new()), ..self }
     }
@@ -125,24 +125,26 @@ impl Window {
         }
     }
     fn open_sample(&mut self) {
-        self.jobs.start("Opening the sample".into(), While::Working, |_| Done::Opened(None, Box::new(sample::open())));
+        self.jobs.start("Opening the sample".into(), JobKind::Working, |_| {
+            JobResult::Opened(None, Box::new(sample::open()))
+        });
     }
     /// One frame.
     pub fn show(&mut self, ui: &mut Ui) {
-        let mut asked = Asked::default();
+        let mut requests = UiRequests::default();
         self.dress(ui.ctx());
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
         self.thumbnails.collect(ui.ctx());
         if self.dialogs.is_empty() && self.jobs.editing().is_none() {
-            keys::listen(ui.ctx(), &self.session, &self.settings.keymap, &mut asked);
+            keys::listen(ui.ctx(), &self.session, &self.settings.keymap, &mut requests);
         }
         self.take_dropped(ui.ctx());
-        self.lay_out(ui, &mut asked);
-        self.show_dialog(ui.ctx(), &mut asked);
+        self.lay_out(ui, &mut requests);
+        self.show_dialog(ui.ctx(), &mut requests);
         self.show_editing(ui.ctx());
         self.guard_leaving(ui.ctx());
-        self.do_asked(ui.ctx(), asked);
+        self.do_requests(ui.ctx(), requests);
         self.session.keep();
         self.set_title(ui.ctx());
         self.keeper.keep(&self.settings);
@@ -152,49 +154,53 @@ impl Window {
         let troubles = [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
         self.messages.extend(troubles.into_iter().filter_map(Option::take).map(|error| error.to_string()));
     }
-    fn show_dialog(&mut self, ctx: &egui::Context, asked: &mut Asked) {
+    fn show_dialog(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
         let size = self.session.shown().map(|document| document.size);
         let is_seen = matches!(dialog, Dialog::Export(_));
         let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
-        let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, asked);
+        let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, requests);
         if let Dialog::Export(export) = dialog {
             self.export = export.clone();
         }
         match answer {
-            Answer::Open => return,
+            DialogAnswer::Open => return,
             // The dialog stays while a file is chosen for it.
-            Answer::Ask(ask @ WindowAsk::Choose(_)) => return asked.ask(ask),
-            Answer::Import(source) => {
-                let read = move |_: &Progress| Done::Read(Box::new(storage::import(&source)));
-                return self.jobs.start("Reading maps".into(), While::Working, read);
+            DialogAnswer::Ask(ask @ WindowRequest::Choose(_)) => return requests.request(ask),
+            DialogAnswer::Import(source) => {
+                let read = move |_: &Progress| JobResult::Read(Box::new(storage::import(&source)));
+                return self.jobs.start("Reading maps".into(), JobKind::Working, read);
             }
             // The dialog stays while there are drawings in it.
-            Answer::Recover(lost) => return self.recover(lost),
-            Answer::Delete(lost) => return self.delete(lost),
+            DialogAnswer::Recover(lost) => return self.recover(lost),
+            DialogAnswer::Delete(lost) => return self.delete(lost),
             _ => drop(self.dialogs.pop()),
         }
         match answer {
-            Answer::Chosen(purpose, file) => self.chosen(purpose, file),
-            Answer::Imported(opened) => self.session.adopt(*opened),
-            Answer::Replaced(maps) => {
+            DialogAnswer::Chosen(purpose, file) => self.chosen(purpose, file),
+            DialogAnswer::Imported(opened) => self.session.adopt(*opened),
+            DialogAnswer::Replaced(maps) => {
                 let done = crate::session::actions::files::replace_maps(&mut self.session, &maps.0, maps.1);
                 self.messages.extend(done.err().map(|error| error.to_string()));
                 self.messages.append(&mut self.session.notes);
             }
-            Answer::Discard(then) => self.proceed(ctx, then, true),
-            Answer::SaveThen(then) => {
+            DialogAnswer::Discard(then) => self.proceed(ctx, then, true),
+            DialogAnswer::SaveThen(then) => {
                 self.after_saving = Some(then);
                 self.save();
             }
-            Answer::Ask(ask) => asked.ask(ask),
-            Answer::Open | Answer::Close | Answer::Import(_) | Answer::Recover(_) | Answer::Delete(_) => {}
+            DialogAnswer::Ask(ask) => requests.request(ask),
+            DialogAnswer::Open
+            | DialogAnswer::Close
+            | DialogAnswer::Import(_)
+            | DialogAnswer::Recover(_)
+            | DialogAnswer::Delete(_) => {}
         }
     }
     /// Does what was asked for.
-    fn do_asked(&mut self, ctx: &egui::Context, asked: Asked) {
+    fn do_requests(&mut self, ctx: &egui::Context, requests: UiRequests) {
         let is_editing = self.jobs.editing().is_some();
-        for action in asked.actions {
+        for action in requests.actions {
             // Seen it may be, but not changed, while an edit is under way.
             if (is_editing && !matches!(action, Action::View(_))) || self.begin_edit(&action) {
                 continue;
@@ -202,56 +208,56 @@ impl Window {
             self.apply(&action);
         }
         self.messages.append(&mut self.session.notes);
-        for ask in asked.window {
-            self.do_ask(ctx, ask);
+        for ask in requests.window {
+            self.do_request(ctx, ask);
         }
     }
-    fn do_ask(&mut self, ctx: &egui::Context, ask: WindowAsk) {
+    fn do_request(&mut self, ctx: &egui::Context, ask: WindowRequest) {
         match ask {
-            WindowAsk::NewDialog => self.dialogs.push(Dialog::New(new::New::default())),
-            WindowAsk::OpenDialog => self.ask_for(Purpose::Open, ""),
-            WindowAsk::OpenMapsDialog => self.dialogs.push(Dialog::Import(Box::default())),
-            WindowAsk::ReplaceMapsDialog => {
-                let source = self.session.tab().and_then(|tab| tab.document().surface_source.clone());
-                let import = import::Import::replacing(source.as_deref());
+            WindowRequest::NewDialog => self.dialogs.push(Dialog::New(new::NewDialog::default())),
+            WindowRequest::OpenDialog => self.ask_for(FilePurpose::Open, ""),
+            WindowRequest::OpenMapsDialog => self.dialogs.push(Dialog::Import(Box::default())),
+            WindowRequest::ReplaceMapsDialog => {
+                let source = self.session.active().and_then(|tab| tab.document().surface_source.clone());
+                let import = import::ImportDialog::replacing(source.as_deref());
                 self.dialogs.push(Dialog::Import(Box::new(import)));
             }
-            WindowAsk::Choose(purpose) => self.ask_for(purpose, ""),
-            WindowAsk::PlaceDialog => self.ask_for(Purpose::Place, ""),
-            WindowAsk::Open(file) => self.jobs.open(vec![file], None),
-            WindowAsk::OpenSample => self.open_sample(),
-            WindowAsk::Save => self.save(),
-            WindowAsk::SaveAs => self.ask_where(Purpose::Save),
-            WindowAsk::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
-            WindowAsk::Export(ending) => {
-                self.export.ending = ending;
-                self.ask_where(Purpose::Export);
+            WindowRequest::Choose(purpose) => self.ask_for(purpose, ""),
+            WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
+            WindowRequest::Open(file) => self.jobs.open(vec![file], None),
+            WindowRequest::OpenSample => self.open_sample(),
+            WindowRequest::Save => self.save(),
+            WindowRequest::SaveAs => self.ask_where(FilePurpose::Save),
+            WindowRequest::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
+            WindowRequest::Export(extension) => {
+                self.export.extension = extension;
+                self.ask_where(FilePurpose::Export);
             }
-            WindowAsk::Close(tab) => self.close(ctx, tab),
-            WindowAsk::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
-            WindowAsk::CopyMerged => self.copy_merged(),
-            WindowAsk::Paste => self.paste(),
-            WindowAsk::Palette => self.dialogs.push(Dialog::Palette(palette::Palette::default())),
-            WindowAsk::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::Shortcuts::default())),
-            WindowAsk::About => self.dialogs.push(Dialog::About),
-            WindowAsk::TogglePanels => {
+            WindowRequest::Close(tab) => self.close(ctx, tab),
+            WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            WindowRequest::CopyMerged => self.copy_merged(),
+            WindowRequest::Paste => self.paste(),
+            WindowRequest::Palette => self.dialogs.push(Dialog::Palette(palette::CommandPalette::default())),
+            WindowRequest::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default())),
+            WindowRequest::About => self.dialogs.push(Dialog::About),
+            WindowRequest::TogglePanels => {
                 self.settings.layout.is_hidden = !self.settings.layout.is_hidden;
                 // The tab key that asked for it went on to the next button as well.
                 ctx.memory_mut(|memory| memory.stop_text_input());
             }
-            WindowAsk::OtherSide => self.settings.layout.side = self.settings.layout.side.other(),
-            WindowAsk::PanelsApart => {
+            WindowRequest::OtherSide => self.settings.layout.side = self.settings.layout.side.other(),
+            WindowRequest::PanelsApart => {
                 let side = &mut self.settings.layout.side;
-                *side = if *side == Side::Apart { Side::Right } else { Side::Apart };
+                *side = if *side == PanelSide::Apart { PanelSide::Right } else { PanelSide::Apart };
             }
-            WindowAsk::Float(front) => {
+            WindowRequest::Float(front) => {
                 let apart = &mut self.settings.layout.apart;
                 if apart.contains(&front) { apart.retain(|other| *other != front) } else { apart.push(front) }
             }
-            WindowAsk::ToggleTheme => self.toggle_theme(ctx),
-            WindowAsk::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),
-            WindowAsk::Scale(scale) => self.scale(ctx, scale),
-            WindowAsk::FullScreen => {
+            WindowRequest::ToggleTheme => self.toggle_theme(ctx),
+            WindowRequest::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),
+            WindowRequest::Scale(scale) => self.scale(ctx, scale),
+            WindowRequest::FullScreen => {
                 let is_full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
                 ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!is_full));
             }
@@ -274,7 +280,7 @@ impl Window {
         self.apply(&Action::View(action));
     }
     fn set_title(&mut self, ctx: &egui::Context) {
-        let title = self.session.tab().map_or_else(
+        let title = self.session.active().map_or_else(
             || "Rilievo".to_owned(),
             |tab| format!("{}{} – Rilievo", if tab.is_dirty() { "• " } else { "" }, tab.title()),
         );
@@ -285,21 +291,22 @@ impl Window {
     }
     /// The menus' titles, and the commands of each.
     pub fn menus() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
-        let names = |commands: &[commands::Command]| commands.iter().map(|command| command.name).collect::<Vec<_>>();
+        let names =
+            |commands: &[commands::MenuCommand]| commands.iter().map(|command| command.name).collect::<Vec<_>>();
         let menus = commands::MENUS.map(|(title, commands)| (title, names(commands)));
         menus.into_iter().map(|(title, names)| (title, names.into_iter().filter(|name| !name.is_empty()).collect()))
     }
     /// Runs a command by its name, as a menu would.
     pub fn command(&mut self, ctx: &egui::Context, name: &str) {
-        let mut asked = Asked::default();
+        let mut requests = UiRequests::default();
         if let Some(command) = commands::named(name).filter(|command| (command.can)(&self.session)) {
-            (command.run)(&self.session, &mut asked);
+            (command.run)(&self.session, &mut requests);
         }
-        self.do_asked(ctx, asked);
+        self.do_requests(ctx, requests);
     }
 }
 
-impl eframe::App for Window {
+impl eframe::App for MainWindow {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
         self.clipboard = clipboard::take_text(ui.ctx()).or(self.clipboard.take());

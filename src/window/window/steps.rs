@@ -1,16 +1,16 @@
 //! The three steps of a first start, over the canvas until they are done or put away.
 //! Floor 7.
 
-use super::Window;
+use super::MainWindow;
 use crate::document::Content;
 use crate::session::Session;
 use crate::surface::Operator;
 use eframe::egui::{Align2, Area, Frame, Id, RichText, Ui, vec2};
 
 /// Each step, how it is done, and whether it is.
-type Step = (&'static str, &'static str, fn(&Session) -> bool);
+type HintStep = (&'static str, &'static str, fn(&Session) -> bool);
 
-const STEPS: [Step; 3] = [
+const STEPS: [HintStep; 3] = [
     ("Drop a photo on the shape", "It bends over it like a reflection. Or File, Place image…", has_image),
     ("Paint highlights", "Brush (B), operator Shading (F3): strokes follow the form", has_bent_stroke),
     ("Move what you made", "Anchors (A) carry the photo along the surface, Move (V) a stroke", has_moved),
@@ -28,14 +28,14 @@ fn has_bent_stroke(session: &Session) -> bool {
 }
 fn has_moved(session: &Session) -> bool {
     let moves = ["Move anchor", "Add anchor", "Move stroke", "Move layer"];
-    session.tab().is_some_and(|tab| tab.history.past().any(|label| moves.contains(&label)))
+    session.active().is_some_and(|tab| tab.history.past().any(|label| moves.contains(&label)))
 }
 
-impl Window {
+impl MainWindow {
     /// Shows them, until all are done or they are put away.
     pub(super) fn show_steps(&mut self, ui: &mut Ui) {
         let is_over =
-            self.settings.is_hint_done || self.session.tab().is_none_or(|tab| tab.document().surface.is_none());
+            self.settings.is_hint_done || self.session.active().is_none_or(|tab| tab.document().surface.is_none());
         if is_over || !self.is_first_start {
             return;
         }

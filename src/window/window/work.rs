@@ -1,42 +1,42 @@
 //! Long work of the window, begun here and finished by `files` when it arrives: saving, exporting, edits that flatten.
 //! Floor 7.
 
-use super::Window;
+use super::MainWindow;
 use crate::clipboard;
 use crate::document::flatten;
-use crate::files::Purpose;
-use crate::io::export::Options;
-use crate::jobs::{Done, Edited, Saved, While, short};
+use crate::files::FilePurpose;
+use crate::io::export::ExportOptions;
+use crate::jobs::{EditResult, JobKind, JobResult, SaveResult, short};
 use crate::session::actions::{LayerAction, files};
 use crate::session::{Action, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
 use std::path::PathBuf;
 
-impl Window {
+impl MainWindow {
     /// Saves the document in front to its file, or asks where to.
     pub(super) fn save(&mut self) {
-        match self.session.tab().and_then(|tab| tab.file.clone()).filter(|file| storage::is_document(file)) {
+        match self.session.active().and_then(|tab| tab.file.clone()).filter(|file| storage::is_document(file)) {
             Some(file) => self.save_to(file),
-            None => self.ask_where(Purpose::Save),
+            None => self.ask_where(FilePurpose::Save),
         }
     }
     pub(super) fn save_to(&mut self, file: PathBuf) {
         self.session.drop_gesture();
-        let Some(tab) = self.session.tab() else { return };
+        let Some(tab) = self.session.active() else { return };
         let (key, document) = (tab.key, tab.document().clone());
         let stamp = tab.stamp.filter(|_| tab.file.as_ref() == Some(&file));
-        self.jobs.start(format!("Saving {}", short(&file)), While::Working, move |progress| {
+        self.jobs.start(format!("Saving {}", short(&file)), JobKind::Working, move |progress| {
             let stamp = storage::save(&file, &document, stamp, progress);
-            Done::Saved(Box::new(Saved { tab: key, file, document, stamp }))
+            JobResult::Saved(Box::new(SaveResult { tab: key, file, document, stamp }))
         });
     }
-    pub(super) fn saved(&mut self, ctx: &egui::Context, saved: Saved) {
-        let Saved { tab, file, document, stamp } = saved;
+    pub(super) fn saved(&mut self, ctx: &egui::Context, saved: SaveResult) {
+        let SaveResult { tab, file, document, stamp } = saved;
         let then = self.after_saving.take();
         match stamp {
             Ok(Some(stamp)) => {
-                if let Some(tab) = self.session.tabs.iter_mut().find(|other| other.key == tab) {
+                if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
                     tab.mark_saved(document, file.clone(), stamp);
                 }
                 self.jobs.say(format!("Saved {}", file.display()));
@@ -50,31 +50,34 @@ impl Window {
         }
     }
     pub(super) fn export_to(&mut self, file: PathBuf) {
-        let Some(document) = self.session.tab().map(|tab| tab.document().clone()) else { return };
-        let options =
-            Options { background: self.export.background, quality: self.export.quality, ..Options::default() };
-        self.jobs.start(format!("Exporting {}", short(&file)), While::Working, move |progress| {
+        let Some(document) = self.session.active().map(|tab| tab.document().clone()) else { return };
+        let options = ExportOptions {
+            background: self.export.background,
+            quality: self.export.quality,
+            ..ExportOptions::default()
+        };
+        self.jobs.start(format!("Exporting {}", short(&file)), JobKind::Working, move |progress| {
             match files::export(&document, &file, &options, progress) {
-                Ok(()) if progress.is_cancelled() => Done::Nothing,
-                Ok(()) => Done::Said(format!("Exported {}", file.display())),
-                Err(error) => Done::Failed(error),
+                Ok(()) if progress.is_cancelled() => JobResult::Nothing,
+                Ok(()) => JobResult::Said(format!("Exported {}", file.display())),
+                Err(error) => JobResult::Failed(error),
             }
         });
     }
     pub(super) fn copy_merged(&mut self) {
         let Some(document) = self.session.shown().cloned() else { return };
-        self.jobs.start("Copying the picture".into(), While::Working, move |progress| {
-            let Some(tiles) = flatten(&document, progress) else { return Done::Nothing };
+        self.jobs.start("Copying the picture".into(), JobKind::Working, move |progress| {
+            let Some(tiles) = flatten(&document, progress) else { return JobResult::Nothing };
             match clipboard::put(document.size, &tiles.to_straight_rgba(document.size.rect())) {
-                Ok(clipboard) => Done::Copied(clipboard),
-                Err(error) => Done::Failed(error),
+                Ok(clipboard) => JobResult::Copied(clipboard),
+                Err(error) => JobResult::Failed(error),
             }
         });
     }
     pub(super) fn paste(&mut self) {
-        self.jobs.start("Pasting".into(), While::Working, |_| match clipboard::pasted() {
-            Ok(pasted) => Done::Pasted(pasted),
-            Err(error) => Done::Failed(error),
+        self.jobs.start("Pasting".into(), JobKind::Working, |_| match clipboard::pasted() {
+            Ok(pasted) => JobResult::Pasted(pasted),
+            Err(error) => JobResult::Failed(error),
         });
     }
     /// Whether an action takes long, and was begun on a thread instead.
@@ -82,18 +85,18 @@ impl Window {
         let Action::Layer(action) = action else { return false };
         let Some(name) = action.takes_long() else { return false };
         self.session.drop_gesture();
-        let Some(tab) = self.session.tab_mut() else { return true };
+        let Some(tab) = self.session.active_mut() else { return true };
         tab.forget_preview();
         let (key, from, action) = (tab.key, tab.document().clone(), LayerAction::clone(action));
-        self.jobs.start(name.into(), While::Editing, move |progress| match action.flattened(&from, progress) {
-            Some(edit) => Done::Edited(Box::new(Edited { tab: key, action, from, edit })),
-            None => Done::Nothing,
+        self.jobs.start(name.into(), JobKind::Editing, move |progress| match action.flattened(&from, progress) {
+            Some(edit) => JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit })),
+            None => JobResult::Nothing,
         });
         true
     }
-    pub(super) fn edited(&mut self, edited: Edited) {
-        let Edited { tab, action, from, edit } = edited;
-        let Some(tab) = self.session.tabs.iter_mut().find(|other| other.key == tab) else { return };
+    pub(super) fn edited(&mut self, edited: EditResult) {
+        let EditResult { tab, action, from, edit } = edited;
+        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) else { return };
         // Nothing else is done meanwhile; what was done all the same must not be lost.
         if crate::session::is_same(tab.document(), &from) {
             tab.take(edit);

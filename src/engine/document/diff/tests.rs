@@ -1,9 +1,9 @@
 //! Redrawing only what differs must give what drawing everything gives.
 
 use super::*;
-use crate::document::{Group, Live, PixelLayer, Place, Prepared, Progress, StrokeList, flatten};
+use crate::document::{Group, LayerSlot, Live, PixelLayer, PreparedDocument, Progress, StrokeList, flatten};
 use crate::math::{Size, hash, srgb::Color, vec2, vec3};
-use crate::paint::{Brush, Gradient, Stop};
+use crate::paint::{Brush, Gradient, GradientStop};
 use crate::raster::{BlendMode, Plane, TileGrid};
 use crate::shading::RadianceScaling;
 use crate::surface::{Maps, Operator, Surface};
@@ -11,12 +11,12 @@ use crate::surface::{Maps, Operator, Surface};
 const SIZE: Size = Size::new(250, 190);
 
 /// Numbers drawn one after the other.
-struct Draw {
+struct RandomNumbers {
     seed: u32,
     count: u32,
 }
 
-impl Draw {
+impl RandomNumbers {
     fn unit(&mut self) -> f32 {
         self.count += 1;
         hash::unit(self.seed, self.count, 0)
@@ -64,7 +64,8 @@ impl Draw {
                 Content::RadianceScaling(RadianceScaling { keep_mean: self.chance(0.3), ..RadianceScaling::default() })
             }
             4 => {
-                let stops = vec![Stop { t: 0.0, color: self.color() }, Stop { t: 1.0, color: self.color() }];
+                let stops =
+                    vec![GradientStop { t: 0.0, color: self.color() }, GradientStop { t: 1.0, color: self.color() }];
                 let (from, to) = (vec2(10.0, 10.0), vec2(200.0, 150.0));
                 let gradient = Gradient { from, to, stops, operator: Operator::None, filter: Default::default() };
                 Content::Gradient(Live::new(gradient))
@@ -88,7 +89,7 @@ impl Draw {
         let ids: Vec<LayerId> = document.walk().iter().map(|(_, layer)| layer.id).collect();
         let id = ids[self.below(ids.len())];
         let group = document.walk().iter().find(|(_, l)| matches!(l.content, Content::Group(_))).map(|(_, l)| l.id);
-        let place = Place { group: group.filter(|_| self.chance(0.5)), index: self.below(5) };
+        let place = LayerSlot { group: group.filter(|_| self.chance(0.5)), index: self.below(5) };
         match self.below(8) {
             0 => document.with_inserted(self.layer(1), place),
             1 if ids.len() > 2 => document.without_layer(id),
@@ -131,14 +132,14 @@ fn redrawing_what_differs_gives_what_redrawing_everything_gives() {
     let surface = dome();
     let (mut named, mut differ) = (0, 0);
     for seed in 0..30 {
-        let mut draw = Draw { seed, count: 0 };
+        let mut draw = RandomNumbers { seed, count: 0 };
         let layers = (0..6).map(|_| Arc::new(draw.layer(0))).collect();
         let mut document = Document { surface: Some(surface.clone()), layers, ..Document::empty(SIZE) };
         let mut picture = flatten(&document, &Progress::default()).unwrap();
         for step in 0..7 {
             let Some(next) = draw.edit(&document) else { continue };
             let changed: Vec<TileAt> = diff(&document, &next).into_iter().collect();
-            let prepared = Prepared::new(&next, &Progress::default()).unwrap();
+            let prepared = PreparedDocument::new(&next, &Progress::default()).unwrap();
             let redrawn = prepared.flatten_tiles(&picture, &changed, &Progress::default()).unwrap();
             let anew = flatten(&next, &Progress::default()).unwrap();
             assert_eq!(differing(&redrawn, &anew), [], "seed {seed}, step {step}; {changed:?} were redrawn");
@@ -150,14 +151,14 @@ fn redrawing_what_differs_gives_what_redrawing_everything_gives() {
 }
 #[test]
 fn a_document_does_not_differ_from_its_clone() {
-    let mut draw = Draw { seed: 3, count: 0 };
+    let mut draw = RandomNumbers { seed: 3, count: 0 };
     let layers = (0..9).map(|_| Arc::new(draw.layer(0))).collect();
     let document = Document { layers, ..Document::empty(SIZE) };
     assert!(diff(&document, &document.clone()).is_empty());
 }
 #[test]
 fn a_name_changes_nothing_and_a_dab_only_its_tile() {
-    let mut draw = Draw { seed: 4, count: 0 };
+    let mut draw = RandomNumbers { seed: 4, count: 0 };
     let layer = Layer::new("paint", Content::Pixels(draw.pixels()));
     let id = layer.id;
     let old = Document { layers: vec![Arc::new(layer)], ..Document::empty(SIZE) };
@@ -172,7 +173,7 @@ fn a_name_changes_nothing_and_a_dab_only_its_tile() {
 }
 #[test]
 fn another_surface_changes_everything() {
-    let mut draw = Draw { seed: 5, count: 0 };
+    let mut draw = RandomNumbers { seed: 5, count: 0 };
     let old = Document { layers: vec![Arc::new(draw.layer(0))], ..Document::empty(SIZE) };
     let new = Document { surface: Some(dome()), ..old.clone() };
     assert_eq!(diff(&old, &new).len(), 12);

@@ -194,12 +194,14 @@ fn one_layer_can_be_flattened_alone() {
 }
 #[test]
 fn what_an_opaque_layer_hides_is_never_asked_for() {
-    let prepared =
-        Prepared::new(&document(vec![fill("#00ff00"), fill("#ff0000"), left_of(10, "#0000ff")]), &Progress::default());
+    let prepared = PreparedDocument::new(
+        &document(vec![fill("#00ff00"), fill("#ff0000"), left_of(10, "#0000ff")]),
+        &Progress::default(),
+    );
     let prepared = prepared.unwrap();
     let mut pixels = PlanarTile::transparent();
     let composer = Composer { prepared: &prepared, at: TileAt::new(0, 0), sought: None };
-    assert_eq!(composer.first_seen(&prepared.stack), 1);
+    assert_eq!(composer.first_visible(&prepared.stack), 1);
     assert!(composer.stack(&prepared.stack, &mut pixels).is_continue());
     assert_eq!(pixels.rows()[0].pixel(20), [1.0, 0.0, 0.0, 1.0]);
 }
@@ -233,7 +235,7 @@ fn the_brightest_pixel_beneath_an_adjustment_is_found_in_its_own_scope() {
     let adjustment = || Layer::new("rs", Content::RadianceScaling(RadianceScaling::default()));
     let inner = group(vec![left_of(30, "#808080"), adjustment(), fill("#ffffff")], false);
     let doc = document(vec![left_of(50, "#ff0000"), inner, with(adjustment(), |l| l.visible = false), adjustment()]);
-    let prepared = Prepared::new(&doc, &Progress::default()).unwrap();
+    let prepared = PreparedDocument::new(&doc, &Progress::default()).unwrap();
     // #808080 is 0.215861 of linear light; above the group everything is white.
     assert_eq!(prepared.beneath.len(), 2);
     assert!((prepared.beneath[0].brightest - 0.215_861).abs() < 1e-4, "{:?}", prepared.beneath);
@@ -254,7 +256,7 @@ fn the_brightest_pixel_is_sought_on_the_surface_only() {
     let surface = Surface::new(Maps { normals: slope, depth: Plane::filled(SIZE, 0.5), coverage }).unwrap();
     let doc = document(vec![lit, beyond, adjustment]);
     let on_surface = Document { surface: Some(Arc::new(surface)), ..doc.clone() };
-    let reference = |doc: &Document| Prepared::new(doc, &Progress::default()).unwrap().beneath[0].brightest;
+    let reference = |doc: &Document| PreparedDocument::new(doc, &Progress::default()).unwrap().beneath[0].brightest;
     assert!((reference(&on_surface) - 0.215_861).abs() < 1e-4);
     assert!((reference(&doc) - 1.0).abs() < 1e-3);
 }

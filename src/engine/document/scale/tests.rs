@@ -3,7 +3,7 @@
 use super::*;
 use crate::document::{LayerMask, Progress, flatten};
 use crate::math::{srgb::Color, vec3};
-use crate::paint::{Adjust, Brush, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
+use crate::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{BlendMode, Outside, Picture};
 use crate::shading::RadianceScaling;
 use crate::surface::{Bend, Maps, Operator, Surface, Weights};
@@ -37,11 +37,11 @@ fn document() -> Document {
         placement: Placement { center: vec2(110.0, 90.0), scale: 1.5, rotation: 20.0 },
         outside: Outside::Mirror,
         bend: Bend { operator, anchors: vec![anchor], weights: Weights::default() },
-        filter: Filter::Bilinear,
+        filter: ImageFilter::Bilinear,
     };
-    let stops = vec![Stop { t: 0.0, color: Color::BLACK }, Stop { t: 1.0, color: Color::WHITE }];
+    let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
     let gradient =
-        Gradient { from: vec2(50.0, 30.0), to: vec2(180.0, 120.0), stops, operator, filter: Filter::Antialias };
+        Gradient { from: vec2(50.0, 30.0), to: vec2(180.0, 120.0), stops, operator, filter: ImageFilter::Antialias };
     let samples = [40.0, 120.0, 190.0].map(|x| Sample::at(vec2(x, 60.0 + 0.2 * x))).to_vec();
     let brush = Brush { size: 50.0, ..Brush::default() };
     let stroke = Stroke::new(brush, operator, Color { r: 255, g: 240, b: 200, a: 255 }, samples);
@@ -73,7 +73,7 @@ fn picture(document: &Document) -> TileGrid {
 }
 fn reduced(grid: &TileGrid, factor: f32) -> TileGrid {
     let to = SIZE.scaled(factor);
-    Scale { per_axis: Vec2::splat(factor), length: factor, from: SIZE, to }.grid(grid)
+    CanvasScale { per_axis: Vec2::splat(factor), length: factor, from: SIZE, to }.grid(grid)
 }
 
 #[test]

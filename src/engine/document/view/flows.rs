@@ -4,13 +4,13 @@
 
 use super::{ViewOptions, painted};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
-use crate::raster::line_integral::{Lines, smeared_noise};
+use crate::raster::line_integral::{LineStyle, smeared_noise};
 use crate::raster::{Picture, Plane};
-use crate::surface::{Bend, Flow, Surface, links};
+use crate::surface::{Bend, FlowField, Surface, links};
 
 /// What is shown of one pixel.
 #[derive(Clone, Copy, Default)]
-struct Mark {
+struct FlowPixel {
     /// Unit or zero; image axes.
     line: Vec2,
     /// Unit or zero; image axes.
@@ -20,22 +20,22 @@ struct Mark {
 }
 
 pub(super) fn of_depth(surface: &Surface, options: &ViewOptions) -> Picture {
-    of_flow(Flow::of_depth(surface), Some(surface), options)
+    of_flow(FlowField::of_depth(surface), Some(surface), options)
 }
 
 pub(super) fn of_normals(surface: &Surface, options: &ViewOptions) -> Picture {
-    of_flow(Flow::of_normals(surface), Some(surface), options)
+    of_flow(FlowField::of_normals(surface), Some(surface), options)
 }
 
 pub(super) fn of_operator(surface: Option<&Surface>, size: Size, bend: &Bend, options: &ViewOptions) -> Picture {
-    of_flow(Flow::of_deformation(surface, size, bend), surface, options)
+    of_flow(FlowField::of_deformation(surface, size, bend), surface, options)
 }
 
-fn of_flow(flow: Flow, surface: Option<&Surface>, options: &ViewOptions) -> Picture {
+fn of_flow(flow: FlowField, surface: Option<&Surface>, options: &ViewOptions) -> Picture {
     let flow = flow.smoothed(surface.map(Surface::coverage_plane), options.blur_px);
     let marks = Plane::from_fn(flow.size(), |x, y| {
         let direction = flow.at(x, y).eigen().direction;
-        Mark { line: direction.perp(), hue_of: direction, magnitude: flow.magnitude(x, y) }
+        FlowPixel { line: direction.perp(), hue_of: direction, magnitude: flow.magnitude(x, y) }
     });
     shown(&marks, surface)
 }
@@ -48,15 +48,15 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
         // The direction in which the surface turns most, whichever way: of a groove that is across it, where k_v < 0.
         let u = if ku.abs() >= kv.abs() { u } else { u.perp() };
         let u = vec2(u.x, -u.y);
-        Mark { line: u, hue_of: u, magnitude: curvature.fade_at(x, y) * (ku.abs() - kv.abs()).abs() }
+        FlowPixel { line: u, hue_of: u, magnitude: curvature.fade_at(x, y) * (ku.abs() - kv.abs()).abs() }
     });
     shown(&marks, Some(surface))
 }
 
-fn shown(marks: &Plane<Mark>, surface: Option<&Surface>) -> Picture {
+fn shown(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
     let covered = |x: usize, y: usize| surface.is_none_or(|s| s.coverage(x, y) > 0);
     let lines = marks.map(|mark| mark.line);
-    let grey = smeared_noise(&lines, Lines::for_size(marks.size()), |from, to| {
+    let grey = smeared_noise(&lines, LineStyle::for_size(marks.size()), |from, to| {
         surface.is_none_or(|s| passes(s.links_plane(), from, to))
     });
     let full = strong(marks, covered);
@@ -85,7 +85,7 @@ fn passes(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
 }
 
 /// The magnitude that four fifths of the covered pixels stay below; at least what is all but nothing.
-fn strong(marks: &Plane<Mark>, covered: impl Fn(usize, usize) -> bool) -> f32 {
+fn strong(marks: &Plane<FlowPixel>, covered: impl Fn(usize, usize) -> bool) -> f32 {
     // A spread sample tells as much as every pixel.
     let step = (marks.size().area() / 100_000).max(1);
     let mut sample: Vec<f32> = (0..marks.size().area())

@@ -17,7 +17,7 @@ use crate::surface::{Bend, Surface};
 
 /// What a view shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum View {
+pub enum SurfaceView {
     /// R = x right, G = y up, B = z to the viewer; ½ is 0.
     Normals,
     /// Black near, white far.
@@ -46,22 +46,22 @@ pub enum View {
     Lit,
 }
 
-impl View {
+impl SurfaceView {
     /// Every view with its name.
-    pub const ALL: &'static [(View, &'static str)] = &[
-        (View::Normals, "normals"),
-        (View::Depth, "depth"),
-        (View::Mask, "mask"),
-        (View::Objects, "objects"),
-        (View::Curvature, "curvature"),
-        (View::CurvatureGrey, "curvature-grey"),
-        (View::Directions, "directions"),
-        (View::Weights, "weights"),
-        (View::FlowDepth, "flow-depth"),
-        (View::FlowNormals, "flow-normals"),
-        (View::FlowOperator, "flow-operator"),
-        (View::Scaling, "scaling"),
-        (View::Lit, "lit"),
+    pub const ALL: &'static [(SurfaceView, &'static str)] = &[
+        (SurfaceView::Normals, "normals"),
+        (SurfaceView::Depth, "depth"),
+        (SurfaceView::Mask, "mask"),
+        (SurfaceView::Objects, "objects"),
+        (SurfaceView::Curvature, "curvature"),
+        (SurfaceView::CurvatureGrey, "curvature-grey"),
+        (SurfaceView::Directions, "directions"),
+        (SurfaceView::Weights, "weights"),
+        (SurfaceView::FlowDepth, "flow-depth"),
+        (SurfaceView::FlowNormals, "flow-normals"),
+        (SurfaceView::FlowOperator, "flow-operator"),
+        (SurfaceView::Scaling, "scaling"),
+        (SurfaceView::Lit, "lit"),
     ];
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(view, _)| *view == self).map_or("", |(_, name)| name)
@@ -71,11 +71,11 @@ impl View {
     }
     /// It shows no document.
     pub fn is_of_nothing(self) -> bool {
-        self == View::Scaling
+        self == SurfaceView::Scaling
     }
     /// It shows a layer's anchors or operator, and so needs one that has them.
     pub fn is_of_layer(self) -> bool {
-        matches!(self, View::Weights | View::FlowOperator)
+        matches!(self, SurfaceView::Weights | SurfaceView::FlowOperator)
     }
 }
 
@@ -96,7 +96,7 @@ impl Default for ViewOptions {
 
 /// Why there is nothing to show.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Unseen {
+pub enum ViewUnavailable {
     #[error("the document has no surface to show")]
     NoSurface,
     #[error("there is no memory for the picture")]
@@ -108,49 +108,56 @@ pub enum Unseen {
 }
 
 /// Draws a view. `layer`: whose anchors or operator; where absent, the topmost layer that has them.
-pub fn draw(document: &Document, layer: Option<&Layer>, view: View, options: &ViewOptions) -> Result<Picture, Unseen> {
-    let surface = || document.surface.as_deref().ok_or(Unseen::NoSurface);
+pub fn draw(
+    document: &Document,
+    layer: Option<&Layer>,
+    view: SurfaceView,
+    options: &ViewOptions,
+) -> Result<Picture, ViewUnavailable> {
+    let surface = || document.surface.as_deref().ok_or(ViewUnavailable::NoSurface);
     Ok(match view {
-        View::Normals => maps::normals(surface()?),
-        View::Depth => maps::depth(surface()?),
-        View::Mask => maps::mask(surface()?),
-        View::Objects => maps::objects(surface()?),
-        View::Curvature => maps::curvature(surface()?, options),
-        View::CurvatureGrey => maps::curvature_grey(surface()?, options),
-        View::Lit => maps::lit(surface()?),
-        View::Scaling => scaling::plots().ok_or(Unseen::NoMemory)?,
-        View::Directions => flows::directions(surface()?, options),
-        View::FlowDepth => flows::of_depth(surface()?, options),
-        View::FlowNormals => flows::of_normals(surface()?, options),
-        View::FlowOperator => {
+        SurfaceView::Normals => maps::normals(surface()?),
+        SurfaceView::Depth => maps::depth(surface()?),
+        SurfaceView::Mask => maps::mask(surface()?),
+        SurfaceView::Objects => maps::objects(surface()?),
+        SurfaceView::Curvature => maps::curvature(surface()?, options),
+        SurfaceView::CurvatureGrey => maps::curvature_grey(surface()?, options),
+        SurfaceView::Lit => maps::lit(surface()?),
+        SurfaceView::Scaling => scaling::plots().ok_or(ViewUnavailable::NoMemory)?,
+        SurfaceView::Directions => flows::directions(surface()?, options),
+        SurfaceView::FlowDepth => flows::of_depth(surface()?, options),
+        SurfaceView::FlowNormals => flows::of_normals(surface()?, options),
+        SurfaceView::FlowOperator => {
             flows::of_operator(document.surface.as_deref(), document.size, &bend(document, layer)?, options)
         }
-        View::Weights => weights::weights(document.surface.as_deref(), document.size, &bend(document, layer)?),
+        SurfaceView::Weights => weights::weights(document.surface.as_deref(), document.size, &bend(document, layer)?),
     })
 }
 
 /// The views that a document has something to show in.
-pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<View> {
-    let can = |view: View| match view {
-        View::Weights => bend(document, layer).is_ok(),
-        View::FlowOperator => bend(document, layer).is_ok(),
+pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<SurfaceView> {
+    let can = |view: SurfaceView| match view {
+        SurfaceView::Weights => bend(document, layer).is_ok(),
+        SurfaceView::FlowOperator => bend(document, layer).is_ok(),
         // It says nothing of this document.
-        View::Scaling => false,
+        SurfaceView::Scaling => false,
         _ => document.surface.is_some(),
     };
-    View::ALL.iter().map(|(view, _)| *view).filter(|&view| can(view)).collect()
+    SurfaceView::ALL.iter().map(|(view, _)| *view).filter(|&view| can(view)).collect()
 }
 
 /// A layer's operator, anchors and weights.
-fn bend(document: &Document, layer: Option<&Layer>) -> Result<Bend, Unseen> {
+fn bend(document: &Document, layer: Option<&Layer>) -> Result<Bend, ViewUnavailable> {
     let of = |layer: &Layer| match &layer.content {
         Content::Image(image) => Some(image.params().bend.clone()).filter(|bend| !bend.anchors.is_empty()),
         Content::Gradient(gradient) => Some(gradient.params().bend()),
         _ => None,
     };
     match layer {
-        Some(layer) => of(layer).ok_or_else(|| Unseen::NoAnchors(layer.name.clone())),
-        None => document.walk().into_iter().rev().find_map(|(_, layer)| of(layer)).ok_or(Unseen::NoAnchoredLayer),
+        Some(layer) => of(layer).ok_or_else(|| ViewUnavailable::NoAnchors(layer.name.clone())),
+        None => {
+            document.walk().into_iter().rev().find_map(|(_, layer)| of(layer)).ok_or(ViewUnavailable::NoAnchoredLayer)
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::raster::Picture;
 const CELL_PX: f32 = 320.0;
 const GAP_PX: u32 = 8;
 /// A middle grey, against which dark and light views both stand out.
-const GROUND: f32 = 0.32;
+const BACKGROUND: f32 = 0.32;
 
 /// Lays pictures of one size out in rows of four, in their order, scaled down to fit. `None` without pictures.
 pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
@@ -18,14 +18,14 @@ pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
     let rows = (pictures.len() as u32).div_ceil(columns);
     let side = |cells: u32, cell: u32| cells * (cell + GAP_PX) + GAP_PX;
     let sheet = Size::new(side(columns, cell.width), side(rows, cell.height));
-    let ground = crate::math::srgb::quantise(GROUND);
-    let mut texels = vec![[ground, ground, ground, 255]; sheet.area()];
+    let background = crate::math::srgb::quantise(BACKGROUND);
+    let mut texels = vec![[background, background, background, 255]; sheet.area()];
     for (i, picture) in pictures.iter().enumerate() {
         let (column, row) = (i as u32 % columns, i as u32 / columns);
         let (left, top) = (side(column, cell.width), side(row, cell.height));
         for y in 0..cell.height {
             for x in 0..cell.width {
-                let [r, g, b] = mean_over_ground(picture, covered(picture.size, cell, x, y));
+                let [r, g, b] = mean_over_background(picture, covered(picture.size, cell, x, y));
                 texels[((top + y) * sheet.width + left + x) as usize] = [r, g, b, 255];
             }
         }
@@ -43,13 +43,13 @@ fn covered(from: Size, to: Size, x: u32, y: u32) -> Rect {
     Rect::new(x0, y0, x1, y1)
 }
 
-fn mean_over_ground(picture: &Picture, pixels: Rect) -> [u8; 3] {
+fn mean_over_background(picture: &Picture, pixels: Rect) -> [u8; 3] {
     let mut sum = [0.0f32; 3];
     for y in pixels.y0..pixels.y1 {
         for x in pixels.x0..pixels.x1 {
             let [r, g, b, a] = picture.linear_at(x as usize, y as usize);
             for (sum, c) in sum.iter_mut().zip([r, g, b]) {
-                *sum += c * a + crate::math::srgb::decode(GROUND) * (1.0 - a);
+                *sum += c * a + crate::math::srgb::decode(BACKGROUND) * (1.0 - a);
             }
         }
     }

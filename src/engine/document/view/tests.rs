@@ -1,8 +1,8 @@
 use super::*;
 use crate::document::{Layer, Live};
 use crate::math::{Size, Vec3, srgb::Color, vec2, vec3};
-use crate::paint::gradient::Stop;
-use crate::paint::{Filter, Gradient};
+use crate::paint::gradient::GradientStop;
+use crate::paint::{Gradient, ImageFilter};
 use crate::raster::picture::Texels;
 use crate::surface::{Maps, Operator};
 use std::sync::Arc;
@@ -18,13 +18,13 @@ fn ball() -> Document {
     let depth = normals.map(|n| 1.0 - n.z);
     let coverage = normals.map(|n| if n == Vec3::ZERO { 0 } else { 255 });
     let surface = Surface::new(Maps { normals, depth, coverage }).unwrap();
-    let stop = |t, color| Stop { t, color };
+    let stop = |t, color| GradientStop { t, color };
     let gradient = Gradient {
         from: vec2(50.5, 80.5),
         to: vec2(110.5, 80.5),
         stops: vec![stop(0.0, Color::BLACK), stop(1.0, Color::WHITE)],
         operator: Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 },
-        filter: Filter::Bilinear,
+        filter: ImageFilter::Bilinear,
     };
     let layer = Layer::new("ramp", Content::Gradient(Live::new(gradient)));
     Document { surface: Some(Arc::new(surface)), layers: vec![Arc::new(layer)], ..Document::empty(size) }
@@ -33,42 +33,42 @@ fn pixel(picture: &Picture, x: usize, y: usize) -> [u8; 4] {
     let Texels::Srgb8(texels) = &picture.texels else { panic!("views are encoded bytes") };
     texels[y * picture.size.width as usize + x]
 }
-fn drawn(view: View) -> Picture {
+fn drawn(view: SurfaceView) -> Picture {
     draw(&ball(), None, view, &ViewOptions::default()).unwrap()
 }
 
 #[test]
 fn every_view_has_a_name_of_its_own_and_a_picture_of_the_canvas() {
-    for (view, name) in View::ALL {
-        assert_eq!(View::from_name(name), Some(*view));
+    for (view, name) in SurfaceView::ALL {
+        assert_eq!(SurfaceView::from_name(name), Some(*view));
         assert_eq!(view.name(), *name);
         if !view.is_of_nothing() {
             assert_eq!(drawn(*view).size, Size::new(160, 160), "{name}");
         }
     }
-    assert_eq!(available(&ball(), None).len(), View::ALL.len() - 1, "all but the one of no document");
+    assert_eq!(available(&ball(), None).len(), SurfaceView::ALL.len() - 1, "all but the one of no document");
 }
 #[test]
 fn the_top_of_a_ball_shows_green_in_the_normals_and_is_near_in_the_middle() {
-    let [r, g, ..] = pixel(&drawn(View::Normals), 79, 25);
+    let [r, g, ..] = pixel(&drawn(SurfaceView::Normals), 79, 25);
     assert!(g > 230 && r.abs_diff(128) < 6, "{r} {g}");
-    assert!(pixel(&drawn(View::Depth), 80, 80)[0] < 5);
-    assert!(pixel(&drawn(View::Depth), 80, 136)[0] > 130);
-    assert_eq!(pixel(&drawn(View::Normals), 3, 3)[3], 0);
-    assert_eq!(pixel(&drawn(View::Mask), 3, 3), [0, 0, 0, 255]);
+    assert!(pixel(&drawn(SurfaceView::Depth), 80, 80)[0] < 5);
+    assert!(pixel(&drawn(SurfaceView::Depth), 80, 136)[0] > 130);
+    assert_eq!(pixel(&drawn(SurfaceView::Normals), 3, 3)[3], 0);
+    assert_eq!(pixel(&drawn(SurfaceView::Mask), 3, 3), [0, 0, 0, 255]);
 }
 #[test]
 fn a_ball_is_convex_blue_and_light_and_lit_from_the_upper_left() {
     let options = ViewOptions { curvature_scale_px: 60.0, ..ViewOptions::default() };
-    let [r, _, b, _] = pixel(&draw(&ball(), None, View::Curvature, &options).unwrap(), 80, 80);
+    let [r, _, b, _] = pixel(&draw(&ball(), None, SurfaceView::Curvature, &options).unwrap(), 80, 80);
     assert!(b > r, "{r} {b}");
-    assert!(pixel(&draw(&ball(), None, View::CurvatureGrey, &options).unwrap(), 80, 80)[0] > 200);
-    let lit = drawn(View::Lit);
+    assert!(pixel(&draw(&ball(), None, SurfaceView::CurvatureGrey, &options).unwrap(), 80, 80)[0] > 200);
+    let lit = drawn(SurfaceView::Lit);
     assert!(pixel(&lit, 55, 50)[0] > pixel(&lit, 105, 110)[0]);
 }
 #[test]
 fn each_anchor_has_the_colour_of_what_it_holds() {
-    let weights = drawn(View::Weights);
+    let weights = drawn(SurfaceView::Weights);
     let ([r0, _, b0, _], [_, g1, b1, _]) = (pixel(&weights, 30, 80), pixel(&weights, 130, 80));
     assert!(b0 > r0 && g1 > b1, "the first anchor is blue, the second green");
 }
@@ -76,16 +76,22 @@ fn each_anchor_has_the_colour_of_what_it_holds() {
 fn what_cannot_be_shown_says_why() {
     let empty = Document::empty(Size::new(8, 8));
     let options = ViewOptions::default();
-    assert_eq!(draw(&empty, None, View::Depth, &options).err(), Some(Unseen::NoSurface));
-    assert_eq!(draw(&empty, None, View::Weights, &options).err(), Some(Unseen::NoAnchoredLayer));
+    assert_eq!(draw(&empty, None, SurfaceView::Depth, &options).err(), Some(ViewUnavailable::NoSurface));
+    assert_eq!(draw(&empty, None, SurfaceView::Weights, &options).err(), Some(ViewUnavailable::NoAnchoredLayer));
     let fill = Layer::new("ground", Content::Fill(Color::BLACK));
-    let refused = draw(&ball(), Some(&fill), View::Weights, &options).err().map(|e| e.to_string());
+    let refused = draw(&ball(), Some(&fill), SurfaceView::Weights, &options).err().map(|e| e.to_string());
     assert_eq!(refused.as_deref(), Some("the layer “ground” has no anchors; image and gradient layers have them"));
     assert!(available(&empty, None).is_empty());
 }
 #[test]
 fn a_sheet_holds_every_picture_in_order() {
-    let pictures = [drawn(View::Mask), drawn(View::Normals), drawn(View::Depth), drawn(View::Lit), drawn(View::Mask)];
+    let pictures = [
+        drawn(SurfaceView::Mask),
+        drawn(SurfaceView::Normals),
+        drawn(SurfaceView::Depth),
+        drawn(SurfaceView::Lit),
+        drawn(SurfaceView::Mask),
+    ];
     let sheet = sheet(&pictures).unwrap();
     assert_eq!(sheet.size, Size::new(4 * 168 + 8, 2 * 168 + 8));
     assert_eq!(pixel(&sheet, 8 + 80, 8 + 80), [255; 4]);

@@ -1,9 +1,9 @@
 //! The round tip over rows of pixels, which are looked at no closer than each of their zones needs.
 //! Floor 3. The profile is `profile`'s, D is `surface`'s.
 
-use super::Around;
+use super::SpanNeighbours;
 use crate::math::Vec2;
-use crate::paint::laying::Dab;
+use crate::paint::dab_walker::Dab;
 use crate::paint::profile::RoundProfile;
 use crate::raster::TILE;
 use crate::surface::links;
@@ -25,7 +25,7 @@ pub(super) struct RoundTip {
 }
 
 /// What is known of a row's pixels before their coverage.
-pub(super) struct Row {
+pub(super) struct RowZones {
     /// Distance from the dab's centre in the image plane, in radii.
     r: [f32; TILE],
     /// |Jᵀ p|², p from the centre to the pixel: the pixel's width toward the centre times r, squared; radii to the fourth.
@@ -41,7 +41,7 @@ const FALLOFF: u32 = 4;
 /// Added to squared distances, px²: at the very centre there is no direction toward it.
 const AT_CENTER: f32 = 1e-12;
 
-impl Default for Row {
+impl Default for RowZones {
     fn default() -> Self {
         Self { r: [0.0; TILE], toward: [0.0; TILE], zones: [0; TILE] }
     }
@@ -102,7 +102,7 @@ impl RoundTip {
     /// Adds to a judged row, chunks of one zone at a time: only where a pixel's box lies across a zone's border does its mean take
     /// a root and a division more, beyond the rim it takes nothing.
     #[inline(always)]
-    fn add(&self, row: &Row, coverage: &mut [f32]) {
+    fn add(&self, row: &RowZones, coverage: &mut [f32]) {
         let n = coverage.len().min(TILE);
         let mut start = 0;
         while start < n {
@@ -159,7 +159,7 @@ const INSIDE: u8 = links::LEFT | links::RIGHT | links::UP | links::DOWN;
 
 crate::widest! {
     /// Where D is the identity; (x, y) is the centre of the first pixel.
-    pub(super) fn flat_row(x: f32, y: f32, tip: &RoundTip, row: &mut Row, coverage: &mut [f32]) {
+    pub(super) fn flat_row(x: f32, y: f32, tip: &RoundTip, row: &mut RowZones, coverage: &mut [f32]) {
         let n = coverage.len().min(TILE);
         let dy = y - tip.at.y;
         let pixel = tip.per_radius * tip.per_radius;
@@ -174,7 +174,7 @@ crate::widest! {
         tip.add(row, coverage);
     }
     /// Bent: J by differences within each pixel's piece of surface.
-    pub(super) fn bent_row(d: Around, tip: &RoundTip, row: &mut Row, coverage: &mut [f32]) {
+    pub(super) fn bent_row(d: SpanNeighbours, tip: &RoundTip, row: &mut RowZones, coverage: &mut [f32]) {
         let n = coverage.len().min(TILE);
         if are_inside(&d.linked[..n]) {
             judge_inside(d, n, tip, row);
@@ -196,7 +196,7 @@ fn are_inside(linked: &[u8]) -> bool {
 
 /// Within one piece of surface: J by central differences.
 #[inline(always)]
-fn judge_inside(d: Around, n: usize, tip: &RoundTip, row: &mut Row) {
+fn judge_inside(d: SpanNeighbours, n: usize, tip: &RoundTip, row: &mut RowZones) {
     let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
     let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
     let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
@@ -211,7 +211,7 @@ fn judge_inside(d: Around, n: usize, tip: &RoundTip, row: &mut Row) {
 
 /// Along a silhouette, a depth jump or outside: J from linked neighbours only.
 #[inline(always)]
-fn judge_rim(d: Around, n: usize, tip: &RoundTip, row: &mut Row) {
+fn judge_rim(d: SpanNeighbours, n: usize, tip: &RoundTip, row: &mut RowZones) {
     let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
     let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
     let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);

@@ -1,26 +1,26 @@
 //! Which pixels are joined to one by colours like its own, over their four neighbours: tile by tile, a row of a tile at a time.
 //! Floor 3. Only tiles that are reached are looked at. What is joined does not depend on the order in which it is found.
 
-use super::Inside;
+use super::PixelSet;
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TILE, Tile, TileAt};
-use crate::surface::objects::Part;
+use crate::surface::objects::CanvasPart;
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A pixel a bit: rows of a tile, the leftmost pixel the lowest bit.
-type Bits = [u64; TILE];
+type TileBits = [u64; TILE];
 
 /// A tile that the fill has reached.
-struct Reached {
+struct FloodTile {
     /// May be filled.
-    open: Bits,
-    filled: Bits,
+    open: TileBits,
+    filled: TileBits,
 }
 
 /// Where the fill enters a tile.
 #[derive(Clone, Copy, Default)]
-struct Entry {
+struct FloodEntry {
     /// Of the top and the bottom row.
     rows: [u64; 2],
     /// Of the left and the right column, a row a bit.
@@ -33,10 +33,10 @@ struct Entry {
 pub(super) fn joined(
     (x, y): (i32, i32),
     canvas: Size,
-    part: &Part,
+    part: &CanvasPart,
     tolerance: u8,
     tile: impl Fn(TileAt) -> Option<Arc<Tile>> + Sync,
-) -> Option<Inside> {
+) -> Option<PixelSet> {
     if part.coverage(x, y) <= 0.0 {
         return None;
     }
@@ -49,21 +49,25 @@ pub(super) fn joined(
         let is_there = (0..columns).contains(&at.col) && (0..rows).contains(&at.row);
         is_there.then(|| (at.row * columns + at.col) as usize)
     };
-    let mut tiles: Vec<Option<Box<Reached>>> = (0..columns * rows).map(|_| None).collect();
-    let mut wave = vec![(first, Entry { start: Some(start), ..Entry::default() })];
+    let mut tiles: Vec<Option<Box<FloodTile>>> = (0..columns * rows).map(|_| None).collect();
+    let mut wave = vec![(first, FloodEntry { start: Some(start), ..FloodEntry::default() })];
     while !wave.is_empty() {
         let taken: Vec<_> =
             wave.into_iter().filter_map(|(at, entry)| Some((at, entry, tiles.get_mut(index(at)?)?.take()))).collect();
-        let spread: Vec<(TileAt, Box<Reached>, Entry)> = taken
+        let spread: Vec<(TileAt, Box<FloodTile>, FloodEntry)> = taken
             .into_par_iter()
             .map(|(at, entry, reached)| {
-                let mut reached = reached.unwrap_or_else(|| Box::new(Reached { open: opened(at), filled: [0; TILE] }));
+                let mut reached =
+                    reached.unwrap_or_else(|| Box::new(FloodTile { open: opened(at), filled: [0; TILE] }));
                 let before = reached.border();
                 reached.enter(entry);
                 let now = reached.border();
                 let new = |a: [u64; 2], b: [u64; 2]| [a[0] & !b[0], a[1] & !b[1]];
-                let left =
-                    Entry { rows: new(now.rows, before.rows), columns: new(now.columns, before.columns), start: None };
+                let left = FloodEntry {
+                    rows: new(now.rows, before.rows),
+                    columns: new(now.columns, before.columns),
+                    start: None,
+                };
                 (at, reached, left)
             })
             .collect();
@@ -78,10 +82,10 @@ pub(super) fn joined(
 }
 
 /// What leaves the tiles of a wave enters their neighbours; one entry a tile, in the tiles' order.
-fn next_wave(spread: &[(TileAt, Box<Reached>, Entry)]) -> Vec<(TileAt, Entry)> {
-    let mut entries = std::collections::BTreeMap::<TileAt, Entry>::new();
+fn next_wave(spread: &[(TileAt, Box<FloodTile>, FloodEntry)]) -> Vec<(TileAt, FloodEntry)> {
+    let mut entries = std::collections::BTreeMap::<TileAt, FloodEntry>::new();
     for (at, _, left) in spread {
-        let mut into = |dx: i32, dy: i32, enter: &dyn Fn(&mut Entry)| {
+        let mut into = |dx: i32, dy: i32, enter: &dyn Fn(&mut FloodEntry)| {
             enter(entries.entry(TileAt::new(at.col + dx, at.row + dy)).or_default());
         };
         let [top, bottom] = left.rows;
@@ -103,9 +107,9 @@ fn next_wave(spread: &[(TileAt, Box<Reached>, Entry)]) -> Vec<(TileAt, Entry)> {
     entries.into_iter().collect()
 }
 
-impl Reached {
+impl FloodTile {
     /// Fills on from where the fill enters.
-    fn enter(&mut self, entry: Entry) {
+    fn enter(&mut self, entry: FloodEntry) {
         self.filled[0] |= entry.rows[0] & self.open[0];
         self.filled[TILE - 1] |= entry.rows[1] & self.open[TILE - 1];
         for y in 0..TILE {
@@ -136,9 +140,13 @@ impl Reached {
         self.filled[y] = runs_of(open, seeds);
         self.filled[y] != before
     }
-    fn border(&self) -> Entry {
+    fn border(&self) -> FloodEntry {
         let column = |x: usize| (0..TILE).fold(0, |bits, y| bits | (self.filled[y] >> x & 1) << y);
-        Entry { rows: [self.filled[0], self.filled[TILE - 1]], columns: [column(0), column(TILE - 1)], start: None }
+        FloodEntry {
+            rows: [self.filled[0], self.filled[TILE - 1]],
+            columns: [column(0), column(TILE - 1)],
+            start: None,
+        }
     }
 }
 
@@ -161,7 +169,7 @@ fn pixel(tile: Option<&Tile>, (x, y): (usize, usize)) -> [u8; 4] {
 }
 
 /// The pixels of a tile that may be filled.
-fn opened(at: TileAt, tile: Option<&Tile>, like: [u8; 4], tolerance: u8, canvas: Size, part: &Part) -> Bits {
+fn opened(at: TileAt, tile: Option<&Tile>, like: [u8; 4], tolerance: u8, canvas: Size, part: &CanvasPart) -> TileBits {
     let area = at.rect().intersect(canvas.rect());
     let mut open = [0; TILE];
     let blank_is_open = is_like([0; 4], like, tolerance);
@@ -211,10 +219,10 @@ fn is_like(a: [u8; 4], b: [u8; 4], tolerance: u8) -> bool {
 }
 
 /// The filled pixels in the smallest rectangle of whole tiles that holds them, on the canvas.
-fn gathered(tiles: &[Option<Box<Reached>>], columns: i32, canvas: Size) -> Inside {
+fn gathered(tiles: &[Option<Box<FloodTile>>], columns: i32, canvas: Size) -> PixelSet {
     let place = |i: usize| TileAt::new(i as i32 % columns, i as i32 / columns);
     let reached = || tiles.iter().enumerate().filter_map(|(i, tile)| Some((place(i), tile.as_ref()?)));
-    let is_filled = |tile: &Reached| tile.filled.iter().any(|&bits| bits != 0);
+    let is_filled = |tile: &FloodTile| tile.filled.iter().any(|&bits| bits != 0);
     let held = reached().filter(|(_, tile)| is_filled(tile)).map(|(at, _)| at.rect());
     let rect = held.fold(Rect::EMPTY, Rect::union).intersect(canvas.rect());
     let mut pixels = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
@@ -228,5 +236,5 @@ fn gathered(tiles: &[Option<Box<Reached>>], columns: i32, canvas: Size) -> Insid
             }
         }
     }
-    Inside { rect, pixels }
+    PixelSet { rect, pixels }
 }

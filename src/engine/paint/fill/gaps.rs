@@ -5,7 +5,7 @@
 //! watershed (Vincent and Soille 1991, by a union of pixels in falling order) gives each pixel to the hill it lies on. Two
 //! hills are one room unless the saddle between them is a gap: low enough, and clearly lower than both tops.
 
-use super::Inside;
+use super::PixelSet;
 use crate::math::Size;
 use crate::raster::{Plane, distance};
 
@@ -15,7 +15,7 @@ const CLEARLY_PX: f32 = 1.0;
 const LEVELS_PER_PX: f32 = 4.0;
 
 /// The room that holds `start`, of what was joined to it.
-pub(super) fn closed(inside: Inside, start: (i32, i32), canvas: Size, gap_px: f32) -> Inside {
+pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
     // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w + 1)/2. Tops count no
     // higher than makes a saddle of that distance a gap.
     let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
@@ -25,7 +25,7 @@ pub(super) fn closed(inside: Inside, start: (i32, i32), canvas: Size, gap_px: f3
     let to_border = distance::squared(&inside.pixels.map(|p| u8::from(p == 0)), limit);
     let top = (top_px * LEVELS_PER_PX) as u8;
     let levels = to_border.map(|d| ((f32::from(d).sqrt() * LEVELS_PER_PX) as u8).min(top));
-    let mut rooms = Rooms::new(&inside.pixels, &levels, top);
+    let mut rooms = DistanceHills::new(&inside.pixels, &levels, top);
     rooms.rise();
     let first = (start.1 - inside.rect.y0) as usize * inside.pixels.width() + (start.0 - inside.rect.x0) as usize;
     let room = rooms.top_of(first);
@@ -35,11 +35,11 @@ pub(super) fn closed(inside: Inside, start: (i32, i32), canvas: Size, gap_px: f3
             pixels.values_mut()[i] = 0;
         }
     }
-    Inside { rect: inside.rect, pixels }
+    PixelSet { rect: inside.rect, pixels }
 }
 
 /// Hills of distance: a forest over the pixels, each tree one hill, its root a pixel of its top.
-struct Rooms<'a> {
+struct DistanceHills<'a> {
     pixels: &'a Plane<u8>,
     levels: &'a Plane<u8>,
     /// The level from which tops are equal.
@@ -50,7 +50,7 @@ struct Rooms<'a> {
 
 const NONE: u32 = u32::MAX;
 
-impl<'a> Rooms<'a> {
+impl<'a> DistanceHills<'a> {
     fn new(pixels: &'a Plane<u8>, levels: &'a Plane<u8>, top: u8) -> Self {
         Self { pixels, levels, top, parent: vec![NONE; pixels.values().len()] }
     }

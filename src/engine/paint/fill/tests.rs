@@ -9,14 +9,14 @@ fn picture(color: impl Fn(i32, i32) -> [u8; 4]) -> TileGrid {
     let rgba: Vec<u8> = (0..150).flat_map(|y| (0..200).map(move |x| (x, y))).flat_map(|(x, y)| color(x, y)).collect();
     TileGrid::from_straight_rgba(&rgba, 200, 150, 0, 0)
 }
-fn filled(fill: Fill, start: Vec2, grid: &TileGrid) -> Option<Filled> {
-    fill.from(start, CANVAS, &Part::Whole, |at| grid.tile(at).cloned())
+fn filled(fill: Fill, start: Vec2, grid: &TileGrid) -> Option<FilledArea> {
+    fill.from(start, CANVAS, &CanvasPart::Whole, |at| grid.tile(at).cloned())
 }
 /// No growth, no smoothing.
 fn plain() -> Fill {
     Fill { grow_px: 0.0, antialias: false, ..Fill::default() }
 }
-fn is_in(filled: &Filled, x: i32, y: i32) -> bool {
+fn is_in(filled: &FilledArea, x: i32, y: i32) -> bool {
     filled.coverage(x, y) > 0.5
 }
 const PAPER: [u8; 4] = [255; 4];

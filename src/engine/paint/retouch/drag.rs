@@ -1,10 +1,10 @@
 //! Where smudge and clone take the colour of a pixel from: what a dab drags, or copies, bends as its footprint does.
 //! Floor 3.
 
-use super::Touch;
-use super::wet::{Reader, Wet};
+use super::TileDab;
+use super::pixels::{PixelReader, RetouchPixels};
 use crate::math::{Affine2, Mat2, Rect, Vec2, vec2};
-use crate::paint::laying::Dab;
+use crate::paint::dab_walker::Dab;
 use crate::paint::patches::Patches;
 use crate::paint::scene::Scene;
 use crate::raster::TileGrid;
@@ -27,11 +27,11 @@ const FARTHEST_STEPS: f32 = 3.0;
 ///
 /// * `length`: the share of the colour that is still there after a drag of one radius, `[0, 1]`, however many dabs it took.
 pub(super) fn smudged(
-    touch: &Touch,
+    touch: &TileDab,
     dab: &Dab,
     before: &Dab,
     length: f32,
-    wet: &Wet,
+    retouched: &RetouchPixels,
     scene: &Scene,
 ) -> Option<Vec<[f32; 4]>> {
     let step = dab.at - before.at;
@@ -41,11 +41,11 @@ pub(super) fn smudged(
         return None;
     }
     let kept = length.powf(step.length() / dab.radius);
-    let mut field = Field::of(dab, touch.area, scene);
+    let mut field = DragField::of(dab, touch.area, scene);
     let now: Vec<Vec2> = field.points();
     field.fill(before, scene);
-    let (mut reader, mut own) = (wet.reader(), wet.reader());
-    let canvas = Canvas::of(scene);
+    let (mut reader, mut own) = (retouched.reader(), retouched.reader());
+    let canvas = SourceBounds::of(scene);
     let mut colors = Vec::with_capacity(now.len());
     field.for_each(scene, |(x, y), there, jacobian| {
         let here = vec2(x as f32 + 0.5, y as f32 + 0.5);
@@ -61,11 +61,11 @@ pub(super) fn smudged(
 ///
 /// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab as its footprint does. Where
 /// a pixel covers several of the picture, the mean of a grid of points in the patch under it.
-pub(super) fn cloned(touch: &Touch, dab: &Dab, offset: Vec2, source: &TileGrid, scene: &Scene) -> Vec<[f32; 4]> {
+pub(super) fn cloned(touch: &TileDab, dab: &Dab, offset: Vec2, source: &TileGrid, scene: &Scene) -> Vec<[f32; 4]> {
     /// Points along a side of the grid, at the most.
     const MOST: f32 = 6.0;
-    let mut field = Field::of(dab, touch.area, scene);
-    let mut reader = Reader::of(source);
+    let mut field = DragField::of(dab, touch.area, scene);
+    let mut reader = PixelReader::of(source);
     let mut colors = Vec::with_capacity(touch.area.width() * touch.area.height());
     field.for_each(scene, |_, there, jacobian| {
         let sides = jacobian.x_axis.length().max(jacobian.y_axis.length());
@@ -88,11 +88,11 @@ fn solved(jacobian: Mat2, v: Vec2) -> Vec2 {
 }
 
 /// The centres of the canvas's pixels, between which there is something to read.
-struct Canvas {
+struct SourceBounds {
     last: Vec2,
 }
 
-impl Canvas {
+impl SourceBounds {
     fn of(scene: &Scene) -> Self {
         Self { last: vec2(scene.size.width as f32, scene.size.height as f32) - 0.5 }
     }
@@ -102,13 +102,13 @@ impl Canvas {
 }
 
 /// D of a dab over an area and the pixels around it.
-struct Field {
+struct DragField {
     area: Rect,
     deformed: DeformedRect,
     patches: Patches,
 }
 
-impl Field {
+impl DragField {
     fn of(dab: &Dab, area: Rect, scene: &Scene) -> Self {
         let mut field = Self { area, deformed: DeformedRect::default(), patches: Patches::default() };
         field.fill(dab, scene);

@@ -1,13 +1,13 @@
 //! What blur makes of pixels: their mean over a Gaussian, in which nothing counts that the stroke may not touch.
 //! Floor 3. The filter is `raster`'s; its cost does not grow with its width.
 
-use super::Touch;
-use super::wet::Wet;
+use super::TileDab;
+use super::pixels::RetouchPixels;
 use crate::math::{Rect, Size};
-use crate::paint::laying::Dab;
+use crate::paint::dab_walker::Dab;
 use crate::paint::scene::Scene;
 use crate::raster::blur;
-use crate::surface::objects::Part;
+use crate::surface::objects::CanvasPart;
 
 /// The widest Gaussian of one dab, px.
 const WIDEST_PX: f32 = 40.0;
@@ -22,12 +22,12 @@ const LEAST_WEIGHT: f32 = 1e-3;
 /// * `width`: the standard deviation that a stroke leaves in its middle, a ratio of the dab's radius. The variances of the dabs
 ///   over a pixel add up, 2 r / step of them: so each has the variance (width · r)² · step / 2 r, however close they stand.
 pub(super) fn blurred(
-    touch: &Touch,
+    touch: &TileDab,
     dab: &Dab,
     before: Option<&Dab>,
     width: f32,
-    part: &Part,
-    wet: &Wet,
+    part: &CanvasPart,
+    retouched: &RetouchPixels,
     scene: &Scene,
 ) -> Vec<[f32; 4]> {
     // A single dab is as a stroke of them a tenth of the diameter apart.
@@ -36,7 +36,7 @@ pub(super) fn blurred(
     let variance = variance.max(0.0).min(WIDEST_PX * WIDEST_PX);
     let area = touch.area;
     let seen = area.grown((CUT * variance.sqrt()).ceil() as i32 + 1);
-    let before = weighed(seen, part, wet, scene.size.rect());
+    let before = weighed(seen, part, retouched, scene.size.rect());
     let after = blur::spread_pixels(Size::new(seen.width() as u32, seen.height() as u32), &before, variance);
     let width = area.width();
     let mut out = Vec::with_capacity(width * area.height());
@@ -49,7 +49,7 @@ pub(super) fn blurred(
 }
 
 /// The colour of what was weighed, premultiplied.
-fn mean([r, g, b, a, weight]: &Weighed) -> [f32; 4] {
+fn mean([r, g, b, a, weight]: &WeightedPixel) -> [f32; 4] {
     let per = if *weight > 0.0 { 1.0 / weight } else { 0.0 };
     // The filter for wide Gaussians swings below 0 by its error.
     let a = (a * per).max(0.0).min(1.0);
@@ -58,11 +58,11 @@ fn mean([r, g, b, a, weight]: &Weighed) -> [f32; 4] {
 }
 
 /// A premultiplied pixel times how much it counts, and that.
-type Weighed = [f32; 5];
+type WeightedPixel = [f32; 5];
 
 /// The pixels of a rectangle; those beyond the canvas count nothing.
-fn weighed(rect: Rect, part: &Part, wet: &Wet, canvas: Rect) -> Vec<Weighed> {
-    let mut reader = wet.reader();
+fn weighed(rect: Rect, part: &CanvasPart, retouched: &RetouchPixels, canvas: Rect) -> Vec<WeightedPixel> {
+    let mut reader = retouched.reader();
     let mut all = vec![[0.0; 5]; rect.width() * rect.height()];
     let inside = rect.intersect(canvas);
     for y in inside.y0..inside.y1 {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::math::{Size, Vec3, srgb::Color, vec2, vec3};
 use crate::raster::Plane;
-use crate::surface::{Bounded, Maps, Operator, Surface};
+use crate::surface::{Maps, Operator, PaintLimit, Surface};
 use std::collections::HashMap;
 
 const SIZE: Size = Size::new(200, 150);
@@ -43,13 +43,13 @@ fn bent(q: Vec2, center: Vec2) -> Vec2 {
     // f_n(u) = α u at β = 0 (SF eq. 14).
     q + 200.0 * 0.3 * turn.length() * turn
 }
-fn brush(mark: Mark) -> Brush {
-    Brush { size: 30.0, hardness: 1.0, spacing: 0.1, mark, ..Brush::default() }
+fn brush(mode: BrushMode) -> Brush {
+    Brush { size: 30.0, hardness: 1.0, spacing: 0.1, mode, ..Brush::default() }
 }
 /// What a stroke leaves of a layer.
 fn rubbed(brush: Brush, operator: Operator, points: &[Vec2], offset: Vec2, base: &TileGrid, scene: &Scene) -> TileGrid {
     let like = [Stroke::new(brush, operator, Color::BLACK, Vec::new())];
-    let mut retouching = Retouching::new(&like, &[offset], base.clone(), base.clone(), scene);
+    let mut retouching = ActiveRetouching::new(&like, &[offset], base.clone(), base.clone(), scene);
     let samples = points.iter().map(|&at| Sample::at(at)).collect();
     let mut grid = base.clone();
     retouching.draw(&[samples]).into_iter().for_each(|(at, tile)| grid.set(at, tile));
@@ -58,8 +58,8 @@ fn rubbed(brush: Brush, operator: Operator, points: &[Vec2], offset: Vec2, base:
 fn dab(at: Vec2) -> Dab {
     Dab { operator: BEND, ..Dab::plain(at, 20.0) }
 }
-fn touch(area: Rect) -> Touch {
-    Touch { at: TileAt::of_pixel(area.x0, area.y0), area, coverage: Box::new([1.0; TILE_AREA]) }
+fn touch(area: Rect) -> TileDab {
+    TileDab { at: TileAt::of_pixel(area.x0, area.y0), area, coverage: Box::new([1.0; TILE_AREA]) }
 }
 /// The place that a colour of [`places`] tells.
 fn told(color: [f32; 4]) -> Vec2 {
@@ -70,7 +70,7 @@ fn told(color: [f32; 4]) -> Vec2 {
 fn a_smudge_drags_paint_along_and_touches_nothing_else() {
     let half = layer(|x, _| if x < 60 { [200, 30, 10, 255] } else { [0; 4] });
     let dragged = rubbed(
-        brush(Mark::Smudge { length: 1.0 }),
+        brush(BrushMode::Smudge { length: 1.0 }),
         Operator::None,
         &[vec2(45.0, 70.0), vec2(110.0, 70.0)],
         Vec2::ZERO,
@@ -81,7 +81,7 @@ fn a_smudge_drags_paint_along_and_touches_nothing_else() {
     assert!(pixel[3] > 240 && pixel[0].abs_diff(200) < 12, "{pixel:?}");
     assert_eq!((dragged.pixel(100, 90), dragged.pixel(30, 90)), ([0; 4], [200, 30, 10, 255]));
     let short = rubbed(
-        brush(Mark::Smudge { length: 0.02 }),
+        brush(BrushMode::Smudge { length: 0.02 }),
         Operator::None,
         &[vec2(45.0, 70.0), vec2(110.0, 70.0)],
         Vec2::ZERO,
@@ -95,7 +95,7 @@ fn what_a_smudge_drags_lies_at_the_same_place_of_the_image_plane_under_both_dabs
     let scene = waves();
     let (before, now) = (dab(vec2(80.5, 70.5)), dab(vec2(84.5, 72.5)));
     let area = Rect::new(70, 64, 100, 84);
-    let colors = drag::smudged(&touch(area), &now, &before, 1.0, &Wet::new(places()), &scene).unwrap();
+    let colors = drag::smudged(&touch(area), &now, &before, 1.0, &RetouchPixels::new(places()), &scene).unwrap();
     let mut farthest: f32 = 0.0;
     for (i, color) in colors.into_iter().enumerate() {
         let q = vec2((70 + i as i32 % 30) as f32 + 0.5, (64 + i as i32 / 30) as f32 + 0.5);
@@ -111,7 +111,7 @@ fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surfa
     let base = places();
     let line = [vec2(120.0, 70.0), vec2(150.0, 75.0)];
     let flat = rubbed(
-        brush(Mark::Clone { aligned: true, picture: false }),
+        brush(BrushMode::Clone { aligned: true, picture: false }),
         Operator::None,
         &line,
         vec2(-80.0, -20.0),
@@ -133,8 +133,8 @@ fn a_clone_copies_whole_pixels_as_they_are_and_bends_what_it_copies_over_a_surfa
 fn a_blurred_edge_is_as_soft_as_said_whatever_the_spacing() {
     let half = layer(|x, _| if x < 100 { [0, 0, 0, 255] } else { [255; 4] });
     for spacing in [0.05, 0.25] {
-        let mark = Mark::Blur { width: 0.4 };
-        let brush = Brush { size: 60.0, spacing, ..brush(mark) };
+        let mode = BrushMode::Blur { width: 0.4 };
+        let brush = Brush { size: 60.0, spacing, ..brush(mode) };
         let soft = rubbed(brush, Operator::None, &[vec2(100.0, 10.0), vec2(100.0, 140.0)], Vec2::ZERO, &half, &FLAT);
         // The slope of the edge is the Gaussian: its standard deviation should be 0.4 · 30 px.
         let value = |x: i32| f32::from(soft.pixel(x, 75)[0]) / 255.0;
@@ -147,7 +147,7 @@ fn a_blurred_edge_is_as_soft_as_said_whatever_the_spacing() {
 fn what_a_blur_makes_of_one_colour_is_that_colour_up_to_the_canvas_s_edge() {
     for (color, size) in [([200, 90, 30, 255], 24.0), ([10, 220, 130, 100], 400.0)] {
         let even = layer(|_, _| color);
-        let brush = Brush { size, ..brush(Mark::Blur { width: 1.0 }) };
+        let brush = Brush { size, ..brush(BrushMode::Blur { width: 1.0 }) };
         let blurred = rubbed(brush, Operator::None, &[vec2(-5.0, 3.0), vec2(80.0, 70.0)], Vec2::ZERO, &even, &FLAT);
         for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
             assert_eq!(blurred.pixel(x, y), even.pixel(x, y), "({x}, {y}) at {size}");
@@ -158,7 +158,7 @@ fn what_a_blur_makes_of_one_colour_is_that_colour_up_to_the_canvas_s_edge() {
 fn a_mark_bounded_to_an_object_neither_leaves_it_nor_takes_from_others() {
     let scene = plates();
     let two = layer(|x, _| if x < 100 { [255, 0, 0, 255] } else { [0, 0, 255, 255] });
-    let brush = Brush { bounded: Bounded::Object, ..brush(Mark::Blur { width: 0.5 }) };
+    let brush = Brush { bounded: PaintLimit::Object, ..brush(BrushMode::Blur { width: 0.5 }) };
     let blurred = rubbed(brush, Operator::None, &[vec2(95.0, 40.0), vec2(105.0, 90.0)], Vec2::ZERO, &two, &scene);
     for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
         assert_eq!(blurred.pixel(x, y), two.pixel(x, y), "({x}, {y})");
@@ -170,8 +170,8 @@ fn kept_alpha_keeps_the_shape_of_the_paint() {
         let r = vec2(x as f32, y as f32).distance(vec2(80.0, 70.0));
         if r < 30.0 { [if x < 80 { 250 } else { 20 }, 90, 40, 255] } else { [0; 4] }
     });
-    for mark in [Mark::Smudge { length: 0.9 }, Mark::Blur { width: 0.5 }] {
-        let brush = Brush { keeps_alpha: true, ..brush(mark) };
+    for mode in [BrushMode::Smudge { length: 0.9 }, BrushMode::Blur { width: 0.5 }] {
+        let brush = Brush { keeps_alpha: true, ..brush(mode) };
         let kept = rubbed(brush, Operator::None, &[vec2(60.0, 70.0), vec2(140.0, 70.0)], Vec2::ZERO, &disc, &FLAT);
         for (x, y) in (0..150).flat_map(|y| (0..200).map(move |x| (x, y))) {
             assert_eq!(kept.pixel(x, y)[3], disc.pixel(x, y)[3], "({x}, {y})");
@@ -187,12 +187,15 @@ fn batches_of_samples_leave_the_same_pixels_as_all_at_once() {
     let samples: Vec<Sample> =
         (0..14).map(|i| Sample::at(vec2(20.0 + 11.0 * i as f32, 70.0 + 30.0 * (0.7 * i as f32).sin()))).collect();
     let mirrored: Vec<Sample> = samples.iter().map(|s| Sample { at: vec2(200.0 - s.at.x, s.at.y), ..*s }).collect();
-    for mark in [Mark::Smudge { length: 0.8 }, Mark::Blur { width: 0.3 }, Mark::Clone { aligned: true, picture: false }]
-    {
-        let like = [(); 2].map(|_| Stroke::new(brush(mark), BEND, Color::BLACK, Vec::new()));
+    for mode in [
+        BrushMode::Smudge { length: 0.8 },
+        BrushMode::Blur { width: 0.3 },
+        BrushMode::Clone { aligned: true, picture: false },
+    ] {
+        let like = [(); 2].map(|_| Stroke::new(brush(mode), BEND, Color::BLACK, Vec::new()));
         let left = |batch: usize| {
             let offsets = [vec2(-30.0, 12.0), vec2(30.0, 12.0)];
-            let mut retouching = Retouching::new(&like, &offsets, base.clone(), base.clone(), &scene);
+            let mut retouching = ActiveRetouching::new(&like, &offsets, base.clone(), base.clone(), &scene);
             let mut shown: HashMap<TileAt, Option<Arc<Tile>>> = HashMap::new();
             for (a, b) in samples.chunks(batch).zip(mirrored.chunks(batch)) {
                 shown.extend(retouching.draw(&[a.to_vec(), b.to_vec()]));
@@ -204,19 +207,19 @@ fn batches_of_samples_leave_the_same_pixels_as_all_at_once() {
         };
         let whole = left(14);
         assert!(whole.len() >= 6);
-        assert!(left(1) == whole && left(3) == whole, "{mark:?}");
+        assert!(left(1) == whole && left(3) == whole, "{mode:?}");
     }
 }
 #[test]
 fn hostile_samples_and_settings_end_in_finite_pixels() {
     let points = [vec2(f32::NAN, 3.0), vec2(40.0, 50.0), vec2(1e30, 0.0), vec2(60.0, 55.0), vec2(-40.0, -90.0)];
     for hostile in [f32::NAN, f32::INFINITY, -1.0, 1e30] {
-        for mark in [
-            Mark::Smudge { length: hostile },
-            Mark::Blur { width: hostile },
-            Mark::Clone { aligned: false, picture: false },
+        for mode in [
+            BrushMode::Smudge { length: hostile },
+            BrushMode::Blur { width: hostile },
+            BrushMode::Clone { aligned: false, picture: false },
         ] {
-            let left = rubbed(brush(mark), BEND, &points, vec2(hostile, 3.0), &places(), &waves());
+            let left = rubbed(brush(mode), BEND, &points, vec2(hostile, 3.0), &places(), &waves());
             assert_eq!(left.pixel(199, 149), places().pixel(199, 149));
         }
     }

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::math::{Size, vec2, vec3};
-use crate::paint::laying::{self, Dab};
+use crate::paint::dab_walker::{self, Dab};
 use crate::paint::profile::RoundProfile;
-use crate::paint::{Adjust, Dynamics, Jitter, PictureSource, Property, Tip};
+use crate::paint::{Adjust, ColorJitter, Dynamics, PictureSource, Property, Tip};
 use crate::raster::{BlendMode, Picture, Plane, TileGrid};
 use crate::surface::{Deformation, Maps, Surface, links};
 use proptest::prelude::*;
@@ -60,7 +60,7 @@ fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
     dab.flow * RoundProfile::new(dab.hardness, dab.softness).mean(from_center.length() / dab.radius, width_squared)
 }
 fn reference(stroke: &Stroke, scene: &Scene) -> Plane<f32> {
-    let dabs = laying::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
+    let dabs = dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
     Plane::from_fn(scene.size, |x, y| {
         let through = dabs.iter().map(|dab| 1.0 - dab_at(dab, stroke.operator, scene, x as i32, y as i32));
         stroke.brush.opacity * (1.0 - through.product::<f32>())
@@ -291,7 +291,7 @@ fn an_erasing_stroke_takes_away_and_one_that_keeps_alpha_paints_only_on_paint() 
 #[test]
 fn a_driven_opacity_is_a_ceiling_that_more_dabs_do_not_pass() {
     let dynamics = Dynamics::none().with_pressure(Property::Opacity, 1.0);
-    let press = |pressure: f32, jitter: Jitter| {
+    let press = |pressure: f32, jitter: ColorJitter| {
         let brush = Brush {
             size: 30.0,
             flow: 0.5,
@@ -304,8 +304,8 @@ fn a_driven_opacity_is_a_ceiling_that_more_dabs_do_not_pass() {
         let samples = line(vec2(40.0, 60.0), vec2(100.0, 60.0)).into_iter().map(|s| Sample { pressure, ..s }).collect();
         one(white(brush, Operator::None, samples), &flat()).pixel(70, 60)
     };
-    let varied = Jitter { hue_degrees: 1.0, ..Jitter::default() };
-    assert_eq!(press(0.5, Jitter::default()), [128; 4]);
+    let varied = ColorJitter { hue_degrees: 1.0, ..ColorJitter::default() };
+    assert_eq!(press(0.5, ColorJitter::default()), [128; 4]);
     assert_eq!(press(0.5, varied), [128; 4], "white has no hue to vary");
     assert_eq!(press(1.0, varied), [255; 4]);
 }
@@ -315,12 +315,12 @@ fn every_dab_has_its_own_colour_where_the_brush_varies_it() {
         size: 10.0,
         hardness: 1.0,
         spacing: 2.0,
-        jitter: Jitter { hue_degrees: 180.0, ..Jitter::default() },
+        jitter: ColorJitter { hue_degrees: 180.0, ..ColorJitter::default() },
         ..Brush::default()
     };
     let stroke =
         Stroke::new(brush, Operator::None, Color::parse("#ff0000").unwrap(), line(vec2(10.0, 60.0), vec2(130.0, 60.0)));
-    let dabs = laying::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, &flat());
+    let dabs = dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, &flat());
     let grid = one(stroke, &flat());
     let mut colors: Vec<[u8; 4]> = dabs
         .iter()

@@ -2,7 +2,7 @@
 //! Floor 3. The rules are those of GIMP's image hoses, so that theirs paint here as they do there.
 
 use crate::math::hash;
-use crate::paint::dynamics::Readings;
+use crate::paint::dynamics::DabInputs;
 use crate::paint::image::PictureSource;
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -12,20 +12,20 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Hose {
     pictures: Arc<[PictureSource]>,
-    ranks: Arc<[Rank]>,
+    ranks: Arc<[HoseRank]>,
 }
 
 /// A row of choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rank {
+pub struct HoseRank {
     /// How many there are, `≥ 1`.
     pub count: u32,
-    pub select: Select,
+    pub select: RankSelect,
 }
 
 /// What chooses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Select {
+pub enum RankSelect {
     /// One after the other.
     #[default]
     Incremental,
@@ -38,16 +38,16 @@ pub enum Select {
     TiltY,
 }
 
-impl Select {
+impl RankSelect {
     /// Every rule with its name in files, GIMP's own.
-    pub const ALL: [(Select, &'static str); 7] = [
-        (Select::Incremental, "incremental"),
-        (Select::Random, "random"),
-        (Select::Angular, "angular"),
-        (Select::Pressure, "pressure"),
-        (Select::Speed, "velocity"),
-        (Select::TiltX, "xtilt"),
-        (Select::TiltY, "ytilt"),
+    pub const ALL: [(RankSelect, &'static str); 7] = [
+        (RankSelect::Incremental, "incremental"),
+        (RankSelect::Random, "random"),
+        (RankSelect::Angular, "angular"),
+        (RankSelect::Pressure, "pressure"),
+        (RankSelect::Speed, "velocity"),
+        (RankSelect::TiltX, "xtilt"),
+        (RankSelect::TiltY, "ytilt"),
     ];
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, known)| *known == name).map(|(select, _)| *select)
@@ -56,21 +56,21 @@ impl Select {
 
 /// What is known of a dab when its picture is chosen.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Moment {
+pub struct DabMoment {
     /// Its number in the stroke.
     pub number: u32,
-    pub readings: Readings,
+    pub inputs: DabInputs,
 }
 
 impl Hose {
     /// What stands beyond the product of the ranks is never chosen. Without pictures nothing is painted.
-    pub fn new(pictures: Vec<PictureSource>, ranks: Vec<Rank>) -> Self {
+    pub fn new(pictures: Vec<PictureSource>, ranks: Vec<HoseRank>) -> Self {
         Self { pictures: pictures.into(), ranks: ranks.into() }
     }
     pub fn pictures(&self) -> &[PictureSource] {
         &self.pictures
     }
-    pub fn ranks(&self) -> &[Rank] {
+    pub fn ranks(&self) -> &[HoseRank] {
         &self.ranks
     }
     /// The same choice among other pictures.
@@ -78,7 +78,7 @@ impl Hose {
         Self { pictures: pictures.into(), ranks: self.ranks.clone() }
     }
     /// The index of a dab's picture, below the number of pictures where there are any.
-    pub fn choose(&self, moment: &Moment) -> usize {
+    pub fn choose(&self, moment: &DabMoment) -> usize {
         let mut stride = self.ranks.iter().fold(1usize, |n, rank| n.saturating_mul(rank.count.max(1) as usize));
         let mut index = 0usize;
         for (place, rank) in (0..).zip(self.ranks.iter()) {
@@ -97,21 +97,21 @@ impl Hose {
     }
 }
 
-impl Select {
+impl RankSelect {
     /// Which of `count` a dab takes; `place`: the rank's own, so that two random ranks differ.
-    fn step(self, count: u32, moment: &Moment, place: u32) -> u32 {
+    fn step(self, count: u32, moment: &DabMoment, place: u32) -> u32 {
         // Comparisons turn NaN into the first.
         let of_unit = |v: f32, n: u32| (v.max(0.0).min(1.0) * n as f32).round() as u32;
-        let Readings { pressure, speed, direction, tilt, tilt_direction, seed, .. } = moment.readings;
+        let DabInputs { pressure, speed, direction, tilt, tilt_direction, seed, .. } = moment.inputs;
         let (lean_up, lean_right) = (tilt_direction * TAU).sin_cos();
         match self {
-            Select::Incremental => moment.number % count,
-            Select::Random => ((hash::unit(seed, place, 4) * count as f32) as u32).min(count - 1),
-            Select::Angular => of_unit((0.25 - direction).rem_euclid(1.0), count) % count,
-            Select::Pressure => of_unit(pressure, count - 1),
-            Select::Speed => of_unit(speed, count - 1),
-            Select::TiltX => of_unit(0.5 + 0.5 * tilt * lean_right, count - 1),
-            Select::TiltY => of_unit(0.5 - 0.5 * tilt * lean_up, count - 1),
+            RankSelect::Incremental => moment.number % count,
+            RankSelect::Random => ((hash::unit(seed, place, 4) * count as f32) as u32).min(count - 1),
+            RankSelect::Angular => of_unit((0.25 - direction).rem_euclid(1.0), count) % count,
+            RankSelect::Pressure => of_unit(pressure, count - 1),
+            RankSelect::Speed => of_unit(speed, count - 1),
+            RankSelect::TiltX => of_unit(0.5 + 0.5 * tilt * lean_right, count - 1),
+            RankSelect::TiltY => of_unit(0.5 - 0.5 * tilt * lean_up, count - 1),
         }
     }
 }
@@ -123,46 +123,46 @@ mod tests {
     use crate::paint::Adjust;
     use crate::raster::Picture;
 
-    fn hose(ranks: &[(u32, Select)]) -> Hose {
+    fn hose(ranks: &[(u32, RankSelect)]) -> Hose {
         let count: u32 = ranks.iter().map(|(count, _)| count).product();
         let picture = |i: u32| {
             let side = 8 + 8 * (i % 2);
             let picture = Picture::srgb8(Size::new(side, side), vec![[255; 4]; (side * side) as usize]).unwrap();
             PictureSource::new(format!("{i}.png"), picture, Adjust::default())
         };
-        let ranks = ranks.iter().map(|&(count, select)| Rank { count, select }).collect();
+        let ranks = ranks.iter().map(|&(count, select)| HoseRank { count, select }).collect();
         Hose::new((0..count).map(picture).collect(), ranks)
     }
 
-    fn moment(readings: Readings) -> Moment {
-        Moment { number: 0, readings }
+    fn moment(inputs: DabInputs) -> DabMoment {
+        DabMoment { number: 0, inputs }
     }
 
     #[test]
     fn pictures_follow_one_after_the_other_and_begin_again() {
-        let hose = hose(&[(3, Select::Incremental)]);
-        let chosen: Vec<_> = (0..7).map(|number| hose.choose(&Moment { number, ..Moment::default() })).collect();
+        let hose = hose(&[(3, RankSelect::Incremental)]);
+        let chosen: Vec<_> = (0..7).map(|number| hose.choose(&DabMoment { number, ..DabMoment::default() })).collect();
         assert_eq!(chosen, [0, 1, 2, 0, 1, 2, 0]);
     }
     #[test]
     fn the_first_picture_of_a_direction_is_up_and_the_others_follow_clockwise() {
-        let hose = hose(&[(4, Select::Angular)]);
-        let chosen = |direction| hose.choose(&moment(Readings { direction, ..Readings::default() }));
+        let hose = hose(&[(4, RankSelect::Angular)]);
+        let chosen = |direction| hose.choose(&moment(DabInputs { direction, ..DabInputs::default() }));
         let (up, right, down, left) = (0.25, 0.0, 0.75, 0.5);
         assert_eq!([up, right, down, left].map(chosen), [0, 1, 2, 3]);
         assert_eq!(chosen(0.27), 0, "a little to the left of up is nearest to up");
     }
     #[test]
     fn ranks_multiply_and_the_first_strides_over_the_others() {
-        let hose = hose(&[(4, Select::Angular), (2, Select::Pressure)]);
-        let down = |pressure| moment(Readings { direction: 0.75, pressure, ..Readings::default() });
+        let hose = hose(&[(4, RankSelect::Angular), (2, RankSelect::Pressure)]);
+        let down = |pressure| moment(DabInputs { direction: 0.75, pressure, ..DabInputs::default() });
         assert_eq!(hose.choose(&down(1.0)), 5);
         assert_eq!(hose.choose(&down(0.2)), 4);
     }
     #[test]
     fn chance_takes_every_picture_and_the_same_one_for_the_same_dab() {
-        let hose = hose(&[(5, Select::Random)]);
-        let chosen = |seed| hose.choose(&moment(Readings { seed, ..Readings::default() }));
+        let hose = hose(&[(5, RankSelect::Random)]);
+        let chosen = |seed| hose.choose(&moment(DabInputs { seed, ..DabInputs::default() }));
         let mut seen = [0; 5];
         (0..500).for_each(|seed| seen[chosen(seed)] += 1);
         assert!(seen.iter().all(|n| (60..140).contains(n)), "{seen:?}");
@@ -170,26 +170,26 @@ mod tests {
     }
     #[test]
     fn what_is_not_a_number_and_what_has_no_pictures_is_no_trouble() {
-        let all = Select::ALL.map(|(select, _)| (3, select));
+        let all = RankSelect::ALL.map(|(select, _)| (3, select));
         let nan = f32::NAN;
-        let readings = Readings {
+        let inputs = DabInputs {
             pressure: nan,
             direction: nan,
             speed: f32::INFINITY,
             tilt: nan,
             tilt_direction: -1e30,
-            ..Readings::default()
+            ..DabInputs::default()
         };
-        let moment = Moment { number: 7, readings };
+        let moment = DabMoment { number: 7, inputs };
         assert!(hose(&all[..3]).choose(&moment) < 27);
         assert!(hose(&all[3..]).choose(&moment) < 81);
         assert_eq!(Hose::new(Vec::new(), Vec::new()).choose(&moment), 0);
-        let huge = vec![Rank { count: u32::MAX, select: Select::Pressure }; 4];
+        let huge = vec![HoseRank { count: u32::MAX, select: RankSelect::Pressure }; 4];
         assert_eq!(Hose::new(Vec::new(), huge).choose(&moment), 0);
     }
     #[test]
     fn smaller_pictures_stay_smaller() {
-        let hose = hose(&[(2, Select::Incremental)]);
+        let hose = hose(&[(2, RankSelect::Incremental)]);
         assert_eq!((hose.share(0), hose.share(1), hose.share(9)), (0.5, 1.0, 1.0));
     }
 }

@@ -10,13 +10,13 @@
 //! | hose | one of several pictures (`hose`) |
 
 pub mod hose;
-mod laid;
+mod prepared;
 pub mod shape;
 pub mod texture;
 
-pub use hose::{Hose, Rank, Select};
-pub(super) use laid::{GrainTile, LaidTip};
-pub use shape::Shape;
+pub use hose::{Hose, HoseRank, RankSelect};
+pub(super) use prepared::{GrainTile, PreparedTip};
+pub use shape::TipShape;
 pub use texture::{Bristles, Noise, TipTexture};
 
 #[cfg(test)]

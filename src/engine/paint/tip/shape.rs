@@ -3,14 +3,14 @@
 
 use crate::math::{Affine2, Mat2, Vec2};
 use crate::paint::dab::slope;
-use crate::paint::laying::Dab;
+use crate::paint::dab_walker::Dab;
 use crate::paint::profile::RoundProfile;
 use crate::surface::links;
-use crate::surface::reach::Extent;
+use crate::surface::support::DabExtent;
 
 /// A tip with two axes; the longer one is the diameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub enum TipShape {
     /// `ratio`: of the shorter axis to the longer, `(0, 1]`.
     Ellipse { ratio: f32 },
     /// A rectangle, the longer axis along x before it is turned.
@@ -22,10 +22,10 @@ const MIN_RATIO: f32 = 0.01;
 /// Half of the least width that a dab has, px: what is thinner is fainter instead.
 const LEAST_HALF_PX: f32 = 0.75;
 
-impl Shape {
+impl TipShape {
     /// The shorter half-axis relative to the longer one, as a dab is drawn; and what the dab's flow loses for it.
     fn ratio(self, radius: f32) -> (f32, f32) {
-        let (Shape::Ellipse { ratio } | Shape::Square { ratio }) = self;
+        let (TipShape::Ellipse { ratio } | TipShape::Square { ratio }) = self;
         let ratio = ratio.max(MIN_RATIO).min(1.0);
         let drawn = ratio.max((LEAST_HALF_PX / radius).min(1.0));
         (drawn, ratio / drawn)
@@ -41,22 +41,22 @@ impl Shape {
         Affine2::from_scale(per_axis) * Affine2::from_angle(dab.rotation_rad) * Affine2::from_translation(-dab.at)
     }
     /// How far a dab reaches.
-    pub fn extent(self, dab: &Dab) -> Extent {
+    pub fn extent(self, dab: &Dab) -> DabExtent {
         let (ratio, _) = self.ratio(dab.radius);
         let corner = match self {
-            Shape::Ellipse { .. } => 1.0,
-            Shape::Square { .. } => ratio.hypot(1.0),
+            TipShape::Ellipse { .. } => 1.0,
+            TipShape::Square { .. } => ratio.hypot(1.0),
         };
         let profile = RoundProfile::new(dab.hardness, dab.softness);
         // A pixel's width along the axis that the tip squeezes most, seen along the other one.
         let filter_px = 0.5 * (0.5 * (ratio + 1.0 / ratio)).max(1.0);
-        Extent { radius_px: dab.radius * profile.reach() * corner, filter_px }
+        DabExtent { radius_px: dab.radius * profile.outer_radius() * corner, filter_px }
     }
 }
 
 /// D of a span's pixels, of one more at each end, and of the rows above and below, in tip space; (x, y) each.
 #[derive(Clone, Copy)]
-pub struct Around<'f> {
+pub struct TipSpanNeighbours<'f> {
     pub above: (&'f [f32], &'f [f32]),
     pub row: (&'f [f32], &'f [f32]),
     pub below: (&'f [f32], &'f [f32]),
@@ -82,28 +82,28 @@ pub fn square(profile: &RoundProfile, (x, y): (f32, f32), across: (f32, f32), al
     of_x * profile.mean(y.abs(), across.1 * across.1 + along.1 * along.1)
 }
 
-impl Shape {
+impl TipShape {
     /// Coverage of each pixel of a span, in `[0, 1]`; where D is not a number, none.
-    pub fn row(self, profile: &RoundProfile, d: Around, coverage: &mut [f32]) {
+    pub fn row(self, profile: &RoundProfile, d: TipSpanNeighbours, coverage: &mut [f32]) {
         match self {
-            Shape::Ellipse { .. } => ellipse_row(d, profile, coverage),
-            Shape::Square { .. } => square_row(d, profile, coverage),
+            TipShape::Ellipse { .. } => ellipse_row(d, profile, coverage),
+            TipShape::Square { .. } => square_row(d, profile, coverage),
         }
     }
 }
 
 crate::widest! {
-    fn ellipse_row(d: Around, profile: &RoundProfile, coverage: &mut [f32]) {
+    fn ellipse_row(d: TipSpanNeighbours, profile: &RoundProfile, coverage: &mut [f32]) {
         for_each(d, coverage, |p, across, along| ellipse(profile, p, across, along));
     }
-    fn square_row(d: Around, profile: &RoundProfile, coverage: &mut [f32]) {
+    fn square_row(d: TipSpanNeighbours, profile: &RoundProfile, coverage: &mut [f32]) {
         for_each(d, coverage, |p, across, along| square(profile, p, across, along));
     }
 }
 
 /// Visits the pixels of a span with J by differences toward linked neighbours.
 #[inline(always)]
-fn for_each(d: Around, coverage: &mut [f32], f: impl Fn((f32, f32), (f32, f32), (f32, f32)) -> f32) {
+fn for_each(d: TipSpanNeighbours, coverage: &mut [f32], f: impl Fn((f32, f32), (f32, f32), (f32, f32)) -> f32) {
     let n = coverage.len();
     let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
     let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
@@ -133,20 +133,20 @@ mod tests {
         Dab { rotation_rad: rotation_deg.to_radians(), hardness, softness, ..Dab::plain(vec2(50.0, 60.0), radius) }
     }
     /// Coverage at a place of a flat canvas.
-    fn at(shape: Shape, dab: &Dab, place: Vec2) -> f32 {
+    fn at(shape: TipShape, dab: &Dab, place: Vec2) -> f32 {
         let map = shape.tip_from_canvas(dab);
         let (p, across, along) = (map.transform_point2(place), map.matrix2.x_axis, map.matrix2.y_axis);
         let profile = RoundProfile::new(dab.hardness, dab.softness);
         let of = match shape {
-            Shape::Ellipse { .. } => ellipse,
-            Shape::Square { .. } => square,
+            TipShape::Ellipse { .. } => ellipse,
+            TipShape::Square { .. } => square,
         };
         of(&profile, (p.x, p.y), (across.x, across.y), (along.x, along.y))
     }
 
     #[test]
     fn the_longer_axis_is_the_diameter_and_turns_counter_clockwise() {
-        for shape in [Shape::Ellipse { ratio: 0.25 }, Shape::Square { ratio: 0.25 }] {
+        for shape in [TipShape::Ellipse { ratio: 0.25 }, TipShape::Square { ratio: 0.25 }] {
             let dab = dab(20.0, 90.0, 1.0, 0.0);
             // Upright: 20 px up and down, 5 px to the sides.
             assert!(at(shape, &dab, vec2(50.0, 60.0 - 18.0)) > 0.99);
@@ -155,7 +155,7 @@ mod tests {
             assert!(at(shape, &dab, vec2(57.0, 60.0)) < 0.01);
         }
         let leaning = dab(20.0, 45.0, 1.0, 0.0);
-        let ellipse = Shape::Ellipse { ratio: 0.2 };
+        let ellipse = TipShape::Ellipse { ratio: 0.2 };
         // A turn of 45° counter-clockwise as seen leads up to the right.
         assert!(at(ellipse, &leaning, vec2(60.0, 50.0)) > 0.99);
         assert!(at(ellipse, &leaning, vec2(60.0, 70.0)) < 0.01);
@@ -168,19 +168,19 @@ mod tests {
             let place = dab.at + Vec2::from_angle(i as f32) * 0.5 * i as f32;
             let r = (place - dab.at).length() / 12.0;
             let round = profile.mean(r, 1.0 / 144.0);
-            assert!((at(Shape::Ellipse { ratio: 1.0 }, &dab, place) - round).abs() < 1e-3, "{place}");
+            assert!((at(TipShape::Ellipse { ratio: 1.0 }, &dab, place) - round).abs() < 1e-3, "{place}");
         }
         let upright = self::dab(10.0, 0.0, 1.0, 0.0);
-        assert!(at(Shape::Square { ratio: 1.0 }, &upright, upright.at + 9.0) > 0.99);
-        assert!(at(Shape::Ellipse { ratio: 1.0 }, &upright, upright.at + 9.0) < 0.01);
+        assert!(at(TipShape::Square { ratio: 1.0 }, &upright, upright.at + 9.0) > 0.99);
+        assert!(at(TipShape::Ellipse { ratio: 1.0 }, &upright, upright.at + 9.0) < 0.01);
     }
     #[test]
     fn coverage_adds_up_to_the_tips_area_however_it_is_turned() {
         for (shape, area) in [
-            (Shape::Ellipse { ratio: 0.3 }, std::f32::consts::PI * 16.0 * 16.0 * 0.3),
-            (Shape::Square { ratio: 0.3 }, 32.0 * 32.0 * 0.3),
+            (TipShape::Ellipse { ratio: 0.3 }, std::f32::consts::PI * 16.0 * 16.0 * 0.3),
+            (TipShape::Square { ratio: 0.3 }, 32.0 * 32.0 * 0.3),
             // Thinner than a pixel: as much paint, over a pixel's width.
-            (Shape::Ellipse { ratio: 0.02 }, std::f32::consts::PI * 16.0 * 16.0 * 0.02),
+            (TipShape::Ellipse { ratio: 0.02 }, std::f32::consts::PI * 16.0 * 16.0 * 0.02),
         ] {
             for turn in [0.0, 17.0, 45.0, 80.0] {
                 let dab = dab(16.0, turn, 1.0, 0.0);
@@ -195,14 +195,14 @@ mod tests {
     }
     #[test]
     fn softness_changes_coverage_without_jumps_and_nothing_lies_beyond_the_extent() {
-        for shape in [Shape::Ellipse { ratio: 0.4 }, Shape::Square { ratio: 0.4 }] {
+        for shape in [TipShape::Ellipse { ratio: 0.4 }, TipShape::Square { ratio: 0.4 }] {
             for place in [vec2(50.0, 60.0), vec2(62.0, 62.0), vec2(66.0, 63.0)] {
                 let values: Vec<f32> =
                     (0..=100).map(|i| at(shape, &dab(16.0, 20.0, 0.8, i as f32 / 100.0), place)).collect();
                 assert!(values.windows(2).all(|v| (v[1] - v[0]).abs() < 0.04), "{shape:?} at {place}");
             }
             let dab = dab(16.0, 20.0, 0.8, 0.5);
-            let Extent { radius_px, filter_px } = shape.extent(&dab);
+            let DabExtent { radius_px, filter_px } = shape.extent(&dab);
             let beyond = (0..360).map(|i| dab.at + Vec2::from_angle((i as f32).to_radians()) * (radius_px + filter_px));
             assert!(beyond.map(|place| at(shape, &dab, place)).all(|v| v < 1e-3));
         }

@@ -1,10 +1,10 @@
 //! Strokes of every tip against what their definitions say, pixel by pixel, on a ball and on a flat canvas.
 
-use super::{Bristles, Hose, Noise, Rank, Select, Shape, shape};
+use super::{Bristles, Hose, HoseRank, Noise, RankSelect, TipShape, shape};
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
+use crate::paint::dab_walker::Dab;
 use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
-use crate::paint::grain::{Grain, GrainSource, LaidGrain, Lies};
-use crate::paint::laying::Dab;
+use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace, StrokeGrain};
 use crate::paint::pattern::Pattern;
 use crate::paint::profile::RoundProfile;
 use crate::paint::stroke::render_tile;
@@ -47,7 +47,7 @@ fn alpha(grid: &TileGrid) -> Vec<u8> {
 }
 
 /// A shape's coverage at a pixel by the definition, one pixel at a time.
-fn defined(shape: Shape, brush: &Brush, operator: Operator, scene: &Scene, (x, y): (i32, i32)) -> f32 {
+fn defined(shape: TipShape, brush: &Brush, operator: Operator, scene: &Scene, (x, y): (i32, i32)) -> f32 {
     let dab = Dab {
         rotation_rad: brush.rotation.to_radians(),
         hardness: brush.hardness,
@@ -69,8 +69,8 @@ fn defined(shape: Shape, brush: &Brush, operator: Operator, scene: &Scene, (x, y
     let across = difference(links::LEFT, links::RIGHT, 1, 0, x_axis);
     let along = difference(links::UP, links::DOWN, 0, 1, y_axis);
     let of = match shape {
-        Shape::Ellipse { .. } => shape::ellipse,
-        Shape::Square { .. } => shape::square,
+        TipShape::Ellipse { .. } => shape::ellipse,
+        TipShape::Square { .. } => shape::square,
     };
     let p = at(x, y);
     of(&RoundProfile::new(dab.hardness, dab.softness), (p.x, p.y), across.into(), along.into())
@@ -82,8 +82,8 @@ fn ellipses_and_squares_over_tile_borders_equal_their_definition_pixel_by_pixel(
         [Operator::None, Operator::Depth { gamma: 1.5 }, Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 }];
     for operator in operators {
         for (tip, shape) in [
-            (Tip::Ellipse { ratio: 0.3 }, Shape::Ellipse { ratio: 0.3 }),
-            (Tip::Square { ratio: 0.6 }, Shape::Square { ratio: 0.6 }),
+            (Tip::Ellipse { ratio: 0.3 }, TipShape::Ellipse { ratio: 0.3 }),
+            (Tip::Square { ratio: 0.6 }, TipShape::Square { ratio: 0.6 }),
         ] {
             let brush = Brush { size: 46.0, hardness: 0.6, softness: 0.2, rotation: 25.0, tip, ..Brush::default() };
             let scene = ball();
@@ -117,13 +117,13 @@ fn grain_multiplies_each_dab() {
     let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
     let scene = ball();
     let source = GrainSource::Pattern { pattern: Pattern::Weave, seed: 1 };
-    for lies in [Lies::Canvas, Lies::Surface { gamma: 1.2 }] {
-        let grain = Grain { source: source.clone(), size_px: 12.0, strength: 0.8, lies, ..Grain::default() };
+    for lies in [GrainSpace::Canvas, GrainSpace::Surface { gamma: 1.2 }] {
+        let grain = BrushGrain { source: source.clone(), size_px: 12.0, strength: 0.8, lies, ..BrushGrain::default() };
         for tip in [Tip::Round, Tip::Ellipse { ratio: 0.5 }, Tip::Bristles(Bristles::default())] {
             let plain = Brush { size: 70.0, tip, ..Brush::default() };
             let grained = Brush { grain: Some(grain.clone()), ..plain.clone() };
             let (without, with) = (dab(&plain, operator, &scene), dab(&grained, operator, &scene));
-            let laid = LaidGrain::new(&grain, AT);
+            let laid = StrokeGrain::new(&grain, AT);
             let tiles: Vec<_> = TileAt::covering(SIZE.rect()).map(|at| (at, laid.tile(&scene, at))).collect();
             for (x, y) in pixels() {
                 let (_, tile) = tiles.iter().find(|(at, _)| at.rect().contains(x, y)).unwrap();
@@ -143,7 +143,7 @@ fn picture(side: u32, texel: [u8; 4]) -> PictureSource {
 #[test]
 fn a_hose_stamps_its_pictures_in_turn_in_their_own_colours_and_sizes() {
     let pictures = vec![picture(32, [255, 0, 0, 255]), picture(16, [0, 0, 255, 255])];
-    let hose = Hose::new(pictures, vec![Rank { count: 2, select: Select::Incremental }]);
+    let hose = Hose::new(pictures, vec![HoseRank { count: 2, select: RankSelect::Incremental }]);
     let brush = Brush { size: 20.0, spacing: 1.5, tip: Tip::Hose(hose), ..Brush::default() };
     let samples = vec![Sample::at(vec2(20.0, 60.0)), Sample::at(vec2(115.0, 60.0))];
     let grid = painted(brush, Operator::None, samples, &flat());
@@ -188,7 +188,12 @@ fn hostile_tips_paint_something_or_nothing_and_never_fail() {
         Tip::Noise(Noise { cells: 0, density: nan, seed: u32::MAX }),
     ];
     for tip in tips {
-        let grain = Grain { size_px: nan, levels: [nan, nan], lies: Lies::Surface { gamma: nan }, ..Grain::default() };
+        let grain = BrushGrain {
+            size_px: nan,
+            levels: [nan, nan],
+            lies: GrainSpace::Surface { gamma: nan },
+            ..BrushGrain::default()
+        };
         let brush = Brush { size: 40.0, rotation: nan, softness: nan, tip, grain: Some(grain), ..Brush::default() };
         dab(&brush, Operator::Depth { gamma: nan }, &ball());
     }

@@ -1,7 +1,7 @@
 //! The table of blend modes: one row says everything about a mode. Its formula stands in `spec`.
 //! Floor 1. To add a mode, add a row and its formula; `rows` computes it from the formula until it has a faster twin there.
 
-use super::spec::{self, Function};
+use super::spec::{self, BlendFunction};
 
 /// Hands the table to a macro. The last column is how the mode is computed and by which function of `spec`.
 macro_rules! blend_modes {
@@ -38,18 +38,18 @@ struct Row {
     label: &'static str,
     openraster: &'static str,
     photoshop: [u8; 4],
-    function: Function,
+    function: BlendFunction,
 }
 
 macro_rules! function {
     (separable, $b:ident) => {
-        Function::Separable(spec::$b)
+        BlendFunction::Separable(spec::$b)
     };
     (non_separable, $b:ident) => {
-        Function::NonSeparable(spec::$b)
+        BlendFunction::NonSeparable(spec::$b)
     };
     (sum, $b:ident) => {
-        Function::Sum(spec::$b)
+        BlendFunction::Sum(spec::$b)
     };
 }
 
@@ -103,7 +103,7 @@ impl BlendMode {
         self.row().photoshop
     }
     /// Its formula.
-    pub fn function(self) -> Function {
+    pub fn function(self) -> BlendFunction {
         self.row().function
     }
     pub fn from_name(name: &str) -> Option<Self> {

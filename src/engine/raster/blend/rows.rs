@@ -5,15 +5,15 @@
 //! For most modes T needs no division. *Atop* leaves out the first term and keeps the backdrop's alpha: a clipped layer.
 
 use super::modes::blend_modes;
-use super::{BlendMode, Coverage, Mix, Paint, spec};
+use super::{BlendMode, Mix, TileCoverage, TilePaint, spec};
 use crate::math::srgb;
-use crate::raster::planar::Row;
+use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE;
 
 crate::widest! {
     /// Blends paint, weighted by its coverage, into all rows of a tile.
-    pub fn blend_rows(rows: &mut [Row], mix: Mix, paint: &Paint<'_>, coverage: &Coverage) {
-        if let (Paint::Bytes(tile), None, BlendMode::Normal, false, false) =
+    pub fn blend_rows(rows: &mut [PixelRow], mix: Mix, paint: &TilePaint<'_>, coverage: &TileCoverage) {
+        if let (TilePaint::Bytes(tile), None, BlendMode::Normal, false, false) =
             (paint, coverage.mask(), mix.mode, mix.linear, mix.atop)
         {
             for (row, bytes) in rows.iter_mut().zip(tile.bytes().chunks_exact(4 * TILE)) {
@@ -22,7 +22,7 @@ crate::widest! {
             return;
         }
         for (y, row) in rows.iter_mut().enumerate() {
-            let mut source = Row::TRANSPARENT;
+            let mut source = PixelRow::TRANSPARENT;
             load(&mut source, paint, y, coverage);
             if mix.linear {
                 in_linear_light(row, &mut source, mix);
@@ -33,11 +33,11 @@ crate::widest! {
     }
 
     /// Moves every row toward another by its coverage: a pass-through group or an adjustment, faded.
-    pub fn mix_rows(rows: &mut [Row], toward: &[Row], coverage: &Coverage) {
+    pub fn mix_rows(rows: &mut [PixelRow], toward: &[PixelRow], coverage: &TileCoverage) {
         for (y, (row, toward)) in rows.iter_mut().zip(toward).enumerate() {
             let mut t = [coverage.opacity(); TILE];
             multiply_by_mask(&mut t, coverage, y);
-            let Row { rgb, a } = row;
+            let PixelRow { rgb, a } = row;
             for (to, from) in rgb.iter_mut().chain([a]).zip(toward.rgb.iter().chain([&toward.a])) {
                 for x in 0..TILE {
                     to[x] += (from[x] - to[x]) * t[x];
@@ -49,9 +49,9 @@ crate::widest! {
 
 /// Source-over straight from bytes: the common case, in one pass.
 #[inline(always)]
-fn bytes_over(row: &mut Row, bytes: &[u8], opacity: f32) {
+fn bytes_over(row: &mut PixelRow, bytes: &[u8], opacity: f32) {
     let unit = opacity / 255.0;
-    let Row { rgb: [r, g, b], a } = row;
+    let PixelRow { rgb: [r, g, b], a } = row;
     for (x, p) in bytes.chunks_exact(4).enumerate().take(TILE) {
         let p = i32::from_le_bytes([p[0], p[1], p[2], p[3]]);
         let channel = |shift: u32| ((p >> shift) & 255) as f32 * unit;
@@ -66,16 +66,16 @@ fn bytes_over(row: &mut Row, bytes: &[u8], opacity: f32) {
 
 /// Row `y` of the paint, times its coverage.
 #[inline(always)]
-fn load(row: &mut Row, paint: &Paint<'_>, y: usize, coverage: &Coverage) {
+fn load(row: &mut PixelRow, paint: &TilePaint<'_>, y: usize, coverage: &TileCoverage) {
     let k = coverage.opacity();
     match paint {
-        Paint::Solid(color) => {
+        TilePaint::Solid(color) => {
             let [r, g, b, a] = color.map(|v| v * k);
-            *row = Row { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] };
+            *row = PixelRow { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] };
         }
-        Paint::Bytes(tile) => {
+        TilePaint::Bytes(tile) => {
             let unit = k / 255.0;
-            let Row { rgb: [r, g, b], a } = &mut *row;
+            let PixelRow { rgb: [r, g, b], a } = &mut *row;
             for (x, p) in tile.bytes()[y * 4 * TILE..].chunks_exact(4).enumerate().take(TILE) {
                 let p = i32::from_le_bytes([p[0], p[1], p[2], p[3]]);
                 r[x] = (p & 255) as f32 * unit;
@@ -84,7 +84,7 @@ fn load(row: &mut Row, paint: &Paint<'_>, y: usize, coverage: &Coverage) {
                 a[x] = ((p >> 24) & 255) as f32 * unit;
             }
         }
-        Paint::Planar(tile) => {
+        TilePaint::Planar(tile) => {
             *row = tile.rows()[y];
             if k < 1.0 {
                 each_channel(row, &[k; TILE]);
@@ -99,7 +99,7 @@ fn load(row: &mut Row, paint: &Paint<'_>, y: usize, coverage: &Coverage) {
 }
 
 #[inline(always)]
-fn multiply_by_mask(t: &mut [f32; TILE], coverage: &Coverage, y: usize) {
+fn multiply_by_mask(t: &mut [f32; TILE], coverage: &TileCoverage, y: usize) {
     if let Some(mask) = coverage.mask() {
         for (t, m) in t.iter_mut().zip(&mask[y * TILE..]) {
             *t *= m;
@@ -108,8 +108,8 @@ fn multiply_by_mask(t: &mut [f32; TILE], coverage: &Coverage, y: usize) {
 }
 
 #[inline(always)]
-fn each_channel(row: &mut Row, factor: &[f32; TILE]) {
-    let Row { rgb, a } = row;
+fn each_channel(row: &mut PixelRow, factor: &[f32; TILE]) {
+    let PixelRow { rgb, a } = row;
     for channel in rgb.iter_mut().chain([a]) {
         for x in 0..TILE {
             channel[x] *= factor[x];
@@ -118,7 +118,7 @@ fn each_channel(row: &mut Row, factor: &[f32; TILE]) {
 }
 
 #[inline(always)]
-fn blend_row(d: &mut Row, s: &Row, mix: Mix) {
+fn blend_row(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
     match mix.mode {
         BlendMode::Normal => separable(d, s, mix, |s, _, _, ab| s * ab),
         BlendMode::Multiply => separable(d, s, mix, |s, d, _, _| s * d),
@@ -155,7 +155,7 @@ macro_rules! by_formula {
     ($($(#[$meta:meta])* $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);)+) => {
         /// Modes without a twin of their own, from the formula of the table.
         #[inline(always)]
-        fn by_formula(d: &mut Row, s: &Row, mix: Mix) {
+        fn by_formula(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
             match mix.mode {
                 $(BlendMode::$mode => formula!($kind, $b, d, s, mix),)+
             }
@@ -166,7 +166,7 @@ blend_modes!(by_formula);
 
 /// A formula of straight components.
 #[inline(always)]
-fn straight(d: &mut Row, s: &Row, mix: Mix, b: impl Fn(f32, f32) -> f32 + Copy) {
+fn straight(d: &mut PixelRow, s: &PixelRow, mix: Mix, b: impl Fn(f32, f32) -> f32 + Copy) {
     // Divided, not multiplied by a reciprocal: some formulas break at 0 and at 1.
     let of = |v: f32, a: f32| v / greatest(a, f32::MIN_POSITIVE);
     separable(d, s, mix, |s, d, as_, ab| as_ * ab * b(of(d, ab), of(s, as_)));
@@ -174,7 +174,7 @@ fn straight(d: &mut Row, s: &Row, mix: Mix, b: impl Fn(f32, f32) -> f32 + Copy) 
 
 /// `term(S, D, αs, αb)` is T.
 #[inline(always)]
-fn separable(d: &mut Row, s: &Row, mix: Mix, term: impl Fn(f32, f32, f32, f32) -> f32 + Copy) {
+fn separable(d: &mut PixelRow, s: &PixelRow, mix: Mix, term: impl Fn(f32, f32, f32, f32) -> f32 + Copy) {
     let outside = if mix.atop { 0.0 } else { 1.0 };
     let (ab, as_) = (&mut d.a, &s.a);
     for (d, s) in d.rgb.iter_mut().zip(&s.rgb) {
@@ -189,10 +189,10 @@ fn separable(d: &mut Row, s: &Row, mix: Mix, term: impl Fn(f32, f32, f32, f32) -
 }
 
 #[inline(always)]
-fn non_separable(d: &mut Row, s: &Row, mix: Mix, b: impl Fn([f32; 3], [f32; 3]) -> [f32; 3] + Copy) {
+fn non_separable(d: &mut PixelRow, s: &PixelRow, mix: Mix, b: impl Fn([f32; 3], [f32; 3]) -> [f32; 3] + Copy) {
     let outside = if mix.atop { 0.0 } else { 1.0 };
-    let Row { rgb: [dr, dg, db], a: ab } = d;
-    let Row { rgb: [sr, sg, sb], a: as_ } = s;
+    let PixelRow { rgb: [dr, dg, db], a: ab } = d;
+    let PixelRow { rgb: [sr, sg, sb], a: as_ } = s;
     for x in 0..TILE {
         let (ab, as_) = (&mut ab[x], as_[x]);
         let (inv_b, inv_s) = (reciprocal(*ab), reciprocal(as_));
@@ -206,7 +206,7 @@ fn non_separable(d: &mut Row, s: &Row, mix: Mix, b: impl Fn([f32; 3], [f32; 3]) 
 }
 
 #[inline(always)]
-fn sum(d: &mut Row, s: &Row, mix: Mix, sum: impl Fn(f32, f32) -> f32 + Copy) {
+fn sum(d: &mut PixelRow, s: &PixelRow, mix: Mix, sum: impl Fn(f32, f32) -> f32 + Copy) {
     let ab = &mut d.a;
     for (d, s) in d.rgb.iter_mut().zip(&s.rgb) {
         for x in 0..TILE {
@@ -307,7 +307,7 @@ fn set_lum(c: [f32; 3], l: f32) -> [f32; 3] {
 
 /// Decodes both, blends linear light, encodes again; where there is no paint the backdrop stays to the last bit.
 #[inline(always)]
-fn in_linear_light(d: &mut Row, s: &mut Row, mix: Mix) {
+fn in_linear_light(d: &mut PixelRow, s: &mut PixelRow, mix: Mix) {
     let before = *d;
     through_straight(d, srgb::decode_fast);
     through_straight(s, srgb::decode_fast);
@@ -322,7 +322,7 @@ fn in_linear_light(d: &mut Row, s: &mut Row, mix: Mix) {
 
 /// Applies a transfer curve to the straight colours of a premultiplied row.
 #[inline(always)]
-fn through_straight(row: &mut Row, curve: impl Fn(f32) -> f32) {
+fn through_straight(row: &mut PixelRow, curve: impl Fn(f32) -> f32) {
     for channel in &mut row.rgb {
         for (v, &a) in channel.iter_mut().zip(&row.a) {
             *v = curve(least(*v * reciprocal(a), 1.0)) * a;
@@ -334,7 +334,7 @@ fn through_straight(row: &mut Row, curve: impl Fn(f32) -> f32) {
 #[cfg(test)]
 pub(super) fn pixel_by_formula(mix: Mix, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
     let [mut d, s] =
-        [backdrop, source].map(|[r, g, b, a]| Row { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] });
+        [backdrop, source].map(|[r, g, b, a]| PixelRow { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] });
     by_formula(&mut d, &s, mix);
     d.pixel(TILE - 1)
 }

@@ -5,7 +5,7 @@ use super::BlendMode;
 
 /// One mode's B(cb, cs), backdrop first as in the specification: of a component, or of a whole colour.
 #[derive(Clone, Copy)]
-pub enum Function {
+pub enum BlendFunction {
     /// Each component on its own (sec. 9.1).
     Separable(fn(f32, f32) -> f32),
     /// All three components together (sec. 9.2).
@@ -24,9 +24,9 @@ pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f3
     let straight = |p: [f32; 4]| [0, 1, 2].map(|c| if p[3] > 0.0 { p[c] / p[3] } else { 0.0 });
     let (cb, cs) = (straight(backdrop), straight(source));
     let mixed = match mode.function() {
-        Function::Separable(b) => [0, 1, 2].map(|c| b(cb[c], cs[c])),
-        Function::NonSeparable(b) => b(cb, cs),
-        Function::Sum(sum) => return [0, 1, 2, 3].map(|c| sum(backdrop[c], source[c])),
+        BlendFunction::Separable(b) => [0, 1, 2].map(|c| b(cb[c], cs[c])),
+        BlendFunction::NonSeparable(b) => b(cb, cs),
+        BlendFunction::Sum(sum) => return [0, 1, 2, 3].map(|c| sum(backdrop[c], source[c])),
     };
     let [r, g, b] = [0, 1, 2].map(|c| as_ * (1.0 - ab) * cs[c] + as_ * ab * mixed[c] + (1.0 - as_) * ab * cb[c]);
     [r, g, b, as_ + ab - as_ * ab]

@@ -1,6 +1,6 @@
 //! Blend modes against the specification, hand-computed values and an independent rasteriser.
 
-use super::spec::Function;
+use super::spec::BlendFunction;
 use super::*;
 use crate::raster::tile::TileF32;
 
@@ -10,7 +10,7 @@ const ALPHAS: [f32; 4] = [0.0, 0.3, 0.8, 1.0];
 
 fn separable(mode: BlendMode) -> fn(f32, f32) -> f32 {
     match mode.function() {
-        Function::Separable(b) => b,
+        BlendFunction::Separable(b) => b,
         _ => panic!("{} is not separable", mode.name()),
     }
 }
@@ -23,7 +23,7 @@ fn one_pixel(p: [f32; 4]) -> Box<TileF32> {
 /// The fast path's result for one pixel.
 fn fast(mix: Mix, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
     let mut tile = PlanarTile::from_pixels(&one_pixel(backdrop));
-    tile.blend(mix, Paint::Solid(source), &Coverage::FULL);
+    tile.blend(mix, TilePaint::Solid(source), &TileCoverage::FULL);
     tile.rows()[17].pixel(23)
 }
 
@@ -109,7 +109,7 @@ fn the_fast_rows_agree_with_the_specification_in_every_mode() {
 fn separable_modes_and_plus_agree_with_tiny_skia_within_two_steps() {
     for (mode, name) in BlendMode::ALL {
         // Its non-separable modes are less precise, and it does not have every mode.
-        let oracle = tiny_skia_mode(mode).filter(|_| !matches!(mode.function(), Function::NonSeparable(_)));
+        let oracle = tiny_skia_mode(mode).filter(|_| !matches!(mode.function(), BlendFunction::NonSeparable(_)));
         let Some(oracle) = oracle else { continue };
         for k in 0..4000u32 {
             let byte = |i: u32| (crate::math::hash::unit(9, k, i) * 256.0) as u8;
@@ -161,19 +161,19 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let color = [0.5, 0.25, 0.0, 0.5];
     let tile = PlanarTile::from_pixels(&one_pixel(color));
     let bytes = tile.quantised().unwrap();
-    let coverage = Coverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
-    for paint in [Paint::Solid(color), Paint::Bytes(&bytes), Paint::Planar(&tile)] {
+    let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
+    for paint in [TilePaint::Solid(color), TilePaint::Bytes(&bytes), TilePaint::Planar(&tile)] {
         let mut onto = PlanarTile::transparent();
         onto.blend(Mix::default(), paint, &coverage);
         assert!(close(&onto.rows()[5].pixel(0), &[0.25, 0.125, 0.0, 0.25], 0.003));
         assert!(close(&onto.rows()[5].pixel(63), &[0.125, 0.0625, 0.0, 0.125], 0.003));
         let mut half = PlanarTile::transparent();
-        half.blend(Mix::default(), paint, &Coverage::uniform(0.5));
+        half.blend(Mix::default(), paint, &TileCoverage::uniform(0.5));
         assert!(close(&half.rows()[5].pixel(63), &[0.25, 0.125, 0.0, 0.25], 0.003));
     }
-    assert!(Coverage::uniform(f32::NAN).is_none());
-    assert!(Coverage::uniform(1.0).times(|_, _| f32::NAN).is_none());
-    assert!(Coverage::uniform(7.0).is_full());
+    assert!(TileCoverage::uniform(f32::NAN).is_none());
+    assert!(TileCoverage::uniform(1.0).times(|_, _| f32::NAN).is_none());
+    assert!(TileCoverage::uniform(7.0).is_full());
 }
 #[test]
 fn nothing_out_of_range_comes_out_of_any_mode() {

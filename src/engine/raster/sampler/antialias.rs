@@ -12,10 +12,10 @@
 mod grid;
 mod lattice;
 
-use super::taps::{GROUP, Group, Positions, Run, Taps};
+use super::taps::{GROUP, TapGroup, TapPositions, TapRun, Taps};
 use crate::raster::{Outside, Texture};
-use grid::{Cells, Grid};
-use lattice::{LANES, Lattice};
+use grid::{CellCounts, TapGrid};
+use lattice::{LANES, TapLattice};
 
 /// The piece of the image plane under each pixel of a row, in texels of level 0.
 #[derive(Clone, Copy)]
@@ -41,13 +41,13 @@ impl<'a> PatchRow<'a> {
 pub struct Antialias {
     x: Vec<f32>,
     y: Vec<f32>,
-    cells: Cells,
+    cells: CellCounts,
     /// Neighbours that share a grid.
-    groups: Vec<(Group, Grid)>,
+    groups: Vec<(TapGroup, TapGrid)>,
     /// Pixels that do not.
-    lone: Vec<(u16, Grid)>,
-    placed: Vec<Group>,
-    runs: Vec<Run>,
+    lone: Vec<(u16, TapGrid)>,
+    placed: Vec<TapGroup>,
+    runs: Vec<TapRun>,
     taps: Taps,
 }
 
@@ -58,7 +58,7 @@ impl Default for Antialias {
         Self {
             x: room.clone(),
             y: room,
-            cells: Cells::default(),
+            cells: CellCounts::default(),
             groups: Vec::with_capacity(SPAN / GROUP),
             lone: Vec::with_capacity(SPAN),
             placed: Vec::with_capacity(SPAN / GROUP),
@@ -89,14 +89,14 @@ impl Antialias {
             self.placed.clear();
             let len = place_groups(patches, &self.groups, index, scale, &mut self.x, &mut self.y, &mut self.placed);
             if len > 0 {
-                let at = Positions { level, x: &self.x[..len], y: &self.y[..len], outside };
+                let at = TapPositions { level, x: &self.x[..len], y: &self.y[..len], outside };
                 self.taps.find(at);
                 self.taps.group_means(at, &self.placed, out);
             }
             self.runs.clear();
             let len = place_lone(patches, &self.lone, index, scale, &mut self.x, &mut self.y, &mut self.runs);
             if len > 0 {
-                let at = Positions { level, x: &self.x[..len], y: &self.y[..len], outside };
+                let at = TapPositions { level, x: &self.x[..len], y: &self.y[..len], outside };
                 self.taps.find(at);
                 self.taps.means(at, &self.runs, out);
             }
@@ -111,7 +111,7 @@ impl Antialias {
             let pixels = first..(first + GROUP).min(n);
             let is_whole = pixels.len() == GROUP;
             match is_whole.then(|| self.cells.shared_grid(first / GROUP, last_level)).flatten() {
-                Some(grid) => self.groups.push((Group { first: first as u16, taps: grid.taps() as u16 }, grid)),
+                Some(grid) => self.groups.push((TapGroup { first: first as u16, taps: grid.taps() as u16 }, grid)),
                 None => self.lone.extend(pixels.map(|k| (k as u16, self.cells.grid(k, last_level)))),
             }
         }
@@ -123,12 +123,12 @@ crate::widest! {
     /// tap after tap, the [`GROUP`] pixels side by side. How many they are.
     fn place_groups(
         patches: PatchRow,
-        groups: &[(Group, Grid)],
+        groups: &[(TapGroup, TapGrid)],
         index: u32,
         scale: [f32; 2],
         x: &mut [f32],
         y: &mut [f32],
-        placed: &mut Vec<Group>,
+        placed: &mut Vec<TapGroup>,
     ) -> usize {
         let mut len = 0;
         let [left, right, up, down] = patches.edges;
@@ -145,12 +145,12 @@ crate::widest! {
     /// The same for lone pixels, one patch after the other. `x`, `y` have room for all taps and [`LANES`] more.
     fn place_lone(
         patches: PatchRow,
-        lone: &[(u16, Grid)],
+        lone: &[(u16, TapGrid)],
         index: u32,
         scale: [f32; 2],
         x: &mut [f32],
         y: &mut [f32],
-        runs: &mut Vec<Run>,
+        runs: &mut Vec<TapRun>,
     ) -> usize {
         let mut len = 0;
         let [left, right, up, down] = patches.edges;
@@ -161,7 +161,7 @@ crate::widest! {
             spread(lattice, patches.x[k], edges_x, scale[0], taps, &mut x[len..]);
             spread(lattice, patches.y[k], edges_y, scale[1], taps, &mut y[len..]);
             len += taps;
-            runs.push(Run { pixel, count: taps as u16 });
+            runs.push(TapRun { pixel, count: taps as u16 });
         }
         len
     }
@@ -169,7 +169,7 @@ crate::widest! {
 
 /// One coordinate of the taps of a group whose patches begin at `first`, pixel beside pixel.
 #[inline(always)]
-fn spread_group(lattice: &Lattice, center: &[f32], edges: [&[f32]; 4], first: usize, scale: f32, out: &mut [f32]) {
+fn spread_group(lattice: &TapLattice, center: &[f32], edges: [&[f32]; 4], first: usize, scale: f32, out: &mut [f32]) {
     let part = first..first + GROUP;
     let center = &center[part.clone()];
     let (left, right) = (&edges[0][part.clone()], &edges[1][part.clone()]);
@@ -185,7 +185,7 @@ fn spread_group(lattice: &Lattice, center: &[f32], edges: [&[f32]; 4], first: us
 /// One coordinate of a patch's taps, eight at a time; `out` has room for [`LANES`].
 #[inline(always)]
 fn spread(
-    lattice: &Lattice,
+    lattice: &TapLattice,
     center: f32,
     [left, right, up, down]: [f32; 4],
     scale: f32,
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn grids_spend_no_more_taps_than_allowed_and_hold_every_side() {
         let grid = |across: f32, along: f32| {
-            Grid::of_cells(
+            TapGrid::of_cells(
                 [across, along].map(|side| cells(side, FINE_CELL)),
                 [across, along].map(|side| cells(side, COARSE_CELL)),
                 9,
@@ -266,7 +266,7 @@ mod tests {
                 assert!(grid.level <= 9);
             }
         }
-        assert_eq!(grid(6.0, 1.0), Grid { across: 4, along: 1, level: 0 });
-        assert_eq!(grid(16.0, 16.0), Grid { across: 4, along: 4, level: 1 });
+        assert_eq!(grid(6.0, 1.0), TapGrid { across: 4, along: 1, level: 0 });
+        assert_eq!(grid(16.0, 16.0), TapGrid { across: 4, along: 4, level: 1 });
     }
 }

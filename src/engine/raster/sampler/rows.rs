@@ -1,7 +1,7 @@
 //! Bilinear taps for whole rows.
 //! Floor 1.
 
-use super::taps::{Positions, Taps};
+use super::taps::{TapPositions, Taps};
 use crate::raster::{Outside, Texture};
 
 /// Scratch for bilinear rows, kept from row to row.
@@ -16,7 +16,7 @@ impl Bilinear {
         // Pixels in flight: their taps stay in the first-level cache.
         const SPAN: usize = 256;
         for ((x, y), out) in x.chunks(SPAN).zip(y.chunks(SPAN)).zip(out.chunks_mut(SPAN)) {
-            let at = Positions { level: &texture.levels()[0], x, y, outside };
+            let at = TapPositions { level: &texture.levels()[0], x, y, outside };
             self.taps.find(at);
             self.taps.singles(at, out);
         }

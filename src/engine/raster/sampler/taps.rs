@@ -6,7 +6,7 @@
 #[cfg(target_arch = "x86_64")]
 mod wide;
 
-use super::super::texture::{Level, Outside};
+use super::super::texture::{MipLevel, Outside};
 use super::bilinear_in;
 use crate::math::vec2;
 
@@ -25,8 +25,8 @@ pub struct Taps {
 
 /// The positions of taps in one level, in its texels, and what lies beyond it.
 #[derive(Clone, Copy)]
-pub struct Positions<'a> {
-    pub level: &'a Level,
+pub struct TapPositions<'a> {
+    pub level: &'a MipLevel,
     pub x: &'a [f32],
     pub y: &'a [f32],
     pub outside: Outside,
@@ -34,24 +34,24 @@ pub struct Positions<'a> {
 
 /// How many of the taps belong to a pixel: at most 31.
 #[derive(Clone, Copy, Default)]
-pub struct Run {
+pub struct TapRun {
     pub pixel: u16,
     pub count: u16,
 }
 
-/// Pixels of a [`Group`].
+/// Pixels of a [`TapGroup`].
 pub const GROUP: usize = 8;
 
 /// Neighbouring pixels with as many taps each: the first tap of all, then the second of all, …
 #[derive(Clone, Copy)]
-pub struct Group {
+pub struct TapGroup {
     pub first: u16,
     pub taps: u16,
 }
 
 impl Taps {
     /// Finds the texels of every position.
-    pub fn find(&mut self, at: Positions) {
+    pub fn find(&mut self, at: TapPositions) {
         let n = at.x.len();
         // Every value is written below: what is left from the last call does no harm.
         if n != self.index.len() {
@@ -62,7 +62,7 @@ impl Taps {
         self.range = find(at, &mut self.index, &mut self.across, &mut self.down);
     }
     /// Writes every tap's rounded colour to a pixel of its own.
-    pub fn singles(&self, at: Positions, out: &mut [[u8; 4]]) {
+    pub fn singles(&self, at: TapPositions, out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
         if wide::reads(self, at) {
             return wide::singles(self, at, out);
@@ -70,7 +70,7 @@ impl Taps {
         self.singles_portably(at, 0, out);
     }
     /// Writes the rounded mean of the next `count` taps to each run's pixel of `out`.
-    pub fn means(&self, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
+    pub fn means(&self, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
         if wide::reads(self, at) {
             return wide::means(self, at, runs, out);
@@ -78,14 +78,14 @@ impl Taps {
         self.means_portably(at, runs, out);
     }
     /// Writes the rounded means of the next taps to each group's pixels of `out`.
-    pub fn group_means(&self, at: Positions, groups: &[Group], out: &mut [[u8; 4]]) {
+    pub fn group_means(&self, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
         #[cfg(target_arch = "x86_64")]
         if wide::reads(self, at) {
             return wide::group_means(self, at, groups, out);
         }
         self.group_means_portably(at, groups, out);
     }
-    fn group_means_portably(&self, at: Positions, groups: &[Group], out: &mut [[u8; 4]]) {
+    fn group_means_portably(&self, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
         let mut first = 0;
         for group in groups {
             let taps = first..(first + GROUP * usize::from(group.taps)).min(self.index.len());
@@ -96,7 +96,7 @@ impl Taps {
         }
     }
     /// The mean of pixel `k` of a group.
-    fn group_mean(&self, at: Positions, taps: std::ops::Range<usize>, k: usize) -> [u8; 4] {
+    fn group_mean(&self, at: TapPositions, taps: std::ops::Range<usize>, k: usize) -> [u8; 4] {
         let mut sum = [0.0; 4];
         let share = SHARES[taps.len() / GROUP % SHARES.len()];
         for tap in taps.skip(k).step_by(GROUP) {
@@ -105,12 +105,12 @@ impl Taps {
         }
         sum.map(|v| round(v * share))
     }
-    fn singles_portably(&self, at: Positions, from: usize, out: &mut [[u8; 4]]) {
+    fn singles_portably(&self, at: TapPositions, from: usize, out: &mut [[u8; 4]]) {
         for (tap, out) in (from..self.index.len()).zip(out) {
             *out = self.color(at, tap).map(|v| round(v * (1.0 / ONE)));
         }
     }
-    fn means_portably(&self, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
+    fn means_portably(&self, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
         let mut first = 0;
         for run in runs {
             let taps = first..(first + usize::from(run.count)).min(self.index.len());
@@ -121,7 +121,7 @@ impl Taps {
         }
     }
     /// Even and odd taps are added up apart, as the wide version does.
-    fn mean(&self, at: Positions, taps: std::ops::Range<usize>, share: f32) -> [u8; 4] {
+    fn mean(&self, at: TapPositions, taps: std::ops::Range<usize>, share: f32) -> [u8; 4] {
         let mut sums = [[0.0; 4]; 2];
         for (k, tap) in taps.enumerate() {
             let color = self.color(at, tap);
@@ -131,7 +131,7 @@ impl Taps {
     }
     /// One tap, in `[0, 255 ONE]`.
     #[inline(always)]
-    fn color(&self, at: Positions, tap: usize) -> [f32; 4] {
+    fn color(&self, at: TapPositions, tap: usize) -> [f32; 4] {
         match self.texels(at.level, tap) {
             Some([top, bottom]) => {
                 let (across, down) = (self.across[tap], self.down[tap]);
@@ -143,7 +143,7 @@ impl Taps {
     }
     /// The upper and the lower pair of texels of a tap; `None` at a seam.
     #[inline(always)]
-    fn texels<'l>(&self, level: &'l Level, tap: usize) -> Option<[&'l [[u8; 4]; 2]; 2]> {
+    fn texels<'l>(&self, level: &'l MipLevel, tap: usize) -> Option<[&'l [[u8; 4]; 2]; 2]> {
         let first = usize::try_from(self.index[tap]).ok()?;
         let both = level.texels.get(first..first + level.size.width as usize + 2)?;
         Some([both.first_chunk()?, both.last_chunk()?])
@@ -159,7 +159,7 @@ fn mix_pair([left, right]: &[[u8; 4]; 2], across: u32) -> [f32; 4] {
     std::array::from_fn(|c| (u32::from(left[c]) * (across & 0xffff) + u32::from(right[c]) * (across >> 16)) as f32)
 }
 
-impl Run {
+impl TapRun {
     /// What makes a sum of `count` taps their mean, in bytes.
     #[inline(always)]
     fn share(self) -> f32 {
@@ -186,7 +186,7 @@ fn round(value: f32) -> u8 {
 
 crate::widest! {
     /// Fills index, weights and fractions; the least and the largest index.
-    fn find(at: Positions, index: &mut [i32], across: &mut [u32], down: &mut [f32]) -> [i32; 2] {
+    fn find(at: TapPositions, index: &mut [i32], across: &mut [u32], down: &mut [f32]) -> [i32; 2] {
         let (w, h) = (at.level.size.width as i32, at.level.size.height as i32);
         if w < 2 || h < 2 || w > MAX_SIDE || h > MAX_SIDE {
             index.fill(-1);
@@ -214,7 +214,7 @@ fn all_within(positions: &[f32], n: f32) -> bool {
 /// `pair` finds, for a position in a picture of a side, the first texel of the pair around it and how far beyond it lies.
 #[inline(always)]
 fn find_folded(
-    at: Positions,
+    at: TapPositions,
     pair: impl Fn(f32, f32) -> (i32, f32),
     index: &mut [i32],
     across: &mut [u32],
@@ -297,19 +297,19 @@ mod tests {
     #[test]
     fn the_wide_means_are_the_portable_ones_to_the_bit() {
         let texels = (0..9 * 7u32).map(|i| (i.wrapping_mul(0x9e37_79b9)).to_le_bytes()).collect();
-        let level = Level { size: Size::new(9, 7), texels };
+        let level = MipLevel { size: Size::new(9, 7), texels };
         let x: Vec<f32> = (0..300).map(|i| (i as f32 * 0.37) % 14.0 - 2.0).collect();
         let y: Vec<f32> = (0..300).map(|i| (i as f32 * 0.61) % 10.0 - 1.5).collect();
-        let runs: Vec<Run> = (0..100).map(|i| Run { pixel: i, count: 1 + i % 5 }).collect();
+        let runs: Vec<TapRun> = (0..100).map(|i| TapRun { pixel: i, count: 1 + i % 5 }).collect();
         for outside in [Outside::None, Outside::Clamp, Outside::Repeat, Outside::Mirror] {
-            let at = Positions { level: &level, x: &x, y: &y, outside };
+            let at = TapPositions { level: &level, x: &x, y: &y, outside };
             let mut taps = Taps::default();
             taps.find(at);
             let (mut wide, mut portable) = ([[0; 4]; 100], [[0; 4]; 100]);
             taps.means(at, &runs, &mut wide);
             taps.means_portably(at, &runs, &mut portable);
             assert_eq!(wide, portable, "means, {outside:?}");
-            let groups = [(0, 3), (16, 1), (8, 16), (40, 7)].map(|(first, taps)| Group { first, taps });
+            let groups = [(0, 3), (16, 1), (8, 16), (40, 7)].map(|(first, taps)| TapGroup { first, taps });
             taps.group_means(at, &groups, &mut wide);
             taps.group_means_portably(at, &groups, &mut portable);
             assert_eq!(wide, portable, "groups, {outside:?}");

@@ -1,7 +1,7 @@
 //! An environment gathered over the hemisphere around every direction: what a matt surface sees (RS sec. 5.3.1).
 //! Floor 3. A small prefiltered map, not spherical harmonics: nine of those ring around a sun, a map does not.
 
-use super::map::{EnvironmentMap, Level};
+use super::map::{EnvironmentMap, SphereLevel};
 use super::projection::lat_long_direction;
 use crate::math::{Vec3, srgb};
 use rayon::prelude::*;
@@ -13,12 +13,12 @@ const ROWS: usize = 64;
 
 /// L̄(n): the cosine-weighted mean of the light around n. An environment of light 1 has the mean 1.
 pub struct Irradiance {
-    level: Level,
+    level: SphereLevel,
     brightest: f32,
 }
 
 /// Light of a part of the sphere.
-struct Parcel {
+struct LightParcel {
     /// Where it comes from on average, unit: a small sun in a large parcel stays where it is.
     toward: Vec3,
     /// Radiance × solid angle.
@@ -35,7 +35,7 @@ impl Irradiance {
         };
         let texels: Vec<Vec3> = (0..2 * ROWS * ROWS).into_par_iter().map(gather).collect();
         let brightest = texels.iter().map(|t| srgb::luminance(t.x, t.y, t.z)).fold(0.0, f32::max);
-        Self { level: Level::new(ROWS, texels), brightest }
+        Self { level: SphereLevel::new(ROWS, texels), brightest }
     }
     /// max L̄.
     pub fn brightest(&self) -> f32 {
@@ -54,7 +54,7 @@ fn center(i: usize, rows: usize) -> Vec3 {
 }
 
 /// The level's light in at most `ROWS` rows of parcels.
-fn parcels(fine: &Level) -> Vec<Parcel> {
+fn parcels(fine: &SphereLevel) -> Vec<LightParcel> {
     let rows = fine.rows().min(ROWS);
     let per_side = fine.rows() / rows;
     let gathered = |i: usize| {
@@ -68,7 +68,7 @@ fn parcels(fine: &Level) -> Vec<Parcel> {
                 light += here;
             }
         }
-        Parcel { toward: toward.normalize_or(Vec3::Y), light }
+        LightParcel { toward: toward.normalize_or(Vec3::Y), light }
     };
     (0..2 * rows * rows).into_par_iter().map(gathered).collect()
 }

@@ -15,11 +15,11 @@ pub struct EnvironmentMap {
     brightest: f32,
     /// Each half as high as the one before, down to one row. Whatever the picture's projection, these are
     /// latitude-longitude, twice as wide as high.
-    levels: Vec<Level>,
+    levels: Vec<SphereLevel>,
 }
 
 /// Means over about equally large parts of the sphere.
-pub(super) struct Level {
+pub(super) struct SphereLevel {
     /// A power of two.
     rows: usize,
     texels: Vec<Vec3>,
@@ -138,11 +138,11 @@ impl EnvironmentMap {
         (0..taps as i32).map(tap).sum::<Vec3>() / taps
     }
     /// The level with `rows` rows, or the finest where the picture has fewer.
-    pub(super) fn level(&self, rows: usize) -> &Level {
+    pub(super) fn level(&self, rows: usize) -> &SphereLevel {
         self.levels.iter().find(|level| level.rows <= rows).unwrap_or(&self.levels[0])
     }
     /// The picture as a latitude-longitude map, each texel the mean of several look-ups.
-    fn resampled(&self, rows: usize) -> Level {
+    fn resampled(&self, rows: usize) -> SphereLevel {
         // A disc stretches what lies behind, so that more of its texels fall into one.
         let per_side = if self.projection.is_disc() { 4 } else { 2 };
         let columns = 2 * rows;
@@ -157,11 +157,11 @@ impl EnvironmentMap {
             }
             sum / (per_side * per_side) as f32
         };
-        Level::new(rows, (0..rows * columns).into_par_iter().map(texel).collect())
+        SphereLevel::new(rows, (0..rows * columns).into_par_iter().map(texel).collect())
     }
 }
 
-impl Level {
+impl SphereLevel {
     /// `rows` a power of two, twice as many columns.
     pub fn new(rows: usize, texels: Vec<Vec3>) -> Self {
         Self { rows, texels }
@@ -191,7 +191,7 @@ impl Level {
         TAU / self.columns() as f32 * (edge(row) - edge(row + 1))
     }
     /// Half as many rows and columns: means by solid angle.
-    fn halved(&self) -> Option<Level> {
+    fn halved(&self) -> Option<SphereLevel> {
         let rows = self.rows / 2;
         let columns = 2 * rows;
         let texel = |i: usize| {
@@ -200,11 +200,11 @@ impl Level {
             let (above, below) = (self.solid_angle(y), self.solid_angle(y + 1));
             (pair(y) * above + pair(y + 1) * below) / (2.0 * (above + below))
         };
-        (rows > 0).then(|| Level::new(rows, (0..rows * columns).map(texel).collect()))
+        (rows > 0).then(|| SphereLevel::new(rows, (0..rows * columns).map(texel).collect()))
     }
     /// Averages along each row over as many texels as lie within one texel's height: near the poles they are slivers, and a
     /// look-up of the level must not see one alone.
-    fn rounded_at_the_poles(self) -> Level {
+    fn rounded_at_the_poles(self) -> SphereLevel {
         let columns = self.columns();
         let of_row = |row: usize| {
             let texels = &self.texels[row * columns..][..columns];
@@ -213,7 +213,7 @@ impl Level {
             let sin = ((row as f32 + 0.5) / self.rows as f32 * PI).sin();
             around_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
         };
-        Level::new(self.rows, (0..self.rows).into_par_iter().flat_map_iter(of_row).collect())
+        SphereLevel::new(self.rows, (0..self.rows).into_par_iter().flat_map_iter(of_row).collect())
     }
 }
 

@@ -24,18 +24,18 @@ pub struct Environment {
     pub rotation: f32,
     /// Stops: light is multiplied by 2^exposure.
     pub exposure: f32,
-    kept: Arc<Mutex<Option<Kept>>>,
+    cache: Arc<Mutex<Option<PreparedCache>>>,
 }
 
 /// What was prepared of a picture in a projection.
-struct Kept {
+struct PreparedCache {
     picture: Picture,
     projection: Projection,
-    prepared: Arc<Prepared>,
+    prepared: Arc<PreparedEnvironment>,
 }
 
 /// A picture ready to be looked up. It knows neither rotation nor exposure, which may be dragged.
-struct Prepared {
+struct PreparedEnvironment {
     map: EnvironmentMap,
     irradiance: OnceLock<Irradiance>,
 }
@@ -43,9 +43,9 @@ struct Prepared {
 /// The light around the surface: what every look-up goes through. Directions are camera space (y up), light is linear,
 /// rotation and exposure are applied.
 #[derive(Clone)]
-pub struct Surroundings {
-    prepared: Arc<Prepared>,
-    turn: Turn,
+pub struct EnvironmentLight {
+    prepared: Arc<PreparedEnvironment>,
+    turn: YRotation,
     gain: f32,
 }
 
@@ -63,25 +63,25 @@ pub struct Parcel {
 impl Environment {
     pub fn new(file: String, picture: Picture) -> Self {
         let projection = Projection::default();
-        Self { file, picture, projection, rotation: 0.0, exposure: 0.0, kept: Arc::default() }
+        Self { file, picture, projection, rotation: 0.0, exposure: 0.0, cache: Arc::default() }
     }
     /// The light, ready to be looked up. What is costly is kept and shared by copies of this environment, whatever their
     /// rotation and exposure: ask before going parallel.
-    pub fn surroundings(&self) -> Surroundings {
+    pub fn environment_light(&self) -> EnvironmentLight {
         let (sin, cos) = self.rotation.to_radians().sin_cos();
-        Surroundings { prepared: self.prepared(), turn: Turn { sin, cos }, gain: self.exposure.exp2() }
+        EnvironmentLight { prepared: self.prepared(), turn: YRotation { sin, cos }, gain: self.exposure.exp2() }
     }
     /// Never computes under the lock: a thread that waits for its own pool's work would stand still.
-    fn prepared(&self) -> Arc<Prepared> {
-        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let holds = |k: &Kept| k.projection == self.projection && is_same(&k.picture, &self.picture);
+    fn prepared(&self) -> Arc<PreparedEnvironment> {
+        let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
+        let holds = |k: &PreparedCache| k.projection == self.projection && is_same(&k.picture, &self.picture);
         if let Some(kept) = lock().as_ref().filter(|k| holds(k)) {
             return kept.prepared.clone();
         }
         let map = EnvironmentMap::new(self.picture.clone(), self.projection);
-        let prepared = Arc::new(Prepared { map, irradiance: OnceLock::new() });
+        let prepared = Arc::new(PreparedEnvironment { map, irradiance: OnceLock::new() });
         let (picture, projection) = (self.picture.clone(), self.projection);
-        *lock() = Some(Kept { picture, projection, prepared: prepared.clone() });
+        *lock() = Some(PreparedCache { picture, projection, prepared: prepared.clone() });
         prepared
     }
 }
@@ -94,7 +94,7 @@ fn is_same(a: &Picture, b: &Picture) -> bool {
     }
 }
 
-impl Surroundings {
+impl EnvironmentLight {
     /// L_env(d): light from a unit direction, read as finely as the picture is.
     pub fn along(&self, d: Vec3) -> Vec3 {
         self.prepared.map.at(self.turn.apply(d)) * self.gain
@@ -142,12 +142,12 @@ impl Surroundings {
 
 /// R_y(a) = [[c, 0, s], [0, 1, 0], [−s, 0, c]]: from camera space into the picture's own.
 #[derive(Clone, Copy)]
-struct Turn {
+struct YRotation {
     sin: f32,
     cos: f32,
 }
 
-impl Turn {
+impl YRotation {
     #[inline(always)]
     fn apply(self, d: Vec3) -> Vec3 {
         vec3(self.cos * d.x + self.sin * d.z, d.y, self.cos * d.z - self.sin * d.x)

@@ -27,12 +27,12 @@ fn random_direction(i: u32) -> Vec3 {
 fn light_comes_from_where_it_stands_turned_and_exposed() {
     let mut environment = lat_long(256, 128, sky);
     for d in directions() {
-        assert!((environment.surroundings().along(d) - sky(d)).abs().max_element() < 0.02, "{d}");
+        assert!((environment.environment_light().along(d) - sky(d)).abs().max_element() < 0.02, "{d}");
     }
     environment.rotation = 90.0;
     environment.exposure = 1.0;
     // R_y(90°) takes +z to +x.
-    let found = environment.surroundings().along(Vec3::Z);
+    let found = environment.environment_light().along(Vec3::Z);
     assert!((found - 2.0 * sky(Vec3::X)).abs().max_element() < 0.02, "{found}");
 }
 #[test]
@@ -59,7 +59,7 @@ fn the_same_light_is_found_whatever_the_projection() {
         };
         let picture = Picture::linear(Size::new(side, side), (0..side * side).map(texel).collect()).unwrap();
         let environment = Environment { projection, ..Environment::new(String::new(), picture) };
-        let seen = environment.surroundings();
+        let seen = environment.environment_light();
         assert!(seen.brightest() < 3.0);
         for d in directions().chain([Vec3::NEG_Z]) {
             let tolerance = if d.z < -0.97 { 0.2 } else { 0.04 };
@@ -75,7 +75,7 @@ fn wide_footprints_see_the_mean() {
         let place = Projection::LatLong.place(e) * 64.0;
         Vec3::splat(((place.x as i32 + place.y as i32) % 2) as f32)
     };
-    let seen = lat_long(512, 256, checks).surroundings();
+    let seen = lat_long(512, 256, checks).environment_light();
     for i in 0..300 {
         let d = random_direction(i);
         let (a, b) = d.any_orthonormal_pair();
@@ -89,7 +89,8 @@ fn wide_footprints_see_the_mean() {
 fn neither_the_wrap_nor_the_poles_can_be_seen() {
     // Noise, so that whatever is special about a place shows.
     let texels = (0..256 * 128).map(|i| [hash::unit(5, i, 0), 0.0, 0.0, 1.0]).collect();
-    let seen = Environment::new(String::new(), Picture::linear(Size::new(256, 128), texels).unwrap()).surroundings();
+    let seen =
+        Environment::new(String::new(), Picture::linear(Size::new(256, 128), texels).unwrap()).environment_light();
     let step = 1e-3;
     for width in [0.05, 0.15, 0.4] {
         // The steepest change of the blurred light, in units of the blur: the same everywhere.
@@ -118,7 +119,7 @@ fn the_small_map_is_the_sum_over_every_texel() {
     };
     let (w, h) = (512, 256);
     let environment = lat_long(w, h, light);
-    let seen = environment.surroundings();
+    let seen = environment.environment_light();
     let mut worst = 0.0f32;
     for i in 0..40 {
         let n = random_direction(i);
@@ -140,7 +141,7 @@ fn the_small_map_is_the_sum_over_every_texel() {
 #[test]
 fn half_a_sky_lights_by_the_cosine() {
     // A sky of light 1 over black ground: (1 + cos θ) / 2, θ from the zenith.
-    let seen = lat_long(256, 128, |e| Vec3::splat(if e.y > 0.0 { 1.0 } else { 0.0 })).surroundings();
+    let seen = lat_long(256, 128, |e| Vec3::splat(if e.y > 0.0 { 1.0 } else { 0.0 })).environment_light();
     for n in [Vec3::Y, Vec3::X, vec3(0.6, 0.8, 0.0), vec3(0.0, -0.6, 0.8), Vec3::NEG_Y] {
         let found = seen.matt(n).x;
         assert!((found - 0.5 * (1.0 + n.y)).abs() < 0.003, "{n}: {found}");
@@ -149,7 +150,7 @@ fn half_a_sky_lights_by_the_cosine() {
 }
 #[test]
 fn parcels_hold_all_the_light() {
-    let seen = lat_long(256, 128, sky).surroundings();
+    let seen = lat_long(256, 128, sky).environment_light();
     let parcels = seen.parcels(300);
     let sum: Vec3 = parcels.iter().map(|p| p.radiance * p.solid_angle).sum();
     assert!((sum / (4.0 * std::f32::consts::PI) - Vec3::ONE).abs().max_element() < 0.01, "{sum}");
@@ -160,7 +161,7 @@ fn senseless_directions_and_tiny_pictures_find_some_light() {
         for (projection, _) in Projection::ALL {
             let texels = vec![[0.5; 4]; (width * height) as usize];
             let picture = Picture::linear(Size::new(width, height), texels).unwrap();
-            let seen = Environment { projection, ..Environment::new(String::new(), picture) }.surroundings();
+            let seen = Environment { projection, ..Environment::new(String::new(), picture) }.environment_light();
             for d in [Vec3::ZERO, Vec3::NAN, Vec3::NEG_Z, Vec3::Y] {
                 for found in [seen.over(d, Vec3::NAN, Vec3::X), seen.over(d, Vec3::X, Vec3::Y), seen.matt(d)] {
                     assert!((found - 0.5).abs().max_element() < 1e-4, "{projection:?} {d} {found}");
@@ -173,7 +174,7 @@ fn senseless_directions_and_tiny_pictures_find_some_light() {
 fn copies_share_what_was_prepared_whatever_their_rotation() {
     let environment = lat_long(64, 32, sky);
     let turned = Environment { rotation: 30.0, ..environment.clone() };
-    assert!(Arc::ptr_eq(&environment.surroundings().prepared, &turned.surroundings().prepared));
+    assert!(Arc::ptr_eq(&environment.environment_light().prepared, &turned.environment_light().prepared));
     let other = Environment { projection: Projection::Angular, ..environment.clone() };
-    assert!(!Arc::ptr_eq(&environment.surroundings().prepared, &other.surroundings().prepared));
+    assert!(!Arc::ptr_eq(&environment.environment_light().prepared, &other.environment_light().prepared));
 }

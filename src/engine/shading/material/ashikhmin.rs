@@ -7,41 +7,53 @@
 use super::{Shading, lobes};
 use crate::math::fast;
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Pixels, Relief};
 use crate::shading::light::RowLight;
+use crate::shading::surface_row::{Light3, RowRelief, RowValues, SurfaceRow};
 
 /// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to the row.
-pub fn shade(shading: &Shading, ground: &Ground, lights: &[RowLight], relief: &mut Relief, light: &mut Light3) {
+pub fn shade(
+    shading: &Shading,
+    surface_row: &SurfaceRow,
+    lights: &[RowLight],
+    relief: &mut RowRelief,
+    light: &mut Light3,
+) {
     for lit in lights {
         if shading.diffuse.weight > 0.0 {
-            add_matt(shading, ground, lit, relief, light);
+            add_matt(shading, surface_row, lit, relief, light);
         }
         if shading.specular.weight > 0.0 {
-            add_glossy(shading, ground, lit, relief, light);
+            add_glossy(shading, surface_row, lit, relief, light);
         }
     }
 }
 
 /// The matt term under one light.
-pub fn add_matt(shading: &Shading, ground: &Ground, lit: &RowLight, relief: &mut Relief, light: &mut Light3) {
+pub fn add_matt(
+    shading: &Shading,
+    surface_row: &SurfaceRow,
+    lit: &RowLight,
+    relief: &mut RowRelief,
+    light: &mut Light3,
+) {
     let diffuse = &shading.diffuse;
     let (rd, rs) = (diffuse.linear(), mirrored_color(shading));
     let kept: [f32; 3] = std::array::from_fn(|c| rd[c] * (1.0 - rs[c]));
     let (mut rho, mut delta) = ([0.0; TILE], [0.0; TILE]);
-    matt_row(&ground.normal, &lit.direction, &mut rho, &mut delta);
+    matt_row(&surface_row.normal, &lit.direction, &mut rho, &mut delta);
     if diffuse.is_scaled() {
-        relief.turn(ground, lit.toward());
+        relief.turn(surface_row, lit.toward());
         lobes::scale(&mut rho, diffuse.scaling, relief.exponentials(diffuse.scaling), &delta);
     }
     lobes::add(light, lobes::tint(kept, lit.radiance), &rho);
 }
 
-fn add_glossy(shading: &Shading, ground: &Ground, lit: &RowLight, relief: &mut Relief, light: &mut Light3) {
-    let mut row = Glossy { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
-    glossy_row(&ground.normal, &lit.direction, shading.nu, shading.nv, &mut row);
+fn add_glossy(shading: &Shading, surface_row: &SurfaceRow, lit: &RowLight, relief: &mut RowRelief, light: &mut Light3) {
+    let mut row = GlossyRow { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
+    glossy_row(&surface_row.normal, &lit.direction, shading.nu, shading.nv, &mut row);
     let specular = &shading.specular;
     if specular.is_scaled() {
-        relief.turn(ground, lit.toward());
+        relief.turn(surface_row, lit.toward());
         lobes::scale(&mut row.rho, specular.scaling, relief.exponentials(specular.scaling), &row.delta);
     }
     // R_s + (1 − R_s) f = R_s + f (1 − R_s): a coloured part and a whiter one.
@@ -104,25 +116,25 @@ pub fn in_frame(n: [f32; 3], w: [f32; 3]) -> [f32; 3] {
 }
 
 /// The glossy term along a row.
-struct Glossy {
+struct GlossyRow {
     /// ρ_s / F.
-    rho: Pixels,
+    rho: RowValues,
     /// (1 − h·e)⁵.
-    white: Pixels,
+    white: RowValues,
     /// n·h.
-    delta: Pixels,
+    delta: RowValues,
 }
 
 crate::widest! {
     /// ρ_d without its colours, and n·ℓ.
-    fn matt_row(normal: &[Pixels; 3], direction: &[Pixels; 3], rho: &mut Pixels, delta: &mut Pixels) {
+    fn matt_row(normal: &[RowValues; 3], direction: &[RowValues; 3], rho: &mut RowValues, delta: &mut RowValues) {
         for x in 0..TILE {
             let n_l = normal[0][x] * direction[0][x] + normal[1][x] * direction[1][x] + normal[2][x] * direction[2][x];
             rho[x] = matt(n_l, normal[2][x]);
             delta[x] = fast::max(n_l, 0.0);
         }
     }
-    fn glossy_row(normal: &[Pixels; 3], direction: &[Pixels; 3], nu: f32, nv: f32, row: &mut Glossy) {
+    fn glossy_row(normal: &[RowValues; 3], direction: &[RowValues; 3], nu: f32, nv: f32, row: &mut GlossyRow) {
         for x in 0..TILE {
             let n = [normal[0][x], normal[1][x], normal[2][x]];
             let l = [direction[0][x], direction[1][x], direction[2][x]];

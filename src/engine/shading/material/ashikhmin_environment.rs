@@ -7,9 +7,9 @@
 
 use super::{Shading, ashikhmin};
 use crate::math::{Vec3, vec3};
-use crate::shading::environment::Surroundings;
-use crate::shading::ground::{Ground, Light3, Relief, Toward};
+use crate::shading::environment::EnvironmentLight;
 use crate::shading::light::RowLight;
+use crate::shading::surface_row::{Light3, LightDirection, RowRelief, SurfaceRow};
 use std::f32::consts::PI;
 
 /// Directions that the matt term is lit from.
@@ -18,43 +18,43 @@ const PARCELS: usize = 128;
 const HALVES: usize = 32;
 
 /// What the rows of a tile share.
-pub struct Samples {
-    surroundings: Surroundings,
+pub struct EnvironmentSamples {
+    environment_light: EnvironmentLight,
     /// For the matt term: the whole environment as lights.
     lights: Vec<RowLight>,
-    halves: Vec<Half>,
+    halves: Vec<HalfVector>,
 }
 
 /// A half vector that the glossy lobe is sampled at.
-struct Half {
+struct HalfVector {
     /// Unit, in the frame of the surface (`ashikhmin::in_frame`).
     uvn: Vec3,
     /// The probability that half vectors are found around it, per steradian.
     density: f32,
 }
 
-impl Samples {
+impl EnvironmentSamples {
     /// `None` without an environment.
     pub fn new(shading: &Shading) -> Option<Self> {
-        let surroundings = shading.environment.as_ref()?.surroundings();
+        let environment_light = shading.environment.as_ref()?.environment_light();
         // Light from a solid angle Ω counts Ω / π: matt white under an even environment is as bright as it.
         let light = |p: &crate::shading::environment::Parcel| {
             RowLight::directional(p.direction, (p.radiance * (p.solid_angle / PI)).to_array())
         };
-        let lights = surroundings.parcels(PARCELS).iter().map(light).collect();
+        let lights = environment_light.parcels(PARCELS).iter().map(light).collect();
         let halves = (0..HALVES).map(|i| half(i, shading.nu, shading.nv)).collect();
-        Some(Self { surroundings, lights, halves })
+        Some(Self { environment_light, lights, halves })
     }
     /// Adds both terms along a row.
-    pub fn shade(&self, shading: &Shading, ground: &Ground, relief: &mut Relief, light: &mut Light3) {
+    pub fn shade(&self, shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
         if shading.diffuse.weight > 0.0 {
-            self.lights.iter().for_each(|lit| ashikhmin::add_matt(shading, ground, lit, relief, light));
+            self.lights.iter().for_each(|lit| ashikhmin::add_matt(shading, surface_row, lit, relief, light));
         }
         if shading.specular.weight > 0.0 {
-            relief.turn(ground, Toward::VIEWER);
+            relief.turn(surface_row, LightDirection::VIEWER);
             let kappa = relief.kappa();
-            for x in (0..ground.width).filter(|&x| ground.coverage()[x] > 0) {
-                let glossy = self.glossy(shading, ground, x, kappa[x]);
+            for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
+                let glossy = self.glossy(shading, surface_row, x, kappa[x]);
                 (0..3).for_each(|c| light[c][x] += glossy[c]);
             }
         }
@@ -62,8 +62,8 @@ impl Samples {
     /// The glossy term at a pixel; `kappa`: isotropic κ.
     ///
     /// With half vectors drawn in proportion to the lobe, light arrives weighed by F (n·ℓ)₊ / max(n·ℓ, n·e), never above 1.
-    fn glossy(&self, shading: &Shading, ground: &Ground, x: usize, kappa: f32) -> Vec3 {
-        let (term, n) = (&shading.specular, ground.normal_at(x));
+    fn glossy(&self, shading: &Shading, surface_row: &SurfaceRow, x: usize, kappa: f32) -> Vec3 {
+        let (term, n) = (&shading.specular, surface_row.normal_at(x));
         let rs = Vec3::from(term.linear()).min(Vec3::ONE);
         let u = (Vec3::X - n.x * n).normalize_or(Vec3::Y);
         let v = n.cross(u);
@@ -78,9 +78,12 @@ impl Samples {
             let fresnel = rs + (Vec3::ONE - rs) * ashikhmin::whiteness(h.z);
             // Of ℓ: dω_h / dω_ℓ = 1 / (4 h·e). A little more than its share, so that neighbours overlap.
             let solid_angle = 4.0 * h.z / (half.density * HALVES as f32);
-            let radiance = self.surroundings.around(l, 1.5 * solid_angle.sqrt());
-            let kappa =
-                if ground.features.is_directional() { ground.features.at(ground.x0 + x, ground.y, l) } else { kappa };
+            let radiance = self.environment_light.around(l, 1.5 * solid_angle.sqrt());
+            let kappa = if surface_row.features.is_directional() {
+                surface_row.features.at(surface_row.x0 + x, surface_row.y, l)
+            } else {
+                kappa
+            };
             let sigma = term.scaling.sigma(kappa, half.uvn.z);
             sum += fresnel * radiance * (sigma * n_l / n_l.max(n.z).max(1e-3));
         }
@@ -91,7 +94,7 @@ impl Samples {
 /// The `i`th of [`HALVES`] half vectors in proportion to the lobe (Ashikhmin and Shirley 2000, eq. 9 and 10).
 ///
 /// tan φ = √((ν_u + 1)/(ν_v + 1)) tan(2π ξ₁) and cos θ = (1 − ξ₂)^(1/(ν_u cos²φ + ν_v sin²φ + 1)).
-fn half(i: usize, nu: f32, nv: f32) -> Half {
+fn half(i: usize, nu: f32, nv: f32) -> HalfVector {
     // Hammersley's points: even in both numbers, none of them random.
     let first = (i as f32 + 0.5) / HALVES as f32;
     let second = (i as u32).reverse_bits() as f32 / 4_294_967_296.0 + 0.5 / HALVES as f32;
@@ -103,7 +106,7 @@ fn half(i: usize, nu: f32, nv: f32) -> Half {
     let cos_theta = (1.0 - second).max(1e-6).powf(1.0 / (exponent + 1.0));
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
     let density = ((nu + 1.0) * (nv + 1.0)).sqrt() / (2.0 * PI) * cos_theta.powf(exponent);
-    Half { uvn: vec3(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta), density: density.max(1e-6) }
+    HalfVector { uvn: vec3(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta), density: density.max(1e-6) }
 }
 
 #[cfg(test)]
@@ -130,8 +133,8 @@ mod tests {
     #[test]
     fn half_vectors_have_the_mean_that_their_lobe_has() {
         for (nu, nv) in [(10.0f32, 10.0f32), (5.0, 200.0), (1000.0, 1000.0)] {
-            let halves: Vec<Half> = (0..HALVES).map(|i| half(i, nu, nv)).collect();
-            let mean = |of: &dyn Fn(&Half) -> f32| halves.iter().map(of).sum::<f32>() / HALVES as f32;
+            let halves: Vec<HalfVector> = (0..HALVES).map(|i| half(i, nu, nv)).collect();
+            let mean = |of: &dyn Fn(&HalfVector) -> f32| halves.iter().map(of).sum::<f32>() / HALVES as f32;
             assert!(mean(&|h| h.uvn.x).abs() < 0.03 && mean(&|h| h.uvn.y).abs() < 0.03);
             if nu == nv {
                 // E[cos θ] = (ν + 1)/(ν + 2).

@@ -6,13 +6,13 @@ use super::{Shading, lobes};
 use crate::math::{srgb, vec2};
 use crate::raster::TILE;
 use crate::shading::LitSphere;
-use crate::shading::ground::{Ground, Light3, Pixels, Relief, Toward};
 use crate::shading::sphere::SphereLight;
+use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
 
 /// Adds the sphere's light, the `specular` term: δ is its luminance over the greatest there is on the spheres.
 ///
 /// Of two spheres the convex one counts (1 + κ) / 2, so that flat parts show half of each.
-pub fn shade(shading: &Shading, ground: &Ground, relief: &mut Relief, light: &mut Light3) {
+pub fn shade(shading: &Shading, surface_row: &SurfaceRow, relief: &mut RowRelief, light: &mut Light3) {
     let term = &shading.specular;
     if term.weight <= 0.0 {
         return;
@@ -21,9 +21,9 @@ pub fn shade(shading: &Shading, ground: &Ground, relief: &mut Relief, light: &mu
     let concave = shading.sphere_concave.as_ref().map(LitSphere::light);
     if term.is_scaled() || concave.is_some() {
         // A painted sphere has no one direction of light, so κ is isotropic.
-        relief.turn(ground, Toward::VIEWER);
+        relief.turn(surface_row, LightDirection::VIEWER);
     }
-    let shown = looked_up(ground, convex, concave, relief.kappa());
+    let shown = looked_up(surface_row, convex, concave, relief.kappa());
     let brightest = concave.map_or(0.0, SphereLight::brightest).max(convex.brightest());
     let delta = reflectances(&shown, 1.0 / shading.reference.resolve(brightest));
     let mut sigma = [1.0; TILE];
@@ -39,15 +39,20 @@ fn convex(shading: &Shading) -> &LitSphere {
 }
 
 /// Computes now what many tiles would otherwise wait for.
-pub fn warm(shading: &Shading) {
+pub fn warm_caches(shading: &Shading) {
     convex(shading).light();
     let _ = shading.sphere_concave.as_ref().map(LitSphere::light);
 }
 
-fn looked_up(ground: &Ground, convex: &SphereLight, concave: Option<&SphereLight>, kappa: &Pixels) -> Light3 {
+fn looked_up(
+    surface_row: &SurfaceRow,
+    convex: &SphereLight,
+    concave: Option<&SphereLight>,
+    kappa: &RowValues,
+) -> Light3 {
     let mut shown = [[0.0; TILE]; 3];
-    let [nx, ny, _] = &ground.normal;
-    for x in 0..ground.width {
+    let [nx, ny, _] = &surface_row.normal;
+    for x in 0..surface_row.width {
         let nbar = vec2(nx[x], -ny[x]);
         let mut color = convex.at(nbar);
         if let Some(concave) = concave {
@@ -61,6 +66,6 @@ fn looked_up(ground: &Ground, convex: &SphereLight, concave: Option<&SphereLight
 }
 
 /// δ = luminance / Y*, clamped by σ itself.
-fn reflectances(shown: &Light3, per_reference: f32) -> Pixels {
+fn reflectances(shown: &Light3, per_reference: f32) -> RowValues {
     std::array::from_fn(|x| srgb::luminance(shown[0][x], shown[1][x], shown[2][x]) * per_reference)
 }

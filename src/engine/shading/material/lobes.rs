@@ -3,8 +3,8 @@
 
 use crate::math::fast;
 use crate::raster::TILE;
-use crate::shading::ground::{Light3, Pixels};
 use crate::shading::scaling::Scaling;
+use crate::shading::surface_row::{Light3, RowValues};
 
 /// Pixels whose sums are kept in registers.
 const CHUNK: usize = 16;
@@ -15,29 +15,30 @@ pub fn tint(color: [f32; 3], radiance: [f32; 3]) -> [f32; 3] {
 }
 
 /// Adds σ times light that was looked up, one colour a pixel.
-pub fn add_seen(light: &mut Light3, seen: &Light3, scale: Option<(Scaling, &Pixels, &Pixels)>) {
-    for (light, seen) in light.iter_mut().zip(seen) {
-        for (x, (light, &seen)) in light.iter_mut().zip(seen).enumerate() {
-            *light += scale.map_or(seen, |(scaling, kappa, delta)| seen * scaling.sigma_fast(kappa[x], delta[x]));
+pub fn add_incoming(light: &mut Light3, incoming: &Light3, scale: Option<(Scaling, &RowValues, &RowValues)>) {
+    for (light, incoming) in light.iter_mut().zip(incoming) {
+        for (x, (light, &incoming)) in light.iter_mut().zip(incoming).enumerate() {
+            *light +=
+                scale.map_or(incoming, |(scaling, kappa, delta)| incoming * scaling.sigma_fast(kappa[x], delta[x]));
         }
     }
 }
 
 crate::widest! {
     /// ρ ← σ(κ, δ) ρ of each pixel; `exponentials`: E of κ.
-    pub fn scale(rho: &mut Pixels, scaling: Scaling, exponentials: &Pixels, delta: &Pixels) {
+    pub fn scale(rho: &mut RowValues, scaling: Scaling, exponentials: &RowValues, delta: &RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             *rho *= scaling.sigma_of(exponentials[x], delta[x]);
         }
     }
     /// As [`scale`] with δ = ρ.
-    pub fn scale_by_itself(rho: &mut Pixels, scaling: Scaling, exponentials: &Pixels) {
+    pub fn scale_by_itself(rho: &mut RowValues, scaling: Scaling, exponentials: &RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             *rho *= scaling.sigma_of(exponentials[x], *rho);
         }
     }
     /// Σ ρ tint of several terms, a tint and a row for each.
-    pub fn sum(light: &mut Light3, tints: &[[f32; 3]], terms: &[Pixels]) {
+    pub fn sum(light: &mut Light3, tints: &[[f32; 3]], terms: &[RowValues]) {
         let [red, green, blue] = light;
         let chunks = red.as_chunks_mut::<CHUNK>().0.iter_mut();
         let chunks = chunks.zip(green.as_chunks_mut::<CHUNK>().0).zip(blue.as_chunks_mut::<CHUNK>().0);
@@ -56,7 +57,7 @@ crate::widest! {
         }
     }
     /// Adds ρ tint to the light of a row.
-    pub fn add(light: &mut Light3, tint: [f32; 3], rho: &Pixels) {
+    pub fn add(light: &mut Light3, tint: [f32; 3], rho: &RowValues) {
         for (light, tint) in light.iter_mut().zip(tint) {
             for (light, &rho) in light.iter_mut().zip(rho) {
                 *light += tint * rho;
@@ -64,7 +65,7 @@ crate::widest! {
         }
     }
     /// Adds light that each pixel has a colour of its own for: tint · σ · shown.
-    pub fn add_shown(light: &mut Light3, tint: [f32; 3], shown: &Light3, sigma: &Pixels) {
+    pub fn add_shown(light: &mut Light3, tint: [f32; 3], shown: &Light3, sigma: &RowValues) {
         for c in 0..3 {
             for x in 0..TILE {
                 light[c][x] += tint[c] * sigma[x] * shown[c][x];
@@ -72,13 +73,13 @@ crate::widest! {
         }
     }
     /// (n·ℓ)₊ of each pixel.
-    pub fn lambert(normal: &[Pixels; 3], direction: &[Pixels; 3], rho: &mut Pixels) {
+    pub fn lambert(normal: &[RowValues; 3], direction: &[RowValues; 3], rho: &mut RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             *rho = fast::max(dot(normal, direction, x), 0.0);
         }
     }
     /// Phong's ρ_s = (r·ℓ)₊^η with r = 2(n·e)n − e the mirrored view, e = (0, 0, 1) (RS sec. 5.1).
-    pub fn glossy(normal: &[Pixels; 3], direction: &[Pixels; 3], shininess: f32, rho: &mut Pixels) {
+    pub fn glossy(normal: &[RowValues; 3], direction: &[RowValues; 3], shininess: f32, rho: &mut RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             // r·ℓ = 2 n_z (n·ℓ) − ℓ_z.
             let mirrored = 2.0 * normal[2][x] * dot(normal, direction, x) - direction[2][x];
@@ -88,14 +89,14 @@ crate::widest! {
         raise(rho, shininess);
     }
     /// ρ ← ρ^ζ, 0 where ρ is (RS sec. 5.1: sub-Lambertian).
-    pub fn flatten(rho: &mut Pixels, exponent: f32) {
+    pub fn flatten(rho: &mut RowValues, exponent: f32) {
         raise(rho, exponent);
     }
 }
 
 /// v^p, 0 where v is not above 0: `fast::pow` in two short loops, so that no pixel waits for another's logarithm.
 #[inline(always)]
-fn raise(values: &mut Pixels, p: f32) {
+fn raise(values: &mut RowValues, p: f32) {
     let mut exponents = [0.0; TILE];
     for (exponent, v) in exponents.iter_mut().zip(&*values) {
         *exponent = p * fast::log2(*v);
@@ -107,6 +108,6 @@ fn raise(values: &mut Pixels, p: f32) {
 }
 
 #[inline(always)]
-fn dot(a: &[Pixels; 3], b: &[Pixels; 3], x: usize) -> f32 {
+fn dot(a: &[RowValues; 3], b: &[RowValues; 3], x: usize) -> f32 {
     a[0][x] * b[0][x] + a[1][x] * b[1][x] + a[2][x] * b[2][x]
 }

@@ -4,7 +4,7 @@
 use super::{Model, Shading, lobes};
 use crate::math::{Vec3, srgb};
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Toward};
+use crate::shading::surface_row::{Light3, LightDirection, SurfaceRow};
 use crate::surface::{Surface, links};
 
 /// The mirrored view r = 2(n·e)n − e, e = (0, 0, 1) (MATH 5).
@@ -28,30 +28,30 @@ pub fn refracted(n: Vec3, index: f32) -> Vec3 {
 }
 
 /// Adds L_env(r), scaled with δ = L_env(r) / max L_env, as the specular term.
-pub fn shade(shading: &Shading, ground: &Ground, light: &mut Light3) {
+pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let (Some(environment), term) = (&shading.environment, &shading.specular) else { return };
-    let surroundings = environment.surroundings();
+    let environment_light = environment.environment_light();
     let ray = |n: Vec3| match shading.model {
         Model::Refraction => refracted(n, shading.index),
         _ => mirrored(n),
     };
-    let per_brightest = 1.0 / shading.reference.resolve(surroundings.brightest());
+    let per_brightest = 1.0 / shading.reference.resolve(environment_light.brightest());
     let tint = Vec3::from(term.linear());
-    let mut seen: Light3 = [[0.0; TILE]; 3];
+    let mut incoming: Light3 = [[0.0; TILE]; 3];
     let [mut delta, mut toward_x, mut toward_y] = [[0.0; TILE]; 3];
-    for x in (0..ground.width).filter(|&x| ground.coverage()[x] > 0) {
-        let r = ray(ground.normal_at(x));
-        let (dx, dy) = changes(ground.surface, ground.x0 + x, ground.y, r, ray);
-        let radiance = surroundings.over(r, dx, dy);
+    for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
+        let r = ray(surface_row.normal_at(x));
+        let (dx, dy) = changes(surface_row.surface, surface_row.x0 + x, surface_row.y, r, ray);
+        let radiance = environment_light.over(r, dx, dy);
         (toward_x[x], toward_y[x]) = (r.x, r.y);
         delta[x] = srgb::luminance(radiance.x, radiance.y, radiance.z) * per_brightest;
-        (seen[0][x], seen[1][x], seen[2][x]) = (radiance * tint).into();
+        (incoming[0][x], incoming[1][x], incoming[2][x]) = (radiance * tint).into();
     }
     if !term.is_scaled() {
-        return lobes::add_seen(light, &seen, None);
+        return lobes::add_incoming(light, &incoming, None);
     }
-    let kappa = ground.kappa(Toward::Each(&toward_x, &toward_y));
-    lobes::add_seen(light, &seen, Some((term.scaling, &kappa, &delta)));
+    let kappa = surface_row.kappa(LightDirection::Each(&toward_x, &toward_y));
+    lobes::add_incoming(light, &incoming, Some((term.scaling, &kappa, &delta)));
 }
 
 /// How a ray changes from pixel to pixel along x and y; across a depth jump or the mask's edge it is not looked at.
@@ -104,7 +104,7 @@ mod tests {
         assert!(refracted(vec3(0.999, 0.0, -0.04), 1.5).is_finite());
     }
     /// Bright above, dim below, and red at the right.
-    fn surroundings() -> Environment {
+    fn environment_light() -> Environment {
         let texel = |i: u32| {
             let e = crate::shading::environment::projection::lat_long_direction(
                 ((i % 128) as f32 + 0.5) / 128.0,
@@ -121,7 +121,7 @@ mod tests {
     fn what_is_seen_is_the_scaled_environment_along_the_ray() {
         for model in [Model::Mirror, Model::Refraction] {
             let shading = Shading {
-                environment: Some(surroundings()),
+                environment: Some(environment_light()),
                 specular: term(crate::math::srgb::Color { r: 250, g: 230, b: 200, a: 255 }, 0.9, 0.4, 1.5),
                 features: crate::shading::Features { lambda: 0.6, ..Default::default() },
                 ..Shading::new(model)
@@ -129,9 +129,9 @@ mod tests {
             assert_shows(&shading, 2.0, |surface, x, y| {
                 let n = surface.normal(x, y);
                 let r = if model == Model::Mirror { mirrored(n) } else { refracted(n, 1.5) };
-                let seen = surroundings().surroundings();
-                let radiance = seen.along(r);
-                let delta = srgb::luminance(radiance.x, radiance.y, radiance.z) / seen.brightest();
+                let incoming = environment_light().environment_light();
+                let radiance = incoming.along(r);
+                let delta = srgb::luminance(radiance.x, radiance.y, radiance.z) / incoming.brightest();
                 let sigma = shading.specular.scaling.sigma(shading.features.on(surface).at(x, y, r), delta);
                 Vec3::from(shading.specular.linear()) * radiance * sigma
             });
@@ -139,7 +139,7 @@ mod tests {
     }
     #[test]
     fn a_mirror_that_faces_up_shows_the_sky() {
-        let shading = Shading { environment: Some(surroundings()), ..Shading::new(Model::Mirror) };
+        let shading = Shading { environment: Some(environment_light()), ..Shading::new(Model::Mirror) };
         let scene = crate::shading::material::tests::ball();
         let column = |at| shading.render_tile(&scene, crate::raster::TileAt::new(0, at)).unwrap();
         // The ball's middle is at (60, 66): row 30 faces up, row 100 down.

@@ -3,10 +3,10 @@
 
 mod ashikhmin;
 mod ashikhmin_environment;
+mod hemisphere;
 mod lit_sphere;
 mod lobes;
 mod mirror;
-mod open;
 mod phong;
 mod render;
 mod toon;

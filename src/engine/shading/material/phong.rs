@@ -3,19 +3,19 @@
 
 use super::{Model, Shading, lobes};
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Pixels, Relief, Toward};
 use crate::shading::light::RowLight;
+use crate::shading::surface_row::{Light3, LightDirection, RowRelief, RowValues, SurfaceRow};
 
 /// A material's terms along a row: the ambient one, and two for every light; those of weight 0 are left out.
 ///
 /// `L′ = Σ_j Σ_lights σ_j(κ, δ_j) ρ_j L` with δ_j = ρ_j; ρ_a = 1 has no light of its own: scaled it is mean-curvature
 /// shading, e^(γκ).
-pub struct Terms {
+pub struct PhongTerms {
     lobes: Vec<Lobe>,
     /// Colour × weight of each, times its light's, linear.
     pub tints: Vec<[f32; 3]>,
     /// σρ of each along the row.
-    pub scaled: Vec<Pixels>,
+    pub scaled: Vec<RowValues>,
     /// ζ of the matt terms (n·ℓ)₊^ζ; `None` is Phong's own, ζ = 1.
     exponent: Option<f32>,
 }
@@ -28,7 +28,7 @@ enum Lobe {
     Glossy(usize),
 }
 
-impl Terms {
+impl PhongTerms {
     /// `lights`: those of the material.
     pub fn new(shading: &Shading, lights: &[RowLight]) -> Self {
         let ambient = [(Lobe::Ambient, &shading.ambient, [1.0; 3])];
@@ -46,27 +46,27 @@ impl Terms {
         Self { lobes, tints, scaled, exponent }
     }
     /// Finds σρ of every term. `lights`: turned to the row; `relief`: left the row before.
-    pub fn find(&mut self, shading: &Shading, ground: &Ground, lights: &[RowLight], relief: &mut Relief) {
+    pub fn find(&mut self, shading: &Shading, surface_row: &SurfaceRow, lights: &[RowLight], relief: &mut RowRelief) {
         for (lobe, rho) in self.lobes.iter().zip(&mut self.scaled) {
             let (term, toward) = match *lobe {
                 Lobe::Ambient => {
                     rho.fill(1.0);
-                    (&shading.ambient, Toward::VIEWER)
+                    (&shading.ambient, LightDirection::VIEWER)
                 }
                 Lobe::Matt(i) => {
-                    lobes::lambert(&ground.normal, &lights[i].direction, rho);
+                    lobes::lambert(&surface_row.normal, &lights[i].direction, rho);
                     if let Some(zeta) = self.exponent {
                         lobes::flatten(rho, zeta);
                     }
                     (&shading.diffuse, lights[i].toward())
                 }
                 Lobe::Glossy(i) => {
-                    lobes::glossy(&ground.normal, &lights[i].direction, shading.shininess, rho);
+                    lobes::glossy(&surface_row.normal, &lights[i].direction, shading.shininess, rho);
                     (&shading.specular, lights[i].toward())
                 }
             };
             if term.is_scaled() {
-                relief.turn(ground, toward);
+                relief.turn(surface_row, toward);
                 lobes::scale_by_itself(rho, term.scaling, relief.exponentials(term.scaling));
             }
         }

@@ -1,12 +1,15 @@
 //! A tile of a shading layer: the model's light row by row, encoded and clipped at the end.
 //! Floor 3.
 
-use super::{Model, Shading, ashikhmin, ashikhmin_environment::Samples, lit_sphere, mirror, open, phong::Terms, toon};
+use super::{
+    Model, Shading, ashikhmin, ashikhmin_environment::EnvironmentSamples, hemisphere, lit_sphere, mirror,
+    phong::PhongTerms, toon,
+};
 use crate::math::{fast, srgb};
 use crate::raster::{TILE, Tile, TileAt, tile::TILE_AREA};
 use crate::shading::environment::Environment;
-use crate::shading::ground::{Ground, Light3, Relief};
 use crate::shading::light::{Light, RowLight};
+use crate::shading::surface_row::{Light3, RowRelief, SurfaceRow};
 use crate::surface::Scene;
 
 impl Shading {
@@ -18,21 +21,23 @@ impl Shading {
         let surface = scene.surface.as_deref()?;
         let inside = at.rect().intersect(surface.size().rect());
         let features = self.features.on(surface);
-        let ground = |y: i32| Ground::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
+        let surface_row = |y: i32| SurfaceRow::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
         let mut bytes = vec![0; 4 * TILE_AREA];
         let rows = bytes.chunks_exact_mut(4 * TILE).zip(inside.y0..inside.y1);
         if self.model == Model::Toon {
-            let grounds: Vec<Ground> = (inside.y0..inside.y1).map(ground).collect();
-            let mut light = vec![[[0.0; TILE]; 3]; grounds.len()];
-            toon::shade_tile(self, &grounds, &mut light);
-            rows.zip(&grounds).zip(&light).for_each(|(((row, _), ground), light)| show(light, ground.coverage(), row));
+            let surface_rows: Vec<SurfaceRow> = (inside.y0..inside.y1).map(surface_row).collect();
+            let mut light = vec![[[0.0; TILE]; 3]; surface_rows.len()];
+            toon::shade_tile(self, &surface_rows, &mut light);
+            rows.zip(&surface_rows)
+                .zip(&light)
+                .for_each(|(((row, _), surface_row), light)| show(light, surface_row.coverage(), row));
         } else if !inside.is_empty() {
-            let mut ground = ground(inside.y0);
-            let mut worker = RowWorker::new(self);
+            let mut surface_row = surface_row(inside.y0);
+            let mut worker = RowShader::new(self);
             for (row, y) in rows {
-                ground.move_to(y as usize);
-                if ground.coverage().iter().any(|&c| c > 0) {
-                    show(worker.light(&ground), ground.coverage(), row);
+                surface_row.move_to(y as usize);
+                if surface_row.coverage().iter().any(|&c| c > 0) {
+                    show(worker.light(&surface_row), surface_row.coverage(), row);
                 }
             }
         }
@@ -42,61 +47,61 @@ impl Shading {
     pub fn warm(&self, scene: &Scene) {
         if let Some(surface) = scene.surface.as_deref() {
             self.features.on(surface);
-            let surroundings = self.environment.as_ref().map(Environment::surroundings);
+            let environment_light = self.environment.as_ref().map(Environment::environment_light);
             let shows_occlusion = matches!(self.model, Model::DiffuseEnvironment | Model::AmbientOcclusion);
             if self.model == Model::DiffuseEnvironment {
-                surroundings.map(|s| s.brightest_matt());
+                environment_light.map(|s| s.brightest_matt());
             }
             if shows_occlusion && self.occlusion_radius_px > 0.0 {
                 surface.occlusion(self.occlusion_radius_px);
             }
         }
         if self.model == Model::LitSphere {
-            lit_sphere::warm(self);
+            lit_sphere::warm_caches(self);
         }
     }
 }
 
 /// The material at work on the rows of a tile, with what it reuses from row to row.
-struct RowWorker<'a> {
+struct RowShader<'a> {
     shading: &'a Shading,
     lights: Vec<RowLight>,
     /// Of Phong and what is like it.
-    terms: Terms,
+    terms: PhongTerms,
     /// Of an Ashikhmin material in an environment.
-    samples: Option<Samples>,
-    relief: Relief,
+    samples: Option<EnvironmentSamples>,
+    relief: RowRelief,
     light: Light3,
 }
 
-impl<'a> RowWorker<'a> {
+impl<'a> RowShader<'a> {
     fn new(shading: &'a Shading) -> Self {
-        let samples = if shading.model == Model::Ashikhmin { Samples::new(shading) } else { None };
-        let lights: Vec<RowLight> = shading.lights.iter().map(Light::seen).collect();
-        let terms = Terms::new(shading, &lights);
-        Self { shading, lights, terms, samples, relief: Relief::default(), light: [[0.0; TILE]; 3] }
+        let samples = if shading.model == Model::Ashikhmin { EnvironmentSamples::new(shading) } else { None };
+        let lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
+        let terms = PhongTerms::new(shading, &lights);
+        Self { shading, lights, terms, samples, relief: RowRelief::default(), light: [[0.0; TILE]; 3] }
     }
     /// Linear light along a row.
-    fn light(&mut self, ground: &Ground) -> &Light3 {
+    fn light(&mut self, surface_row: &SurfaceRow) -> &Light3 {
         let Self { shading, lights, terms, samples, relief, light } = self;
         relief.leave_row();
-        lights.iter_mut().for_each(|lit| lit.turn(ground));
+        lights.iter_mut().for_each(|lit| lit.turn(surface_row));
         *light = [[0.0; TILE]; 3];
         match shading.model {
             Model::Phong | Model::SubLambertian => {
-                terms.find(shading, ground, lights, relief);
+                terms.find(shading, surface_row, lights, relief);
                 terms.sum(light);
             }
             Model::Ashikhmin => {
-                ashikhmin::shade(shading, ground, lights, relief, light);
+                ashikhmin::shade(shading, surface_row, lights, relief, light);
                 if let Some(samples) = samples {
-                    samples.shade(shading, ground, relief, light);
+                    samples.shade(shading, surface_row, relief, light);
                 }
             }
-            Model::LitSphere => lit_sphere::shade(shading, ground, relief, light),
-            Model::Mirror | Model::Refraction => mirror::shade(shading, ground, light),
-            Model::DiffuseEnvironment => open::diffuse(shading, ground, light),
-            Model::AmbientOcclusion => open::occlusion(shading, ground, light),
+            Model::LitSphere => lit_sphere::shade(shading, surface_row, relief, light),
+            Model::Mirror | Model::Refraction => mirror::shade(shading, surface_row, light),
+            Model::DiffuseEnvironment => hemisphere::diffuse(shading, surface_row, light),
+            Model::AmbientOcclusion => hemisphere::occlusion(shading, surface_row, light),
             // Its bands look at whole tiles: `render_tile` draws it.
             Model::Toon => {}
         }

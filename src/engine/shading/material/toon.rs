@@ -1,26 +1,26 @@
 //! Toon: Phong in flat tones, each term quantised after it was scaled (RS sec. 5.1, MATH 5).
 //! Floor 3.
 
-use super::{Shading, lobes, phong::Terms};
+use super::{Shading, lobes, phong::PhongTerms};
 use crate::math::fast;
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Pixels, Relief};
 use crate::shading::light::{Light, RowLight};
+use crate::shading::surface_row::{Light3, RowRelief, RowValues, SurfaceRow};
 use crate::surface::links;
 
 /// Adds every light's terms in `bands` tones to the rows of a tile.
 ///
 /// A tone's edge is where σρ crosses a multiple of 1 / bands. It is filtered over the pixel: how fast σρ changes along the
 /// surface there, from its neighbours in the tile, says how much of the pixel lies on either side.
-pub fn shade_tile(shading: &Shading, rows: &[Ground], light: &mut [Light3]) {
-    let mut lights: Vec<RowLight> = shading.lights.iter().map(Light::seen).collect();
-    let (mut terms, mut relief) = (Terms::new(shading, &lights), Relief::default());
+pub fn shade_tile(shading: &Shading, rows: &[SurfaceRow], light: &mut [Light3]) {
+    let mut lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
+    let (mut terms, mut relief) = (PhongTerms::new(shading, &lights), RowRelief::default());
     // σρ over the tile, term by term.
-    let mut scaled: Vec<Vec<Pixels>> = vec![Vec::with_capacity(rows.len()); terms.tints.len()];
-    for ground in rows {
+    let mut scaled: Vec<Vec<RowValues>> = vec![Vec::with_capacity(rows.len()); terms.tints.len()];
+    for surface_row in rows {
         relief.leave_row();
-        lights.iter_mut().for_each(|lit| lit.turn(ground));
-        terms.find(shading, ground, &lights, &mut relief);
+        lights.iter_mut().for_each(|lit| lit.turn(surface_row));
+        terms.find(shading, surface_row, &lights, &mut relief);
         scaled.iter_mut().zip(&terms.scaled).for_each(|(all, row)| all.push(*row));
     }
     for (tint, scaled) in terms.tints.iter().zip(&scaled) {
@@ -29,21 +29,21 @@ pub fn shade_tile(shading: &Shading, rows: &[Ground], light: &mut [Light3]) {
 }
 
 /// Adds the tones of one term.
-fn add_tones(rows: &[Ground], tint: [f32; 3], scaled: &[Pixels], bands: u32, light: &mut [Light3]) {
-    for (y, ((ground, here), light)) in rows.iter().zip(scaled).zip(light).enumerate() {
+fn add_tones(rows: &[SurfaceRow], tint: [f32; 3], scaled: &[RowValues], bands: u32, light: &mut [Light3]) {
+    for (y, ((surface_row, here), light)) in rows.iter().zip(scaled).zip(light).enumerate() {
         let above = y.checked_sub(1).and_then(|y| scaled.get(y));
         let below = scaled.get(y + 1);
-        let linked = inside_links(ground, above.is_some(), below.is_some());
+        let linked = inside_links(surface_row, above.is_some(), below.is_some());
         let tones = tones([above.unwrap_or(here), here, below.unwrap_or(here)], &linked, bands as f32);
         lobes::add(light, tint, &tones);
     }
 }
 
 /// The links of a row's pixels to neighbours that are in the tile.
-fn inside_links(ground: &Ground, has_above: bool, has_below: bool) -> [u8; TILE] {
+fn inside_links(surface_row: &SurfaceRow, has_above: bool, has_below: bool) -> [u8; TILE] {
     let mut linked = [0; TILE];
-    let row = &mut linked[..ground.width];
-    row.copy_from_slice(ground.links());
+    let row = &mut linked[..surface_row.width];
+    row.copy_from_slice(surface_row.links());
     let missing = if has_above { 0 } else { links::UP } | if has_below { 0 } else { links::DOWN };
     row.iter_mut().for_each(|l| *l &= !missing);
     if let Some(first) = row.first_mut() {
@@ -75,7 +75,7 @@ fn tone(value: f32, change: f32, bands: f32) -> f32 {
 crate::widest! {
     /// The tones of a row, from the values above, here and below; differences are central where both neighbours
     /// are linked, one-sided where one is.
-    fn tones(values: [&Pixels; 3], linked: &[u8; TILE], bands: f32) -> Pixels {
+    fn tones(values: [&RowValues; 3], linked: &[u8; TILE], bands: f32) -> RowValues {
         let [above, here, below] = values;
         // One more pixel at both ends, to which nothing is linked.
         let mut wide = [0.0; TILE + 2];

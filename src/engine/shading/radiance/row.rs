@@ -5,24 +5,24 @@
 //! operations that no processor can overlap (measured: 2.4 times slower).
 
 use crate::math::{fast, srgb};
-use crate::raster::{TILE, planar::Row};
+use crate::raster::{TILE, planar::PixelRow};
 use crate::shading::scaling::Scaling;
 
 /// One value a pixel of the row.
-type Pixels = [f32; TILE];
+type LuminanceRow = [f32; TILE];
 
 /// A scaling at work on the rows of a tile. Its arrays are reused from row to row.
 pub(super) struct RowScaler {
     scaling: Scaling,
     per_y_star: f32,
     /// 1 / alpha, or huge where that is 0.
-    per_a: Pixels,
+    per_a: LuminanceRow,
     /// δ = Y / Y*, in `[0, 1]`.
-    delta: Pixels,
+    delta: LuminanceRow,
     /// gain · σ.
-    factors: Pixels,
+    factors: LuminanceRow,
     /// The factors' 5/12th powers: what sRGB's curve makes of a factor of the light.
-    roots: Pixels,
+    roots: LuminanceRow,
 }
 
 impl RowScaler {
@@ -31,7 +31,7 @@ impl RowScaler {
         Self { scaling, per_y_star: 1.0 / y_star, per_a: none, delta: none, factors: none, roots: none }
     }
     /// Multiplies the light of each pixel by σ(κ, Y / Y*).
-    pub fn apply(&mut self, row: &mut Row, kappa: &Pixels) {
+    pub fn apply(&mut self, row: &mut PixelRow, kappa: &LuminanceRow) {
         // What the polynomials of `find_gentle` are made for.
         if self.scaling.gamma_convex <= 2.0 && self.scaling.gamma_concave <= 2.0 {
             apply_gentle(self, row, kappa);
@@ -40,20 +40,20 @@ impl RowScaler {
         }
     }
     /// Multiplies the light of each pixel by its gain and σ(κ, Y / Y*).
-    pub fn apply_with_gains(&mut self, row: &mut Row, kappa: &Pixels, gains: &Pixels) {
+    pub fn apply_with_gains(&mut self, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
         apply_strong(self, row, kappa, gains);
     }
 }
 
 crate::widest! {
-    fn apply_gentle(with: &mut RowScaler, row: &mut Row, kappa: &Pixels) {
+    fn apply_gentle(with: &mut RowScaler, row: &mut PixelRow, kappa: &LuminanceRow) {
         if is_opaque(row) {
             with.gentle::<true>(row, kappa);
         } else {
             with.gentle::<false>(row, kappa);
         }
     }
-    fn apply_strong(with: &mut RowScaler, row: &mut Row, kappa: &Pixels, gains: &Pixels) {
+    fn apply_strong(with: &mut RowScaler, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
         // A strong γ tells dark tones apart that a coarse luminance does not.
         with.find_reflectances::<false>(row, |r, g, b| {
             srgb::luminance(srgb::decode_fast(r), srgb::decode_fast(g), srgb::decode_fast(b))
@@ -66,19 +66,19 @@ crate::widest! {
 
 /// Then dividing by alpha and multiplying by it again, a sixth of the work, changes no bit.
 #[inline(always)]
-fn is_opaque(row: &Row) -> bool {
+fn is_opaque(row: &PixelRow) -> bool {
     row.a.iter().fold(true, |all, &a| all & (a == 1.0))
 }
 
 impl RowScaler {
     #[inline(always)]
-    fn gentle<const OPAQUE: bool>(&mut self, row: &mut Row, kappa: &Pixels) {
+    fn gentle<const OPAQUE: bool>(&mut self, row: &mut PixelRow, kappa: &LuminanceRow) {
         self.find_reflectances::<OPAQUE>(row, srgb::luminance_fast);
         self.find_gentle(kappa);
         self.scale::<OPAQUE>(row, srgb::scale_encoded_gently);
     }
     #[inline(always)]
-    fn find_reflectances<const OPAQUE: bool>(&mut self, row: &Row, luminance: impl Fn(f32, f32, f32) -> f32) {
+    fn find_reflectances<const OPAQUE: bool>(&mut self, row: &PixelRow, luminance: impl Fn(f32, f32, f32) -> f32) {
         for x in 0..TILE {
             let (r, g, b) = (row.rgb[0][x], row.rgb[1][x], row.rgb[2][x]);
             let per_a = if OPAQUE { 1.0 } else { 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE) };
@@ -89,7 +89,7 @@ impl RowScaler {
         }
     }
     #[inline(always)]
-    fn find_factors(&mut self, kappa: &Pixels, gains: &Pixels) {
+    fn find_factors(&mut self, kappa: &LuminanceRow, gains: &LuminanceRow) {
         let scaling = self.scaling;
         for x in 0..TILE {
             self.factors[x] = gains[x] * scaling.sigma_fast(kappa[x], self.delta[x]);
@@ -107,7 +107,7 @@ impl RowScaler {
     /// `σ = (1 + q)/(1 − q)`, `q = t (δ − α)/(δ + α − 2αδ)`, so that ln σ = 2 artanh q and
     /// `σ^p = (1 + u)/(1 − u)`, `u = tanh(p artanh q)`: t and u are odd polynomials.
     #[inline(always)]
-    fn find_gentle(&mut self, kappa: &Pixels) {
+    fn find_gentle(&mut self, kappa: &LuminanceRow) {
         let Scaling { alpha, gamma_convex, gamma_concave } = self.scaling;
         let (convex, concave) = (0.5 * gamma_convex, 0.5 * gamma_concave);
         for x in 0..TILE {
@@ -129,7 +129,7 @@ impl RowScaler {
     /// Straight, scaled, clipped, premultiplied again: the same steps for every tone, so that a picture's darks cost nothing
     /// more (with a branch a row for pictures without darks: 2.9 ns a pixel and 5.4 ns with them).
     #[inline(always)]
-    fn scale<const OPAQUE: bool>(&self, row: &mut Row, scale_encoded: impl Fn(f32, f32, f32) -> f32) {
+    fn scale<const OPAQUE: bool>(&self, row: &mut PixelRow, scale_encoded: impl Fn(f32, f32, f32) -> f32) {
         for channel in &mut row.rgb {
             for (x, v) in channel.iter_mut().enumerate() {
                 let (a, per_a) = if OPAQUE { (1.0, 1.0) } else { (row.a[x], self.per_a[x]) };

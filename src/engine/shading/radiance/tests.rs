@@ -20,7 +20,7 @@ fn flat(r: f32, g: f32, b: f32, a: f32) -> PlanarTile {
     PlanarTile::from_pixels(&pixels)
 }
 
-const BENEATH: Beneath = Beneath { brightest: 0.8, gain: 1.0 };
+const BENEATH: BackdropStats = BackdropStats { brightest: 0.8, gain: 1.0 };
 
 #[test]
 fn every_pixel_is_scaled_as_the_equation_says() {
@@ -107,7 +107,7 @@ fn what_is_beyond_the_surface_or_transparent_stays() {
     assert_eq!(alone.rows()[0].pixel(0), [0.5, 0.5, 0.5, 1.0]);
 }
 /// Of one opaque pixel.
-fn luminance(row: &crate::raster::planar::Row, x: usize) -> f32 {
+fn luminance(row: &crate::raster::planar::PixelRow, x: usize) -> f32 {
     let [r, g, b, _] = row.pixel(x).map(srgb::decode);
     srgb::luminance(r, g, b)
 }
@@ -120,7 +120,7 @@ fn the_mean_luminance_can_be_kept() {
     let before = flat(0.7, 0.6, 0.5, 1.0);
     let means = layer.means_tile(&scene, at, 0.8, &before);
     let mut after = before.clone();
-    layer.apply_tile(&scene, at, Beneath { brightest: 0.8, gain: means.gain() }, &mut after);
+    layer.apply_tile(&scene, at, BackdropStats { brightest: 0.8, gain: means.gain() }, &mut after);
     let mean =
         |tile: &PlanarTile| tile.rows().iter().map(|r| (0..TILE).map(|x| luminance(r, x)).sum::<f32>()).sum::<f32>();
     let (before, after) = (mean(&before), mean(&after));
@@ -129,10 +129,10 @@ fn the_mean_luminance_can_be_kept() {
 }
 #[test]
 fn senseless_measures_do_no_harm() {
-    for beneath in [f32::NAN, 0.0, f32::INFINITY, 1e-40].map(|v| Beneath { brightest: v, gain: 1.0 }) {
+    for beneath in [f32::NAN, 0.0, f32::INFINITY, 1e-40].map(|v| BackdropStats { brightest: v, gain: 1.0 }) {
         let mut tile = flat(0.9, 0.1, 0.0, 0.7);
         RadianceScaling::default().apply_tile(&scene(), TileAt::new(0, 0), beneath, &mut tile);
         assert!(tile.rows().iter().all(|r| r.rgb.iter().flatten().all(|v| (0.0..=0.7001).contains(v))));
     }
-    assert_eq!(Means::default().gain(), 1.0);
+    assert_eq!(LuminanceSums::default().gain(), 1.0);
 }

@@ -34,7 +34,7 @@ pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvatur
     let band = BAND_ROWS * size.width as usize;
     let [hxx, hxy, hyy] = planes.each_mut().map(|p| p.par_chunks_mut(band));
     (hxx, hxy, hyy, fade.par_chunks_mut(band)).into_par_iter().enumerate().for_each_init(
-        || Scratch::new(taps.len() - 1),
+        || TileScratch::new(taps.len() - 1),
         |scratch, (i, (hxx, hxy, hyy, fading))| {
             for tile in TileRect::of_band(size, i * BAND_ROWS) {
                 if tile.is_empty(surface) {
@@ -83,7 +83,7 @@ impl TileRect {
 }
 
 /// What one thread reuses from tile to tile. Rows of it hold `STRIDE` pixels and begin one pixel left of the tile.
-struct Scratch {
+struct TileScratch {
     /// One row of one channel with the kernel's reach at both sides.
     line: Vec<f32>,
     /// 1 where a pixel of the row is joined to the next; beyond the canvas, where values are 0, it does not matter: 1.
@@ -98,7 +98,7 @@ struct Scratch {
     slopes: [Vec<f32>; 2],
 }
 
-impl Scratch {
+impl TileScratch {
     fn new(reach: usize) -> Self {
         let rows = BAND_ROWS + 2;
         Self {
@@ -122,7 +122,7 @@ impl Scratch {
             let joined: Vec<bool> = (0..tile.rows + 2)
                 .map(|row| self.joined_rows[(row + 2 * reach).saturating_sub(1)][chunk] >= 2 * reach)
                 .collect();
-            let columns = Columns { taps, across: &self.across, down: &self.down, joined: &joined };
+            let columns = ColumnTaps { taps, across: &self.across, down: &self.down, joined: &joined };
             blur_down_to_slopes(columns, chunk * LANES, sx, sy);
         }
         let width = surface.size().width as usize;
@@ -246,7 +246,7 @@ fn sum_broken(values: &[f32], joined: &[f32], center: usize, step: usize, taps: 
 
 /// What the blur down the columns of a chunk reads.
 #[derive(Clone, Copy)]
-struct Columns<'a> {
+struct ColumnTaps<'a> {
     taps: &'a [f32],
     across: &'a [Vec<f32>; 3],
     down: &'a [f32],
@@ -281,8 +281,8 @@ crate::widest! {
 
     /// Blurs a chunk of all rows down the columns and takes their slopes. A chunk at a time, so that the rows that each
     /// pixel's taps read are still in the first-level cache from the row above.
-    fn blur_down_to_slopes(columns: Columns, chunk: usize, sx: &mut [f32], sy: &mut [f32]) {
-        let Columns { taps, across, down, joined } = columns;
+    fn blur_down_to_slopes(columns: ColumnTaps, chunk: usize, sx: &mut [f32], sy: &mut [f32]) {
+        let ColumnTaps { taps, across, down, joined } = columns;
         let reach = taps.len() - 1;
         let slopes = sx.chunks_exact_mut(STRIDE).zip(sy.chunks_exact_mut(STRIDE));
         for (row, ((sx, sy), &joined)) in slopes.zip(joined).enumerate() {

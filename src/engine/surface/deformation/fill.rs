@@ -10,7 +10,7 @@ use crate::surface::Surface;
 use crate::surface::anchor::{Weights, segment_slope};
 use crate::surface::operator::{Operator, first_order, reflection, second_order};
 use kernels::{
-    DepthKernel, MirrorKernel, NormalKernel, Span, add_mean, coverage_gain, depth_add, depth_one, inverse_powers,
+    DepthKernel, KernelSpan, MirrorKernel, NormalKernel, add_mean, coverage_gain, depth_add, depth_one, inverse_powers,
     inverse_squares, mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, segment_weights, still_add,
     still_one,
 };
@@ -40,8 +40,8 @@ pub(super) fn fill(
         return;
     }
     let map = deformation.surface.map_or(Rect::EMPTY, |s| s.size().rect());
-    let plan = Plan::new(deformation);
-    let mut scratch = Scratch::default();
+    let plan = FillPlan::new(deformation);
+    let mut scratch = SpanScratch::default();
     let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
     for (y, (row_x, row_y)) in (rect.y0..).zip(rows) {
         let columns = columns(y);
@@ -90,7 +90,7 @@ impl MapSpan {
 }
 
 /// Rows of intermediate values, one per pixel of a span.
-struct Scratch {
+struct SpanScratch {
     /// r̄, where the operator asks for it.
     mirrored: [[f32; SPAN]; 2],
     /// 0 outside the surface, 1 + μκ on it.
@@ -103,7 +103,7 @@ struct Scratch {
     moved: [[f32; SPAN]; 2],
 }
 
-impl Default for Scratch {
+impl Default for SpanScratch {
     fn default() -> Self {
         let row = [0.0; SPAN];
         Self { mirrored: [row; 2], gain: row, weight: row, weight_sum: row, nearest: row, moved: [row; 2] }
@@ -115,7 +115,7 @@ const NOTHING: [f32; SPAN] = [0.0; SPAN];
 const WHOLE: [f32; SPAN] = [1.0; SPAN];
 
 /// What stays the same over all pixels.
-struct Plan<'d> {
+struct FillPlan<'d> {
     deformation: &'d Deformation<'d>,
     pins: Vec<FastPin>,
     kernel: Kernel,
@@ -142,7 +142,7 @@ enum Kernel {
     Mirror(MirrorKernel),
 }
 
-impl<'d> Plan<'d> {
+impl<'d> FillPlan<'d> {
     fn new(deformation: &'d Deformation<'d>) -> Self {
         let unit_px = deformation.unit_px;
         let kernel = match deformation.operator {
@@ -155,12 +155,12 @@ impl<'d> Plan<'d> {
             }
             Operator::Reflection { alpha, .. } => Kernel::Mirror(MirrorKernel { alpha_px: alpha * unit_px }),
         };
-        let pin = |&Pin { anchor, reading }: &Pin| {
+        let pin = |&Pin { anchor, map_values }: &Pin| {
             let [a, b] = match kernel {
                 Kernel::Still => [0.0; 2],
-                Kernel::Depth(_) => [reading.depth, 0.0],
-                Kernel::Normal(_) => reading.nbar.to_array(),
-                Kernel::Mirror(_) => reflection::mirrored(reading.nbar, reading.nz).to_array(),
+                Kernel::Depth(_) => [map_values.depth, 0.0],
+                Kernel::Normal(_) => map_values.nbar.to_array(),
+                Kernel::Mirror(_) => reflection::mirrored(map_values.nbar, map_values.nz).to_array(),
             };
             let moved = anchor.source - anchor.at;
             FastPin { x: anchor.at.x, y: anchor.at.y, a, b, move_x: moved.x, move_y: moved.y }
@@ -200,9 +200,17 @@ impl<'d> Plan<'d> {
         scratch
     }
     /// D over a span whose first pixel has its centre at (x, y); `maps` is `None` beyond the maps.
-    fn span(&self, maps: Option<MapSpan>, x: f32, y: f32, scratch: &mut Scratch, out_x: &mut [f32], out_y: &mut [f32]) {
+    fn span(
+        &self,
+        maps: Option<MapSpan>,
+        x: f32,
+        y: f32,
+        scratch: &mut SpanScratch,
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
         let n = out_x.len();
-        let Scratch { mirrored, gain, weight, weight_sum, nearest, moved } = scratch;
+        let SpanScratch { mirrored, gain, weight, weight_sum, nearest, moved } = scratch;
         let surface = self.deformation.surface;
         let (mut a, mut b) = (&NOTHING[..n], &NOTHING[..n]);
         let mut gains = &NOTHING[..n];
@@ -220,7 +228,7 @@ impl<'d> Plan<'d> {
                 }
             }
         }
-        let span = Span { x, y, a, b, gain: gains };
+        let span = KernelSpan { x, y, a, b, gain: gains };
         if let [pin] = &self.pins[..] {
             return match self.kernel {
                 Kernel::Still => still_one(span, pin, out_x, out_y),

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 /// A grid of unknowns with springs to the right and down; no spring, no coupling.
-pub struct Grid {
+pub struct SpringGrid {
     w: usize,
     h: usize,
     right: Vec<f32>,
@@ -13,7 +13,7 @@ pub struct Grid {
     diagonal: Vec<f32>,
 }
 
-impl Grid {
+impl SpringGrid {
     pub fn new(w: usize, h: usize, right: Vec<f32>, down: Vec<f32>) -> Self {
         let diagonal = (0..w * h)
             .map(|i| {
@@ -70,7 +70,7 @@ impl Grid {
         *v = next;
     }
     /// The grid of 2 × 2 blocks: springs between blocks are those that cross, halved because they are twice as long.
-    fn coarser(&self) -> Grid {
+    fn coarser(&self) -> SpringGrid {
         let (w, h) = (self.w.div_ceil(2), self.h.div_ceil(2));
         let at = |plane: &[f32], x: usize, y: usize| if x < self.w && y < self.h { plane[y * self.w + x] } else { 0.0 };
         let sum = |plane: &[f32], dx: usize, dy: usize| -> Vec<f32> {
@@ -83,12 +83,12 @@ impl Grid {
                 })
                 .collect()
         };
-        Grid::new(w, h, sum(&self.right, 1, 0), sum(&self.down, 0, 1))
+        SpringGrid::new(w, h, sum(&self.right, 1, 0), sum(&self.down, 0, 1))
     }
 }
 
 /// Solves A v = b to a residual of 1e-5 of b, or as far as 60 steps go.
-pub fn solve(grid: Grid, b: &[f32]) -> Vec<f32> {
+pub fn solve(grid: SpringGrid, b: &[f32]) -> Vec<f32> {
     let mut levels = vec![grid];
     while let Some(last) = levels.last().filter(|g| g.w * g.h > 16) {
         let coarser = last.coarser();
@@ -128,7 +128,7 @@ pub fn solve(grid: Grid, b: &[f32]) -> Vec<f32> {
 }
 
 /// One symmetric V-cycle: an approximate solution of A v = b on the finest level.
-fn cycle(levels: &[Grid], b: &[f32]) -> Vec<f32> {
+fn cycle(levels: &[SpringGrid], b: &[f32]) -> Vec<f32> {
     let Some((grid, coarser)) = levels.split_first() else { return Vec::new() };
     let mut v = vec![0.0; b.len()];
     let sweeps = if coarser.is_empty() { 40 } else { 2 };
@@ -164,10 +164,10 @@ mod tests {
             if there { 0.1 + 0.9 * ((x * 7 + y * 3) % 5) as f32 / 4.0 } else { 0.0 }
         };
         let plane = |dx, dy| (0..w * h).map(|i| spring(i % w, i / w, dx, dy)).collect();
-        let grid = Grid::new(w, h, plane(1, 0), plane(0, 1));
+        let grid = SpringGrid::new(w, h, plane(1, 0), plane(0, 1));
         let truth: Vec<f32> = (0..w * h).map(|i| ((i % w) as f32 * 0.2).sin() * 5.0 + (i / w) as f32 * 0.3).collect();
         let b = grid.apply(&truth);
-        let springs = Grid::new(w, h, plane(1, 0), plane(0, 1));
+        let springs = SpringGrid::new(w, h, plane(1, 0), plane(0, 1));
         let found = solve(grid, &b);
         let off = springs.apply(&found).iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(off < 1e-3, "residual {off}");

@@ -28,19 +28,19 @@ const CLIFF: (f32, f32) = (4.0, 1.5);
 const FLOATS: f32 = 0.5;
 
 /// Where a pixel looks for occluders.
-struct Ways {
-    slices: Vec<[Way; 2]>,
+struct HorizonSlices {
+    slices: Vec<[HorizonDirection; 2]>,
     radius_px: f32,
 }
 
 /// One direction, image axes (y down).
-struct Way {
+struct HorizonDirection {
     toward: Vec2,
-    steps: Vec<Step>,
+    steps: Vec<HorizonStep>,
 }
 
 /// A place along the way, between two neighbouring pixels.
-struct Step {
+struct HorizonStep {
     near: (i32, i32),
     far: (i32, i32),
     /// From the one to the other.
@@ -50,7 +50,7 @@ struct Step {
     cliff_px: f32,
 }
 
-impl Ways {
+impl HorizonSlices {
     fn new(radius_px: f32) -> Self {
         let slice = |i: usize| {
             let (sin, cos) = (i as f32 / SLICES as f32 * PI).sin_cos();
@@ -68,7 +68,7 @@ impl Ways {
 
 /// Whole pixels along the axis that the way is nearer to, between two pixels across it: a way that jumped from pixel to pixel
 /// would see the higher of its neighbours.
-fn way(toward: Vec2, radius_px: f32, phase: f32) -> Way {
+fn way(toward: Vec2, radius_px: f32, phase: f32) -> HorizonDirection {
     let is_across = toward.x.abs() >= toward.y.abs();
     let (along, across) = if is_across { (toward.x, toward.y) } else { (toward.y, toward.x) };
     let pixel = |along: f32, across: f32| {
@@ -83,11 +83,11 @@ fn way(toward: Vec2, radius_px: f32, phase: f32) -> Way {
         let main = along.signum() * count;
         let cliff_px = CLIFF.0 * (distance_px - before) + CLIFF.1;
         let (near, far) = (pixel(main, aside.floor()), pixel(main, aside.floor() + 1.0));
-        steps.push(Step { near, far, between: aside - aside.floor(), distance_px, cliff_px });
+        steps.push(HorizonStep { near, far, between: aside - aside.floor(), distance_px, cliff_px });
         before = distance_px;
         count = (count * (1.0 + STRIDE) + phase).floor().max(count + 1.0);
     }
-    Way { toward, steps }
+    HorizonDirection { toward, steps }
 }
 
 /// The open part of one slice of the hemisphere, weighted by the cosine to the normal; 1 for a plane that faces the viewer.
@@ -169,7 +169,7 @@ impl Surface {
         // Detail that was combined onto it casts no shade.
         let base = self.base();
         base.occlusions().get_or_compute(radius_px.to_bits(), KEPT, |_| {
-            let open = rows::compute(base, &Ways::new(radius_px));
+            let open = rows::compute(base, &HorizonSlices::new(radius_px));
             rows::smoothed(base, &open)
         })
     }

@@ -1,7 +1,7 @@
 //! Occlusion of a whole map, many pixels of a row at a time: the same offset for all of them, so that every look is a plain load.
 //! Floor 2. What is computed stands in `super`.
 
-use super::{FLOATS, Way, Ways, excess, height_between, open_part, slope, tangents};
+use super::{FLOATS, HorizonDirection, HorizonSlices, excess, height_between, open_part, slope, tangents};
 use crate::math::{Vec2, fast};
 use crate::raster::Plane;
 use crate::surface::{Surface, links};
@@ -22,7 +22,7 @@ struct Heights {
 }
 
 impl Heights {
-    fn of(surface: &Surface, ways: &Ways) -> Self {
+    fn of(surface: &Surface, ways: &HorizonSlices) -> Self {
         let (w, h) = (surface.size().width as usize, surface.size().height as usize);
         let margin = ways.reach() as usize;
         let stride = w.next_multiple_of(LANES) + 2 * margin;
@@ -46,7 +46,7 @@ impl Heights {
 }
 
 /// A(p) of every pixel.
-pub(super) fn compute(surface: &Surface, ways: &Ways) -> Plane<f32> {
+pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
     let size = surface.size();
     let heights = Heights::of(surface, ways);
     let mut open = Plane::filled(size, 1.0f32);
@@ -57,7 +57,7 @@ pub(super) fn compute(surface: &Surface, ways: &Ways) -> Plane<f32> {
                 continue;
             }
             let mut found = [0.0; LANES];
-            open_lanes(&heights, (x0, y), &Facing::of(surface, x0, y, out.len()), ways, &mut found);
+            open_lanes(&heights, (x0, y), &LaneSlopes::of(surface, x0, y, out.len()), ways, &mut found);
             for (x, (out, &found)) in out.iter_mut().zip(&found).enumerate() {
                 if surface.coverage(x0 + x, y) > 0 {
                     *out = found;
@@ -104,13 +104,13 @@ fn along_links(surface: &Surface, open: &Plane<f32>, (back, forth): (u8, u8), st
 }
 
 /// How the surface stands at each pixel, image axes.
-struct Facing {
+struct LaneSlopes {
     slope: [Lanes; 2],
     nbar: [Lanes; 2],
     nz: Lanes,
 }
 
-impl Facing {
+impl LaneSlopes {
     fn of(surface: &Surface, x0: usize, y: usize, width: usize) -> Self {
         let mut facing = Self { slope: [[0.0; LANES]; 2], nbar: [[0.0; LANES]; 2], nz: [1.0; LANES] };
         for i in 0..width {
@@ -125,7 +125,7 @@ impl Facing {
 
 crate::widest! {
     /// The open part of the hemisphere over each pixel.
-    fn open_lanes(heights: &Heights, at: (usize, usize), facing: &Facing, ways: &Ways, out: &mut Lanes) {
+    fn open_lanes(heights: &Heights, at: (usize, usize), facing: &LaneSlopes, ways: &HorizonSlices, out: &mut Lanes) {
         let (mut open, mut whole) = ([0.0; LANES], [0.0; LANES]);
         for slice in &ways.slices {
             let toward = slice[0].toward;
@@ -159,7 +159,14 @@ fn along(vector: &[Lanes; 2], toward: Vec2, i: usize) -> f32 {
 
 /// How far the highest horizon along a way stands above the tangent plane's, in cosines.
 #[inline(always)]
-fn march(heights: &Heights, (x, y): (usize, usize), way: &Way, radius_px: f32, tangent: &Lanes, hidden: &mut Lanes) {
+fn march(
+    heights: &Heights,
+    (x, y): (usize, usize),
+    way: &HorizonDirection,
+    radius_px: f32,
+    tangent: &Lanes,
+    hidden: &mut Lanes,
+) {
     let here = heights.lanes(x, y, (0, 0));
     let (per_radius_2, per_cliff) = (1.0 / (radius_px * radius_px), 1.0 / (FLOATS * radius_px));
     let (mut before, mut cliffs) = ([0.0; LANES], [0.0; LANES]);

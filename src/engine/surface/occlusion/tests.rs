@@ -44,13 +44,13 @@ fn convex_ground_is_open_to_its_silhouette() {
 #[test]
 fn the_bottom_of_a_valley_sees_what_its_walls_leave() {
     // Walls at 45°: the horizon in direction φ has tan e = |cos φ|; the mean of cos² e over all directions is 1/√2.
-    let open = rows::compute(&relief(|x, _| Some(x.abs())), &Ways::new(1000.0));
+    let open = rows::compute(&relief(|x, _| Some(x.abs())), &HorizonSlices::new(1000.0));
     assert!((open.at(80, 80) - 0.5f32.sqrt()).abs() < 0.02, "{}", open.at(80, 80));
 }
 #[test]
 fn a_pit_is_darkest_in_its_middle() {
     // A cone of tan e = 1 all around: cos² e = ½.
-    let open = rows::compute(&relief(|x, y| Some(x.hypot(y).min(60.0))), &Ways::new(1000.0));
+    let open = rows::compute(&relief(|x, y| Some(x.hypot(y).min(60.0))), &HorizonSlices::new(1000.0));
     assert!((open.at(80, 80) - 0.5).abs() < 0.03, "{}", open.at(80, 80));
 }
 #[test]
@@ -63,7 +63,7 @@ fn what_floats_far_in_front_throws_no_shade() {
 fn rows_hold_what_a_pixel_alone_sees() {
     let height = |x: f32, y: f32| Some(14.0 * (x * 0.11).sin() * (y * 0.07).cos() + if x > 30.0 { 8.0 } else { 0.0 });
     let surface = relief(height);
-    let ways = Ways::new(24.0);
+    let ways = HorizonSlices::new(24.0);
     let fast = rows::compute(&surface, &ways);
     let range = surface.depth_range_px();
     for (x, y) in [(3, 4), (80, 80), (111, 60), (108, 23), (160, 160), (64, 127)] {

@@ -26,7 +26,7 @@ pub enum Operator {
 
 /// What the maps hold at one pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Reading {
+pub struct MapValues {
     /// z, 0 near … 1 far.
     pub depth: f32,
     /// n̄, image axes (y down).
@@ -34,14 +34,14 @@ pub struct Reading {
     pub nz: f32,
 }
 
-impl Reading {
+impl MapValues {
     /// Where there is no surface: as an empty map is painted, flat and farthest.
-    pub const BACKGROUND: Reading = Reading { depth: 1.0, nbar: Vec2::ZERO, nz: 1.0 };
+    pub const BACKGROUND: MapValues = MapValues { depth: 1.0, nbar: Vec2::ZERO, nz: 1.0 };
 }
 
 /// How the maps change at one pixel, per px; differenced within one piece of surface.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Slopes {
+pub struct MapSlopes {
     /// ∇z.
     pub depth: Vec2,
     /// ∂n̄/∂q.
@@ -88,7 +88,7 @@ impl Operator {
     /// * `from_anchor`: q − qᵢ, px.
     /// * `here`, `anchor`: the maps at q and at qᵢ.
     /// * `unit_px`: *L*, the longer side of the canvas, px.
-    pub fn offset(self, from_anchor: Vec2, here: Reading, anchor: Reading, unit_px: f32) -> Vec2 {
+    pub fn offset(self, from_anchor: Vec2, here: MapValues, anchor: MapValues, unit_px: f32) -> Vec2 {
         match self {
             Operator::None => Vec2::ZERO,
             Operator::Depth { gamma } => first_order::offset(from_anchor, here.depth - anchor.depth, gamma),
@@ -96,7 +96,7 @@ impl Operator {
                 unit_px * second_order::offset(here.nbar - anchor.nbar, alpha, beta)
             }
             Operator::Reflection { alpha, .. } => {
-                let r = |at: Reading| reflection::mirrored(at.nbar, at.nz);
+                let r = |at: MapValues| reflection::mirrored(at.nbar, at.nz);
                 unit_px * reflection::offset(r(here), r(anchor), alpha)
             }
         }
@@ -105,9 +105,9 @@ impl Operator {
     pub fn offset_jacobian(
         self,
         from_anchor: Vec2,
-        here: Reading,
-        slopes: Slopes,
-        anchor: Reading,
+        here: MapValues,
+        slopes: MapSlopes,
+        anchor: MapValues,
         unit_px: f32,
     ) -> Mat2 {
         match self {

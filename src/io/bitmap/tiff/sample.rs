@@ -5,7 +5,7 @@ use crate::math::Size;
 use image::{DynamicImage, ImageBuffer};
 
 /// A number that a sample may be.
-pub trait Sample: Copy {
+pub trait TiffSample: Copy {
     /// White for black.
     fn inverted(self) -> Self;
     /// A colour that was multiplied by alpha.
@@ -21,7 +21,7 @@ pub trait Sample: Copy {
     }
 }
 
-/// As [`Sample::image`], for integers, which have variants of their own.
+/// As [`TiffSample::image`], for integers, which have variants of their own.
 macro_rules! integer_image {
     ($luma:ident, $luma_a:ident, $rgb:ident, $rgba:ident) => {
         fn image(size: Size, channels: usize, values: Vec<Self>) -> Option<DynamicImage> {
@@ -36,7 +36,7 @@ macro_rules! integer_image {
     };
 }
 
-impl Sample for u8 {
+impl TiffSample for u8 {
     fn inverted(self) -> Self {
         255 - self
     }
@@ -62,7 +62,7 @@ impl Sample for u8 {
     }
 }
 
-impl Sample for u16 {
+impl TiffSample for u16 {
     fn inverted(self) -> Self {
         65535 - self
     }
@@ -79,7 +79,7 @@ impl Sample for u16 {
     integer_image!(ImageLuma16, ImageLumaA16, ImageRgb16, ImageRgba16);
 }
 
-impl Sample for f32 {
+impl TiffSample for f32 {
     fn inverted(self) -> Self {
         1.0 - self
     }

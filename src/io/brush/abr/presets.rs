@@ -1,11 +1,11 @@
 //! What later versions of Photoshop say of their brushes beside the tips: names, sizes, spacings.
 //! Floor 5.
 
-use super::descriptor::{self, Object};
+use super::descriptor::{self, DescriptorObject};
 use super::{MOST, SPACING};
-use crate::brush::Imported;
+use crate::brush::ImportedBrush;
 use crate::paint::{Brush, Tip};
-use crate::psd::cursor::Cursor;
+use crate::psd::cursor::ByteCursor;
 
 /// What is switched on in a brush and not taken from it.
 const LEFT_OUT: [(&str, &str); 7] = [
@@ -19,7 +19,7 @@ const LEFT_OUT: [(&str, &str); 7] = [
 ];
 
 /// One brush of a collection.
-pub struct Said {
+pub struct AbrPreset {
     name: String,
     /// The key of its sampled tip; `None` of a computed one.
     pub sample: Option<String>,
@@ -32,19 +32,20 @@ pub struct Said {
 }
 
 /// The brushes that a block of descriptions names, in its order; none where it is not understood.
-pub fn read(block: Cursor) -> Vec<Said> {
+pub fn read(block: ByteCursor) -> Vec<AbrPreset> {
     let mut block = block;
     let Some(root) = descriptor::read(&mut block) else { return Vec::new() };
     root.objects("Brsh").filter_map(said).take(MOST).collect()
 }
 
-fn said(preset: &Object) -> Option<Said> {
+fn said(preset: &DescriptorObject) -> Option<AbrPreset> {
     let brush = preset.object("Brsh")?;
-    let text = |object: &Object, name: &str| object.text(name).map(str::to_owned).filter(|text| !text.is_empty());
+    let text =
+        |object: &DescriptorObject, name: &str| object.text(name).map(str::to_owned).filter(|text| !text.is_empty());
     let percent = |name: &str, plain: f32| brush.number(name).map_or(plain, |v| v / 100.0);
     let left_out: Vec<&str> = LEFT_OUT.iter().filter(|(key, _)| preset.flag(key)).map(|(_, word)| *word).collect();
     let note = format!("{} not taken from Photoshop", left_out.join(", "));
-    Some(Said {
+    Some(AbrPreset {
         name: text(preset, "Nm  ").or(text(brush, "Nm  ")).unwrap_or_default(),
         sample: text(brush, "sampledData"),
         diameter_px: brush.number("Dmtr"),
@@ -56,9 +57,9 @@ fn said(preset: &Object) -> Option<Said> {
     })
 }
 
-impl Said {
+impl AbrPreset {
     /// The brush, on its sampled tip where it has one.
-    pub fn brush(self, tip: Option<&Imported>) -> Imported {
+    pub fn brush(self, tip: Option<&ImportedBrush>) -> ImportedBrush {
         let ratio = self.roundness.max(0.05).min(1.0);
         let plain = tip.map(|imported| imported.brush.clone());
         let is_sampled = plain.is_some();
@@ -76,6 +77,6 @@ impl Said {
             notes.push(format!("its tip is squeezed to {:.0} % there", 100.0 * ratio));
         }
         let name = if self.name.is_empty() { tip.map_or("Brush".into(), |tip| tip.name.clone()) } else { self.name };
-        Imported { name, brush, notes }
+        ImportedBrush { name, brush, notes }
     }
 }

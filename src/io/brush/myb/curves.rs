@@ -7,21 +7,21 @@ use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
 /// The settings of a file. Those that are asked for count as carried over; the others are told of.
-pub struct Settings<'a> {
+pub struct MyPaintSettings<'a> {
     all: &'a Map<String, Value>,
     asked: BTreeSet<&'static str>,
     notes: Vec<String>,
 }
 
 /// A base value and what is added to it.
-pub struct Setting {
+pub struct MyPaintSetting {
     pub base: f32,
     /// Points (input, what it adds) from left to right.
     pub inputs: Vec<(String, Vec<Vec2>)>,
 }
 
 /// A setting at its most, and the factors by which inputs lower it.
-pub struct Driven {
+pub struct DrivenSetting {
     pub most: f32,
     pub rows: Vec<(Input, Curve)>,
 }
@@ -47,7 +47,7 @@ const OF_NO_MATTER: [&str; 16] = [
 ];
 
 /// A piece of an input's way: from `t0` to `t1` of ours it goes from `x0` to `x1` of theirs.
-struct Piece {
+struct CurvePiece {
     t: [f32; 2],
     x: [f32; 2],
 }
@@ -55,7 +55,7 @@ struct Piece {
 /// Straight pieces by which a bent curve is followed.
 const STEPS: usize = 12;
 
-impl<'a> Settings<'a> {
+impl<'a> MyPaintSettings<'a> {
     pub fn new(all: &'a Map<String, Value>) -> Self {
         Self { all, asked: BTreeSet::new(), notes: Vec::new() }
     }
@@ -68,7 +68,7 @@ impl<'a> Settings<'a> {
         }
     }
     /// A setting as the file has it; damaged numbers are as good as none.
-    pub fn setting(&mut self, name: &'static str, default: f32) -> Setting {
+    pub fn setting(&mut self, name: &'static str, default: f32) -> MyPaintSetting {
         self.asked.insert(name);
         let value = self.all.get(name);
         let base = value.and_then(|v| number(v.get("base_value")?)).unwrap_or(default);
@@ -82,11 +82,11 @@ impl<'a> Settings<'a> {
             points.iter().any(|p| p.y != 0.0).then_some(points)
         };
         let inputs = inputs.into_iter().flatten().filter_map(|(input, points)| Some((input.clone(), curve(points)?)));
-        Setting { base, inputs: inputs.collect() }
+        MyPaintSetting { base, inputs: inputs.collect() }
     }
     /// A setting as a value at its most and factors. `value`: the setting's meaning, rising with it, not negative.
-    pub fn driven(&mut self, name: &'static str, default: f32, value: impl Fn(f32) -> f32) -> Driven {
-        let Setting { base, inputs } = self.setting(name, default);
+    pub fn driven(&mut self, name: &'static str, default: f32, value: impl Fn(f32) -> f32) -> DrivenSetting {
+        let MyPaintSetting { base, inputs } = self.setting(name, default);
         let most_of = |curve: &[Vec2]| curve.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
         let mut most = base;
         let mut rows = Vec::new();
@@ -100,7 +100,7 @@ impl<'a> Settings<'a> {
             let factor = |x: f32| if top > 0.0 { value(base + at(points, x)) / top } else { 1.0 };
             rows.extend(sampled(&pieces, points, factor).map(|curve| (ours, curve)));
         }
-        Driven { most: value(most), rows }
+        DrivenSetting { most: value(most), rows }
     }
     /// A curve of degrees clockwise as turns: the input, the degrees to start from, and what is added from there.
     pub fn turns(&mut self, input: &str, points: &[Vec2]) -> Option<(Input, f32, Curve)> {
@@ -110,8 +110,8 @@ impl<'a> Settings<'a> {
         Some((ours, -most, curve))
     }
     /// Which of our inputs is one of theirs, and how it runs.
-    fn way(&mut self, input: &str) -> Option<(Input, Vec<Piece>)> {
-        let whole = |x: [f32; 2]| vec![Piece { t: [0.0, 1.0], x }];
+    fn way(&mut self, input: &str) -> Option<(Input, Vec<CurvePiece>)> {
+        let whole = |x: [f32; 2]| vec![CurvePiece { t: [0.0, 1.0], x }];
         Some(match input {
             "pressure" => (Input::Pressure, whole([0.0, 1.0])),
             "random" => (Input::Random, whole([0.0, 1.0])),
@@ -121,7 +121,7 @@ impl<'a> Settings<'a> {
             }
             // Clockwise, and the same for both ways along a line.
             "direction" => {
-                let half = |from: f32| Piece { t: [from, from + 0.5], x: [180.0, 0.0] };
+                let half = |from: f32| CurvePiece { t: [from, from + 0.5], x: [180.0, 0.0] };
                 (Input::Direction, vec![half(0.0), half(0.5)])
             }
             "direction_angle" => (Input::Direction, whole([360.0, 0.0])),
@@ -178,9 +178,9 @@ fn at(points: &[Vec2], x: f32) -> f32 {
 }
 
 /// A function of their input as a curve over ours. `None` where too little is left of it to be one.
-fn sampled(pieces: &[Piece], points: &[Vec2], value: impl Fn(f32) -> f32) -> Option<Curve> {
+fn sampled(pieces: &[CurvePiece], points: &[Vec2], value: impl Fn(f32) -> f32) -> Option<Curve> {
     let mut out: Vec<Vec2> = Vec::new();
-    for Piece { t: [t0, t1], x: [x0, x1] } in pieces {
+    for CurvePiece { t: [t0, t1], x: [x0, x1] } in pieces {
         let steps = (0..=STEPS).map(|i| i as f32 / STEPS as f32);
         let corners = points.iter().map(|p| (p.x - x0) / (x1 - x0)).filter(|s| (0.0..=1.0).contains(s));
         let mut shares: Vec<f32> = steps.chain(corners.take(16)).collect();
@@ -229,7 +229,7 @@ mod tests {
         let value = settings(
             r#"{ "r": { "base_value": 2, "inputs": { "pressure": [[0, -1], [1, 1]], "random": [[0, -0.5], [1, 0]] } } }"#,
         );
-        let mut settings = Settings::new(value.as_object().unwrap());
+        let mut settings = MyPaintSettings::new(value.as_object().unwrap());
         let driven = settings.driven("r", 0.0, f32::exp);
         assert!((driven.most - 3f32.exp()).abs() < 1e-3);
         for (pressure, random) in [(0.0f32, 0.0f32), (0.3, 0.8), (1.0, 1.0), (0.77, 0.2)] {
@@ -245,14 +245,14 @@ mod tests {
             r#"{ "smudge": { "base_value": 0.5, "inputs": {} }, "smudge_length": { "base_value": 0.5, "inputs": {} },
                  "a": { "base_value": 1, "inputs": { "custom": [[0, 0], [1, 1]] } } }"#,
         );
-        let mut settings = Settings::new(value.as_object().unwrap());
+        let mut settings = MyPaintSettings::new(value.as_object().unwrap());
         settings.driven("a", 0.0, |v| v);
         assert_eq!(settings.into_notes(), ["“a” does not follow “custom”", "“smudge” has no counterpart"]);
     }
     #[test]
     fn a_tip_that_turns_with_the_stroke_turns_with_it_here() {
         let value = settings("{}");
-        let mut settings = Settings::new(value.as_object().unwrap());
+        let mut settings = MyPaintSettings::new(value.as_object().unwrap());
         let (input, start, curve) = settings.turns("direction", &[vec2(0.0, 0.0), vec2(180.0, 180.0)]).unwrap();
         assert_eq!(input, Input::Direction);
         for t in [0.0f32, 0.1, 0.25, 0.4, 0.6, 0.9] {

@@ -3,7 +3,7 @@
 
 use super::KIND;
 use crate::Budget;
-use crate::document::{Content, Layer, Lock};
+use crate::document::{Content, Layer, LayerLock};
 use crate::math::Size;
 use crate::raster::BlendMode;
 use crate::{Error, Result};
@@ -16,18 +16,18 @@ use std::path::Path;
 const ATOP: &str = "svg:src-atop";
 
 /// What a `stack.xml` says.
-pub struct Stack {
+pub struct StackXml {
     /// `None` where it does not say.
     pub size: Option<Size>,
     /// Bottom first.
-    pub layers: Vec<Element>,
+    pub layers: Vec<StackElement>,
 }
 
 /// A layer or a nested stack.
-pub struct Element {
+pub struct StackElement {
     /// With its name, visibility, opacity and blend mode; its content is still to come.
     pub layer: Layer,
-    pub shows: ElementShows,
+    pub shows: ElementContent,
     /// The kind of live layer that this is the picture of; empty for none.
     pub kind: String,
     /// A composite operation that has no equal here.
@@ -36,7 +36,7 @@ pub struct Element {
     pub is_atop: bool,
 }
 
-pub enum ElementShows {
+pub enum ElementContent {
     Picture {
         src: String,
         x: i32,
@@ -45,14 +45,14 @@ pub enum ElementShows {
     /// Bottom first.
     Stack {
         isolated: bool,
-        layers: Vec<Element>,
+        layers: Vec<StackElement>,
     },
 }
 
 /// Reads a `stack.xml`. Elements and attributes beyond OpenRaster's are passed by.
-pub fn read(file: &Path, text: &[u8], budget: &Budget) -> Result<Stack> {
+pub fn read(file: &Path, text: &[u8], budget: &Budget) -> Result<StackXml> {
     let text = utf8(text).ok_or_else(|| Error::decode(file, "stack.xml is neither UTF-8 nor UTF-16"))?;
-    let mut parser = Parser { file, budget, xml: Reader::from_str(&text), left: budget.layers };
+    let mut parser = StackParser { file, budget, xml: Reader::from_str(&text), left: budget.layers };
     parser.image()
 }
 
@@ -69,7 +69,7 @@ fn utf8(text: &[u8]) -> Option<Cow<'_, str>> {
     }
 }
 
-struct Parser<'a> {
+struct StackParser<'a> {
     file: &'a Path,
     budget: &'a Budget,
     xml: Reader<&'a [u8]>,
@@ -77,16 +77,18 @@ struct Parser<'a> {
     left: usize,
 }
 
-impl<'a> Parser<'a> {
-    fn image(&mut self) -> Result<Stack> {
+impl<'a> StackParser<'a> {
+    fn image(&mut self) -> Result<StackXml> {
         let mut size = None;
         loop {
             match self.event()? {
                 Event::Start(e) if e.local_name().as_ref() == "image" => size = self.size(&e)?,
                 Event::Start(e) if e.local_name().as_ref() == "stack" => {
-                    return Ok(Stack { size, layers: self.stack(0)? });
+                    return Ok(StackXml { size, layers: self.stack(0)? });
                 }
-                Event::Empty(e) if e.local_name().as_ref() == "stack" => return Ok(Stack { size, layers: Vec::new() }),
+                Event::Empty(e) if e.local_name().as_ref() == "stack" => {
+                    return Ok(StackXml { size, layers: Vec::new() });
+                }
                 Event::Start(e) => self.skip(&e)?,
                 Event::Eof => return Err(self.refused("it has no <stack>")),
                 _ => {}
@@ -108,7 +110,7 @@ impl<'a> Parser<'a> {
         }
     }
     /// Everything up to the end of a stack, bottom first.
-    fn stack(&mut self, depth: usize) -> Result<Vec<Element>> {
+    fn stack(&mut self, depth: usize) -> Result<Vec<StackElement>> {
         if depth > self.budget.group_depth {
             let reason = format!("stack.xml nests more than {} stacks", self.budget.group_depth);
             return Err(Error::too_large(self.file, reason));
@@ -144,8 +146,8 @@ impl<'a> Parser<'a> {
         let damaged = |e| Error::decode(self.file, format!("stack.xml is damaged ({e})"));
         self.xml.read_to_end(element.to_end().to_owned().name()).map(drop).map_err(damaged)
     }
-    fn attributes(&self, element: &BytesStart) -> Result<Attributes> {
-        let mut all = Attributes::default();
+    fn attributes(&self, element: &BytesStart) -> Result<XmlAttributes> {
+        let mut all = XmlAttributes::default();
         for attribute in element.attributes() {
             let attribute = attribute.map_err(|e| self.refused(format!("an attribute is damaged ({e})")))?;
             // Entities of the file's own are left as they stand: nothing here may grow, nor lead to other files.
@@ -156,7 +158,7 @@ impl<'a> Parser<'a> {
         Ok(all)
     }
     /// A layer or stack by its attributes, the stack still empty.
-    fn element(&mut self, element: &BytesStart) -> Result<Element> {
+    fn element(&mut self, element: &BytesStart) -> Result<StackElement> {
         self.left = self.left.checked_sub(1).ok_or_else(|| {
             Error::too_large(self.file, format!("stack.xml has more than {} layers", self.budget.layers))
         })?;
@@ -170,31 +172,31 @@ impl<'a> Parser<'a> {
         layer.blend = blend.unwrap_or_default();
         layer.clip_to_surface = false;
         if attributes.get("edit-locked") == Some("true") {
-            layer.lock = Lock::All;
+            layer.lock = LayerLock::All;
         }
         let offset = |name: &str| attributes.number(name).unwrap_or(0.0).max(-1e6).min(1e6).round() as i32;
         let shows = if is_stack {
             // A stack that is not set apart, and has nothing that would set it apart, blends layer by layer.
             let apart = attributes.get("isolation") == Some("isolate");
             let isolated = apart || layer.opacity < 1.0 || layer.blend != BlendMode::Normal;
-            ElementShows::Stack { isolated, layers: Vec::new() }
+            ElementContent::Stack { isolated, layers: Vec::new() }
         } else {
             let src = attributes.get("src").unwrap_or("").to_owned();
-            ElementShows::Picture { src, x: offset("x"), y: offset("y") }
+            ElementContent::Picture { src, x: offset("x"), y: offset("y") }
         };
         let kind = attributes.get(KIND).unwrap_or("").to_owned();
         let is_atop = op == ATOP;
         let unknown_op = (blend.is_none() && !is_atop).then(|| op.to_owned());
-        Ok(Element { layer, shows, kind, unknown_op, is_atop })
+        Ok(StackElement { layer, shows, kind, unknown_op, is_atop })
     }
 }
 
-fn with_layers(element: Element, inner: Vec<Element>) -> Element {
+fn with_layers(element: StackElement, inner: Vec<StackElement>) -> StackElement {
     let shows = match element.shows {
-        ElementShows::Stack { isolated, .. } => ElementShows::Stack { isolated, layers: inner },
+        ElementContent::Stack { isolated, .. } => ElementContent::Stack { isolated, layers: inner },
         picture => picture,
     };
-    Element { shows, ..element }
+    StackElement { shows, ..element }
 }
 
 /// The blend mode of a composite operation, in OpenRaster's words or in those of programs that add their own.
@@ -208,9 +210,9 @@ fn blend(op: &str) -> Option<BlendMode> {
 }
 
 #[derive(Default)]
-struct Attributes(Vec<(String, String)>);
+struct XmlAttributes(Vec<(String, String)>);
 
-impl Attributes {
+impl XmlAttributes {
     fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
     }
@@ -224,7 +226,7 @@ impl Attributes {
 mod tests {
     use super::*;
 
-    fn parsed(xml: &str) -> Result<Stack> {
+    fn parsed(xml: &str) -> Result<StackXml> {
         read(Path::new("a.ora"), xml.as_bytes(), &Budget::default())
     }
     fn said(xml: &str) -> String {
@@ -244,8 +246,8 @@ mod tests {
             (top.layer.name.as_str(), top.layer.opacity, top.layer.blend),
             ("top & ä", 0.5, BlendMode::Multiply)
         );
-        assert!(matches!(&top.shows, ElementShows::Picture { x: -3, y: 4, src } if src == "data/1.png"));
-        let ElementShows::Stack { isolated: true, layers } = &group.shows else { panic!("isolated") };
+        assert!(matches!(&top.shows, ElementContent::Picture { x: -3, y: 4, src } if src == "data/1.png"));
+        let ElementContent::Stack { isolated: true, layers } = &group.shows else { panic!("isolated") };
         assert!(!layers[0].layer.visible);
     }
     #[test]
@@ -258,7 +260,7 @@ mod tests {
             let stack = read(Path::new("a.ora"), &text, &Budget::default()).unwrap();
             let layer = &stack.layers[0];
             assert_eq!((stack.size, layer.layer.name.as_str()), (Some(Size::new(32, 24)), "&a; ü"));
-            assert!(layer.is_atop && matches!(layer.shows, ElementShows::Picture { x: 2, y: 0, .. }));
+            assert!(layer.is_atop && matches!(layer.shows, ElementContent::Picture { x: 2, y: 0, .. }));
         }
         assert!(parsed("<image><stack/></image>").unwrap().size.is_none());
     }

@@ -3,22 +3,22 @@
 
 use crate::Result;
 use crate::io::Budget;
-use crate::io::brush::{self, Imported, Kind};
+use crate::io::brush::{self, BrushFormat, ImportedBrush};
 use crate::paint::{Brush, Tip};
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// A file of brushes, or one that should be.
-pub struct BrushFile {
+pub struct BrushReport {
     name: String,
-    kind: Kind,
-    pub read: Result<Vec<Imported>>,
+    kind: BrushFormat,
+    pub read: Result<Vec<ImportedBrush>>,
 }
 
-impl BrushFile {
+impl BrushReport {
     /// `None` where the file is of another kind.
     pub fn of(name: &str, path: &Path, bytes: &[u8], budget: &Budget) -> Option<Self> {
-        let kind = Kind::of(path, bytes)?;
+        let kind = BrushFormat::of(path, bytes)?;
         Some(Self { name: name.to_owned(), kind, read: brush::read(path, bytes, budget) })
     }
     pub fn json(&self) -> Value {
@@ -26,7 +26,7 @@ impl BrushFile {
             Ok(brushes) => brushes,
             Err(e) => return json!({ "file": self.name, "error": e.to_string() }),
         };
-        let one = |Imported { name, brush, notes }: &Imported| {
+        let one = |ImportedBrush { name, brush, notes }: &ImportedBrush| {
             json!({
                 "name": name, "tip": tip(&brush.tip), "size": brush.size, "spacing": brush.spacing, "notes": notes,
                 "pictures": brush.pictures().map(|p| [p.picture.size.width, p.picture.size.height]).collect::<Vec<_>>(),
@@ -40,7 +40,7 @@ impl BrushFile {
             Err(e) => return format!("{e}\n"),
         };
         let mut out = format!("{}: {}, {}\n", self.name, self.kind.name(), counted(brushes.len(), "brush", "brushes"));
-        for Imported { name, brush, notes } in brushes {
+        for ImportedBrush { name, brush, notes } in brushes {
             out += &format!("  {name}: {}\n", looks(brush));
             notes.iter().for_each(|note| out += &format!("    {note}\n"));
         }

@@ -3,17 +3,17 @@
 
 use crate::Result;
 use crate::document::Layer;
-use crate::io::Opened;
+use crate::io::OpenedDocument;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// A file that holds a whole document, or should.
-pub struct DocumentFile {
+pub struct DocumentReport {
     pub name: String,
-    pub opened: Result<Opened>,
+    pub opened: Result<OpenedDocument>,
 }
 
-impl DocumentFile {
+impl DocumentReport {
     pub fn json(&self) -> Value {
         let opened = match &self.opened {
             Ok(opened) => opened,

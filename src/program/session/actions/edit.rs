@@ -22,7 +22,7 @@ impl EditAction {
             EditAction::Redo {} => 1,
             EditAction::Walk { steps } => *steps,
         };
-        if let Some(tab) = session.tab_mut() {
+        if let Some(tab) = session.active_mut() {
             tab.walk(steps);
         }
     }

@@ -2,15 +2,15 @@
 //! Floor 6. Formats are `io`'s.
 
 use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource, flatten};
-use crate::io::export::{Options, Target};
+use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::{Budget, files::read_file, maps, picture};
 use crate::math::{Size, Vec2, srgb::Color};
-use crate::paint::{Adjust, Filter, PictureSource, PlacedImage, Placement};
+use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::layers::above;
-use crate::session::actions::pictures::{self, Part};
+use crate::session::actions::pictures::{self, PicturePart};
 use crate::session::replay::actions;
-use crate::session::{Session, Tab, brushes, storage};
+use crate::session::{OpenDocument, Session, brushes, storage};
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use crate::tools::brush::free_name;
 use crate::{Error, Result};
@@ -37,7 +37,7 @@ actions! {
         "save" Save { file: PathBuf }
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8 }
         /// A picture that the selected layer is made of.
-        "use" Use { part: Part, file: PathBuf }
+        "use" Use { part: PicturePart, file: PathBuf }
         /// The document's surface anew, of these maps: what is live bends over it.
         "replace maps" ReplaceMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
         "tab" Tab { index: usize }
@@ -53,7 +53,7 @@ impl FileAction {
             FileAction::New { width, height, background } => {
                 let size = Budget::default().size(Path::new("new"), (*width).into(), (*height).into())?;
                 let name = session.untitled();
-                session.add_tab(Tab::new(name, empty(size, *background), None));
+                session.add_document(OpenDocument::new(name, empty(size, *background), None));
             }
             FileAction::Open { file } => {
                 let opened = storage::open(file)?;
@@ -71,28 +71,28 @@ impl FileAction {
             FileAction::KeepBrush { name } => brushes::keep(session, name)?,
             FileAction::RemoveBrush { name } => brushes::remove(session, name)?,
             FileAction::Save { file } => {
-                let Some(tab) = session.tab() else { return Ok(()) };
+                let Some(tab) = session.active() else { return Ok(()) };
                 let document = tab.document().clone();
                 let stamp = tab.stamp.filter(|_| tab.file.as_ref() == Some(file));
                 // Nothing here gives up, so it is saved.
                 if let (Some(stamp), Some(tab)) =
-                    (storage::save(file, &document, stamp, &Progress::default())?, session.tab_mut())
+                    (storage::save(file, &document, stamp, &Progress::default())?, session.active_mut())
                 {
                     tab.mark_saved(document, file.clone(), stamp);
                 }
             }
             FileAction::Export { file, background, quality } => {
-                let Some(tab) = session.tab() else { return Ok(()) };
+                let Some(tab) = session.active() else { return Ok(()) };
                 export(
                     tab.document(),
                     file,
-                    &Options { background: *background, quality: *quality, ..Options::default() },
+                    &ExportOptions { background: *background, quality: *quality, ..ExportOptions::default() },
                     &Progress::default(),
                 )?;
             }
             FileAction::Use { part, file } => {
                 let read = pictures::read(*part, file)?;
-                if let Some(tab) = session.tab_mut()
+                if let Some(tab) = session.active_mut()
                     && let Some(layer) = tab.selected
                 {
                     pictures::put(tab, layer, read);
@@ -103,8 +103,8 @@ impl FileAction {
                 let import = storage::import(&source)?;
                 replace_maps(session, &source, import)?;
             }
-            FileAction::Tab { index } => session.current = (*index).min(session.tabs.len().saturating_sub(1)),
-            FileAction::Close { index } => session.close_tab(*index),
+            FileAction::Tab { index } => session.current = (*index).min(session.open_documents.len().saturating_sub(1)),
+            FileAction::Close { index } => session.close_document(*index),
         }
         Ok(())
     }
@@ -117,8 +117,8 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
 }
 
 /// The flattened picture as a file; none is written if that is given up.
-pub fn export(document: &Document, file: &Path, options: &Options, progress: &Progress) -> Result<()> {
-    let target = Target::new(file, &[])?;
+pub fn export(document: &Document, file: &Path, options: &ExportOptions, progress: &Progress) -> Result<()> {
+    let target = OutputFile::new(file, &[])?;
     match flatten(document, progress) {
         Some(pixels) => target.write(&pixels, document.size, options),
         None => Ok(()),
@@ -139,9 +139,9 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
         Operator::None => DROPPED,
         operator => operator,
     };
-    let Some(tab) = session.tab_mut() else {
-        let tab = Tab::new(name, of_picture(name, picture), None);
-        return session.add_tab(tab);
+    let Some(tab) = session.active_mut() else {
+        let tab = OpenDocument::new(name, of_picture(name, picture), None);
+        return session.add_document(tab);
     };
     let document = tab.document();
     let operator = if document.surface.is_some() { operator } else { Operator::None };
@@ -151,7 +151,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
         placement: Placement::covering(document.size),
         outside: Outside::Mirror,
         bend: Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() },
-        filter: Filter::Antialias,
+        filter: ImageFilter::Antialias,
     };
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));
@@ -164,9 +164,9 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
 
 /// Another surface beneath the layers, as a step; stretched to the canvas, which is said. Fails where a surface of the
 /// canvas's size cannot be made of it.
-pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps::Import) -> Result<()> {
-    let maps::Import { surface, findings, files } = import;
-    let Some(tab) = session.tab_mut() else { return Ok(()) };
+pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
+    let maps::ImportedSurface { surface, findings, files } = import;
+    let Some(tab) = session.active_mut() else { return Ok(()) };
     let (canvas, found) = (tab.document().size, surface.size());
     let mut notes = findings.notes;
     let surface = if found == canvas {
@@ -197,7 +197,7 @@ pub fn of_picture(name: &str, picture: Picture) -> Document {
         placement: Placement::covering(size),
         outside: Outside::Mirror,
         bend: Bend::default(),
-        filter: Filter::Antialias,
+        filter: ImageFilter::Antialias,
     };
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Document { layers: vec![Arc::new(Layer::new(stem, Content::Image(Live::new(image))))], ..Document::empty(size) }
@@ -213,13 +213,13 @@ pub(super) fn free_file(document: &Document, name: &str) -> String {
         })
     };
     let path = Path::new(name);
-    let (stem, ending) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
+    let (stem, extension) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
     let mut free = name.to_owned();
     for i in 2.. {
         if !taken(&free) {
             break;
         }
-        free = format!("{}-{i}.{}", stem.to_string_lossy(), ending.to_string_lossy());
+        free = format!("{}-{i}.{}", stem.to_string_lossy(), extension.to_string_lossy());
     }
     free
 }

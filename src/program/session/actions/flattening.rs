@@ -3,9 +3,9 @@
 
 use super::LayerAction;
 use super::layers::sibling;
-use crate::document::{Content, Document, Layer, LayerId, PixelLayer, Place, Progress, flatten, flatten_layer};
+use crate::document::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten, flatten_layer};
 use crate::raster::TileGrid;
-use crate::session::tab::Edit;
+use crate::session::open_document::Edit;
 use std::sync::Arc;
 
 impl LayerAction {
@@ -59,7 +59,7 @@ fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Docu
 /// A layer and the one beneath it as one paint layer.
 fn merged(document: &Document, layer: &Layer, progress: &Progress) -> Option<Edit> {
     let place = document.place_of(layer.id)?;
-    let beneath: LayerId = sibling(document, Place { index: place.index.checked_sub(1)?, ..place })?;
+    let beneath: LayerId = sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })?;
     let beneath = document.layer(beneath)?.clone();
     // The two alone, in a canvas of their own that sees the same surface.
     let pair = vec![Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&beneath) })];

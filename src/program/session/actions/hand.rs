@@ -4,41 +4,41 @@
 use crate::io::recipe::read_brush;
 use crate::math::srgb::Color;
 use crate::paint::Property;
-use crate::paint::{Fill, Mark};
+use crate::paint::{BrushMode, Fill};
 use crate::session::Session;
-use crate::session::replay::{Replayed, actions, field, names, record};
-use crate::surface::{Bounded, Operator};
+use crate::session::replay::{ReplayValue, actions, field, names, record};
+use crate::surface::{Operator, PaintLimit};
 use crate::tools::symmetry::MOST_ROUND;
 use crate::tools::{Symmetry, ToolKind};
 use serde_json::{Value, json};
 
 names!(ToolKind);
-names!(Bounded);
+names!(PaintLimit);
 record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
 /// A kind with its numbers, as in recipes.
-impl Replayed for Mark {
+impl ReplayValue for BrushMode {
     fn written(&self) -> Value {
         match *self {
-            Mark::Paint => json!({ "kind": "paint" }),
-            Mark::Smudge { length } => json!({ "kind": "smudge", "length": length.written() }),
-            Mark::Blur { width } => json!({ "kind": "blur", "width": width.written() }),
-            Mark::Clone { aligned, picture } => json!({ "kind": "clone", "aligned": aligned, "picture": picture }),
+            BrushMode::Paint => json!({ "kind": "paint" }),
+            BrushMode::Smudge { length } => json!({ "kind": "smudge", "length": length.written() }),
+            BrushMode::Blur { width } => json!({ "kind": "blur", "width": width.written() }),
+            BrushMode::Clone { aligned, picture } => json!({ "kind": "clone", "aligned": aligned, "picture": picture }),
         }
     }
     fn read(value: &Value) -> Result<Self, String> {
         Ok(match value.get("kind").and_then(Value::as_str) {
-            Some("paint") => Mark::Paint,
-            Some("smudge") => Mark::Smudge { length: field(value, "length")? },
-            Some("blur") => Mark::Blur { width: field(value, "width")? },
-            Some("clone") => Mark::Clone { aligned: field(value, "aligned")?, picture: field(value, "picture")? },
+            Some("paint") => BrushMode::Paint,
+            Some("smudge") => BrushMode::Smudge { length: field(value, "length")? },
+            Some("blur") => BrushMode::Blur { width: field(value, "width")? },
+            Some("clone") => BrushMode::Clone { aligned: field(value, "aligned")?, picture: field(value, "picture")? },
             _ => return Err("must be a mark of a known kind".into()),
         })
     }
 }
 
 /// A word, or how many times round.
-impl Replayed for Symmetry {
+impl ReplayValue for Symmetry {
     fn written(&self) -> Value {
         match *self {
             Symmetry::None => "none".into(),
@@ -88,9 +88,9 @@ actions! {
         /// A mouse presses less the faster it goes.
         "press by speed" PressBySpeed { on: bool }
         /// Whether the brush paints, smudges, blurs or clones.
-        "mark" Mark { mark: Mark }
+        "mark" Mark { mark: BrushMode }
         /// How far the brush may go.
-        "bounded" Bounded { bounded: Bounded }
+        "bounded" Bounded { bounded: PaintLimit }
     }
 }
 
@@ -130,7 +130,7 @@ impl HandAction {
             HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
             HandAction::Fill { fill } => session.fill = *fill,
             HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
-            HandAction::Mark { mark } => brush.mark = *mark,
+            HandAction::Mark { mark: mode } => brush.mode = *mode,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
         }
     }

@@ -3,17 +3,17 @@
 
 use super::flattening::no_pixels;
 use crate::document::{
-    Content, DetailSource, Document, Group, Layer, LayerId, LayerMask, Live, MaskKind, NormalLayer, Place, Progress,
-    StrokeList,
+    Content, DetailSource, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, NormalLayer,
+    Progress, StrokeList,
 };
 use crate::math::vec2;
-use crate::paint::{Filter, Gradient, Placement, Stop};
+use crate::paint::{Gradient, GradientStop, ImageFilter, Placement};
 use crate::raster::{Outside, Plane};
+use crate::session::open_document::Edit;
 use crate::session::replay::{actions, names};
-use crate::session::tab::Edit;
-use crate::session::{LayerPath, Property, Session, Tab};
+use crate::session::{LayerPath, OpenDocument, Property, Session};
 use crate::shading::{Model, RadianceScaling, Shading};
-use crate::surface::Grain;
+use crate::surface::NoiseRelief;
 use crate::tools::brush::free_name;
 use std::sync::Arc;
 
@@ -87,15 +87,18 @@ actions! {
 
 impl LayerAction {
     pub fn apply(&self, session: &mut Session) {
-        let in_hand = Gradient {
+        let gradient_settings = Gradient {
             from: vec2(0.0, 0.0),
             to: vec2(1.0, 1.0),
-            stops: vec![Stop { t: 0.0, color: session.color }, Stop { t: 1.0, color: session.second_color }],
+            stops: vec![
+                GradientStop { t: 0.0, color: session.color },
+                GradientStop { t: 1.0, color: session.second_color },
+            ],
             operator: session.operator,
-            filter: Filter::Antialias,
+            filter: ImageFilter::Antialias,
         };
         session.drop_gesture();
-        let Some(tab) = session.tab_mut() else { return };
+        let Some(tab) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
             return set(tab, layer, to, *done);
         }
@@ -117,7 +120,7 @@ impl LayerAction {
                 tab.solo = if tab.solo == id { None } else { id };
             }
             _ => {
-                if let Some(edit) = self.edit(tab, &in_hand) {
+                if let Some(edit) = self.edit(tab, &gradient_settings) {
                     tab.take(edit);
                     tab.on_mask = matches!(self, LayerAction::PaintMask { .. });
                 }
@@ -125,12 +128,12 @@ impl LayerAction {
         }
     }
     /// The step, the document it leads to, and what is selected then.
-    fn edit(&self, tab: &Tab, in_hand: &Gradient) -> Option<Edit> {
+    fn edit(&self, tab: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
         let document = tab.document();
         let layer = |path: &LayerPath| path.find(document).cloned();
         let (label, document, select) = match self {
             LayerAction::Add { kind } => {
-                let new = made(*kind, document, in_hand);
+                let new = made(*kind, document, gradient_settings);
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
             }
@@ -156,7 +159,7 @@ impl LayerAction {
                 let layer = layer(path)?;
                 let place = document.place_of(layer.id)?;
                 let next = document.without_layer(layer.id)?;
-                let neighbour = sibling(&next, Place { index: place.index.saturating_sub(1), ..place });
+                let neighbour = sibling(&next, LayerSlot { index: place.index.saturating_sub(1), ..place });
                 ("Delete layer", next, neighbour)
             }
             LayerAction::Duplicate { layer: path } => {
@@ -164,19 +167,19 @@ impl LayerAction {
                 let place = document.place_of(layer.id)?;
                 let copy = copied(&layer, &free_name(document, &format!("{} copy", layer.name)));
                 let id = copy.id;
-                let next = document.with_inserted(copy, Place { index: place.index + 1, ..place })?;
+                let next = document.with_inserted(copy, LayerSlot { index: place.index + 1, ..place })?;
                 ("Duplicate layer", next, Some(id))
             }
             LayerAction::Move { layer: path, group, index } => {
                 let group = group.as_ref().map(|path| layer(path).map(|layer| layer.id).ok_or(())).transpose().ok()?;
                 let id = layer(path)?.id;
-                ("Move layer", document.with_moved(id, Place { group, index: *index })?, Some(id))
+                ("Move layer", document.with_moved(id, LayerSlot { group, index: *index })?, Some(id))
             }
             LayerAction::Nudge { layer: path, by } => {
                 let id = layer(path)?.id;
                 let place = document.place_of(id)?;
                 let index = place.index.saturating_add_signed(*by as isize);
-                ("Move layer", document.with_moved(id, Place { index, ..place })?, Some(id))
+                ("Move layer", document.with_moved(id, LayerSlot { index, ..place })?, Some(id))
             }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
                 return self.flattened(document, &Progress::default());
@@ -195,7 +198,7 @@ impl LayerAction {
                 let place = document.place_of(layer.id)?;
                 let mut next = document.without_layer(layer.id)?;
                 for (i, inner) in group.layers.iter().enumerate() {
-                    next = next.with_inserted(Layer::clone(inner), Place { index: place.index + i, ..place })?;
+                    next = next.with_inserted(Layer::clone(inner), LayerSlot { index: place.index + i, ..place })?;
                 }
                 ("Ungroup", next, group.layers.last().map(|layer| layer.id))
             }
@@ -217,25 +220,25 @@ impl LayerAction {
     }
 }
 
-fn set(tab: &mut Tab, layer: &LayerPath, to: &Property, done: bool) {
+fn set(tab: &mut OpenDocument, layer: &LayerPath, to: &Property, done: bool) {
     let Some(id) = layer.find(tab.document()).map(|layer| layer.id) else { return tab.forget_preview() };
     let Some(document) = tab.document().with_layer(id, |layer| to.apply(layer)) else { return };
     if done { tab.commit(to.label(), document) } else { tab.show(to.label(), document) }
 }
 
 /// Where a new layer goes: above the selected one; into it, on top, if it is a group.
-pub fn above(tab: &Tab) -> Place {
+pub fn above(tab: &OpenDocument) -> LayerSlot {
     let document = tab.document();
-    let Some(layer) = tab.selected.and_then(|id| document.layer(id)) else { return Place::top_level(usize::MAX) };
+    let Some(layer) = tab.selected.and_then(|id| document.layer(id)) else { return LayerSlot::top_level(usize::MAX) };
     if matches!(layer.content, Content::Group(_)) {
-        return Place::in_group(layer.id, usize::MAX);
+        return LayerSlot::in_group(layer.id, usize::MAX);
     }
-    let place = document.place_of(layer.id).unwrap_or(Place::top_level(usize::MAX));
-    Place { index: place.index.saturating_add(1), ..place }
+    let place = document.place_of(layer.id).unwrap_or(LayerSlot::top_level(usize::MAX));
+    LayerSlot { index: place.index.saturating_add(1), ..place }
 }
 
 /// The layer at a place, or the group it is in.
-pub(super) fn sibling(document: &Document, place: Place) -> Option<LayerId> {
+pub(super) fn sibling(document: &Document, place: LayerSlot) -> Option<LayerId> {
     let layers = match place.group {
         None => &document.layers,
         Some(group) => match &document.layer(group)?.content {
@@ -253,25 +256,26 @@ fn model_name(model: Model) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-fn made(kind: NewLayer, document: &Document, in_hand: &Gradient) -> Layer {
+fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> Layer {
     let size = document.size;
     let (name, content) = match kind {
         NewLayer::Paint => ("Paint", Content::Pixels(no_pixels())),
         NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
-        NewLayer::Fill => {
-            ("Fill", Content::Fill(in_hand.stops.first().map_or(crate::math::srgb::Color::BLACK, |stop| stop.color)))
-        }
+        NewLayer::Fill => (
+            "Fill",
+            Content::Fill(gradient_settings.stops.first().map_or(crate::math::srgb::Color::BLACK, |stop| stop.color)),
+        ),
         NewLayer::Gradient => {
             let middle = size.center();
             let reach = vec2(0.0, 0.35 * size.height as f32);
-            let gradient = Gradient { from: middle - reach, to: middle + reach, ..in_hand.clone() };
+            let gradient = Gradient { from: middle - reach, to: middle + reach, ..gradient_settings.clone() };
             ("Gradient", Content::Gradient(Live::new(gradient)))
         }
         NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
         NewLayer::RadianceScaling => ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default())),
         NewLayer::Normals => {
             let normals = NormalLayer {
-                source: DetailSource::Grain(Grain::default()),
+                source: DetailSource::Grain(NoiseRelief::default()),
                 placement: Placement { center: size.center(), scale: 1.0, rotation: 0.0 },
                 outside: Outside::Repeat,
                 strength: 0.5,

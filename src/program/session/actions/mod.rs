@@ -20,7 +20,7 @@ pub use strokes::{StrokeAction, Style};
 pub use views::ViewAction;
 
 use super::Session;
-use super::replay::Replayed;
+use super::replay::ReplayValue;
 use crate::Result;
 use serde_json::Value;
 
@@ -52,7 +52,7 @@ impl Action {
     }
 }
 
-impl Replayed for Action {
+impl ReplayValue for Action {
     fn written(&self) -> Value {
         let (room, mut value) = match self {
             Action::Edit(action) => ("edit", action.written()),
@@ -70,13 +70,13 @@ impl Replayed for Action {
     }
     fn read(value: &Value) -> std::result::Result<Self, String> {
         Ok(match value.get("in").and_then(Value::as_str) {
-            Some("edit") => Action::Edit(Replayed::read(value)?),
-            Some("file") => Action::File(Replayed::read(value)?),
-            Some("hand") => Action::Hand(Replayed::read(value)?),
-            Some("layer") => Action::Layer(Replayed::read(value)?),
-            Some("pointer") => Action::Pointer(Replayed::read(value)?),
-            Some("stroke") => Action::Stroke(Replayed::read(value)?),
-            Some("view") => Action::View(Replayed::read(value)?),
+            Some("edit") => Action::Edit(ReplayValue::read(value)?),
+            Some("file") => Action::File(ReplayValue::read(value)?),
+            Some("hand") => Action::Hand(ReplayValue::read(value)?),
+            Some("layer") => Action::Layer(ReplayValue::read(value)?),
+            Some("pointer") => Action::Pointer(ReplayValue::read(value)?),
+            Some("stroke") => Action::Stroke(ReplayValue::read(value)?),
+            Some("view") => Action::View(ReplayValue::read(value)?),
             _ => return Err("“in” must be edit, file, hand, layer, pointer, stroke or view".into()),
         })
     }

@@ -9,7 +9,7 @@ use crate::io::{Budget, files::read_file, maps::detail, picture};
 use crate::math::{Size, Vec2};
 use crate::paint::{Adjust, PictureSource};
 use crate::raster::{Picture, Plane};
-use crate::session::Tab;
+use crate::session::OpenDocument;
 use crate::session::replay::names;
 use crate::shading::{Environment, LitSphere};
 use crate::surface::DetailMap;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// What of a layer is a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum PicturePart {
     /// What a placed image shows.
     Image,
     Mask,
@@ -30,81 +30,81 @@ pub enum Part {
     Detail,
 }
 
-names!(Part, [
-    Part::Image => "image", Part::Mask => "mask", Part::Environment => "environment", Part::Sphere => "sphere",
-    Part::ConcaveSphere => "concave sphere", Part::Detail => "detail",
+names!(PicturePart, [
+    PicturePart::Image => "image", PicturePart::Mask => "mask", PicturePart::Environment => "environment", PicturePart::Sphere => "sphere",
+    PicturePart::ConcaveSphere => "concave sphere", PicturePart::Detail => "detail",
 ]);
 
-impl Part {
+impl PicturePart {
     /// What a dialog that asks for it is called.
     pub fn title(self) -> &'static str {
         match self {
-            Part::Image => "Picture of the layer",
-            Part::Mask => "Mask of the layer",
-            Part::Environment => "Environment",
-            Part::Sphere => "Lit sphere",
-            Part::ConcaveSphere => "Lit sphere of hollows",
-            Part::Detail => "Detail normals",
+            PicturePart::Image => "Picture of the layer",
+            PicturePart::Mask => "Mask of the layer",
+            PicturePart::Environment => "Environment",
+            PicturePart::Sphere => "Lit sphere",
+            PicturePart::ConcaveSphere => "Lit sphere of hollows",
+            PicturePart::Detail => "Detail normals",
         }
     }
     fn step(self) -> &'static str {
         match self {
-            Part::Image => "Replace picture",
-            Part::Mask => "Layer mask",
-            Part::Environment => "Environment",
-            Part::Sphere | Part::ConcaveSphere => "Lit sphere",
-            Part::Detail => "Detail normals",
+            PicturePart::Image => "Replace picture",
+            PicturePart::Mask => "Layer mask",
+            PicturePart::Environment => "Environment",
+            PicturePart::Sphere | PicturePart::ConcaveSphere => "Lit sphere",
+            PicturePart::Detail => "Detail normals",
         }
     }
 }
 
 /// A part as it was read.
-pub struct Read {
-    part: Part,
+pub struct ReadPart {
+    part: PicturePart,
     /// Of the file, without its folder.
     name: String,
-    what: What,
+    what: PartValue,
 }
 
-enum What {
+enum PartValue {
     Picture(Picture),
     Mask(Plane<u8>),
     Detail(Picture, Arc<DetailMap>),
 }
 
 /// Reads a part from a file of the user's.
-pub fn read(part: Part, file: &Path) -> Result<Read> {
+pub fn read(part: PicturePart, file: &Path) -> Result<ReadPart> {
     let bytes = || read_file(file, Budget::default().file_bytes);
     let (name, what) = match part {
-        Part::Mask => {
+        PicturePart::Mask => {
             let mask = picture::decode_coverage(file, &bytes()?, &Budget::default())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            (name, What::Mask(mask))
+            (name, PartValue::Mask(mask))
         }
-        Part::Detail => {
+        PicturePart::Detail => {
             let normals = detail::read(file, &bytes()?, &NormalConvention::default(), &Budget::default())?;
             let (name, picture) = read_picture(file)?;
-            (name, What::Detail(picture, Arc::new(DetailMap::new(normals))))
+            (name, PartValue::Detail(picture, Arc::new(DetailMap::new(normals))))
         }
         _ => {
             let (name, picture) = read_picture(file)?;
-            (name, What::Picture(picture))
+            (name, PartValue::Picture(picture))
         }
     };
-    Ok(Read { part, name, what })
+    Ok(ReadPart { part, name, what })
 }
 
 /// Puts what was read into a layer, as a step. A layer that has no such part stays as it is.
-pub fn put(tab: &mut Tab, layer: LayerId, read: Read) {
-    let Read { part, name, what } = read;
+pub fn put(tab: &mut OpenDocument, layer: LayerId, read: ReadPart) {
+    let ReadPart { part, name, what } = read;
     let document = tab.document();
     let (file, canvas) = (free_file(document, &name), document.size);
     let next = match what {
-        What::Mask(mask) => with_mask(document, layer, file, fitted(&mask, canvas)),
-        What::Detail(picture, map) => {
+        PartValue::Mask(mask) => with_mask(document, layer, file, fitted(&mask, canvas)),
+        PartValue::Detail(picture, map) => {
             with_detail(document, layer, PictureSource::new(file, picture, Adjust::default()), map)
         }
-        What::Picture(picture) => with_picture(document, layer, part, file, picture),
+        PartValue::Picture(picture) => with_picture(document, layer, part, file, picture),
     };
     if let Some(next) = next {
         tab.commit(part.step(), next);
@@ -124,9 +124,15 @@ fn with_detail(document: &Document, layer: LayerId, picture: PictureSource, map:
     document.with_layer(layer, |layer| layer.content = Content::Normals(normals))
 }
 
-fn with_picture(document: &Document, layer: LayerId, part: Part, file: String, picture: Picture) -> Option<Document> {
+fn with_picture(
+    document: &Document,
+    layer: LayerId,
+    part: PicturePart,
+    file: String,
+    picture: Picture,
+) -> Option<Document> {
     let content = match &document.layer(layer)?.content {
-        Content::Image(live) if part == Part::Image => {
+        Content::Image(live) if part == PicturePart::Image => {
             let mut image = live.params().clone();
             image.source = PictureSource::new(file, picture, image.source.adjust);
             Content::Image(Live::new(image))
@@ -134,7 +140,7 @@ fn with_picture(document: &Document, layer: LayerId, part: Part, file: String, p
         Content::Shading(live) => {
             let mut shading = live.params().clone();
             match part {
-                Part::Environment => {
+                PicturePart::Environment => {
                     let known = shading.environment.as_ref().map(|e| (e.projection, e.rotation, e.exposure));
                     let mut environment = Environment::new(file, picture);
                     if let Some(known) = known {
@@ -142,9 +148,9 @@ fn with_picture(document: &Document, layer: LayerId, part: Part, file: String, p
                     }
                     shading.environment = Some(environment);
                 }
-                Part::Sphere => shading.sphere = Some(LitSphere::new(file, picture)),
-                Part::ConcaveSphere => shading.sphere_concave = Some(LitSphere::new(file, picture)),
-                Part::Image | Part::Mask | Part::Detail => return None,
+                PicturePart::Sphere => shading.sphere = Some(LitSphere::new(file, picture)),
+                PicturePart::ConcaveSphere => shading.sphere_concave = Some(LitSphere::new(file, picture)),
+                PicturePart::Image | PicturePart::Mask | PicturePart::Detail => return None,
             }
             Content::Shading(Live::new(shading))
         }

@@ -2,21 +2,21 @@
 //! Floor 6.
 
 use crate::math::vec2;
-use crate::paint::{Mark, Sample};
-use crate::session::replay::{Replayed, actions, record};
+use crate::paint::{BrushMode, Sample};
+use crate::session::replay::{ReplayValue, actions, record};
 use crate::session::{CloneSource, Session};
-use crate::tools::brush::Purpose;
-use crate::tools::{self, Context, Keys, Outcome, Pen, ToolKind};
+use crate::tools::brush::StrokePurpose;
+use crate::tools::{self, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
 use serde_json::Value;
 
-record!(Keys { shift, ctrl, alt });
+record!(ModifierKeys { shift, ctrl, alt });
 
 /// [x, y, pressure, tilt x, tilt y, seconds] and the keys held.
-impl Replayed for Pen {
+impl ReplayValue for PenSample {
     fn written(&self) -> Value {
         let Sample { at, pressure, tilt, time_secs } = self.sample;
         let mut list = vec![at.x, at.y, pressure, tilt.x, tilt.y, time_secs].written();
-        if let Some(list) = list.as_array_mut().filter(|_| self.keys != Keys::default()) {
+        if let Some(list) = list.as_array_mut().filter(|_| self.keys != ModifierKeys::default()) {
             list.push(self.keys.written());
         }
         list
@@ -30,7 +30,7 @@ impl Replayed for Pen {
             tilt: vec2(number(3, 0.0)?, number(4, 0.0)?),
             time_secs: number(5, 0.0)?,
         };
-        Ok(Pen { sample, keys: list.get(6).map_or(Ok(Keys::default()), Keys::read)? })
+        Ok(PenSample { sample, keys: list.get(6).map_or(Ok(ModifierKeys::default()), ModifierKeys::read)? })
     }
 }
 
@@ -38,8 +38,8 @@ actions! {
     /// Canvas px.
     PointerAction {
         /// With which tool, for a key may lend another; near is so many px to a screen point.
-        "press" Press { tool: ToolKind, pen: Pen, px_per_pt: f32 }
-        "drag" Drag { pens: Vec<Pen> }
+        "press" Press { tool: ToolKind, pen: PenSample, px_per_pt: f32 }
+        "drag" Drag { pens: Vec<PenSample> }
         "release" Release {}
         /// What was begun is forgotten.
         "cancel" Cancel {}
@@ -66,18 +66,18 @@ impl PointerAction {
     }
 }
 
-fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
+fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) {
     session.drop_gesture();
     let clones = matches!(tool, ToolKind::Brush) && !pen.keys.alt;
-    let clone_offset = match session.brush.mark {
-        Mark::Clone { aligned, .. } if clones => {
-            session.tab_mut().and_then(|tab| tab.begin_clone(pen.place(), aligned))
+    let clone_offset = match session.brush.mode {
+        BrushMode::Clone { aligned, .. } if clones => {
+            session.active_mut().and_then(|tab| tab.begin_clone(pen.place(), aligned))
         }
         _ => None,
     };
-    let Some(tab) = session.tab() else { return };
+    let Some(tab) = session.active() else { return };
     let strokes = tab.chosen_strokes();
-    let context = Context {
+    let context = ToolContext {
         document: tab.document(),
         layer: tab.selected,
         brush: &session.brush,
@@ -92,8 +92,8 @@ fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
         clone_offset,
     };
     let (gesture, outcome) = match tool {
-        ToolKind::Brush if tab.on_mask => tools::mask::press(&context, pen, Purpose::Paint),
-        ToolKind::Eraser if tab.on_mask => tools::mask::press(&context, pen, Purpose::Erase),
+        ToolKind::Brush if tab.on_mask => tools::mask::press(&context, pen, StrokePurpose::Paint),
+        ToolKind::Eraser if tab.on_mask => tools::mask::press(&context, pen, StrokePurpose::Erase),
         _ => tools::press(tool, &context, pen),
     };
     session.gesture = gesture;
@@ -106,7 +106,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: Pen, px_per_pt: f32) {
 
 fn take(session: &mut Session, outcome: Outcome) {
     let end = session.last_pen;
-    let Some(tab) = session.tab_mut() else { return };
+    let Some(tab) = session.active_mut() else { return };
     match outcome {
         Outcome::Idle => {}
         Outcome::Preview(document) => tab.show("", document),

@@ -3,7 +3,7 @@
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color, vec2};
-use crate::paint::{Brush, Mark, Stroke};
+use crate::paint::{Brush, BrushMode, Stroke};
 use crate::session::replay::actions;
 use crate::session::{LayerPath, Session};
 use crate::surface::Operator;
@@ -51,8 +51,8 @@ const ASIDE_PX: f32 = 12.0;
 impl StrokeAction {
     pub fn apply(&self, session: &mut Session) {
         session.drop_gesture();
-        let in_hand = session.brush.clone();
-        let Some(tab) = session.tab_mut() else { return };
+        let current_brush = session.brush.clone();
+        let Some(tab) = session.active_mut() else { return };
         tab.forget_preview();
         let document = tab.document();
         let id = |path: &LayerPath| path.find(document).map(|layer| layer.id);
@@ -72,7 +72,7 @@ impl StrokeAction {
             }
             StrokeAction::Restyle { layer, strokes, to, done } => {
                 let Some(id) = id(layer) else { return };
-                let next = document.with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &in_hand));
+                let next = document.with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &current_brush));
                 match next {
                     Some(next) if *done => tab.commit("Restyle stroke", next),
                     Some(next) => tab.show("Restyle stroke", next),
@@ -120,8 +120,8 @@ impl StrokeAction {
 }
 
 impl Style {
-    /// The stroke painted in this way; `in_hand`: the brush that [`Style::Brush`] gives.
-    fn given_to(&self, stroke: &Stroke, in_hand: &Brush) -> Stroke {
+    /// The stroke painted in this way; `current_brush`: the brush that [`Style::Brush`] gives.
+    fn given_to(&self, stroke: &Stroke, current_brush: &Brush) -> Stroke {
         let unit = |v: f32| v.max(0.0).min(1.0);
         let mut brush = stroke.brush().clone();
         let (mut operator, mut color) = (stroke.operator(), stroke.color());
@@ -138,7 +138,7 @@ impl Style {
             Style::Softness { to } => brush.softness = unit(*to),
             Style::Spacing { to } => brush.spacing = to.max(0.01).min(10.0),
             Style::Rotation { to } => brush.rotation = *to,
-            Style::Brush {} => brush = Brush { mark: Mark::Paint, ..in_hand.clone() },
+            Style::Brush {} => brush = Brush { mode: BrushMode::Paint, ..current_brush.clone() },
         }
         Stroke::new(brush, operator, color, stroke.samples().to_vec())
     }

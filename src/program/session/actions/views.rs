@@ -3,7 +3,7 @@
 
 use crate::math::Vec2;
 use crate::session::replay::actions;
-use crate::session::{Session, view::View};
+use crate::session::{Session, view::CanvasView};
 
 actions! {
     /// Screen points are measured from the middle of the canvas's area, y down.
@@ -29,26 +29,26 @@ impl ViewAction {
             ViewAction::Overlay { view } => session.overlay.clone_from(view),
             ViewAction::OverlayOpacity { to } => session.overlay_opacity = to.max(0.0).min(1.0),
             _ => {
-                if let Some(tab) = session.tab_mut() {
+                if let Some(tab) = session.active_mut() {
                     let size = tab.document().size;
-                    let view = tab.view.unwrap_or_else(|| View::fitting(size, Vec2::new(800.0, 600.0)));
-                    tab.view = Some(self.seen(view, size));
+                    let view = tab.view.unwrap_or_else(|| CanvasView::fitting(size, Vec2::new(800.0, 600.0)));
+                    tab.view = Some(self.clamped(view, size));
                 }
             }
         }
     }
-    fn seen(&self, view: View, canvas: crate::math::Size) -> View {
+    fn clamped(&self, view: CanvasView, canvas: crate::math::Size) -> CanvasView {
         match self {
             ViewAction::Pan { by } => view.panned(*by),
             ViewAction::Zoom { factor, about } => view.zoomed(*factor, *about),
             ViewAction::ZoomTo { zoom } => view.zoomed(zoom / view.zoom, Vec2::ZERO),
             ViewAction::Turn { by_rad } => view.turned(*by_rad),
-            ViewAction::Mirror {} => View { mirrored: !view.mirrored, ..view },
-            ViewAction::Upright {} => View { turn_rad: 0.0, ..view },
+            ViewAction::Mirror {} => CanvasView { mirrored: !view.mirrored, ..view },
+            ViewAction::Upright {} => CanvasView { turn_rad: 0.0, ..view },
             ViewAction::Fit { window_pt } => {
-                View { mirrored: view.mirrored, ..View::fitting(canvas, window_pt.max(Vec2::ONE)) }
+                CanvasView { mirrored: view.mirrored, ..CanvasView::fitting(canvas, window_pt.max(Vec2::ONE)) }
             }
-            ViewAction::LookAt { center } => View { center: *center, ..view },
+            ViewAction::LookAt { center } => CanvasView { center: *center, ..view },
             ViewAction::Overlay { .. } | ViewAction::OverlayOpacity { .. } => view,
         }
     }

@@ -21,7 +21,7 @@ fn crash(session: Session) {
     autosave(&session).settle();
     drop(session);
 }
-fn lost(folder: &Path) -> Vec<recovery::Session> {
+fn lost(folder: &Path) -> Vec<recovery::LostSession> {
     Autosave::new(folder.into()).lost().list()
 }
 fn files(folder: &Path) -> usize {
@@ -33,11 +33,11 @@ fn after_a_crash_the_drawing_comes_back_untitled_and_unsaved() {
     let folder = tempfile::tempdir().unwrap();
     let session = painted(folder.path());
     assert!(lost(folder.path()).is_empty(), "it still lives");
-    let before = crate::io::recipe::write(session.tab().unwrap().document());
+    let before = crate::io::recipe::write(session.active().unwrap().document());
     crash(session);
     let left = lost(folder.path()).pop().unwrap();
     let mut autosave = Autosave::new(folder.path().into());
-    let Found { tab, recovery } = autosave.lost().bring_back(left).unwrap();
+    let RecoveredTab { tab, recovery } = autosave.lost().bring_back(left).unwrap();
     assert_eq!((tab.title().as_str(), &tab.file), ("Untitled 1 (recovered)", &None));
     assert!(tab.is_dirty());
     assert_eq!(crate::io::recipe::write(tab.document()), before);
@@ -54,8 +54,8 @@ fn a_program_that_is_just_dying_is_waited_for() {
     crash(painted(folder.path()));
     for entry in std::fs::read_dir(folder.path()).unwrap().flatten() {
         // As if another process had written it.
-        let ending = entry.path().extension().unwrap().to_owned();
-        std::fs::rename(entry.path(), folder.path().join("0-1-0").with_extension(ending)).unwrap();
+        let extension = entry.path().extension().unwrap().to_owned();
+        std::fs::rename(entry.path(), folder.path().join("0-1-0").with_extension(extension)).unwrap();
     }
     let lock = Disk.lock(&folder.path().join("0-1-0.lock")).unwrap().unwrap();
     let dying = std::thread::spawn(move || {
@@ -113,8 +113,8 @@ fn the_program_ends_as_it_should_and_leaves_only_what_is_unsaved() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = painted(folder.path());
     session.replay(Path::new("story"), STORY.lines().next().unwrap()).unwrap();
-    let Session { tabs, autosave, .. } = &mut session;
-    autosave.as_mut().unwrap().close(tabs);
+    let Session { open_documents, autosave, .. } = &mut session;
+    autosave.as_mut().unwrap().close(open_documents);
     drop(session);
     let left = lost(folder.path());
     assert_eq!(left.len(), 1);

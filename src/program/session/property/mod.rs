@@ -3,17 +3,17 @@
 
 mod values;
 
-pub use values::{DerivedMask, MaskNumbers};
+pub use values::{DerivedMask, DerivedMaskNumbers};
 
-use super::actions::pictures::Part;
+use super::actions::pictures::PicturePart;
 use super::replay::actions;
-use crate::document::{Content, DetailSource, Layer, Live, Lock};
+use crate::document::{Content, DetailSource, Layer, LayerLock, Live};
 use crate::math::{Vec2, Vec3, srgb::Color};
-use crate::paint::{Adjust, Filter, Gradient, PictureSource, PlacedImage, Placement, Stop};
+use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{BlendMode, Outside};
 use crate::shading::scaling::Reference;
 use crate::shading::{Features, Light, Model, Projection, RadianceScaling, Scaling, Shading, Term};
-use crate::surface::{Anchor, Grain, Operator, Weights};
+use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
 use values::set_mask;
 
 actions! {
@@ -25,7 +25,7 @@ actions! {
         "blend" Blend { mode: BlendMode }
         "linear" BlendLinear { on: bool }
         "clip" ClipBelow { on: bool }
-        "lock" Locked { lock: Lock }
+        "lock" Locked { lock: LayerLock }
         "clip to surface" ClipToSurface { on: bool }
         "pass through" PassThrough { on: bool }
         "fill" Fill { color: Color }
@@ -34,9 +34,9 @@ actions! {
         "power" Power { to: f32 }
         "placement" Place { placement: Placement }
         "outside" Beyond { outside: Outside }
-        "filter" Filtered { filter: Filter }
+        "filter" Filtered { filter: ImageFilter }
         "adjust" Adjusted { adjust: Adjust }
-        "stops" Stops { stops: Vec<Stop> }
+        "stops" Stops { stops: Vec<GradientStop> }
         "ends" Ends { from: Vec2, to: Vec2 }
         /// A mask derived from the surface, or none.
         "mask" Mask { mask: Option<DerivedMask> }
@@ -46,11 +46,11 @@ actions! {
         /// How the environment lies: degrees about the vertical axis, stops.
         "environment" Surrounded { projection: Projection, rotation: f32, exposure: f32 }
         /// The layer does without that picture.
-        "without" Without { part: Part }
+        "without" Without { part: PicturePart }
         /// How far away occluders still count, px.
         "occlusion" Occlusion { to: f32 }
         /// Of a normal layer without a map.
-        "grain" Grained { grain: Grain }
+        "grain" Grained { grain: NoiseRelief }
         "model" ShadingModel { model: Model }
         "lights" Lights { lights: Vec<Light> }
         "ambient" Ambient { term: Term }
@@ -230,9 +230,9 @@ impl Property {
                 environment.projection = *projection;
                 (environment.rotation, environment.exposure) = (*rotation, exposure.max(-20.0).min(20.0));
             }
-            Property::Without { part: Part::Environment } => next.environment = None,
-            Property::Without { part: Part::Sphere } => next.sphere = None,
-            Property::Without { part: Part::ConcaveSphere } => next.sphere_concave = None,
+            Property::Without { part: PicturePart::Environment } => next.environment = None,
+            Property::Without { part: PicturePart::Sphere } => next.sphere = None,
+            Property::Without { part: PicturePart::ConcaveSphere } => next.sphere_concave = None,
             _ => return None,
         }
         Some(next)
@@ -250,8 +250,8 @@ impl Property {
 }
 
 /// A grain whose numbers are those that a document may hold.
-fn finite(grain: Grain) -> Grain {
-    Grain {
+fn finite(grain: NoiseRelief) -> NoiseRelief {
+    NoiseRelief {
         size_px: grain.size_px.max(0.1).min(100_000.0),
         octaves: grain.octaves.clamp(1, 12),
         roughness: grain.roughness.max(0.0).min(2.0),

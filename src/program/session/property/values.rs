@@ -1,18 +1,18 @@
 //! How the values of properties stand in a replay.
 //! Floor 6.
 
-use crate::document::{Layer, LayerMask, Lock, MaskKind};
+use crate::document::{Layer, LayerLock, LayerMask, MaskKind};
 use crate::math::Vec3;
-use crate::paint::{Adjust, Filter, Placement, Stop};
+use crate::paint::{Adjust, GradientStop, ImageFilter, Placement};
 use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{names, record};
 use crate::shading::scaling::Reference;
 use crate::shading::{FeatureScale, Features, Light, LightKind, Model, Projection, Scaling, Term};
-use crate::surface::{Anchor, Grain, Operator};
+use crate::surface::{Anchor, NoiseRelief, Operator};
 
 names!(BlendMode);
-names!(Lock, [Lock::None => "none", Lock::Alpha => "alpha", Lock::All => "all"]);
-names!(Filter, [Filter::Antialias => "antialias", Filter::Bilinear => "bilinear"]);
+names!(LayerLock, [LayerLock::None => "none", LayerLock::Alpha => "alpha", LayerLock::All => "all"]);
+names!(ImageFilter, [ImageFilter::Antialias => "antialias", ImageFilter::Bilinear => "bilinear"]);
 names!(Outside, [
     Outside::None => "none", Outside::Clamp => "clamp", Outside::Repeat => "repeat", Outside::Mirror => "mirror",
 ]);
@@ -25,11 +25,11 @@ names!(Model, [
 names!(Projection, [
     Projection::LatLong => "lat-long", Projection::Angular => "angular", Projection::MirrorBall => "mirror-ball",
 ]);
-record!(Grain { size_px, octaves, roughness, stretch, seed });
+record!(NoiseRelief { size_px, octaves, roughness, stretch, seed });
 record!(Placement { center, scale, rotation });
 record!(Adjust { blur, exposure, hue, saturation, brightness, contrast });
 record!(Anchor { at, source });
-record!(Stop { t, color });
+record!(GradientStop { t, color });
 record!(Scaling { alpha, gamma_convex, gamma_concave });
 record!(Term { color, weight, scaling });
 record!(FeatureScale { curvature_scale_px, blur_px, weight });
@@ -37,7 +37,7 @@ record!(Features { scales, lambda });
 record!(Light { kind, color, intensity });
 
 /// How marks follow the surface, as four words with their numbers.
-impl crate::session::replay::Replayed for Operator {
+impl crate::session::replay::ReplayValue for Operator {
     fn written(&self) -> serde_json::Value {
         match *self {
             Operator::None => serde_json::json!({ "kind": "none" }),
@@ -64,7 +64,7 @@ impl crate::session::replay::Replayed for Operator {
     }
 }
 
-impl crate::session::replay::Replayed for LightKind {
+impl crate::session::replay::ReplayValue for LightKind {
     fn written(&self) -> serde_json::Value {
         match self {
             LightKind::Directional { direction } => serde_json::json!({ "direction": direction.written() }),
@@ -80,7 +80,7 @@ impl crate::session::replay::Replayed for LightKind {
 }
 
 /// Y*: a number, or the largest there is.
-impl crate::session::replay::Replayed for Reference {
+impl crate::session::replay::ReplayValue for Reference {
     fn written(&self) -> serde_json::Value {
         match self {
             Reference::Auto => "auto".into(),
@@ -94,22 +94,22 @@ impl crate::session::replay::Replayed for Reference {
 
 /// A mask derived from the surface; one that is a picture is kept as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DerivedMask(pub MaskNumbers);
+pub struct DerivedMask(pub DerivedMaskNumbers);
 
 /// The numbers of a derived mask.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MaskNumbers {
+pub enum DerivedMaskNumbers {
     Fresnel { f0: f32, power: f32 },
     Curvature { scale: f32, blur: f32, from: f32, to: f32 },
     Depth { from: f32, to: f32 },
 }
 
-impl crate::session::replay::Replayed for DerivedMask {
+impl crate::session::replay::ReplayValue for DerivedMask {
     fn written(&self) -> serde_json::Value {
         let (kind, numbers): (&str, Vec<f32>) = match self.0 {
-            MaskNumbers::Fresnel { f0, power } => ("fresnel", vec![f0, power]),
-            MaskNumbers::Curvature { scale, blur, from, to } => ("curvature", vec![scale, blur, from, to]),
-            MaskNumbers::Depth { from, to } => ("depth", vec![from, to]),
+            DerivedMaskNumbers::Fresnel { f0, power } => ("fresnel", vec![f0, power]),
+            DerivedMaskNumbers::Curvature { scale, blur, from, to } => ("curvature", vec![scale, blur, from, to]),
+            DerivedMaskNumbers::Depth { from, to } => ("depth", vec![from, to]),
         };
         serde_json::json!({ "kind": kind, "numbers": numbers.written() })
     }
@@ -117,9 +117,9 @@ impl crate::session::replay::Replayed for DerivedMask {
         let numbers: Vec<f32> = crate::session::replay::field(value, "numbers")?;
         let kind = value.get("kind").and_then(|kind| kind.as_str()).unwrap_or_default();
         Ok(Self(match (kind, &numbers[..]) {
-            ("fresnel", &[f0, power]) => MaskNumbers::Fresnel { f0, power },
-            ("curvature", &[scale, blur, from, to]) => MaskNumbers::Curvature { scale, blur, from, to },
-            ("depth", &[from, to]) => MaskNumbers::Depth { from, to },
+            ("fresnel", &[f0, power]) => DerivedMaskNumbers::Fresnel { f0, power },
+            ("curvature", &[scale, blur, from, to]) => DerivedMaskNumbers::Curvature { scale, blur, from, to },
+            ("depth", &[from, to]) => DerivedMaskNumbers::Depth { from, to },
             _ => return Err("must be a mask of a known kind with its numbers".into()),
         }))
     }
@@ -130,9 +130,9 @@ pub(super) fn set_mask(layer: &mut Layer, mask: Option<DerivedMask>) {
     let invert = layer.mask.as_ref().is_some_and(|mask| mask.invert);
     layer.mask = mask.map(|DerivedMask(numbers)| {
         let kind = match numbers {
-            MaskNumbers::Fresnel { f0, power } => MaskKind::Fresnel { f0, power },
-            MaskNumbers::Curvature { scale, blur, from, to } => MaskKind::Curvature { scale, blur, from, to },
-            MaskNumbers::Depth { from, to } => MaskKind::Depth { from, to },
+            DerivedMaskNumbers::Fresnel { f0, power } => MaskKind::Fresnel { f0, power },
+            DerivedMaskNumbers::Curvature { scale, blur, from, to } => MaskKind::Curvature { scale, blur, from, to },
+            DerivedMaskNumbers::Depth { from, to } => MaskKind::Depth { from, to },
         };
         LayerMask { invert, ..LayerMask::new(kind) }
     });

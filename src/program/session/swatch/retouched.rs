@@ -7,7 +7,7 @@ use crate::io::recipe::Preset;
 use crate::math::{Size, Vec2, srgb::Color, vec2};
 use crate::raster::TileGrid;
 use crate::surface::Surface;
-use crate::tools::{Context, Keys, Outcome, Pen, brush};
+use crate::tools::{ModifierKeys, Outcome, PenSample, ToolContext, brush};
 use std::sync::Arc;
 
 /// Bands across the side of the picture.
@@ -16,27 +16,28 @@ const BANDS: f32 = 5.0;
 const COLORS: [[u8; 4]; 3] = [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
 
 /// The document once the stroke is drawn; `None` where nothing came of it.
-pub fn drawn(preset: &Preset, surface: Arc<Surface>, scale: f32, ground: Color) -> Option<Document> {
+pub fn drawn(preset: &Preset, surface: Arc<Surface>, scale: f32, background: Color) -> Option<Document> {
     let size = surface.size();
     let side = size.width.min(size.height) as f32;
     let paint = PixelLayer { tiles: bands(size, side), file: String::new(), x: 0, y: 0 };
     let layers = [
-        Layer::new("ground", Content::Gradient(Live::new(clay(ground, size)))),
+        Layer::new("ground", Content::Gradient(Live::new(clay(background, size)))),
         Layer::new("paint", Content::Pixels(paint)),
     ];
     let layer = layers[1].id;
     let layers = layers.into_iter().map(Arc::new).collect();
     let document = Document { surface: Some(surface), layers, ..Document::empty(size) };
     let brush = scaled(&preset.brush, scale, side);
-    let context = Context {
+    let context = ToolContext {
         layer: Some(layer),
         operator: preset.operator,
         // From the band beside.
         clone_offset: Some(vec2(side / BANDS, 0.0)),
-        ..Context::new(&document, &brush)
+        ..ToolContext::new(&document, &brush)
     };
-    let pens: Vec<Pen> = wave(size).into_iter().map(|sample| Pen { sample, keys: Keys::default() }).collect();
-    let (gesture, _) = brush::press(&context, *pens.first()?, brush::Purpose::Paint);
+    let pens: Vec<PenSample> =
+        wave(size).into_iter().map(|sample| PenSample { sample, keys: ModifierKeys::default() }).collect();
+    let (gesture, _) = brush::press(&context, *pens.first()?, brush::StrokePurpose::Paint);
     let mut gesture = gesture?;
     gesture.drag(&pens[1..]);
     match gesture.release() {

@@ -3,8 +3,8 @@
 use super::*;
 use crate::document::source::MaskSource;
 use crate::io::maps;
-use crate::io::recipe::{Group, load_preset, presets};
-use crate::io::{Budget, Given};
+use crate::io::recipe::{PresetGroup, load_preset, presets};
+use crate::io::{Budget, UserFiles};
 use crate::session::storage::maps_of;
 use std::path::{Path, PathBuf};
 
@@ -38,7 +38,7 @@ fn sample(name: &str) -> Arc<Surface> {
     let mut source = maps_of(Some(&map("normal")), Some(&map("depth")));
     let file = map("mask").to_string_lossy().into_owned();
     source.mask = Some(MaskSource::File { file, channel: None, invert: false });
-    let surface = maps::import(&source, &Given::default(), &Budget::default()).unwrap().surface;
+    let surface = maps::import(&source, &UserFiles::default(), &Budget::default()).unwrap().surface;
     Arc::new(surface.fitted(Size::new(CELL, CELL)).unwrap())
 }
 /// A preset as its file is now, so that a file can be changed and looked at without a build.
@@ -46,7 +46,7 @@ fn current(preset: Preset) -> Preset {
     load_preset(&in_package(&format!("brushes/{}.json", preset.key)), &Budget::default()).unwrap()
 }
 /// A group's presets side by side, on the ball and on two samples below each other.
-fn sheet(group: Group, samples: &[Arc<Surface>]) -> image::RgbImage {
+fn sheet(group: PresetGroup, samples: &[Arc<Surface>]) -> image::RgbImage {
     let presets: Vec<Preset> = presets().map(current).filter(|preset| preset.group == group).collect();
     let mut sheet = image::RgbImage::new(CELL * presets.len() as u32, CELL * (1 + samples.len() as u32));
     for (column, preset) in (0..).zip(&presets) {
@@ -67,7 +67,7 @@ fn the_sheets_of_the_documentation_show_what_the_presets_paint() {
     let samples = [sample("teapot"), sample("muse")];
     let page = std::fs::read_to_string(in_package("docs/BRUSHES.md")).unwrap_or_default();
     let mut weight = 0;
-    for (group, name) in Group::ALL.into_iter().filter(|(group, _)| *group != Group::Imported) {
+    for (group, name) in PresetGroup::ALL.into_iter().filter(|(group, _)| *group != PresetGroup::Imported) {
         let painted = sheet(group, &samples);
         let file = in_package(&format!("docs/brushes/{}.jpg", crate::io::brush::plain(name)));
         if std::env::var_os("UPDATE_GOLDEN").is_some() {

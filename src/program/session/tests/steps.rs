@@ -34,7 +34,7 @@ fn fingerprint(document: &Document) -> (String, u32) {
     (crate::io::recipe::write(document).to_string(), crc32fast::hash(&picture))
 }
 fn document(session: &Session) -> Document {
-    session.tab().unwrap().document().clone()
+    session.active().unwrap().document().clone()
 }
 fn walk(session: &mut Session, steps: i32) -> (String, u32) {
     session.replay(Path::new("story"), &format!(r#"{{"in":"edit","do":"walk","steps":{steps}}}"#)).unwrap();

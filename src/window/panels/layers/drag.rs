@@ -1,8 +1,8 @@
 //! A layer dragged to another place of the list.
 //! Floor 7.
 
-use crate::asked::Asked;
 use crate::document::{Content, Document, Layer, LayerId};
+use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath};
 use crate::theme::ACCENT;
@@ -10,7 +10,14 @@ use eframe::egui::{self, Rect, Response, Stroke, Ui};
 use std::sync::Arc;
 
 /// A row in hand, and rows it can be dropped between or into.
-pub fn show(ui: &Ui, document: &Document, layer: &Arc<Layer>, response: &Response, rect: Rect, asked: &mut Asked) {
+pub fn show(
+    ui: &Ui,
+    document: &Document,
+    layer: &Arc<Layer>,
+    response: &Response,
+    rect: Rect,
+    requests: &mut UiRequests,
+) {
     response.dnd_set_drag_payload(layer.id);
     if let Some(held) = response.dnd_hover_payload::<LayerId>()
         && *held != layer.id
@@ -18,9 +25,9 @@ pub fn show(ui: &Ui, document: &Document, layer: &Arc<Layer>, response: &Respons
     {
         let stroke = Stroke::new(2.0, ACCENT);
         match drop_at(layer, rect, pointer.y) {
-            Drop::Above => drop(ui.painter().hline(rect.x_range(), rect.top(), stroke)),
-            Drop::Below => drop(ui.painter().hline(rect.x_range(), rect.bottom(), stroke)),
-            Drop::Into => drop(ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside)),
+            LayerDrop::Above => drop(ui.painter().hline(rect.x_range(), rect.top(), stroke)),
+            LayerDrop::Below => drop(ui.painter().hline(rect.x_range(), rect.bottom(), stroke)),
+            LayerDrop::Into => drop(ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside)),
         }
     }
     let Some(held) = response.dnd_release_payload::<LayerId>().filter(|held| **held != layer.id) else { return };
@@ -28,27 +35,27 @@ pub fn show(ui: &Ui, document: &Document, layer: &Arc<Layer>, response: &Respons
     let Some(rest) = document.without_layer(*held) else { return };
     let Some(place) = rest.place_of(layer.id) else { return };
     let (group, index) = match drop_at(layer, rect, pointer.y) {
-        Drop::Above => (place.group, place.index + 1),
-        Drop::Below => (place.group, place.index),
-        Drop::Into => (Some(layer.id), usize::MAX >> 1),
+        LayerDrop::Above => (place.group, place.index + 1),
+        LayerDrop::Below => (place.group, place.index),
+        LayerDrop::Into => (Some(layer.id), usize::MAX >> 1),
     };
     let group = group.and_then(|group| LayerPath::of(document, group));
     if let Some(layer) = LayerPath::of(document, *held) {
-        asked.act(Action::Layer(LayerAction::Move { layer, group, index }));
+        requests.act(Action::Layer(LayerAction::Move { layer, group, index }));
     }
 }
 
-enum Drop {
+enum LayerDrop {
     Above,
     Below,
     Into,
 }
 
-fn drop_at(layer: &Layer, rect: Rect, y: f32) -> Drop {
+fn drop_at(layer: &Layer, rect: Rect, y: f32) -> LayerDrop {
     let along = (y - rect.top()) / rect.height();
     match &layer.content {
-        Content::Group(_) if (0.25..0.75).contains(&along) => Drop::Into,
-        _ if along < 0.5 => Drop::Above,
-        _ => Drop::Below,
+        Content::Group(_) if (0.25..0.75).contains(&along) => LayerDrop::Into,
+        _ if along < 0.5 => LayerDrop::Above,
+        _ => LayerDrop::Below,
     }
 }

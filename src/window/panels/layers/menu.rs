@@ -2,15 +2,15 @@
 //! Floor 7.
 
 use super::set;
-use crate::asked::Asked;
 use crate::document::Layer;
+use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath, Property};
 use eframe::egui::{Id, Ui};
 
-pub fn show(ui: &mut Ui, layer: &Layer, path: &LayerPath, asked: &mut Asked) {
-    type Make = fn(LayerPath) -> LayerAction;
-    let entries: [(&str, Make); 7] = [
+pub fn show(ui: &mut Ui, layer: &Layer, path: &LayerPath, requests: &mut UiRequests) {
+    type MenuAction = fn(LayerPath) -> LayerAction;
+    let entries: [(&str, MenuAction); 7] = [
         ("Duplicate", |layer| LayerAction::Duplicate { layer }),
         ("Group", |layer| LayerAction::Group { layer }),
         ("Merge down", |layer| LayerAction::MergeDown { layer }),
@@ -25,12 +25,12 @@ pub fn show(ui: &mut Ui, layer: &Layer, path: &LayerPath, asked: &mut Asked) {
     }
     for (label, make) in entries {
         if ui.button(label).clicked() {
-            asked.act(Action::Layer(make(path.clone())));
+            requests.act(Action::Layer(make(path.clone())));
             ui.close();
         }
     }
     if ui.button(if layer.visible { "Hide" } else { "Show" }).clicked() {
-        set(asked, path, Property::Visible { on: !layer.visible }, true);
+        set(requests, path, Property::Visible { on: !layer.visible }, true);
         ui.close();
     }
 }

@@ -5,17 +5,17 @@ mod drag;
 mod menu;
 mod row;
 
-use crate::asked::Asked;
-use crate::document::{Content, Document, Group, Layer, Lock};
+use crate::document::{Content, Document, Group, Layer, LayerLock};
 use crate::icons::{Icon, icon_button};
 use crate::raster::BlendMode;
+use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, NewLayer};
 use crate::session::{Action, LayerPath, Property, Session};
 use crate::thumbnails::Thumbnails;
 use crate::tools::ToolKind;
-use crate::widgets::{Number, choice};
+use crate::widgets::{NumberField, choice};
 use eframe::egui::{self, Ui};
-use row::Row;
+use row::LayerRow;
 use std::sync::Arc;
 
 pub fn kind_icon(content: &Content) -> (Icon, &'static str) {
@@ -32,21 +32,21 @@ pub fn kind_icon(content: &Content) -> (Icon, &'static str) {
     }
 }
 
-fn set(asked: &mut Asked, layer: &LayerPath, to: Property, done: bool) {
-    asked.act(Action::Layer(LayerAction::Set { layer: layer.clone(), to, done }));
+fn set(requests: &mut UiRequests, layer: &LayerPath, to: Property, done: bool) {
+    requests.act(Action::Layer(LayerAction::Set { layer: layer.clone(), to, done }));
 }
 
-pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, asked: &mut Asked) {
+pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
     let Some(document) = session.shown() else {
         ui.weak("No document is open.");
         return;
     };
-    head(ui, session, asked);
-    foot(ui, session, asked);
+    head(ui, session, requests);
+    foot(ui, session, requests);
     let height = ui.available_height();
     egui::ScrollArea::vertical().id_salt("layers").max_height(height).auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        rows(ui, session, document, &document.layers, 0, thumbnails, asked);
+        rows(ui, session, document, &document.layers, 0, thumbnails, requests);
         if document.layers.is_empty() {
             ui.weak("No layers yet: paint, or drop a picture.");
         }
@@ -54,55 +54,60 @@ pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, asked: 
 }
 
 /// Blend mode and opacity of the selected layer.
-fn head(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
     ui.horizontal(|ui| {
         if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::LABELS) {
-            set(asked, &path, Property::Blend { mode }, true);
+            set(requests, &path, Property::Blend { mode }, true);
         }
-        let number = Number::new("Opacity", 0.0..=1.0, "Of the whole layer");
+        let number = NumberField::new("Opacity", 0.0..=1.0, "Of the whole layer");
         if let Some(changed) = number.inline(ui, layer.opacity, (ui.available_width() - 112.0).max(30.0)) {
-            set(asked, &path, Property::Opacity { to: changed.to }, changed.done);
+            set(requests, &path, Property::Opacity { to: changed.to }, changed.done);
         }
     });
     ui.horizontal(|ui| {
         let toggles = [
-            (Icon::LockAlpha, "Lock alpha", layer.lock == Lock::Alpha, "Paint only where there is paint already (/)"),
-            (Icon::Lock, "Lock layer", layer.lock == Lock::All, "No tool changes it"),
+            (
+                Icon::LockAlpha,
+                "Lock alpha",
+                layer.lock == LayerLock::Alpha,
+                "Paint only where there is paint already (/)",
+            ),
+            (Icon::Lock, "Lock layer", layer.lock == LayerLock::All, "No tool changes it"),
             (Icon::Clip, "Clip to layer below", layer.clip_below, "Paint only where the layer beneath has paint"),
         ];
         for (icon, label, is_on, hint) in toggles {
             if icon_button(ui, icon, label, is_on).on_hover_text(format!("{label}\n{hint}")).clicked() {
-                let lock = |lock: Lock| Property::Locked { lock: if is_on { Lock::None } else { lock } };
+                let lock = |lock: LayerLock| Property::Locked { lock: if is_on { LayerLock::None } else { lock } };
                 let to = match icon {
-                    Icon::LockAlpha => lock(Lock::Alpha),
-                    Icon::Lock => lock(Lock::All),
+                    Icon::LockAlpha => lock(LayerLock::Alpha),
+                    Icon::Lock => lock(LayerLock::All),
                     _ => Property::ClipBelow { on: !is_on },
                 };
-                set(asked, &path, to, true);
+                set(requests, &path, to, true);
             }
         }
-        let is_alone = session.tab().is_some_and(|tab| tab.solo == Some(layer.id));
+        let is_alone = session.active().is_some_and(|tab| tab.solo == Some(layer.id));
         if icon_button(ui, Icon::Solo, "Show layer alone", is_alone).on_hover_text("Show this layer alone").clicked() {
-            asked.act(Action::Layer(LayerAction::Solo { layer: path }));
+            requests.act(Action::Layer(LayerAction::Solo { layer: path }));
         }
     });
 }
 
 /// The buttons that make, copy, merge and delete.
-fn foot(ui: &mut Ui, session: &Session, asked: &mut Asked) {
+fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.menu_button("+ Add", |ui| {
             for (kind, name) in NewLayer::ALL {
                 if ui.button(name).clicked() {
-                    asked.act(Action::Layer(LayerAction::Add { kind }));
+                    requests.act(Action::Layer(LayerAction::Add { kind }));
                     ui.close();
                 }
             }
         });
         let Some(path) = session.layer_path() else { return };
-        type Make = fn(LayerPath) -> LayerAction;
-        let buttons: [(Icon, &str, Make); 6] = [
+        type ButtonAction = fn(LayerPath) -> LayerAction;
+        let buttons: [(Icon, &str, ButtonAction); 6] = [
             (Icon::Duplicate, "Duplicate layer", |layer| LayerAction::Duplicate { layer }),
             (Icon::Up, "Move layer up", |layer| LayerAction::Nudge { layer, by: 1 }),
             (Icon::Down, "Move layer down", |layer| LayerAction::Nudge { layer, by: -1 }),
@@ -113,7 +118,7 @@ fn foot(ui: &mut Ui, session: &Session, asked: &mut Asked) {
         for (icon, label, make) in buttons {
             let hint = crate::commands::named(label).map_or(label, |command| command.hint);
             if icon_button(ui, icon, label, false).on_hover_text(format!("{label}\n{hint}")).clicked() {
-                asked.act(Action::Layer(make(path.clone())));
+                requests.act(Action::Layer(make(path.clone())));
             }
         }
     });
@@ -126,16 +131,16 @@ fn rows(
     layers: &[Arc<Layer>],
     depth: usize,
     thumbnails: &mut Thumbnails,
-    asked: &mut Asked,
+    requests: &mut UiRequests,
 ) {
     for layer in layers.iter().rev() {
         let Some(path) = LayerPath::of(document, layer.id) else { continue };
-        let row = Row { session, document, layer, path, depth };
-        row.show(ui, thumbnails, asked);
+        let row = LayerRow { session, document, layer, path, depth };
+        row.show(ui, thumbnails, requests);
         if let Content::Group(Group { layers, .. }) = &layer.content
             && !row::is_folded(ui, layer.id)
         {
-            rows(ui, session, document, layers, depth + 1, thumbnails, asked);
+            rows(ui, session, document, layers, depth + 1, thumbnails, requests);
         }
     }
 }

@@ -2,10 +2,10 @@
 //! Floor 7.
 
 use super::{drag, kind_icon, menu, set};
-use crate::asked::Asked;
-use crate::document::{Content, Document, Layer, LayerId, Lock, MaskKind};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock, MaskKind};
 use crate::icons::{Icon, sized_button};
 use crate::raster::BlendMode;
+use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath, Property, Session};
 use crate::theme::ACCENT;
@@ -19,7 +19,7 @@ const ROW_PT: f32 = 38.0;
 const INDENT_PT: f32 = 14.0;
 
 /// A layer in its place.
-pub struct Row<'a> {
+pub struct LayerRow<'a> {
     pub session: &'a Session,
     pub document: &'a Document,
     pub layer: &'a Arc<Layer>,
@@ -37,11 +37,11 @@ pub fn is_folded(ui: &Ui, layer: LayerId) -> bool {
     ui.data(|data| data.get_temp::<bool>(folded(layer)).unwrap_or(false))
 }
 
-impl Row<'_> {
-    pub fn show(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, asked: &mut Asked) {
-        let Row { session, document, layer, path, depth } = self;
+impl LayerRow<'_> {
+    pub fn show(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
+        let LayerRow { session, document, layer, path, depth } = self;
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
-        let is_selected = session.tab().is_some_and(|tab| tab.selected == Some(layer.id));
+        let is_selected = session.active().is_some_and(|tab| tab.selected == Some(layer.id));
         let label = format!("Layer {}", layer.name);
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label));
         let fill = match (is_selected, response.hovered()) {
@@ -54,23 +54,23 @@ impl Row<'_> {
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
         inner.spacing_mut().item_spacing.x = 3.0;
         inner.add_space(2.0 + *depth as f32 * INDENT_PT);
-        self.switches(&mut inner, asked);
+        self.switches(&mut inner, requests);
         picture(&mut inner, document, layer, thumbnails);
-        self.mask(&mut inner, thumbnails, asked);
-        name(&mut inner, session, layer, path, &response, asked);
-        drag::show(ui, document, layer, &response, rect, asked);
+        self.mask(&mut inner, thumbnails, requests);
+        name(&mut inner, session, layer, path, &response, requests);
+        drag::show(ui, document, layer, &response, rect, requests);
         if response.clicked() {
-            asked.act(Action::Layer(LayerAction::Select { layer: path.clone() }));
+            requests.act(Action::Layer(LayerAction::Select { layer: path.clone() }));
         }
-        response.context_menu(|ui| menu::show(ui, layer, path, asked));
+        response.context_menu(|ui| menu::show(ui, layer, path, requests));
     }
     /// The eye, a group's fold, and the sign of being clipped.
-    fn switches(&self, ui: &mut Ui, asked: &mut Asked) {
+    fn switches(&self, ui: &mut Ui, requests: &mut UiRequests) {
         let layer = self.layer;
         let eye = if layer.visible { Icon::Shown } else { Icon::Hidden };
         let eye = sized_button(ui, eye, &format!("Show {}", layer.name), layer.visible, 22.0);
         if eye.on_hover_text("Show or hide").clicked() {
-            set(asked, &self.path, Property::Visible { on: !layer.visible }, true);
+            set(requests, &self.path, Property::Visible { on: !layer.visible }, true);
         }
         if matches!(layer.content, Content::Group(_)) {
             let is_folded = is_folded(ui, layer.id);
@@ -85,9 +85,9 @@ impl Row<'_> {
         }
     }
     /// The mask, small: a click paints on it, with Shift puts it aside.
-    fn mask(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, asked: &mut Asked) {
+    fn mask(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
         let Some(mask) = &self.layer.mask else { return };
-        let is_on = self.session.tab().is_some_and(|tab| tab.on_mask && tab.selected == Some(self.layer.id));
+        let is_on = self.session.active().is_some_and(|tab| tab.on_mask && tab.selected == Some(self.layer.id));
         let (rect, response) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::click());
         let label = format!("Mask of {}", self.layer.name);
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, &label));
@@ -116,11 +116,11 @@ impl Row<'_> {
         let is_picture = matches!(mask.kind, MaskKind::File { .. });
         let (layer, path) = (self.path.clone(), &self.path);
         if ui.input(|i| i.modifiers.shift) {
-            set(asked, path, Property::MaskDisabled { on: !mask.disabled }, true);
+            set(requests, path, Property::MaskDisabled { on: !mask.disabled }, true);
         } else if is_picture {
-            asked.act(Action::Layer(LayerAction::OnMask { layer, on: !is_on }));
+            requests.act(Action::Layer(LayerAction::OnMask { layer, on: !is_on }));
         } else {
-            asked.act(Action::Layer(LayerAction::Select { layer }));
+            requests.act(Action::Layer(LayerAction::Select { layer }));
         }
     }
 }
@@ -144,7 +144,7 @@ fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mu
 }
 
 /// The name, or a field to type another into.
-fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &Response, asked: &mut Asked) {
+fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &Response, requests: &mut UiRequests) {
     let renaming = Id::unique("renaming layer");
     let typed = ui.data(|data| data.get_temp::<(LayerId, String)>(renaming)).filter(|(id, _)| *id == layer.id);
     if let Some((id, mut text)) = typed {
@@ -154,7 +154,7 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
             ui.data_mut(|data| data.remove::<(LayerId, String)>(renaming));
             let is_kept = !ui.input(|i| i.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
             if is_kept && text != layer.name {
-                set(asked, path, Property::Name { name: text.trim().to_owned() }, true);
+                set(requests, path, Property::Name { name: text.trim().to_owned() }, true);
             }
         } else {
             response.request_focus();
@@ -166,9 +166,12 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
         ui.data_mut(|data| data.insert_temp(renaming, (layer.id, layer.name.clone())));
     }
     let at = ui.available_rect_before_wrap();
-    let is_alone = session.tab().is_some_and(|tab| tab.solo == Some(layer.id));
-    let badges =
-        [(layer.lock == Lock::All, Icon::Lock), (layer.lock == Lock::Alpha, Icon::LockAlpha), (is_alone, Icon::Solo)];
+    let is_alone = session.active().is_some_and(|tab| tab.solo == Some(layer.id));
+    let badges = [
+        (layer.lock == LayerLock::All, Icon::Lock),
+        (layer.lock == LayerLock::Alpha, Icon::LockAlpha),
+        (is_alone, Icon::Solo),
+    ];
     let badges: Vec<Icon> = badges.into_iter().filter(|(on, _)| *on).map(|(_, icon)| icon).collect();
     let room = at.width() - 6.0 - 17.0 * badges.len() as f32;
     let strong = ui.visuals().strong_text_color();

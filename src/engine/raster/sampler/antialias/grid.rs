@@ -15,13 +15,13 @@ pub const MAX_TAPS: u32 = 16;
 
 /// How a patch is covered: so many taps across and along, in a mip level.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Grid {
+pub struct TapGrid {
     pub across: u32,
     pub along: u32,
     pub level: u32,
 }
 
-impl Grid {
+impl TapGrid {
     /// For a patch that takes so many fine or coarse cells across and along in level 0.
     #[inline(always)]
     pub fn of_cells(fine: [u32; 2], coarse: [u32; 2], last_level: u32) -> Self {
@@ -59,7 +59,7 @@ pub fn cells(side: f32, cell: f32) -> u32 {
 
 /// How many cells the sides of every patch of a span take in level 0.
 #[derive(Clone)]
-pub struct Cells {
+pub struct CellCounts {
     /// Across and along, in cells of [`FINE_CELL`].
     fine: [[u32; SPAN]; 2],
     /// In cells of [`COARSE_CELL`].
@@ -70,14 +70,14 @@ pub struct Cells {
     in_all: [u32; SPAN / GROUP],
 }
 
-impl Default for Cells {
+impl Default for CellCounts {
     fn default() -> Self {
         let (ones, most) = ([[1; SPAN]; 2], [[[1; SPAN / GROUP]; 2]; 2]);
         Self { fine: ones, coarse: ones, most, in_all: [0; SPAN / GROUP] }
     }
 }
 
-impl Cells {
+impl CellCounts {
     /// Of the first `n` patches of a row.
     pub fn count(&mut self, patches: PatchRow, n: usize) {
         let n = n.min(SPAN);
@@ -85,14 +85,14 @@ impl Cells {
         look_at_groups(n / GROUP, self);
     }
     /// The grid of one patch.
-    pub fn grid(&self, k: usize, last_level: u32) -> Grid {
-        Grid::of_cells([self.fine[0][k], self.fine[1][k]], [self.coarse[0][k], self.coarse[1][k]], last_level)
+    pub fn grid(&self, k: usize, last_level: u32) -> TapGrid {
+        TapGrid::of_cells([self.fine[0][k], self.fine[1][k]], [self.coarse[0][k], self.coarse[1][k]], last_level)
     }
     /// The grid that holds the largest sides of a group's patches; `None` where it does not suit them all.
     #[inline(always)]
-    pub fn shared_grid(&self, group: usize, last_level: u32) -> Option<Grid> {
+    pub fn shared_grid(&self, group: usize, last_level: u32) -> Option<TapGrid> {
         let [fine, coarse] = [0, 1].map(|kind| [self.most[kind][0][group], self.most[kind][1][group]]);
-        let shared = Grid::of_cells(fine, coarse, last_level);
+        let shared = TapGrid::of_cells(fine, coarse, last_level);
         let alone = if fine[0] * fine[1] <= MAX_TAPS {
             // All read level 0.
             self.in_all[group] as usize
@@ -107,7 +107,7 @@ impl Cells {
 
 crate::widest! {
     /// A side is twice the longer of its two half-edges.
-    fn count_cells(patches: PatchRow, n: usize, cells_of: &mut Cells) {
+    fn count_cells(patches: PatchRow, n: usize, cells_of: &mut CellCounts) {
         for side in 0..2 {
             let ([ax, ay], [bx, by]) = (patches.edges[2 * side], patches.edges[2 * side + 1]);
             let (ax, ay, bx, by) = (&ax[..n], &ay[..n], &bx[..n], &by[..n]);
@@ -120,8 +120,8 @@ crate::widest! {
             }
         }
     }
-    fn look_at_groups(n: usize, cells: &mut Cells) {
-        let Cells { fine, coarse, most, in_all } = cells;
+    fn look_at_groups(n: usize, cells: &mut CellCounts) {
+        let CellCounts { fine, coarse, most, in_all } = cells;
         for group in 0..n {
             let part = GROUP * group..GROUP * (group + 1);
             for side in 0..2 {

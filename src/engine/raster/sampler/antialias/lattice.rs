@@ -1,22 +1,22 @@
 //! Where the taps of a grid stand in a patch: tables, since a loop over taps with divisions would cost as much as the taps.
 //! Floor 1.
 
-use super::grid::{Grid, MAX_TAPS};
+use super::grid::{MAX_TAPS, TapGrid};
 
 /// As many taps as a patch may have.
 pub const LANES: usize = MAX_TAPS as usize;
 
 /// The lattice of a grid.
 #[inline(always)]
-pub fn of(grid: Grid) -> &'static Lattice {
+pub fn of(grid: TapGrid) -> &'static TapLattice {
     &LATTICES[grid.across as usize % (LANES + 1)][grid.along as usize % (LANES + 1)]
 }
 
 /// How far each tap of a grid goes along the left, right, upper and lower half-edge, 0 … 1; row by row.
-pub type Lattice = [[f32; LANES]; 4];
+pub type TapLattice = [[f32; LANES]; 4];
 
 /// The lattice of every grid, by taps across and along.
-static LATTICES: [[Lattice; LANES + 1]; LANES + 1] = {
+static LATTICES: [[TapLattice; LANES + 1]; LANES + 1] = {
     let mut lattices = [[[[0.0; LANES]; 4]; LANES + 1]; LANES + 1];
     let mut across = 1;
     while across <= LANES {

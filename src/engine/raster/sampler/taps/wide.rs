@@ -1,18 +1,18 @@
 //! Taps in AVX2: the two rows of a tap in the two halves of a register, then two taps side by side.
 //! Floor 1. `Taps::singles_portably` and `Taps::means_portably` to the bit.
 
-use super::{GROUP, Group, ONE, Positions, Run, SHARES, Taps};
+use super::{GROUP, ONE, SHARES, TapGroup, TapPositions, TapRun, Taps};
 use std::arch::x86_64::*;
 
 /// Whether the functions below may run: the processor has AVX2, and every tap's texels are the level's.
-pub fn reads(taps: &Taps, at: Positions) -> bool {
+pub fn reads(taps: &Taps, at: TapPositions) -> bool {
     let width = at.level.size.width as usize;
     let all_within = usize::try_from(taps.range[1]).is_ok_and(|most| most + width + 1 < at.level.texels.len());
     all_within && std::arch::is_x86_feature_detected!("avx2")
 }
 
 /// As `Taps::singles`; call only where [`reads`] said so.
-pub fn singles(taps: &Taps, at: Positions, out: &mut [[u8; 4]]) {
+pub fn singles(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
     assert!(reads(taps, at));
     // SAFETY: the processor has AVX2, and no index lies beyond `range`, whose texels are in the level.
     unsafe {
@@ -21,7 +21,7 @@ pub fn singles(taps: &Taps, at: Positions, out: &mut [[u8; 4]]) {
 }
 
 /// As `Taps::means`; call only where [`reads`] said so.
-pub fn means(taps: &Taps, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
+pub fn means(taps: &Taps, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
     assert!(reads(taps, at));
     // SAFETY: as above.
     unsafe {
@@ -34,7 +34,7 @@ pub fn means(taps: &Taps, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
 }
 
 /// As `Taps::group_means`; call only where [`reads`] said so.
-pub fn group_means(taps: &Taps, at: Positions, groups: &[Group], out: &mut [[u8; 4]]) {
+pub fn group_means(taps: &Taps, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
     assert!(reads(taps, at));
     // SAFETY: as above.
     unsafe {
@@ -51,7 +51,7 @@ const AHEAD: usize = 16;
 
 /// Four pixels at a time; seams are done over, where there are any.
 #[target_feature(enable = "avx2")]
-unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: Positions, out: &mut [[u8; 4]]) {
+unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, out: &mut [[u8; 4]]) {
     let n = out.len().min(taps.index.len());
     let out = &mut out[..n];
     let (index, across, down) =
@@ -91,7 +91,7 @@ unsafe fn singles_with<const SEAMS: bool>(taps: &Taps, at: Positions, out: &mut 
 
 /// Eight pixels at a time; seams are done over, where there are any.
 #[target_feature(enable = "avx2")]
-unsafe fn group_means_with<const SEAMS: bool>(taps: &Taps, at: Positions, groups: &[Group], out: &mut [[u8; 4]]) {
+unsafe fn group_means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, groups: &[TapGroup], out: &mut [[u8; 4]]) {
     let mut first = 0;
     for group in groups {
         let range = first..(first + GROUP * usize::from(group.taps)).min(taps.index.len());
@@ -137,7 +137,7 @@ unsafe fn group_means_with<const SEAMS: bool>(taps: &Taps, at: Positions, groups
 
 /// Two taps of a pixel at a time.
 #[target_feature(enable = "avx2")]
-unsafe fn means_with<const SEAMS: bool>(taps: &Taps, at: Positions, runs: &[Run], out: &mut [[u8; 4]]) {
+unsafe fn means_with<const SEAMS: bool>(taps: &Taps, at: TapPositions, runs: &[TapRun], out: &mut [[u8; 4]]) {
     let mut first = 0;
     for run in runs {
         let range = first..(first + usize::from(run.count)).min(taps.index.len());
@@ -173,7 +173,7 @@ unsafe fn means_with<const SEAMS: bool>(taps: &Taps, at: Positions, runs: &[Run]
 /// A hint that reads nothing: the upper row of one tap and the lower row of another are asked for.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn prefetch(at: Positions, [upper, lower]: [i32; 2]) {
+fn prefetch(at: TapPositions, [upper, lower]: [i32; 2]) {
     let texel = |index: i32| at.level.texels.as_ptr().wrapping_add(index.max(0) as usize);
     _mm_prefetch::<_MM_HINT_T0>(texel(upper).cast());
     _mm_prefetch::<_MM_HINT_T0>(texel(lower).wrapping_add(at.level.size.width as usize).cast());
@@ -182,7 +182,7 @@ fn prefetch(at: Positions, [upper, lower]: [i32; 2]) {
 /// The upper pair of a tap's texels mixed, and the lower: four channels each, in `[0, 255 ONE]`. At a seam those of texel 0.
 #[inline]
 #[target_feature(enable = "avx2")]
-unsafe fn rows<const SEAMS: bool>(at: Positions, index: i32, across: u32) -> __m256i {
+unsafe fn rows<const SEAMS: bool>(at: TapPositions, index: i32, across: u32) -> __m256i {
     let first = if SEAMS { index.max(0) } else { index } as usize;
     // SAFETY: the caller checked the indices; a row further down is in the level too.
     let both = unsafe {

@@ -6,7 +6,7 @@ use crate::surface::operator::{first_order, second_order};
 
 /// The pixels of a row: centre of the first, and what the maps hold.
 #[derive(Clone, Copy)]
-pub(super) struct Span<'s> {
+pub(super) struct KernelSpan<'s> {
     pub(super) x: f32,
     pub(super) y: f32,
     pub(super) a: &'s [f32],
@@ -15,7 +15,7 @@ pub(super) struct Span<'s> {
 }
 
 /// offset_i of one pixel: (q − q_i, its two map values, the anchor) → canvas px.
-trait Offset: Copy {
+trait OffsetKernel: Copy {
     fn offset(self, from_x: f32, from_y: f32, a: f32, b: f32, pin: &FastPin) -> (f32, f32);
 }
 
@@ -35,20 +35,20 @@ pub(super) struct MirrorKernel {
     pub(super) alpha_px: f32,
 }
 
-impl Offset for StillKernel {
+impl OffsetKernel for StillKernel {
     #[inline(always)]
     fn offset(self, _: f32, _: f32, _: f32, _: f32, _: &FastPin) -> (f32, f32) {
         (0.0, 0.0)
     }
 }
-impl Offset for DepthKernel {
+impl OffsetKernel for DepthKernel {
     #[inline(always)]
     fn offset(self, from_x: f32, from_y: f32, z: f32, _: f32, pin: &FastPin) -> (f32, f32) {
         let f = first_order::scale_factor_of_rate(z - pin.a, self.rate);
         (f * from_x, f * from_y)
     }
 }
-impl Offset for NormalKernel {
+impl OffsetKernel for NormalKernel {
     #[inline(always)]
     fn offset(self, _: f32, _: f32, nbar_x: f32, nbar_y: f32, pin: &FastPin) -> (f32, f32) {
         let (dx, dy) = (nbar_x - pin.a, nbar_y - pin.b);
@@ -56,7 +56,7 @@ impl Offset for NormalKernel {
         (f * dx, f * dy)
     }
 }
-impl Offset for MirrorKernel {
+impl OffsetKernel for MirrorKernel {
     #[inline(always)]
     fn offset(self, _: f32, _: f32, mirrored_x: f32, mirrored_y: f32, pin: &FastPin) -> (f32, f32) {
         (self.alpha_px * (mirrored_x - pin.a), self.alpha_px * (mirrored_y - pin.b))
@@ -65,7 +65,7 @@ impl Offset for MirrorKernel {
 
 /// D with a single anchor, whose weight is 1.
 #[inline(always)]
-fn one(span: Span, pin: &FastPin, kernel: impl Offset, out_x: &mut [f32], out_y: &mut [f32]) {
+fn one(span: KernelSpan, pin: &FastPin, kernel: impl OffsetKernel, out_x: &mut [f32], out_y: &mut [f32]) {
     let n = out_x.len();
     let (a, b, gain, out_y) = (&span.a[..n], &span.b[..n], &span.gain[..n], &mut out_y[..n]);
     for k in 0..n {
@@ -78,7 +78,14 @@ fn one(span: Span, pin: &FastPin, kernel: impl Offset, out_x: &mut [f32], out_y:
 
 /// Adds one of several anchors: `moved += w (offset + s − q_i)`.
 #[inline(always)]
-fn add(span: Span, pin: &FastPin, kernel: impl Offset, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+fn add(
+    span: KernelSpan,
+    pin: &FastPin,
+    kernel: impl OffsetKernel,
+    weight: &[f32],
+    moved_x: &mut [f32],
+    moved_y: &mut [f32],
+) {
     let n = moved_x.len();
     let (a, b, gain, weight) = (&span.a[..n], &span.b[..n], &span.gain[..n], &weight[..n]);
     let moved_y = &mut moved_y[..n];
@@ -94,34 +101,34 @@ fn add(span: Span, pin: &FastPin, kernel: impl Offset, weight: &[f32], moved_x: 
 const AT_ANCHOR: f32 = 1e-12;
 
 #[inline(always)]
-fn distance_squared(span: Span, pin: &FastPin, k: usize) -> f32 {
+fn distance_squared(span: KernelSpan, pin: &FastPin, k: usize) -> f32 {
     let (dx, dy) = (span.x + k as i32 as f32 - pin.x, span.y - pin.y);
     dx * dx + dy * dy
 }
 
 crate::widest! {
-    pub(super) fn still_one(span: Span, pin: &FastPin, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn still_one(span: KernelSpan, pin: &FastPin, out_x: &mut [f32], out_y: &mut [f32]) {
         one(span, pin, StillKernel, out_x, out_y)
     }
-    pub(super) fn depth_one(span: Span, pin: &FastPin, kernel: DepthKernel, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn depth_one(span: KernelSpan, pin: &FastPin, kernel: DepthKernel, out_x: &mut [f32], out_y: &mut [f32]) {
         one(span, pin, kernel, out_x, out_y)
     }
-    pub(super) fn normal_one(span: Span, pin: &FastPin, kernel: NormalKernel, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn normal_one(span: KernelSpan, pin: &FastPin, kernel: NormalKernel, out_x: &mut [f32], out_y: &mut [f32]) {
         one(span, pin, kernel, out_x, out_y)
     }
-    pub(super) fn mirror_one(span: Span, pin: &FastPin, kernel: MirrorKernel, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn mirror_one(span: KernelSpan, pin: &FastPin, kernel: MirrorKernel, out_x: &mut [f32], out_y: &mut [f32]) {
         one(span, pin, kernel, out_x, out_y)
     }
-    pub(super) fn still_add(span: Span, pin: &FastPin, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+    pub(super) fn still_add(span: KernelSpan, pin: &FastPin, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
         add(span, pin, StillKernel, weight, moved_x, moved_y)
     }
-    pub(super) fn depth_add(span: Span, pin: &FastPin, kernel: DepthKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+    pub(super) fn depth_add(span: KernelSpan, pin: &FastPin, kernel: DepthKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
-    pub(super) fn normal_add(span: Span, pin: &FastPin, kernel: NormalKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+    pub(super) fn normal_add(span: KernelSpan, pin: &FastPin, kernel: NormalKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
-    pub(super) fn mirror_add(span: Span, pin: &FastPin, kernel: MirrorKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+    pub(super) fn mirror_add(span: KernelSpan, pin: &FastPin, kernel: MirrorKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
     /// 1 on the surface, 0 outside.
@@ -131,20 +138,20 @@ crate::widest! {
         }
     }
     /// Shepard's weight at power 2, not yet made to add up to 1.
-    pub(super) fn inverse_squares(span: Span, pin: &FastPin, weight: &mut [f32], weight_sum: &mut [f32]) {
+    pub(super) fn inverse_squares(span: KernelSpan, pin: &FastPin, weight: &mut [f32], weight_sum: &mut [f32]) {
         for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
             *w = 1.0 / distance_squared(span, pin, k).max(AT_ANCHOR);
             *sum += *w;
         }
     }
-    pub(super) fn nearer(span: Span, pin: &FastPin, nearest: &mut [f32]) {
+    pub(super) fn nearer(span: KernelSpan, pin: &FastPin, nearest: &mut [f32]) {
         for (k, d) in nearest.iter_mut().enumerate() {
             *d = d.min(distance_squared(span, pin, k).max(AT_ANCHOR));
         }
     }
     /// The weight along the segment of anchor `i`, whose first anchor is `first`.
     pub(super) fn segment_weights(
-        span: Span,
+        span: KernelSpan,
         first: &FastPin,
         slope: [f32; 2],
         i: usize,
@@ -164,7 +171,7 @@ crate::widest! {
         }
     }
     /// D = q + Σ w (…) / Σ w; q where there is no weight at all.
-    pub(super) fn add_mean(span: Span, moved_x: &[f32], moved_y: &[f32], weight_sum: &[f32], out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn add_mean(span: KernelSpan, moved_x: &[f32], moved_y: &[f32], weight_sum: &[f32], out_x: &mut [f32], out_y: &mut [f32]) {
         let n = out_x.len();
         let (moved_x, moved_y, weight_sum, out_y) = (&moved_x[..n], &moved_y[..n], &weight_sum[..n], &mut out_y[..n]);
         for k in 0..n {
@@ -188,7 +195,7 @@ crate::widest! {
 
 /// Shepard's weight at any power, relative to the nearest anchor's. `powf` is a call: this one stays scalar.
 pub(super) fn inverse_powers(
-    span: Span,
+    span: KernelSpan,
     pin: &FastPin,
     power: f32,
     nearest: &[f32],

@@ -2,7 +2,7 @@
 //! Floor 4. How one layer is made small is `scale`'s.
 
 use super::super::{Content, Document, Group, Layer, LayerId};
-use super::Scale;
+use super::CanvasScale;
 use crate::surface::{Surface, SurfaceError};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
@@ -10,30 +10,30 @@ use std::sync::{Arc, Weak};
 /// Makes documents small by one factor, and remembers the parts of the last one.
 ///
 /// Parts that did not change come back as the very same `Arc`, so that [`diff`](super::super::diff()) names only what did.
-pub struct Reduced {
+pub struct DocumentReducer {
     factor: f32,
     surface: Option<(Weak<Surface>, Arc<Surface>)>,
     layers: HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
 }
 
-impl Reduced {
+impl DocumentReducer {
     /// `factor`: as of [`Document::scaled`].
     pub fn new(factor: f32) -> Self {
         Self { factor, surface: None, layers: HashMap::new() }
     }
     /// The document, small: equal to [`Document::scaled`], and failing like it.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
-        let Some(scale) = Scale::of(document.size, self.factor) else { return Ok(document.clone()) };
+        let Some(scale) = CanvasScale::of(document.size, self.factor) else { return Ok(document.clone()) };
         let surface = document.surface.as_ref().map(|surface| self.surface(surface, &scale)).transpose()?;
         let mut layers = HashMap::new();
         let small = self.stack(&document.layers, &scale, &mut layers);
         self.layers = layers;
         Ok(Document { size: scale.to, surface, layers: small, ..document.clone() })
     }
-    /// Makes one more part of the document small, so that [`Reduced::of`] finds it made; whether there was one. With this a
+    /// Makes one more part of the document small, so that [`DocumentReducer::of`] finds it made; whether there was one. With this a
     /// thread that has nothing better to do gets ready in steps; the surface is one of them, half a second at 4096².
     pub fn prepare(&mut self, document: &Document) -> bool {
-        let Some(scale) = Scale::of(document.size, self.factor) else { return false };
+        let Some(scale) = CanvasScale::of(document.size, self.factor) else { return false };
         if let Some(surface) = &document.surface
             && self.surface.as_ref().is_none_or(|(known, _)| known.as_ptr() != Arc::as_ptr(surface))
         {
@@ -48,7 +48,7 @@ impl Reduced {
         self.layers.insert(layer.id, (Arc::downgrade(layer), Arc::new(scale.layer(layer))));
         true
     }
-    fn surface(&mut self, surface: &Arc<Surface>, scale: &Scale) -> Result<Arc<Surface>, SurfaceError> {
+    fn surface(&mut self, surface: &Arc<Surface>, scale: &CanvasScale) -> Result<Arc<Surface>, SurfaceError> {
         if let Some((known, small)) = &self.surface
             && known.as_ptr() == Arc::as_ptr(surface)
             && small.size() == scale.to
@@ -63,7 +63,7 @@ impl Reduced {
     fn stack(
         &self,
         layers: &[Arc<Layer>],
-        scale: &Scale,
+        scale: &CanvasScale,
         next: &mut HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
     ) -> Vec<Arc<Layer>> {
         let mut small = Vec::with_capacity(layers.len());
@@ -107,7 +107,7 @@ mod tests {
             Layer::new("group", Content::Group(Group { layers: vec![Arc::new(fill("in", 9))], pass_through: true }));
         let layers = vec![Arc::new(fill("beneath", 40)), Arc::new(group)];
         let document = Document { layers, ..Document::empty(Size::new(300, 200)) };
-        let mut reduced = Reduced::new(0.5);
+        let mut reduced = DocumentReducer::new(0.5);
         let first = reduced.of(&document).unwrap();
         assert_eq!(first.size, Size::new(150, 100));
         let inner = document.layer_named("in").unwrap().id;
@@ -127,7 +127,7 @@ mod tests {
             layers: vec![Arc::new(fill("beneath", 40)), Arc::new(fill("above", 90))],
             ..Document::empty(Size::new(300, 200))
         };
-        let mut reduced = Reduced::new(0.5);
+        let mut reduced = DocumentReducer::new(0.5);
         assert!(reduced.prepare(&document) && reduced.prepare(&document) && !reduced.prepare(&document));
         let made: Vec<_> = document.layers.iter().map(|layer| reduced.layers[&layer.id].1.clone()).collect();
         let small = reduced.of(&document).unwrap();

@@ -4,47 +4,48 @@
 use super::{Shading, lobes};
 use crate::math::{Vec3, srgb};
 use crate::raster::TILE;
-use crate::shading::ground::{Ground, Light3, Pixels, Toward};
+use crate::shading::surface_row::{Light3, LightDirection, RowValues, SurfaceRow};
 
 /// Adds ρ_d A(p) L̄(n) as the diffuse term, scaled with δ = L̄(n) / max L̄. The scaling of the ambient term, if it has one,
 /// scales the occlusion A on its own, with δ = A.
-pub fn diffuse(shading: &Shading, ground: &Ground, light: &mut Light3) {
+pub fn diffuse(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let (Some(environment), term) = (&shading.environment, &shading.diffuse) else { return };
-    let surroundings = environment.surroundings();
-    let per_brightest = 1.0 / shading.reference.resolve(surroundings.brightest_matt());
+    let environment_light = environment.environment_light();
+    let per_brightest = 1.0 / shading.reference.resolve(environment_light.brightest_matt());
     let tint = Vec3::from(term.linear());
-    let open = scaled_occlusion(shading, ground);
-    let mut seen: Light3 = [[0.0; TILE]; 3];
+    let open = scaled_occlusion(shading, surface_row);
+    let mut incoming: Light3 = [[0.0; TILE]; 3];
     let mut delta = [0.0; TILE];
-    for x in (0..ground.width).filter(|&x| ground.coverage()[x] > 0) {
-        let mean = surroundings.matt(ground.normal_at(x));
+    for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
+        let mean = environment_light.matt(surface_row.normal_at(x));
         delta[x] = srgb::luminance(mean.x, mean.y, mean.z) * per_brightest;
-        (seen[0][x], seen[1][x], seen[2][x]) = (mean * tint * open[x]).into();
+        (incoming[0][x], incoming[1][x], incoming[2][x]) = (mean * tint * open[x]).into();
     }
     if !term.is_scaled() {
-        return lobes::add_seen(light, &seen, None);
+        return lobes::add_incoming(light, &incoming, None);
     }
     // The direction that contributes most is the normal's (RS sec. 5.3.1).
-    let kappa = ground.kappa(Toward::Each(&ground.normal[0], &ground.normal[1]));
-    lobes::add_seen(light, &seen, Some((term.scaling, &kappa, &delta)));
+    let kappa = surface_row.kappa(LightDirection::Each(&surface_row.normal[0], &surface_row.normal[1]));
+    lobes::add_incoming(light, &incoming, Some((term.scaling, &kappa, &delta)));
 }
 
 /// Adds A(p) as the ambient term, scaled with δ = A.
-pub fn occlusion(shading: &Shading, ground: &Ground, light: &mut Light3) {
-    let open = scaled_occlusion(shading, ground);
+pub fn occlusion(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
+    let open = scaled_occlusion(shading, surface_row);
     lobes::add(light, shading.ambient.linear(), &open);
 }
 
 /// σ(κ, A) A along the row; A is 1 where no radius is given.
-fn scaled_occlusion(shading: &Shading, ground: &Ground) -> Pixels {
+fn scaled_occlusion(shading: &Shading, surface_row: &SurfaceRow) -> RowValues {
     let mut open = [1.0; TILE];
     if shading.occlusion_radius_px > 0.0 {
-        let map = ground.surface.occlusion(shading.occlusion_radius_px);
-        open[..ground.width].copy_from_slice(&map.row(ground.y)[ground.x0..ground.x0 + ground.width]);
+        let map = surface_row.surface.occlusion(shading.occlusion_radius_px);
+        open[..surface_row.width]
+            .copy_from_slice(&map.row(surface_row.y)[surface_row.x0..surface_row.x0 + surface_row.width]);
     }
     let term = &shading.ambient;
     if term.is_scaled() {
-        let kappa = ground.kappa(Toward::VIEWER);
+        let kappa = surface_row.kappa(LightDirection::VIEWER);
         open.iter_mut().zip(&kappa).for_each(|(a, &kappa)| *a *= term.scaling.sigma_fast(kappa, *a));
     }
     open

@@ -1,30 +1,30 @@
 //! What panels ask for: actions that the session does, and things that only a window can do.
 //! Floor 7.
 
-use super::files::Purpose;
-use super::panels::Front;
+use super::files::FilePurpose;
+use super::panels::PanelKind;
 use crate::session::Action;
 use std::path::PathBuf;
 
 /// Pushed by panels, done once a frame.
 #[derive(Default)]
-pub struct Asked {
+pub struct UiRequests {
     pub actions: Vec<Action>,
-    pub window: Vec<WindowAsk>,
+    pub window: Vec<WindowRequest>,
 }
 
-impl Asked {
+impl UiRequests {
     pub fn act(&mut self, action: Action) {
         self.actions.push(action);
     }
-    pub fn ask(&mut self, ask: WindowAsk) {
+    pub fn request(&mut self, ask: WindowRequest) {
         self.window.push(ask);
     }
 }
 
 /// What needs the window: dialogs, other threads, the clipboard.
 #[derive(Clone, Debug, PartialEq)]
-pub enum WindowAsk {
+pub enum WindowRequest {
     NewDialog,
     OpenDialog,
     OpenMapsDialog,
@@ -34,7 +34,7 @@ pub enum WindowAsk {
     Open(PathBuf),
     OpenSample,
     /// Asks for a file.
-    Choose(Purpose),
+    Choose(FilePurpose),
     Save,
     SaveAs,
     ExportDialog,
@@ -52,7 +52,7 @@ pub enum WindowAsk {
     OtherSide,
     PanelsApart,
     /// A panel into a window of its own, or back.
-    Float(Front),
+    Float(PanelKind),
     ToggleTheme,
     ResizeInterface {
         is_larger: bool,

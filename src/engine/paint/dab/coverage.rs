@@ -2,40 +2,40 @@
 //! Floor 3. Not here: the plain round tip (`dab`), which adds its coverage as it finds it.
 
 use super::round::{RoundTip, bent_row, flat_row};
-use super::{Around, DabScratch, Field, PlacedDab, Span, spans, touched};
+use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, spans, touched};
 use crate::math::{Affine2, Mat2, Rect};
 use crate::paint::image::transform;
 use crate::paint::profile::RoundProfile;
-use crate::paint::stamp::{Softened, Stamp};
-use crate::paint::tip::{GrainTile, Shape, shape};
-use crate::paint::wash::Wash;
+use crate::paint::stamp::{SoftenedStamps, TipStamp};
+use crate::paint::stroke_tile::StrokeTile;
+use crate::paint::tip::{GrainTile, TipShape, shape};
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::DeformedRect;
-use crate::surface::reach::TileBlocks;
+use crate::surface::support::TileBlocks;
 
 /// What a dab covers.
 #[derive(Clone, Copy)]
 pub enum Footprint<'t> {
     Round,
-    Shape(Shape),
+    Shape(TipShape),
     /// A round tip times a picture of its own coverage.
-    Textured(&'t Softened),
+    Textured(&'t SoftenedStamps),
 }
 
 /// The part of a tile that a dab may touch.
 #[derive(Clone, Copy)]
-struct Part {
+struct TilePart {
     at: TileAt,
     blocks: TileBlocks,
     area: Rect,
 }
 
-impl Part {
-    fn spans(&self) -> impl Iterator<Item = Span> + use<> {
+impl TilePart {
+    fn spans(&self) -> impl Iterator<Item = PixelSpan> + use<> {
         spans(&self.blocks, self.at, self.area)
     }
     /// Where a span lies among the pixels of the area, row by row.
-    fn range(&self, span: Span) -> std::ops::Range<usize> {
+    fn range(&self, span: PixelSpan) -> std::ops::Range<usize> {
         let start = (span.y - self.area.y0) as usize * self.area.width() + (span.x - self.area.x0) as usize;
         start..start + span.n
     }
@@ -45,9 +45,9 @@ impl Part {
 }
 
 impl PlacedDab<'_> {
-    fn part(&self, at: TileAt) -> Part {
-        let blocks = self.reach.blocks(at);
-        Part { at, blocks, area: touched(&blocks, at).intersect(self.scene.size.rect()) }
+    fn part(&self, at: TileAt) -> TilePart {
+        let blocks = self.support.blocks(at);
+        TilePart { at, blocks, area: touched(&blocks, at).intersect(self.scene.size.rect()) }
     }
     /// Adds a dab to a tile: its flow times its footprint times what the grain leaves.
     pub fn add_covered(
@@ -55,7 +55,7 @@ impl PlacedDab<'_> {
         footprint: Footprint,
         grain: Option<&GrainTile>,
         at: TileAt,
-        wash: &mut Wash,
+        stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
         let part = self.part(at);
@@ -80,21 +80,21 @@ impl PlacedDab<'_> {
             if let Some(grain) = grain {
                 row.iter_mut().zip(&grain[span.start_in(at)..]).for_each(|(c, g)| *c *= g);
             }
-            wash.cover(span.start_in(at), row, self.paint(Some(self.dab.color)));
+            stroke_tile.cover(span.start_in(at), row, self.paint(Some(self.dab.color)));
         }
         scratch.covered = covered;
     }
     /// Adds a picture tip to a tile at the dab's own softness, times what the grain leaves.
     pub fn add_softened(
         &self,
-        stamps: &Softened,
+        stamps: &SoftenedStamps,
         grain: Option<&GrainTile>,
         at: TileAt,
-        wash: &mut Wash,
+        stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        if let (Softened::One(stamp), None) = (stamps, grain) {
-            return self.add_stamp(stamp, at, wash, scratch);
+        if let (SoftenedStamps::One(stamp), None) = (stamps, grain) {
+            return self.add_stamp(stamp, at, stroke_tile, scratch);
         }
         let part = self.part(at);
         if part.area.is_empty() {
@@ -110,14 +110,14 @@ impl PlacedDab<'_> {
                     *texel = texel.map(|v| (f32::from(v) * factor + 0.5) as u8);
                 }
             }
-            wash.stamp(span.start_in(at), row, paint);
+            stroke_tile.stamp(span.start_in(at), row, paint);
         }
     }
     /// The round tip over a part; D over it and the pixels around it is in `scratch.deformed`.
-    fn cover_round(&self, part: &Part, scratch: &mut DabScratch, covered: &mut [f32]) {
+    fn cover_round(&self, part: &TilePart, scratch: &mut DabScratch, covered: &mut [f32]) {
         let DabScratch { deformed, row, .. } = scratch;
         let tip = RoundTip::plain(&self.dab);
-        let field = self.bent_over.map(|surface| Field { surface, rect: part.area.grown(1), d: deformed });
+        let field = self.bent_over.map(|surface| DeformationField { surface, rect: part.area.grown(1), d: deformed });
         for span in part.spans() {
             let out = &mut covered[part.range(span)];
             match &field {
@@ -127,7 +127,7 @@ impl PlacedDab<'_> {
         }
     }
     /// An ellipse or a square over a part; `deformed` becomes tip space.
-    fn cover_shape(&self, shape: Shape, part: &Part, deformed: &mut DeformedRect, covered: &mut [f32]) {
+    fn cover_shape(&self, shape: TipShape, part: &TilePart, deformed: &mut DeformedRect, covered: &mut [f32]) {
         let tip_from_canvas = shape.tip_from_canvas(&self.dab);
         transform(tip_from_canvas, &mut deformed.x, &mut deformed.y);
         let profile = RoundProfile::new(self.dab.hardness, self.dab.softness);
@@ -136,20 +136,26 @@ impl PlacedDab<'_> {
             shape.row(&profile, around, &mut covered[part.range(span)]);
         }
     }
-    fn around<'f>(&'f self, span: Span, rect: Rect, d: &'f DeformedRect, flat: Mat2) -> shape::Around<'f> {
+    fn around<'f>(
+        &'f self,
+        span: PixelSpan,
+        rect: Rect,
+        d: &'f DeformedRect,
+        flat: Mat2,
+    ) -> shape::TipSpanNeighbours<'f> {
         /// Where D is the identity nothing need be differenced.
         const UNLINKED: [u8; TILE] = [0; TILE];
         match self.bent_over {
             Some(surface) => {
-                let Around { above, row, below, linked } = Field { surface, rect, d }.around(span);
-                shape::Around { above, row, below, linked, flat }
+                let SpanNeighbours { above, row, below, linked } = DeformationField { surface, rect, d }.around(span);
+                shape::TipSpanNeighbours { above, row, below, linked, flat }
             }
             None => {
                 let row = |y: i32| {
                     let start = (y - rect.y0) as usize * rect.width() + (span.x - 1 - rect.x0) as usize;
                     (&d.x[start..start + span.n + 2], &d.y[start..start + span.n + 2])
                 };
-                shape::Around {
+                shape::TipSpanNeighbours {
                     above: row(span.y - 1),
                     row: row(span.y),
                     below: row(span.y + 1),
@@ -160,7 +166,7 @@ impl PlacedDab<'_> {
         }
     }
     /// The picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed` becomes texels.
-    fn read(&self, stamps: &Softened, part: &Part, scratch: &mut DabScratch) {
+    fn read(&self, stamps: &SoftenedStamps, part: &TilePart, scratch: &mut DabScratch) {
         let (stamp, above) = stamps.at(self.dab.softness);
         scratch.stamped.clear();
         scratch.stamped.resize(part.pixels(), [0; 4]);
@@ -177,9 +183,9 @@ impl PlacedDab<'_> {
     /// `map`: to this stamp's texels from what is in `scratch.deformed`. `mix`: what was there with what is read.
     fn read_stamp(
         &self,
-        stamp: &Stamp,
+        stamp: &TipStamp,
         map: Affine2,
-        part: &Part,
+        part: &TilePart,
         scratch: &mut DabScratch,
         mix: impl Fn([u8; 4], [u8; 4]) -> [u8; 4],
     ) {

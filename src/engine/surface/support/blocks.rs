@@ -1,25 +1,25 @@
-//! The blocks of a tile judged all at once: the fast twin of `Reach::judge`.
+//! The blocks of a tile judged all at once: the fast twin of `SupportBounds::judge`.
 //! Floor 2.
 
-use super::{BLOCK, Extent, Flow, Image, Reach, Stretch, TILE_BLOCKS, TileBlocks};
+use super::{BLOCK, BlockImage, DabExtent, OperatorBounds, RadialOffset, SupportBounds, TILE_BLOCKS, TileBlocks};
 use crate::math::{Vec2, vec2};
 use crate::raster::{Plane, TILE, TileAt};
-use crate::surface::bounds::{Cover, DepthSpan, TurnSpan};
+use crate::surface::pyramid::{BlockCover, DepthSpan, TurnSpan};
 
 const BLOCKS: usize = TILE_BLOCKS * TILE_BLOCKS;
 
 /// What the maps hold in each block of a tile, a figure a row.
-struct Spans<const N: usize> {
+struct BlockRanges<const N: usize> {
     figures: [[f32; BLOCKS]; N],
     /// 1 where some of the block is surface; 1 where some is not.
     inside: [u32; BLOCKS],
     outside: [u32; BLOCKS],
 }
 
-impl<const N: usize> Spans<N> {
+impl<const N: usize> BlockRanges<N> {
     fn of<T: Copy>(
         at: TileAt,
-        cover: Option<&Plane<Cover>>,
+        cover: Option<&Plane<BlockCover>>,
         map: Option<&Plane<T>>,
         figures: impl Fn(T) -> [f32; N],
     ) -> Self {
@@ -46,27 +46,27 @@ fn place(at: TileAt, i: usize) -> (i32, i32) {
 }
 
 /// The blocks of a tile that may be touched.
-pub(super) fn judged(reach: &Reach, at: TileAt) -> TileBlocks {
-    let corner = vec2((at.col * TILE as i32) as f32, (at.row * TILE as i32) as f32) + 0.5 - reach.at;
-    let cover = reach.cover.and_then(|cover| cover.leaves());
+pub(super) fn judged(support: &SupportBounds, at: TileAt) -> TileBlocks {
+    let corner = vec2((at.col * TILE as i32) as f32, (at.row * TILE as i32) as f32) + 0.5 - support.at;
+    let cover = support.cover.and_then(|cover| cover.leaves());
     let mut touched = [0; BLOCKS];
-    match &reach.flow {
-        Flow::Still => {
-            let spans = Spans::of(at, cover, None::<&Plane<Cover>>, |_| []);
-            still(&spans, corner, reach.extent, &mut touched);
+    match &support.flow {
+        OperatorBounds::Still => {
+            let spans = BlockRanges::of(at, cover, None::<&Plane<BlockCover>>, |_| []);
+            still(&spans, corner, support.extent, &mut touched);
         }
-        Flow::Depth { pyramid, z, rate } => {
+        OperatorBounds::Depth { pyramid, z, rate } => {
             let figures = |span: DepthSpan| [span.low, span.high, span.slope];
-            let spans = Spans::of(at, cover, pyramid.leaves(), figures);
-            scaled(&spans, corner, reach.extent, Scaled { z: *z, rate: *rate }, &mut touched);
+            let spans = BlockRanges::of(at, cover, pyramid.leaves(), figures);
+            scaled(&spans, corner, support.extent, ScaledBlocks { z: *z, rate: *rate }, &mut touched);
         }
-        Flow::Turn { pyramid, turn, stretch } => {
+        OperatorBounds::Turn { pyramid, turn, stretch } => {
             let figures = |span: TurnSpan| [span.low.x, span.low.y, span.high.x, span.high.y, span.slope];
-            let spans = Spans::of(at, cover, pyramid.leaves(), figures);
-            turned(&spans, corner, reach.extent, Turned { turn: *turn, stretch: *stretch }, &mut touched);
+            let spans = BlockRanges::of(at, cover, pyramid.leaves(), figures);
+            turned(&spans, corner, support.extent, TurnedBlocks { turn: *turn, stretch: *stretch }, &mut touched);
         }
     }
-    let there = reach.on_canvas(at);
+    let there = support.on_canvas(at);
     std::array::from_fn(|row| {
         let bits = (0..TILE_BLOCKS).map(|col| ((touched[row * TILE_BLOCKS + col] & 1) as u8) << col);
         bits.sum::<u8>() & there[row]
@@ -83,51 +83,57 @@ fn corners(corner: Vec2, i: usize) -> (Vec2, Vec2) {
 }
 
 /// What an operator makes of a block.
-trait Bend<const N: usize>: Copy {
-    /// Of the part of a block that is surface; `figures` are its [`Spans`].
-    fn image(self, figures: [f32; N], block: (Vec2, Vec2), flat: Image) -> Image;
+trait BlockBend<const N: usize>: Copy {
+    /// Of the part of a block that is surface; `figures` are its [`BlockRanges`].
+    fn image(self, figures: [f32; N], block: (Vec2, Vec2), flat: BlockImage) -> BlockImage;
 }
 
 #[derive(Clone, Copy)]
-struct Still;
+struct StillBlocks;
 #[derive(Clone, Copy)]
-struct Scaled {
+struct ScaledBlocks {
     z: f32,
     rate: f32,
 }
 #[derive(Clone, Copy)]
-struct Turned {
+struct TurnedBlocks {
     turn: Vec2,
-    stretch: Stretch,
+    stretch: RadialOffset,
 }
 
-impl Bend<0> for Still {
+impl BlockBend<0> for StillBlocks {
     #[inline(always)]
-    fn image(self, _: [f32; 0], _: (Vec2, Vec2), flat: Image) -> Image {
+    fn image(self, _: [f32; 0], _: (Vec2, Vec2), flat: BlockImage) -> BlockImage {
         flat
     }
 }
-impl Bend<3> for Scaled {
+impl BlockBend<3> for ScaledBlocks {
     #[inline(always)]
-    fn image(self, [low, high, slope]: [f32; 3], _: (Vec2, Vec2), flat: Image) -> Image {
+    fn image(self, [low, high, slope]: [f32; 3], _: (Vec2, Vec2), flat: BlockImage) -> BlockImage {
         flat.scaled(DepthSpan { low, high, slope }, self.z, self.rate)
     }
 }
-impl Bend<5> for Turned {
+impl BlockBend<5> for TurnedBlocks {
     #[inline(always)]
-    fn image(self, [x0, y0, x1, y1, slope]: [f32; 5], block: (Vec2, Vec2), _: Image) -> Image {
+    fn image(self, [x0, y0, x1, y1, slope]: [f32; 5], block: (Vec2, Vec2), _: BlockImage) -> BlockImage {
         self.stretch.image(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.turn, block)
     }
 }
 
 /// For each block whether it may be touched.
 #[inline(always)]
-fn each<const N: usize>(spans: &Spans<N>, corner: Vec2, extent: Extent, bend: impl Bend<N>, touched: &mut [u32]) {
+fn each<const N: usize>(
+    spans: &BlockRanges<N>,
+    corner: Vec2,
+    extent: DabExtent,
+    bend: impl BlockBend<N>,
+    touched: &mut [u32],
+) {
     let n = touched.len().min(BLOCKS);
     let (inside, outside, touched) = (&spans.inside[..n], &spans.outside[..n], &mut touched[..n]);
     for i in 0..n {
         let (low, high) = corners(corner, i);
-        let flat = Image::flat(low, high);
+        let flat = BlockImage::flat(low, high);
         let mut figures = [0.0; N];
         for (figure, row) in figures.iter_mut().zip(&spans.figures) {
             *figure = row[i];
@@ -139,13 +145,13 @@ fn each<const N: usize>(spans: &Spans<N>, corner: Vec2, extent: Extent, bend: im
 }
 
 crate::widest! {
-    fn still(spans: &Spans<0>, corner: Vec2, extent: Extent, touched: &mut [u32]) {
-        each(spans, corner, extent, Still, touched);
+    fn still(spans: &BlockRanges<0>, corner: Vec2, extent: DabExtent, touched: &mut [u32]) {
+        each(spans, corner, extent, StillBlocks, touched);
     }
-    fn scaled(spans: &Spans<3>, corner: Vec2, extent: Extent, bend: Scaled, touched: &mut [u32]) {
+    fn scaled(spans: &BlockRanges<3>, corner: Vec2, extent: DabExtent, bend: ScaledBlocks, touched: &mut [u32]) {
         each(spans, corner, extent, bend, touched);
     }
-    fn turned(spans: &Spans<5>, corner: Vec2, extent: Extent, bend: Turned, touched: &mut [u32]) {
+    fn turned(spans: &BlockRanges<5>, corner: Vec2, extent: DabExtent, bend: TurnedBlocks, touched: &mut [u32]) {
         each(spans, corner, extent, bend, touched);
     }
 }

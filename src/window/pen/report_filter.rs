@@ -1,7 +1,7 @@
 //! Good readings of a pen while it draws, and the end of a stroke whose pen went bad.
 //! Floor 7.
 
-use super::Report;
+use super::PenReport;
 use eframe::egui::Pos2;
 
 /// The speed, pt a second, at which a hand without a pen presses least.
@@ -15,7 +15,7 @@ const PRESSURE_SECS: f32 = 0.06;
 
 /// One good reading of a pen that draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct FilteredReport {
     /// Screen pt.
     pub at: Pos2,
     /// `[0, 1]`.
@@ -27,9 +27,9 @@ pub struct Reading {
 
 /// Watches one stroke from the pen's coming down.
 #[derive(Clone, Copy, Debug)]
-pub struct Watch {
+pub struct ReportFilter {
     began_secs: f64,
-    last: Report,
+    last: PenReport,
     pressure: f32,
     /// Pressure is made from speed where the pen reports none.
     presses_by_speed: bool,
@@ -38,15 +38,15 @@ pub struct Watch {
 }
 
 /// A report that can be painted with.
-fn is_good(report: &Report) -> bool {
+fn is_good(report: &PenReport) -> bool {
     let tilt = [report.tilt.0, report.tilt.1];
     let is_finite = report.at.is_finite() && report.secs.is_finite() && tilt.iter().all(|v| v.is_finite());
     is_finite && report.pressure.is_none_or(f32::is_finite)
 }
 
-impl Watch {
+impl ReportFilter {
     /// The pen comes down; `None` where its first report is not good.
-    pub fn begin(report: &Report, presses_by_speed: bool) -> Option<(Self, Reading)> {
+    pub fn begin(report: &PenReport, presses_by_speed: bool) -> Option<(Self, FilteredReport)> {
         let first = if presses_by_speed { FIRST_PRESSURE } else { 1.0 };
         let pressure = report.pressure.unwrap_or(first).clamp(0.0, 1.0);
         let watch = Self { began_secs: report.secs, last: *report, pressure, presses_by_speed, since_pt: 0.0 };
@@ -54,7 +54,7 @@ impl Watch {
     }
     /// The pen goes on; `None` where the stroke is to end at its last good reading: the report holds what is no number, or a
     /// time before the last one's.
-    pub fn follow(&mut self, report: &Report) -> Option<Reading> {
+    pub fn follow(&mut self, report: &PenReport) -> Option<FilteredReport> {
         if !is_good(report) || report.secs < self.last.secs {
             return None;
         }
@@ -76,9 +76,9 @@ impl Watch {
         self.last = *report;
         Some(self.reading(report))
     }
-    fn reading(&self, report: &Report) -> Reading {
+    fn reading(&self, report: &PenReport) -> FilteredReport {
         let secs = (report.secs - self.began_secs) as f32;
-        Reading { at: report.at, pressure: self.pressure, tilt: report.tilt, secs }
+        FilteredReport { at: report.at, pressure: self.pressure, tilt: report.tilt, secs }
     }
 }
 
@@ -88,9 +88,11 @@ mod tests {
     use crate::pen::{PenSource, RecordedPen};
 
     /// The readings of a recorded stroke until it ends.
-    fn readings(lines: &str, presses_by_speed: bool) -> Vec<Reading> {
+    fn readings(lines: &str, presses_by_speed: bool) -> Vec<FilteredReport> {
         let mut pen = RecordedPen::of(lines);
-        let Some((mut watch, first)) = Watch::begin(&pen.next().unwrap(), presses_by_speed) else { return Vec::new() };
+        let Some((mut watch, first)) = ReportFilter::begin(&pen.next().unwrap(), presses_by_speed) else {
+            return Vec::new();
+        };
         let rest = std::iter::from_fn(|| pen.next().and_then(|report| watch.follow(&report)));
         std::iter::once(first).chain(rest).collect()
     }

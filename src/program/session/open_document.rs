@@ -1,9 +1,9 @@
 //! A document that is open: its history, what is selected in it, where it is kept, and how it is seen.
 //! Floor 6.
 
-use super::view::View;
+use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind};
-use crate::io::save::Stamp;
+use crate::io::save::FileStamp;
 use crate::math::Vec2;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub struct Edit {
 }
 
 /// An open document.
-pub struct Tab {
+pub struct OpenDocument {
     /// Which tab, as long as the program runs.
     pub key: usize,
     pub history: History,
@@ -32,11 +32,11 @@ pub struct Tab {
     /// What it is called while it has no file.
     pub name: String,
     /// What that file held when it was last read or written here.
-    pub stamp: Option<Stamp>,
+    pub stamp: Option<FileStamp>,
     /// As the file holds it.
     saved: Document,
     /// `None` until the window has shown it once.
-    pub view: Option<View>,
+    pub view: Option<CanvasView>,
     /// The brush and the eraser change the selected layer's mask, not the layer.
     pub on_mask: bool,
     /// The one layer that is shown, while it is alone.
@@ -63,7 +63,7 @@ struct Preview {
     document: Document,
 }
 
-impl Tab {
+impl OpenDocument {
     pub fn new(name: impl Into<String>, document: Document, file: Option<PathBuf>) -> Self {
         static NEXT: AtomicUsize = AtomicUsize::new(0);
         let selected = document.layers.last().map(|layer| layer.id);
@@ -106,7 +106,7 @@ impl Tab {
     pub fn is_dirty(&self) -> bool {
         !is_same(&self.saved, self.document())
     }
-    pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: Stamp) {
+    pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: FileStamp) {
         self.saved = document;
         (self.file, self.stamp) = (Some(file), Some(stamp));
     }

@@ -5,23 +5,23 @@ use super::Stroke;
 use crate::math::Rect;
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
-use crate::paint::grain::LaidGrain;
-use crate::paint::laying::{self, Dab};
+use crate::paint::dab_walker::{self, Dab};
+use crate::paint::grain::StrokeGrain;
 use crate::paint::scene::Scene;
 use crate::paint::stroke::Sample;
+use crate::paint::stroke_tile::StrokeTile;
 use crate::paint::tint;
-use crate::paint::tip::{GrainTile, LaidTip};
-use crate::paint::wash::Wash;
+use crate::paint::tip::{GrainTile, PreparedTip};
 use crate::raster::TileAt;
 use std::collections::HashMap;
 use std::ops::Range;
 
 /// A stroke's dabs, and which of them may touch which tile of a canvas.
-pub(in crate::paint) struct Laid {
+pub(in crate::paint) struct StrokeDabs {
     scene: Scene,
-    tip: LaidTip,
+    tip: PreparedTip,
     /// Once it is known where the stroke begins.
-    grain: Option<LaidGrain>,
+    grain: Option<StrokeGrain>,
     varies_in_color: bool,
     dabs: Vec<Dab>,
     tiles: HashMap<TileAt, Vec<Range<u32>>>,
@@ -32,12 +32,12 @@ const RUN_GAP: u32 = 8;
 /// Runs a tile: beyond, the last one grows. Bounds what a hostile stroke takes.
 const MAX_RUNS: usize = 1024;
 
-impl Laid {
+impl StrokeDabs {
     /// No dabs yet.
     pub fn empty(brush: &Brush, scene: &Scene) -> Self {
         Self {
             scene: scene.clone(),
-            tip: LaidTip::of(brush),
+            tip: PreparedTip::of(brush),
             grain: None,
             varies_in_color: tint::varies(brush),
             dabs: Vec::new(),
@@ -45,20 +45,20 @@ impl Laid {
         }
     }
     pub fn of(stroke: &Stroke, scene: &Scene) -> Self {
-        let mut laid = Self::empty(&stroke.brush, scene);
-        laid.begin(&stroke.brush, &stroke.samples);
-        for dab in laying::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene) {
-            let tiles = tiles_of(&laid.place(dab, scene));
-            laid.push(dab, &tiles);
+        let mut stroke_dabs = Self::empty(&stroke.brush, scene);
+        stroke_dabs.begin(&stroke.brush, &stroke.samples);
+        for dab in dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene) {
+            let tiles = tiles_of(&stroke_dabs.place(dab, scene));
+            stroke_dabs.push(dab, &tiles);
         }
-        laid
+        stroke_dabs
     }
     /// Anchors the grain, if there is any, where the stroke begins; later samples change nothing.
     pub fn begin(&mut self, brush: &Brush, samples: &[Sample]) {
         let start = samples.iter().map(|sample| sample.at).find(|at| at.is_finite());
         let grain = brush.grain.as_ref().filter(|grain| grain.strength > 0.0 && self.grain.is_none());
         if let Some((grain, start)) = grain.zip(start) {
-            self.grain = Some(LaidGrain::new(grain, start));
+            self.grain = Some(StrokeGrain::new(grain, start));
         }
     }
     /// What the grain leaves of each pixel of a tile.
@@ -97,8 +97,8 @@ impl Laid {
         self.tip.place(dab, scene)
     }
     /// What the stroke's dabs add up in, dry.
-    pub fn wash(&self) -> Wash {
-        if self.varies_in_color || self.tip.brings_colors() { Wash::colors() } else { Wash::one_color() }
+    pub fn stroke_tile(&self) -> StrokeTile {
+        if self.varies_in_color || self.tip.brings_colors() { StrokeTile::colors() } else { StrokeTile::one_color() }
     }
     /// Adds a dab to a tile. `grain`: this tile's.
     pub fn add(
@@ -106,16 +106,16 @@ impl Laid {
         dab: &PlacedDab,
         at: TileAt,
         grain: Option<&GrainTile>,
-        wash: &mut Wash,
+        stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        self.tip.add(dab, at, grain, wash, scratch);
+        self.tip.add(dab, at, grain, stroke_tile, scratch);
     }
 }
 
 /// The tiles that a dab may touch.
 pub(in crate::paint) fn tiles_of(dab: &PlacedDab) -> Vec<TileAt> {
     let mut tiles = Vec::new();
-    dab.reach().for_each_tile(|at| tiles.push(at));
+    dab.support().for_each_tile(|at| tiles.push(at));
     tiles
 }

@@ -1,44 +1,44 @@
 //! A brush's tip made ready for its dabs: pictures blurred, textures made, and each dab put on its tiles.
 //! Floor 3.
 
-use super::hose::{Hose, Moment};
-use super::shape::Shape;
+use super::hose::{DabMoment, Hose};
+use super::shape::TipShape;
 use super::texture::TipTexture;
 use crate::paint::brush::{Brush, Tip};
 use crate::paint::dab::{DabScratch, Footprint, PlacedDab, round_extent};
+use crate::paint::dab_walker::Dab;
 use crate::paint::dynamics::Property;
 use crate::paint::image::PictureSource;
-use crate::paint::laying::Dab;
 use crate::paint::scene::Scene;
-use crate::paint::stamp::Softened;
-use crate::paint::wash::Wash;
+use crate::paint::stamp::SoftenedStamps;
+use crate::paint::stroke_tile::StrokeTile;
 use crate::raster::TileAt;
 use crate::raster::tile::TILE_AREA;
-use crate::surface::reach::Extent;
+use crate::surface::support::DabExtent;
 
 /// A tip, ready to be put down.
-pub enum LaidTip {
+pub enum PreparedTip {
     Round,
-    Shape(Shape),
+    Shape(TipShape),
     /// A round tip that shines through a picture.
-    Textured(Softened),
-    Stamp(Softened),
+    Textured(SoftenedStamps),
+    Stamp(SoftenedStamps),
     /// One of the stamps each time.
-    Hose(Hose, Vec<Softened>),
+    Hose(Hose, Vec<SoftenedStamps>),
 }
 
 /// What grain leaves of each pixel of a tile.
 pub type GrainTile = [f32; TILE_AREA];
 
-impl LaidTip {
+impl PreparedTip {
     pub fn of(brush: &Brush) -> Self {
         let is_driven = brush.dynamics.drive(Property::Softness);
-        let softened = |source: &PictureSource| Softened::of(source, brush.softness, is_driven);
+        let softened = |source: &PictureSource| SoftenedStamps::of(source, brush.softness, is_driven);
         let textured = |texture: TipTexture| Self::Textured(softened(&texture.source(brush.size)));
         match &brush.tip {
             Tip::Round => Self::Round,
-            Tip::Ellipse { ratio } => Self::Shape(Shape::Ellipse { ratio: *ratio }),
-            Tip::Square { ratio } => Self::Shape(Shape::Square { ratio: *ratio }),
+            Tip::Ellipse { ratio } => Self::Shape(TipShape::Ellipse { ratio: *ratio }),
+            Tip::Square { ratio } => Self::Shape(TipShape::Square { ratio: *ratio }),
             Tip::Bristles(bristles) => textured(TipTexture::Bristles(*bristles)),
             Tip::Noise(noise) => textured(TipTexture::Noise(*noise)),
             Tip::Picture(source) => Self::Stamp(softened(source)),
@@ -55,7 +55,7 @@ impl LaidTip {
                 let chosen = choice(hose, &dab);
                 let dab = Dab { radius: dab.radius * hose.share(chosen), ..dab };
                 // Without pictures it is nothing, anywhere.
-                let nothing = Extent { radius_px: 0.0, filter_px: 0.0 };
+                let nothing = DabExtent { radius_px: 0.0, filter_px: 0.0 };
                 (dab, stamps.get(chosen).map_or(nothing, |stamps| stamps.extent(&dab)))
             }
         };
@@ -67,18 +67,18 @@ impl LaidTip {
         dab: &PlacedDab,
         at: TileAt,
         grain: Option<&GrainTile>,
-        wash: &mut Wash,
+        stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
         match self {
-            Self::Round if grain.is_none() => dab.add_round(at, wash, scratch),
-            Self::Round => dab.add_covered(Footprint::Round, grain, at, wash, scratch),
-            Self::Shape(shape) => dab.add_covered(Footprint::Shape(*shape), grain, at, wash, scratch),
-            Self::Textured(stamps) => dab.add_covered(Footprint::Textured(stamps), grain, at, wash, scratch),
-            Self::Stamp(stamps) => dab.add_softened(stamps, grain, at, wash, scratch),
+            Self::Round if grain.is_none() => dab.add_round(at, stroke_tile, scratch),
+            Self::Round => dab.add_covered(Footprint::Round, grain, at, stroke_tile, scratch),
+            Self::Shape(shape) => dab.add_covered(Footprint::Shape(*shape), grain, at, stroke_tile, scratch),
+            Self::Textured(stamps) => dab.add_covered(Footprint::Textured(stamps), grain, at, stroke_tile, scratch),
+            Self::Stamp(stamps) => dab.add_softened(stamps, grain, at, stroke_tile, scratch),
             Self::Hose(hose, stamps) => {
                 if let Some(stamps) = stamps.get(choice(hose, dab.dab())) {
-                    dab.add_softened(stamps, grain, at, wash, scratch);
+                    dab.add_softened(stamps, grain, at, stroke_tile, scratch);
                 }
             }
         }
@@ -86,12 +86,12 @@ impl LaidTip {
     pub fn brings_colors(&self) -> bool {
         match self {
             Self::Stamp(stamps) => stamps.is_colored(),
-            Self::Hose(_, stamps) => stamps.iter().any(Softened::is_colored),
+            Self::Hose(_, stamps) => stamps.iter().any(SoftenedStamps::is_colored),
             _ => false,
         }
     }
 }
 
 fn choice(hose: &Hose, dab: &Dab) -> usize {
-    hose.choose(&Moment { number: dab.number, readings: dab.readings })
+    hose.choose(&DabMoment { number: dab.number, inputs: dab.inputs })
 }

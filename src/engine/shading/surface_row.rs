@@ -7,13 +7,13 @@ use crate::raster::TILE;
 use crate::surface::Surface;
 
 /// One value for each pixel of a tile's row.
-pub type Pixels = [f32; TILE];
+pub type RowValues = [f32; TILE];
 
 /// Linear light of a tile's row: red, green, blue.
-pub type Light3 = [Pixels; 3];
+pub type Light3 = [RowValues; 3];
 
 /// A row of a tile on the surface. Beyond the canvas the normals face the viewer and κ is 0.
-pub struct Ground<'a> {
+pub struct SurfaceRow<'a> {
     pub surface: &'a Surface,
     pub features: &'a FeatureMap,
     /// Canvas px of the first pixel.
@@ -22,30 +22,30 @@ pub struct Ground<'a> {
     /// How many pixels lie on the canvas.
     pub width: usize,
     /// Camera space: right, up, to the viewer.
-    pub normal: [Pixels; 3],
+    pub normal: [RowValues; 3],
 }
 
 /// The direction that κ is asked for.
 #[derive(Clone, Copy)]
-pub enum Toward<'a> {
+pub enum LightDirection<'a> {
     /// The same for the whole row, any length.
     One(Vec3),
     /// Unit x and y for each pixel.
-    Each(&'a Pixels, &'a Pixels),
+    Each(&'a RowValues, &'a RowValues),
 }
 
-impl Toward<'_> {
+impl LightDirection<'_> {
     /// Leaves κ isotropic whatever λ is.
-    pub const VIEWER: Toward<'static> = Toward::One(Vec3::Z);
+    pub const VIEWER: LightDirection<'static> = LightDirection::One(Vec3::Z);
 }
 
-impl<'a> Ground<'a> {
+impl<'a> SurfaceRow<'a> {
     /// The row of a tile that begins at canvas pixel (x0, y); `width` pixels of it lie on the canvas.
     pub fn new(surface: &'a Surface, features: &'a FeatureMap, x0: usize, y: usize, width: usize) -> Self {
         let normal = [[0.0; TILE], [0.0; TILE], [1.0; TILE]];
-        let mut ground = Self { surface, features, x0, y, width, normal };
-        ground.move_to(y);
-        ground
+        let mut surface_row = Self { surface, features, x0, y, width, normal };
+        surface_row.move_to(y);
+        surface_row
     }
     /// Goes to another row of the tile.
     pub fn move_to(&mut self, y: usize) {
@@ -70,17 +70,17 @@ impl<'a> Ground<'a> {
         vec3(self.normal[0][x], self.normal[1][x], self.normal[2][x])
     }
     /// κ(ℓ) along the row.
-    pub fn kappa(&self, toward: Toward) -> Pixels {
+    pub fn kappa(&self, toward: LightDirection) -> RowValues {
         let mut kappa = [0.0; TILE];
         self.find_kappa(toward, &mut kappa);
         kappa
     }
-    /// As [`Ground::kappa`], into an array.
-    fn find_kappa(&self, toward: Toward, kappa: &mut Pixels) {
+    /// As [`SurfaceRow::kappa`], into an array.
+    fn find_kappa(&self, toward: LightDirection, kappa: &mut RowValues) {
         let row = &mut kappa[..self.width];
         match toward {
-            Toward::One(light) => self.features.row_toward(self.x0, self.y, light, row),
-            Toward::Each(x, y) => {
+            LightDirection::One(light) => self.features.row_toward(self.x0, self.y, light, row),
+            LightDirection::Each(x, y) => {
                 self.features.row_along(self.x0, self.y, [&x[..self.width], &y[..self.width]], row);
             }
         }
@@ -97,39 +97,39 @@ impl<'a> Ground<'a> {
 
 /// How a row bends toward a light, and the exponentials E = e^(−γκ) (MATH 5) that its terms share: terms are often scaled
 /// alike, and without λ κ is the same toward every light.
-pub struct Relief {
-    kappa: Pixels,
+pub struct RowRelief {
+    kappa: RowValues,
     /// Which γ (convex, concave) `exponentials` are of; `None` before the first.
     gammas: Option<(f32, f32)>,
-    exponentials: Pixels,
+    exponentials: RowValues,
     is_isotropic: bool,
 }
 
-impl Default for Relief {
+impl Default for RowRelief {
     /// One to go from row to row with; it knows nothing yet.
     fn default() -> Self {
         Self { kappa: [0.0; TILE], gammas: None, exponentials: [1.0; TILE], is_isotropic: false }
     }
 }
 
-impl Relief {
+impl RowRelief {
     /// Forgets the row it was on.
     pub fn leave_row(&mut self) {
         (self.is_isotropic, self.gammas) = (false, None);
     }
     /// Turns to a direction: κ(ℓ), where it is not the same for all.
-    pub fn turn(&mut self, ground: &Ground, toward: Toward) {
+    pub fn turn(&mut self, surface_row: &SurfaceRow, toward: LightDirection) {
         if !self.is_isotropic {
-            ground.find_kappa(toward, &mut self.kappa);
-            (self.is_isotropic, self.gammas) = (!ground.features.is_directional(), None);
+            surface_row.find_kappa(toward, &mut self.kappa);
+            (self.is_isotropic, self.gammas) = (!surface_row.features.is_directional(), None);
         }
     }
     /// κ toward the direction last turned to.
-    pub fn kappa(&self) -> &Pixels {
+    pub fn kappa(&self) -> &RowValues {
         &self.kappa
     }
     /// E for a scaling's γ.
-    pub fn exponentials(&mut self, scaling: Scaling) -> &Pixels {
+    pub fn exponentials(&mut self, scaling: Scaling) -> &RowValues {
         let gammas = (scaling.gamma_convex, scaling.gamma_concave);
         if self.gammas != Some(gammas) {
             find_exponentials(scaling, &self.kappa, &mut self.exponentials);
@@ -140,7 +140,7 @@ impl Relief {
 }
 
 crate::widest! {
-    fn find_exponentials(scaling: Scaling, kappa: &Pixels, exponentials: &mut Pixels) {
+    fn find_exponentials(scaling: Scaling, kappa: &RowValues, exponentials: &mut RowValues) {
         for (e, &kappa) in exponentials.iter_mut().zip(kappa) {
             *e = scaling.exponential(kappa);
         }

@@ -3,14 +3,14 @@
 
 use super::brush::Brush;
 use crate::math::srgb::Color;
-use crate::raster::planar::Row;
+use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE_AREA;
-use crate::raster::{BlendMode, Coverage, Mix, Paint, PlanarTile, TILE, TileAt};
-use crate::surface::objects::Part;
+use crate::raster::{BlendMode, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
+use crate::surface::objects::CanvasPart;
 
 /// The paint of a stroke, still wet.
 #[derive(Clone)]
-pub enum Wash {
+pub enum StrokeTile {
     /// Coverage by the stroke's one colour, `[0, 1]`, row by row.
     OneColor(Box<[f32; TILE_AREA]>),
     /// Premultiplied colours of stamps.
@@ -30,7 +30,7 @@ pub struct DabPaint {
 
 /// How a dried wash meets the pixels of its layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Manner {
+pub struct StrokeBlend {
     /// Of one-colour washes; of others only its alpha counts.
     pub color: Color,
     /// Of the whole stroke, `[0, 1]`.
@@ -42,36 +42,36 @@ pub struct Manner {
     pub keeps_alpha: bool,
 }
 
-impl Manner {
+impl StrokeBlend {
     pub fn of(brush: &Brush, color: Color) -> Self {
         let Brush { opacity, blend, erases, keeps_alpha, .. } = *brush;
         Self { color, opacity: opacity.max(0.0).min(1.0), mode: blend, erases, keeps_alpha }
     }
 }
 
-impl Wash {
+impl StrokeTile {
     pub fn one_color() -> Self {
-        Wash::OneColor(Box::new([0.0; TILE_AREA]))
+        StrokeTile::OneColor(Box::new([0.0; TILE_AREA]))
     }
     pub fn colors() -> Self {
-        Wash::Colors(PlanarTile::transparent())
+        StrokeTile::Colors(PlanarTile::transparent())
     }
     pub fn is_one_color(&self) -> bool {
-        matches!(self, Wash::OneColor(_))
+        matches!(self, StrokeTile::OneColor(_))
     }
     /// Coverage of `n` pixels from the `start`th on; nothing of a wash of colours.
     pub fn coverage(&mut self, start: usize, n: usize) -> &mut [f32] {
         match self {
-            Wash::OneColor(coverage) => coverage.get_mut(start..start + n).unwrap_or_default(),
-            Wash::Colors(_) => &mut [],
+            StrokeTile::OneColor(coverage) => coverage.get_mut(start..start + n).unwrap_or_default(),
+            StrokeTile::Colors(_) => &mut [],
         }
     }
     /// Adds one colour to a row from the `start`th pixel on, as far as each is `covered`: a ← a + f (c − a), f = flow · covered,
     /// up to the ceiling c.
     pub fn cover(&mut self, start: usize, covered: &[f32], paint: DabPaint) {
         match self {
-            Wash::OneColor(_) => add_covered(covered, paint, self.coverage(start, covered.len())),
-            Wash::Colors(tile) => {
+            StrokeTile::OneColor(_) => add_covered(covered, paint, self.coverage(start, covered.len())),
+            StrokeTile::Colors(tile) => {
                 if let Some(row) = tile.rows_mut().get_mut(start / TILE) {
                     let [r, g, b, _] = paint.color.unwrap_or(Color::BLACK).to_f32();
                     let source = |i: usize| (covered[i] * paint.flow, [r, g, b]);
@@ -80,12 +80,12 @@ impl Wash {
             }
         }
     }
-    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on, as [`Wash::cover`] does.
+    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on, as [`StrokeTile::cover`] does.
     pub fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
         let flow = paint.flow / 255.0;
         match self {
-            Wash::OneColor(_) => add_alpha(stamped, flow, paint.ceiling, self.coverage(start, stamped.len())),
-            Wash::Colors(tile) => {
+            StrokeTile::OneColor(_) => add_alpha(stamped, flow, paint.ceiling, self.coverage(start, stamped.len())),
+            StrokeTile::Colors(tile) => {
                 let Some(row) = tile.rows_mut().get_mut(start / TILE) else { return };
                 match paint.color.map(Color::to_f32) {
                     Some([r, g, b, _]) => {
@@ -98,7 +98,7 @@ impl Wash {
         }
     }
     /// Takes away what lies outside of a part of the canvas.
-    pub fn bound_to(&mut self, part: &Part, at: TileAt) {
+    pub fn limit_to(&mut self, part: &CanvasPart, at: TileAt) {
         if part.is_whole() {
             return;
         }
@@ -107,8 +107,8 @@ impl Wash {
             for x in 0..TILE {
                 let share = part.coverage(corner.x0 + x as i32, corner.y0 + y as i32);
                 match self {
-                    Wash::OneColor(coverage) => coverage[y * TILE + x] *= share,
-                    Wash::Colors(tile) => {
+                    StrokeTile::OneColor(coverage) => coverage[y * TILE + x] *= share,
+                    StrokeTile::Colors(tile) => {
                         let row = &mut tile.rows_mut()[y];
                         row.rgb.iter_mut().chain([&mut row.a]).for_each(|plane| plane[x] *= share);
                     }
@@ -117,31 +117,31 @@ impl Wash {
         }
     }
     /// Lays the dried paint on pixels.
-    pub fn lay_over(&self, pixels: &mut PlanarTile, manner: Manner) {
+    pub fn blend_over(&self, pixels: &mut PlanarTile, manner: StrokeBlend) {
         if manner.erases {
             // What may not lose its coverage cannot be erased.
             if !manner.keeps_alpha {
-                self.take_out(pixels, manner.opacity * f32::from(manner.color.a) / 255.0);
+                self.erase_from(pixels, manner.opacity * f32::from(manner.color.a) / 255.0);
             }
         } else if manner.mode == BlendMode::Normal && !manner.keeps_alpha {
-            self.lay_plainly(pixels, manner.color, manner.opacity);
+            self.blend_over_normal(pixels, manner.color, manner.opacity);
         } else {
             let mut paint = PlanarTile::transparent();
-            self.lay_plainly(&mut paint, manner.color, manner.opacity);
+            self.blend_over_normal(&mut paint, manner.color, manner.opacity);
             let mix = Mix { mode: manner.mode, atop: manner.keeps_alpha, ..Mix::default() };
-            pixels.blend(mix, Paint::Planar(&paint), &Coverage::FULL);
+            pixels.blend(mix, TilePaint::Planar(&paint), &TileCoverage::FULL);
         }
     }
     /// Source over. Of stamps only the colour's alpha counts.
-    fn lay_plainly(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
+    fn blend_over_normal(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
         match self {
-            Wash::OneColor(coverage) => {
+            StrokeTile::OneColor(coverage) => {
                 let color = color.premultiplied().map(|c| c * opacity);
                 for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut()) {
                     lay_coverage(coverage, color, row);
                 }
             }
-            Wash::Colors(tile) => {
+            StrokeTile::Colors(tile) => {
                 let opacity = opacity * f32::from(color.a) / 255.0;
                 for (from, row) in tile.rows().iter().zip(pixels.rows_mut()) {
                     lay_colors(from, opacity, row);
@@ -150,14 +150,14 @@ impl Wash {
         }
     }
     /// Destination out.
-    fn take_out(&self, pixels: &mut PlanarTile, opacity: f32) {
+    fn erase_from(&self, pixels: &mut PlanarTile, opacity: f32) {
         match self {
-            Wash::OneColor(coverage) => {
+            StrokeTile::OneColor(coverage) => {
                 for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut()) {
                     take_out_row(coverage, opacity, row);
                 }
             }
-            Wash::Colors(tile) => {
+            StrokeTile::Colors(tile) => {
                 for (from, row) in tile.rows().iter().zip(pixels.rows_mut()) {
                     take_out_row(&from.a, opacity, row);
                 }
@@ -197,8 +197,8 @@ crate::widest! {
         }
     }
     /// `x`: column of the first pixel.
-    fn add_stamped(stamped: &[[u8; 4]], flow: f32, ceiling: f32, x: usize, row: &mut Row) {
-        let Row { rgb: [r, g, b], a } = row;
+    fn add_stamped(stamped: &[[u8; 4]], flow: f32, ceiling: f32, x: usize, row: &mut PixelRow) {
+        let PixelRow { rgb: [r, g, b], a } = row;
         let (r, g, b, a) = (&mut r[x..], &mut g[x..], &mut b[x..], &mut a[x..]);
         for (i, s) in stamped.iter().enumerate().take(a.len()) {
             let source = [0, 1, 2].map(|c| flow * f32::from(s[c]));
@@ -206,21 +206,21 @@ crate::widest! {
         }
     }
     /// Lays one premultiplied colour over a row, as far as each pixel is covered.
-    fn lay_coverage(coverage: &[f32; TILE], color: [f32; 4], row: &mut Row) {
+    fn lay_coverage(coverage: &[f32; TILE], color: [f32; 4], row: &mut PixelRow) {
         for (plane, c) in row.rgb.iter_mut().chain([&mut row.a]).zip(color) {
             for (p, a) in plane.iter_mut().zip(coverage) {
                 *p = *p * (1.0 - color[3] * a) + c * a;
             }
         }
     }
-    fn lay_colors(from: &Row, opacity: f32, row: &mut Row) {
+    fn lay_colors(from: &PixelRow, opacity: f32, row: &mut PixelRow) {
         for (plane, over) in row.rgb.iter_mut().chain([&mut row.a]).zip(from.rgb.iter().chain([&from.a])) {
             for ((p, s), a) in plane.iter_mut().zip(over).zip(&from.a) {
                 *p = *p * (1.0 - opacity * a) + opacity * s;
             }
         }
     }
-    fn take_out_row(coverage: &[f32; TILE], opacity: f32, row: &mut Row) {
+    fn take_out_row(coverage: &[f32; TILE], opacity: f32, row: &mut PixelRow) {
         for plane in row.rgb.iter_mut().chain([&mut row.a]) {
             for (p, a) in plane.iter_mut().zip(coverage) {
                 *p *= 1.0 - opacity * a;
@@ -230,8 +230,8 @@ crate::widest! {
 }
 
 /// Adds one colour to `n` pixels of a row from column `x` on; `source`: the weight at each, and the straight colour.
-fn add_colors(n: usize, source: impl Fn(usize) -> (f32, [f32; 3]), ceiling: f32, x: usize, row: &mut Row) {
-    let Row { rgb: [r, g, b], a } = row;
+fn add_colors(n: usize, source: impl Fn(usize) -> (f32, [f32; 3]), ceiling: f32, x: usize, row: &mut PixelRow) {
+    let PixelRow { rgb: [r, g, b], a } = row;
     for i in 0..n.min(TILE - x) {
         let (f, color) = source(i);
         let p = [r[x + i], g[x + i], b[x + i], a[x + i]];

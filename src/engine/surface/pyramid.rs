@@ -19,8 +19,8 @@ pub(super) const TILE_LEVEL: usize = TILE_BLOCKS.ilog2() as usize;
 /// Built by the thread that asks and by no other: a worker that waited for helpers here could be handed a tile that waits
 /// for the same pyramid.
 #[derive(Default)]
-pub struct Bounds {
-    cover: OnceLock<Pyramid<Cover>>,
+pub struct MapPyramids {
+    cover: OnceLock<Pyramid<BlockCover>>,
     depth: OnceLock<Pyramid<DepthSpan>>,
     nbar: OnceLock<Pyramid<TurnSpan>>,
     mirrored: OnceLock<Pyramid<TurnSpan>>,
@@ -56,7 +56,7 @@ impl<T: Join> Pyramid<T> {
     pub(super) fn leaves(&self) -> Option<&Plane<T>> {
         self.levels.first()
     }
-    pub(super) fn at(&self, block: Block) -> Option<T> {
+    pub(super) fn at(&self, block: PyramidBlock) -> Option<T> {
         self.levels.get(block.level)?.get(block.col, block.row)
     }
 }
@@ -87,14 +87,14 @@ pub(super) fn block_rect(size: Size, level: usize, col: i32, row: i32) -> Rect {
 
 /// What of a block is surface.
 #[derive(Clone, Copy)]
-pub(super) struct Cover {
+pub(super) struct BlockCover {
     /// Some pixel is.
     pub(super) some: bool,
     /// Every pixel is.
     pub(super) all: bool,
 }
 
-impl Join for Cover {
+impl Join for BlockCover {
     fn join(self, o: Self) -> Self {
         Self { some: self.some || o.some, all: self.all && o.all }
     }
@@ -129,7 +129,7 @@ impl Join for TurnSpan {
 }
 
 /// A value over a block's pixels and the ring around it, which the block's differences read.
-struct Ring {
+struct BlockRing {
     block: Rect,
     /// The ring and what is in it, clipped to the map.
     rect: Rect,
@@ -138,7 +138,7 @@ struct Ring {
 
 const RING: usize = BLOCK + 2;
 
-impl Ring {
+impl BlockRing {
     fn around(surface: &Surface, block: Rect, value: impl Fn(usize, usize) -> Vec2) -> Self {
         let rect = block.grown(1).intersect(surface.size().rect());
         let mut values = [Vec2::ZERO; RING * RING];
@@ -183,19 +183,19 @@ impl Ring {
 }
 
 fn turn_span(surface: &Surface, block: Rect, value: impl Fn(usize, usize) -> Vec2) -> TurnSpan {
-    let ring = Ring::around(surface, block, value);
+    let ring = BlockRing::around(surface, block, value);
     let (low, high) = ring.range(surface);
     TurnSpan { low, high, slope: ring.longest_slope(surface) }
 }
 
-impl Bounds {
-    pub(super) fn cover(&self, surface: &Surface) -> &Pyramid<Cover> {
+impl MapPyramids {
+    pub(super) fn cover(&self, surface: &Surface) -> &Pyramid<BlockCover> {
         self.cover.get_or_init(|| {
             Pyramid::new(surface.size(), |block| {
-                let mut cover = Cover { some: false, all: true };
+                let mut cover = BlockCover { some: false, all: true };
                 for y in block.y0 as usize..block.y1 as usize {
                     for &c in &surface.coverage_plane().row(y)[block.x0 as usize..block.x1 as usize] {
-                        cover = Cover { some: cover.some || c > 0, all: cover.all && c > 0 };
+                        cover = BlockCover { some: cover.some || c > 0, all: cover.all && c > 0 };
                     }
                 }
                 cover
@@ -223,16 +223,20 @@ impl Bounds {
 
 /// A block of a level.
 #[derive(Clone, Copy)]
-pub(super) struct Block {
+pub(super) struct PyramidBlock {
     pub(super) level: usize,
     pub(super) col: i32,
     pub(super) row: i32,
 }
 
-impl Block {
+impl PyramidBlock {
     /// The four blocks one level below.
-    pub(super) fn quarters(self) -> [Block; 4] {
-        let Block { level, col, row } = self;
-        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| Block { level: level - 1, col: 2 * col + i, row: 2 * row + j })
+    pub(super) fn quarters(self) -> [PyramidBlock; 4] {
+        let PyramidBlock { level, col, row } = self;
+        [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| PyramidBlock {
+            level: level - 1,
+            col: 2 * col + i,
+            row: 2 * row + j,
+        })
     }
 }

@@ -1,14 +1,14 @@
 //! The move tool: a layer, or one stroke of a stroke layer, elsewhere on the canvas.
 //! Floor 5.
 
-use super::{Begun, Context, Gesture, Outcome, Pen};
-use crate::document::{Content, Document, Group, Layer, LayerId, Live, Lock, PixelLayer, StrokeList};
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, Live, PixelLayer, StrokeList};
 use crate::math::Vec2;
 use crate::paint::{Gradient, PlacedImage, Placement, picking};
 use std::sync::Arc;
 
-pub fn press(context: &Context, pen: Pen) -> Begun {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != Lock::All);
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
     let Some(layer) = layer else { return (None, Outcome::Idle) };
     let stroke = match &layer.content {
         Content::Strokes(live) if !pen.keys.shift => {
@@ -19,10 +19,10 @@ pub fn press(context: &Context, pen: Pen) -> Begun {
         _ => None,
     };
     let (document, id) = (context.document.clone(), layer.id);
-    (Some(Box::new(Moving { document, layer: id, stroke, from: pen.place(), by: Vec2::ZERO })), Outcome::Idle)
+    (Some(Box::new(MoveGesture { document, layer: id, stroke, from: pen.place(), by: Vec2::ZERO })), Outcome::Idle)
 }
 
-struct Moving {
+struct MoveGesture {
     document: Document,
     layer: LayerId,
     /// One stroke alone.
@@ -31,7 +31,7 @@ struct Moving {
     by: Vec2,
 }
 
-impl Moving {
+impl MoveGesture {
     fn with(&self) -> Option<Document> {
         match self.stroke {
             Some(index) => self.document.with_moved_strokes(self.layer, &[index], self.by),
@@ -40,8 +40,8 @@ impl Moving {
     }
 }
 
-impl Gesture for Moving {
-    fn drag(&mut self, pens: &[Pen]) -> Outcome {
+impl Gesture for MoveGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         // Whole pixels, so that paint is not resampled.
         self.by = (pen.place() - self.from).round();
@@ -103,9 +103,9 @@ mod tests {
 
     fn dragged(document: &Document, from: Vec2, to: Vec2) -> Document {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
-        let context = Context { layer, ..Context::new(document, &brush) };
-        let mut gesture = press(&context, Pen::at(from)).0.unwrap();
-        gesture.drag(&[Pen::at(to)]);
+        let context = ToolContext { layer, ..ToolContext::new(document, &brush) };
+        let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
+        gesture.drag(&[PenSample::at(to)]);
         match gesture.release() {
             Outcome::Commit { document, .. } => document,
             _ => panic!("moved"),

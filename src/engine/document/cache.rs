@@ -10,11 +10,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 /// What is known of a layer; shared by its versions.
 #[derive(Clone, Default)]
-pub struct Kept {
+pub struct LayerCache {
     /// The look of the layer alone, as a file stores it; with its mask or without.
-    pub look: Memo<bool, Encoded>,
+    pub look: Memo<bool, EncodedPixels>,
     /// The pixels of a paint layer, as a project stores them.
-    pub pixels: Memo<(), Encoded>,
+    pub pixels: Memo<(), EncodedPixels>,
     /// Of a normal layer: the surface with its detail.
     pub(super) combined: Memo<Combination, Arc<Surface>>,
     /// The greatest luminance.
@@ -25,7 +25,7 @@ pub struct Kept {
 
 /// A layer's pixels as a file holds them, and where they lie.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Encoded {
+pub struct EncodedPixels {
     pub file: Asset,
     pub size: Size,
     /// Canvas pixel of the upper left corner.
@@ -36,10 +36,10 @@ pub struct Encoded {
 /// A value that depends on the scene, on some layers (most often all beneath a layer), and on a key.
 #[derive(Clone)]
 pub struct Memo<K, V = f32> {
-    last: Arc<Mutex<Option<Measured<K, V>>>>,
+    last: Arc<Mutex<Option<MemoEntry<K, V>>>>,
 }
 
-struct Measured<K, V> {
+struct MemoEntry<K, V> {
     scene: Scene,
     /// Weak, so that a measure keeps no layer alive and no two layers each other.
     beneath: Vec<Weak<Layer>>,
@@ -65,7 +65,7 @@ impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
         key: &K,
         measure: impl FnOnce() -> Option<V>,
     ) -> Option<V> {
-        let holds = |m: &Measured<K, V>| {
+        let holds = |m: &MemoEntry<K, V>| {
             let same_layers = m.beneath.len() == beneath.len()
                 && m.beneath.iter().zip(beneath).all(|(kept, now)| kept.as_ptr() == Arc::as_ptr(now));
             same_layers && m.scene.is_same(scene) && m.key == *key
@@ -75,10 +75,10 @@ impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
         }
         let value = measure()?;
         let beneath = beneath.iter().map(Arc::downgrade).collect();
-        *self.lock() = Some(Measured { scene: scene.clone(), beneath, key: key.clone(), value: value.clone() });
+        *self.lock() = Some(MemoEntry { scene: scene.clone(), beneath, key: key.clone(), value: value.clone() });
         Some(value)
     }
-    fn lock(&self) -> MutexGuard<'_, Option<Measured<K, V>>> {
+    fn lock(&self) -> MutexGuard<'_, Option<MemoEntry<K, V>>> {
         self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

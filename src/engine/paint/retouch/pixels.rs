@@ -2,18 +2,18 @@
 //! Floor 3.
 
 use crate::math::{Vec2, vec2};
-use crate::raster::{Coverage, Mix, Paint, PlanarTile, TILE, Tile, TileAt, TileGrid};
+use crate::raster::{Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A clone shares its tiles until one is set.
 #[derive(Clone)]
-pub(super) struct Wet {
+pub(super) struct RetouchPixels {
     base: TileGrid,
     tiles: HashMap<TileAt, Arc<PlanarTile>>,
 }
 
-impl Wet {
+impl RetouchPixels {
     pub fn new(base: TileGrid) -> Self {
         Self { base, tiles: HashMap::new() }
     }
@@ -24,7 +24,7 @@ impl Wet {
         }
         let mut pixels = PlanarTile::transparent();
         if let Some(tile) = self.base.tile(at) {
-            pixels.blend(Mix::default(), Paint::Bytes(tile), &Coverage::FULL);
+            pixels.blend(Mix::default(), TilePaint::Bytes(tile), &TileCoverage::FULL);
         }
         pixels
     }
@@ -38,28 +38,28 @@ impl Wet {
             None => self.base.tile(at).cloned(),
         }
     }
-    pub fn reader(&self) -> Reader<'_> {
-        Reader { wet: Some(self), base: &self.base, tile: None }
+    pub fn reader(&self) -> PixelReader<'_> {
+        PixelReader { retouched: Some(self), base: &self.base, tile: None }
     }
 }
 
 /// Reads pixels; those of one tile after each other cost no search.
-pub(super) struct Reader<'p> {
-    wet: Option<&'p Wet>,
+pub(super) struct PixelReader<'p> {
+    retouched: Option<&'p RetouchPixels>,
     base: &'p TileGrid,
-    tile: Option<(TileAt, Held<'p>)>,
+    tile: Option<(TileAt, TileSource<'p>)>,
 }
 
 #[derive(Clone, Copy)]
-enum Held<'p> {
+enum TileSource<'p> {
     Nothing,
     Bytes(&'p Tile),
     Wet(&'p PlanarTile),
 }
 
-impl<'p> Reader<'p> {
+impl<'p> PixelReader<'p> {
     pub fn of(base: &'p TileGrid) -> Self {
-        Self { wet: None, base, tile: None }
+        Self { retouched: None, base, tile: None }
     }
     /// A premultiplied pixel; transparent where there is none.
     pub fn pixel(&mut self, x: i32, y: i32) -> [f32; 4] {
@@ -70,19 +70,19 @@ impl<'p> Reader<'p> {
         };
         let (x, y) = (x.rem_euclid(TILE as i32) as usize, y.rem_euclid(TILE as i32) as usize);
         match held {
-            Held::Nothing => [0.0; 4],
-            Held::Bytes(tile) => {
+            TileSource::Nothing => [0.0; 4],
+            TileSource::Bytes(tile) => {
                 let bytes = tile.bytes().as_chunks::<4>().0.get(y * TILE + x).copied().unwrap_or_default();
                 bytes.map(|b| f32::from(b) / 255.0)
             }
-            Held::Wet(tile) => tile.rows().get(y).map_or([0.0; 4], |row| row.pixel(x)),
+            TileSource::Wet(tile) => tile.rows().get(y).map_or([0.0; 4], |row| row.pixel(x)),
         }
     }
-    fn hold(&mut self, at: TileAt) -> Held<'p> {
-        let held = match (self.wet.and_then(|wet| wet.tiles.get(&at)), self.base.tile(at)) {
-            (Some(tile), _) => Held::Wet(tile),
-            (None, Some(tile)) => Held::Bytes(tile),
-            (None, None) => Held::Nothing,
+    fn hold(&mut self, at: TileAt) -> TileSource<'p> {
+        let held = match (self.retouched.and_then(|retouched| retouched.tiles.get(&at)), self.base.tile(at)) {
+            (Some(tile), _) => TileSource::Wet(tile),
+            (None, Some(tile)) => TileSource::Bytes(tile),
+            (None, None) => TileSource::Nothing,
         };
         self.tile = Some((at, held));
         held

@@ -5,16 +5,16 @@
 
 mod pass;
 
-use crate::document::{Document, Reduced};
+use crate::document::{Document, DocumentReducer};
 use crate::math::{Rect, Size};
 use crate::raster::{Tile, TileAt};
-use pass::Pass;
+use pass::RenderPass;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// What is to be shown.
-pub struct Wanted {
+pub struct RenderRequest {
     /// Another number is another picture: nothing of the last one holds.
     pub picture: u64,
     pub document: Document,
@@ -25,7 +25,7 @@ pub struct Wanted {
 }
 
 /// Tiles that were painted.
-pub struct Painted {
+pub struct RenderedTileBatch {
     pub picture: u64,
     /// Canvas pixels to a pixel of these tiles, a side: 1 are whole pixels.
     pub step: u32,
@@ -39,16 +39,16 @@ pub struct Painted {
 }
 
 #[derive(Default)]
-struct Shared {
-    wanted: Mutex<Option<Wanted>>,
+struct SharedRequest {
+    wanted: Mutex<Option<RenderRequest>>,
     wake: Condvar,
     closed: Mutex<bool>,
 }
 
 /// The thread's handle; it ends with it.
-pub struct Painter {
-    shared: Arc<Shared>,
-    painted: Receiver<Painted>,
+pub struct RenderThread {
+    shared: Arc<SharedRequest>,
+    painted: Receiver<RenderedTileBatch>,
 }
 
 /// Tiles painted between two looks at whether something newer is wanted.
@@ -66,27 +66,27 @@ const PAUSE: Duration = Duration::from_millis(600);
 /// Canvas pixels to a pixel of the smallest picture.
 const COARSEST: u32 = 8;
 
-impl Painter {
+impl RenderThread {
     /// `done` is called on the painter's thread after each batch. Fails where the system starts no thread.
     pub fn new(done: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(SharedRequest::default());
         let (sender, painted) = channel();
         let for_thread = shared.clone();
         std::thread::Builder::new().name("painter".into()).spawn(move || work(&for_thread, &sender, &done))?;
         Ok(Self { shared, painted })
     }
     /// Asks for a document; the last one asked for counts.
-    pub fn want(&self, wanted: Wanted) {
+    pub fn want(&self, wanted: RenderRequest) {
         *lock(&self.shared.wanted) = Some(wanted);
         self.shared.wake.notify_one();
     }
     /// What was painted since the last call.
-    pub fn painted(&self) -> impl Iterator<Item = Painted> + '_ {
+    pub fn painted(&self) -> impl Iterator<Item = RenderedTileBatch> + '_ {
         self.painted.try_iter()
     }
 }
 
-impl Drop for Painter {
+impl Drop for RenderThread {
     fn drop(&mut self) {
         *lock(&self.shared.closed) = true;
         self.shared.wake.notify_one();
@@ -99,10 +99,10 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 
 /// What the thread works on.
 #[derive(Default)]
-struct Work {
-    wanted: Option<Wanted>,
-    whole: Pass,
-    draft: Option<Draft>,
+struct RenderWork {
+    wanted: Option<RenderRequest>,
+    whole: RenderPass,
+    draft: Option<DraftRender>,
     /// The drag is shown by the draft.
     is_drafting: bool,
     /// The hand rested on this document: it is painted whole, however long that takes.
@@ -112,15 +112,15 @@ struct Work {
 }
 
 /// A smaller picture, for as long as a drag lasts and the next ones.
-struct Draft {
+struct DraftRender {
     step: u32,
-    reduced: Reduced,
-    pass: Pass,
+    reduced: DocumentReducer,
+    pass: RenderPass,
 }
 
 /// `None` once the window is gone.
-fn work(shared: &Shared, sender: &Sender<Painted>, done: &dyn Fn()) -> Option<()> {
-    let mut work = Work::default();
+fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn Fn()) -> Option<()> {
+    let mut work = RenderWork::default();
     let send = |painted| {
         sender.send(painted).ok()?;
         done();
@@ -132,7 +132,7 @@ fn work(shared: &Shared, sender: &Sender<Painted>, done: &dyn Fn()) -> Option<()
             work.take_up(next);
             // Nothing differs: whoever waits for the picture has it.
             if !work.has_more() {
-                send(Painted { picture, ..work.nothing() })?;
+                send(RenderedTileBatch { picture, ..work.nothing() })?;
             }
         }
         let begun = Instant::now();
@@ -147,9 +147,9 @@ fn work(shared: &Shared, sender: &Sender<Painted>, done: &dyn Fn()) -> Option<()
     }
 }
 
-impl Work {
+impl RenderWork {
     /// Waits for something to do; the document that is newly wanted, if any. `None` once the window is gone.
-    fn wait(&mut self, shared: &Shared) -> Option<Option<Wanted>> {
+    fn wait(&mut self, shared: &SharedRequest) -> Option<Option<RenderRequest>> {
         let mut pause = PAUSE;
         let mut wanted = lock(&shared.wanted);
         loop {
@@ -185,12 +185,12 @@ impl Work {
     fn prepare(&mut self) {
         let step = step_for(self.whole.slowest());
         let Some(wanted) = &self.wanted else { return self.is_prepared = true };
-        let draft = self.draft.get_or_insert_with(|| Draft::new(step));
+        let draft = self.draft.get_or_insert_with(|| DraftRender::new(step));
         self.is_prepared = !draft.reduced.prepare(&wanted.document);
     }
-    fn take_up(&mut self, next: Wanted) {
+    fn take_up(&mut self, next: RenderRequest) {
         if self.wanted.as_ref().is_none_or(|old| old.picture != next.picture) {
-            (self.whole, self.draft) = (Pass::default(), None);
+            (self.whole, self.draft) = (RenderPass::default(), None);
         }
         self.whole.take_up(next.document.clone());
         let was_quick =
@@ -205,7 +205,7 @@ impl Work {
     fn redraft(&mut self) {
         let (Some(draft), Some(wanted)) = (&mut self.draft, &self.wanted) else { return };
         if draft.is_slow() {
-            *draft = Draft::new(draft.step * 2);
+            *draft = DraftRender::new(draft.step * 2);
         }
         match draft.reduced.of(&wanted.document) {
             Ok(small) => draft.pass.take_up(small),
@@ -219,16 +219,16 @@ impl Work {
             _ => self.whole.has_more(),
         }
     }
-    fn nothing(&self) -> Painted {
+    fn nothing(&self) -> RenderedTileBatch {
         let size = self.wanted.as_ref().map_or(Size::new(0, 0), |wanted| wanted.document.size);
         let (step, size) = match &self.draft {
             Some(draft) if self.is_drafting => (draft.step, draft.pass.size().unwrap_or(size)),
             _ => (1, size),
         };
-        Painted { picture: 0, step, size, tiles: Vec::new(), is_settled: true, took: Duration::ZERO }
+        RenderedTileBatch { picture: 0, step, size, tiles: Vec::new(), is_settled: true, took: Duration::ZERO }
     }
     /// Paints some of what is left, tiles in sight first.
-    fn paint(&mut self) -> Option<Painted> {
+    fn paint(&mut self) -> Option<RenderedTileBatch> {
         let wanted = self.wanted.as_ref()?;
         let (picture, is_dragged, visible) = (wanted.picture, wanted.is_dragged, wanted.visible);
         if let Some(draft) = self.draft.as_mut().filter(|_| self.is_drafting) {
@@ -240,9 +240,9 @@ impl Work {
         if is_dragged && !self.is_resting && !done.is_settled && done.took > FRAME {
             let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
             // One that was prepared will do where it is small enough.
-            let does = |draft: &Draft| draft.step == step || (draft.is_unused() && draft.step > step);
+            let does = |draft: &DraftRender| draft.step == step || (draft.is_unused() && draft.step > step);
             if !self.draft.as_ref().is_some_and(does) {
-                self.draft = Some(Draft::new(step));
+                self.draft = Some(DraftRender::new(step));
             }
             self.is_drafting = true;
             self.redraft();
@@ -252,7 +252,7 @@ impl Work {
     }
 }
 
-fn wanted_size(wanted: Option<&Wanted>) -> Size {
+fn wanted_size(wanted: Option<&RenderRequest>) -> Size {
     wanted.map_or(Size::new(0, 0), |wanted| wanted.document.size)
 }
 
@@ -262,9 +262,9 @@ fn step_for(whole: Duration) -> u32 {
     [2, 4].into_iter().find(|&step| fits(step)).unwrap_or(COARSEST)
 }
 
-impl Draft {
+impl DraftRender {
     fn new(step: u32) -> Self {
-        Self { step, reduced: Reduced::new(1.0 / step as f32), pass: Pass::default() }
+        Self { step, reduced: DocumentReducer::new(1.0 / step as f32), pass: RenderPass::default() }
     }
     /// Of the small picture, the pixels in sight.
     fn in_sight(&self, canvas: Rect) -> Rect {
@@ -293,10 +293,10 @@ mod tests {
     use crate::raster::TileGrid;
 
     /// All that is painted until it is settled.
-    fn settled(painter: &Painter, grid: &mut TileGrid) -> usize {
+    fn settled(render_thread: &RenderThread, grid: &mut TileGrid) -> usize {
         let mut count = 0;
         loop {
-            let painted = painter.painted.recv_timeout(Duration::from_secs(60)).unwrap();
+            let painted = render_thread.painted.recv_timeout(Duration::from_secs(60)).unwrap();
             count += painted.tiles.len();
             painted.tiles.into_iter().for_each(|(at, tile)| grid.set(at, tile));
             if painted.is_settled {
@@ -310,21 +310,21 @@ mod tests {
         let size = Size::new(300, 200);
         let fill = Layer::new("fill", Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 }));
         let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(size) };
-        let painter = Painter::new(|| {}).unwrap();
+        let render_thread = RenderThread::new(|| {}).unwrap();
         let mut grid = TileGrid::default();
         let visible = size.rect();
-        painter.want(Wanted { picture: 1, document: document.clone(), visible, is_dragged: false });
-        assert_eq!(settled(&painter, &mut grid), 5 * 4);
+        render_thread.want(RenderRequest { picture: 1, document: document.clone(), visible, is_dragged: false });
+        assert_eq!(settled(&render_thread, &mut grid), 5 * 4);
         let whole = flatten(&document, &Progress::default()).unwrap();
         assert!(grid.to_straight_rgba(visible) == whole.to_straight_rgba(visible));
         let dot = TileGrid::from_straight_rgba(&[255, 0, 0, 255], 1, 1, 100, 100);
         let pixels = crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles: dot };
         let mut next = document.clone();
         next.layers.push(Arc::new(Layer::new("dot", Content::Pixels(pixels))));
-        painter.want(Wanted { picture: 1, document: next.clone(), visible, is_dragged: false });
-        assert_eq!(settled(&painter, &mut grid), 1);
+        render_thread.want(RenderRequest { picture: 1, document: next.clone(), visible, is_dragged: false });
+        assert_eq!(settled(&render_thread, &mut grid), 1);
         assert_eq!(grid.pixel(100, 100), [255, 0, 0, 255]);
-        painter.want(Wanted { picture: 1, document: next, visible, is_dragged: false });
-        assert_eq!(settled(&painter, &mut grid), 0, "what is the same is settled at once");
+        render_thread.want(RenderRequest { picture: 1, document: next, visible, is_dragged: false });
+        assert_eq!(settled(&render_thread, &mut grid), 0, "what is the same is settled at once");
     }
 }

@@ -2,8 +2,8 @@
 //! Floor 3. Not here: the curve (`curve`), what a dab looks like (`profile`, `stamp`), where it lands (`dab`).
 
 use super::brush::Brush;
-use super::curve::{SAME_PX, Segment};
-use super::dynamics::{FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, Readings, turns_of};
+use super::curve::{CurveSegment, SAME_PX};
+use super::dynamics::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, turns_of};
 use super::scene::Scene;
 use super::stroke::Sample;
 use super::tint;
@@ -53,7 +53,7 @@ pub struct Dab {
     /// Which of the stroke it is, counted from 0; those that cannot be seen count too.
     pub number: u32,
     /// What it was driven by; its seed is this dab's alone.
-    pub readings: Readings,
+    pub inputs: DabInputs,
 }
 
 #[cfg(test)]
@@ -72,14 +72,14 @@ impl Dab {
             color: Color::BLACK,
             operator: Operator::None,
             number: 0,
-            readings: Readings::default(),
+            inputs: DabInputs::default(),
         }
     }
 }
 
 /// What the dabs of a stroke are made by.
 #[derive(Clone)]
-struct Rules {
+struct DabRules {
     brush: Brush,
     operator: Operator,
     color: Color,
@@ -94,16 +94,16 @@ struct Rules {
 
 /// The hand at one place of the curve.
 #[derive(Clone, Copy)]
-struct Place {
+struct CurvePoint {
     at: Vec2,
     pressure: f32,
     tilt: Vec2,
     px_per_sec: f32,
 }
 
-impl Place {
-    fn lerp(self, to: Place, s: f32) -> Place {
-        Place {
+impl CurvePoint {
+    fn lerp(self, to: CurvePoint, s: f32) -> CurvePoint {
+        CurvePoint {
             at: self.at.lerp(to.at, s),
             pressure: self.pressure + (to.pressure - self.pressure) * s,
             tilt: self.tilt.lerp(to.tilt, s),
@@ -112,7 +112,7 @@ impl Place {
     }
 }
 
-impl Rules {
+impl DabRules {
     fn new(brush: &Brush, operator: Operator, color: Color, scene: &Scene) -> Self {
         let follows = |input| brush.dynamics.follow(input);
         let curvature = scene.surface.as_ref().filter(|_| follows(Input::Curvature));
@@ -127,10 +127,10 @@ impl Rules {
             varies_in_color: tint::varies(brush),
         }
     }
-    fn readings(&self, place: Place, direction: Vec2, travelled_px: f64, number: u32) -> Readings {
+    fn inputs(&self, place: CurvePoint, direction: Vec2, travelled_px: f64, number: u32) -> DabInputs {
         let unit = |v: f32| v.max(0.0).min(1.0);
         let in_frame = |v: Vec2| self.facing.transpose() * v;
-        let readings = Readings {
+        let inputs = DabInputs {
             pressure: place.pressure,
             tilt: unit(place.tilt.length() / 90.0),
             tilt_direction: turns_of(in_frame(place.tilt)),
@@ -138,14 +138,14 @@ impl Rules {
             speed: unit(place.px_per_sec / (FAST_LENGTHS_PER_SEC * self.scene.size.longer_side())),
             distance: unit(travelled_px as f32 / (FAR_DIAMETERS * self.brush.size)),
             seed: hash::mix(self.brush.seed ^ hash::mix(number.wrapping_add(0x9e37_79b9))),
-            ..Readings::default()
+            ..DabInputs::default()
         };
-        self.over_surface(place.at, readings)
+        self.over_surface(place.at, inputs)
     }
     /// With what the surface is like at the pixel that a dab's centre lies in.
-    fn over_surface(&self, at: Vec2, readings: Readings) -> Readings {
-        let flat = Readings::default();
-        let nowhere = Readings { slope: flat.slope, curvature: flat.curvature, depth: flat.depth, ..readings };
+    fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
+        let flat = DabInputs::default();
+        let nowhere = DabInputs { slope: flat.slope, curvature: flat.curvature, depth: flat.depth, ..inputs };
         let is_over = self.reads_surface && self.scene.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
         let Some(surface) = self.scene.surface.as_deref().filter(|_| is_over) else { return nowhere };
         let (x, y) = surface.pixel_of(at);
@@ -155,61 +155,61 @@ impl Rules {
         let scale_px = surface.size().longer_side() / CURVATURE_SCALES;
         let kappa = self.curvature.as_ref().map_or(0.0, |curvature| curvature.kappa(x, y, scale_px));
         let slope = 1.0 - surface.normal(x, y).z.max(0.0).min(1.0);
-        Readings { slope, curvature: 0.5 + 0.5 * kappa, depth: surface.depth(x, y).max(0.0).min(1.0), ..readings }
+        DabInputs { slope, curvature: 0.5 + 0.5 * kappa, depth: surface.depth(x, y).max(0.0).min(1.0), ..inputs }
     }
-    fn diameter(&self, readings: &Readings) -> f32 {
-        self.brush.size * self.brush.dynamics.factor(Property::Size, readings)
+    fn diameter(&self, inputs: &DabInputs) -> f32 {
+        self.brush.size * self.brush.dynamics.factor(Property::Size, inputs)
     }
     /// How far after a dab the next one stands, px. A step that is not a number must not stop the walk.
-    fn step(&self, readings: &Readings) -> f64 {
-        let spacing = self.brush.spacing * self.brush.dynamics.factor(Property::Spacing, readings);
-        f64::from((spacing * self.diameter(readings)).max(MIN_STEP_PX))
+    fn step(&self, inputs: &DabInputs) -> f64 {
+        let spacing = self.brush.spacing * self.brush.dynamics.factor(Property::Spacing, inputs);
+        f64::from((spacing * self.diameter(inputs)).max(MIN_STEP_PX))
     }
     /// Where a dab stands that is due at a place: anywhere within a disc around it.
-    fn scattered(&self, at: Vec2, readings: &Readings) -> Vec2 {
-        let ratio = self.brush.scatter * self.brush.dynamics.factor(Property::Scatter, readings);
-        let farthest = ratio * self.diameter(readings);
+    fn scattered(&self, at: Vec2, inputs: &DabInputs) -> Vec2 {
+        let ratio = self.brush.scatter * self.brush.dynamics.factor(Property::Scatter, inputs);
+        let farthest = ratio * self.diameter(inputs);
         // Comparisons that NaN fails.
         if !(farthest > 0.0 && farthest <= FAR_PX) {
             return at;
         }
-        let (turn, share) = (hash::unit(readings.seed, 0, 3), hash::unit(readings.seed, 1, 3));
+        let (turn, share) = (hash::unit(inputs.seed, 0, 3), hash::unit(inputs.seed, 1, 3));
         // The root spreads them evenly over the disc.
         at + self.facing * (farthest * share.sqrt() * Vec2::from_angle(TAU * turn))
     }
     /// The dab of a place; `None` where nothing would be seen.
-    fn dab(&self, place: Vec2, readings: Readings, number: u32) -> Option<Dab> {
-        let at = self.scattered(place, &readings);
-        let readings = if at == place { readings } else { self.over_surface(at, readings) };
+    fn dab(&self, place: Vec2, inputs: DabInputs, number: u32) -> Option<Dab> {
+        let at = self.scattered(place, &inputs);
+        let inputs = if at == place { inputs } else { self.over_surface(at, inputs) };
         let (brush, dynamics) = (&self.brush, &self.brush.dynamics);
-        let driven = |value: f32, property| value * dynamics.factor(property, &readings);
-        let radius = 0.5 * self.diameter(&readings);
+        let driven = |value: f32, property| value * dynamics.factor(property, &inputs);
+        let radius = 0.5 * self.diameter(&inputs);
         let flow = driven(brush.flow, Property::Flow);
         let unit = |v: f32| v.max(0.0).min(1.0);
-        let ceiling = unit(dynamics.factor(Property::Opacity, &readings));
+        let ceiling = unit(dynamics.factor(Property::Opacity, &inputs));
         // Comparisons that NaN fails.
-        let is_seen = radius > 0.01 && radius <= FAR_PX && flow > 0.0 && ceiling > 0.0;
+        let is_visible = radius > 0.01 && radius <= FAR_PX && flow > 0.0 && ceiling > 0.0;
         // A dab smaller than a pixel is a fainter one of a pixel's size: what it covers is the same.
         let share = (radius / PIXEL_RADIUS_PX).min(1.0);
         let flow = flow * share * share;
         let rotation_rad = if brush.rotation.is_finite() { brush.rotation.to_radians() } else { 0.0 };
-        is_seen.then(|| Dab {
+        is_visible.then(|| Dab {
             at,
             radius: radius.max(PIXEL_RADIUS_PX),
-            rotation_rad: brush.facing.rotation_rad(rotation_rad + TAU * dynamics.turns(Property::Rotation, &readings)),
+            rotation_rad: brush.facing.rotation_rad(rotation_rad + TAU * dynamics.turns(Property::Rotation, &inputs)),
             is_mirrored: brush.facing.is_mirrored,
             hardness: unit(driven(brush.hardness, Property::Hardness)),
             softness: unit(driven(brush.softness, Property::Softness)),
             flow: unit(flow),
             ceiling,
-            color: if self.varies_in_color { tint::of(brush, self.color, &readings) } else { self.color },
-            operator: self.operator(&readings),
+            color: if self.varies_in_color { tint::of(brush, self.color, &inputs) } else { self.color },
+            operator: self.operator(&inputs),
             number,
-            readings,
+            inputs,
         })
     }
-    fn operator(&self, readings: &Readings) -> Operator {
-        let by = |value: f32, property| value * self.brush.dynamics.factor(property, readings);
+    fn operator(&self, inputs: &DabInputs) -> Operator {
+        let by = |value: f32, property| value * self.brush.dynamics.factor(property, inputs);
         match self.operator {
             Operator::None => Operator::None,
             Operator::Depth { gamma } => Operator::Depth { gamma: by(gamma, Property::Gamma) },
@@ -225,23 +225,23 @@ impl Rules {
 
 /// How far a stroke has been walked.
 #[derive(Clone, Copy)]
-struct Walk {
-    from: Place,
+struct WalkState {
+    from: CurvePoint,
     to_next: f64,
     travelled_px: f64,
     number: u32,
 }
 
-impl Walk {
+impl WalkState {
     /// A dab at a place, and the next one due a step further.
-    fn stand(&mut self, place: Place, direction: Vec2, travelled_px: f64, rules: &Rules, dabs: &mut Vec<Dab>) {
-        let readings = rules.readings(place, direction, travelled_px, self.number);
-        dabs.extend(rules.dab(place.at, readings, self.number));
-        self.to_next = rules.step(&readings);
+    fn stand(&mut self, place: CurvePoint, direction: Vec2, travelled_px: f64, rules: &DabRules, dabs: &mut Vec<Dab>) {
+        let inputs = rules.inputs(place, direction, travelled_px, self.number);
+        dabs.extend(rules.dab(place.at, inputs, self.number));
+        self.to_next = rules.step(&inputs);
         self.number += 1;
     }
     /// Along the curve from one sample to the next.
-    fn along(&mut self, curve: &Segment, to: Place, rules: &Rules, dabs: &mut Vec<Dab>) {
+    fn along(&mut self, curve: &CurveSegment, to: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let from = self.from;
         if self.number == 0 {
             self.stand(from, curve.out(), 0.0, rules, dabs);
@@ -249,10 +249,10 @@ impl Walk {
         let pieces = curve.pieces();
         for piece in 1..=pieces {
             let s = piece as f32 / pieces as f32;
-            self.straight(Place { at: curve.at(s), ..from.lerp(to, s) }, rules, dabs);
+            self.straight(CurvePoint { at: curve.at(s), ..from.lerp(to, s) }, rules, dabs);
         }
     }
-    fn straight(&mut self, to: Place, rules: &Rules, dabs: &mut Vec<Dab>) {
+    fn straight(&mut self, to: CurvePoint, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let from = self.from;
         let length = f64::from(from.at.distance(to.at));
         let mut walked = 0.0;
@@ -269,7 +269,7 @@ impl Walk {
 
 /// The hand's speed, from where it was and when.
 #[derive(Clone, Copy)]
-struct Speed {
+struct HandSpeed {
     /// `None` until the clock has moved.
     px_per_sec: Option<f32>,
     /// When it was last found, and how far the hand has come since.
@@ -277,7 +277,7 @@ struct Speed {
     since_px: f32,
 }
 
-impl Speed {
+impl HandSpeed {
     /// The hand has come so far by then. Samples that share their time count together.
     fn moved(&mut self, px: f32, secs: f32) {
         self.since_px += px;
@@ -296,18 +296,18 @@ impl Speed {
 /// Dabs do not depend on how the samples came in batches, nor on how densely the curve was sampled. Skipped are samples that
 /// are not finite, lie beyond all canvases, or are earlier than the one before.
 #[derive(Clone)]
-pub struct Laying {
-    rules: Rules,
+pub struct DabWalker {
+    rules: DabRules,
     /// The last samples, at most three: the curve is settled up to the one before the last.
-    places: Vec<Place>,
-    speed: Speed,
-    walk: Option<Walk>,
+    places: Vec<CurvePoint>,
+    speed: HandSpeed,
+    walk: Option<WalkState>,
 }
 
-impl Laying {
+impl DabWalker {
     pub fn new(brush: &Brush, operator: Operator, color: Color, scene: &Scene) -> Self {
-        let speed = Speed { px_per_sec: None, at_secs: f32::MIN, since_px: 0.0 };
-        Self { rules: Rules::new(brush, operator, color, scene), places: Vec::with_capacity(4), speed, walk: None }
+        let speed = HandSpeed { px_per_sec: None, at_secs: f32::MIN, since_px: 0.0 };
+        Self { rules: DabRules::new(brush, operator, color, scene), places: Vec::with_capacity(4), speed, walk: None }
     }
     /// Takes the next sample in, and adds the dabs that it settles.
     pub fn push(&mut self, sample: &Sample, dabs: &mut Vec<Dab>) {
@@ -317,7 +317,7 @@ impl Laying {
             return;
         }
         let tilt = if tilt.is_finite() { tilt } else { Vec2::ZERO };
-        let place = Place { at, pressure: pressure.clamp(0.0, 1.0), tilt, px_per_sec: 0.0 };
+        let place = CurvePoint { at, pressure: pressure.clamp(0.0, 1.0), tilt, px_per_sec: 0.0 };
         let Some(last) = self.places.last_mut() else {
             self.speed.at_secs = time_secs;
             self.places.push(place);
@@ -336,7 +336,7 @@ impl Laying {
         if is_first_speed {
             last.px_per_sec = px_per_sec;
         }
-        self.places.push(Place { px_per_sec, ..place });
+        self.places.push(CurvePoint { px_per_sec, ..place });
         self.settle(dabs);
     }
     /// Walks the curve as far as no later sample bends it.
@@ -346,8 +346,8 @@ impl Laying {
             [before, from, to, after] => (Some(before.at), from, to, after),
             _ => return,
         };
-        let curve = Segment::new(before, from.at, to.at, Some(after.at));
-        let walk = self.walk.get_or_insert(Walk { from, to_next: 0.0, travelled_px: 0.0, number: 0 });
+        let curve = CurveSegment::new(before, from.at, to.at, Some(after.at));
+        let walk = self.walk.get_or_insert(WalkState { from, to_next: 0.0, travelled_px: 0.0, number: 0 });
         walk.from = from;
         walk.along(&curve, to, &self.rules, dabs);
         if before.is_some() {
@@ -358,12 +358,12 @@ impl Laying {
     pub fn tail(&self) -> Vec<Dab> {
         let mut dabs = Vec::new();
         let Some(&first) = self.places.first() else { return dabs };
-        let mut walk = self.walk.unwrap_or(Walk { from: first, to_next: 0.0, travelled_px: 0.0, number: 0 });
+        let mut walk = self.walk.unwrap_or(WalkState { from: first, to_next: 0.0, travelled_px: 0.0, number: 0 });
         match self.places[..] {
             [only] => walk.stand(only, Vec2::ZERO, 0.0, &self.rules, &mut dabs),
-            [from, to] => walk.along(&Segment::new(None, from.at, to.at, None), to, &self.rules, &mut dabs),
+            [from, to] => walk.along(&CurveSegment::new(None, from.at, to.at, None), to, &self.rules, &mut dabs),
             [before, from, to] => {
-                walk.along(&Segment::new(Some(before.at), from.at, to.at, None), to, &self.rules, &mut dabs);
+                walk.along(&CurveSegment::new(Some(before.at), from.at, to.at, None), to, &self.rules, &mut dabs);
             }
             _ => {}
         }
@@ -373,10 +373,10 @@ impl Laying {
 
 /// All dabs of a stroke.
 pub fn dabs(brush: &Brush, operator: Operator, color: Color, samples: &[Sample], scene: &Scene) -> Vec<Dab> {
-    let mut laying = Laying::new(brush, operator, color, scene);
+    let mut walker = DabWalker::new(brush, operator, color, scene);
     let mut dabs = Vec::new();
-    samples.iter().for_each(|sample| laying.push(sample, &mut dabs));
-    dabs.extend(laying.tail());
+    samples.iter().for_each(|sample| walker.push(sample, &mut dabs));
+    dabs.extend(walker.tail());
     dabs
 }
 

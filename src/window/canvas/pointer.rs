@@ -4,15 +4,15 @@
 
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
-use crate::pen::{PenSource, Phase, Reading, Report, SharedTablet, Watch, WindowPen};
+use crate::pen::{FilteredReport, PenPhase, PenReport, PenSource, ReportFilter, SharedTablet, WindowPen};
 use crate::session::actions::{EditAction, HandAction, PointerAction, ViewAction};
-use crate::session::{Action, Session, View};
-use crate::tools::{Keys, Pen, ToolKind};
+use crate::session::{Action, CanvasView, Session};
+use crate::tools::{ModifierKeys, PenSample, ToolKind};
 use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Response, TouchPhase, Ui};
 
 /// What the pointer is doing between press and release.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-enum Holding {
+enum PointerGesture {
     #[default]
     Nothing,
     Drawing,
@@ -36,43 +36,44 @@ const TAP_PT: f32 = 12.0;
 
 /// What is known between frames.
 #[derive(Default)]
-pub struct Hand {
-    holding: Holding,
+pub struct PointerState {
+    holding: PointerGesture,
     last: Pos2,
     pen: WindowPen,
     /// While a stroke is drawn.
-    watch: Option<Watch>,
+    watch: Option<ReportFilter>,
     /// Two fingers came down: since when, and how far they moved since, points.
     tap: Option<(f64, f32)>,
     keys: Modifiers,
     space: bool,
 }
 
-impl Hand {
+impl PointerState {
     /// The tablet that the window's pointer may belong to.
     pub fn draw_on(&mut self, tablet: SharedTablet) {
         self.pen.on(tablet);
     }
     /// The view is being moved: nothing is painted, and no cursor of the brush is shown.
     pub fn is_looking(&self) -> bool {
-        matches!(self.holding, Holding::Panning | Holding::Zooming { .. } | Holding::Turning) || self.space
+        matches!(self.holding, PointerGesture::Panning | PointerGesture::Zooming { .. } | PointerGesture::Turning)
+            || self.space
     }
     /// The tool in hand, or the one a held key lends.
     pub fn tool(&self, session: &Session) -> ToolKind {
         // Alt tells a clone brush where to copy from.
-        let clones = session.tool == ToolKind::Brush && session.brush.mark.is_clone();
+        let clones = session.tool == ToolKind::Brush && session.brush.mode.is_clone();
         let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient) && !clones;
         match self.holding {
-            Holding::Nothing if self.space => ToolKind::Hand,
-            Holding::Nothing if self.keys.alt && paints => ToolKind::Eyedropper,
+            PointerGesture::Nothing if self.space => ToolKind::Hand,
+            PointerGesture::Nothing if self.keys.alt && paints => ToolKind::Eyedropper,
             _ => session.tool,
         }
     }
     pub fn cursor(&self, session: &Session, on_canvas: bool) -> CursorIcon {
         match (self.holding, self.tool(session)) {
-            (Holding::Panning | Holding::Turning, _) => CursorIcon::Grabbing,
-            (Holding::Zooming { .. }, _) => CursorIcon::ZoomIn,
-            (Holding::Sizing { .. }, _) => CursorIcon::ResizeHorizontal,
+            (PointerGesture::Panning | PointerGesture::Turning, _) => CursorIcon::Grabbing,
+            (PointerGesture::Zooming { .. }, _) => CursorIcon::ZoomIn,
+            (PointerGesture::Sizing { .. }, _) => CursorIcon::ResizeHorizontal,
             (_, ToolKind::Hand) if self.keys.command && self.space => CursorIcon::ZoomIn,
             (_, ToolKind::Hand) => CursorIcon::Grab,
             (_, ToolKind::Zoom) if self.keys.alt => CursorIcon::ZoomOut,
@@ -89,16 +90,16 @@ impl Hand {
         ui: &Ui,
         canvas: &Response,
         session: &Session,
-        view: &View,
+        view: &CanvasView,
         middle: Pos2,
         actions: &mut Vec<Action>,
     ) {
         let (events, now_secs, space) = ui.input(|i| (i.events.clone(), i.time, i.key_down(Key::Space)));
         self.space = space
-            && (canvas.contains_pointer() || self.holding != Holding::Nothing)
+            && (canvas.contains_pointer() || self.holding != PointerGesture::Nothing)
             && !ui.ctx().egui_wants_keyboard_input();
         self.keys = ui.input(|i| i.modifiers);
-        let mut listening = Listening { session, view: *view, middle, actions, pens: Vec::new() };
+        let mut listening = FrameInput { session, view: *view, middle, actions, pens: Vec::new() };
         let ours = |pos: Pos2| canvas.rect.contains(pos) && ui.ctx().layer_id_at(pos) == Some(canvas.layer_id);
         if let Some(touch) = ui.input(|i| i.multi_touch()).filter(|touch| canvas.rect.contains(touch.center_pos)) {
             self.two_fingers(
@@ -116,22 +117,22 @@ impl Hand {
             }
             while let Some(report) = self.pen.next() {
                 match report.phase {
-                    Phase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
+                    PenPhase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
                         self.press(&report, button, &mut listening);
                     }
-                    Phase::Down(_) => {}
-                    Phase::Move => self.moved(&report, &mut listening),
-                    Phase::Up => {
+                    PenPhase::Down(_) => {}
+                    PenPhase::Move => self.moved(&report, &mut listening),
+                    PenPhase::Up => {
                         self.moved(&report, &mut listening);
                         self.release(&mut listening);
                     }
-                    Phase::Lost if self.holding == Holding::Drawing => self.release(&mut listening),
-                    Phase::Lost => self.holding = Holding::Nothing,
+                    PenPhase::Lost if self.holding == PointerGesture::Drawing => self.release(&mut listening),
+                    PenPhase::Lost => self.holding = PointerGesture::Nothing,
                 }
             }
             match event {
-                Event::Key { key: Key::Escape, pressed: true, .. } if self.holding == Holding::Drawing => {
-                    self.holding = Holding::Nothing;
+                Event::Key { key: Key::Escape, pressed: true, .. } if self.holding == PointerGesture::Drawing => {
+                    self.holding = PointerGesture::Nothing;
                     listening.pens.clear();
                     listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
                 }
@@ -146,7 +147,7 @@ impl Hand {
         listening.flush();
     }
     /// A finger, or a pen that reports itself as one. Two that come down and go again, without moving, take a step back.
-    fn touched(&mut self, phase: TouchPhase, is_here: bool, now_secs: f64, listening: &mut Listening) {
+    fn touched(&mut self, phase: TouchPhase, is_here: bool, now_secs: f64, listening: &mut FrameInput) {
         let touches = self.pen.touches();
         match phase {
             TouchPhase::Start => self.tap = (touches == 2 && is_here).then_some((now_secs, 0.0)),
@@ -161,8 +162,8 @@ impl Hand {
             TouchPhase::End | TouchPhase::Move => {}
         }
     }
-    fn press(&mut self, report: &Report, button: PointerButton, listening: &mut Listening) {
-        if self.holding != Holding::Nothing {
+    fn press(&mut self, report: &PenReport, button: PointerButton, listening: &mut FrameInput) {
+        if self.holding != PointerGesture::Nothing {
             return;
         }
         let pos = report.at;
@@ -174,67 +175,67 @@ impl Hand {
         };
         let is_brush = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
         self.holding = match (button, tool) {
-            (PointerButton::Middle, _) => Holding::Panning,
-            (PointerButton::Secondary, _) if is_brush => Holding::Sizing { from: pos, size: session.brush.size },
+            (PointerButton::Middle, _) => PointerGesture::Panning,
+            (PointerButton::Secondary, _) if is_brush => PointerGesture::Sizing { from: pos, size: session.brush.size },
             (PointerButton::Primary, ToolKind::Hand) if self.space && self.keys.command => {
-                Holding::Zooming { about: pos, moved: false }
+                PointerGesture::Zooming { about: pos, moved: false }
             }
-            (PointerButton::Primary, ToolKind::Hand) if self.keys.shift => Holding::Turning,
-            (PointerButton::Primary, ToolKind::Hand) => Holding::Panning,
-            (PointerButton::Primary, ToolKind::Zoom) => Holding::Zooming { about: pos, moved: false },
+            (PointerButton::Primary, ToolKind::Hand) if self.keys.shift => PointerGesture::Turning,
+            (PointerButton::Primary, ToolKind::Hand) => PointerGesture::Panning,
+            (PointerButton::Primary, ToolKind::Zoom) => PointerGesture::Zooming { about: pos, moved: false },
             (PointerButton::Primary, _) => {
-                let Some((watch, reading)) = Watch::begin(report, session.presses_by_speed) else { return };
+                let Some((watch, reading)) = ReportFilter::begin(report, session.presses_by_speed) else { return };
                 self.watch = Some(watch);
                 let (pen, px_per_pt) = (self.reading(reading, listening), 1.0 / listening.view.zoom);
                 listening.actions.push(Action::Pointer(PointerAction::Press { tool, pen, px_per_pt }));
-                Holding::Drawing
+                PointerGesture::Drawing
             }
-            _ => Holding::Nothing,
+            _ => PointerGesture::Nothing,
         };
     }
-    fn moved(&mut self, report: &Report, listening: &mut Listening) {
+    fn moved(&mut self, report: &PenReport, listening: &mut FrameInput) {
         let (pos, by) = (report.at, report.at - self.last);
         if by == eframe::egui::Vec2::ZERO {
             return;
         }
         match self.holding {
-            Holding::Nothing => {}
-            Holding::Drawing => {
+            PointerGesture::Nothing => {}
+            PointerGesture::Drawing => {
                 // A pen that went bad ends its stroke at the last good reading.
                 let Some(reading) = self.watch.as_mut().and_then(|watch| watch.follow(report)) else {
                     return self.release(listening);
                 };
                 listening.pens.push(self.reading(reading, listening));
             }
-            Holding::Panning => listening.view(ViewAction::Pan { by: vec2(by.x, by.y) }),
-            Holding::Zooming { about, .. } => {
-                self.holding = Holding::Zooming { about, moved: true };
+            PointerGesture::Panning => listening.view(ViewAction::Pan { by: vec2(by.x, by.y) }),
+            PointerGesture::Zooming { about, .. } => {
+                self.holding = PointerGesture::Zooming { about, moved: true };
                 listening.zoom(((by.x - by.y) * 0.01).exp(), about);
             }
-            Holding::Turning => {
+            PointerGesture::Turning => {
                 let turn = |p: Pos2| (p - listening.middle).angle();
                 listening.view(ViewAction::Turn { by_rad: turn(pos) - turn(self.last) });
             }
-            Holding::Sizing { from, size } => {
+            PointerGesture::Sizing { from, size } => {
                 let to = (size * ((pos.x - from.x) * 0.01).exp()).max(1.0);
                 listening.actions.push(Action::Hand(HandAction::Size { to }));
             }
         }
         self.last = pos;
     }
-    fn release(&mut self, listening: &mut Listening) {
+    fn release(&mut self, listening: &mut FrameInput) {
         match self.holding {
-            Holding::Drawing => {
+            PointerGesture::Drawing => {
                 listening.flush();
                 listening.actions.push(Action::Pointer(PointerAction::Release {}));
             }
-            Holding::Zooming { about, moved: false } => {
+            PointerGesture::Zooming { about, moved: false } => {
                 let factor = if self.keys.alt { 1.0 / 1.5 } else { 1.5 };
                 listening.zoom(factor, about);
             }
             _ => {}
         }
-        self.holding = Holding::Nothing;
+        self.holding = PointerGesture::Nothing;
     }
     fn two_fingers(
         &mut self,
@@ -242,12 +243,12 @@ impl Hand {
         zoom: f32,
         turn_rad: f32,
         about: Pos2,
-        listening: &mut Listening,
+        listening: &mut FrameInput,
     ) {
-        if self.holding == Holding::Drawing {
+        if self.holding == PointerGesture::Drawing {
             listening.actions.push(Action::Pointer(PointerAction::Cancel {}));
         }
-        self.holding = Holding::Nothing;
+        self.holding = PointerGesture::Nothing;
         if let Some((_, moved_pt)) = &mut self.tap {
             *moved_pt += by.length() + 100.0 * ((zoom - 1.0).abs() + turn_rad.abs());
         }
@@ -257,42 +258,42 @@ impl Hand {
             listening.view(ViewAction::Turn { by_rad: turn_rad });
         }
     }
-    fn reading(&self, reading: Reading, listening: &Listening) -> Pen {
+    fn reading(&self, reading: FilteredReport, listening: &FrameInput) -> PenSample {
         let sample = Sample {
             at: listening.on_canvas(reading.at),
             pressure: reading.pressure,
             tilt: vec2(reading.tilt.0, reading.tilt.1),
             time_secs: reading.secs,
         };
-        let keys = Keys { shift: self.keys.shift, ctrl: self.keys.command, alt: self.keys.alt };
-        Pen { sample, keys }
+        let keys = ModifierKeys { shift: self.keys.shift, ctrl: self.keys.command, alt: self.keys.alt };
+        PenSample { sample, keys }
     }
 }
 
 /// One frame's listening.
-struct Listening<'a> {
+struct FrameInput<'a> {
     session: &'a Session,
     /// As it is after the actions so far.
-    view: View,
+    view: CanvasView,
     middle: Pos2,
     actions: &'a mut Vec<Action>,
     /// Readings not yet pushed: all of a frame go together.
-    pens: Vec<Pen>,
+    pens: Vec<PenSample>,
 }
 
-impl Listening<'_> {
-    fn seen_from_middle(&self, pos: Pos2) -> Vec2 {
+impl FrameInput<'_> {
+    fn from_view_center(&self, pos: Pos2) -> Vec2 {
         vec2(pos.x - self.middle.x, pos.y - self.middle.y)
     }
     fn on_canvas(&self, pos: Pos2) -> Vec2 {
-        self.view.canvas_from_screen().transform_point2(self.seen_from_middle(pos))
+        self.view.canvas_from_screen().transform_point2(self.from_view_center(pos))
     }
     fn view(&mut self, action: ViewAction) {
         self.actions.push(Action::View(action));
     }
     fn zoom(&mut self, factor: f32, about: Pos2) {
         if factor.is_finite() && factor > 0.0 && factor != 1.0 {
-            let about = self.seen_from_middle(about);
+            let about = self.from_view_center(about);
             self.view = self.view.zoomed(factor, about);
             self.view(ViewAction::Zoom { factor, about });
         }
@@ -311,7 +312,7 @@ fn wheel(
     delta: eframe::egui::Vec2,
     keys: Modifiers,
     at: Pos2,
-    listening: &mut Listening,
+    listening: &mut FrameInput,
 ) {
     use eframe::egui::MouseWheelUnit::{Line, Page, Point};
     let points = match unit {

@@ -1,8 +1,8 @@
 //! What is left to paint of one picture as its document changes.
 //! Floor 7.
 
-use super::Painted;
-use crate::document::{Document, Prepared, Progress, diff};
+use super::RenderedTileBatch;
+use crate::document::{Document, PreparedDocument, Progress, diff};
 use crate::math::{Rect, Size};
 use crate::raster::{Tile, TileAt};
 use rayon::prelude::*;
@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 
 /// A picture that is being painted.
 #[derive(Default)]
-pub struct Pass {
+pub struct RenderPass {
     document: Option<Document>,
-    prepared: Option<Prepared>,
+    prepared: Option<PreparedDocument>,
     /// Tiles that are not yet those of the document.
     dirty: BTreeSet<TileAt>,
     begun: Option<Instant>,
@@ -28,7 +28,7 @@ pub struct Pass {
 }
 
 /// What one call painted.
-pub struct Batch {
+pub struct PassBatch {
     tiles: Vec<(TileAt, Option<Arc<Tile>>)>,
     pub is_settled: bool,
     /// Since the document was taken up.
@@ -38,18 +38,18 @@ pub struct Batch {
     left: usize,
 }
 
-impl Batch {
+impl PassBatch {
     /// Tiles that are left for each that is done.
     pub fn share_left(&self) -> f32 {
         self.left as f32 / self.painted.max(1) as f32
     }
-    pub fn painted(self, picture: u64, step: u32, size: Size) -> Painted {
+    pub fn painted(self, picture: u64, step: u32, size: Size) -> RenderedTileBatch {
         let Self { tiles, is_settled, took, .. } = self;
-        Painted { picture, step, size, tiles, is_settled, took }
+        RenderedTileBatch { picture, step, size, tiles, is_settled, took }
     }
 }
 
-impl Pass {
+impl RenderPass {
     pub fn take_up(&mut self, next: Document) {
         match self.document.as_ref().filter(|old| old.size == next.size) {
             Some(old) => self.dirty.extend(diff(old, &next)),
@@ -76,13 +76,13 @@ impl Pass {
         self.slowest
     }
     /// Paints at most so many tiles, those in sight first; `None` where nothing is left.
-    pub fn paint(&mut self, visible: Rect, most: usize) -> Option<Batch> {
+    pub fn paint(&mut self, visible: Rect, most: usize) -> Option<PassBatch> {
         let document = self.document.as_ref()?;
         if self.dirty.is_empty() {
             return None;
         }
         if self.prepared.is_none() {
-            self.prepared = Prepared::new(document, &Progress::default());
+            self.prepared = PreparedDocument::new(document, &Progress::default());
         }
         let prepared = self.prepared.as_ref()?;
         let in_sight = |at: &TileAt| !at.rect().intersect(visible).is_empty();
@@ -100,6 +100,6 @@ impl Pass {
         if left == 0 {
             (self.took, self.slowest) = (took, self.slowest.max(took));
         }
-        Some(Batch { tiles, is_settled: left == 0, took, painted: self.painted, left })
+        Some(PassBatch { tiles, is_settled: left == 0, took, painted: self.painted, left })
     }
 }

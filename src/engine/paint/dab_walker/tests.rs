@@ -3,7 +3,7 @@
 use super::*;
 use crate::math::vec2;
 use crate::math::{Size, vec3};
-use crate::paint::{Curve, Dynamics, Jitter};
+use crate::paint::{ColorJitter, Curve, Dynamics};
 use crate::raster::Plane;
 use crate::surface::{Maps, Surface};
 use proptest::prelude::*;
@@ -180,11 +180,11 @@ fn scattered_dabs_stay_within_their_reach_and_fill_it() {
 }
 #[test]
 fn colours_vary_only_where_the_brush_says() {
-    let brush = Brush { jitter: Jitter { value: 0.3, ..Jitter::default() }, ..brush(20.0) };
+    let brush = Brush { jitter: ColorJitter { value: 0.3, ..ColorJitter::default() }, ..brush(20.0) };
     let lay = |brush: &Brush| super::dabs(brush, Operator::None, Color::parse("#808080").unwrap(), &line(2), &flat());
     let values: Vec<u8> = lay(&brush).iter().map(|dab| dab.color.r).collect();
     assert!(values.iter().all(|v| (51..=205).contains(v)) && values[0] != values[1], "{values:?}");
-    assert!(lay(&Brush { jitter: Jitter::default(), ..brush }).iter().all(|dab| dab.color.r == 128));
+    assert!(lay(&Brush { jitter: ColorJitter::default(), ..brush }).iter().all(|dab| dab.color.r == 128));
 }
 #[test]
 fn time_that_runs_backward_and_clocks_that_stand_still_do_no_harm() {
@@ -211,18 +211,18 @@ proptest! {
         let dynamics = Dynamics::default().with(Property::Size, Input::Speed, Curve::Share(0.9));
         let brush = Brush { scatter: 0.5, dynamics, ..brush(17.0) };
         let whole = dabs(&brush, &samples);
-        let mut laying = Laying::new(&brush, Operator::None, Color::BLACK, &flat());
+        let mut walker = DabWalker::new(&brush, Operator::None, Color::BLACK, &flat());
         let mut laid = Vec::new();
         for (i, sample) in samples.iter().enumerate() {
-            laying.push(sample, &mut laid);
+            walker.push(sample, &mut laid);
             prop_assert_eq!(&laid[..], &whole[..laid.len()], "settled dabs never change");
             if cuts.contains(&i) {
                 let mut shown = laid.clone();
-                shown.extend(laying.tail());
+                shown.extend(walker.tail());
                 prop_assert_eq!(shown, dabs(&brush, &samples[..=i]), "what is shown is what painting at once gives");
             }
         }
-        laid.extend(laying.tail());
+        laid.extend(walker.tail());
         prop_assert_eq!(laid, whole);
     }
 }

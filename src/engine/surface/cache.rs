@@ -4,19 +4,19 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The last few values, the oldest first.
-pub(super) struct Kept<K, V> {
-    kept: Mutex<Vec<(K, Arc<V>)>>,
+pub(super) struct RecentCache<K, V> {
+    entries: Mutex<Vec<(K, Arc<V>)>>,
 }
 
-impl<K, V> Default for Kept<K, V> {
+impl<K, V> Default for RecentCache<K, V> {
     fn default() -> Self {
-        Self { kept: Mutex::default() }
+        Self { entries: Mutex::default() }
     }
 }
 
-impl<K: PartialEq, V> Kept<K, V> {
+impl<K: PartialEq, V> RecentCache<K, V> {
     fn lock(&self) -> MutexGuard<'_, Vec<(K, Arc<V>)>> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
     /// The value of a key. Never computes under the lock: a thread that waits for its own pool's work would stand still.
     /// Threads that ask at the same time may each compute it, and compute the same.
@@ -24,20 +24,20 @@ impl<K: PartialEq, V> Kept<K, V> {
     /// * `keep`: how many are held, `≥ 1`.
     /// * `compute`: is handed one that nobody holds any more, for its memory.
     pub fn get_or_compute(&self, key: K, keep: usize, compute: impl FnOnce(Option<V>) -> V) -> Arc<V> {
-        let find = |kept: &[(K, Arc<V>)]| kept.iter().find(|(k, _)| *k == key).map(|(_, v)| v.clone());
+        let find = |entries: &[(K, Arc<V>)]| entries.iter().find(|(k, _)| *k == key).map(|(_, v)| v.clone());
         let recycled = {
-            let mut kept = self.lock();
-            if let Some(found) = find(&kept) {
+            let mut entries = self.lock();
+            if let Some(found) = find(&entries) {
                 return found;
             }
-            (kept.len() >= keep.max(1)).then(|| kept.remove(0).1).and_then(Arc::into_inner)
+            (entries.len() >= keep.max(1)).then(|| entries.remove(0).1).and_then(Arc::into_inner)
         };
         let computed = Arc::new(compute(recycled));
-        let mut kept = self.lock();
-        if let Some(found) = find(&kept) {
+        let mut entries = self.lock();
+        if let Some(found) = find(&entries) {
             return found;
         }
-        kept.push((key, computed.clone()));
+        entries.push((key, computed.clone()));
         computed
     }
 }
@@ -48,14 +48,14 @@ mod tests {
 
     #[test]
     fn the_last_few_are_kept_and_the_oldest_hands_its_memory_on() {
-        let kept = Kept::default();
-        let first = kept.get_or_compute(1, 2, |_| vec![1; 100]);
-        assert!(Arc::ptr_eq(&first, &kept.get_or_compute(1, 2, |_| unreachable!("it is kept"))));
+        let entries = RecentCache::default();
+        let first = entries.get_or_compute(1, 2, |_| vec![1; 100]);
+        assert!(Arc::ptr_eq(&first, &entries.get_or_compute(1, 2, |_| unreachable!("it is kept"))));
         let memory = first.as_ptr();
         drop(first);
-        kept.get_or_compute(2, 2, |recycled| recycled.unwrap_or_default());
-        let third = kept.get_or_compute(3, 2, |recycled| recycled.expect("the first's"));
+        entries.get_or_compute(2, 2, |recycled| recycled.unwrap_or_default());
+        let third = entries.get_or_compute(3, 2, |recycled| recycled.expect("the first's"));
         assert_eq!(third.as_ptr(), memory);
-        assert_eq!(*kept.get_or_compute(1, 2, |_| vec![7]), [7], "the first is gone");
+        assert_eq!(*entries.get_or_compute(1, 2, |_| vec![7]), [7], "the first is gone");
     }
 }

@@ -16,13 +16,13 @@ const MOST_PULLS: f32 = 4096.0;
 
 /// A line that follows the pen.
 #[derive(Clone)]
-pub struct Calm {
+pub struct StabilizedPen {
     stabilizer: Stabilizer,
     /// Where the line ends, and what the pen said last.
     line: Option<(Vec2, Sample)>,
 }
 
-impl Calm {
+impl StabilizedPen {
     pub fn new(stabilizer: Stabilizer) -> Self {
         Self { stabilizer, line: None }
     }
@@ -87,9 +87,9 @@ mod tests {
 
     /// The calm line of a pen, finished.
     fn line(stabilizer: Stabilizer, pens: &[Vec2]) -> Vec<Vec2> {
-        let mut calm = Calm::new(stabilizer);
-        let mut line: Vec<Vec2> = pens.iter().filter_map(|&at| calm.push(Sample::at(at))).map(|s| s.at).collect();
-        line.extend(calm.finish().map(|s| s.at));
+        let mut stabilized = StabilizedPen::new(stabilizer);
+        let mut line: Vec<Vec2> = pens.iter().filter_map(|&at| stabilized.push(Sample::at(at))).map(|s| s.at).collect();
+        line.extend(stabilized.finish().map(|s| s.at));
         line
     }
     fn wiggle(step: f32) -> Vec<Vec2> {
@@ -113,8 +113,8 @@ mod tests {
             let corner = |n: usize| {
                 let leg = |from: Vec2, to: Vec2| (0..n).map(move |i| from.lerp(to, i as f32 / n as f32));
                 let (a, b, c) = (vec2(0.0, 0.0), vec2(100.0, 0.0), vec2(100.0, 80.0));
-                let mut calm = Calm::new(stabilizer);
-                let end = leg(a, b).chain(leg(b, c)).chain([c]).filter_map(|at| calm.push(Sample::at(at))).last();
+                let mut stabilized = StabilizedPen::new(stabilizer);
+                let end = leg(a, b).chain(leg(b, c)).chain([c]).filter_map(|at| stabilized.push(Sample::at(at))).last();
                 end.map(|sample| sample.at).unwrap_or_default()
             };
             assert!(corner(2).distance(corner(500)) < 0.2, "{stabilizer:?}: {} and {}", corner(2), corner(500));
@@ -139,11 +139,11 @@ mod tests {
             Stabilizer::String { length_px: f32::NAN },
             Stabilizer::String { length_px: -3.0 },
         ] {
-            let mut calm = Calm::new(stabilizer);
+            let mut stabilized = StabilizedPen::new(stabilizer);
             for at in [Vec2::ZERO, Vec2::NAN, vec2(3e38, -3e38), vec2(f32::INFINITY, 0.0), vec2(9.0, 9.0)] {
-                calm.push(Sample::at(at));
+                stabilized.push(Sample::at(at));
             }
-            assert_eq!(calm.finish().map_or(vec2(9.0, 9.0), |s| s.at), vec2(9.0, 9.0));
+            assert_eq!(stabilized.finish().map_or(vec2(9.0, 9.0), |s| s.at), vec2(9.0, 9.0));
         }
     }
 }

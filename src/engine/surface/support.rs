@@ -5,9 +5,9 @@
 mod blocks;
 
 use super::Surface;
-pub use super::bounds::{BLOCK, TILE_BLOCKS};
-use super::bounds::{Block, Cover, DepthSpan, Pyramid, TILE_LEVEL, TurnSpan, block_rect, level_size};
 use super::operator::{Operator, first_order, reflection, second_order};
+pub use super::pyramid::{BLOCK, TILE_BLOCKS};
+use super::pyramid::{BlockCover, DepthSpan, Pyramid, PyramidBlock, TILE_LEVEL, TurnSpan, block_rect, level_size};
 use crate::math::{Size, Vec2, vec2};
 use crate::raster::TileAt;
 
@@ -19,18 +19,18 @@ pub type TileBlocks = [u8; TILE_BLOCKS];
 
 /// How far around its anchor a footprint reaches, in the image plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Extent {
+pub struct DabExtent {
     /// Of the footprint itself, px.
     pub radius_px: f32,
     /// What the filter adds: this many pixels, each as long as D makes it there.
     pub filter_px: f32,
 }
 
-impl Extent {
+impl DabExtent {
     /// Written so that a value that is not a number may be held: leaving out is what must be proven.
     #[inline(always)]
     #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN is not beyond")]
-    fn may_hold(self, image: Image) -> bool {
+    fn may_hold(self, image: BlockImage) -> bool {
         let limit = self.radius_px + self.filter_px * image.pixel + ROUNDING_PX;
         !(image.near > limit + 1e-5 * image.near)
     }
@@ -39,16 +39,16 @@ impl Extent {
 /// The blocks in which one anchored operator brings the image plane within an extent of the anchor.
 ///
 /// Conservative: no block is left out that holds a pixel q with |D(q) − q_0| within the extent.
-pub struct Reach<'s> {
+pub struct SupportBounds<'s> {
     size: Size,
     at: Vec2,
-    extent: Extent,
-    cover: Option<&'s Pyramid<Cover>>,
-    flow: Flow<'s>,
+    extent: DabExtent,
+    cover: Option<&'s Pyramid<BlockCover>>,
+    flow: OperatorBounds<'s>,
 }
 
 /// The operator on the surface, its maps read at the anchor.
-enum Flow<'s> {
+enum OperatorBounds<'s> {
     Still,
     /// `rate`: e^γ − 1.
     Depth {
@@ -59,13 +59,13 @@ enum Flow<'s> {
     Turn {
         pyramid: &'s Pyramid<TurnSpan>,
         turn: Vec2,
-        stretch: Stretch,
+        stretch: RadialOffset,
     },
 }
 
 /// The offset of D_n or D_r as a function of the relative normal, canvas px: an odd radial map.
 #[derive(Clone, Copy)]
-struct Stretch {
+struct RadialOffset {
     /// α L.
     alpha_px: f32,
     /// e^−β; `None` is linear: D_r.
@@ -74,7 +74,7 @@ struct Stretch {
     detail: f32,
 }
 
-impl Stretch {
+impl RadialOffset {
     /// Factor of a relative normal of length u, without detail.
     #[inline(always)]
     fn factor(self, u: f32) -> f32 {
@@ -107,11 +107,13 @@ impl Stretch {
     }
 }
 
-impl<'s> Reach<'s> {
+impl<'s> SupportBounds<'s> {
     /// `at` is q_0; `surface`, where there is one, has the canvas's size.
-    pub fn new(surface: Option<&'s Surface>, size: Size, operator: Operator, at: Vec2, extent: Extent) -> Self {
+    pub fn new(surface: Option<&'s Surface>, size: Size, operator: Operator, at: Vec2, extent: DabExtent) -> Self {
         let operator = operator.finite();
-        let flow = surface.filter(|_| !operator.is_identity()).map_or(Flow::Still, |s| Flow::new(s, operator, at));
+        let flow = surface
+            .filter(|_| !operator.is_identity())
+            .map_or(OperatorBounds::Still, |s| OperatorBounds::new(s, operator, at));
         let cover = surface.map(|s| s.bounds().cover(s));
         Self { size, at, extent, cover, flow }
     }
@@ -121,14 +123,14 @@ impl<'s> Reach<'s> {
         while level_size(self.size, level).area() > 1 {
             level += 1;
         }
-        self.descend(Block { level, col: 0, row: 0 }, TILE_LEVEL, &mut |b| visit(TileAt::new(b.col, b.row)));
+        self.descend(PyramidBlock { level, col: 0, row: 0 }, TILE_LEVEL, &mut |b| visit(TileAt::new(b.col, b.row)));
     }
     /// The blocks of a tile that may be touched.
     pub fn blocks(&self, at: TileAt) -> TileBlocks {
-        match self.judge(Block { level: TILE_LEVEL, col: at.col, row: at.row }) {
-            Touch::Nowhere => TileBlocks::default(),
-            Touch::Everywhere => self.on_canvas(at),
-            Touch::Perhaps => blocks::judged(self, at),
+        match self.judge(PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row }) {
+            BlockOverlap::Nowhere => TileBlocks::default(),
+            BlockOverlap::Everywhere => self.on_canvas(at),
+            BlockOverlap::Perhaps => blocks::judged(self, at),
         }
     }
     /// The blocks of a tile that hold pixels.
@@ -138,16 +140,16 @@ impl<'s> Reach<'s> {
         let (columns, rows) = (there(at.col, all.width), there(at.row, all.height) as usize);
         std::array::from_fn(|row| if row < rows { ((1u16 << columns) - 1) as u8 } else { 0 })
     }
-    fn descend(&self, block: Block, to: usize, visit: &mut impl FnMut(Block)) {
+    fn descend(&self, block: PyramidBlock, to: usize, visit: &mut impl FnMut(PyramidBlock)) {
         match self.judge(block) {
-            Touch::Nowhere => {}
-            Touch::Perhaps if block.level > to => {
+            BlockOverlap::Nowhere => {}
+            BlockOverlap::Perhaps if block.level > to => {
                 block.quarters().into_iter().for_each(|b| self.descend(b, to, visit));
             }
             _ => self.visit_all(block, to, visit),
         }
     }
-    fn visit_all(&self, block: Block, to: usize, visit: &mut impl FnMut(Block)) {
+    fn visit_all(&self, block: PyramidBlock, to: usize, visit: &mut impl FnMut(PyramidBlock)) {
         if block_rect(self.size, block.level, block.col, block.row).is_empty() {
             return;
         }
@@ -156,34 +158,34 @@ impl<'s> Reach<'s> {
         }
         block.quarters().into_iter().for_each(|b| self.visit_all(b, to, visit));
     }
-    fn judge(&self, block: Block) -> Touch {
+    fn judge(&self, block: PyramidBlock) -> BlockOverlap {
         let rect = block_rect(self.size, block.level, block.col, block.row);
         if rect.is_empty() {
-            return Touch::Nowhere;
+            return BlockOverlap::Nowhere;
         }
         let low = vec2(rect.x0 as f32, rect.y0 as f32) + 0.5 - self.at;
         let high = vec2(rect.x1 as f32, rect.y1 as f32) - 0.5 - self.at;
-        let flat = Image::flat(low, high);
-        let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(Cover { some: false, all: false });
+        let flat = BlockImage::flat(low, high);
+        let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(BlockCover { some: false, all: false });
         let outside = if cover.all { None } else { Some(flat) };
         let inside = if cover.some { Some(self.flow.image(block, (low, high), flat)) } else { None };
         let parts = [outside, inside].into_iter().flatten().map(|image| self.touch(image));
-        parts.reduce(|a, b| if a == b { a } else { Touch::Perhaps }).unwrap_or(Touch::Nowhere)
+        parts.reduce(|a, b| if a == b { a } else { BlockOverlap::Perhaps }).unwrap_or(BlockOverlap::Nowhere)
     }
-    fn touch(&self, image: Image) -> Touch {
+    fn touch(&self, image: BlockImage) -> BlockOverlap {
         if !self.extent.may_hold(image) {
-            Touch::Nowhere
+            BlockOverlap::Nowhere
         } else if image.far < self.extent.radius_px {
-            Touch::Everywhere
+            BlockOverlap::Everywhere
         } else {
-            Touch::Perhaps
+            BlockOverlap::Perhaps
         }
     }
 }
 
 /// Where a block's pixels may lie within the extent.
 #[derive(Clone, Copy, PartialEq)]
-enum Touch {
+enum BlockOverlap {
     Nowhere,
     Perhaps,
     Everywhere,
@@ -191,27 +193,29 @@ enum Touch {
 
 /// What D makes of a block: between which distances from the anchor it lies, and how long a pixel is at the most, px.
 #[derive(Clone, Copy)]
-struct Image {
+struct BlockImage {
     near: f32,
     far: f32,
     pixel: f32,
 }
 
-impl Flow<'_> {
+impl OperatorBounds<'_> {
     /// The image of the surface's part of a block whose pixels lie between two corners relative to the anchor.
-    fn image(&self, block: Block, (low, high): (Vec2, Vec2), flat: Image) -> Image {
-        const ANYWHERE: Image = Image { near: 0.0, far: f32::INFINITY, pixel: f32::INFINITY };
+    fn image(&self, block: PyramidBlock, (low, high): (Vec2, Vec2), flat: BlockImage) -> BlockImage {
+        const ANYWHERE: BlockImage = BlockImage { near: 0.0, far: f32::INFINITY, pixel: f32::INFINITY };
         match self {
-            Flow::Still => flat,
-            Flow::Depth { pyramid, z, rate } => pyramid.at(block).map_or(ANYWHERE, |span| flat.scaled(span, *z, *rate)),
-            Flow::Turn { pyramid, turn, stretch } => {
+            OperatorBounds::Still => flat,
+            OperatorBounds::Depth { pyramid, z, rate } => {
+                pyramid.at(block).map_or(ANYWHERE, |span| flat.scaled(span, *z, *rate))
+            }
+            OperatorBounds::Turn { pyramid, turn, stretch } => {
                 pyramid.at(block).map_or(ANYWHERE, |span| stretch.image(span, *turn, (low, high)))
             }
         }
     }
 }
 
-impl Image {
+impl BlockImage {
     /// Where D is the identity: pixels between two corners relative to the anchor.
     #[inline(always)]
     fn flat(low: Vec2, high: Vec2) -> Self {
@@ -229,10 +233,10 @@ impl Image {
     }
 }
 
-impl Stretch {
+impl RadialOffset {
     /// What D_n or D_r makes of a block between two corners whose n̄ or r̄ spans so much, the anchor's being `turn`.
     #[inline(always)]
-    fn image(self, span: TurnSpan, turn: Vec2, (low, high): (Vec2, Vec2)) -> Image {
+    fn image(self, span: TurnSpan, turn: Vec2, (low, high): (Vec2, Vec2)) -> BlockImage {
         let (a, b) = (span.low - turn, span.high - turn);
         let across_x = (interval_distance(a.x, b.x), a.x.abs().max(b.x.abs()));
         let across_y = (interval_distance(a.y, b.y), a.y.abs().max(b.y.abs()));
@@ -241,31 +245,31 @@ impl Stretch {
         let (low, high) = (low + vec2(x0, y0), high + vec2(x1, y1));
         let (steepness, by_curvature) = self.steepness(vec2(across_x.1, across_y.1).length());
         let pixel = 1.0 + steepness * span.slope + by_curvature;
-        Image { pixel, ..Image::flat(low, high) }
+        BlockImage { pixel, ..BlockImage::flat(low, high) }
     }
 }
 
-impl<'s> Flow<'s> {
+impl<'s> OperatorBounds<'s> {
     fn new(surface: &'s Surface, operator: Operator, at: Vec2) -> Self {
         let (x, y) = surface.pixel_of(at);
         let (nbar, nz) = (surface.nbar(x, y), surface.normal(x, y).z);
         let unit_px = surface.size().longer_side();
         match operator {
-            Operator::None => Flow::Still,
-            Operator::Depth { gamma } => Flow::Depth {
+            Operator::None => OperatorBounds::Still,
+            Operator::Depth { gamma } => OperatorBounds::Depth {
                 pyramid: surface.bounds().depth(surface),
                 z: surface.depth(x, y),
                 rate: first_order::rate(gamma),
             },
             Operator::Normal { alpha, beta, detail } => {
                 let stretch =
-                    Stretch { alpha_px: alpha * unit_px, softness: Some(second_order::softness(beta)), detail };
-                Flow::Turn { pyramid: surface.bounds().nbar(surface), turn: nbar, stretch }
+                    RadialOffset { alpha_px: alpha * unit_px, softness: Some(second_order::softness(beta)), detail };
+                OperatorBounds::Turn { pyramid: surface.bounds().nbar(surface), turn: nbar, stretch }
             }
             Operator::Reflection { alpha, detail } => {
-                let stretch = Stretch { alpha_px: alpha * unit_px, softness: None, detail };
+                let stretch = RadialOffset { alpha_px: alpha * unit_px, softness: None, detail };
                 let turn = reflection::mirrored(nbar, nz);
-                Flow::Turn { pyramid: surface.bounds().mirrored(surface), turn, stretch }
+                OperatorBounds::Turn { pyramid: surface.bounds().mirrored(surface), turn, stretch }
             }
         }
     }
@@ -342,13 +346,13 @@ mod tests {
         ) {
             let surface = surface(seed);
             let at = vec2(x, y);
-            let extent = Extent { radius_px, filter_px: 0.5 };
-            let reach = Reach::new(Some(&surface), SIZE, operator, at, extent);
+            let extent = DabExtent { radius_px, filter_px: 0.5 };
+            let support = SupportBounds::new(Some(&surface), SIZE, operator, at, extent);
             let mut tiles = Vec::new();
-            reach.for_each_tile(|tile| tiles.push(tile));
+            support.for_each_tile(|tile| tiles.push(tile));
             let d = Deformation::of_dab(Some(&surface), SIZE, operator, at);
             for tile in TileAt::covering(SIZE.rect()) {
-                let blocks = reach.blocks(tile);
+                let blocks = support.blocks(tile);
                 let Rect { x0, y0, x1, y1 } = tile.rect().intersect(SIZE.rect());
                 for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
                     let bit = blocks[(y - y0) as usize / 8] >> ((x - x0) / 8) & 1;
@@ -363,10 +367,10 @@ mod tests {
 
     #[test]
     fn a_flat_dab_reaches_little_more_than_its_disc() {
-        let extent = Extent { radius_px: 100.0, filter_px: 0.5 };
-        let reach = Reach::new(None, Size::new(1000, 700), Operator::None, vec2(500.0, 350.0), extent);
+        let extent = DabExtent { radius_px: 100.0, filter_px: 0.5 };
+        let support = SupportBounds::new(None, Size::new(1000, 700), Operator::None, vec2(500.0, 350.0), extent);
         let mut blocks = 0;
-        reach.for_each_tile(|tile| blocks += reach.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
+        support.for_each_tile(|tile| blocks += support.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
         let disc = std::f32::consts::PI * 100.0 * 100.0 / 64.0;
         assert!((blocks as f32) > disc && (blocks as f32) < 1.2 * disc, "{blocks} blocks for {disc}");
     }
@@ -381,18 +385,18 @@ mod tests {
         let coverage = Plane::from_fn(size, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
         let surface = Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap();
         let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
-        let extent = Extent { radius_px: 40.0, filter_px: 0.5 };
-        let reach = Reach::new(Some(&surface), size, operator, vec2(600.0, 450.0), extent);
+        let extent = DabExtent { radius_px: 40.0, filter_px: 0.5 };
+        let support = SupportBounds::new(Some(&surface), size, operator, vec2(600.0, 450.0), extent);
         let mut blocks = 0;
-        reach.for_each_tile(|tile| blocks += reach.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
+        support.for_each_tile(|tile| blocks += support.blocks(tile).iter().map(|row| row.count_ones()).sum::<u32>());
         assert!(blocks > 20 && blocks < 130, "{blocks} of 16384 blocks");
     }
     #[test]
     fn figures_that_are_not_numbers_reach_everything_rather_than_nothing() {
-        let extent = Extent { radius_px: f32::NAN, filter_px: 0.5 };
-        let reach = Reach::new(None, Size::new(200, 100), Operator::None, vec2(f32::NAN, 3.0), extent);
+        let extent = DabExtent { radius_px: f32::NAN, filter_px: 0.5 };
+        let support = SupportBounds::new(None, Size::new(200, 100), Operator::None, vec2(f32::NAN, 3.0), extent);
         let mut tiles = 0;
-        reach.for_each_tile(|_| tiles += 1);
+        support.for_each_tile(|_| tiles += 1);
         assert_eq!(tiles, 8);
     }
 }

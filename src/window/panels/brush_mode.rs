@@ -1,0 +1,67 @@
+//! What the brush does where it lands: paint, smudge, blur, clone; and how far it may go.
+//! Floor 7.
+
+use super::fill::BOUNDS;
+use crate::paint::BrushMode;
+use crate::requests::UiRequests;
+use crate::session::actions::HandAction;
+use crate::session::{Action, Session};
+use crate::widgets::{NumberField, check, choice};
+use eframe::egui::Ui;
+
+/// The marks by their kinds.
+#[derive(Clone, Copy, PartialEq)]
+enum BrushModeChoice {
+    Paint,
+    Smudge,
+    Blur,
+    Clone,
+}
+
+const KINDS: [(BrushModeChoice, &str); 4] = [
+    (BrushModeChoice::Paint, "paint"),
+    (BrushModeChoice::Smudge, "smudge"),
+    (BrushModeChoice::Blur, "blur"),
+    (BrushModeChoice::Clone, "clone"),
+];
+
+/// In a bar.
+pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let mode = session.brush.mode;
+    let mut give = |mode: Option<BrushMode>| {
+        requests.actions.extend(mode.map(|mode| Action::Hand(HandAction::Mark { mark: mode })))
+    };
+    let kind = match mode {
+        BrushMode::Paint => BrushModeChoice::Paint,
+        BrushMode::Smudge { .. } => BrushModeChoice::Smudge,
+        BrushMode::Blur { .. } => BrushModeChoice::Blur,
+        BrushMode::Clone { .. } => BrushModeChoice::Clone,
+    };
+    give(choice(ui, "Mark", kind, &KINDS).map(|kind| match kind {
+        BrushModeChoice::Paint => BrushMode::Paint,
+        BrushModeChoice::Smudge => BrushMode::Smudge { length: BrushMode::SMUDGE_LENGTH },
+        BrushModeChoice::Blur => BrushMode::Blur { width: BrushMode::BLUR_WIDTH },
+        BrushModeChoice::Clone => BrushMode::Clone { aligned: true, picture: false },
+    }));
+    match mode {
+        BrushMode::Paint => {}
+        BrushMode::Smudge { length } => {
+            let number =
+                NumberField::new("Length", 0.0..=1.0, "How much of the paint is left after a drag of one radius");
+            give(number.inline(ui, length, 60.0).map(|c| BrushMode::Smudge { length: c.to }));
+        }
+        BrushMode::Blur { width } => {
+            let number =
+                NumberField::new("Width", 0.0..=1.0, "How soft a stroke leaves an edge, as a share of the radius");
+            give(number.inline(ui, width, 60.0).map(|c| BrushMode::Blur { width: c.to }));
+        }
+        BrushMode::Clone { aligned, picture } => {
+            let hint = "Keep the distance to the source from stroke to stroke; else every stroke begins at the source";
+            give(check(ui, "Aligned", hint, aligned).map(|aligned| BrushMode::Clone { aligned, picture }));
+            let hint = "Copy what the picture shows, not the layer alone";
+            give(check(ui, "From the picture", hint, picture).map(|picture| BrushMode::Clone { aligned, picture }));
+        }
+    }
+    let bounded = choice(ui, "Brush where", session.brush.bounded, &BOUNDS);
+    requests.actions.extend(bounded.map(|bounded| Action::Hand(HandAction::Bounded { bounded })));
+}
