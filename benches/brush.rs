@@ -1,11 +1,11 @@
 //! The brush: strokes of dabs, flat and bent, in ns per covered pixel on one thread, beside libmypaint's flat dabs.
 //! `cargo bench --bench brush`; quote ratios from one run, never times from another day.
 //!
-//! Then what a hand feels: a frame's worth of events on a large document, from the pen to the flattened tiles, as the stroke
-//! grows; and one of a thousand strokes moved.
+//! Then what a hand feels: a frame's worth of events on a large document, from the pen to the flattened tiles, as the
+//! stroke grows; and one of a thousand strokes moved.
 //!
-//! A stroke's cost is all of it: its dabs found, what they reach, their coverage, laid on the tiles and quantised. The peer
-//! (benches/peers/libmypaint_dabs.c) is built with `cc` where libmypaint's headers are; else it is skipped, aloud.
+//! A stroke's cost is all of it: its dabs found, what they reach, their coverage, laid on the tiles and quantised. The
+//! peer (benches/peers/libmypaint_dabs.c) is built with `cc` where libmypaint's headers are; else it is skipped, aloud.
 
 use rilievo_engine::document::{
     Content, Document, Layer, Live, PixelLayer, PreparedDocument, Progress, StrokeList, diff::diff,
@@ -209,7 +209,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 fn frames() {
     println!(
-        "\nms a frame of 16 samples, radius 64, 4096² of 20 layers   painted  found  ready  flattened  in all   9 of 10 within   first and last fifth"
+        "\nms a frame of 16 samples, radius 64, 4096² of 20 layers   painted  found  ready  flattened  in all   \
+         9 of 10 within   first and last fifth"
     );
     let mut document = layers();
     let strokes = Layer::new("strokes", Content::Strokes(Live::new(StrokeList::default())));

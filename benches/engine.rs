@@ -1,5 +1,6 @@
-//! The engine on 4K maps: an image layer bent by D_n, computed *and* sampled, one thread and all, beside OpenCV's `remap`
-//! that is handed the finished map. `cargo bench --bench engine`; quote ratios from one run, never times from another day.
+//! The engine on 4K maps: an image layer bent by D_n, computed *and* sampled, one thread and all, beside OpenCV's
+//! `remap` that is handed the finished map. `cargo bench --bench engine`; quote ratios from one run, never times from
+//! another day.
 
 use rayon::prelude::*;
 use rilievo_engine::document::{Content, Document, DocumentReducer, Layer, Live, Progress, flatten};

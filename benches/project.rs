@@ -1,7 +1,8 @@
-//! A project of 20 paint layers of 4096 × 4096: saved while a brush paints, and opened, beside the pure decoding of its PNGs
-//! on the same two threads in the same run.
+//! A project of 20 paint layers of 4096 × 4096: saved while a brush paints, and opened, beside the pure decoding of its
+//! PNGs on the same two threads in the same run.
 //!
-//! Read ratios, and of `brush_…` the slowest sample: it is how long the hand is held at most. `cargo bench --bench project`.
+//! Read ratios, and of `brush_…` the slowest sample: it is how long the hand is held at most.
+//! `cargo bench --bench project`.
 
 use divan::Bencher;
 use divan::counter::BytesCount;

@@ -152,7 +152,8 @@ fn material(bencher: Bencher, run: Run, model: Model) {
 /// What is dragged.
 const DRAGS: [&str; 4] = ["gamma of the layer", "gamma of the layer, mean kept", "a light, Y* set", "a light, Y* auto"];
 
-/// The time between a drag's event and the new picture: the new document, what differs, and those tiles; on two threads.
+/// The time between a drag's event and the new picture: the new document, what differs, and those tiles; on two
+/// threads.
 #[divan::bench(args = DRAGS)]
 fn drag_on_1024_by_768(bencher: Bencher, what: &str) {
     let pool = pool(2);

@@ -62,7 +62,8 @@ const MANY: &str = r##"{ "canvas": { "width": 300, "height": 200 }, "layers": [
     { "name": "ramp", "kind": "gradient", "blend": "overlay", "from": [20, 30], "to": [250, 190],
       "stops": [[0, "#ff000040"], [0.5, "#00ff00"], [1, "#0000ff"]] },
     { "kind": "group", "opacity": 0.7, "layers": [
-      { "kind": "image", "source": { "file": "photo.png" }, "blend": "multiply", "placement": { "scale": 0.6, "rotation": 20 } },
+      { "kind": "image", "source": { "file": "photo.png" }, "blend": "multiply", "placement": { "scale": 0.6,
+        "rotation": 20 } },
       { "kind": "strokes", "strokes": [{ "color": "#ffffff", "samples": [[20, 20], [280, 180]] }] }] }] }"##;
 
 #[test]

@@ -73,8 +73,8 @@ fn dead_links(document: &Path, text: &str) -> Vec<String> {
 const OWN: [&str; 10] =
     ["src/", "docs/", "tests/", "benches/", "brushes/", "sample_normals/", "examples/", "fuzz/", ".ci/", "../"];
 
-/// Files between backticks that are not there. A path may stand for several (`docs/*.md`) or be unknown yet (`src/NAME.rs`);
-/// that of a source file may begin at any folder (`raster/tile.rs`).
+/// Files between backticks that are not there. A path may stand for several (`docs/*.md`) or be unknown yet
+/// (`src/NAME.rs`); that of a source file may begin at any folder (`raster/tile.rs`).
 fn dead_paths(document: &Path, text: &str) -> Vec<String> {
     let sources = files(&root().join("src"), ".rs");
     let is_dead = |path: &&str| {
@@ -138,7 +138,8 @@ fn what_comments_cite_is_there() {
 #[test]
 fn what_leads_nowhere_is_found() {
     let document = root().join("docs/MATH.md");
-    let links = "[a](EQUATIONS.md), [b](NOWHERE.md#x) [c](#5-radiance-scaling-rs-eq-2) [d](#6-nothing) [e](https://example.org)";
+    let links = "[a](EQUATIONS.md), [b](NOWHERE.md#x) [c](#5-radiance-scaling-rs-eq-2) [d](#6-nothing) \
+                 [e](https://example.org)";
     let dead = dead_links(&document, links);
     assert_eq!(dead.len(), 2, "{dead:?}");
     assert!(dead[0].ends_with("NOWHERE.md#x") && dead[1].ends_with("#6-nothing"));

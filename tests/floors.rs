@@ -53,7 +53,8 @@ fn sources() -> Vec<(String, String)> {
 /// The crates that hold several floors; the others are one floor each.
 const CRATES_OF_FLOORS: [&str; 2] = ["engine", "program"];
 
-/// The module on a floor that a file belongs to: `src/io/json/text.rs` belongs to `io`, `src/engine/math/rect.rs` to `math`.
+/// The module on a floor that a file belongs to: `src/io/json/text.rs` belongs to `io`, `src/engine/math/rect.rs` to
+/// `math`.
 fn module_of(file: &str) -> &str {
     let mut parts = file.split('/').skip(1).map(|part| part.trim_end_matches(".rs"));
     let first = parts.next().unwrap();
@@ -132,7 +133,8 @@ fn arrows_between_floors_point_down_only() {
 #[test]
 fn no_chain_of_supers_climbs_out_of_its_module() {
     for (file, code) in sources().into_iter().filter(|(file, _)| !is_root(file)) {
-        // src/io/json/text.rs is three deep: a third `super` would leave its floor. Inside `mod tests` one more is fine.
+        // src/io/json/text.rs is three deep: a third `super` would leave its floor. Inside `mod tests` one more is
+        // fine.
         let in_floors = CRATES_OF_FLOORS.iter().any(|name| file.starts_with(&format!("src/{name}/")));
         let mut depth = file.split('/').count() - 1 - usize::from(in_floors);
         if file.ends_with("/mod.rs") {

@@ -1,5 +1,5 @@
-//! The command line converts, never over its own input; and other programs show our files as we do. Programs that are not
-//! installed are skipped, and said so.
+//! The command line converts, never over its own input; and other programs show our files as we do. Programs that are
+//! not installed are skipped, and said so.
 
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,5 +1,5 @@
-//! The real program, killed while it saves: the file is the old one or the new one, and opens. Killed while it paints: no
-//! finished stroke is lost.
+//! The real program, killed while it saves: the file is the old one or the new one, and opens. Killed while it paints:
+//! no finished stroke is lost.
 
 use rilievo_engine::document::{Document, Progress, flatten};
 use rilievo_engine::math::hash::mix;
@@ -46,8 +46,8 @@ fn check(folder: &Path, target: &str, may_be: &[&str], what: &str) {
     let opened = rilievo_io::open(&folder.join(target), &Budget::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
     assert!(opened.is_whole && opened.notes.is_empty(), "{what}: {:?}", opened.notes);
 }
-/// Runs a conversion of the new recipe in which the `n`th call of each of these kinds is killed (`signal=KILL`) or fails
-/// (`error=ENOSPC`); what it said and whether it ended well. `None` where nothing can be traced.
+/// Runs a conversion of the new recipe in which the `n`th call of each of these kinds is killed (`signal=KILL`) or
+/// fails (`error=ENOSPC`); what it said and whether it ended well. `None` where nothing can be traced.
 fn injected(folder: &Path, target: &str, calls: &str, what: &str, n: usize) -> Option<(String, bool)> {
     let inject = format!("inject={calls}:{what}:when={n}");
     let run = Command::new("strace")
@@ -74,8 +74,8 @@ fn killed_at_every_system_call_it_leaves_the_old_file_or_the_new_one() {
             }
         }
     };
-    // A new file; over an old one; over one with an older version kept; through a link; beside what a killed save left; where
-    // the old file may be read and not written.
+    // A new file; over an old one; over one with an older version kept; through a link; beside what a killed save left;
+    // where the old file may be read and not written.
     for scenario in 0..6 {
         let mut n = 1;
         loop {
@@ -142,8 +142,8 @@ fn kill_while_saving(rounds: u32) {
     let at = |name: &str| folder.path().join(name);
     let begun = Instant::now();
     convert(folder.path(), "new.json", "t.ora");
-    // Kills are spread evenly over a span that grows where one came before the renaming and shrinks where one came after: so
-    // about as many come before as after, however long a save takes here at the time.
+    // Kills are spread evenly over a span that grows where one came before the renaming and shrinks where one came
+    // after: so about as many come before as after, however long a save takes here at the time.
     let mut span_secs = begun.elapsed().as_secs_f64() * 1.5;
     let mut new = 0;
     for round in 0..rounds {
@@ -188,7 +188,9 @@ const STROKES: u32 = 70;
 /// Strokes on a stroke layer and on a paint layer by turns, now and then one of them undone.
 fn story() -> String {
     let mut story = String::from(r##"{"in":"file","do":"new","width":180,"height":140,"background":"#ffffff"}"##);
-    story.push_str("\n{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"strokes\"}\n{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}");
+    for kind in ["strokes", "paint"] {
+        story.push_str(&format!("\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"{kind}\"}}"));
+    }
     for i in 0..STROKES {
         let [x, y, z] = [1, 2, 3].map(|k| mix(i * 3 + k) % 140);
         write!(

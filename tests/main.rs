@@ -11,6 +11,7 @@ mod info;
 mod interchange;
 #[cfg(target_os = "linux")]
 mod kills;
+mod lines;
 mod maps;
 mod recipe;
 mod view;

@@ -1,5 +1,5 @@
-//! Files of every format, damaged at random and in their structure: never a panic, never an abort, never more memory than
-//! is allowed, and every refusal a sentence that names the file. The same mutations on every run.
+//! Files of every format, damaged at random and in their structure: never a panic, never an abort, never more memory
+//! than is allowed, and every refusal a sentence that names the file. The same mutations on every run.
 
 use super::{readers, seeds, watch};
 use rilievo_engine::math::hash::mix;
@@ -49,7 +49,8 @@ fn damaged(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     }
     out
 }
-/// Damage that checksums and tables of contents do not tell of: inside the entries of a zip, inside the chunks of a PNG.
+/// Damage that checksums and tables of contents do not tell of: inside the entries of a zip, inside the chunks of a
+/// PNG.
 fn mutated(bytes: &[u8], dice: &mut Dice) -> Vec<u8> {
     let deep = dice.roll(2) == 0;
     if deep && bytes.starts_with(b"PK") {

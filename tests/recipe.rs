@@ -118,7 +118,8 @@ fn strokes_read_their_samples_brush_and_preset() {
     let Content::Strokes(strokes) = only_layer(json!({ "kind": "strokes", "strokes": [
         { "color": "#ff0000", "samples": [[1, 2], [3, 4, 0.5], [5, 6, 0.25, 10, -20, 1.5]] },
         { "brush": { "preset": "highlight-satin", "size": 33 } },
-        { "brush": { "tip": { "file": "p.png" }, "dynamics": { "size": { "pressure": 1 } } }, "operator": { "kind": "depth" } }
+        { "brush": { "tip": { "file": "p.png" }, "dynamics": { "size": { "pressure": 1 } } },
+          "operator": { "kind": "depth" } }
     ] }))
     .content
     else {
@@ -157,23 +158,31 @@ fn everything() -> Value {
         "contrast": 0.9 });
     let term = json!({ "color": "#102030", "weight": 0.4, "scaling": { "alpha": 0.3, "gamma": 2 } });
     with_layers(json!([
-        { "name": "ground", "kind": "fill", "visible": false, "opacity": 0.3, "blend": "color-dodge", "blend_space": "linear",
+        { "name": "ground", "kind": "fill", "visible": false, "opacity": 0.3, "blend": "color-dodge",
+          "blend_space": "linear",
           "clip_below": true, "lock": "alpha", "clip_to_surface": false, "mask": { "file": "m.png", "invert": true },
           "color": "#12345678" },
-        { "name": "paint", "kind": "pixels", "mask": { "kind": "fresnel", "f0": 0.1, "power": 3 }, "file": "p.png", "x": -3, "y": 4 },
-        { "name": "photo", "kind": "image", "mask": { "kind": "curvature", "scale": 2, "blur": 1, "from": 0.5, "to": -0.5 },
+        { "name": "paint", "kind": "pixels", "mask": { "kind": "fresnel", "f0": 0.1, "power": 3 }, "file": "p.png",
+          "x": -3, "y": 4 },
+        { "name": "photo", "kind": "image", "mask": { "kind": "curvature", "scale": 2, "blur": 1, "from": 0.5,
+          "to": -0.5 },
           "source": source, "placement": placement, "outside": "none",
           "operator": { "kind": "normal", "alpha": -0.25, "beta": 3, "detail": 0.1 },
-          "anchors": [{ "at": [1, 2], "source": [3.25, 4] }, { "at": [5, 6] }], "weights": { "power": 3 }, "filter": "bilinear" },
-        { "name": "unpinned", "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "reflection", "alpha": 1,
+          "anchors": [{ "at": [1, 2], "source": [3.25, 4] }, { "at": [5, 6] }], "weights": { "power": 3 },
+            "filter": "bilinear" },
+        { "name": "unpinned", "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "reflection",
+          "alpha": 1,
           "detail": 0.5 }, "anchors": [] },
-        { "name": "ramp", "kind": "gradient", "mask": { "kind": "depth", "from": 0.25, "to": 0.75 }, "from": [1, 2], "to": [3, 4],
+        { "name": "ramp", "kind": "gradient", "mask": { "kind": "depth", "from": 0.25, "to": 0.75 }, "from": [1, 2],
+          "to": [3, 4],
           "stops": [[0, "#000000"], [0.3, "#ff000080"], [1, "#ffffff"]], "operator": { "kind": "depth", "gamma": 2.5 },
           "filter": "bilinear" },
         { "name": "marks", "kind": "strokes", "strokes": [
-          { "brush": { "size": 20, "hardness": 0.1, "opacity": 0.9, "flow": 0.8, "spacing": 0.2, "rotation": 15, "softness": 0.3,
+          { "brush": { "size": 20, "hardness": 0.1, "opacity": 0.9, "flow": 0.8, "spacing": 0.2, "rotation": 15,
+            "softness": 0.3,
             "tip": { "file": "p.png" }, "dynamics": { "size": { "pressure": 0.5 }, "flow": { "pressure": 0 } } },
-            "operator": { "kind": "normal" }, "color": "#abcdef", "samples": [[1, 2], [3, 4, 0.5], [5, 6, 1, 10, -20, 1.5]] }] },
+            "operator": { "kind": "normal" }, "color": "#abcdef", "samples": [[1, 2], [3, 4, 0.5], [5, 6, 1, 10, -20,
+              1.5]] }] },
         { "name": "lit", "kind": "shading", "model": "toon",
           "lights": [{ "kind": "directional", "direction": [0, 0, 1], "color": "#ff0000", "intensity": 2 },
                      { "kind": "point", "position": [1, 2, 30] }],
@@ -182,14 +191,17 @@ fn everything() -> Value {
           "bands": 6, "exponent": 0.25, "nu": 10, "nv": 20,
           "environment": { "file": "p.png", "projection": "angular", "rotation": 90, "exposure": 1 },
           "sphere": { "file": "p.png" }, "sphere_concave": { "file": "p.png" }, "index": 1.33, "occlusion_radius": 12 },
-        { "name": "shape", "kind": "radiance-scaling", "alpha": 0.5, "gamma_convex": 3, "gamma_concave": 1, "lambda": -1,
+        { "name": "shape", "kind": "radiance-scaling", "alpha": 0.5, "gamma_convex": 3, "gamma_concave": 1,
+          "lambda": -1,
           "scales": [{ "curvature_scale": 2, "weight": 2 }, { "blur": 3 }], "light": [1, 0, 0], "reference": 0.5,
           "keep_mean": true },
-        { "name": "grain", "kind": "normals", "source": { "file": "p.png" }, "convention": "directx", "placement": placement, "outside": "clamp",
+        { "name": "grain", "kind": "normals", "source": { "file": "p.png" }, "convention": "directx",
+          "placement": placement, "outside": "clamp",
           "strength": 2 },
         { "name": "brushed", "kind": "normals", "strength": 0.5,
           "source": { "noise": { "size": 8, "octaves": 2, "roughness": 0.25, "stretch": 20, "seed": 7 } } },
-        { "name": "set", "kind": "group", "pass_through": true, "layers": [{ "name": "inner", "kind": "fill", "color": "#000000" }] }
+        { "name": "set", "kind": "group", "pass_through": true, "layers": [{ "name": "inner", "kind": "fill",
+          "color": "#000000" }] }
     ]))
 }
 
@@ -337,10 +349,13 @@ fn thirty_two_groups_within_each_other_fit() {
 #[test]
 fn the_surface_is_written_as_it_was_read() {
     let surface = json!({
-        "normal": { "file": "n.exr", "channel": "ViewLayer.Normal", "convention": { "encoding": "signed", "channels": "bgr",
+        "normal": { "file": "n.exr", "channel": "ViewLayer.Normal", "convention": { "encoding": "signed",
+          "channels": "bgr",
             "srgb": true, "flip_x": true, "flip_y": false, "flip_z": true, "space": "world",
-            "world_to_camera": [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]], "snap_flat": true, "smooth_steps": false } },
-        "depth": { "file": "z.exr", "channel": "ViewLayer.Depth.Z", "near": "high", "encoding": "ray-distance", "fov": 45.0,
+            "world_to_camera": [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]], "snap_flat": true,
+              "smooth_steps": false } },
+        "depth": { "file": "z.exr", "channel": "ViewLayer.Depth.Z", "near": "high", "encoding": "ray-distance",
+          "fov": 45.0,
             "background": [0.0, 65504.0], "range_px": 100.0, "smooth_steps": true },
         "mask": { "file": "m.png", "channel": "R", "invert": true }
     });
@@ -447,7 +462,8 @@ mod mutations {
             let i = at.index(text.len());
             text[i] = byte;
             for text in [&text[..], &text[..cut.index(text.len())]] {
-                let source = RecipeSource { file: Path::new("r.json"), files: &files(), budget: &Budget::default(), onto: None };
+                let (files, budget) = (files(), Budget::default());
+                let source = RecipeSource { file: Path::new("r.json"), files: &files, budget: &budget, onto: None };
                 if let Err(said) = recipe::read(text, source) {
                     prop_assert!(said.to_string().starts_with("r.json: "));
                 }

@@ -6,13 +6,15 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// A folder with the maps of a ball (`ball_n.png`, `ball_depth.png`, `ball_mask.png`) and a recipe with a gradient over it (`r.json`).
+/// A folder with the maps of a ball (`ball_n.png`, `ball_depth.png`, `ball_mask.png`) and a recipe with a gradient over
+/// it (`r.json`).
 struct Desk(TempDir);
 
 const SIDE: u32 = 96;
 
 const RECIPE: &str = r##"{
-    "surface": { "normal": { "file": "ball_n.png", "convention": "opengl" }, "depth": { "file": "ball_depth.png", "near": "low" } },
+    "surface": { "normal": { "file": "ball_n.png", "convention": "opengl" }, "depth": { "file": "ball_depth.png",
+      "near": "low" } },
     "layers": [{ "name": "ground", "kind": "fill", "color": "#204060" },
                { "name": "ramp", "kind": "gradient", "from": [30.5, 48.5], "to": [66.5, 48.5],
                  "stops": [[0, "#000000"], [1, "#ffffff"]], "operator": { "kind": "normal", "alpha": 0.4 } }] }"##;
@@ -95,7 +97,8 @@ fn a_folder_gets_every_view_and_a_file_the_sheet() {
     let mut names: Vec<String> =
         fs::read_dir(desk.path("all")).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    let all = "curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask normals objects weights";
+    let all = "curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask normals \
+               objects weights";
     let mut expected: Vec<String> = all.split(' ').map(|name| format!("{name}.png")).collect();
     expected.sort();
     assert_eq!(names, expected);

@@ -97,7 +97,8 @@ impl SoftBox {
     }
 }
 
-/// An angular map of the studio. The centre is straight behind the viewer, the circle that touches the sides straight ahead.
+/// An angular map of the studio. The centre is straight behind the viewer, the circle that touches the sides straight
+/// ahead.
 fn studio() -> RgbaImage {
     let side = f64::from(TEXTURE);
     let lights = soft_boxes();
@@ -111,7 +112,8 @@ fn studio() -> RgbaImage {
     })
 }
 
-/// The light of the studio itself, not rolled off: a latitude-longitude map of 256 × 128 pixels, its lamps far above white.
+/// The light of the studio itself, not rolled off: a latitude-longitude map of 256 × 128 pixels, its lamps far above
+/// white.
 pub fn studio_lat_long() -> (usize, usize, Vec<Rgb<f32>>) {
     const SIZE: (usize, usize) = (256, 128);
     const FINE: usize = 4;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// A failure an artist can act on. Its `Display` is one sentence that names the file and, where there is one, the field.
+/// A failure an artist can act on. Its `Display` is one sentence that names the file and, where there is one, the
+/// field.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The operating system refused.

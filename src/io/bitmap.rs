@@ -105,7 +105,8 @@ fn limits(budget: &Budget) -> image::Limits {
     limits
 }
 
-/// Refuses headers that promise more than the bytes that follow could hold: DEFLATE reaches 1032 : 1, LZW about 2500 : 1.
+/// Refuses headers that promise more than the bytes that follow could hold: DEFLATE reaches 1032 : 1, LZW about 2500
+/// : 1.
 fn plausible(file: &Path, size: Size, decoded_bytes: u64, file_bytes: usize) -> Result<()> {
     const GRANTED: u64 = 1 << 20;
     if decoded_bytes > GRANTED && decoded_bytes / 4096 > file_bytes as u64 {

@@ -1,5 +1,5 @@
-//! Pictures out: PNG, JPEG, WebP, TIFF and EXR, each written whole or not at all.
-//! Floor 5. Not here: what the picture shows (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
+//! Pictures out: PNG, JPEG, WebP, TIFF and EXR, each written whole or not at all. Floor 5. Not here: what the picture
+//! shows (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
 
 pub mod deep;
 pub mod layers;
@@ -86,8 +86,8 @@ fn is_document(named: &Path) -> bool {
 }
 
 impl OutputFile {
-    /// Fails where the name asks for no known format, names a folder, lies in a folder that does not exist, or is one of
-    /// the files that are being read.
+    /// Fails where the name asks for no known format, names a folder, lies in a folder that does not exist, or is one
+    /// of the files that are being read.
     pub fn new(named: &Path, inputs: &[PathBuf]) -> Result<Self> {
         let format = ExportFormat::of(named);
         let format = if is_document(named) { None } else { Some(format?) };
@@ -109,7 +109,8 @@ impl OutputFile {
         let format = self.format.map_or_else(|| ExportFormat::of(&self.named), Ok)?;
         self.replace(&encode(&self.named, format, pixels, canvas, options)?)
     }
-    /// Writes a temporary file beside the target and renames it: the target is the old file or the new one, never half of it.
+    /// Writes a temporary file beside the target and renames it: the target is the old file or the new one, never half
+    /// of it.
     pub fn replace(&self, bytes: &[u8]) -> Result<()> {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);

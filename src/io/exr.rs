@@ -46,8 +46,8 @@ impl<'a> ExrFile<'a> {
     }
     /// Reads the header and the chunk table.
     ///
-    /// Fails on deep or subsampled channels, compressions the decoder lacks, windows beyond the budget, and files that end
-    /// before their last chunk.
+    /// Fails on deep or subsampled channels, compressions the decoder lacks, windows beyond the budget, and files that
+    /// end before their last chunk.
     pub fn open(file: &'a Path, bytes: &'a [u8], budget: &Budget) -> Result<Self> {
         let mut cursor = Cursor::new(bytes);
         let meta = guarded(file, "header", || MetaData::read_from_buffered(&mut cursor, false))?;
@@ -89,8 +89,8 @@ impl<'a> ExrFile<'a> {
         let told = self.meta.headers.iter().find_map(|h| h.own_attributes.horizontal_field_of_view);
         told.filter(|fov| *fov > 0.0 && *fov < 180.0)
     }
-    /// Decodes some channels (indices into [`Self::channels`]) over the display window; NaN where the data window leaves it
-    /// bare. Unsigned integers become floats.
+    /// Decodes some channels (indices into [`Self::channels`]) over the display window; NaN where the data window
+    /// leaves it bare. Unsigned integers become floats.
     pub fn read(&self, wanted: &[usize]) -> Result<Vec<Plane<f32>>> {
         let mut planes = vec![Plane::filled(self.size, f32::NAN); wanted.len()];
         let targets: Vec<&ExrChannel> = wanted.iter().filter_map(|&w| self.channels.get(w)).collect();

@@ -14,7 +14,8 @@ use std::{
 
 /// The files a document may name.
 pub trait Files {
-    /// The whole file called `name`, or a sentence: no such file, larger than the budget, or a name that leaves the folder.
+    /// The whole file called `name`, or a sentence: no such file, larger than the budget, or a name that leaves the
+    /// folder.
     fn read(&self, name: &str, budget: &Budget) -> Result<Vec<u8>>;
     /// The path of `name`, for messages.
     fn path(&self, name: &str) -> PathBuf;

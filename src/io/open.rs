@@ -55,7 +55,8 @@ impl FileKind {
     }
 }
 
-/// Opens a project, a recipe (the files it names lie beside it), a Photoshop file, or a picture, which becomes a document of one paint layer.
+/// Opens a project, a recipe (the files it names lie beside it), a Photoshop file, or a picture, which becomes a
+/// document of one paint layer.
 ///
 /// A damaged project gives every layer that is intact; `notes` say what is not, and `is_whole` is false.
 pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {

@@ -46,7 +46,8 @@ fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> 
     picture.ok_or_else(|| Error::decode(file, "the picture has no pixels"))
 }
 
-/// A picture as the tiles of a paint layer, its corner at a canvas pixel; light beyond white is clipped, as a texture clips it.
+/// A picture as the tiles of a paint layer, its corner at a canvas pixel; light beyond white is clipped, as a texture
+/// clips it.
 pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
     let (w, h) = (picture.size.width as usize, picture.size.height as usize);
     match &picture.texels {
@@ -81,8 +82,8 @@ fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
     srgb::quantise(srgb::luminance(r, g, b) * a)
 }
 
-/// The profile of sRGB that this program writes. Its encoder would put the present time into it: a file tells no time, and
-/// the same document gives the same bytes.
+/// The profile of sRGB that this program writes. Its encoder would put the present time into it: a file tells no time,
+/// and the same document gives the same bytes.
 pub fn own_srgb() -> Vec<u8> {
     /// Year, month, day, hour, minute and second, as the header of a profile holds them.
     const DATE: [u8; 12] = [0x07, 0xd0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
@@ -119,7 +120,8 @@ pub fn is_own_srgb(icc: &[u8]) -> bool {
     own_srgb() == icc
 }
 
-/// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where `through_profile` finds nothing to do.
+/// Straight RGBA bytes in the colours of an ICC profile as sRGB; as they are where `through_profile` finds nothing to
+/// do.
 ///
 /// * `is_grey`: red, green and blue are equal, and the profile is one of grey.
 pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> {
@@ -172,7 +174,8 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u8; 4]>> {
 
 /// Linear light of float texels in the colours of an ICC profile; beyond white it is clipped.
 ///
-/// `None` where the profile's light is sRGB's and linear (so that such files keep what is beyond white), or cannot be used.
+/// `None` where the profile's light is sRGB's and linear (so that such files keep what is beyond white), or cannot be
+/// used.
 fn light_through_profile(texels: &[[f32; 4]], icc: &[u8]) -> Option<Vec<[f32; 4]>> {
     let profile = ColorProfile::new_from_slice(icc).ok()?;
     let layout = match profile.color_space {

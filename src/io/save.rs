@@ -63,9 +63,9 @@ pub struct SavedDocument {
 
 /// Saves a document as a project; `None` if cancelled, and then nothing has changed.
 ///
-/// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits for it. Returns once the
-/// file and its folder are on the disk. The previous version is kept beside it as `name~`. Fails with [`Error::Changed`]
-/// where `over` does not allow what would be replaced; whatever fails, the old file is as it was.
+/// Works on a clone, from any thread; it works in threads of its own, so that a brush never waits for it. Returns once
+/// the file and its folder are on the disk. The previous version is kept beside it as `name~`. Fails with
+/// [`Error::Changed`] where `over` does not allow what would be replaced; whatever fails, the old file is as it was.
 pub fn save(document: &Document, file: &Path, over: Overwrite, progress: &Progress) -> Result<Option<SavedDocument>> {
     let encoded = in_own_threads(file, || project::write(file, document, progress))??;
     let Some(bytes) = encoded else { return Ok(None) };

@@ -1,5 +1,5 @@
-//! The system's clipboard: pictures in and out, and texts for the fields that are typed in.
-//! Floor 7. The toolkit's own needs more than this to speak to the system, so its keys and texts come and go through here.
+//! The system's clipboard: pictures in and out, and texts for the fields that are typed in. Floor 7. The toolkit's own
+//! needs more than this to speak to the system, so its keys and texts come and go through here.
 
 use crate::math::Size;
 use crate::raster::Picture;

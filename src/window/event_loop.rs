@@ -10,8 +10,8 @@ use winit::window::WindowId;
 
 /// Set, with anything, the window is opened on Wayland where that is what there is.
 ///
-/// Else it is opened through X11 where both are: Wayland tells this windowing library neither of a pen's pressure nor of files
-/// that are dropped.
+/// Else it is opened through X11 where both are: Wayland tells this windowing library neither of a pen's pressure nor
+/// of files that are dropped.
 #[cfg(all(unix, not(target_os = "macos")))]
 const PREFERS_WAYLAND: &str = "RILIEVO_WAYLAND";
 

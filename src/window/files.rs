@@ -77,8 +77,8 @@ pub enum FileAnswer {
     Nowhere,
 }
 
-/// Asks with the system's dialog, on another thread. [`JobResult::Chosen`] with `None` means that there is none, or that the window
-/// is to ask `by_itself`.
+/// Asks with the system's dialog, on another thread. [`JobResult::Chosen`] with `None` means that there is none, or
+/// that the window is to ask `by_itself`.
 pub fn request(jobs: &mut Jobs, purpose: FilePurpose, name: &str, by_itself: bool) {
     let name = name.to_owned();
     jobs.start(purpose.title().into(), JobKind::Asking, move |_| match answer(purpose, &name, by_itself) {

@@ -1,5 +1,5 @@
-//! Long work, each piece on a thread of its own with a bar of progress and a way to give it up, so that the window never waits.
-//! Floor 7.
+//! Long work, each piece on a thread of its own with a bar of progress and a way to give it up, so that the window
+//! never waits. Floor 7.
 
 use crate::clipboard::{Clipboard, PastedContent};
 use crate::document::{Document, LayerId, Progress, SurfaceSource};

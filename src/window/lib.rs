@@ -1,5 +1,5 @@
-//! Floor 7: the window. Panels are functions that see the session and ask for actions; once a frame the actions are done.
-//! Nothing here knows pixels or equations.
+//! Floor 7: the window. Panels are functions that see the session and ask for actions; once a frame the actions are
+//! done. Nothing here knows pixels or equations.
 
 mod canvas;
 mod clipboard;

@@ -1,7 +1,7 @@
-//! The painter: a thread that flattens documents tile by tile, so that the window never waits for pixels. It compares what it
-//! shows with what it is given and paints only tiles that differ, those in sight first. While something is dragged and whole
-//! pixels would take longer than a frame, it paints a smaller picture instead, and the whole one as soon as the hand rests.
-//! Floor 7. Pixels are `document::flatten`'s; what is left to paint of one picture is `pass`'s.
+//! The painter: a thread that flattens documents tile by tile, so that the window never waits for pixels. It compares
+//! what it shows with what it is given and paints only tiles that differ, those in sight first. While something is
+//! dragged and whole pixels would take longer than a frame, it paints a smaller picture instead, and the whole one as
+//! soon as the hand rests. Floor 7. Pixels are `document::flatten`'s; what is left to paint of one picture is `pass`'s.
 
 mod pass;
 

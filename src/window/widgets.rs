@@ -1,5 +1,5 @@
-//! The window's own widgets: every one has a name that a screen reader and a test can find, and tells a drag from its end.
-//! Floor 7.
+//! The window's own widgets: every one has a name that a screen reader and a test can find, and tells a drag from its
+//! end. Floor 7.
 
 use super::canvas::color32;
 use crate::math::srgb::Color;

@@ -162,7 +162,8 @@ fn documents() -> Vec<Seed> {
         { "name": "g", "kind": "group", "layers": [
             { "name": "line", "kind": "strokes", "strokes": [
                 { "brush": { "size": 5 }, "samples": [[2, 3], [15, 9]] } ] } ] } ] });
-    let surface = json!({ "canvas": { "width": 16, "height": 16 }, "surface": { "normal": { "file": "n.png" } }, "layers": [
+    let surface = json!({ "canvas": { "width": 16, "height": 16 }, "surface": { "normal": { "file": "n.png" } },
+      "layers": [
         { "name": "lit", "kind": "shading", "model": "phong",
           "lights": [{ "kind": "directional", "direction": [0.3, 0.5, 0.8] }] },
         { "name": "photo", "kind": "image", "source": { "file": "p.png" }, "operator": { "kind": "normal" },

@@ -55,7 +55,8 @@ impl Composer<'_> {
             }
             return ComposeFlow::Continue(());
         }
-        // A clipping group: the run on the base's own pixels and in its shape, then the base's way to meet the backdrop.
+        // A clipping group: the run on the base's own pixels and in its shape, then the base's way to meet the
+        // backdrop.
         let mut own = PlanarTile::transparent();
         if let Some(paint) = painted.as_paint() {
             own.blend(Mix::default(), paint, &coverage.mask_only());

@@ -38,7 +38,8 @@ impl TileContent {
     }
 }
 
-/// Renders one tile of a layer's content, or finds it rendered. Groups, adjustments and normals have no pixels of their own.
+/// Renders one tile of a layer's content, or finds it rendered. Groups, adjustments and normals have no pixels of their
+/// own.
 pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> TileContent {
     match content {
         Content::Fill(color) => TileContent::Solid(color.premultiplied()),

@@ -1,6 +1,6 @@
-//! What must be redrawn between two versions of a document: the tiles in which they may differ, found by comparing pointers
-//! and parameters, never pixels.
-//! Floor 4. Conservative: a tile that is not named is the same; a tile that is named may be.
+//! What must be redrawn between two versions of a document: the tiles in which they may differ, found by comparing
+//! pointers and parameters, never pixels. Floor 4. Conservative: a tile that is not named is the same; a tile that is
+//! named may be.
 
 use super::{Content, Document, Layer, LayerId, Live, StrokeList, mask};
 use crate::math::Rect;

@@ -1,6 +1,5 @@
-//! Flattening: the layers of a document to one picture, tile by tile, in f32, quantised once.
-//! Floor 4. Tiles are independent of each other, so they are composed in parallel and the result is the same bytes whatever
-//! the threads.
+//! Flattening: the layers of a document to one picture, tile by tile, in f32, quantised once. Floor 4. Tiles are
+//! independent of each other, so they are composed in parallel and the result is the same bytes whatever the threads.
 
 use super::compose::Composer;
 use super::prepare::in_parallel;
@@ -32,8 +31,8 @@ pub fn flatten_deep(document: &Document, progress: &Progress) -> Option<Vec<[f32
     Some(pixels)
 }
 
-/// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around it.
-/// It sees the surface that it sees in its place. `None` if cancelled or if there is no such layer.
+/// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around
+/// it. It sees the surface that it sees in its place. `None` if cancelled or if there is no such layer.
 pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> Option<TileGrid> {
     flatten_layers(document, &[id], progress)
 }

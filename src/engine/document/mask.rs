@@ -29,7 +29,8 @@ pub enum MaskKind {
     Depth { from: f32, to: f32 },
 }
 
-/// How much of a node arrives at each pixel of a tile: its opacity, its mask, and the surface where it is clipped to it.
+/// How much of a node arrives at each pixel of a tile: its opacity, its mask, and the surface where it is clipped to
+/// it.
 pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
     let coverage = TileCoverage::uniform(node.layer.opacity);
     let coverage = match clip(node) {
@@ -54,8 +55,8 @@ pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
     clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), TileCover::Whole))
 }
 
-/// The surface that a node is clipped to, if any. A group's layers clip themselves: a second time would thin their rims.
-/// An adjustment changes what is painted already.
+/// The surface that a node is clipped to, if any. A group's layers clip themselves: a second time would thin their
+/// rims. An adjustment changes what is painted already.
 fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = !matches!(node.layer.content, Content::Group(_) | Content::RadianceScaling(_));
     node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)
@@ -93,8 +94,8 @@ impl LayerMask {
     pub fn new(kind: MaskKind) -> Self {
         Self { kind, invert: false, disabled: false }
     }
-    /// The same mask as a picture that can be painted on; what it showed it shows. One derived from a surface covers all
-    /// where there is none.
+    /// The same mask as a picture that can be painted on; what it showed it shows. One derived from a surface covers
+    /// all where there is none.
     pub fn as_picture(&self, layer: &Layer, scene: &Scene) -> LayerMask {
         let plain = LayerMask { invert: false, disabled: false, ..self.clone() };
         let curvature = prepare::curvature_of_mask(layer, scene);
@@ -163,7 +164,8 @@ fn fresnel(nz: f32, f0: f32, power: f32) -> f32 {
     f0 + (1.0 - f0) * (1.0 - nz.max(0.0).min(1.0)).powf(power)
 }
 
-/// The tiles in which two masks differ, where both are pictures of one size that count alike; `None` where they are not.
+/// The tiles in which two masks differ, where both are pictures of one size that count alike; `None` where they are
+/// not.
 pub(super) fn changed_tiles(old: &LayerMask, new: &LayerMask) -> Option<Vec<TileAt>> {
     let (MaskKind::File { coverage: a, .. }, MaskKind::File { coverage: b, .. }) = (&old.kind, &new.kind) else {
         return None;

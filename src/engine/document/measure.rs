@@ -33,8 +33,8 @@ impl PreparedDocument {
     }
     /// Y*: the greatest luminance beneath the next adjustment.
     fn brightest_beneath(&self, scene: &Scene, progress: &Progress) -> Option<f32> {
-        // A tile that cannot be brighter than one already measured is not measured: whatever the order, the greatest is found.
-        // Luminance is not negative, so that floats are in the order of their bits.
+        // A tile that cannot be brighter than one already measured is not measured: whatever the order, the greatest is
+        // found. Luminance is not negative, so that floats are in the order of their bits.
         let known = AtomicU32::new(0);
         let of_tile = |at| {
             let most = f32::from_bits(known.load(Relaxed));

@@ -68,7 +68,8 @@ impl PartialEq for Combination {
     }
 }
 
-/// What the layers above a normal layer see. Kept by the layer: the very same surface, as long as what it is made from stands.
+/// What the layers above a normal layer see. Kept by the layer: the very same surface, as long as what it is made from
+/// stands.
 pub(super) fn scene_above(layer: &Layer, normals: &NormalLayer, beneath: &Scene) -> Scene {
     let Some(surface) = beneath.surface.as_ref().filter(|_| normals.strength > 0.0 && layer.opacity > 0.0) else {
         return beneath.clone();

@@ -1,5 +1,5 @@
-//! A document at another resolution: for a quick preview, or a larger print of what is live.
-//! Floor 4. Live layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
+//! A document at another resolution: for a quick preview, or a larger print of what is live. Floor 4. Live layers
+//! change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
 
 mod reducer;
 
@@ -187,8 +187,8 @@ impl CanvasScale {
     }
 }
 
-/// The old pixels under a new one along one axis, and their weights, which add up to 1: the mean over what it covers, at
-/// least one old pixel wide, which is linear interpolation when scaling up.
+/// The old pixels under a new one along one axis, and their weights, which add up to 1: the mean over what it covers,
+/// at least one old pixel wide, which is linear interpolation when scaling up.
 fn covered(i: i32, scale: f32) -> Vec<(i32, f32)> {
     let center = (f64::from(i) + 0.5) / f64::from(scale);
     let half = (0.5 / f64::from(scale)).max(0.5);

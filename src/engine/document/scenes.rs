@@ -6,8 +6,8 @@ use crate::paint::Scene;
 use std::sync::Arc;
 
 impl Document {
-    /// What a layer is painted on: the document's surface and the normal layers beneath it in its scope. `None` where there
-    /// is no such layer.
+    /// What a layer is painted on: the document's surface and the normal layers beneath it in its scope. `None` where
+    /// there is no such layer.
     pub fn scene_of(&self, layer: LayerId) -> Option<Scene> {
         find(&self.layers, layer, &mut self.scene())
     }

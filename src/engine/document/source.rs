@@ -93,8 +93,8 @@ named! {
     }
 }
 
-/// `"convention"` of normals: the words `"auto"`, `"opengl"`, `"directx"`, or an object of the fields below, each of which
-/// is found where it is absent.
+/// `"convention"` of normals: the words `"auto"`, `"opengl"`, `"directx"`, or an object of the fields below, each of
+/// which is found where it is absent.
 ///
 /// ```json
 /// { "encoding": "unsigned", "channels": "rgb", "srgb": false, "flip_x": false, "flip_y": true, "flip_z": false,
@@ -114,8 +114,8 @@ pub struct NormalConvention {
     /// The stored z points away from the viewer.
     pub flip_z: Option<bool>,
     pub space: Option<NormalSpace>,
-    /// Rows of the rotation n_camera = R n_world (camera: x right, y up, z to the viewer). JSON: 3 × 3 or 4 × 4, row by row,
-    /// for column vectors.
+    /// Rows of the rotation n_camera = R n_world (camera: x right, y up, z to the viewer). JSON: 3 × 3 or 4 × 4, row by
+    /// row, for column vectors.
     pub world_to_camera: Option<[[f32; 3]; 3]>,
     /// Treat |xy| < 1.5/255 as 0 where an 8-bit map is flat.
     pub snap_flat: Option<bool>,
@@ -161,8 +161,8 @@ impl NormalConvention {
     }
 }
 
-/// How depth is to be read: `"near"`, `"encoding"`, `"fov"`, `"background"`, `"range_px"` and `"smooth_steps"`, each found
-/// where absent.
+/// How depth is to be read: `"near"`, `"encoding"`, `"fov"`, `"background"`, `"range_px"` and `"smooth_steps"`, each
+/// found where absent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthConvention {
     pub near: Near,

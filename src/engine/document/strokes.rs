@@ -10,8 +10,8 @@ use crate::raster::TileAt;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked; strokes are named by their places,
-/// the first painted 0. `self` never changes.
+/// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked; strokes are named by their
+/// places, the first painted 0. `self` never changes.
 impl Document {
     /// The strokes of a stroke layer, the first painted first; none of another.
     pub fn strokes(&self, layer: LayerId) -> &[Arc<Stroke>] {

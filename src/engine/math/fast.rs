@@ -33,7 +33,8 @@ pub fn exp(x: f32) -> f32 {
     exp2(x * std::f32::consts::LOG2_E)
 }
 
-/// log₂ x for normal positive `x`, absolute error below 3e-6 and a rounding; exactly 0 at 1. Below the smallest normal float, −126.
+/// log₂ x for normal positive `x`, absolute error below 3e-6 and a rounding; exactly 0 at 1. Below the smallest normal
+/// float, −126.
 #[inline(always)]
 pub fn log2(x: f32) -> f32 {
     // √½: mantissas then lie around 1, from √½ to √2.
@@ -65,7 +66,8 @@ pub fn tanh(x: f32) -> f32 {
     x * (0.999_999_2 + y * above) / (1.0 + y * below)
 }
 
-/// acos x for `x` in `[−1, 1]`, clamped to it; absolute error below 7e-5 (Abramowitz and Stegun 1964, 4.4.45). NaN becomes π.
+/// acos x for `x` in `[−1, 1]`, clamped to it; absolute error below 7e-5 (Abramowitz and Stegun 1964, 4.4.45). NaN
+/// becomes π.
 #[inline(always)]
 pub fn acos(x: f32) -> f32 {
     let x = min(max(x, -1.0), 1.0);

@@ -43,8 +43,8 @@ macro_rules! widest {
     )+};
 }
 
-/// Asks for the cache lines of a slice that will be read soon. Rows of a tile lie pages apart, where the processor's own
-/// prefetching stops; a hint without effect elsewhere than on x86-64.
+/// Asks for the cache lines of a slice that will be read soon. Rows of a tile lie pages apart, where the processor's
+/// own prefetching stops; a hint without effect elsewhere than on x86-64.
 #[inline(always)]
 pub fn prefetch<T>(soon: &[T]) {
     #[cfg(target_arch = "x86_64")]

@@ -50,8 +50,8 @@ pub struct Brush {
     pub seed: u32,
 }
 
-/// The frame that a stroke was drawn in, as it lies on the canvas: mirrored first, turned then. What turns or scatters a dab does
-/// so within it, so that the images of one stroke are images dab by dab.
+/// The frame that a stroke was drawn in, as it lies on the canvas: mirrored first, turned then. What turns or scatters
+/// a dab does so within it, so that the images of one stroke are images dab by dab.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct StrokeFrame {
     /// Counter-clockwise as seen, degrees.
@@ -73,7 +73,8 @@ impl StrokeFrame {
         // Counter-clockwise as seen is clockwise where y goes down.
         Mat2::from_angle(-self.turn_rad()) * mirror
     }
-    /// How far a footprint is turned that is turned so far within the frame; mirrored, it is then mirrored left to right.
+    /// How far a footprint is turned that is turned so far within the frame; mirrored, it is then mirrored left to
+    /// right.
     pub fn rotation_rad(self, within_rad: f32) -> f32 {
         if self.is_mirrored { self.turn_rad() - within_rad } else { self.turn_rad() + within_rad }
     }

@@ -1,6 +1,5 @@
-//! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch.
-//! Floor 3. Not here: where dabs stand (`walker`), the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up
-//! to a stroke (`stroke`).
+//! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch. Floor 3. Not here: where dabs stand (`walker`),
+//! the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up to a stroke (`stroke`).
 
 mod coverage;
 mod round;

@@ -293,8 +293,8 @@ impl HandSpeed {
 
 /// A stroke being laid: samples go in one by one, dabs that no later sample changes come out.
 ///
-/// Dabs do not depend on how the samples came in batches, nor on how densely the curve was sampled. Skipped are samples that
-/// are not finite, lie beyond all canvases, or are earlier than the one before.
+/// Dabs do not depend on how the samples came in batches, nor on how densely the curve was sampled. Skipped are samples
+/// that are not finite, lie beyond all canvases, or are earlier than the one before.
 #[derive(Clone)]
 pub struct DabWalker {
     rules: DabRules,

@@ -1,5 +1,5 @@
-//! How a brush follows the hand and the surface: each property of a dab driven by curves over what is known where it stands.
-//! Floor 3. Not here: where dabs stand and what is read there (`walker`).
+//! How a brush follows the hand and the surface: each property of a dab driven by curves over what is known where it
+//! stands. Floor 3. Not here: where dabs stand and what is read there (`walker`).
 
 use crate::math::{Vec2, hash, vec2};
 use std::f32::consts::TAU;

@@ -1,6 +1,6 @@
-//! The fill: the pixels joined to one by colours like its own, with small gaps in their border closed and its edge smoothed.
-//! Floor 3. `flood` finds what is joined, `gaps` what would only be reached through a gap; here the settings and the edge.
-//! Not here: which picture is read, and what the pixels become (`tools::fill`).
+//! The fill: the pixels joined to one by colours like its own, with small gaps in their border closed and its edge
+//! smoothed. Floor 3. `flood` finds what is joined, `gaps` what would only be reached through a gap; here the settings
+//! and the edge. Not here: which picture is read, and what the pixels become (`tools::fill`).
 
 mod flood;
 mod gaps;
@@ -16,11 +16,13 @@ use std::sync::Arc;
 /// How far a fill goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
-    /// The largest difference to the first pixel's colour, of any channel of the premultiplied encoded colour, `[0, 1]`.
+    /// The largest difference to the first pixel's colour, of any channel of the premultiplied encoded colour,
+    /// `[0, 1]`.
     pub tolerance: f32,
     /// Gaps up to this wide are closed, px, `[0, 64]`; 0 closes none.
     pub gap_px: f32,
-    /// How far the edge moves outward, px, `[-32, 32]`: under the softened edge of a line, so that no pale seam is left.
+    /// How far the edge moves outward, px, `[-32, 32]`: under the softened edge of a line, so that no pale seam is
+    /// left.
     pub grow_px: f32,
     /// Pixels at the edge are covered in part.
     pub antialias: bool,
@@ -83,8 +85,8 @@ impl Fill {
     }
     /// The pixels found as coverage, the edge moved and smoothed.
     ///
-    /// A pixel is covered by ½ + g − d, clamped, with g the growth and d how far its centre lies beyond the edge, which runs
-    /// midway between pixels inside and outside: a step across an axis stays sharp, a slanted one is smoothed.
+    /// A pixel is covered by ½ + g − d, clamped, with g the growth and d how far its centre lies beyond the edge, which
+    /// runs midway between pixels inside and outside: a step across an axis stays sharp, a slanted one is smoothed.
     fn edged(&self, inside: PixelSet, canvas: Size, part: &CanvasPart) -> FilledArea {
         let grow_px = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
         let limit = grow_px.abs().ceil() as u16 + 1;

@@ -85,7 +85,8 @@ impl RampPositions {
     fn at(&self, x: i32, y: i32) -> f32 {
         self.t[(y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize]
     }
-    /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the pixel's square in every direction.
+    /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the pixel's square in every
+    /// direction.
     ///
     /// Differenced only between neighbours of one surface; where there are none, D is the identity or as good as.
     fn footprint(&self, x: i32, y: i32, scene: &Scene) -> f32 {

@@ -6,8 +6,8 @@
 //!                                               T(q) = D_p(q; q_s)  grain on the surface
 //! ```
 //!
-//! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) = q_s, so that the grain
-//! there is the canvas's own, nearer parts show it larger and farther ones smaller. G repeats without end.
+//! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) = q_s, so that the
+//! grain there is the canvas's own, nearer parts show it larger and farther ones smaller. G repeats without end.
 
 use super::image::{PictureSource, transform};
 use super::patches::Patches;

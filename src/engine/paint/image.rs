@@ -61,8 +61,8 @@ impl PictureSource {
     }
     /// The adjusted texture.
     ///
-    /// Made by the thread that first asks, without helpers: a worker waiting for helpers here could be handed a tile that
-    /// waits for this very texture.
+    /// Made by the thread that first asks, without helpers: a worker waiting for helpers here could be handed a tile
+    /// that waits for this very texture.
     pub fn texture(&self) -> &Texture {
         self.texture.get_or_init(|| Texture::new(&self.adjust.apply(&self.picture)))
     }
@@ -262,7 +262,8 @@ mod tests {
     }
     #[test]
     fn nothing_bleeds_across_a_silhouette() {
-        // Two plates, the right one far behind and turned: on each D is a translation, so that no pixel needs filtering.
+        // Two plates, the right one far behind and turned: on each D is a translation, so that no pixel needs
+        // filtering.
         let size = Size::new(64, 64);
         let plates = scene(
             size,

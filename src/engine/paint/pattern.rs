@@ -35,7 +35,8 @@ impl Pattern {
     /// Side of that square, texels.
     pub const SIDE: u32 = 512;
 
-    /// Greys in `[0, 1]`; opposite sides meet. Of paper each grey takes the same area, so that a level is a share of it.
+    /// Greys in `[0, 1]`; opposite sides meet. Of paper each grey takes the same area, so that a level is a share of
+    /// it.
     pub fn plane(self, seed: u32) -> Plane<f32> {
         let cells = Self::CELLS as f32;
         let side = Size::new(Self::SIDE, Self::SIDE);
@@ -56,7 +57,8 @@ fn weave(p: Vec2, seed: u32) -> f32 {
     let (cell, within) = (p.floor(), p.fract_gl() - 0.5);
     let is_over = (cell.x + cell.y).rem_euclid(2.0) < 1.0;
     let (across, along) = if is_over { (within.y, within.x) } else { (within.x, within.y) };
-    // A thread's round back, dipping where it goes under the next; each thread a little different, its fibres fine lines.
+    // A thread's round back, dipping where it goes under the next; each thread a little different, its fibres fine
+    // lines.
     let back = (1.0 - (across / 0.46).powi(2)).max(0.0).sqrt();
     let dip = (PI * along).cos().max(0.0).powf(0.6);
     let thread = if is_over { vec2(0.0, cell.y) } else { vec2(1.0, cell.x) };

@@ -4,8 +4,8 @@
 /// A radial profile, the radius of the undeformed footprint being 1.
 ///
 /// Coverage is 1 up to the hardness and falls to 0 at the rim as a smoothstep. Softness blurs it with two kernels of
-/// half its extent each: one widens the smoothstep, the other is a box, which the integral below applies exactly. So the
-/// rim moves out to 1 + softness, the middle sinks as light spreads, and neither does so by jumps.
+/// half its extent each: one widens the smoothstep, the other is a box, which the integral below applies exactly. So
+/// the rim moves out to 1 + softness, the middle sinks as light spreads, and neither does so by jumps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundProfile {
     /// Where the falloff ends, its length, and 1 / length.
@@ -49,16 +49,16 @@ impl RoundProfile {
     pub fn falloff(&self) -> (f32, f32) {
         (self.end - self.length, self.end)
     }
-    /// [`RoundProfile::mean`] where the box lies within the falloff: the mean of a cubic over a width is its value in the middle
-    /// and a 24th of its curvature times the width's square. So no width need be known, only its square.
+    /// [`RoundProfile::mean`] where the box lies within the falloff: the mean of a cubic over a width is its value in
+    /// the middle and a 24th of its curvature times the width's square. So no width need be known, only its square.
     #[inline(always)]
     pub fn mean_in_falloff(&self, r: f32, width_squared: f32) -> f32 {
         let v = (self.end - r) * self.per_length;
         let half_squared = 0.25 * (self.blur_squared + width_squared) * (self.per_length * self.per_length);
         v * v * (3.0 - 2.0 * v) + (1.0 - 2.0 * v) * half_squared
     }
-    /// Bounds half the width of the box, `½ √(blur² + w²)`, from above by `a + b w²`, w² the square of a pixel's width: the root's
-    /// tangent, close around the width `usual`. In radii; gives (a, b).
+    /// Bounds half the width of the box, `½ √(blur² + w²)`, from above by `a + b w²`, w² the square of a pixel's width:
+    /// the root's tangent, close around the width `usual`. In radii; gives (a, b).
     pub fn half_width_bound(&self, usual: f32) -> (f32, f32) {
         let at = (self.blur_squared + usual * usual).max(Self::NARROW * Self::NARROW);
         let slope = 0.25 / at.sqrt();

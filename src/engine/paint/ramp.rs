@@ -20,7 +20,8 @@ struct RampPiece {
     a: [f32; 4],
     b: [f32; 4],
     c: [f32; 4],
-    /// ∫ of the premultiplied colour from the first stop to `start`. Differences of it are divided by small widths: f64.
+    /// ∫ of the premultiplied colour from the first stop to `start`. Differences of it are divided by small widths:
+    /// f64.
     before: [f64; 4],
 }
 
@@ -54,7 +55,8 @@ impl RampPiece {
 }
 
 impl Ramp {
-    /// `None` without a stop at a finite place. Stops out of order are sorted; of two at one place the later wins there.
+    /// `None` without a stop at a finite place. Stops out of order are sorted; of two at one place the later wins
+    /// there.
     pub fn new(stops: &[GradientStop]) -> Option<Self> {
         let mut stops: Vec<GradientStop> = stops.iter().copied().filter(|s| s.t.is_finite()).collect();
         stops.sort_by(|a, b| a.t.total_cmp(&b.t));

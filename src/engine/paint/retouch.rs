@@ -1,7 +1,7 @@
-//! Smudge, blur and clone: brushes that work on the paint that is there. Dab by dab through the same bent footprint as paint,
-//! each on what the last one left, in f32, rounded to bytes as it is shown.
-//! Floor 3. `drag` says where smudge and clone take a pixel's colour from, `soften` what blur makes of it, `pixels` holds the
-//! pixels. Not here: what the pen did (`tools`).
+//! Smudge, blur and clone: brushes that work on the paint that is there. Dab by dab through the same bent footprint as
+//! paint, each on what the last one left, in f32, rounded to bytes as it is shown. Floor 3. `drag` says where smudge
+//! and clone take a pixel's colour from, `soften` what blur makes of it, `pixels` holds the pixels. Not here: what the
+//! pen did (`tools`).
 
 mod drag;
 mod pixels;

@@ -1,5 +1,5 @@
-//! Calming the hand: the pen's samples drawn into a smoother line while they come, and the line finished when the pen lifts.
-//! Floor 3.
+//! Calming the hand: the pen's samples drawn into a smoother line while they come, and the line finished when the pen
+//! lifts. Floor 3.
 
 use super::brush::Stabilizer;
 use super::stroke::Sample;

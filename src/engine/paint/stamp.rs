@@ -118,7 +118,8 @@ impl TipStamp {
     pub fn texture(&self) -> &Texture {
         &self.texture
     }
-    /// A⁻¹ after the shift to the dab's centre: texels from canvas px. The footprint is turned counter-clockwise as seen.
+    /// A⁻¹ after the shift to the dab's centre: texels from canvas px. The footprint is turned counter-clockwise as
+    /// seen.
     pub fn texels_from_canvas(&self, dab: &Dab) -> Affine2 {
         let texels_per_px = Vec2::splat(self.texels_per_radius / dab.radius);
         // Counter-clockwise as seen is clockwise in y-down coordinates, so the inverse turns by +rotation.

@@ -66,8 +66,8 @@ impl StrokeTile {
             StrokeTile::Colors(_) => &mut [],
         }
     }
-    /// Adds one colour to a row from the `start`th pixel on, as far as each is `covered`: a ← a + f (c − a), f = flow · covered,
-    /// up to the ceiling c.
+    /// Adds one colour to a row from the `start`th pixel on, as far as each is `covered`: a ← a + f (c − a), f = flow ·
+    /// covered, up to the ceiling c.
     pub fn cover(&mut self, start: usize, covered: &[f32], paint: DabPaint) {
         match self {
             StrokeTile::OneColor(_) => add_covered(covered, paint, self.coverage(start, covered.len())),
@@ -173,8 +173,8 @@ fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
     coverage + f * if room > 0.0 { room } else { 0.0 }
 }
 
-/// One premultiplied pixel with a colour of weight f over it, up to a ceiling: colours mix as source over mixes them, coverage
-/// rises no further than the ceiling.
+/// One premultiplied pixel with a colour of weight f over it, up to a ceiling: colours mix as source over mixes them,
+/// coverage rises no further than the ceiling.
 #[inline(always)]
 fn mixed(p: [f32; 4], f: f32, source: [f32; 3], ceiling: f32) -> [f32; 4] {
     let over = |c: usize| p[c] * (1.0 - f) + source[c];

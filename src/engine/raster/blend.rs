@@ -1,5 +1,5 @@
-//! Blend modes: how a layer's colour meets the colour beneath it (W3C Compositing and Blending Level 1).
-//! Floor 1. `modes` is the table: a mode is one row of it, one formula of `spec` and one picture of `tests/goldens`. `spec`
+//! Blend modes: how a layer's colour meets the colour beneath it (W3C Compositing and Blending Level 1). Floor 1.
+//! `modes` is the table: a mode is one row of it, one formula of `spec` and one picture of `tests/goldens`. `spec`
 //! reads like the specification; `rows` is fast.
 
 mod modes;

@@ -14,7 +14,8 @@ enum BlurBorder {
     Nothing,
 }
 
-/// Blurs a map; beyond its border the border's value stands. `sigma_px`: standard deviation; not above 0 changes nothing.
+/// Blurs a map; beyond its border the border's value stands. `sigma_px`: standard deviation; not above 0 changes
+/// nothing.
 pub fn gaussian(plane: &Plane<f32>, sigma_px: f32) -> Plane<f32> {
     let (pixels, _) = plane.values().as_chunks::<1>();
     let blurred = gaussian_pixels(plane.size(), pixels, sigma_px);
@@ -44,8 +45,8 @@ pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px
     blurred(size, pixels, sigma_px, BlurBorder::Border)
 }
 
-/// Blurs pixels by a Gaussian of a variance, px²; beyond the border there is nothing, so that sums lose weight: a weight among the
-/// values gives it back. Returns them unchanged as [`gaussian_pixels`] does.
+/// Blurs pixels by a Gaussian of a variance, px²; beyond the border there is nothing, so that sums lose weight: a
+/// weight among the values gives it back. Returns them unchanged as [`gaussian_pixels`] does.
 pub fn spread_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], variance: f32) -> Vec<[f32; N]> {
     /// Narrower Gaussians are too narrow to be sampled: three pixels of their very variance stand for them.
     const SAMPLED: f32 = 0.64;
@@ -124,7 +125,8 @@ enum Gaussian {
     Poles([GaussianPole; 2]),
 }
 
-/// One term of Deriche's fourth-order approximation of a Gaussian (INRIA report 1893, 1993): Re(a pⁿ) at distance n, a and p complex.
+/// One term of Deriche's fourth-order approximation of a Gaussian (INRIA report 1893, 1993): Re(a pⁿ) at distance n, a
+/// and p complex.
 ///
 /// Run as first-order recursions, each term keeps its accuracy in f32 however wide the Gaussian is.
 #[derive(Clone, Copy)]
@@ -143,7 +145,8 @@ impl Gaussian {
         if sigma_px <= Self::WIDEST_TAPS_PX { Self::Taps(half_kernel(sigma_px)) } else { Self::poles(sigma_px) }
     }
     fn poles(sigma_px: f32) -> Self {
-        // (1.68 cos(0.6318 t) + 3.735 sin(0.6318 t)) e^(−1.783 t) − (0.6803 cos(1.997 t) + 0.2598 sin(1.997 t)) e^(−1.723 t)
+        // (1.68 cos(0.6318 t) + 3.735 sin(0.6318 t)) e^(−1.783 t) − (0.6803 cos(1.997 t) + 0.2598 sin(1.997 t))
+        // e^(−1.723 t)
         let terms = [((1.68, -3.735), (1.783, 0.6318)), ((-0.6803, 0.2598), (1.723, 1.997))];
         let poles = terms.map(|((re, im), (decay, frequency))| {
             let s = f64::from(sigma_px);
@@ -194,7 +197,8 @@ crate::widest! {
                 *v *= taps[0];
             }
             for (k, &w) in taps.iter().enumerate().skip(1) {
-                let clip = |inside: bool, at: usize| if inside || beyond == BlurBorder::Border { &strip[at] } else { &nothing };
+                let is_read = |inside: bool| inside || beyond == BlurBorder::Border;
+                let clip = |inside: bool, at: usize| if is_read(inside) { &strip[at] } else { &nothing };
                 let (a, b) = (clip(y >= k, y.saturating_sub(k)), clip(y + k < n, (y + k).min(n - 1)));
                 for l in 0..LANES {
                     sum[l] += w * (a[l] + b[l]);

@@ -94,7 +94,8 @@ impl NoiseSum {
         self.value += weight * noise;
         self.squares += weight * weight;
     }
-    /// The sum of independent values of unit variance, scaled to unit variance again: short lines are no louder than long ones.
+    /// The sum of independent values of unit variance, scaled to unit variance again: short lines are no louder than
+    /// long ones.
     fn of_unit_variance(&self) -> f32 {
         self.value / self.squares.sqrt()
     }

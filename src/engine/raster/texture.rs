@@ -85,7 +85,8 @@ fn premultiplied_u8(straight: [u8; 4]) -> [u8; 4] {
     out
 }
 
-/// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side is odd, weighted by area).
+/// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side is odd, weighted by
+/// area).
 fn halved(level: &MipLevel) -> Option<MipLevel> {
     let Size { width: w, height: h } = level.size;
     if w == 1 && h == 1 {

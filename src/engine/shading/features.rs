@@ -41,7 +41,8 @@ impl Default for Features {
 }
 
 impl Features {
-    /// The features of a surface. Its curvature is computed here unless the surface has kept it: ask before going parallel.
+    /// The features of a surface. Its curvature is computed here unless the surface has kept it: ask before going
+    /// parallel.
     pub fn on(&self, surface: &Surface) -> FeatureMap {
         let total: f32 = self.scales.iter().map(|s| s.weight).sum();
         let share = |s: &FeatureScale| if total > 0.0 { s.weight / total } else { 0.0 };
@@ -113,7 +114,8 @@ impl FeatureMap {
             Self::Isotropic(map) => map.row(x0, y, kappa),
             Self::Directional { parts, lambda } => {
                 let l = light.normalize_or(Vec3::Z);
-                // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors, see `Curvature::kappa_along`.
+                // A (ℓ_u² − ℓ_v²) = (h_xx − h_yy)(ℓ_x² − ℓ_y²) + 4 h_xy ℓ_x ℓ_y: no eigenvectors, see
+                // `Curvature::kappa_along`.
                 let (along, across) = (lambda * (l.x * l.x - l.y * l.y), lambda * 4.0 * l.x * l.y);
                 kappa.fill(0.0);
                 for p in parts {
@@ -174,7 +176,8 @@ crate::widest! {
     fn add_along(tensor: TensorRow, light: [&[f32]; 2], factors: [f32; 3], kappa: &mut [f32]) {
         let [s, lambda, share] = factors;
         let tensors = tensor.hxx.iter().zip(tensor.hxy).zip(tensor.hyy).zip(tensor.fade);
-        for (((((&hxx, &hxy), &hyy), &fade), (&lx, &ly)), kappa) in tensors.zip(light[0].iter().zip(light[1])).zip(kappa) {
+        let toward = light[0].iter().zip(light[1]);
+        for (((((&hxx, &hxy), &hyy), &fade), (&lx, &ly)), kappa) in tensors.zip(toward).zip(kappa) {
             let aniso = (hxx - hyy) * (lx * lx - ly * ly) + 4.0 * hxy * lx * ly;
             *kappa += faded(share, fade) * fast::tanh(s * (hxx + hyy + lambda * aniso));
         }

@@ -86,8 +86,8 @@ impl Light {
 }
 
 crate::widest! {
-    /// ℓ of each pixel of a row: toward a point that lies at `from_first` from the first pixel, were it at height 0; the
-    /// surface recedes from there by its depth.
+    /// ℓ of each pixel of a row: toward a point that lies at `from_first` from the first pixel, were it at height 0;
+    /// the surface recedes from there by its depth.
     fn turn_to_point(from_first: Vec3, depth_range_px: f32, depth: &[f32], direction: &mut [RowValues; 3]) {
         let [lx, ly, lz] = direction;
         for (x, (&depth, ((lx, ly), lz))) in depth.iter().zip(lx.iter_mut().zip(ly).zip(lz)).enumerate() {

@@ -103,7 +103,8 @@ impl RadianceScaling {
         });
         means
     }
-    /// Calls with each row of the tile that meets the surface, κ along it (0 off the surface) and the surface's coverage.
+    /// Calls with each row of the tile that meets the surface, κ along it (0 off the surface) and the surface's
+    /// coverage.
     fn for_rows(&self, scene: &Scene, at: TileAt, mut with: impl FnMut(usize, &[f32; TILE], &[u8])) {
         let Some(surface) = scene.surface.as_deref() else { return };
         // The lattice of tiles begins at the canvas's corner, so a tile meets it from its own left and top side on.

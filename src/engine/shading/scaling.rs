@@ -8,7 +8,8 @@ use crate::math::fast;
 /// RS names the separate strength of convex and concave features as future work; with both equal it is the paper's γ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    /// α in (0, 1): light of this reflectance is left alone; on a convex feature brighter light rises, dimmer light falls.
+    /// α in (0, 1): light of this reflectance is left alone; on a convex feature brighter light rises, dimmer light
+    /// falls.
     pub alpha: f32,
     /// γ on convex features (κ > 0), `≥ 0`.
     pub gamma_convex: f32,

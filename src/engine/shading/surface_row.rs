@@ -95,8 +95,8 @@ impl<'a> SurfaceRow<'a> {
     }
 }
 
-/// How a row bends toward a light, and the exponentials E = e^(−γκ) (MATH 5) that its terms share: terms are often scaled
-/// alike, and without λ κ is the same toward every light.
+/// How a row bends toward a light, and the exponentials E = e^(−γκ) (MATH 5) that its terms share: terms are often
+/// scaled alike, and without λ κ is the same toward every light.
 pub struct RowRelief {
     kappa: RowValues,
     /// Which γ (convex, concave) `exponentials` are of; `None` before the first.

@@ -73,8 +73,8 @@ pub fn shepard(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<f32> {
     anchors.iter().map(|a| closeness(a) / sum).collect()
 }
 
-/// ∇w_i of [`shepard`]: `w_i (ℓ_i − Σ_j w_j ℓ_j)`, with `ℓ_i = −p (q − q_i) / |q − q_i|²` the gradient of the logarithm.
-/// 0 at an anchor (its limit for `p > 1`).
+/// ∇w_i of [`shepard`]: `w_i (ℓ_i − Σ_j w_j ℓ_j)`, with `ℓ_i = −p (q − q_i) / |q − q_i|²` the gradient of the
+/// logarithm. 0 at an anchor (its limit for `p > 1`).
 fn shepard_gradients(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<Vec2> {
     let weights = shepard(anchors, q, power);
     let logarithmic = |a: &Anchor| {
@@ -85,7 +85,8 @@ fn shepard_gradients(anchors: &[Anchor], q: Vec2, power: f32) -> Vec<Vec2> {
     anchors.iter().zip(&weights).map(|(a, &w)| w * (logarithmic(a) - mean)).collect()
 }
 
-/// The gradient tool's weights (MATH 2): `w_0 = 1 − clamp(((q − q_0)·(q_1 − q_0)) / |q_1 − q_0|², 0, 1)`, `w_1 = 1 − w_0`.
+/// The gradient tool's weights (MATH 2): `w_0 = 1 − clamp(((q − q_0)·(q_1 − q_0)) / |q_1 − q_0|², 0, 1)`,
+/// `w_1 = 1 − w_0`.
 ///
 /// Anchors beyond the second have no weight; a single one, or two at the same place, leave all of it to the first.
 pub fn segment(anchors: &[Anchor], q: Vec2) -> Vec<f32> {

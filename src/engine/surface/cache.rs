@@ -18,8 +18,8 @@ impl<K: PartialEq, V> RecentCache<K, V> {
     fn lock(&self) -> MutexGuard<'_, Vec<(K, Arc<V>)>> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    /// The value of a key. Never computes under the lock: a thread that waits for its own pool's work would stand still.
-    /// Threads that ask at the same time may each compute it, and compute the same.
+    /// The value of a key. Never computes under the lock: a thread that waits for its own pool's work would stand
+    /// still. Threads that ask at the same time may each compute it, and compute the same.
     ///
     /// * `keep`: how many are held, `≥ 1`.
     /// * `compute`: is handed one that nobody holds any more, for its memory.

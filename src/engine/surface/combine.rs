@@ -8,12 +8,13 @@ use std::sync::Arc;
 
 /// Detail laid onto a base normal as onto a plane bent to it: the detail's z becomes the base, turned the shortest way.
 ///
-/// Reoriented normal mapping (Barré-Brisebois and Hill 2012): t = base + z, u = (−d_x, −d_y, d_z), r = t (t·u) / t_z − u.
+/// Reoriented normal mapping (Barré-Brisebois and Hill 2012): t = base + z, u = (−d_x, −d_y, d_z), r = t (t·u) / t_z −
+/// u.
 ///
 /// * `base`, `detail`: unit, y up, `base.z > −1`.
 ///
-/// Unit; the base where the detail is flat, the detail where the base is. What would turn away from the viewer is held at the
-/// silhouette.
+/// Unit; the base where the detail is flat, the detail where the base is. What would turn away from the viewer is held
+/// at the silhouette.
 pub fn reoriented(base: Vec3, detail: Vec3) -> Vec3 {
     let t = base + Vec3::Z;
     let u = Vec3::new(-detail.x, -detail.y, detail.z);

@@ -48,7 +48,8 @@ pub const DETAIL_SCALE_PX: f32 = 4.0;
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors; one that stands off the surface reads the background: facing the viewer, farthest.
+    /// Reads the maps at the anchors; one that stands off the surface reads the background: facing the viewer,
+    /// farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
     /// * `size`: the canvas; its longer side is *L*.
@@ -57,8 +58,8 @@ impl<'a> Deformation<'a> {
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
         Self::pinned(surface, size, bend, at_anchor)
     }
-    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest of it, so that a
-    /// stroke goes on over the silhouette.
+    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest of it, so that
+    /// a stroke goes on over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         let bend = Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() };
         Self::pinned(surface, size, &bend, nearest_map_values)
@@ -103,8 +104,8 @@ impl<'a> Deformation<'a> {
             .sum();
         q + moved
     }
-    /// ∂D/∂q at the centre of a pixel, columns along x and y; a plain ratio. The maps are differenced within the piece of
-    /// surface that holds the pixel, the weights analytically.
+    /// ∂D/∂q at the centre of a pixel, columns along x and y; a plain ratio. The maps are differenced within the piece
+    /// of surface that holds the pixel, the weights analytically.
     ///
     /// `J = I + Σ_i [ w_i ∂offset_i/∂q + (offset_i + s_i − q_i) ∇w_iᵀ ]`.
     pub fn jacobian(&self, x: i32, y: i32) -> Mat2 {
@@ -191,8 +192,8 @@ fn map_values(surface: &Surface, x: usize, y: usize) -> MapValues {
     MapValues { depth: surface.depth(x, y), nbar: surface.nbar(x, y), nz: surface.normal(x, y).z }
 }
 
-/// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel itself
-/// in place of one that does not.
+/// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel
+/// itself in place of one that does not.
 pub(super) struct DifferencePairs {
     /// Left and right, up and down.
     pairs: [[(usize, usize); 2]; 2],

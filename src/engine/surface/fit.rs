@@ -1,12 +1,13 @@
-//! Fitting a surface to a canvas of another size: another object under a finished painting, or a painting at another scale.
-//! Floor 2. Values are averaged over what one new pixel covers, never across a depth jump or the mask's edge.
+//! Fitting a surface to a canvas of another size: another object under a finished painting, or a painting at another
+//! scale. Floor 2. Values are averaged over what one new pixel covers, never across a depth jump or the mask's edge.
 
 use super::{Maps, Surface, SurfaceError};
 use crate::math::{Size, Vec2, Vec3, vec2};
 use crate::raster::Plane;
 
 impl Surface {
-    /// The whole surface as large as `canvas` allows, its aspect kept, centred; what is left of the canvas has no surface.
+    /// The whole surface as large as `canvas` allows, its aspect kept, centred; what is left of the canvas has no
+    /// surface.
     ///
     /// Fails where nothing is left of a surface thinner than the new pixels.
     pub fn fitted(&self, canvas: Size) -> Result<Surface, SurfaceError> {
@@ -14,7 +15,8 @@ impl Surface {
         let scale = (to.width as f32 / from.width as f32).min(to.height as f32 / from.height as f32);
         self.resampled(canvas, Vec2::splat(scale))
     }
-    /// The surface at another resolution: the whole map over the whole canvas, a side that rounded taking the difference.
+    /// The surface at another resolution: the whole map over the whole canvas, a side that rounded taking the
+    /// difference.
     pub fn stretched(&self, canvas: Size) -> Result<Surface, SurfaceError> {
         let (from, to) = (self.size(), canvas);
         let scale = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
@@ -33,7 +35,8 @@ impl Surface {
             coverage: read.map(|v| v.coverage),
         })
     }
-    /// The mean over the box of half sides `half` around a point of the map, cut at its border; beyond there is no surface.
+    /// The mean over the box of half sides `half` around a point of the map, cut at its border; beyond there is no
+    /// surface.
     fn mean_over(&self, center: Vec2, half: Vec2) -> MeanTexel {
         let border = vec2(self.size().width as f32, self.size().height as f32);
         if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {

@@ -44,7 +44,8 @@ pub struct FlowField {
     unbent: f32,
 }
 
-/// T_p = JᵀJ, J = [∂x p, ∂y p], p = (x, y, z·Z): the first-order flow (SF sec. 4.3; MATH 3). Derivatives per px, z·Z in px.
+/// T_p = JᵀJ, J = [∂x p, ∂y p], p = (x, y, z·Z): the first-order flow (SF sec. 4.3; MATH 3). Derivatives per px, z·Z in
+/// px.
 pub fn position_tensor(depth_slope_px: Vec2) -> StructureTensor {
     StructureTensor::of_columns(Vec3::new(1.0, 0.0, depth_slope_px.x), Vec3::new(0.0, 1.0, depth_slope_px.y))
 }

@@ -25,8 +25,8 @@ impl Default for NoiseRelief {
 }
 
 impl NoiseRelief {
-    /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y down), seen through a pixel
-    /// `px` wide: bumps too small for it fade away.
+    /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y down), seen through a
+    /// pixel `px` wide: bumps too small for it fade away.
     pub fn normal(&self, at: Vec2, px: f32) -> Vec3 {
         let mut slope = Vec2::ZERO;
         let (mut size, mut share) = (self.size_px, 1.0);
@@ -45,7 +45,8 @@ impl NoiseRelief {
     }
 }
 
-/// The gradient of gradient noise (Perlin 1985, with his quintic of 2002): derivative by x and y, a lattice cell as unit.
+/// The gradient of gradient noise (Perlin 1985, with his quintic of 2002): derivative by x and y, a lattice cell as
+/// unit.
 fn gradient(p: Vec2, seed: u32) -> Vec2 {
     let floor = p.floor();
     let f = p - floor;

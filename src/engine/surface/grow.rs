@@ -5,7 +5,8 @@ use crate::raster::Plane;
 
 /// For each pixel the index of a nearest valid pixel (itself where valid); `None` where nothing is valid.
 ///
-/// Two sweeps that hand the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for rare ties within a pixel).
+/// Two sweeps that hand the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for rare ties within a
+/// pixel).
 pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     const NONE: u32 = u32::MAX;
     let size = valid.size();

@@ -1,7 +1,6 @@
 //! Depth from normals: the height field whose slopes are nearest to those the normals tell (a Poisson equation over the
-//! mask), solved by conjugate gradients with a multigrid preconditioner.
-//! Floor 2. The reverse is `differentiate`. What the normals cannot tell stays untold: how far apart two pieces of surface
-//! are across an occluding contour.
+//! mask), solved by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. What
+//! the normals cannot tell stays untold: how far apart two pieces of surface are across an occluding contour.
 
 mod multigrid;
 
@@ -19,8 +18,9 @@ pub struct IntegratedDepth {
 
 /// Integrates unit normals (camera space, y up) over the pixels where `inside` holds; `None` where there are none.
 ///
-/// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is exact on circles, and
-/// w = ((n_z,i + n_z,j)/2)² trusts what faces the viewer. Pieces that do not touch are each centred on the same depth.
+/// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is exact on circles,
+/// and w = ((n_z,i + n_z,j)/2)² trusts what faces the viewer. Pieces that do not touch are each centred on the same
+/// depth.
 pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
     let size = normals.size();
     let (w, h) = (size.width as usize, size.height as usize);

@@ -57,8 +57,8 @@ pub fn depth_range_px(
 
 /// Excess over the tolerance, as a ratio of it, from which a step is a jump by itself.
 const CERTAIN: f32 = 1.0;
-/// Excess from which a step is a jump where it touches one: the contour of an occluder fades where it comes near to what
-/// lies behind, and must not break into beads.
+/// Excess from which a step is a jump where it touches one: the contour of an occluder fades where it comes near to
+/// what lies behind, and must not break into beads.
 const LIKELY: f32 = 0.2;
 
 /// Finds the links of every pixel.
@@ -150,9 +150,9 @@ impl StepMaps<'_> {
     }
     /// How far the step after a pixel is from that of a smooth surface, as a ratio of the tolerance; 0 where it is one.
     ///
-    /// Between two neighbours of a smooth surface the step lies between the slopes that their normals tell (the mean value
-    /// theorem). Normals may carry detail that the depth lacks, so the depth must jump by its own measure as well: beyond
-    /// the steps before and after. Half a slope and 1.5 px are granted for curvature and coarse depth.
+    /// Between two neighbours of a smooth surface the step lies between the slopes that their normals tell (the mean
+    /// value theorem). Normals may carry detail that the depth lacks, so the depth must jump by its own measure as
+    /// well: beyond the steps before and after. Half a slope and 1.5 px are granted for curvature and coarse depth.
     fn excess(&self, at: (usize, usize), axis: usize) -> f32 {
         let (Some(step), Some(next)) = (self.step(at, axis), self.after(at, axis)) else { return 0.0 };
         let (here, there) = (self.slope(at, axis), self.slope(next, axis));

@@ -14,7 +14,8 @@ use std::sync::{Arc, OnceLock};
 
 /// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
 pub struct Maps {
-    /// Camera space: +x right, +y **up**, +z to the viewer. Zero, NaN or infinite where there is no surface; any length.
+    /// Camera space: +x right, +y **up**, +z to the viewer. Zero, NaN or infinite where there is no surface; any
+    /// length.
     pub normals: Plane<Vec3>,
     /// 0 near … 1 far over the surface; not finite where there is none.
     pub depth: Plane<f32>,
@@ -70,7 +71,8 @@ impl Surface {
             let n = maps.normals.at(x, y);
             coverage.at(x, y) > 0 && maps.depth.at(x, y).is_finite() && n.is_finite() && n.length() > 1e-6
         });
-        // A partly covered pixel at the rim without a normal of its own borrows its neighbour's; further in it is a hole.
+        // A partly covered pixel at the rim without a normal of its own borrows its neighbour's; further in it is a
+        // hole.
         grow::punch_holes(&mut coverage, &valid);
         let nearest = grow::nearest(&valid).ok_or(SurfaceError::Empty)?;
         let unit = |x: usize, y: usize| {

@@ -6,8 +6,9 @@ use crate::math::{Rect, Vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
 
-/// Pieces smaller than this are crumbs of a torn edge, not objects: they join what they are nearest to in depth. A share of
-/// the longer side, squared, so that the same picture falls into the same objects at any size; at least some pixels.
+/// Pieces smaller than this are crumbs of a torn edge, not objects: they join what they are nearest to in depth. A
+/// share of the longer side, squared, so that the same picture falls into the same objects at any size; at least some
+/// pixels.
 const CRUMB_SIDE: (f32, f32) = (0.006, 4.0);
 
 /// Which object each pixel of a surface belongs to.

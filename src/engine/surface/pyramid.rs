@@ -16,8 +16,8 @@ pub(super) const TILE_LEVEL: usize = TILE_BLOCKS.ilog2() as usize;
 
 /// The maps' pyramids, each built when an operator first asks for it.
 ///
-/// Built by the thread that asks and by no other: a worker that waited for helpers here could be handed a tile that waits
-/// for the same pyramid.
+/// Built by the thread that asks and by no other: a worker that waited for helpers here could be handed a tile that
+/// waits for the same pyramid.
 #[derive(Default)]
 pub struct MapPyramids {
     cover: OnceLock<Pyramid<BlockCover>>,

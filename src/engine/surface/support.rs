@@ -1,6 +1,6 @@
 //! Bounded support: which blocks of the canvas one anchored operator can bring near its anchor, found by interval
-//! arithmetic on D_p, D_n and D_r over the maps' pyramids, without looking at pixels.
-//! Floor 2. `blocks` judges the blocks of a tile side by side. It says what may be touched, never what is: pixels are `deformation`'s.
+//! arithmetic on D_p, D_n and D_r over the maps' pyramids, without looking at pixels. Floor 2. `blocks` judges the
+//! blocks of a tile side by side. It says what may be touched, never what is: pixels are `deformation`'s.
 
 mod blocks;
 

@@ -1,6 +1,6 @@
-//! TIFF as scanners, renderers and painting programs store it: grey, palettes, RGB, YCbCr and CMYK, with and without alpha, 1
-//! to 64 bits, integers and floats, in planes or pixel by pixel.
-//! Floor 5. Strips, tiles and compressions are the `tiff` crate's; `image` reads only part of what that decodes.
+//! TIFF as scanners, renderers and painting programs store it: grey, palettes, RGB, YCbCr and CMYK, with and without
+//! alpha, 1 to 64 bits, integers and floats, in planes or pixel by pixel. Floor 5. Strips, tiles and compressions are
+//! the `tiff` crate's; `image` reads only part of what that decodes.
 
 mod sample;
 
@@ -114,7 +114,8 @@ const TILE_PX: u64 = 1 << 22;
 /// A JPEG within says that it is larger than the whole: its decoder would make room for that before it looks.
 fn claims_more(bytes: &[u8], size: Size) -> bool {
     let most = TILE_PX.max(size.area() as u64);
-    // The header of a frame: its mark, a length for 1 to 4 components, 8 bits, height, width. Nothing coded holds such a mark.
+    // The header of a frame: its mark, a length for 1 to 4 components, 8 bits, height, width. Nothing coded holds such
+    // a mark.
     bytes.windows(9).any(|header| match *header {
         [0xff, 0xc0..=0xc2, 0, 11 | 14 | 17 | 20, 8, h1, h0, w1, w0] => {
             u64::from(u16::from_be_bytes([h1, h0])) * u64::from(u16::from_be_bytes([w1, w0])) > most
@@ -214,7 +215,8 @@ impl TiffLayout {
             _ => Err("the samples of this TIFF have a sign; those of a picture have none"),
         }
     }
-    /// Samples of less than a byte, which share bytes: a byte each, stretched to its range unless they are numbers of colours.
+    /// Samples of less than a byte, which share bytes: a byte each, stretched to its range unless they are numbers of
+    /// colours.
     fn unpacked(&self, packed: &[u8]) -> Vec<u8> {
         let bits = usize::from(self.bits);
         let most = (1u32 << bits) - 1;

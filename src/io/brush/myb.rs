@@ -70,8 +70,8 @@ fn brush(settings: &mut MyPaintSettings) -> Brush {
     }
 }
 
-/// A MyPaint dab's coverage falls in two lines over the squared radius; here it is a smoothstep. They agree where each is
-/// one half.
+/// A MyPaint dab's coverage falls in two lines over the squared radius; here it is a smoothstep. They agree where each
+/// is one half.
 fn hardness_of(hardness: f32) -> f32 {
     let h = hardness.clamp(0.001, 0.999);
     let half_squared = if h <= 0.5 { 0.5 * h / (1.0 - h) } else { 1.0 - 0.5 * (1.0 - h) / h };

@@ -12,7 +12,8 @@ use crate::{Error, Result};
 use crate::{Overwrite, exr, save};
 use std::path::Path;
 
-/// Writes a preset to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder. The preset with these names.
+/// Writes a preset to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder. The preset with these
+/// names.
 ///
 /// The pictures first, so that a preset that is there is whole.
 pub fn write(file: &Path, preset: &Preset) -> Result<Preset> {

@@ -53,8 +53,8 @@ fn text(name: &Text) -> String {
     String::from_utf8_lossy(name.bytes()).into_owned()
 }
 
-/// Every channel of every part. A part's name leads a channel's where the channel alone has no layer, or where two parts
-/// have a channel of that name.
+/// Every channel of every part. A part's name leads a channel's where the channel alone has no layer, or where two
+/// parts have a channel of that name.
 pub fn channels(meta: &MetaData) -> Vec<ExrChannel> {
     let several = meta.headers.len() > 1;
     let all = || meta.headers.iter().flat_map(|h| h.channels.list.iter().map(|c| text(&c.name)));

@@ -155,8 +155,8 @@ impl DiskState {
         let step = if all <= most { 1 } else { 0x9e37_79b9_7f4a_7c15 };
         (0..all.min(most)).map(move |i| i.wrapping_mul(step) % all)
     }
-    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; then some about each file that
-    /// is not synced: what arrived of it, and how much.
+    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; then some about each file
+    /// that is not synced: what arrived of it, and how much.
     pub fn after_power_cut(&self, luck: u64) -> MemoryFs {
         let mut names = self.synced_names.clone();
         let mut bits = luck;

@@ -39,7 +39,8 @@ pub trait Fs: Send + Sync {
 
 /// An open file.
 pub trait FileHandle: Read + Write + Send {
-    /// Returns once the file's bytes are on the disk. Never tried again after it failed: the system may have dropped them.
+    /// Returns once the file's bytes are on the disk. Never tried again after it failed: the system may have dropped
+    /// them.
     fn sync(&mut self) -> io::Result<()>;
     /// Holds the file as long as the handle and the process live; false where another handle holds it.
     fn hold(&mut self) -> io::Result<bool>;

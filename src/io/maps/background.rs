@@ -6,8 +6,8 @@ use crate::math::{Size, Vec3};
 use crate::raster::Plane;
 use std::collections::HashMap;
 
-/// The one texel that fills the outside: outside the mask where there is one, else along the border. `None` where no texel
-/// stands on a third of it.
+/// The one texel that fills the outside: outside the mask where there is one, else along the border. `None` where no
+/// texel stands on a third of it.
 pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
     let size = stored.size;
     let outside: Vec<usize> = match coverage {
@@ -72,16 +72,17 @@ pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     found
 }
 
-/// Whether a decoded vector can be no normal: not finite, next to nothing, or far too long (black or white read as biased).
+/// Whether a decoded vector can be no normal: not finite, next to nothing, or far too long (black or white read as
+/// biased).
 pub fn is_degenerate(n: Vec3) -> bool {
     !n.is_finite() || n.length() < 0.15
 }
 
-/// Where the surface is by the normals alone: not where they are degenerate, nor where the border's constant decodes to no
-/// unit vector.
+/// Where the surface is by the normals alone: not where they are degenerate, nor where the border's constant decodes to
+/// no unit vector.
 ///
-/// Within a pixel of a zero-length background, lengths below 1 are coverage (averaged with nothing) where `unit` says that
-/// normals have length 1 elsewhere.
+/// Within a pixel of a zero-length background, lengths below 1 are coverage (averaged with nothing) where `unit` says
+/// that normals have length 1 elsewhere.
 pub fn coverage_of_normals(vectors: &Plane<Vec3>, outside: impl Fn(usize) -> bool + Sync, unit: bool) -> Plane<u8> {
     let size = vectors.size();
     let w = size.width as usize;

@@ -174,8 +174,8 @@ pub fn planar(
 
 /// Whether stored numbers that are nearer where they are higher are 1/z.
 ///
-/// The slope the normals tell, over the step of the stored number v, is the same everywhere where v is linear in depth. Of
-/// 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the farther it is): the exponent tells.
+/// The slope the normals tell, over the step of the stored number v, is the same everywhere where v is linear in depth.
+/// Of 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the farther it is): the exponent tells.
 pub fn looks_inverse(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<bool>) -> bool {
     let w = values.width();
     let at = samples::spread(inside);
@@ -211,11 +211,11 @@ pub struct NormalizedDepth {
     pub far: f32,
 }
 
-/// Normalises planar depth over the surface, near 0, far 1. Only where stray pixels would flatten the rest (the range from
-/// the 0.1th to the 99.9th percentile is under half of the full one) that range is taken and said so.
+/// Normalises planar depth over the surface, near 0, far 1. Only where stray pixels would flatten the rest (the range
+/// from the 0.1th to the 99.9th percentile is under half of the full one) that range is taken and said so.
 ///
-/// * `inside`: pixels with a depth of their own. Partly covered ones that hold the background's value join the range where
-///   that value carries on from the surface's (a map whose far end is the background's), and get no depth.
+/// * `inside`: pixels with a depth of their own. Partly covered ones that hold the background's value join the range
+///   where that value carries on from the surface's (a map whose far end is the background's), and get no depth.
 pub fn normalise(
     planar: &Plane<f32>,
     inside: &Plane<bool>,

@@ -13,8 +13,8 @@ use crate::raster::Plane;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Reads a file as tangent-space normals: x right, y up, z out of the map. What the convention leaves open is found from
-/// the numbers themselves.
+/// Reads a file as tangent-space normals: x right, y up, z out of the map. What the convention leaves open is found
+/// from the numbers themselves.
 pub fn read(file: &Path, bytes: &[u8], overrides: &NormalConvention, budget: &Budget) -> Result<Plane<Vec3>> {
     if overrides.space == Some(NormalSpace::World) {
         return Err(Error::unsupported(

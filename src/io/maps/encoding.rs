@@ -62,7 +62,8 @@ pub fn choose(
     for &encoding in &encodings {
         for &srgb in &curves {
             let reading = TexelReading { encoding, srgb, signed_pair };
-            // Rebuilt normals always have length 1; the curve shows in how often x and y leave the unit circle: it does not.
+            // Rebuilt normals always have length 1; the curve shows in how often x and y leave the unit circle: it does
+            // not.
             let rebuilt = matches!(encoding, NormalEncoding::TwoChannel | NormalEncoding::Dxt5nm);
             if rebuilt && srgb && overrides.srgb.is_none() {
                 continue;

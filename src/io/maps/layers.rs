@@ -88,7 +88,8 @@ fn normal_rank(pass: &ExrPass) -> Option<usize> {
     }
 }
 
-/// How likely a layer holds depth by its name, 0 surest. A bare `Z` is depth by EXR's own convention, a bare `Y` luminance.
+/// How likely a layer holds depth by its name, 0 surest. A bare `Z` is depth by EXR's own convention, a bare `Y`
+/// luminance.
 fn depth_rank(pass: &ExrPass) -> Option<usize> {
     let key = pass.key();
     match key.as_str() {

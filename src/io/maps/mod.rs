@@ -40,8 +40,8 @@ pub struct ImportedSurface {
 
 /// Reads a document's maps.
 ///
-/// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there is no
-/// surface at all. Where one of normals and depth is missing it is derived from the other, with a note.
+/// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there
+/// is no surface at all. Where one of normals and depth is missing it is derived from the other, with a note.
 pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<ImportedSurface> {
     let files = &CachedFiles::new(files);
     let mut findings = Findings::default();
@@ -315,8 +315,8 @@ fn complete(
     }
 }
 
-/// How many pixels deep a surface is: by the camera where depth is metric and the field of view known, else half the longer
-/// side of the surface, as a ball is.
+/// How many pixels deep a surface is: by the camera where depth is metric and the field of view known, else half the
+/// longer side of the surface, as a ball is.
 fn depth_range_px(depth: &depth::NormalizedDepth, inside: &Plane<bool>, fov_degrees: Option<f32>) -> f32 {
     if let Some(fov) = fov_degrees.filter(|_| depth.near > 0.0) {
         let middle = 0.5 * (depth.near + depth.far);
@@ -353,7 +353,8 @@ fn report_mask(
     if share > 0.02 && share < 1.0 {
         findings.flat_border = share;
         findings.note(format!(
-            "{:.0} % of the normal map, joined to its border, is of one value and looks like background; it is taken for surface. A mask file or \"mask\": {{\"from\": \"flat\"}} would take it out",
+            "{:.0} % of the normal map, connected to its border, has one value and looks like background. \
+             It is treated as surface; a mask file or \"mask\": {{\"from\": \"flat\"}} would exclude it",
             share * 100.0
         ));
     }

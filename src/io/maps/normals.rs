@@ -77,8 +77,8 @@ fn smooth_if_asked<'a>(
     (stored, Some(copy))
 }
 
-/// Turns vectors into camera space; returns them unit (zero where there are none), and whether stored depth is nearer where
-/// it is higher.
+/// Turns vectors into camera space; returns them unit (zero where there are none), and whether stored depth is nearer
+/// where it is higher.
 ///
 /// * `depth`: as stored, NaN where there is none.
 pub fn orient(
@@ -230,7 +230,10 @@ fn space(
     }
     if let Some(found) = by_rim.filter(|r| r.fit > 0.7 && sound(r)) {
         findings.found("normal.space", "world", 0.5 * found.fit);
-        findings.note("the normals are the world's; the rotation was found from the silhouette alone: a depth map or the camera's matrix would tell it better");
+        findings.note(
+            "the normals are in world space; the rotation was found from the silhouette alone. \
+             A depth map or the camera's matrix would give a better one",
+        );
         return Some(found.matrix);
     }
     findings.assumed("normal.space", "camera", 0.2);

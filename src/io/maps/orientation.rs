@@ -2,7 +2,8 @@
 //! Floor 5.
 //!
 //! Evidence, each in [−1, 1]: how the slopes the normals tell go with the depth's; whether normals at the rim point
-//! outward; for which handedness the normals belong to a height field (no curl). Priors settle what evidence leaves open.
+//! outward; for which handedness the normals belong to a height field (no curl). Priors settle what evidence leaves
+//! open.
 
 use super::samples;
 use crate::math::{Vec2, Vec3, vec2, vec3};
@@ -166,8 +167,8 @@ impl AxisEvidence {
     }
 }
 
-/// Correlation of the slopes told by normals with the change of depth: (right, up). Depth that grows away from the viewer
-/// correlates positively with n_x/n_z.
+/// Correlation of the slopes told by normals with the change of depth: (right, up). Depth that grows away from the
+/// viewer correlates positively with n_x/n_z.
 fn correlation(depth: &Plane<f32>, at: &[usize], w: usize, n: impl Fn(usize) -> Vec3) -> Vec2 {
     let mut pairs: Vec<(Vec2, Vec2)> = at
         .iter()
@@ -193,7 +194,8 @@ fn correlation(depth: &Plane<f32>, at: &[usize], w: usize, n: impl Fn(usize) -> 
     vec2(pearson(0), pearson(1))
 }
 
-/// Compares the curl of (n_x/n_z, n_y/n_z) with that of its mirror image: 1 where only the axes as they are fit a surface.
+/// Compares the curl of (n_x/n_z, n_y/n_z) with that of its mirror image: 1 where only the axes as they are fit a
+/// surface.
 fn handedness(inside: &Plane<bool>, at: &[usize], w: usize, n: impl Fn(usize) -> Vec3) -> f32 {
     let (mut plain, mut mirrored, mut count) = (0.0f64, 0.0f64, 0u32);
     for &i in at {

@@ -43,8 +43,8 @@ pub fn rim(inside: &Plane<bool>) -> Vec<(usize, Vec2)> {
     out.into_iter().step_by(step).collect()
 }
 
-/// Slopes of a depth plane at a pixel: change to the right and **downward** over two pixels, halved. `None` at the edge of
-/// the surface and where the two sides disagree as they do at a jump.
+/// Slopes of a depth plane at a pixel: change to the right and **downward** over two pixels, halved. `None` at the edge
+/// of the surface and where the two sides disagree as they do at a jump.
 pub fn slope(depth: &Plane<f32>, x: usize, y: usize, reach: usize) -> Option<Vec2> {
     let (x, y, r) = (x as i32, y as i32, reach as i32);
     let at = |dx: i32, dy: i32| depth.get(x + dx, y + dy).filter(|v| v.is_finite());

@@ -7,7 +7,8 @@ use crate::raster::Plane;
 /// x and y below this (a byte has no exact 0: 127 and 128 stand beside it) are 0 where a map is flat.
 const NEARLY_FLAT: f32 = 1.5 / 255.0;
 
-/// Makes flat parts exactly flat: pixels all of whose neighbours within two pixels are nearly flat too. Returns how many.
+/// Makes flat parts exactly flat: pixels all of whose neighbours within two pixels are nearly flat too. Returns how
+/// many.
 ///
 /// A dome's top is not flat: its normals leave the zero within two pixels.
 pub fn snap_flat(normals: &mut Plane<Vec3>) -> usize {

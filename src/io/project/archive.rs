@@ -1,5 +1,5 @@
-//! A zip read within a budget: its names checked, its bytes counted, its entries found even where its table of contents is lost.
-//! Floor 5. What the entries mean is the other files' here; nothing is ever unpacked to the disk.
+//! A zip read within a budget: its names checked, its bytes counted, its entries found even where its table of contents
+//! is lost. Floor 5. What the entries mean is the other files' here; nothing is ever unpacked to the disk.
 
 use crate::{Budget, Files, files};
 use crate::{Error, Result};
@@ -34,8 +34,8 @@ impl<'a> Archive<'a> {
     }
     /// Reads the table of contents, and the headers before the entries.
     ///
-    /// Fails where a name could lead out of the document's folder, where two entries could be taken for each other, where
-    /// there are more entries than the budget allows, and where there is no entry at all.
+    /// Fails where a name could lead out of the document's folder, where two entries could be taken for each other,
+    /// where there are more entries than the budget allows, and where there is no entry at all.
     pub fn open(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Self> {
         // The zip reader is not ours: a panic in it is a damaged file.
         let opened = catch_unwind(AssertUnwindSafe(|| ZipArchive::new(Cursor::new(bytes))));

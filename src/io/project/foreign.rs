@@ -1,6 +1,5 @@
-//! OpenRaster files that other programs wrote, and ours that they changed: every picture becomes a paint layer, and what
-//! is still as we wrote it becomes live again.
-//! Floor 5.
+//! OpenRaster files that other programs wrote, and ours that they changed: every picture becomes a paint layer, and
+//! what is still as we wrote it becomes live again. Floor 5.
 
 use super::MERGED;
 use super::manifest::Manifest;
@@ -170,8 +169,8 @@ impl ForeignReader<'_, '_> {
     }
 }
 
-/// What lies beneath a layer that keeps to all of it, so that it may be clipped to one: the layers as they are if the lowest
-/// is the only one not clipped itself, else a group of them.
+/// What lies beneath a layer that keeps to all of it, so that it may be clipped to one: the layers as they are if the
+/// lowest is the only one not clipped itself, else a group of them.
 fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
     let is_set_apart = |layer: &Layer| !matches!(&layer.content, Content::Group(group) if group.pass_through);
     let is_base = |(i, layer): (usize, &Arc<Layer>)| (i == 0) != layer.clip_below && (i > 0 || is_set_apart(layer));

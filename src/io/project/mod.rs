@@ -1,5 +1,5 @@
-//! Projects: a zip that is a valid OpenRaster file and holds beside it what only Rilievo understands (docs/PROJECTS.md).
-//! Floor 5. Bytes in memory both ways; files on the disk are `io::save`'s.
+//! Projects: a zip that is a valid OpenRaster file and holds beside it what only Rilievo understands
+//! (docs/PROJECTS.md). Floor 5. Bytes in memory both ways; files on the disk are `io::save`'s.
 //!
 //! | file | |
 //! |---|---|
@@ -96,7 +96,8 @@ impl ZipEntry {
     }
 }
 
-/// What only Rilievo understands: the document, the manifest, and every file they name that is none of the pictures `shown`.
+/// What only Rilievo understands: the document, the manifest, and every file they name that is none of the pictures
+/// `shown`.
 ///
 /// * `paint`: all pixels of the paint layers.
 /// * `shown`: the pictures that show one layer alone, with their names.

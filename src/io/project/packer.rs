@@ -6,8 +6,8 @@ use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Entries in the order they are added. No entry carries a date, and every header before an entry its size and checksum, so
-/// that entries can be found without the table of contents.
+/// Entries in the order they are added. No entry carries a date, and every header before an entry its size and
+/// checksum, so that entries can be found without the table of contents.
 pub struct ZipPacker {
     zip: ZipWriter<Cursor<Vec<u8>>>,
 }

@@ -1,5 +1,5 @@
-//! Pixels as a project stores them: 8-bit sRGB PNGs with straight alpha, each decoded again and compared before it is trusted.
-//! Floor 5. Which pixels are stored is `look`'s.
+//! Pixels as a project stores them: 8-bit sRGB PNGs with straight alpha, each decoded again and compared before it is
+//! trusted. Floor 5. Which pixels are stored is `look`'s.
 
 use crate::Budget;
 use crate::document::cache::EncodedPixels;

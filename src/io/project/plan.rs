@@ -1,14 +1,15 @@
 //! What other programs see of a document: nested stacks of pictures, in the words of the format.
 //! Floor 5. Pure: which pictures there are, not their pixels (`look`) nor their XML (`stack`).
 //!
-//! OpenRaster has no masks, no clipping, no adjustments, and not every way to blend; Photoshop's format has more words. What
-//! the format cannot say is composed here:
+//! OpenRaster has no masks, no clipping, no adjustments, and not every way to blend; Photoshop's format has more words.
+//! What the format cannot say is composed here:
 //!
 //! * a mask, and clipping to the surface, go into the layer's own picture;
 //! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden beside it;
 //! * so does an isolated group with a mask;
 //! * a layer that changes or reads what lies beneath in a way that cannot be said (radiance scaling, exclusion, plus,
-//!   blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies beneath it in its scope.
+//!   blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies beneath it
+//!   in its scope.
 
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind};
 use crate::raster::BlendMode;

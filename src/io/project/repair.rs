@@ -38,8 +38,8 @@ pub fn check_pictures(
     intact
 }
 
-/// Replaces every layer that cannot be read by its picture, or by an empty one, and leaves out maps that cannot be read;
-/// whether there was any.
+/// Replaces every layer that cannot be read by its picture, or by an empty one, and leaves out maps that cannot be
+/// read; whether there was any.
 pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, manifest: Option<&Manifest>) -> bool {
     let mut left_out = false;
     if let Some(surface) = document.get("surface").cloned() {

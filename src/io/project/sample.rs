@@ -71,7 +71,8 @@ pub fn everything_json(side: u32) -> Value {
         "surface": { "normal": { "file": "maps/n.png" } },
         "layers": [
             { "name": "ground", "kind": "fill", "color": "#304050", "clip_to_surface": false },
-            { "name": "paint \"&<é>", "kind": "pixels", "file": "paint.png", "x": -5, "y": 7, "opacity": 0.75, "lock": "alpha" },
+            { "name": "paint \"&<é>", "kind": "pixels", "file": "paint.png", "x": -5, "y": 7, "opacity": 0.75,
+              "lock": "alpha" },
             { "name": "photo", "kind": "image", "source": { "file": "photo.png", "blur": 1.5 }, "blend": "multiply",
               "operator": { "kind": "normal", "alpha": 0.4 }, "mask": { "file": "m.png" } },
             { "name": "ramp", "kind": "gradient", "blend": "screen", "stops": [[0, "#ff000080"], [1, "#00ff00"]],
@@ -85,9 +86,11 @@ pub fn everything_json(side: u32) -> Value {
                 { "name": "lit", "kind": "shading", "model": "phong",
                   "lights": [{ "kind": "directional", "direction": [0.3, 0.5, 0.8] }] },
                 { "name": "through", "kind": "group", "pass_through": true, "layers": [
-                    { "name": "dots", "kind": "pixels", "file": "paint.png", "x": 20, "y": 20, "blend": "exclusion" } ] } ] },
+                    { "name": "dots", "kind": "pixels", "file": "paint.png", "x": 20, "y": 20,
+                      "blend": "exclusion" } ] } ] },
             { "name": "relief", "kind": "radiance-scaling", "alpha": 0.3, "opacity": 0.6 },
-            { "name": "hidden", "kind": "fill", "visible": false, "color": "#ffffff40", "blend": "plus", "lock": "all" },
+            { "name": "hidden", "kind": "fill", "visible": false, "color": "#ffffff40", "blend": "plus",
+              "lock": "all" },
             { "name": "last", "kind": "pixels", "file": "paint.png", "x": 10, "y": 3, "blend": "hard-light",
               "clip_to_surface": false } ]
     })

@@ -17,7 +17,8 @@ const KIND: &str = "rilievo:kind";
 /// The XML of a plan; `pictures` are those of [`super::look::pictures_of`] with their names, in that order.
 pub fn write(size: Size, items: &[PlanItem], pictures: &[(String, EncodedPixels)]) -> String {
     let mut xml = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<image version=\"0.0.6\" w=\"{}\" h=\"{}\" {NAMESPACE}>\n<stack>\n",
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <image version=\"0.0.6\" w=\"{}\" h=\"{}\" {NAMESPACE}>\n<stack>\n",
         size.width, size.height
     );
     write_items(&mut xml, items, &mut pictures.iter());

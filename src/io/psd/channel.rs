@@ -26,8 +26,8 @@ impl ChannelLayout {
     }
 }
 
-/// The 8-bit values of a channel: its compression, then its data. `None` where the data is damaged, or too short to hold
-/// what the shape promises.
+/// The 8-bit values of a channel: its compression, then its data. `None` where the data is damaged, or too short to
+/// hold what the shape promises.
 pub fn decode(data: &mut ByteCursor, shape: ChannelLayout) -> Option<Vec<u8>> {
     let compression = data.u16()?;
     decode_as(data, shape, compression)

@@ -1,5 +1,5 @@
-//! The layers of a Photoshop file as records: what each says of itself, the blocks behind it, its channels and its mask.
-//! Floor 5. Where they stand in the file is `parse`'s.
+//! The layers of a Photoshop file as records: what each says of itself, the blocks behind it, its channels and its
+//! mask. Floor 5. Where they stand in the file is `parse`'s.
 
 use super::channel::{self, ChannelLayout};
 use super::cursor::ByteCursor;

@@ -1,5 +1,5 @@
-//! A document into records: what Photoshop has words for as such, the rest as pixels, with the document itself beside them.
-//! Floor 5. Laying the records out as bytes is `emit`'s.
+//! A document into records: what Photoshop has words for as such, the rest as pixels, with the document itself beside
+//! them. Floor 5. Laying the records out as bytes is `emit`'s.
 
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, emit, signature};
 use crate::document::cache::EncodedPixels;

@@ -57,7 +57,8 @@ fn layers_groups_masks_clipping_locks_and_names_are_carried() {
     let document = read_recipe(
         &json!({ "canvas": { "width": 40, "height": 30 }, "layers": [
             { "name": "grund “ü” 絵", "kind": "pixels", "file": "paint.png", "x": -11, "y": 22, "lock": "alpha" },
-            { "name": "clip", "kind": "pixels", "file": "photo.png", "x": 3, "y": 9, "clip_below": true, "blend": "soft-light" },
+            { "name": "clip", "kind": "pixels", "file": "photo.png", "x": 3, "y": 9, "clip_below": true,
+              "blend": "soft-light" },
             { "name": "g", "kind": "group", "opacity": 0.5, "blend": "multiply", "visible": false, "layers": [
                 { "name": "inner", "kind": "pixels", "file": "photo.png", "x": 100, "y": 100, "lock": "all" } ] },
             { "name": "through", "kind": "group", "pass_through": true, "layers": [] } ] }),

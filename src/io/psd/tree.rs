@@ -41,7 +41,8 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty() })
 }
 
-/// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are others.
+/// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are
+/// others.
 fn restored(file: &Path, ours: &[u8], records: &[LayerRecord], budget: &Budget) -> Result<Option<ProjectContents>> {
     let archive = Archive::open(file, ours, budget)?;
     let damaged = |e: zip::result::ZipError| Error::decode(file, format!("our part of the file is damaged ({e})"));

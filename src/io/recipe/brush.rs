@@ -60,8 +60,8 @@ fn jitter(node: &JsonNode, base: ColorJitter) -> Result<ColorJitter> {
     Ok(jitter)
 }
 
-/// `{ "kind": "smudge", "length": 0.8 }`, `{ "kind": "blur", "width": 0.3 }` or `{ "kind": "clone", "aligned": true, "picture":
-/// false }`; `{ "kind": "paint" }` is what is not said.
+/// `{ "kind": "smudge", "length": 0.8 }`, `{ "kind": "blur", "width": 0.3 }` or
+/// `{ "kind": "clone", "aligned": true, "picture": false }`; `{ "kind": "paint" }` is what is not said.
 fn mode(node: &JsonNode) -> Result<BrushMode> {
     const KINDS: [(usize, &str); 4] = [(0, "paint"), (1, "smudge"), (2, "blur"), (3, "clone")];
     let mut fields = node.fields()?;
@@ -114,8 +114,8 @@ fn seed(node: &JsonNode) -> Result<u32> {
     node.integer(0..=i64::from(u32::MAX)).map(|seed| seed as u32)
 }
 
-/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]] } }`: what each property follows, and how. A number p is the line
-/// from 1 − p to 1.
+/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]] } }`: what each property follows, and how. A number p is
+/// the line from 1 − p to 1.
 fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
     let mut fields = node.fields()?;
     let mut dynamics = base;
@@ -223,7 +223,8 @@ mod tests {
         let text = json!({
             "size": 20, "hardness": 0.25, "opacity": 0.5, "flow": 0.75, "spacing": 0.3, "rotation": 30, "softness": 0.1,
             "scatter": 2, "jitter": { "hue": 20, "saturation": 0.1, "value": 0.2 }, "blend": "multiply", "erases": true,
-            "keeps_alpha": true, "bounded": "object", "mark": { "kind": "smudge", "length": 0.5 }, "stabilizer": { "string": 25 },
+            "keeps_alpha": true, "bounded": "object", "mark": { "kind": "smudge", "length": 0.5 },
+              "stabilizer": { "string": 25 },
             "dynamics": {
                 "size": { "pressure": 0.1, "speed": [[0, 1], [1, 0.3]] },
                 "flow": { "pressure": 0, "curvature": [[0, 0], [0.5, 1]] },

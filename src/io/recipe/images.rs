@@ -42,7 +42,8 @@ impl LayerReader<'_> {
             filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
         })
     }
-    /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`; an empty list pins nothing.
+    /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`; an empty list pins
+    /// nothing.
     fn bend(&self, fields: &mut Fields, center: Vec2) -> Result<Bend> {
         let operator = operator(fields)?.unwrap_or_default();
         let anchors = match fields.get("anchors") {

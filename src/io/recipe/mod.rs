@@ -1,5 +1,5 @@
-//! Recipes: a document as JSON that names files beside it.
-//! Floor 5. The schema is `docs/RECIPES.md`; a project's zip holds the same JSON and is read through the same [`Files`].
+//! Recipes: a document as JSON that names files beside it. Floor 5. The schema is `docs/RECIPES.md`; a project's zip
+//! holds the same JSON and is read through the same [`Files`].
 //!
 //! | file | reads and writes |
 //! |---|---|

@@ -134,7 +134,8 @@ fn blurred(normals: Plane<Vec3>, blur_px: f32) -> Plane<Vec3> {
     Plane::from_values(normals.size(), blurred.into_iter().map(Vec3::from).collect()).unwrap_or(normals)
 }
 
-/// The bytes of a file that a field names. A name that leaves the document's folder is refused before anything is opened.
+/// The bytes of a file that a field names. A name that leaves the document's folder is refused before anything is
+/// opened.
 fn bytes(source: RecipeSource, name: &JsonNode) -> Result<Vec<u8>> {
     let text = name.text()?;
     if let Some(reason) = files::refusal(text) {

@@ -52,7 +52,8 @@ pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut ReadPicture) -
     Ok(())
 }
 
-/// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files": […], "ranks": […] }` and so on.
+/// `{ "file": "leaf.png" }`, `{ "kind": "ellipse", "ratio": 0.5 }`, `{ "kind": "hose", "files": […], "ranks": […] }`
+/// and so on.
 fn tip(node: &JsonNode, picture: &mut ReadPicture) -> Result<Tip> {
     let mut fields = node.fields()?;
     let kind = match fields.get("kind") {
@@ -236,7 +237,8 @@ mod tests {
             json!({ "tip": { "kind": "noise", "cells": 7, "density": 0.25, "seed": 1 } }),
             json!({ "tip": { "kind": "hose", "files": ["a.png", "b.png"],
                              "ranks": [{ "count": 2, "select": "angular" }] } }),
-            json!({ "grain": { "kind": "weave", "seed": 3, "size": 20, "rotation": 45, "strength": 0.5, "levels": [0.25, 0.75],
+            json!({ "grain": { "kind": "weave", "seed": 3, "size": 20, "rotation": 45, "strength": 0.5,
+              "levels": [0.25, 0.75],
                                "lies": "surface", "gamma": 2 } }),
             json!({ "grain": { "file": "canvas.png", "size": 200 } }),
         ] {

@@ -1,6 +1,6 @@
-//! Recovery: after every edit the drawing goes to a log beside the settings, so that neither a crash nor a power cut takes
-//! more than the last moments (docs/PROJECTS.md).
-//! Floor 5. Saving is `io::save`; the log is for accidents only, and is gone once the drawing is closed.
+//! Recovery: after every edit the drawing goes to a log beside the settings, so that neither a crash nor a power cut
+//! takes more than the last moments (docs/PROJECTS.md). Floor 5. Saving is `io::save`; the log is for accidents only,
+//! and is gone once the drawing is closed.
 //!
 //! | file | |
 //! |---|---|
@@ -83,12 +83,13 @@ impl RecoveryLog {
     pub fn record(&self, document: &Document) {
         self.send(RecoveryTask::Record(document.clone()));
     }
-    /// The version recorded last is what a file holds; with no file, what the drawing was made as. Nothing would be lost.
+    /// The version recorded last is what a file holds; with no file, what the drawing was made as. Nothing would be
+    /// lost.
     pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
         self.send(RecoveryTask::Saved(title.into(), file.map(Path::to_owned), stamp));
     }
-    /// Waits until all that was recorded is with the system, where neither a crash nor `kill -9` takes it; no longer than
-    /// `patience`. Whether it is.
+    /// Waits until all that was recorded is with the system, where neither a crash nor `kill -9` takes it; no longer
+    /// than `patience`. Whether it is.
     pub fn settle(&self, patience: Duration) -> bool {
         let (done, is_done) = channel();
         self.send(RecoveryTask::Tell(done, false));
@@ -163,7 +164,8 @@ fn fresh_session(fs: &dyn Fs, folder: &Path) -> Result<(PathBuf, Box<dyn FileLoc
     Err(Error::io(folder, std::io::Error::other("no name for a recovery log is free")))
 }
 
-/// Writes versions as they come, and flushes them in time. Of versions that came while one was written only the last counts.
+/// Writes versions as they come, and flushes them in time. Of versions that came while one was written only the last
+/// counts.
 fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Option<String>>) {
     let mut waiting_since: Option<Instant> = None;
     let mut next = None;

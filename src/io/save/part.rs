@@ -1,5 +1,5 @@
-//! The new file while it is being written: beside its target, under a name of its own, held so that others know it is in use.
-//! Floor 5.
+//! The new file while it is being written: beside its target, under a name of its own, held so that others know it is
+//! in use. Floor 5.
 
 use crate::fs::{FileHandle, Fs};
 use std::io;
@@ -37,8 +37,8 @@ impl PartFile {
     }
 }
 
-/// Takes away what killed saves left in a folder: files of our names that no process holds. Processes are not asked for by
-/// number, for numbers come again. Whatever fails is left for the next time.
+/// Takes away what killed saves left in a folder: files of our names that no process holds. Processes are not asked for
+/// by number, for numbers come again. Whatever fails is left for the next time.
 pub fn sweep(fs: &dyn Fs, folder: &Path) {
     for path in fs.list(folder).unwrap_or_default().into_iter().filter(|path| is_ours(path)) {
         let part = path.with_extension(PART);

@@ -19,8 +19,8 @@ pub struct BrushArgs {
     /// The brush, or the collection of brushes, to read
     #[arg(value_name = "FROM")]
     from: PathBuf,
-    /// A .json to write the brush to, its pictures beside it; or a .png of a stroke over a ball. Of a collection each brush
-    /// goes to a file of its own, numbered
+    /// A .json to write the brush to, its pictures beside it; or a .png of a stroke over a ball. Of a collection each
+    /// brush goes to a file of its own, numbered
     #[arg(value_name = "TO")]
     to: PathBuf,
     /// Side of the picture, in pixels

@@ -24,7 +24,8 @@ pub struct ConvertArgs {
     /// Only the part of a picture that the surface covers
     #[arg(long)]
     crop_to_surface: bool,
-    /// Each layer to a picture of its own, its number and name added to TO; of an .exr: each layer to channels of its own
+    /// Each layer to a picture of its own, its number and name added to TO; of an .exr: each layer to channels of its
+    /// own
     #[arg(long)]
     layers: bool,
     /// Bits a channel of a .png or .tif: 8 or 16
@@ -37,7 +38,8 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "COLOUR", value_parser = render::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
-    #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,
+          value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
     #[command(flatten)]
     limits: LimitArgs,

@@ -6,13 +6,13 @@
 //! ```json
 //! { "format": "rilievo-info", "version": 1,
 //!   "brushes": [ { "file": "set.abr", "kind": "Photoshop brushes",
-//!                  "brushes": [ { "name": "Chalk", "tip": "picture", "size": 64, "spacing": 0.25, "pictures": [[64, 40]],
-//!                                 "notes": [] } ] } ],
-//!   "documents": [ { "file": "pot.ora", "kind": "project", "width": 512, "height": 512, "surface": true, "whole": true,
-//!                    "layers": [ { "path": "layers[0]", "name": "ground", "kind": "fill", "visible": true, "opacity": 1,
-//!                                  "blend": "normal" } ], "notes": [] } ],
-//!   "files": [ { "file": "pot_n.png", "format": "PNG", "width": 512, "height": 512, "bits": 8, "channels": ["r", "g", "b"],
-//!                "role": "normal", "notes": [] },
+//!                  "brushes": [ { "name": "Chalk", "tip": "picture", "size": 64, "spacing": 0.25,
+//!                                 "pictures": [[64, 40]], "notes": [] } ] } ],
+//!   "documents": [ { "file": "pot.ora", "kind": "project", "width": 512, "height": 512, "surface": true,
+//!                    "whole": true, "layers": [ { "path": "layers[0]", "name": "ground", "kind": "fill",
+//!                    "visible": true, "opacity": 1, "blend": "normal" } ], "notes": [] } ],
+//!   "files": [ { "file": "pot_n.png", "format": "PNG", "width": 512, "height": 512, "bits": 8,
+//!                "channels": ["r", "g", "b"], "role": "normal", "notes": [] },
 //!              { "file": "g.exr", "format": "EXR", …, "compression": "zip block compression",
 //!                "layers": [ { "name": "N", "channels": [ { "name": "N.X", "kind": "half" }, … ] } ] },
 //!              { "file": "broken.png", "error": "broken.png: cannot be read: …" } ],
@@ -23,8 +23,8 @@
 //!                   "notes": [ "…" ] } ] }
 //! ```
 //!
-//! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface` can be
-//! pasted into a recipe: it spells what was found.
+//! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface`
+//! can be pasted into a recipe: it spells what was found.
 
 mod brushes;
 mod documents;

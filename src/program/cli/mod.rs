@@ -1,6 +1,8 @@
-//! Floor 7: the command line. Each subcommand is one file; this one parses, dispatches and turns errors into exit codes.
+//! Floor 7: the command line. Each subcommand is one file; this one parses, dispatches and turns errors into exit
+//! codes.
 //!
-//! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for a misuse of the command line.
+//! Exit code 0; 1 with one sentence on standard error, `rilievo: FILE: field: reason`; 2 for a misuse of the command
+//! line.
 
 mod brush;
 mod convert;

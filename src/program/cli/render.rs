@@ -50,7 +50,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
-    #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality, value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,
+          value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
     #[command(flatten)]
     limits: LimitArgs,

@@ -42,7 +42,8 @@ pub struct ViewArgs {
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
     /// Curvature scale in pixels: how soon curvature is shown as strong
-    #[arg(long, value_name = "PX", default_value_t = ViewOptions::default().curvature_scale_px, value_parser = not_negative)]
+    #[arg(long, value_name = "PX", value_parser = not_negative,
+          default_value_t = ViewOptions::default().curvature_scale_px)]
     curvature_scale: f32,
     /// Blur of normals and flows, standard deviation in pixels
     #[arg(long, value_name = "PX", default_value_t = ViewOptions::default().blur_px, value_parser = not_negative)]

@@ -1,6 +1,5 @@
-//! Recovery of the open documents: each has a log that follows its edits and is gone once it is closed; and what an accident
-//! left is brought back.
-//! Floor 6. Logs and their workers are `io::recovery`'s (docs/PROJECTS.md).
+//! Recovery of the open documents: each has a log that follows its edits and is gone once it is closed; and what an
+//! accident left is brought back. Floor 6. Logs and their workers are `io::recovery`'s (docs/PROJECTS.md).
 
 use super::{OpenDocument, is_same};
 use crate::Result;
@@ -14,11 +13,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long an edit waits for being written: so long a dab may take. The record of a stroke takes a fraction of it; one of
-/// a large drawing goes on by itself.
+/// How long an edit waits for being written: so long a dab may take. The record of a stroke takes a fraction of it; one
+/// of a large drawing goes on by itself.
 const PATIENCE: Duration = Duration::from_millis(8);
-/// How long a program that was killed may take to die: one with many threads on a busy computer still holds its logs when it
-/// is started again.
+/// How long a program that was killed may take to die: one with many threads on a busy computer still holds its logs
+/// when it is started again.
 const DYING: Duration = Duration::from_secs(5);
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
@@ -73,7 +72,8 @@ impl Autosave {
     pub fn new(folder: PathBuf) -> Self {
         Self { fs: Arc::new(Disk), folder, followed: BTreeMap::new(), told: None }
     }
-    /// Brings the logs up to the open documents; called after whatever may have changed them. A new trouble as a sentence.
+    /// Brings the logs up to the open documents; called after whatever may have changed them. A new trouble as a
+    /// sentence.
     ///
     /// An edit waits a few milliseconds for being written, so that what is seen as done is safe from `kill -9`.
     pub fn follow(&mut self, open_documents: &[OpenDocument]) -> Option<String> {
@@ -154,7 +154,8 @@ pub struct RecoveredTab {
 impl LostSessions {
     /// The drawings to offer, oldest first. Logs of which a file holds the very last version are deleted.
     ///
-    /// Where there are none it looks again for some seconds as long as other processes hold logs: one may be just dying.
+    /// Where there are none it looks again for some seconds as long as other processes hold logs: one may be just
+    /// dying.
     pub fn list(&self) -> Vec<recovery::LostSession> {
         for _ in 0..DYING.as_millis() / LOOK_AGAIN.as_millis() {
             let lost = self.list_now();
@@ -178,7 +179,8 @@ impl LostSessions {
         }
         lost
     }
-    /// Brings a drawing back: untitled, with something to save. What was left of it is deleted once another log holds it.
+    /// Brings a drawing back: untitled, with something to save. What was left of it is deleted once another log holds
+    /// it.
     pub fn bring_back(&self, mut session: recovery::LostSession) -> Result<RecoveredTab> {
         let recovered = session.recover(&Budget::default())?;
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();

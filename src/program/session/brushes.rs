@@ -1,5 +1,5 @@
-//! The brushes to choose from: those of the program, and the user's own, which were brought in from files or kept from the hand.
-//! Floor 6. Formats are `io`'s. The user's own lie in a folder, where there is one, a preset's file each.
+//! The brushes to choose from: those of the program, and the user's own, which were brought in from files or kept from
+//! the hand. Floor 6. Formats are `io`'s. The user's own lie in a folder, where there is one, a preset's file each.
 
 use super::Session;
 use crate::io::brush::{self, ImportedBrush, plain};

@@ -98,7 +98,8 @@ pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
     maps::import(source, &UserFiles::default(), &Budget::default())
 }
 
-/// The maps that belong to a file by their names: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its folder.
+/// The maps that belong to a file by their names: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its
+/// folder.
 pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     let part = pairs::part_of(file);
     let mut source = if kind == FileUse::Depth { maps_of(None, Some(file)) } else { maps_of(Some(file), None) };
@@ -132,8 +133,9 @@ pub struct SortedFiles {
     pub others: Vec<(PathBuf, FileUse)>,
 }
 
-/// Sorts files of known kinds. A normal map, a depth map and a mask that come together are one object's, whatever they are
-/// called; a second normal map begins another object. What is missing is looked for beside each file (see [`maps_beside`]).
+/// Sorts files of known kinds. A normal map, a depth map and a mask that come together are one object's, whatever they
+/// are called; a second normal map begins another object. What is missing is looked for beside each file (see
+/// [`maps_beside`]).
 pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     let mut sorted = SortedFiles::default();
     let text = |file: &Path| file.to_string_lossy().into_owned();
@@ -188,8 +190,8 @@ pub fn of_import(source: &SurfaceSource, import: maps::ImportedSurface) -> Opene
 
 const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
 
-/// What a new surface is covered with: light to dark from above left, bent by the normals, so that the shape is seen before
-/// the first stroke.
+/// What a new surface is covered with: light to dark from above left, bent by the normals, so that the shape is seen
+/// before the first stroke.
 fn clay(size: Size) -> Gradient {
     let side = Vec2::new(size.width as f32, size.height as f32);
     let stop = |t: f32, [r, g, b]: [u8; 3]| GradientStop { t, color: Color { r, g, b, a: 255 } };

@@ -147,9 +147,10 @@ fn strokes_are_chosen_restyled_ordered_copied_and_baked_by_replay() {
 }
 #[test]
 fn a_fill_stops_at_a_stroke_and_is_one_step() {
+    let fill = r#"{"tolerance":0.2,"gap_px":0,"grow_px":1,"antialias":true,"layer_alone":false,"bounded":"free"}"#;
     let session = told(&format!(
         r##"{PAPER}{STROKE}
-        {{"in":"hand","do":"fill","fill":{{"tolerance":0.2,"gap_px":0,"grow_px":1,"antialias":true,"layer_alone":false,"bounded":"free"}}}}
+        {{"in":"hand","do":"fill","fill":{fill}}}
         {{"in":"hand","do":"color","color":"#00ff00"}}
         {{"in":"pointer","do":"press","tool":"fill","pen":[100,20],"px_per_pt":1}}
         {{"in":"pointer","do":"release"}}"##

@@ -1,6 +1,5 @@
-//! The view: how the canvas lies under the window. Screen points are measured from the middle of the canvas's area of the
-//! window, y down; canvas px as everywhere.
-//! Floor 6. Pure arithmetic; the window draws with it.
+//! The view: how the canvas lies under the window. Screen points are measured from the middle of the canvas's area of
+//! the window, y down; canvas px as everywhere. Floor 6. Pure arithmetic; the window draws with it.
 
 use super::replay::record;
 use crate::math::{Affine2, Mat2, Size, Vec2, vec2};

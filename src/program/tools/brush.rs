@@ -88,7 +88,8 @@ fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), outcome)
 }
 
-/// The document with a layer that a stroke can go to. `None` where the layer in hand is locked, or there is nothing to erase.
+/// The document with a layer that a stroke can go to. `None` where the layer in hand is locked, or there is nothing to
+/// erase.
 fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Option<(Document, LayerId)> {
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));

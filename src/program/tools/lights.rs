@@ -1,6 +1,6 @@
-//! The lights of a shading layer on the canvas: each is a handle. One infinitely far stands on a disc around the middle, which
-//! is the half sphere of directions seen from the front; one at a point stands there.
-//! Floor 5. What light does is `shading`'s.
+//! The lights of a shading layer on the canvas: each is a handle. One infinitely far stands on a disc around the
+//! middle, which is the half sphere of directions seen from the front; one at a point stands there. Floor 5. What light
+//! does is `shading`'s.
 
 use super::{Gesture, Outcome, PenSample};
 use crate::document::{Content, Document, LayerId, Live};

@@ -1,6 +1,6 @@
-//! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the eraser hide it. The strokes are
-//! those of the brush, on a paint layer that holds the mask's greys while the hand moves.
-//! Floor 5. Strokes are `brush`'s.
+//! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the eraser hide it. The
+//! strokes are those of the brush, on a paint layer that holds the mask's greys while the hand moves. Floor 5. Strokes
+//! are `brush`'s.
 
 use super::brush::{self, StrokePurpose};
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};

@@ -1,6 +1,6 @@
-//! Floor 5: what the hand holds. A tool turns the pen's events on the canvas into documents: one that is shown while the
-//! hand moves, and one that is kept when it lifts. A tool is a file and a row of [`ToolKind::ALL`].
-//! Not here: which tool is in hand, history (`session`); screen coordinates (`app`).
+//! Floor 5: what the hand holds. A tool turns the pen's events on the canvas into documents: one that is shown while
+//! the hand moves, and one that is kept when it lifts. A tool is a file and a row of [`ToolKind::ALL`]. Not here: which
+//! tool is in hand, history (`session`); screen coordinates (`app`).
 
 pub mod anchors;
 pub mod brush;
@@ -95,7 +95,7 @@ impl ToolKind {
             name: "anchors",
             label: "Anchors",
             key: 'A',
-            hint: "Drag an anchor along the surface; Ctrl drags the content under it, Shift re-pins it; click adds, Alt-click removes",
+            hint: "Drag an anchor along the surface. Ctrl drags its content, Shift re-pins it; click adds, Alt removes",
         },
         ToolRow {
             kind: ToolKind::Move,
@@ -109,7 +109,7 @@ impl ToolKind {
             name: "strokes",
             label: "Strokes",
             key: 'S',
-            hint: "Choose strokes of a stroke layer and drag them along the surface; Shift chooses more. Properties lists them",
+            hint: "Select strokes of a stroke layer and drag them; Shift selects more. Properties lists them too",
         },
         ToolRow {
             kind: ToolKind::Eyedropper,

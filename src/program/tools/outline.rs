@@ -135,7 +135,8 @@ mod tests {
         let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
         let lines = outline(&ball, operator, at, 20.0);
         assert!(lines.len() > 8);
-        // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is brought r + α L (r / 60)² away.
+        // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is brought r + α L (r / 60)²
+        // away.
         let a = 0.5 * 128.0 / (60.0 * 60.0);
         let expected = ((1.0f32 + 4.0 * a * 20.0).sqrt() - 1.0) / (2.0 * a);
         for point in lines.iter().flatten() {

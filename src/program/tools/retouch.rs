@@ -39,7 +39,8 @@ impl ActiveWork {
     }
 }
 
-/// What comes of a press instead of a stroke: a source point for clones, or why there is none; `None` where one can begin.
+/// What comes of a press instead of a stroke: a source point for clones, or why there is none; `None` where one can
+/// begin.
 pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> Option<Outcome> {
     let mode = context.brush.mode;
     if purpose != StrokePurpose::Paint || !mode.is_retouching() {

@@ -1,5 +1,5 @@
-//! Symmetry: every stroke of the brush with its mirror images, each a stroke of its own over its own part of the surface.
-//! Floor 5.
+//! Symmetry: every stroke of the brush with its mirror images, each a stroke of its own over its own part of the
+//! surface. Floor 5.
 
 use crate::math::{Mat2, Size, Vec2};
 use crate::paint::{Brush, Sample, StrokeFrame};

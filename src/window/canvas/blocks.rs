@@ -112,8 +112,8 @@ fn block_rect((col, row): (i32, i32)) -> Rect {
     Rect::new(col * BLOCK, row * BLOCK, (col + 1) * BLOCK, (row + 1) * BLOCK)
 }
 
-/// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right and lower edge its last
-/// pixels are repeated once, so that smoothing mixes nothing foreign into the rim.
+/// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right and lower edge its
+/// last pixels are repeated once, so that smoothing mixes nothing foreign into the rim.
 fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
     let (width, height) = (rect.width(), rect.height());
     let mut pixels = vec![Color32::TRANSPARENT; width * height];

@@ -1,6 +1,6 @@
-//! The canvas: the picture in its view, and the pen on it.
-//! Floor 7. `sheet` holds the picture and its copy on the graphics card, `pointer` turns events into actions, `marks` and
-//! `overlay` draw what lies over the picture. Pixels come from the painter's thread.
+//! The canvas: the picture in its view, and the pen on it. Floor 7. `sheet` holds the picture and its copy on the
+//! graphics card, `pointer` turns events into actions, `marks` and `overlay` draw what lies over the picture. Pixels
+//! come from the painter's thread.
 
 mod blocks;
 mod marks;

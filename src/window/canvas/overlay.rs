@@ -1,6 +1,5 @@
-//! Views of the surface over the picture, drawn on a thread of their own: one over all of it, and the anchors' weights in a
-//! corner (SF fig. 9).
-//! Floor 7. What views show is `document::view`'s.
+//! Views of the surface over the picture, drawn on a thread of their own: one over all of it, and the anchors' weights
+//! in a corner (SF fig. 9). Floor 7. What views show is `document::view`'s.
 
 use super::marks::anchor_color;
 use crate::document::view::{SurfaceView, draw};

@@ -1,6 +1,5 @@
-//! The pen's and the mouse's events on the canvas become actions. Strokes are made of events, one sample each, never of where
-//! the pointer stands when a frame is drawn.
-//! Floor 7.
+//! The pen's and the mouse's events on the canvas become actions. Strokes are made of events, one sample each, never of
+//! where the pointer stands when a frame is drawn. Floor 7.
 
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
@@ -146,7 +145,8 @@ impl PointerState {
         self.pen.settle();
         listening.flush();
     }
-    /// A finger, or a pen that reports itself as one. Two that come down and go again, without moving, take a step back.
+    /// A finger, or a pen that reports itself as one. Two that come down and go again, without moving, take a step
+    /// back.
     fn touched(&mut self, phase: TouchPhase, is_here: bool, now_secs: f64, listening: &mut FrameInput) {
         let touches = self.pen.touches();
         match phase {

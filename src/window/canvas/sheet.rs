@@ -1,6 +1,5 @@
-//! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the whole one, and a smaller one
-//! for what is being dragged.
-//! Floor 7.
+//! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the whole one, and a
+//! smaller one for what is being dragged. Floor 7.
 
 use super::blocks::TextureBlocks;
 use crate::math::{Affine2, Size, vec2};
@@ -43,8 +42,8 @@ impl TileSheet {
             self.unsent.push(at);
         }
     }
-    /// Sends tiles to the graphics card; whether there were any. A drag shows whole pictures, not the tiles of two; a long
-    /// redraw shows itself as it goes.
+    /// Sends tiles to the graphics card; whether there were any. A drag shows whole pictures, not the tiles of two; a
+    /// long redraw shows itself as it goes.
     pub fn send(&mut self, ctx: &egui::Context, is_busy: bool) -> bool {
         if self.unsent.is_empty() {
             return false;

@@ -1,6 +1,5 @@
-//! Everything in the menus: one row a command, with its keys. Menus, the keyboard, the palette and the list of shortcuts are
-//! made from the same rows.
-//! Floor 7.
+//! Everything in the menus: one row a command, with its keys. Menus, the keyboard, the palette and the list of
+//! shortcuts are made from the same rows. Floor 7.
 
 mod edit;
 mod file;

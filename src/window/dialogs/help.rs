@@ -9,6 +9,9 @@ pub fn about(ui: &mut Ui) -> DialogAnswer {
     ui.heading("Rilievo");
     ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));
     ui.label("Paint on the picture of a shape: brushes, gradients and photos bend over its normals and depth.");
-    ui.weak("It computes what “Surface Flows for Image-based Shading Design” (2012) and “Radiance Scaling for Versatile Surface Enhancement” (2010) define.");
+    ui.weak(
+        "It implements “Surface Flows for Image-based Shading Design” (2012) and \
+         “Radiance Scaling for Versatile Surface Enhancement” (2010).",
+    );
     close(ui)
 }

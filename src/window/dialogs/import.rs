@@ -1,6 +1,6 @@
-//! Maps become a document: which files, what was found of their conventions, and what they look like under a light, so that
-//! everything can be seen and corrected before the first stroke.
-//! Floor 7. Reading the maps is `io::maps`', on a thread of its own.
+//! Maps become a document: which files, what was found of their conventions, and what they look like under a light, so
+//! that everything can be seen and corrected before the first stroke. Floor 7. Reading the maps is `io::maps`', on a
+//! thread of its own.
 
 use super::{DialogAnswer, buttons};
 use crate::Result;

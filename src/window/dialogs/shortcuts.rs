@@ -1,5 +1,5 @@
-//! The keys: every command and tool with its own, each to be changed; what already has a key is said before it is taken.
-//! Floor 7.
+//! The keys: every command and tool with its own, each to be changed; what already has a key is said before it is
+//! taken. Floor 7.
 
 use super::{DialogAnswer, close};
 use crate::keymap::{KeyTarget, Keymap, shown};

@@ -1,6 +1,5 @@
-//! Panels: functions of what there is, `(ui, &session, &mut asked)`. What a panel remembers of itself (an open row, a text being
-//! typed) is egui's to keep.
-//! Floor 7.
+//! Panels: functions of what there is, `(ui, &session, &mut asked)`. What a panel remembers of itself (an open row, a
+//! text being typed) is egui's to keep. Floor 7.
 
 mod brush;
 pub mod brush_mode;

@@ -1,6 +1,5 @@
-//! The line at the bottom: zoom, the place under the pointer with what the maps hold there, memory, how long the last redraw
-//! took, and what the tool in hand does.
-//! Floor 7.
+//! The line at the bottom: zoom, the place under the pointer with what the maps hold there, memory, how long the last
+//! redraw took, and what the tool in hand does. Floor 7.
 
 use crate::canvas::Canvas;
 use crate::jobs::{JobKind, Jobs};

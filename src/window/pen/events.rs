@@ -1,6 +1,5 @@
-//! The window's own events as a pen: a mouse, a touch with the force that it reports (pens on Windows, phones and the web), or
-//! a pointer whose tablet tells pressure and tilt beside it (pens on X11).
-//! Floor 7.
+//! The window's own events as a pen: a mouse, a touch with the force that it reports (pens on Windows, phones and the
+//! web), or a pointer whose tablet tells pressure and tilt beside it (pens on X11). Floor 7.
 
 use super::tablet::PenState;
 use super::{PenPhase, PenReport, PenSource, SharedTablet};
@@ -65,7 +64,8 @@ impl WindowPen {
     fn moved(&mut self, at: Pos2, px_per_pt: f32, now_secs: f64) {
         let at_px = [at.x * px_per_pt, at.y * px_per_pt].map(f64::from);
         if let Some(held) = self.tablet.as_ref().and_then(|tablet| tablet.borrow_mut().take(at_px)) {
-            // Another device took the pointer: what a pen drew ends where it was. Which of several mice moves may be told late.
+            // Another device took the pointer: what a pen drew ends where it was. Which of several mice moves may be
+            // told late.
             if self.is_down && self.held.pressure.is_some() && held.device != self.held.device {
                 self.is_down = false;
                 self.reports.push_back(self.report(PenPhase::Lost, now_secs));

@@ -1,8 +1,7 @@
-//! The pen as a platform reports it, whichever that is: a [`PenSource`] says what the pen did, [`ReportFilter`] makes good readings of
-//! it and ends a stroke whose pen went bad.
-//! Floor 7. Sources: `events`, the window's own (mouse, touch with its force, pens that come as touch, pens that come as a
-//! pointer with a `tablet`'s axes); `recorded`, for tests. What the axes mean is told by a platform's [`PenDevices`]: `x11`.
-//! Not here: what the reports do (`canvas::hand`).
+//! The pen as a platform reports it, whichever that is: a [`PenSource`] says what the pen did, [`ReportFilter`] makes
+//! good readings of it and ends a stroke whose pen went bad. Floor 7. Sources: `events`, the window's own (mouse, touch
+//! with its force, pens that come as touch, pens that come as a pointer with a `tablet`'s axes); `recorded`, for tests.
+//! What the axes mean is told by a platform's [`PenDevices`]: `x11`. Not here: what the reports do (`canvas::hand`).
 
 mod events;
 #[cfg(test)]
@@ -44,7 +43,8 @@ pub enum PenPhase {
     /// Above the canvas or on it.
     Move,
     Up,
-    /// It left the tablet's reach, was unplugged, or the platform took it away: whatever it drew ends where it last was.
+    /// It left the tablet's reach, was unplugged, or the platform took it away: whatever it drew ends where it last
+    /// was.
     Lost,
 }
 

@@ -1,6 +1,5 @@
-//! A recorded pen, for tests: one report a line, `[x, y, pressure, secs]`, `null` for a pressure that was not told and `"nan"`
-//! for what is no number.
-//! Floor 7.
+//! A recorded pen, for tests: one report a line, `[x, y, pressure, secs]`, `null` for a pressure that was not told and
+//! `"nan"` for what is no number. Floor 7.
 
 use super::{PenPhase, PenReport, PenSource};
 use eframe::egui::{PointerButton, pos2};

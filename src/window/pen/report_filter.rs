@@ -52,8 +52,8 @@ impl ReportFilter {
         let watch = Self { began_secs: report.secs, last: *report, pressure, presses_by_speed, since_pt: 0.0 };
         is_good(report).then(|| (watch, watch.reading(report)))
     }
-    /// The pen goes on; `None` where the stroke is to end at its last good reading: the report holds what is no number, or a
-    /// time before the last one's.
+    /// The pen goes on; `None` where the stroke is to end at its last good reading: the report holds what is no number,
+    /// or a time before the last one's.
     pub fn follow(&mut self, report: &PenReport) -> Option<FilteredReport> {
         if !is_good(report) || report.secs < self.last.secs {
             return None;

@@ -1,5 +1,5 @@
-//! A pen that moves the pointer as a mouse does and tells its pressure and tilt on axes of its own: what it held at each motion.
-//! Floor 7. Which axes those are is [`Devices`](super::PenDevices)' to say.
+//! A pen that moves the pointer as a mouse does and tells its pressure and tilt on axes of its own: what it held at
+//! each motion. Floor 7. Which axes those are is [`Devices`](super::PenDevices)' to say.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;

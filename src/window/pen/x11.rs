@@ -1,6 +1,6 @@
-//! Pens on X11, XWayland's too: which device moves the pointer now, and which of its axes are pressure and tilt, as the server
-//! tells. How the axes move comes with the window's own events.
-//! Floor 7. Particular to X11. A server that does not answer leaves a mouse.
+//! Pens on X11, XWayland's too: which device moves the pointer now, and which of its axes are pressure and tilt, as the
+//! server tells. How the axes move comes with the window's own events. Floor 7. Particular to X11. A server that does
+//! not answer leaves a mouse.
 
 use super::{AxisMeaning, PenAxes, PenAxis, PenDevices};
 use x11rb::connection::Connection;

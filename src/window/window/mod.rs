@@ -99,8 +99,8 @@ impl MainWindow {
     pub fn recording(self) -> Self {
         Self { recorded: Some(Vec::new()), ..self }
     }
-    /// What was done, as a replay file: one line an action. Documents made with corrected maps, pasted pictures and recovered
-    /// drawings come from no file alone, and are not in it.
+    /// What was done, as a replay file: one line an action. Documents made with corrected maps, pasted pictures and
+    /// recovered drawings come from no file alone, and are not in it.
     pub fn recorded(&self) -> String {
         self.recorded.iter().flatten().map(|action| format!("{}\n", action.written())).collect()
     }

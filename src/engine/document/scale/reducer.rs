@@ -9,7 +9,8 @@ use std::sync::{Arc, Weak};
 
 /// Makes documents small by one factor, and remembers the parts of the last one.
 ///
-/// Parts that did not change come back as the very same `Arc`, so that [`diff`](super::super::diff()) names only what did.
+/// Parts that did not change come back as the very same `Arc`, so that [`diff`](super::super::diff()) names only what
+/// did.
 pub struct DocumentReducer {
     factor: f32,
     surface: Option<(Weak<Surface>, Arc<Surface>)>,
@@ -30,8 +31,9 @@ impl DocumentReducer {
         self.layers = layers;
         Ok(Document { size: scale.to, surface, layers: small, ..document.clone() })
     }
-    /// Makes one more part of the document small, so that [`DocumentReducer::of`] finds it made; whether there was one. With this a
-    /// thread that has nothing better to do gets ready in steps; the surface is one of them, half a second at 4096².
+    /// Makes one more part of the document small, so that [`DocumentReducer::of`] finds it made; whether there was one.
+    /// With this a thread that has nothing better to do gets ready in steps; the surface is one of them, half a second
+    /// at 4096².
     pub fn prepare(&mut self, document: &Document) -> bool {
         let Some(scale) = CanvasScale::of(document.size, self.factor) else { return false };
         if let Some(surface) = &document.surface

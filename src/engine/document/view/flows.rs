@@ -1,6 +1,5 @@
-//! Views of flows: hue is the direction in which a picture is squeezed most, saturation how much, and the lines run along
-//! the direction of least change (SF fig. 2, 3).
-//! Floor 4.
+//! Views of flows: hue is the direction in which a picture is squeezed most, saturation how much, and the lines run
+//! along the direction of least change (SF fig. 2, 3). Floor 4.
 
 use super::{ViewOptions, painted};
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
@@ -100,7 +99,8 @@ fn strong(marks: &Plane<FlowPixel>, covered: impl Fn(usize, usize) -> bool) -> f
     sample.select_nth_unstable_by(at, f32::total_cmp).1.max(1e-4)
 }
 
-/// The colour of a direction; opposite directions have the same. Horizontal is red, and hues run counter-clockwise as seen.
+/// The colour of a direction; opposite directions have the same. Horizontal is red, and hues run counter-clockwise as
+/// seen.
 fn hue(direction: Vec2) -> Vec3 {
     let turn = (-direction.y).atan2(direction.x) / std::f32::consts::PI;
     let channel = |offset: f32| {

@@ -28,7 +28,8 @@ pub(super) struct RoundTip {
 pub(super) struct RowZones {
     /// Distance from the dab's centre in the image plane, in radii.
     r: [f32; TILE],
-    /// |Jᵀ p|², p from the centre to the pixel: the pixel's width toward the centre times r, squared; radii to the fourth.
+    /// |Jᵀ p|², p from the centre to the pixel: the pixel's width toward the centre times r, squared; in radii to the
+    /// fourth.
     toward: [f32; TILE],
     zones: [u32; TILE],
 }
@@ -99,8 +100,8 @@ impl RoundTip {
         let room = self.ceiling - *coverage;
         *coverage += f * if room > 0.0 { room } else { 0.0 };
     }
-    /// Adds to a judged row, chunks of one zone at a time: only where a pixel's box lies across a zone's border does its mean take
-    /// a root and a division more, beyond the rim it takes nothing.
+    /// Adds to a judged row, chunks of one zone at a time: only where a pixel's box lies across a zone's border does
+    /// its mean take a root and a division more, beyond the rim it takes nothing.
     #[inline(always)]
     fn add(&self, row: &RowZones, coverage: &mut [f32]) {
         let n = coverage.len().min(TILE);

@@ -1,5 +1,6 @@
-//! Which pixels are joined to one by colours like its own, over their four neighbours: tile by tile, a row of a tile at a time.
-//! Floor 3. Only tiles that are reached are looked at. What is joined does not depend on the order in which it is found.
+//! Which pixels are joined to one by colours like its own, over their four neighbours: tile by tile, a row of a tile at
+//! a time. Floor 3. Only tiles that are reached are looked at. What is joined does not depend on the order in which it
+//! is found.
 
 use super::PixelSet;
 use crate::math::{Rect, Size};

@@ -1,15 +1,16 @@
-//! Gap closing: what a fill reached only through a narrow passage is left out, up to the narrowest place of the passage.
-//! Floor 3.
+//! Gap closing: what a fill reached only through a narrow passage is left out, up to the narrowest place of the
+//! passage. Floor 3.
 //!
 //! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages between them saddles; a
-//! watershed (Vincent and Soille 1991, by a union of pixels in falling order) gives each pixel to the hill it lies on. Two
-//! hills are one room unless the saddle between them is a gap: low enough, and clearly lower than both tops.
+//! watershed (Vincent and Soille 1991, by a union of pixels in falling order) gives each pixel to the hill it lies on.
+//! Two hills are one room unless the saddle between them is a gap: low enough, and clearly lower than both tops.
 
 use super::PixelSet;
 use crate::math::Size;
 use crate::raster::{Plane, distance};
 
-/// How much lower than both tops a saddle must be to be a gap, px. Pixels make the sides of an even corridor rough by less.
+/// How much lower than both tops a saddle must be to be a gap, px. Pixels make the sides of an even corridor rough by
+/// less.
 const CLEARLY_PX: f32 = 1.0;
 /// Levels of distance to a pixel.
 const LEVELS_PER_PX: f32 = 4.0;
@@ -82,8 +83,8 @@ impl<'a> DistanceHills<'a> {
     fn is_top(&self, i: usize) -> bool {
         self.pixels.values()[i] != 0 && self.level(i) >= self.top
     }
-    /// The tops, a run of a row at a time: most of what is inside is as far from its border as counts. Those that touch are one
-    /// hill, whose root is its first pixel.
+    /// The tops, a run of a row at a time: most of what is inside is as far from its border as counts. Those that touch
+    /// are one hill, whose root is its first pixel.
     fn stand_tops(&mut self, width: usize) {
         let count = self.parent.len();
         let mut i = 0;

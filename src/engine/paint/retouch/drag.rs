@@ -11,21 +11,22 @@ use crate::raster::TileGrid;
 use crate::surface::Deformation;
 use crate::surface::deformation::DeformedRect;
 
-/// A smudge takes no colour from farther than this many steps: where the surface turns away, D hardly moves and its inverse
-/// would reach anywhere.
+/// A smudge takes no colour from farther than this many steps: where the surface turns away, D hardly moves and its
+/// inverse would reach anywhere.
 const FARTHEST_STEPS: f32 = 3.0;
 
 /// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` where it did not move.
 ///
 /// What lay under the dab before lies under this one, at the same place of the image plane relative to its centre. With
-/// F_k(q) = D_k(q) − q_k, a pixel q takes the colour of the point p with F_{k−1}(p) = F_k(q), found by one step of Newton's
-/// method from q:
+/// F_k(q) = D_k(q) − q_k, a pixel q takes the colour of the point p with F_{k−1}(p) = F_k(q), found by one step of
+/// Newton's method from q:
 ///
 /// `p = q − (∂D_{k−1}/∂q)⁻¹ (F_{k−1}(q) − F_k(q))`.
 ///
 /// On a flat canvas, and wherever n̄ changes evenly, that is the way the dab went, p = q − (q_k − q_{k−1}).
 ///
-/// * `length`: the share of the colour that is still there after a drag of one radius, `[0, 1]`, however many dabs it took.
+/// * `length`: the share of the colour that is still there after a drag of one radius, `[0, 1]`, however many dabs it
+///   took.
 pub(super) fn smudged(
     touch: &TileDab,
     dab: &Dab,
@@ -59,8 +60,8 @@ pub(super) fn smudged(
 
 /// The colours that a clone copies onto the pixels of a touched area, row by row.
 ///
-/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab as its footprint does. Where
-/// a pixel covers several of the picture, the mean of a grid of points in the patch under it.
+/// Pixel q takes the colour at `q_0 + offset + (D(q) − q_0)`: what is copied bends around the dab as its footprint
+/// does. Where a pixel covers several of the picture, the mean of a grid of points in the patch under it.
 pub(super) fn cloned(touch: &TileDab, dab: &Dab, offset: Vec2, source: &TileGrid, scene: &Scene) -> Vec<[f32; 4]> {
     /// Points along a side of the grid, at the most.
     const MOST: f32 = 6.0;

@@ -19,8 +19,9 @@ const LEAST_WEIGHT: f32 = 1e-3;
 
 /// The blurred colours of the pixels of a touched area, row by row.
 ///
-/// * `width`: the standard deviation that a stroke leaves in its middle, a ratio of the dab's radius. The variances of the dabs
-///   over a pixel add up, 2 r / step of them: so each has the variance (width · r)² · step / 2 r, however close they stand.
+/// * `width`: the standard deviation that a stroke leaves in its middle, a ratio of the dab's radius. The variances of
+///   the dabs over a pixel add up, 2 r / step of them: so each has the variance (width · r)² · step / 2 r, however
+///   close they stand.
 pub(super) fn blurred(
     touch: &TileDab,
     dab: &Dab,

@@ -1,5 +1,5 @@
-//! The table of blend modes: one row says everything about a mode. Its formula stands in `spec`.
-//! Floor 1. To add a mode, add a row and its formula; `rows` computes it from the formula until it has a faster twin there.
+//! The table of blend modes: one row says everything about a mode. Its formula stands in `spec`. Floor 1. To add a
+//! mode, add a row and its formula; `rows` computes it from the formula until it has a faster twin there.
 
 use super::spec::{self, BlendFunction};
 
@@ -54,8 +54,12 @@ macro_rules! function {
 }
 
 macro_rules! declare {
-    ($($(#[$meta:meta])* $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);)+) => {
-        /// How a layer's colour meets the colour beneath: W3C's `B(cb, cs)` mixed source-over, but for [`BlendMode::Plus`].
+    ($(
+        $(#[$meta:meta])*
+        $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);
+    )+) => {
+        /// How a layer's colour meets the colour beneath: W3C's `B(cb, cs)` mixed source-over, but for
+        /// [`BlendMode::Plus`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
         pub enum BlendMode {
             $($(#[$meta])* $mode,)+
@@ -115,8 +119,8 @@ impl BlendMode {
     pub fn from_photoshop(key: [u8; 4]) -> Option<Self> {
         Self::find(|row| row.photoshop == key)
     }
-    /// OpenRaster says it, and other programs read it as this one does: most take its `plus` for a sum of colours alone,
-    /// whatever the alpha.
+    /// OpenRaster says it, and other programs read it as this one does: most take its `plus` for a sum of colours
+    /// alone, whatever the alpha.
     pub fn is_said_by_openraster(self) -> bool {
         self.openraster().starts_with("svg:") && self != BlendMode::Plus
     }

@@ -1,8 +1,9 @@
 //! Blending by rows: the fast twin of `spec`, premultiplied, eight pixels an instruction where the processor can.
 //! Floor 1. Tested against `spec` for every mode.
 //!
-//! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T = αs αb B(D/αb, S/αs).
-//! For most modes T needs no division. *Atop* leaves out the first term and keeps the backdrop's alpha: a clipped layer.
+//! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T = αs αb B(D/αb,
+//! S/αs). For most modes T needs no division. *Atop* leaves out the first term and keeps the backdrop's alpha: a
+//! clipped layer.
 
 use super::modes::blend_modes;
 use super::{BlendMode, Mix, TileCoverage, TilePaint, spec};
@@ -152,7 +153,10 @@ macro_rules! formula {
     };
 }
 macro_rules! by_formula {
-    ($($(#[$meta:meta])* $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);)+) => {
+    ($(
+        $(#[$meta:meta])*
+        $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);
+    )+) => {
         /// Modes without a twin of their own, from the formula of the table.
         #[inline(always)]
         fn by_formula(d: &mut PixelRow, s: &PixelRow, mix: Mix) {

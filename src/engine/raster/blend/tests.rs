@@ -82,7 +82,8 @@ fn non_separable_modes_give_the_values_computed_by_hand() {
 }
 #[test]
 fn half_transparent_paint_mixes_as_the_specification_says() {
-    // Red at half alpha multiplied onto blue at half alpha: a quarter is both (black), a quarter each alone, a quarter none.
+    // Red at half alpha multiplied onto blue at half alpha: a quarter is both (black), a quarter each alone, a quarter
+    // none.
     let got = blend_pixel(BlendMode::Multiply, [0.0, 0.0, 0.5, 0.5], [0.5, 0.0, 0.0, 0.5]);
     assert!(close(&got, &[0.25, 0.0, 0.25, 0.75], 1e-6), "{got:?}");
     assert_eq!(blend_pixel(BlendMode::Plus, [0.7, 0.2, 0.0, 0.8], [0.5, 0.1, 0.0, 0.5]), [1.0, 0.3, 0.0, 1.0]);

@@ -1,10 +1,10 @@
 //! Antialiasing: the mean of a texture over the piece of the image plane that a pixel covers.
 //! Floor 1. Not here: where that piece lies (`surface`, `paint`).
 //!
-//! The piece is a curved quadrilateral: the pixel's four half-edges are differenced apart, because on real maps (8 bits,
-//! fine detail) the two sides of a pixel often stretch differently, and a single ellipse then misses a third of the error
-//! (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each standing for a cell of about two texels of
-//! the mip level, which is the coarsest that the taps can still resolve.
+//! The piece is a curved quadrilateral: the pixel's four half-edges are differenced apart, because on real maps (8
+//! bits, fine detail) the two sides of a pixel often stretch differently, and a single ellipse then misses a third of
+//! the error (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each standing for a cell of about
+//! two texels of the mip level, which is the coarsest that the taps can still resolve.
 //!
 //! Eight neighbours whose patches are alike share a grid, and their taps are placed and read side by side; a pixel
 //! unlike its neighbours (a crease, a silhouette) has its own, one pixel after the other.
@@ -135,8 +135,9 @@ crate::widest! {
         for (group, grid) in groups.iter().filter(|(_, grid)| grid.level == index) {
             let (first, taps) = (usize::from(group.first), grid.taps());
             let (lattice, room) = (lattice::of(*grid), len..len + GROUP * taps);
-            spread_group(lattice, patches.x, [left[0], right[0], up[0], down[0]], first, scale[0], &mut x[room.clone()]);
-            spread_group(lattice, patches.y, [left[1], right[1], up[1], down[1]], first, scale[1], &mut y[room]);
+            let [edges_x, edges_y] = [0, 1].map(|axis| [left[axis], right[axis], up[axis], down[axis]]);
+            spread_group(lattice, patches.x, edges_x, first, scale[0], &mut x[room.clone()]);
+            spread_group(lattice, patches.y, edges_y, first, scale[1], &mut y[room]);
             len += GROUP * taps;
             placed.push(*group);
         }
@@ -157,7 +158,7 @@ crate::widest! {
         for &(pixel, grid) in lone.iter().filter(|(_, grid)| grid.level == index) {
             let (k, taps) = (usize::from(pixel), grid.taps());
             let lattice = lattice::of(grid);
-            let (edges_x, edges_y) = ([left[0][k], right[0][k], up[0][k], down[0][k]], [left[1][k], right[1][k], up[1][k], down[1][k]]);
+            let [edges_x, edges_y] = [0, 1].map(|axis| [left[axis][k], right[axis][k], up[axis][k], down[axis][k]]);
             spread(lattice, patches.x[k], edges_x, scale[0], taps, &mut x[len..]);
             spread(lattice, patches.y[k], edges_y, scale[1], taps, &mut y[len..]);
             len += taps;

@@ -1,7 +1,6 @@
-//! Bilinear taps by the hundred: the fast twin of `bilinear`.
-//! Floor 1. Two passes: positions to texels and weights, several taps an instruction; then the texels, one tap at a time with
-//! its texels' channels side by side, in AVX2 where the processor has it (`wide`): LLVM does not vectorise that on its own.
-//! Both versions give the same bits.
+//! Bilinear taps by the hundred: the fast twin of `bilinear`. Floor 1. Two passes: positions to texels and weights,
+//! several taps an instruction; then the texels, one tap at a time with its texels' channels side by side, in AVX2
+//! where the processor has it (`wide`): LLVM does not vectorise that on its own. Both versions give the same bits.
 
 #[cfg(target_arch = "x86_64")]
 mod wide;
@@ -211,7 +210,8 @@ fn all_within(positions: &[f32], n: f32) -> bool {
     positions.iter().fold(0, |beyond, &c| beyond | u32::from(!(c >= low && c <= high))) == 0
 }
 
-/// `pair` finds, for a position in a picture of a side, the first texel of the pair around it and how far beyond it lies.
+/// `pair` finds, for a position in a picture of a side, the first texel of the pair around it and how far beyond it
+/// lies.
 #[inline(always)]
 fn find_folded(
     at: TapPositions,
@@ -270,8 +270,8 @@ fn repeated(c: f32, n: f32) -> f32 {
     c - floor(c / n) * n
 }
 
-/// 1.5 · 2²³: added to a number below 2²² it leaves its nearest integer in the low bits. Rust's own casts saturate, which
-/// keeps LLVM from converting eight at a time.
+/// 1.5 · 2²³: added to a number below 2²² it leaves its nearest integer in the low bits. Rust's own casts saturate,
+/// which keeps LLVM from converting eight at a time.
 const TO_INTEGER: f32 = 12_582_912.0;
 /// Longest side of a level whose texels are found that way.
 const MAX_SIDE: i32 = 1 << 22;

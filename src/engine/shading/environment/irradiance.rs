@@ -7,8 +7,8 @@ use crate::math::{Vec3, srgb};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
-/// Rows of the parcels the light is gathered from (2.8° each) and of the map it is kept in: a cosine lobe is so wide that a
-/// bilinear look-up stays near the sum over every texel (`the_small_map_is_the_sum_over_every_texel`).
+/// Rows of the parcels the light is gathered from (2.8° each) and of the map it is kept in: a cosine lobe is so wide
+/// that a bilinear look-up stays near the sum over every texel (`the_small_map_is_the_sum_over_every_texel`).
 const ROWS: usize = 64;
 
 /// L̄(n): the cosine-weighted mean of the light around n. An environment of light 1 has the mean 1.

@@ -81,8 +81,8 @@ impl EnvironmentMap {
             bilinear(width as i32, height as i32, 0.5 + (place - 0.5) * inward, texel).unwrap_or_default()
         })
     }
-    /// A texel of the picture by column and row; those around a latitude-longitude map are its own, and beyond a disc there
-    /// are none.
+    /// A texel of the picture by column and row; those around a latitude-longitude map are its own, and beyond a disc
+    /// there are none.
     fn texel(&self, i: i32, j: i32) -> Option<Vec3> {
         let (w, h) = (self.picture.size.width as i32, self.picture.size.height as i32);
         let (i, j) = match self.projection {
@@ -202,8 +202,8 @@ impl SphereLevel {
         };
         (rows > 0).then(|| SphereLevel::new(rows, (0..rows * columns).map(texel).collect()))
     }
-    /// Averages along each row over as many texels as lie within one texel's height: near the poles they are slivers, and a
-    /// look-up of the level must not see one alone.
+    /// Averages along each row over as many texels as lie within one texel's height: near the poles they are slivers,
+    /// and a look-up of the level must not see one alone.
     fn rounded_at_the_poles(self) -> SphereLevel {
         let columns = self.columns();
         let of_row = |row: usize| {
@@ -239,8 +239,8 @@ fn around_row(texels: &[Vec3], width: f32) -> Vec<Vec3> {
     (0..n).map(mean).collect()
 }
 
-/// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns come round, and beyond a pole the
-/// rows come back on the other side.
+/// The texel of a latitude-longitude map at a column and row that may lie beyond it: columns come round, and beyond a
+/// pole the rows come back on the other side.
 #[inline(always)]
 fn across_the_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
     let (i, j) = match j {

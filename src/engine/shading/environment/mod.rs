@@ -65,8 +65,8 @@ impl Environment {
         let projection = Projection::default();
         Self { file, picture, projection, rotation: 0.0, exposure: 0.0, cache: Arc::default() }
     }
-    /// The light, ready to be looked up. What is costly is kept and shared by copies of this environment, whatever their
-    /// rotation and exposure: ask before going parallel.
+    /// The light, ready to be looked up. What is costly is kept and shared by copies of this environment, whatever
+    /// their rotation and exposure: ask before going parallel.
     pub fn environment_light(&self) -> EnvironmentLight {
         let (sin, cos) = self.rotation.to_radians().sin_cos();
         EnvironmentLight { prepared: self.prepared(), turn: YRotation { sin, cos }, gain: self.exposure.exp2() }
@@ -103,8 +103,8 @@ impl EnvironmentLight {
     pub fn around(&self, d: Vec3, width_rad: f32) -> Vec3 {
         self.prepared.map.around(self.turn.apply(d), width_rad) * self.gain
     }
-    /// The mean light over the footprint of a pixel from which the direction changes by `dx` to the next in its row and by
-    /// `dy` to the next in its column.
+    /// The mean light over the footprint of a pixel from which the direction changes by `dx` to the next in its row and
+    /// by `dy` to the next in its column.
     pub fn over(&self, d: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
         let turn = self.turn;
         self.prepared.map.over(turn.apply(d), turn.apply(dx), turn.apply(dy)) * self.gain

@@ -55,7 +55,8 @@ pub fn lat_long_direction(u: f32, v: f32) -> Vec3 {
     vec3(sin_u * sin_v, cos_v, -cos_u * sin_v)
 }
 
-/// The `i`-th of `count` directions spread evenly over the sphere: a spiral of equal areas that turns by the golden angle.
+/// The `i`-th of `count` directions spread evenly over the sphere: a spiral of equal areas that turns by the golden
+/// angle.
 pub fn spread(i: usize, count: usize) -> Vec3 {
     const GOLDEN_TURN: f32 = 0.618_034;
     let y = 1.0 - (2.0 * i as f32 + 1.0) / count.max(1) as f32;

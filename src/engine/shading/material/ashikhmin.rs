@@ -1,8 +1,8 @@
-//! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH 5).
-//! Floor 3. Its lobes for one pixel stand first and read like the paper; a row of them is computed by the same functions.
+//! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH 5). Floor 3. Its
+//! lobes for one pixel stand first and read like the paper; a row of them is computed by the same functions.
 //!
-//! Light is counted as everywhere here, without 1/π: ρ is π times the paper's reflectance, times n·ℓ. R_s is the colour ×
-//! weight of the `specular` term, R_d that of `diffuse`.
+//! Light is counted as everywhere here, without 1/π: ρ is π times the paper's reflectance, times n·ℓ. R_s is the colour
+//! × weight of the `specular` term, R_d that of `diffuse`.
 
 use super::{Shading, lobes};
 use crate::math::fast;
@@ -10,7 +10,8 @@ use crate::raster::TILE;
 use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, RowRelief, RowValues, SurfaceRow};
 
-/// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to the row.
+/// Adds every light's matt and glossy term, with δ_d = n·ℓ and δ_s = n·h. `lights`: those of the material, turned to
+/// the row.
 pub fn shade(
     shading: &Shading,
     surface_row: &SurfaceRow,
@@ -76,8 +77,8 @@ pub fn matt(n_l: f32, n_e: f32) -> f32 {
     28.0 / 23.0 * lifted(n_l) * lifted(fast::max(n_e, 0.0)) * n_l
 }
 
-/// ρ_s / F = √((ν_u + 1)(ν_v + 1)) / 8 · (n·h)^((ν_u (h·u)² + ν_v (h·v)²) / (1 − (n·h)²)) (n·ℓ)₊ / ((h·e) max(n·ℓ, n·e))
-/// (Ashikhmin and Shirley 2000, eq. 4).
+/// ρ_s / F = √((ν_u + 1)(ν_v + 1)) / 8 · (n·h)^((ν_u (h·u)² + ν_v (h·v)²) / (1 − (n·h)²)) (n·ℓ)₊ / ((h·e) max(n·ℓ,
+/// n·e)) (Ashikhmin and Shirley 2000, eq. 4).
 ///
 /// * `h_uvn`: the half vector, unit, in the frame of the surface.
 #[inline(always)]

@@ -2,8 +2,8 @@
 //! (RS sec. 5.2, MATH 5).
 //! Floor 3. Its lobes are `ashikhmin`'s.
 //!
-//! Each sample stands for a part of the lobe and reads the mean of the environment over that part, so that neither a small
-//! sun makes fireflies nor the samples show.
+//! Each sample stands for a part of the lobe and reads the mean of the environment over that part, so that neither a
+//! small sun makes fireflies nor the samples show.
 
 use super::{Shading, ashikhmin};
 use crate::math::{Vec3, vec3};
@@ -61,7 +61,8 @@ impl EnvironmentSamples {
     }
     /// The glossy term at a pixel; `kappa`: isotropic κ.
     ///
-    /// With half vectors drawn in proportion to the lobe, light arrives weighed by F (n·ℓ)₊ / max(n·ℓ, n·e), never above 1.
+    /// With half vectors drawn in proportion to the lobe, light arrives weighed by F (n·ℓ)₊ / max(n·ℓ, n·e), never
+    /// above 1.
     fn glossy(&self, shading: &Shading, surface_row: &SurfaceRow, x: usize, kappa: f32) -> Vec3 {
         let (term, n) = (&shading.specular, surface_row.normal_at(x));
         let rs = Vec3::from(term.linear()).min(Vec3::ONE);

@@ -1,13 +1,13 @@
-//! What reaches a point from everywhere: matt under an environment, and ambient occlusion alone (RS sec. 5.3.1, MATH 5).
-//! Floor 3. Occlusion itself is the surface's; the hemisphere's mean light is `environment::irradiance`.
+//! What reaches a point from everywhere: matt under an environment, and ambient occlusion alone (RS sec. 5.3.1, MATH
+//! 5). Floor 3. Occlusion itself is the surface's; the hemisphere's mean light is `environment::irradiance`.
 
 use super::{Shading, lobes};
 use crate::math::{Vec3, srgb};
 use crate::raster::TILE;
 use crate::shading::surface_row::{Light3, LightDirection, RowValues, SurfaceRow};
 
-/// Adds ρ_d A(p) L̄(n) as the diffuse term, scaled with δ = L̄(n) / max L̄. The scaling of the ambient term, if it has one,
-/// scales the occlusion A on its own, with δ = A.
+/// Adds ρ_d A(p) L̄(n) as the diffuse term, scaled with δ = L̄(n) / max L̄. The scaling of the ambient term, if it has
+/// one, scales the occlusion A on its own, with δ = A.
 pub fn diffuse(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let (Some(environment), term) = (&shading.environment, &shading.diffuse) else { return };
     let environment_light = environment.environment_light();

@@ -1,6 +1,5 @@
-//! Lit sphere: the colour that a painted sphere has where its normal is the same; or two spheres, one for convex and one
-//! for concave features, blended by κ (RS sec. 5.3.1, MATH 5).
-//! Floor 3.
+//! Lit sphere: the colour that a painted sphere has where its normal is the same; or two spheres, one for convex and
+//! one for concave features, blended by κ (RS sec. 5.3.1, MATH 5). Floor 3.
 
 use super::{Shading, lobes};
 use crate::math::{srgb, vec2};

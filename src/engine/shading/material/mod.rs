@@ -93,8 +93,8 @@ impl Term {
 pub struct Shading {
     pub model: Model,
     pub lights: Vec<Light>,
-    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. Of [`Model::DiffuseEnvironment`] only its scaling
-    /// counts, which scales the occlusion.
+    /// Light from everywhere; the occlusion of [`Model::AmbientOcclusion`]. Of [`Model::DiffuseEnvironment`] only its
+    /// scaling counts, which scales the occlusion.
     pub ambient: Term,
     /// The matt term.
     pub diffuse: Term,
@@ -127,7 +127,8 @@ impl Shading {
     pub fn lacks_environment(&self) -> bool {
         self.model.needs_environment() && self.environment.is_none()
     }
-    /// The model with the material it has where nothing else is said; no environment, no sphere, one light where it needs one.
+    /// The model with the material it has where nothing else is said; no environment, no sphere, one light where it
+    /// needs one.
     pub fn new(model: Model) -> Self {
         let clay = Term::plain(Color { r: 0xc0, g: 0x80, b: 0x60, a: 255 }, 0.7);
         let gloss = Term::plain(Color::WHITE, 0.3);

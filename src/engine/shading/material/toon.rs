@@ -10,8 +10,8 @@ use crate::surface::links;
 
 /// Adds every light's terms in `bands` tones to the rows of a tile.
 ///
-/// A tone's edge is where σρ crosses a multiple of 1 / bands. It is filtered over the pixel: how fast σρ changes along the
-/// surface there, from its neighbours in the tile, says how much of the pixel lies on either side.
+/// A tone's edge is where σρ crosses a multiple of 1 / bands. It is filtered over the pixel: how fast σρ changes along
+/// the surface there, from its neighbours in the tile, says how much of the pixel lies on either side.
 pub fn shade_tile(shading: &Shading, rows: &[SurfaceRow], light: &mut [Light3]) {
     let mut lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
     let (mut terms, mut relief) = (PhongTerms::new(shading, &lights), RowRelief::default());
@@ -57,8 +57,8 @@ fn inside_links(surface_row: &SurfaceRow, has_above: bool, has_below: bool) -> [
 
 /// The tone of a value in `bands` tones, 0 … 1, filtered over a pixel in which the value changes by `change`.
 ///
-/// floor(v · bands) / (bands − 1), at most 1, is constant but for steps at multiples of 1 / bands; the nearest step becomes
-/// a ramp as wide as the pixel. Where a pixel spans more than a band, the ramps meet: the tones run together.
+/// floor(v · bands) / (bands − 1), at most 1, is constant but for steps at multiples of 1 / bands; the nearest step
+/// becomes a ramp as wide as the pixel. Where a pixel spans more than a band, the ramps meet: the tones run together.
 ///
 /// * `value`: `≥ 0`; `change`: length of its gradient per pixel; `bands`: `≥ 2`.
 #[inline(always)]

@@ -19,12 +19,14 @@ use std::sync::Arc;
 /// Below this n_z a slope is not followed further: the surface is seen edge-on.
 pub const GRAZING_NZ: f32 = 0.05;
 
-/// The curvature tensor H of every pixel: axes x right, y **up**; convex > 0; per pixel, before the curvature scale *s*.
+/// The curvature tensor H of every pixel: axes x right, y **up**; convex > 0; per pixel, before the curvature scale
+/// *s*.
 pub struct Curvature {
     pub hxx: Plane<f32>,
     pub hxy: Plane<f32>,
     pub hyy: Plane<f32>,
-    /// 0 at the mask's edge, at depth jumps and off the surface; 255, which is 1, from three pixels on. Every κ is multiplied by it.
+    /// 0 at the mask's edge, at depth jumps and off the surface; 255, which is 1, from three pixels on. Every κ is
+    /// multiplied by it.
     pub fade: Plane<u8>,
 }
 
@@ -40,9 +42,11 @@ pub fn slope(nbar_x: f32, nbar_y: f32, nz: f32) -> (f32, f32) {
     (nbar_x * upright, nbar_y * upright)
 }
 
-/// H = −½ (∇g + ∇gᵀ) from the derivatives of the slope in image axes (y **down**): `[h_xx, h_xy, h_yy]`, y **up** (MATH 4).
+/// H = −½ (∇g + ∇gᵀ) from the derivatives of the slope in image axes (y **down**): `[h_xx, h_xy, h_yy]`, y **up** (MATH
+/// 4).
 ///
-/// Turning y over negates the slope's second component and the derivative along y: the diagonal stays, h_xy changes sign.
+/// Turning y over negates the slope's second component and the derivative along y: the diagonal stays, h_xy changes
+/// sign.
 #[inline(always)]
 pub fn tensor(dx_slope: (f32, f32), dy_slope: (f32, f32)) -> [f32; 3] {
     [dx_slope.0, -0.5 * (dy_slope.0 + dx_slope.1), dy_slope.1]
@@ -67,7 +71,8 @@ impl Curvature {
         let aniso = (hxx - hyy) * (l.x * l.x - l.y * l.y) + 4.0 * hxy * l.x * l.y;
         self.fade_at(x, y) * (scale_px * (hxx + hyy + lambda * aniso)).tanh()
     }
-    /// Principal curvatures k_u ≥ k_v, per pixel, and the unit direction u (y up, sign arbitrary); v is u turned by 90°.
+    /// Principal curvatures k_u ≥ k_v, per pixel, and the unit direction u (y up, sign arbitrary); v is u turned by
+    /// 90°.
     pub fn principal(&self, x: usize, y: usize) -> (f32, f32, Vec2) {
         let [hxx, hxy, hyy] = self.tensor(x, y);
         let (mean, half) = (0.5 * (hxx + hyy), 0.5 * (hxx - hyy));
@@ -91,7 +96,8 @@ impl Curvature {
 const KEPT_PX: usize = 16 << 20;
 
 impl Surface {
-    /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at all).
+    /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at
+    /// all).
     ///
     /// Neither the blur nor the differences cross the mask's edge or a depth jump. Kept: asking again costs nothing.
     /// Ask once before going parallel; threads that ask at the same time may each compute it.

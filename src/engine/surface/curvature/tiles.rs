@@ -17,13 +17,14 @@ const LANES: usize = 32;
 
 /// Chunks of a row of scratch.
 const CHUNKS: usize = STRIDE / LANES;
-/// From a row of what is blurred down the columns to the next: a power of two would put all rows of a chunk into a few sets
-/// of the first-level cache.
+/// From a row of what is blurred down the columns to the next: a power of two would put all rows of a chunk into a few
+/// sets of the first-level cache.
 const PITCH: usize = STRIDE + 16;
 
 /// Computes H and its fade for every pixel. `blur_px`: standard deviation, finite, `≥ 0`.
 ///
-/// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160 fresh memory costs as much as the work.
+/// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160 fresh memory costs as much as the
+/// work.
 pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvature>) -> Curvature {
     let size = surface.size();
     let taps = half_kernel(blur_px);

@@ -1,9 +1,9 @@
 //! Ambient occlusion: how much of the hemisphere over each point the surface itself leaves open (RS sec. 5.3.1's A(p)).
 //! Floor 2. From depth, in pixels; here the horizon it is made of and what is kept, `rows` is the fast way over a map.
 //!
-//! Along directions all around each pixel the highest horizon is found, and the cosine-weighted light above it is integrated in
-//! closed form (Jiménez et al. 2016, "Practical realtime strategies for accurate indirect occlusion"). Every pixel
-//! looks along the same directions at the same distances: no noise, and nothing that depends on threads.
+//! Along directions all around each pixel the highest horizon is found, and the cosine-weighted light above it is
+//! integrated in closed form (Jiménez et al. 2016, "Practical realtime strategies for accurate indirect occlusion").
+//! Every pixel looks along the same directions at the same distances: no noise, and nothing that depends on threads.
 
 mod rows;
 
@@ -66,8 +66,8 @@ impl HorizonSlices {
     }
 }
 
-/// Whole pixels along the axis that the way is nearer to, between two pixels across it: a way that jumped from pixel to pixel
-/// would see the higher of its neighbours.
+/// Whole pixels along the axis that the way is nearer to, between two pixels across it: a way that jumped from pixel to
+/// pixel would see the higher of its neighbours.
 fn way(toward: Vec2, radius_px: f32, phase: f32) -> HorizonDirection {
     let is_across = toward.x.abs() >= toward.y.abs();
     let (along, across) = if is_across { (toward.x, toward.y) } else { (toward.y, toward.x) };
@@ -90,7 +90,8 @@ fn way(toward: Vec2, radius_px: f32, phase: f32) -> HorizonDirection {
     HorizonDirection { toward, steps }
 }
 
-/// The open part of one slice of the hemisphere, weighted by the cosine to the normal; 1 for a plane that faces the viewer.
+/// The open part of one slice of the hemisphere, weighted by the cosine to the normal; 1 for a plane that faces the
+/// viewer.
 ///
 /// * `along`, `up`: the normal in the slice, along its direction and to the viewer; not both 0.
 /// * `horizons`: cosines between the view and the horizon in the slice's direction and in the opposite one.
@@ -108,7 +109,8 @@ fn open_part(along: f32, up: f32, horizons: [f32; 2]) -> f32 {
     0.25 * length * (half(horizons[0], 1.0) + half(horizons[1], -1.0))
 }
 
-/// The height between two neighbouring pixels, `t` of the way; across a cliff the lower one's: there is nothing between.
+/// The height between two neighbouring pixels, `t` of the way; across a cliff the lower one's: there is nothing
+/// between.
 #[inline(always)]
 fn height_between(near: f32, far: f32, t: f32) -> f32 {
     let mixed = near + (far - near) * t;
@@ -159,9 +161,9 @@ fn slope(surface: &Surface, x: usize, y: usize) -> Vec2 {
 impl Surface {
     /// A(p) of every pixel, `[0, 1]`: 1 where nothing hides the light, 1 off the surface.
     ///
-    /// Occluders count the less the farther they are, those `radius_px` away (in the picture and in depth) not at all; nor
-    /// does what floats in front, beyond a depth jump of half the radius. Told by depth: normal layers do not change
-    /// it. Kept: asking again costs nothing. Ask once before going parallel.
+    /// Occluders count the less the farther they are, those `radius_px` away (in the picture and in depth) not at all;
+    /// nor does what floats in front, beyond a depth jump of half the radius. Told by depth: normal layers do not
+    /// change it. Kept: asking again costs nothing. Ask once before going parallel.
     pub fn occlusion(&self, radius_px: f32) -> Arc<Plane<f32>> {
         const KEPT: usize = 3;
         // NaN.max is the other one.
@@ -177,7 +179,8 @@ impl Surface {
     pub const WIDEST_OCCLUSION_PX: f32 = 1024.0;
 }
 
-/// The tangent plane's horizon on both sides of a slice, as cosines to the view: the higher of what depth and normals tell.
+/// The tangent plane's horizon on both sides of a slice, as cosines to the view: the higher of what depth and normals
+/// tell.
 #[inline(always)]
 fn tangents(along_slope: f32, along_normal: f32, up_normal: f32) -> [f32; 2] {
     let told_by_depth = along_slope / (1.0 + along_slope * along_slope).sqrt();

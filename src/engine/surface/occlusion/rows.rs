@@ -1,5 +1,5 @@
-//! Occlusion of a whole map, many pixels of a row at a time: the same offset for all of them, so that every look is a plain load.
-//! Floor 2. What is computed stands in `super`.
+//! Occlusion of a whole map, many pixels of a row at a time: the same offset for all of them, so that every look is a
+//! plain load. Floor 2. What is computed stands in `super`.
 
 use super::{FLOATS, HorizonDirection, HorizonSlices, excess, height_between, open_part, slope, tangents};
 use crate::math::{Vec2, fast};
@@ -68,8 +68,8 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
     open
 }
 
-/// The open part averaged over five pixels each way, never across a depth jump: what is left of the steps of depth, and of
-/// directions being few, is finer than that.
+/// The open part averaged over five pixels each way, never across a depth jump: what is left of the steps of depth, and
+/// of directions being few, is finer than that.
 pub(super) fn smoothed(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
     let across = along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
     along_links(surface, &across, (links::UP, links::DOWN), (0, 1))

@@ -8,8 +8,8 @@ use std::f32::consts::FRAC_2_PI;
 
 /// r̄: where the reflected view direction falls on an angular map.
 ///
-/// MATH 2: `r̄ = (2/π) acos(n_z) n̄/|n̄|`, 0 where n̄ = 0. The angle is taken as `atan2(|n̄|, n_z)`: the same for a unit
-/// normal, and exact where n_z is nearly 1.
+/// MATH 2: `r̄ = (2/π) acos(n_z) n̄/|n̄|`, 0 where n̄ = 0. The angle is taken as `atan2(|n̄|, n_z)`: the same for a
+/// unit normal, and exact where n_z is nearly 1.
 ///
 /// * `nbar`, `nz`: a unit normal, image axes (y down).
 ///

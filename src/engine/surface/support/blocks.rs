@@ -73,7 +73,8 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> TileBlocks {
     })
 }
 
-/// The centres of a block's first and last pixel relative to the anchor. Blocks that the canvas's edge cuts count whole.
+/// The centres of a block's first and last pixel relative to the anchor. Blocks that the canvas's edge cuts count
+/// whole.
 #[inline(always)]
 fn corners(corner: Vec2, i: usize) -> (Vec2, Vec2) {
     // Through i32: AVX2 converts no 64-bit integers.

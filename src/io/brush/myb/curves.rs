@@ -227,7 +227,8 @@ mod tests {
     #[test]
     fn what_adds_up_in_a_logarithm_is_a_factor_here() {
         let value = settings(
-            r#"{ "r": { "base_value": 2, "inputs": { "pressure": [[0, -1], [1, 1]], "random": [[0, -0.5], [1, 0]] } } }"#,
+            r#"{ "r": { "base_value": 2,
+                        "inputs": { "pressure": [[0, -1], [1, 1]], "random": [[0, -0.5], [1, 0]] } } }"#,
         );
         let mut settings = MyPaintSettings::new(value.as_object().unwrap());
         let driven = settings.driven("r", 0.0, f32::exp);

@@ -132,8 +132,8 @@ pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
     Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
 }
 
-/// A picture becomes an image layer, bent by the operator in hand (by the normals, if that is flat), pinned at `at`. With
-/// nothing open it becomes a document of its own.
+/// A picture becomes an image layer, bent by the operator in hand (by the normals, if that is flat), pinned at `at`.
+/// With nothing open it becomes a document of its own.
 pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let operator = match session.operator {
         Operator::None => DROPPED,

@@ -31,7 +31,8 @@ pub enum PicturePart {
 }
 
 names!(PicturePart, [
-    PicturePart::Image => "image", PicturePart::Mask => "mask", PicturePart::Environment => "environment", PicturePart::Sphere => "sphere",
+    PicturePart::Image => "image", PicturePart::Mask => "mask", PicturePart::Environment => "environment",
+    PicturePart::Sphere => "sphere",
     PicturePart::ConcaveSphere => "concave sphere", PicturePart::Detail => "detail",
 ]);
 

@@ -5,7 +5,10 @@ use proptest::prelude::*;
 
 /// One thing a user does, as a line of a replay. Layers are named by places that need not exist.
 fn edit() -> impl Strategy<Value = String> {
-    let layer = || prop_oneof![3 => (0..4usize).prop_map(|i| i.to_string()), 1 => (0..3usize, 0..2usize).prop_map(|(i, j)| format!("{i}.{j}"))];
+    let layer = || {
+        let nested = (0..3usize, 0..2usize).prop_map(|(i, j)| format!("{i}.{j}"));
+        prop_oneof![3 => (0..4usize).prop_map(|i| i.to_string()), 1 => nested]
+    };
     let kinds = prop::sample::select(vec!["paint", "strokes", "fill", "gradient", "group"]);
     let plain =
         prop::sample::select(vec!["delete", "duplicate", "group", "ungroup", "merge down", "bake", "clear", "select"]);
@@ -13,13 +16,16 @@ fn edit() -> impl Strategy<Value = String> {
     prop_oneof![
         3 => kinds.prop_map(|kind| format!(r#"{{"in":"layer","do":"add","kind":"{kind}"}}"#)),
         4 => (plain, layer()).prop_map(|(what, layer)| format!(r#"{{"in":"layer","do":"{what}","layer":"{layer}"}}"#)),
-        1 => (layer(), -2..3i32).prop_map(|(layer, by)| format!(r#"{{"in":"layer","do":"nudge","layer":"{layer}","by":{by}}}"#)),
+        1 => (layer(), -2..3i32).prop_map(|(layer, by)| {
+            format!(r#"{{"in":"layer","do":"nudge","layer":"{layer}","by":{by}}}"#)
+        }),
         2 => (layer(), 0..=10u8).prop_map(|(layer, n)| {
             let to = f32::from(n) / 10.0;
             format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{{"do":"opacity","to":{to}}},"done":true}}"#)
         }),
         1 => (layer(), blend).prop_map(|(layer, mode)| {
-            format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{{"do":"blend","mode":"{mode}"}},"done":true}}"#)
+            let to = format!(r#"{{"do":"blend","mode":"{mode}"}}"#);
+            format!(r#"{{"in":"layer","do":"set","layer":"{layer}","to":{to},"done":true}}"#)
         }),
         3 => [0..60i32, 0..40, 0..60, 0..40].prop_map(|[x, y, u, v]| format!(
             "{{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"brush\",\"pen\":[{x},{y}],\"px_per_pt\":1}}\n\
@@ -44,7 +50,9 @@ fn walk(session: &mut Session, steps: i32) -> (String, u32) {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
     #[test]
-    fn undone_to_the_start_and_made_again_every_document_is_the_one_that_was(edits in prop::collection::vec(edit(), 1..20)) {
+    fn undone_to_the_start_and_made_again_every_document_is_the_one_that_was(
+        edits in prop::collection::vec(edit(), 1..20)
+    ) {
         let mut session = told(r##"{"in":"file","do":"new","width":60,"height":40,"background":"#ffffff"}"##);
         // What stands in the history, and where in it the document is.
         let (mut known, mut at) = (vec![fingerprint(&document(&session))], 0usize);

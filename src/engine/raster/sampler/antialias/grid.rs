@@ -5,10 +5,11 @@ use super::{PatchRow, SPAN};
 use crate::math::fast::max;
 use crate::raster::sampler::taps::GROUP;
 
-/// Side of the cell that one tap stands for, in texels of level 0. A picture drawn pixel for pixel (1 texel) stays as it is.
+/// Side of the cell that one tap stands for, in texels of level 0. A picture drawn pixel for pixel (1 texel) stays as
+/// it is.
 pub const FINE_CELL: f32 = 1.5;
-/// The same in the other levels, whose texels are means already: there a bilinear tap's variance s²/4 − 1/12 is that of a
-/// box of 1.7 texels.
+/// The same in the other levels, whose texels are means already: there a bilinear tap's variance s²/4 − 1/12 is that of
+/// a box of 1.7 texels.
 pub const COARSE_CELL: f32 = 2.0;
 /// Most taps a pixel may take, in all.
 pub const MAX_TAPS: u32 = 16;

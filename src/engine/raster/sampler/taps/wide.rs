@@ -179,7 +179,8 @@ fn prefetch(at: TapPositions, [upper, lower]: [i32; 2]) {
     _mm_prefetch::<_MM_HINT_T0>(texel(lower).wrapping_add(at.level.size.width as usize).cast());
 }
 
-/// The upper pair of a tap's texels mixed, and the lower: four channels each, in `[0, 255 ONE]`. At a seam those of texel 0.
+/// The upper pair of a tap's texels mixed, and the lower: four channels each, in `[0, 255 ONE]`. At a seam those of
+/// texel 0.
 #[inline]
 #[target_feature(enable = "avx2")]
 unsafe fn rows<const SEAMS: bool>(at: TapPositions, index: i32, across: u32) -> __m256i {

@@ -110,25 +110,64 @@ crate::widest! {
     pub(super) fn still_one(span: KernelSpan, pin: &FastPin, out_x: &mut [f32], out_y: &mut [f32]) {
         one(span, pin, StillKernel, out_x, out_y)
     }
-    pub(super) fn depth_one(span: KernelSpan, pin: &FastPin, kernel: DepthKernel, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn depth_one(
+        span: KernelSpan,
+        pin: &FastPin,
+        kernel: DepthKernel,
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
         one(span, pin, kernel, out_x, out_y)
     }
-    pub(super) fn normal_one(span: KernelSpan, pin: &FastPin, kernel: NormalKernel, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn normal_one(
+        span: KernelSpan,
+        pin: &FastPin,
+        kernel: NormalKernel,
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
         one(span, pin, kernel, out_x, out_y)
     }
-    pub(super) fn mirror_one(span: KernelSpan, pin: &FastPin, kernel: MirrorKernel, out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn mirror_one(
+        span: KernelSpan,
+        pin: &FastPin,
+        kernel: MirrorKernel,
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
         one(span, pin, kernel, out_x, out_y)
     }
     pub(super) fn still_add(span: KernelSpan, pin: &FastPin, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
         add(span, pin, StillKernel, weight, moved_x, moved_y)
     }
-    pub(super) fn depth_add(span: KernelSpan, pin: &FastPin, kernel: DepthKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+    pub(super) fn depth_add(
+        span: KernelSpan,
+        pin: &FastPin,
+        kernel: DepthKernel,
+        weight: &[f32],
+        moved_x: &mut [f32],
+        moved_y: &mut [f32],
+    ) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
-    pub(super) fn normal_add(span: KernelSpan, pin: &FastPin, kernel: NormalKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+    pub(super) fn normal_add(
+        span: KernelSpan,
+        pin: &FastPin,
+        kernel: NormalKernel,
+        weight: &[f32],
+        moved_x: &mut [f32],
+        moved_y: &mut [f32],
+    ) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
-    pub(super) fn mirror_add(span: KernelSpan, pin: &FastPin, kernel: MirrorKernel, weight: &[f32], moved_x: &mut [f32], moved_y: &mut [f32]) {
+    pub(super) fn mirror_add(
+        span: KernelSpan,
+        pin: &FastPin,
+        kernel: MirrorKernel,
+        weight: &[f32],
+        moved_x: &mut [f32],
+        moved_y: &mut [f32],
+    ) {
         add(span, pin, kernel, weight, moved_x, moved_y)
     }
     /// 1 on the surface, 0 outside.
@@ -171,7 +210,14 @@ crate::widest! {
         }
     }
     /// D = q + Σ w (…) / Σ w; q where there is no weight at all.
-    pub(super) fn add_mean(span: KernelSpan, moved_x: &[f32], moved_y: &[f32], weight_sum: &[f32], out_x: &mut [f32], out_y: &mut [f32]) {
+    pub(super) fn add_mean(
+        span: KernelSpan,
+        moved_x: &[f32],
+        moved_y: &[f32],
+        weight_sum: &[f32],
+        out_x: &mut [f32],
+        out_y: &mut [f32],
+    ) {
         let n = out_x.len();
         let (moved_x, moved_y, weight_sum, out_y) = (&moved_x[..n], &moved_y[..n], &weight_sum[..n], &mut out_y[..n]);
         for k in 0..n {
