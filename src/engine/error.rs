@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// A failure an artist can act on. Its `Display` is one sentence that names the file and, where there is one, the
-/// field.
+/// A failure that the user can act on. `Display` is one sentence that names the file and, if there is one, the field.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The operating system refused.
@@ -24,10 +23,10 @@ pub enum Error {
     /// Larger than the budget allows; the sentence says which figure and how to raise it.
     #[error("{}: too large: {reason}", file.display())]
     TooLarge { file: PathBuf, reason: String },
-    /// What is there is not what was expected, and would be lost; the sentence says what to expect instead.
+    /// The file on disk is not the expected one and would be lost; the sentence says what is there instead.
     #[error("{}: not replaced: {reason}", file.display())]
     Changed { file: PathBuf, reason: String },
-    /// What a field of a document led to: a picture it names cannot be read.
+    /// A file that a field of a document names cannot be read.
     #[error("{}: {field}: {error}", file.display())]
     At { file: PathBuf, field: String, error: Box<Error> },
 }

@@ -1,5 +1,6 @@
 //! Powers, logarithms, tanh and acos for inner loops: polynomials of bounded error that the compiler vectorises.
-//! Floor 0. The references are std's; the bounds below are tests. sRGB's approximations stand with the curve (`srgb`).
+//! Floor 0. The references are std's; the bounds below are tests. The approximations of sRGB are in `srgb`, beside the
+//! curve.
 
 /// The larger of two numbers; `b` where `a` is NaN. One instruction, where `f32::max` needs three.
 #[inline(always)]

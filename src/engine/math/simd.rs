@@ -1,7 +1,8 @@
 //! SIMD width chosen at run time: one body, compiled once for the baseline and once for AVX2.
 //! Floor 0. A release binary runs on any x86-64 and is fast on a new one; other platforms get the baseline body.
 //!
-//! The wide version enables AVX2 only and never contracts a multiply and an add, so both compute the same bits.
+//! The wide version enables AVX2 only and never contracts a multiply and an add, so both versions compute the same
+//! bits.
 
 /// Wraps functions so that their body is compiled for the baseline and for AVX2, and the processor picks.
 ///

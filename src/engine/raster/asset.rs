@@ -33,7 +33,7 @@ impl PartialEq for Asset {
     }
 }
 
-/// Its length: the bytes themselves tell a reader nothing.
+/// Prints the length only: the bytes would not help a reader.
 impl fmt::Debug for Asset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Asset({} bytes)", self.0.len())

@@ -10,11 +10,11 @@ use rayon::prelude::*;
 enum BlurBorder {
     /// The border's value, on and on.
     Border,
-    /// 0: sums lose weight, which a mask gives back.
+    /// 0: sums lose weight, and dividing by the blurred mask restores it.
     Nothing,
 }
 
-/// Blurs a map; beyond its border the border's value stands. `sigma_px`: standard deviation; not above 0 changes
+/// Blurs a map; its border value is repeated beyond the border. `sigma_px`: standard deviation; not above 0 changes
 /// nothing.
 pub fn gaussian(plane: &Plane<f32>, sigma_px: f32) -> Plane<f32> {
     let (pixels, _) = plane.values().as_chunks::<1>();
@@ -38,7 +38,7 @@ pub fn gaussian_masked(plane: &Plane<f32>, mask: &Plane<f32>, sigma_px: f32) -> 
     Plane::from_values(plane.size(), values).expect("one value per pixel")
 }
 
-/// Blurs pixels of `N` values each (RGBA: premultiplied), row by row; beyond the border the border's pixel stands.
+/// Blurs pixels of `N` values each (RGBA: premultiplied), row by row; the border pixel is repeated beyond the border.
 ///
 /// Returns the pixels unchanged where `sigma_px` is not above 0 or `pixels` are not one per pixel of `size`.
 pub fn gaussian_pixels<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32) -> Vec<[f32; N]> {
@@ -65,7 +65,7 @@ fn blurred<const N: usize>(size: Size, pixels: &[[f32; N]], sigma_px: f32, beyon
 
 fn passed<const N: usize>(size: Size, pixels: &[[f32; N]], filter: &Gaussian, beyond: BlurBorder) -> Vec<[f32; N]> {
     let (w, h) = (size.width as usize, size.height as usize);
-    // Each pass blurs down the columns and lays the result on its side.
+    // Each pass blurs down the columns and transposes the result.
     let sideways = down_columns(pixels, w, h, filter, beyond);
     down_columns(&sideways, h, w, filter, beyond)
 }
@@ -106,7 +106,7 @@ fn down_columns<const N: usize>(
             }
         }
     };
-    // A worker that waited for helpers could be handed a tile that waits for this very blur: it works alone.
+    // This runs on one thread: a worker that waited for others could be given a tile that waits for this same blur.
     if rayon::current_thread_index().is_some() {
         let mut buffers = (ColumnStrip::new(), ColumnStrip::new());
         out.chunks_mut(across * height).enumerate().for_each(|strip| blur_strip(&mut buffers, strip));
@@ -133,12 +133,12 @@ enum Gaussian {
 struct GaussianPole {
     a: (f32, f32),
     p: (f32, f32),
-    /// State after endless ones: 1 / (1 − p).
+    /// The state after infinitely many ones: 1 / (1 − p).
     rest: (f32, f32),
 }
 
 impl Gaussian {
-    /// Where the taps become dearer than the recursion.
+    /// From here on the taps cost more than the recursion.
     const WIDEST_TAPS_PX: f32 = 4.0;
 
     fn new(sigma_px: f32) -> Self {
@@ -239,7 +239,7 @@ struct RecursionState {
 }
 
 impl RecursionState {
-    /// As if `line` had stood there forever, or nothing.
+    /// Starts as if `line` had been repeated forever, or as if there had been nothing.
     #[inline(always)]
     fn resting(pole: GaussianPole, line: &[f32; LANES], beyond: BlurBorder) -> Self {
         let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);

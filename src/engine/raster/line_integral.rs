@@ -15,7 +15,7 @@ pub struct LineStyle {
 }
 
 impl LineStyle {
-    /// Grains that can be seen at the size of a picture, and lines fifteen grains long.
+    /// Grains large enough to be visible at the size of a picture, and lines fifteen grains long.
     pub fn for_size(size: Size) -> Self {
         let grain_px = (size.longer_side() / 1024.0).max(1.0).min(2.5);
         Self { grain_px, reach_px: 15.0 * grain_px }
@@ -63,7 +63,7 @@ fn trace(
     let mut heading = direction.at(here.0, here.1) * sign;
     for &w in weights {
         let along = direction.at(here.0, here.1);
-        // A direction has no sign of its own: it goes on as the line came.
+        // A direction has no sign: the line continues the way it came.
         heading = if along.dot(heading) < 0.0 { -along } else { along };
         if heading == Vec2::ZERO {
             return;

@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub struct Picture {
     pub size: Size,
     pub texels: Texels,
-    /// The file it was decoded from, so that a project keeps its very bytes; `None` for a picture made here.
+    /// The file it was decoded from, so that a project can keep the original bytes; `None` for a picture made here.
     pub encoded: Option<Asset>,
 }
 

@@ -29,7 +29,7 @@ impl PlanarTile {
     pub fn transparent() -> Self {
         Self { rows: vec![PixelRow::TRANSPARENT; TILE] }
     }
-    /// Takes pixels in; what is out of range or NaN is brought into it.
+    /// Takes pixels in; values that are out of range or NaN are brought into range.
     pub fn from_pixels(pixels: &TileF32) -> Self {
         let mut tile = Self::transparent();
         for (row, pixels) in tile.rows.iter_mut().zip(pixels.chunks_exact(TILE)) {

@@ -19,7 +19,7 @@ pub enum Outside {
 }
 
 impl Outside {
-    /// The texel that stands at index `i` of a row of `n`, `n ≥ 1`; `None` where there is none.
+    /// The texel at index `i` of a row of `n`, `n ≥ 1`; `None` where there is none.
     #[inline(always)]
     pub fn index(self, i: i32, n: i32) -> Option<i32> {
         if (0..n).contains(&i) {

@@ -1,5 +1,5 @@
 //! A tile: 64 × 64 pixels of a layer, premultiplied 8-bit sRGB, shared and never edited while shared.
-//! Floor 1. The storage depth is hidden here, so that 16-bit tiles can come without touching layers or files.
+//! Floor 1. The storage depth is hidden here, so that 16-bit tiles can be added without touching layers or files.
 
 use crate::math::{Rect, srgb::quantise};
 use tiny_skia::Pixmap;

@@ -1,4 +1,4 @@
-//! What was computed of a surface and may be asked for again: the last few results, by what they were asked with.
+//! A small cache of results computed from a surface: it keeps the last few values by their keys.
 //! Floor 2.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -18,11 +18,11 @@ impl<K: PartialEq, V> RecentCache<K, V> {
     fn lock(&self) -> MutexGuard<'_, Vec<(K, Arc<V>)>> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    /// The value of a key. Never computes under the lock: a thread that waits for its own pool's work would stand
-    /// still. Threads that ask at the same time may each compute it, and compute the same.
+    /// The value of a key. It never computes while holding the lock: a thread that waits for work of its own pool would
+    /// deadlock. Threads that ask at the same time may each compute the value; the results are equal.
     ///
     /// * `keep`: how many are held, `≥ 1`.
-    /// * `compute`: is handed one that nobody holds any more, for its memory.
+    /// * `compute`: receives an evicted value that nobody else holds, so that its memory can be reused.
     pub fn get_or_compute(&self, key: K, keep: usize, compute: impl FnOnce(Option<V>) -> V) -> Arc<V> {
         let find = |entries: &[(K, Arc<V>)]| entries.iter().find(|(k, _)| *k == key).map(|(_, v)| v.clone());
         let recycled = {

@@ -1,20 +1,20 @@
-//! Normal layers: detail normals combined onto a surface (SF fig. 12b–c). Depth, coverage and what hangs together stay.
-//! Floor 2. Here: the equation, and a map of detail read at any scale. Noise as detail is `grain`, where it lies on the
-//! canvas `document::normals`.
+//! Normal layers: detail normals combined onto a surface (SF fig. 12b–c). Depth, coverage and links stay as they are.
+//! Floor 2. Here: the equation, and a map of detail read at any scale. Noise as detail is in `grain`, its placement on
+//! the canvas in `document::normals`.
 
 use crate::math::{Size, Vec2, Vec3, vec2};
 use crate::raster::{Outside, Plane};
 use std::sync::Arc;
 
-/// Detail laid onto a base normal as onto a plane bent to it: the detail's z becomes the base, turned the shortest way.
+/// Combines a detail normal with a base normal: the detail is rotated so that its z axis becomes the base normal.
 ///
 /// Reoriented normal mapping (Barré-Brisebois and Hill 2012): t = base + z, u = (−d_x, −d_y, d_z), r = t (t·u) / t_z −
 /// u.
 ///
 /// * `base`, `detail`: unit, y up, `base.z > −1`.
 ///
-/// Unit; the base where the detail is flat, the detail where the base is. What would turn away from the viewer is held
-/// at the silhouette.
+/// The result is a unit vector: the base where the detail is flat, the detail where the base is flat. A result that
+/// would face away from the viewer is stopped at the silhouette.
 pub fn reoriented(base: Vec3, detail: Vec3) -> Vec3 {
     let t = base + Vec3::Z;
     let u = Vec3::new(-detail.x, -detail.y, detail.z);
@@ -33,7 +33,7 @@ const GRAZING_NZ: f32 = 0.02;
 
 /// A detail normal with its slopes multiplied.
 pub fn strengthened(detail: Vec3, strength: f32) -> Vec3 {
-    // A detail that leans past the horizon has no slope; it leans as far as it can.
+    // A detail normal beyond the horizon has no slope; it is tilted as far as possible.
     let upright = detail.z.max(0.02);
     Vec3::new(detail.x * strength, detail.y * strength, upright).normalize_or(Vec3::Z)
 }
@@ -83,7 +83,7 @@ impl DetailMap {
             let column = outside.index(i, plane.width() as i32)?;
             let row = outside.index(j, plane.height() as i32)?;
             let n = plane.at(column as usize, row as usize);
-            // What is mirrored leans the other way.
+            // A mirrored detail tilts the other way.
             let mirrored = |at: i32, n: usize| outside == Outside::Mirror && at.div_euclid(n as i32) % 2 != 0;
             let sign = |is: bool| if is { -1.0 } else { 1.0 };
             Some(n * Vec3::new(sign(mirrored(i, plane.width())), sign(mirrored(j, plane.height())), 1.0))
@@ -151,7 +151,7 @@ mod tests {
             assert!((r.length() - 1.0).abs() < 1e-5);
             assert!((r.dot(base) - detail.z).abs() < 1e-5, "{base}");
         }
-        // The shortest turn from z to a base at the right leaves what leans up and down alone.
+        // The shortest rotation from z to a base that leans right leaves vertical tilt unchanged.
         let right = vec3(0.6, 0.0, 0.8);
         assert!((reoriented(right, vec3(0.0, 0.28, 0.96)).y - 0.28).abs() < 1e-5);
     }

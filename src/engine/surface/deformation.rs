@@ -1,6 +1,6 @@
-//! D evaluated: operator, anchors and weights resolved against a surface.
+//! Evaluates D: the operator, its anchors and weights applied to a surface.
 //! Floor 2. [`Deformation::at`] and [`Deformation::jacobian`] read like the paper; [`Deformation::fill`] is the same
-//! over whole rows (`fill`), tested against it. Not here: what is looked up at D(q) (`paint`).
+//! over whole rows (`fill`), tested against it. Not here: looking up a picture at D(q) (`paint`).
 
 mod fill;
 
@@ -48,8 +48,7 @@ pub const DETAIL_SCALE_PX: f32 = 4.0;
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors; one that stands off the surface reads the background: facing the viewer,
-    /// farthest.
+    /// Reads the maps at the anchors; an anchor off the surface reads the background: facing the viewer, farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
     /// * `size`: the canvas; its longer side is *L*.
@@ -58,8 +57,8 @@ impl<'a> Deformation<'a> {
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
         Self::pinned(surface, size, bend, at_anchor)
     }
-    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest of it, so that
-    /// a stroke goes on over the silhouette.
+    /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest surface
+    /// values, so that a stroke continues over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         let bend = Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() };
         Self::pinned(surface, size, &bend, nearest_map_values)
@@ -164,7 +163,7 @@ impl<'a> Deformation<'a> {
     }
 }
 
-/// Weights whose power is a number above 0; above 64 the nearest anchor has it all anyway.
+/// Weights with a power in `(0, 64]`; above that the nearest anchor has all the weight anyway.
 fn sane(weights: Weights) -> Weights {
     match weights {
         Weights::Shepard { power } if power > 0.0 => Weights::Shepard { power: power.min(64.0) },

@@ -1,4 +1,4 @@
-//! Normals from depth, by differences that do not reach across jumps.
+//! Normals from depth, by differences that do not cross depth jumps.
 //! Floor 2. The reverse is `integrate`.
 
 use crate::math::{Vec3, vec3};
@@ -48,13 +48,13 @@ impl SideSteps {
     }
 }
 
-/// The mean of both sides where they go together; the side that goes on smoothly where one is a jump; 0 between none.
+/// The mean of both sides where they agree; the smoother side where the other is a jump; 0 where there is neither.
 fn edge_aware(before: SideSteps, after: SideSteps) -> f32 {
     match (before.near, after.near) {
         (Some(a), Some(b)) => {
             let (bend_a, bend_b) = (before.bend(), after.bend());
             let apart = (a - b).abs();
-            // A jump stands out threefold against how the better side bends.
+            // A side is a jump if it changes three times as much as the better side.
             if apart <= 3.0 * bend_a.min(bend_b) + 0.5 * a.abs().min(b.abs()) + 1e-6 {
                 0.5 * (a + b)
             } else if bend_a < bend_b {

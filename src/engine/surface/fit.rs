@@ -22,7 +22,7 @@ impl Surface {
         let scale = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
         self.resampled(canvas, scale)
     }
-    /// Centre on centre, `scale` canvas px to a map px.
+    /// Centred on each other, `scale` canvas px per map px.
     fn resampled(&self, canvas: Size, scale: Vec2) -> Result<Surface, SurfaceError> {
         let map_from_canvas = |q: Vec2| (q - canvas.center()) / scale + self.size().center();
         // A new pixel covers at least one old one: averaging over that box is then bilinear interpolation.
@@ -51,7 +51,7 @@ impl Surface {
             let coverage = self.coverage(x as usize, y as usize);
             (area > 0.0 && coverage > 0).then_some((x, y, area * f32::from(coverage)))
         });
-        // The covered pixel nearest to the centre says which piece of surface this is.
+        // The covered pixel nearest to the centre decides which piece of surface this is.
         let distance = |&(x, y, _): &(i32, i32, f32)| (vec2(x as f32 + 0.5, y as f32 + 0.5) - center).length_squared();
         let Some((rx, ry, _)) = covered.clone().min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
             return MeanTexel::default();
@@ -69,7 +69,7 @@ impl Surface {
         MeanTexel { normal, depth: depth / joined, coverage: (all / area).min(255.0).round() as u8 }
     }
     /// Whether two pixels near each other lie on one smooth piece: the step in depth is no larger than the steeper of
-    /// the two slopes tells, with a pixel and a half granted for coarse depth (as `links` grants it).
+    /// the two slopes implies, plus a tolerance of a pixel and a half for coarse depth (as in `links`).
     fn is_same_piece(&self, a: (i32, i32), b: (i32, i32)) -> bool {
         let at = |(x, y): (i32, i32)| {
             let (x, y) = (x as usize, y as usize);

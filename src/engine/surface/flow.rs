@@ -1,5 +1,5 @@
-//! Surface flows: in which direction, and how much, a picture on the surface is squeezed (SF sec. 4.3; MATH 3).
-//! Floor 2. For viewing: no operator reads them. Not here: the colours they are shown in (`document::view`).
+//! Surface flows: the direction and the amount by which a picture on the surface is compressed (SF sec. 4.3; MATH 3).
+//! Floor 2. For viewing: no operator reads them. Not here: their colours on screen (`document::view`).
 
 use super::deformation::DifferencePairs;
 use super::{Bend, Deformation, Surface};
@@ -40,7 +40,7 @@ impl StructureTensor {
 /// A tensor for every pixel.
 pub struct FlowField {
     tensors: Plane<StructureTensor>,
-    /// Stretch of a picture that nothing bends: 1 for positions, 0 for normals, which then do not change.
+    /// The stretch on a flat surface: 1 for positions, 0 for normals, which do not change there.
     unbent: f32,
 }
 
@@ -107,7 +107,7 @@ impl FlowField {
     pub fn at(&self, x: usize, y: usize) -> StructureTensor {
         self.tensors.at(x, y)
     }
-    /// How much a pixel's flow differs from that of a picture that nothing bends: |√λ₁ − 1|, of normals √λ₁.
+    /// How much a pixel's flow differs from that on a flat surface: |√λ₁ − 1|, or √λ₁ for normals.
     pub fn magnitude(&self, x: usize, y: usize) -> f32 {
         (self.at(x, y).eigen().larger.max(0.0).sqrt() - self.unbent).abs()
     }

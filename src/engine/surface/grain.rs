@@ -1,5 +1,5 @@
-//! Grain: normals of a noisy relief, as detail without a picture.
-//! Floor 2. The same everywhere and every time: a function of place and seed.
+//! Grain: the normals of a noise relief, which are detail without a picture.
+//! Floor 2. A pure function of position and seed: the same on every machine and run.
 
 use crate::math::{Vec2, Vec3, hash, vec2};
 use std::f32::consts::TAU;
@@ -32,10 +32,10 @@ impl NoiseRelief {
         let (mut size, mut share) = (self.size_px, 1.0);
         for octave in 0..self.octaves {
             let bump = vec2(size * self.stretch, size);
-            // Below two pixels a bump cannot be told, from four on it is whole.
+            // A bump below two pixels cannot be resolved; from four pixels on it counts in full.
             let visibility = ((bump.min_element() / px.max(1e-6) - 2.0) / 2.0).clamp(0.0, 1.0);
             if visibility > 0.0 {
-                // The height is as large as the bump, so its slope is the noise's own, less along a stretched bump.
+                // The height scales with the bump, so its slope is that of the noise, smaller along a stretched bump.
                 let lean = gradient(at / bump, hash::mix(self.seed ^ hash::mix(octave)));
                 slope += lean * vec2(1.0 / self.stretch.max(1e-6), 1.0) * share * visibility;
             }
@@ -84,7 +84,7 @@ mod tests {
     }
     #[test]
     fn the_gradient_is_that_of_one_continuous_relief() {
-        // Around any loop the slopes add up to no height.
+        // The slopes around any closed loop add up to zero.
         let step = 0.002f32;
         let side: Vec<f32> = (0..1500).map(|i| i as f32 * step).collect();
         let corner = vec2(3.1, -2.4);

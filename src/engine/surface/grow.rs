@@ -1,11 +1,11 @@
-//! Growing valid values outward: every pixel learns which surface pixel is nearest.
+//! Grows valid values outward: finds the nearest surface pixel of every pixel.
 //! Floor 2.
 
 use crate::raster::Plane;
 
 /// For each pixel the index of a nearest valid pixel (itself where valid); `None` where nothing is valid.
 ///
-/// Two sweeps that hand the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for rare ties within a
+/// Two sweeps that pass the nearest candidate on (Danielsson's 8-neighbour scheme: exact but for rare ties within a
 /// pixel).
 pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     const NONE: u32 = u32::MAX;
@@ -46,7 +46,8 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     near.values().iter().all(|&i| i != NONE).then_some(near)
 }
 
-/// Takes coverage from pixels without valid values, except within two pixels of a valid one at a partly covered rim.
+/// Removes the coverage of pixels without valid values, except within two pixels of a valid one at a partly covered
+/// rim.
 pub fn punch_holes(coverage: &mut Plane<u8>, valid: &Plane<bool>) {
     let near_valid = |x: usize, y: usize| {
         (-2..=2).any(|dy| (-2..=2).any(|dx| valid.get(x as i32 + dx, y as i32 + dy).unwrap_or(false)))

@@ -1,6 +1,6 @@
-//! Depth from normals: the height field whose slopes are nearest to those the normals tell (a Poisson equation over the
-//! mask), solved by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. What
-//! the normals cannot tell stays untold: how far apart two pieces of surface are across an occluding contour.
+//! Depth from normals: the height field whose slopes best match the normals (a Poisson equation over the mask), solved
+//! by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. Normals do not say
+//! how far apart two pieces of surface are across an occluding contour; that stays unknown.
 
 mod multigrid;
 
@@ -19,8 +19,8 @@ pub struct IntegratedDepth {
 /// Integrates unit normals (camera space, y up) over the pixels where `inside` holds; `None` where there are none.
 ///
 /// Minimises Σ w (z_j − z_i − s_ij)² over neighbours i, j: s_ij = (n̄_i + n̄_j)/(n_z,i + n_z,j) is exact on circles,
-/// and w = ((n_z,i + n_z,j)/2)² trusts what faces the viewer. Pieces that do not touch are each centred on the same
-/// depth.
+/// and w = ((n_z,i + n_z,j)/2)² gives more weight to what faces the viewer. Separate pieces are each centred on the
+/// same depth.
 pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
     let size = normals.size();
     let (w, h) = (size.width as usize, size.height as usize);
@@ -68,7 +68,7 @@ pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option
     Some(IntegratedDepth { depth, range_px })
 }
 
-/// Gives every connected piece the mean 0: the equations leave each a constant of its own.
+/// Gives every connected piece the mean 0: the equations leave a free constant per piece.
 fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
     let (w, n) = (inside.width(), heights.len());
     let mut seen: Vec<bool> = inside.values().iter().map(|i| !i).collect();

@@ -20,8 +20,8 @@ fn slope(nbar: f32, nz: f32) -> f32 {
     nbar / nz.max(0.05)
 }
 
-/// Z in pixels: the median ratio of the slope told by the normals to the step of the depth, over gently sloped pixels.
-/// One canvas length where the two maps say nothing of each other.
+/// Z in pixels: the median ratio between the slope of the normals and the step of the depth, over gently sloped pixels.
+/// One canvas length where the maps do not allow an estimate.
 pub fn depth_range_px(
     nbar_x: &Plane<f32>,
     nbar_y: &Plane<f32>,
@@ -55,10 +55,10 @@ pub fn depth_range_px(
     *ratios.select_nth_unstable_by(mid, f32::total_cmp).1
 }
 
-/// Excess over the tolerance, as a ratio of it, from which a step is a jump by itself.
+/// Excess over the tolerance, as a ratio of it, from which a step is a jump on its own.
 const CERTAIN: f32 = 1.0;
-/// Excess from which a step is a jump where it touches one: the contour of an occluder fades where it comes near to
-/// what lies behind, and must not break into beads.
+/// Excess from which a step next to a jump is a jump too: the contour of an occluder fades where it nears what is
+/// behind it, and must not break into dots.
 const LIKELY: f32 = 0.2;
 
 /// Finds the links of every pixel.
@@ -81,7 +81,7 @@ pub fn find(
     });
     spread(&mut jumps);
     Plane::from_fn(depth.size(), |x, y| {
-        // A step is held by its left or upper pixel.
+        // A step is stored at its left or upper pixel.
         let joined = |at: Option<(usize, usize)>, axis: usize| {
             at.is_some_and(|at| {
                 maps.are_covered(at, axis) && jumps.at(at.0, at.1) >> (DOWNWARD * axis as u8) & JUMP == 0
@@ -95,13 +95,13 @@ pub fn find(
     })
 }
 
-/// Of the step from a pixel to the one at its right: it is a jump; it is one if it touches one.
+/// Flags of the step from a pixel to its right neighbour: it is a jump; it is one if it touches another.
 const JUMP: u8 = 1;
 const LIKELY_JUMP: u8 = 2;
-/// The same of the step to the pixel below, so many bits further.
+/// The same flags for the step to the pixel below, shifted by this many bits.
 const DOWNWARD: u8 = 2;
 
-/// Makes jumps of the likely ones that are joined to one, over the eight neighbours of a pixel.
+/// Turns likely jumps into jumps where they touch one, over the eight neighbours of a pixel.
 fn spread(jumps: &mut Plane<u8>) {
     const ANY_JUMP: u8 = JUMP | JUMP << DOWNWARD;
     const ANY_LIKELY: u8 = LIKELY_JUMP | LIKELY_JUMP << DOWNWARD;
@@ -150,9 +150,9 @@ impl StepMaps<'_> {
     }
     /// How far the step after a pixel is from that of a smooth surface, as a ratio of the tolerance; 0 where it is one.
     ///
-    /// Between two neighbours of a smooth surface the step lies between the slopes that their normals tell (the mean
-    /// value theorem). Normals may carry detail that the depth lacks, so the depth must jump by its own measure as
-    /// well: beyond the steps before and after. Half a slope and 1.5 px are granted for curvature and coarse depth.
+    /// Between two neighbours of a smooth surface the step lies between the slopes of their normals (the mean value
+    /// theorem). Normals may have detail that the depth lacks, so the depth must also jump relative to the steps before
+    /// and after. The tolerance is half a slope plus 1.5 px, for curvature and coarse depth.
     fn excess(&self, at: (usize, usize), axis: usize) -> f32 {
         let (Some(step), Some(next)) = (self.step(at, axis), self.after(at, axis)) else { return 0.0 };
         let (here, there) = (self.slope(at, axis), self.slope(next, axis));
@@ -163,7 +163,7 @@ impl StepMaps<'_> {
         let before = self.before(at, axis).and_then(|at| self.step(at, axis));
         let after = self.step(next, axis);
         let Some((before, after)) = before.or(after).zip(after.or(before)) else { return by_normals };
-        // The flatter side grants less: the other may be a jump itself.
+        // The tolerance of the flatter side counts: the other may itself be a jump.
         by_normals.min(beyond(step, before, after) / (1.5 + 0.5 * before.abs().min(after.abs())))
     }
 }
@@ -218,7 +218,7 @@ mod tests {
         let rows = broken_rows(&surface);
         assert_eq!(rows, (0..rows.len()).collect::<Vec<_>>(), "one piece, no beads");
         assert!((36..40).contains(&rows.len()), "{}", rows.len());
-        // As small a jump that touches no larger one is taken for coarse depth.
+        // An equally small jump that touches no larger one counts as coarse depth.
         let low = |x: f32, _: f32| 0.5 * x + if x < 30.0 { 0.0 } else { 1.0 };
         assert!(broken_rows(&self::surface(low, |_, _| vec3(-0.5, 0.0, 1.0))).is_empty());
     }

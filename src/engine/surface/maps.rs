@@ -32,8 +32,8 @@ pub enum SurfaceError {
     Empty,
 }
 
-/// A picture of an object's shape. Every value is finite; where coverage is 0 the nearest surface values stand, so that
-/// filters may read across the silhouette.
+/// A picture of an object's shape. Every value is finite; where coverage is 0, the nearest surface values are repeated,
+/// so that filters may read across the silhouette.
 pub struct Surface {
     size: Size,
     /// n̄ = (n_x, −n_y): image axes, y down.
@@ -49,7 +49,7 @@ pub struct Surface {
     curvatures: RecentCache<u32, Curvature>,
     /// By the scales that are weighed.
     kappas: RecentCache<Vec<[u32; 3]>, Kappa>,
-    /// What detail was combined onto, if any was: what depth alone tells is its.
+    /// The surface that detail was combined onto, if any; what depends on depth alone is computed there.
     base: Option<Arc<Surface>>,
     /// By radius.
     occlusions: RecentCache<u32, Plane<f32>>,
@@ -58,7 +58,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Normalises, drops what is not finite, grows the valid values outward and finds the depth jumps.
+    /// Normalises the normals, drops what is not finite, grows the valid values outward and finds the depth jumps.
     pub fn new(maps: Maps) -> Result<Self, SurfaceError> {
         let size = maps.normals.size();
         for (other, s) in [("depth", maps.depth.size()), ("mask", maps.coverage.size())] {
@@ -71,8 +71,7 @@ impl Surface {
             let n = maps.normals.at(x, y);
             coverage.at(x, y) > 0 && maps.depth.at(x, y).is_finite() && n.is_finite() && n.length() > 1e-6
         });
-        // A partly covered pixel at the rim without a normal of its own borrows its neighbour's; further in it is a
-        // hole.
+        // A partly covered pixel at the rim without a normal takes its neighbour's; further inside it is a hole.
         grow::punch_holes(&mut coverage, &valid);
         let nearest = grow::nearest(&valid).ok_or(SurfaceError::Empty)?;
         let unit = |x: usize, y: usize| {
@@ -162,7 +161,7 @@ impl Surface {
     pub fn depth_range_px(&self) -> f32 {
         self.depth_range_px
     }
-    /// Min–max pyramids of the maps, for `reach`.
+    /// Min–max pyramids of the maps, for `support`.
     pub(super) fn bounds(&self) -> &MapPyramids {
         &self.bounds
     }
@@ -176,7 +175,7 @@ impl Surface {
     pub(super) fn base(&self) -> &Surface {
         self.base.as_deref().unwrap_or(self)
     }
-    /// Split by the thread that asks, and by no other: see `bounds`.
+    /// Computed by the calling thread alone: see `pyramid`.
     pub(super) fn objects_cell(&self) -> &OnceLock<Objects> {
         &self.objects
     }

@@ -1,8 +1,8 @@
-//! Floor 2: the shape that is painted on, and how an image bends over it.
+//! Floor 2: the surface that is painted on, and how an image bends over it.
 //!
-//! [`Surface`] holds the maps in one convention (camera space, image axes for n̄, depth 0 near … 1 far); nothing above
-//! the door (`io`) knows of any other. [`operator`] holds the equations, [`anchor`] where they are pinned,
-//! [`deformation`] evaluates them over tiles.
+//! [`Surface`] holds the maps in one convention (camera space, image axes for n̄, depth 0 near … 1 far); other
+//! conventions exist only inside the readers of files (`io::maps`). [`operator`] holds the equations, [`anchor`] the
+//! points where an image is pinned, and [`deformation`] evaluates them over tiles.
 
 pub mod anchor;
 mod cache;

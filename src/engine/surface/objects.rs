@@ -1,14 +1,13 @@
-//! Objects: the pieces that a surface falls into along its silhouette and its depth jumps, and marks bounded to them.
-//! Floor 2. Which neighbouring pixels hang together is `links`'.
+//! Objects: the pieces into which silhouette and depth jumps split a surface, and the limits they set to marks.
+//! Floor 2. Which neighbouring pixels belong together is found by `links`.
 
 use super::{Surface, links};
 use crate::math::{Rect, Vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
 
-/// Pieces smaller than this are crumbs of a torn edge, not objects: they join what they are nearest to in depth. A
-/// share of the longer side, squared, so that the same picture falls into the same objects at any size; at least some
-/// pixels.
+/// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbour nearest in depth. The
+/// area is relative to the longer side squared, so that a picture splits the same way at any size.
 const CRUMB_SIDE: (f32, f32) = (0.006, 4.0);
 
 /// Which object each pixel of a surface belongs to.
@@ -23,7 +22,7 @@ pub struct Objects {
 pub struct ObjectId(u32);
 
 impl Objects {
-    /// Splits a surface: pixels are of one object where a path of linked neighbours joins them.
+    /// Splits a surface: pixels belong to one object if a path of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
         let mut pieces = PieceForest::of(surface);
         pieces.join_crumbs(surface);
@@ -41,13 +40,13 @@ impl Objects {
     pub fn rect(&self, object: ObjectId) -> Rect {
         self.rects.get(object.0 as usize - 1).copied().unwrap_or(Rect::EMPTY)
     }
-    /// For each pixel 0 where there is no surface, else which object it is of, from 1 on.
+    /// For each pixel the number of its object, from 1 on; 0 where there is no surface.
     pub fn labels(&self) -> &Plane<u32> {
         &self.labels
     }
 }
 
-/// A forest over the pixels: each knows another of its piece that comes before it, the first itself.
+/// A union-find forest: each pixel points to an earlier pixel of its piece, the first to itself.
 struct PieceForest {
     parent: Vec<u32>,
     /// Of the piece, at its first pixel.
@@ -87,7 +86,7 @@ impl PieceForest {
             self.area[first] += self.area[later];
         }
     }
-    /// Hands pieces too small to be objects to their neighbours, across the smallest steps of depth first.
+    /// Merges pieces that are too small into their neighbours, across the smallest depth steps first.
     fn join_crumbs(&mut self, surface: &Surface) {
         let side = (CRUMB_SIDE.0 * surface.size().longer_side()).max(CRUMB_SIDE.1);
         let crumb_px = (side * side) as u32;
@@ -136,14 +135,14 @@ impl PieceForest {
 }
 
 impl Surface {
-    /// The objects of the surface. Kept: asking again costs nothing. Normal layers split nothing: jumps are depth's.
+    /// The objects of the surface, cached. Normal layers do not change them: jumps depend on depth alone.
     pub fn objects(&self) -> &Objects {
         let base = self.base();
         base.objects_cell().get_or_init(|| Objects::new(base))
     }
 }
 
-/// How far a mark may go.
+/// Where a mark may paint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum PaintLimit {
     /// Everywhere.
@@ -151,7 +150,7 @@ pub enum PaintLimit {
     Free,
     /// Where the surface is.
     Surface,
-    /// To the object on which it begins; a mark that begins off the surface, to what is off it.
+    /// Only on the object on which the mark begins; a mark that begins off the surface stays off it.
     Object,
 }
 
@@ -165,14 +164,14 @@ impl PaintLimit {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, n)| *n == name).map(|(bounded, _)| *bounded)
     }
-    /// The part of the canvas that a mark may touch which begins at `start`, canvas px. Without a surface, all of it.
+    /// The part of the canvas that a mark beginning at `start` (canvas px) may touch: all of it without a surface.
     pub fn from(self, surface: Option<&Arc<Surface>>, start: Vec2) -> CanvasPart {
         let Some(surface) = surface else { return CanvasPart::Whole };
         match self {
             PaintLimit::Free => CanvasPart::Whole,
             PaintLimit::Surface => CanvasPart::Surface(surface.clone()),
             PaintLimit::Object => {
-                // Off the canvas, and for what is not a number, there is no surface.
+                // There is no surface off the canvas, nor at a point that is not a number.
                 let pixel = start.floor().as_ivec2();
                 let object = surface.objects().at(pixel.x, pixel.y).filter(|_| start.is_finite());
                 object

@@ -1,5 +1,5 @@
-//! Min–max pyramids of the maps: what values a block of pixels holds, and how fast they change in it.
-//! Floor 2. What follows from them for an operator is `reach`.
+//! Min–max pyramids of the maps: the range of values in each block of pixels, and how fast they change there. Floor 2.
+//! `support` uses them to bound an operator.
 
 use super::operator::reflection;
 use super::{Surface, links};
@@ -16,8 +16,8 @@ pub(super) const TILE_LEVEL: usize = TILE_BLOCKS.ilog2() as usize;
 
 /// The maps' pyramids, each built when an operator first asks for it.
 ///
-/// Built by the thread that asks and by no other: a worker that waited for helpers here could be handed a tile that
-/// waits for the same pyramid.
+/// Built by the calling thread alone: a worker that waited for others here could be given a tile that waits for the
+/// same pyramid.
 #[derive(Default)]
 pub struct MapPyramids {
     cover: OnceLock<Pyramid<BlockCover>>,
@@ -31,7 +31,7 @@ pub(super) struct Pyramid<T> {
     levels: Vec<Plane<T>>,
 }
 
-/// Values that two blocks have together.
+/// Values that can be merged: those of two blocks give those of their union.
 pub(super) trait Join: Copy {
     fn join(self, other: Self) -> Self;
 }
@@ -85,7 +85,7 @@ pub(super) fn block_rect(size: Size, level: usize, col: i32, row: i32) -> Rect {
     Rect::new(col * side, row * side, (col + 1) * side, (row + 1) * side).intersect(size.rect())
 }
 
-/// What of a block is surface.
+/// How much of a block is surface.
 #[derive(Clone, Copy)]
 pub(super) struct BlockCover {
     /// Some pixel is.

@@ -13,7 +13,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Both see the same canvas and the very same surface: what was rendered for one holds for the other.
+    /// Whether both have the same canvas and the identical surface: tiles rendered for one are valid for the other.
     pub fn is_same(&self, other: &Scene) -> bool {
         let same_surface = match (&self.surface, &other.surface) {
             (None, None) => true,

@@ -1,6 +1,6 @@
-//! Bounded support: which blocks of the canvas one anchored operator can bring near its anchor, found by interval
-//! arithmetic on D_p, D_n and D_r over the maps' pyramids, without looking at pixels. Floor 2. `blocks` judges the
-//! blocks of a tile side by side. It says what may be touched, never what is: pixels are `deformation`'s.
+//! Support bounds: the blocks of the canvas that a dab may touch. Interval arithmetic on D_p, D_n and D_r over the
+//! maps' pyramids finds them without reading pixels. Floor 2. `blocks` tests all blocks of a tile at once. The bounds
+//! are conservative: `deformation` decides about pixels.
 
 mod blocks;
 
@@ -11,7 +11,7 @@ use super::pyramid::{BlockCover, DepthSpan, Pyramid, PyramidBlock, TILE_LEVEL, T
 use crate::math::{Size, Vec2, vec2};
 use crate::raster::TileAt;
 
-/// Granted to every distance, for D is computed in f32: px.
+/// Tolerance added to every distance, px, because D is computed in f32.
 const ROUNDING_PX: f32 = 0.05;
 
 /// The part of a tile that may be touched: bit `c` of row `r` stands for the block of 8 × 8 px in column `c`.
@@ -27,7 +27,7 @@ pub struct DabExtent {
 }
 
 impl DabExtent {
-    /// Written so that a value that is not a number may be held: leaving out is what must be proven.
+    /// Written so that NaN counts as inside: only a proof may exclude a block.
     #[inline(always)]
     #[expect(clippy::neg_cmp_op_on_partial_ord, reason = "NaN is not beyond")]
     fn may_hold(self, image: BlockImage) -> bool {
@@ -87,7 +87,7 @@ impl RadialOffset {
     fn range(self, (low, high): (f32, f32), across: (f32, f32)) -> (f32, f32) {
         let offset = |v: f32, across: f32| self.factor(vec2(v, across).length()) * v;
         let (a, b) = if self.alpha_px >= 0.0 { (low, high) } else { (high, low) };
-        // `a` gives the least offset, the more so the farther out where that is negative; `b` the most.
+        // `a` gives the least offset (a negative one is largest farther out), `b` the greatest.
         let sign = self.alpha_px.signum();
         let least = offset(a, if sign * a < 0.0 { across.1 } else { across.0 });
         let most = offset(b, if sign * b > 0.0 { across.1 } else { across.0 });
@@ -191,7 +191,7 @@ enum BlockOverlap {
     Everywhere,
 }
 
-/// What D makes of a block: between which distances from the anchor it lies, and how long a pixel is at the most, px.
+/// The image of a block under D: its distances from the anchor and the greatest length of a pixel, px.
 #[derive(Clone, Copy)]
 struct BlockImage {
     near: f32,

@@ -1,10 +1,10 @@
 //! Antialiasing: the mean of a texture over the piece of the image plane that a pixel covers.
 //! Floor 1. Not here: where that piece lies (`surface`, `paint`).
 //!
-//! The piece is a curved quadrilateral: the pixel's four half-edges are differenced apart, because on real maps (8
-//! bits, fine detail) the two sides of a pixel often stretch differently, and a single ellipse then misses a third of
-//! the error (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each standing for a cell of about
-//! two texels of the mip level, which is the coarsest that the taps can still resolve.
+//! The piece is a curved quadrilateral: each of the pixel's four half-edges is differenced separately, because on real
+//! maps (8 bits, fine detail) the two sides of a pixel often stretch differently, and a single ellipse then misses a
+//! third of the error (docs/OPERATORS.md has the figures). A grid of bilinear taps covers it, each standing for a cell
+//! of about two texels of the mip level, which is the coarsest that the taps can still resolve.
 //!
 //! Eight neighbours whose patches are alike share a grid, and their taps are placed and read side by side; a pixel
 //! unlike its neighbours (a crease, a silhouette) has its own, one pixel after the other.

@@ -1,4 +1,4 @@
-//! Bilinear taps by the hundred: the fast twin of `bilinear`. Floor 1. Two passes: positions to texels and weights,
+//! Many bilinear taps at once: the fast version of `bilinear`. Floor 1. Two passes: positions to texels and weights,
 //! several taps an instruction; then the texels, one tap at a time with its texels' channels side by side, in AVX2
 //! where the processor has it (`wide`): LLVM does not vectorise that on its own. Both versions give the same bits.
 
@@ -52,7 +52,7 @@ impl Taps {
     /// Finds the texels of every position.
     pub fn find(&mut self, at: TapPositions) {
         let n = at.x.len();
-        // Every value is written below: what is left from the last call does no harm.
+        // Every value is written below, so leftovers of the last call do no harm.
         if n != self.index.len() {
             self.index.resize(n, 0);
             self.across.resize(n, 0);

@@ -1,4 +1,4 @@
-//! Where curvature fades: no outline of false curvature may show where a surface ends.
+//! Fades curvature out near the ends of a surface, where it would show false outlines.
 //! Floor 2.
 
 use super::tiles::{TileRect, all_linked};
@@ -9,7 +9,7 @@ pub(super) const FADE_PX: usize = 3;
 
 /// Whether the surface ends between the pixel and a neighbour: a depth jump or the mask's edge.
 ///
-/// The canvas's border is none, and neither is a stray pixel that is linked to nothing: it would show as a dot.
+/// The canvas border does not count as an end. Nor does an isolated pixel without links, which would show as a dot.
 #[inline(always)]
 pub(super) fn is_break(surface: &Surface, x: usize, y: usize) -> bool {
     let links = surface.links_plane().at(x, y);
@@ -87,7 +87,7 @@ fn along_row(surface: &Surface, tile: TileRect, y: usize) -> Option<Vec<u8>> {
     if all_linked(&surface.links_plane().row(y)[from..to]) {
         return None;
     }
-    // Three pixels without a break stand at both ends, so that every pixel looks the same way.
+    // Both ends are padded with three pixels without a break, so that every pixel is handled alike.
     let mut breaks = vec![FADE_PX as u8; tile.cols + 2 * FADE_PX];
     for x in (from..to).filter(|&x| is_break(surface, x, y)) {
         breaks[x + FADE_PX - tile.x0] = 0;

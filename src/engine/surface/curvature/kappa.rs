@@ -1,4 +1,4 @@
-//! κ of a whole map where it does not depend on a direction, kept: it is asked for by every redraw (MATH 4).
+//! Isotropic κ of a whole map, cached because every redraw needs it (MATH 4).
 //! Floor 2.
 
 use super::{Curvature, Surface};
@@ -59,8 +59,8 @@ impl Kappa {
 }
 
 impl Surface {
-    /// Isotropic κ: Σ share · fade · tanh(s (k_u + k_v)) (MATH 4). Kept: asking again costs nothing. Ask once before
-    /// going parallel; threads that ask at the same time may each compute it.
+    /// Isotropic κ: Σ share · fade · tanh(s (k_u + k_v)) (MATH 4). Cached. Call it once before going parallel: threads
+    /// that ask at the same time may each compute it.
     pub fn kappa(&self, scales: &[KappaScale]) -> Arc<Kappa> {
         let key = scales.iter().map(|s| [s.blur_px, s.curvature_scale_px, s.share].map(f32::to_bits)).collect();
         let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);

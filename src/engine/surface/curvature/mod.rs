@@ -1,6 +1,6 @@
 //! View-centred curvature: how the surface bends as seen by the viewer (MATH 4; RS sec. 4, after Vergne et al. 2009).
 //! Floor 2. Here: what curvature is and its equations. Not here: the fast way to compute it over a whole map (`tiles`),
-//! what is done with it (`shading::radiance`, the detail of D_n).
+//! or its uses (`shading::radiance`, the detail of D_n).
 
 mod fade;
 mod kappa;
@@ -37,7 +37,7 @@ pub struct Curvature {
 #[inline(always)]
 pub fn slope(nbar_x: f32, nbar_y: f32, nz: f32) -> (f32, f32) {
     let length = (nbar_x * nbar_x + nbar_y * nbar_y + nz * nz).sqrt();
-    // The smallest normal float only keeps 0 / 0 out.
+    // The smallest normal float avoids 0 / 0.
     let upright = 1.0 / nz.max(GRAZING_NZ * length).max(f32::MIN_POSITIVE);
     (nbar_x * upright, nbar_y * upright)
 }
@@ -45,7 +45,7 @@ pub fn slope(nbar_x: f32, nbar_y: f32, nz: f32) -> (f32, f32) {
 /// H = −½ (∇g + ∇gᵀ) from the derivatives of the slope in image axes (y **down**): `[h_xx, h_xy, h_yy]`, y **up** (MATH
 /// 4).
 ///
-/// Turning y over negates the slope's second component and the derivative along y: the diagonal stays, h_xy changes
+/// Flipping y negates the slope's second component and the derivative along y: the diagonal stays, h_xy changes
 /// sign.
 #[inline(always)]
 pub fn tensor(dx_slope: (f32, f32), dy_slope: (f32, f32)) -> [f32; 3] {
@@ -99,8 +99,8 @@ impl Surface {
     /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at
     /// all).
     ///
-    /// Neither the blur nor the differences cross the mask's edge or a depth jump. Kept: asking again costs nothing.
-    /// Ask once before going parallel; threads that ask at the same time may each compute it.
+    /// Neither the blur nor the differences cross the mask's edge or a depth jump. Cached. Call it once before going
+    /// parallel: threads that ask at the same time may each compute it.
     pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
         // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.
         let blur_px = blur_px.max(0.0).min(0.5 * self.size().longer_side());

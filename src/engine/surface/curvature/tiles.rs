@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Columns of a tile's scratch: the tile and one pixel around it for the differences.
 const STRIDE: usize = 256;
 const TILE_COLS: usize = STRIDE - 2;
-/// Rows of a band: enough that the rows blurred twice, once for each of two bands, are few.
+/// Rows of a band: enough that few rows are blurred twice, once for each of two bands.
 const BAND_ROWS: usize = 64;
 /// Pixels summed side by side in registers.
 const LANES: usize = 32;
@@ -23,8 +23,8 @@ const PITCH: usize = STRIDE + 16;
 
 /// Computes H and its fade for every pixel. `blur_px`: standard deviation, finite, `≥ 0`.
 ///
-/// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160 fresh memory costs as much as the
-/// work.
+/// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160, allocating costs as much as the work
+/// itself.
 pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvature>) -> Curvature {
     let size = surface.size();
     let taps = half_kernel(blur_px);

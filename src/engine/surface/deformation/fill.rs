@@ -1,5 +1,5 @@
 //! D over whole rows: the fast twin of `Deformation::at`, in plain loops that the compiler vectorises.
-//! Floor 2. Operator kind and number of anchors are chosen once a row, outside the pixel loops.
+//! Floor 2. The operator and the number of anchors are dispatched once per row, outside the pixel loops.
 
 mod kernels;
 
@@ -114,7 +114,7 @@ const NOTHING: [f32; SPAN] = [0.0; SPAN];
 /// The gain where all is surface.
 const WHOLE: [f32; SPAN] = [1.0; SPAN];
 
-/// What stays the same over all pixels.
+/// What is constant over all pixels.
 struct FillPlan<'d> {
     deformation: &'d Deformation<'d>,
     pins: Vec<FastPin>,

@@ -43,7 +43,7 @@ impl SpringGrid {
         }
         sum
     }
-    /// A v: how hard the springs pull at each unknown.
+    /// A v: the force of the springs at each unknown.
     fn apply(&self, v: &[f32]) -> Vec<f32> {
         self.rows(|x, y| {
             let i = y * self.w + x;

@@ -1,9 +1,11 @@
 //! Ambient occlusion: how much of the hemisphere over each point the surface itself leaves open (RS sec. 5.3.1's A(p)).
-//! Floor 2. From depth, in pixels; here the horizon it is made of and what is kept, `rows` is the fast way over a map.
+//! Floor 2. It is computed from depth, in pixels. Here: the horizon equations and the cache; `rows` is the fast way
+//! over a map.
 //!
 //! Along directions all around each pixel the highest horizon is found, and the cosine-weighted light above it is
 //! integrated in closed form (Jiménez et al. 2016, "Practical realtime strategies for accurate indirect occlusion").
-//! Every pixel looks along the same directions at the same distances: no noise, and nothing that depends on threads.
+//! Every pixel looks along the same directions at the same distances: there is no noise, and the result does not depend
+//! on threads.
 
 mod rows;
 
@@ -22,9 +24,9 @@ const SLICES: usize = 10;
 const STRIDE: f32 = 0.16;
 /// Cosine above the tangent plane below which an occluder counts the less: depth is not that fine.
 const UNSURE: f32 = 0.03;
-/// Slope from which a rise is a cliff, px a px; and what is granted for coarse depth, px.
+/// Slope from which a rise is a cliff, px per px; and the tolerance for coarse depth, px.
 const CLIFF: (f32, f32) = (4.0, 1.5);
-/// A cliff of this part of the radius hides nothing: what stands so far in front floats there.
+/// A cliff of this share of the radius hides nothing: such an object floats in front.
 const FLOATS: f32 = 0.5;
 
 /// Where a pixel looks for occluders.
@@ -54,20 +56,20 @@ impl HorizonSlices {
     fn new(radius_px: f32) -> Self {
         let slice = |i: usize| {
             let (sin, cos) = (i as f32 / SLICES as f32 * PI).sin_cos();
-            // Neighbouring directions look at different distances, so that an edge throws no second one.
+            // Neighbouring directions look at different distances, so that an edge casts no echo.
             let phase = (i as f32 * 0.618_034).fract();
             [way(vec2(cos, sin), radius_px, phase), way(vec2(-cos, -sin), radius_px, (phase + 0.5).fract())]
         };
         Self { slices: (0..SLICES).map(slice).collect(), radius_px }
     }
-    /// How far pixels may lie.
+    /// The largest distance that is read, px.
     fn reach(&self) -> i32 {
         self.radius_px.ceil() as i32 + 1
     }
 }
 
-/// Whole pixels along the axis that the way is nearer to, between two pixels across it: a way that jumped from pixel to
-/// pixel would see the higher of its neighbours.
+/// Steps by whole pixels along the nearer axis and interpolates between two pixels across it: jumping from pixel to
+/// pixel would pick the higher neighbour.
 fn way(toward: Vec2, radius_px: f32, phase: f32) -> HorizonDirection {
     let is_across = toward.x.abs() >= toward.y.abs();
     let (along, across) = if is_across { (toward.x, toward.y) } else { (toward.y, toward.x) };
@@ -109,8 +111,7 @@ fn open_part(along: f32, up: f32, horizons: [f32; 2]) -> f32 {
     0.25 * length * (half(horizons[0], 1.0) + half(horizons[1], -1.0))
 }
 
-/// The height between two neighbouring pixels, `t` of the way; across a cliff the lower one's: there is nothing
-/// between.
+/// The height between two neighbouring pixels, `t` of the way; across a cliff, the lower one's height.
 #[inline(always)]
 fn height_between(near: f32, far: f32, t: f32) -> f32 {
     let mixed = near + (far - near) * t;
@@ -162,13 +163,13 @@ impl Surface {
     /// A(p) of every pixel, `[0, 1]`: 1 where nothing hides the light, 1 off the surface.
     ///
     /// Occluders count the less the farther they are, those `radius_px` away (in the picture and in depth) not at all;
-    /// nor does what floats in front, beyond a depth jump of half the radius. Told by depth: normal layers do not
-    /// change it. Kept: asking again costs nothing. Ask once before going parallel.
+    /// nor does what floats in front, beyond a depth jump of half the radius. It depends on depth alone: normal layers
+    /// do not change it. Cached; call it once before going parallel.
     pub fn occlusion(&self, radius_px: f32) -> Arc<Plane<f32>> {
         const KEPT: usize = 3;
         // NaN.max is the other one.
         let radius_px = radius_px.max(1.0).min(Self::WIDEST_OCCLUSION_PX);
-        // Detail that was combined onto it casts no shade.
+        // Detail combined onto the surface casts no shade.
         let base = self.base();
         base.occlusions().get_or_compute(radius_px.to_bits(), KEPT, |_| {
             let open = rows::compute(base, &HorizonSlices::new(radius_px));

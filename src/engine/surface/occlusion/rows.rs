@@ -1,5 +1,5 @@
-//! Occlusion of a whole map, many pixels of a row at a time: the same offset for all of them, so that every look is a
-//! plain load. Floor 2. What is computed stands in `super`.
+//! Occlusion of a whole map, many pixels of a row at a time: all read at the same offset, so that every read is a plain
+//! load. Floor 2. The equations are in `super`.
 
 use super::{FLOATS, HorizonDirection, HorizonSlices, excess, height_between, open_part, slope, tangents};
 use crate::math::{Vec2, fast};
@@ -11,10 +11,10 @@ use rayon::prelude::*;
 const LANES: usize = 64;
 type Lanes = [f32; LANES];
 
-/// Height where there is no surface, px: so far down that climbing back is a cliff.
+/// Height where there is no surface, px: so low that the step back up is a cliff.
 const NOWHERE: f32 = -1e6;
 
-/// Heights toward the viewer, px, with a margin on all sides that no way leaves.
+/// Heights toward the viewer, px, with a margin on all sides that no read leaves.
 struct Heights {
     values: Vec<f32>,
     stride: usize,
@@ -68,8 +68,8 @@ pub(super) fn compute(surface: &Surface, ways: &HorizonSlices) -> Plane<f32> {
     open
 }
 
-/// The open part averaged over five pixels each way, never across a depth jump: what is left of the steps of depth, and
-/// of directions being few, is finer than that.
+/// The open part averaged over five pixels each way, never across a depth jump: the remaining artefacts of depth steps
+/// and few directions are finer than that.
 pub(super) fn smoothed(surface: &Surface, open: &Plane<f32>) -> Plane<f32> {
     let across = along_links(surface, open, (links::LEFT, links::RIGHT), (1, 0));
     along_links(surface, &across, (links::UP, links::DOWN), (0, 1))

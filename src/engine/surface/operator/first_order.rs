@@ -1,11 +1,11 @@
-//! First-order operator: how an image grows where the surface stands nearer and shrinks where it stands farther.
+//! First-order operator: an image grows where the surface is nearer and shrinks where it is farther.
 //! Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md).
 //! Not here: reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
 
 use super::outer;
 use crate::math::{Mat2, Vec2};
 
-/// Largest rate that is told apart: e^40 times a canvas still fits an f32 with room for its square's root.
+/// Largest distinct rate: e^40 times a canvas still fits an f32, with headroom for squaring.
 const MAX_GAMMA: f32 = 40.0;
 
 /// Scaling factor of the first-order operator at a relative depth `u`.

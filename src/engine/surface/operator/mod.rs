@@ -1,7 +1,6 @@
-//! The operators: how far a point of the image is moved where the surface stands nearer (D_p), turns (D_n) or
-//! mirrors (D_r) relative to an anchor.
-//! Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md).
-//! Not here: reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
+//! The operators: how far a point of the image moves where the surface is nearer (D_p), turns (D_n) or mirrors (D_r)
+//! relative to an anchor. Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md). Not here:
+//! reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
 
 pub mod first_order;
 pub mod reflection;
@@ -35,7 +34,7 @@ pub struct MapValues {
 }
 
 impl MapValues {
-    /// Where there is no surface: as an empty map is painted, flat and farthest.
+    /// Values where there is no surface, as in an empty map: facing the viewer, farthest.
     pub const BACKGROUND: MapValues = MapValues { depth: 1.0, nbar: Vec2::ZERO, nz: 1.0 };
 }
 
@@ -68,7 +67,7 @@ impl Operator {
             }
         }
     }
-    /// It moves nothing on any surface: γ = 0 or α = 0.
+    /// Whether it moves nothing on any surface: γ = 0 or α = 0.
     pub fn is_identity(self) -> bool {
         match self {
             Operator::None => true,

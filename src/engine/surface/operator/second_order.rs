@@ -5,8 +5,7 @@
 use super::outer;
 use crate::math::{Mat2, Vec2};
 
-/// Largest rate that is told apart: e^−60 and a large magnitude over it both fit an f32, so that 0 / 0 cannot come
-/// about.
+/// Largest distinct rate: e^−60 and a large magnitude divided by it both fit an f32, so that 0 / 0 cannot occur.
 const MAX_BETA: f32 = 60.0;
 
 /// Offset factor of the second-order operator at a relative normal of length `u`.

@@ -1,4 +1,4 @@
-//! The blocks of a tile judged all at once: the fast twin of `SupportBounds::judge`.
+//! All blocks of a tile tested at once: the fast version of `SupportBounds::judge`.
 //! Floor 2.
 
 use super::{BLOCK, BlockImage, DabExtent, OperatorBounds, RadialOffset, SupportBounds, TILE_BLOCKS, TileBlocks};
@@ -8,7 +8,7 @@ use crate::surface::pyramid::{BlockCover, DepthSpan, TurnSpan};
 
 const BLOCKS: usize = TILE_BLOCKS * TILE_BLOCKS;
 
-/// What the maps hold in each block of a tile, a figure a row.
+/// The ranges of the maps in each block of a tile: one value per row of the array.
 struct BlockRanges<const N: usize> {
     figures: [[f32; BLOCKS]; N],
     /// 1 where some of the block is surface; 1 where some is not.

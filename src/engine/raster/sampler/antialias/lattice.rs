@@ -1,5 +1,5 @@
-//! Where the taps of a grid stand in a patch: tables, since a loop over taps with divisions would cost as much as the
-//! taps. Floor 1.
+//! Positions of a grid's taps in a patch, as tables: computing them with divisions would cost as much as the taps.
+//! Floor 1.
 
 use super::grid::{MAX_TAPS, TapGrid};
 

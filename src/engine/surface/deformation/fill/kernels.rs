@@ -97,7 +97,7 @@ fn add(
     }
 }
 
-/// Squared distance below which a pixel stands at an anchor: smaller ones no f32 canvas coordinate tells apart.
+/// Squared distance below which a pixel is at an anchor: f32 canvas coordinates cannot resolve smaller ones.
 const AT_ANCHOR: f32 = 1e-12;
 
 #[inline(always)]
@@ -176,7 +176,7 @@ crate::widest! {
             *g = if c > 0 { 1.0 } else { 0.0 };
         }
     }
-    /// Shepard's weight at power 2, not yet made to add up to 1.
+    /// Shepard's weight at power 2, not yet normalised.
     pub(super) fn inverse_squares(span: KernelSpan, pin: &FastPin, weight: &mut [f32], weight_sum: &mut [f32]) {
         for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
             *w = 1.0 / distance_squared(span, pin, k).max(AT_ANCHOR);
