@@ -1,5 +1,5 @@
-//! What was worked out once for a layer and holds until what it was worked out from changes.
-//! Floor 4. Rendered tiles are kept by `live`.
+//! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles are cached in
+//! `live`.
 
 use super::{Layer, normals::Combination};
 use crate::math::Size;
@@ -8,7 +8,7 @@ use crate::shading::RadianceScaling;
 use crate::surface::{Scene, Surface};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// What is known of a layer; shared by its versions.
+/// Cached values of a layer; shared by its versions.
 #[derive(Clone, Default)]
 pub struct LayerCache {
     /// The look of the layer alone, as a file stores it; with its mask or without.
@@ -41,7 +41,7 @@ pub struct Memo<K, V = f32> {
 
 struct MemoEntry<K, V> {
     scene: Scene,
-    /// Weak, so that a measure keeps no layer alive and no two layers each other.
+    /// Weak, so that the cache keeps no layer alive and layers do not keep each other alive.
     beneath: Vec<Weak<Layer>>,
     key: K,
     value: V,
@@ -54,10 +54,10 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: Clone + PartialEq, V: Clone> Memo<K, V> {
-    /// The value for a scene, the very same layers beneath and an equal key; measured anew if any is another.
+    /// The value for a scene, the identical layers beneath and an equal key; computed again if any differs.
     /// `None` if `measure` gives up.
     ///
-    /// Never measures under the lock: a thread that waits for its own pool's work would stand still.
+    /// It never computes while holding the lock: a thread that waits for work of its own pool would deadlock.
     pub fn get(
         &self,
         scene: &Scene,

@@ -1,6 +1,5 @@
-//! One tile of a document: its layers composed bottom to top, in f32.
-//! Floor 4. Which layers these are is `prepare`; what a layer holds is rendered by `content`; how pixels mix is
-//! `raster::blend`.
+//! Composes one tile of a document: its layers from bottom to top, in f32. Floor 4. `prepare` selects the layers,
+//! `content` renders them, `raster::blend` mixes the pixels.
 
 use super::content::{self, TileContent};
 use super::prepare::{PreparedDocument, PreparedLayer};
@@ -8,7 +7,7 @@ use super::{Content, mask};
 use crate::raster::{BlendMode, Mix, PlanarTile, TileAt, TileCoverage, TilePaint};
 use std::ops::ControlFlow;
 
-/// Composing ends early, with what lies beneath, at an adjustment that is sought.
+/// Breaks with the composite so far when the sought adjustment is reached.
 pub(super) type ComposeFlow<T = ()> = ControlFlow<PlanarTile, T>;
 
 /// Composes nodes of one tile.
@@ -26,7 +25,7 @@ impl Composer<'_> {
     }
     /// The topmost node that hides all beneath it, else the bottom one.
     pub fn first_visible(&self, nodes: &[PreparedLayer]) -> usize {
-        // What is sought must be reached, so only layers beneath it may hide others.
+        // The sought adjustment must be reached, so only layers beneath it may hide others.
         let end = nodes.iter().position(|node| self.is_sought_in(node)).unwrap_or(nodes.len());
         nodes[..end].iter().rposition(|node| self.hides_all_beneath(node)).unwrap_or(0)
     }
@@ -112,7 +111,7 @@ impl Composer<'_> {
     fn is_sought_in(&self, node: &PreparedLayer) -> bool {
         self.sought.is_some_and(|index| node.adjustments.contains(&index))
     }
-    /// Nothing beneath this node can be seen in the tile.
+    /// Whether this node hides everything beneath it in the tile.
     fn hides_all_beneath(&self, node: &PreparedLayer) -> bool {
         let layer = &node.layer;
         let may_hide = layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();

@@ -1,5 +1,4 @@
-//! What a layer holds, rendered for one tile.
-//! Floor 4. The rendering itself is the marks' (`paint`, `shading`).
+//! Renders the content of a layer for one tile. Floor 4. The rendering of marks is in `paint` and `shading`.
 
 use super::Content;
 use crate::paint::{Scene, stroke};
@@ -28,7 +27,7 @@ impl TileContent {
             TileContent::Group(pixels) => Some(TilePaint::Planar(pixels)),
         }
     }
-    /// Known to cover every pixel wholly.
+    /// Whether it is known to cover every pixel fully.
     pub fn is_opaque(&self) -> bool {
         match self {
             TileContent::Solid(color) => color[3] >= 1.0,
@@ -38,8 +37,8 @@ impl TileContent {
     }
 }
 
-/// Renders one tile of a layer's content, or finds it rendered. Groups, adjustments and normals have no pixels of their
-/// own.
+/// Renders one tile of a layer's content, or takes it from the cache. Groups, adjustments and normals have no pixels of
+/// their own.
 pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> TileContent {
     match content {
         Content::Fill(color) => TileContent::Solid(color.premultiplied()),
@@ -54,7 +53,7 @@ pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> TileConten
     }
 }
 
-/// Computes now what many tiles would otherwise compute at the same time.
+/// Fills the caches that many tiles would otherwise compute at the same time.
 pub(super) fn warm_caches(content: &Content, scene: &Scene) {
     let bend = |bend: &Bend| drop(Deformation::new(scene.surface.as_deref(), scene.size, bend));
     match content {

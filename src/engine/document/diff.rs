@@ -1,6 +1,6 @@
 //! What must be redrawn between two versions of a document: the tiles in which they may differ, found by comparing
-//! pointers and parameters, never pixels. Floor 4. Conservative: a tile that is not named is the same; a tile that is
-//! named may be.
+//! pointers and parameters, never pixels. Floor 4. It is conservative: a tile that is not reported is the same; a
+//! reported one may be.
 
 use super::{Content, Document, Layer, LayerId, Live, StrokeList, mask};
 use crate::math::Rect;
@@ -21,14 +21,15 @@ pub fn diff(old: &Document, new: &Document) -> BTreeSet<TileAt> {
     diff.changed
 }
 
-/// What a layer's looks depend on beside itself and its backdrop.
+/// What the appearance of a layer depends on besides itself and its backdrop.
 #[derive(Default, PartialEq)]
 struct LayerContext {
     /// What it is clipped to, if it is clipped.
     base: Option<LayerId>,
-    /// A visible layer is clipped to it.
+    /// Whether a visible layer is clipped to it.
     is_base: bool,
-    /// The normal layers it sees. Compared only; both documents, which hold them, live meanwhile.
+    /// The normal layers that affect it. The pointers are only compared; both documents keep the layers alive
+    /// meanwhile.
     normals: Vec<*const Layer>,
 }
 
@@ -76,7 +77,7 @@ struct Diff<'d> {
 }
 
 impl Diff<'_> {
-    /// Compares two versions of a list of layers; whether anything changed in it, or had `beneath` it.
+    /// Compares two versions of a list of layers; returns whether anything changed in it, or beneath it (`beneath`).
     fn stack(&mut self, old: &[Arc<Layer>], new: &[Arc<Layer>], beneath: bool) -> bool {
         let mut changed = beneath;
         let kept = |among: &[Arc<Layer>]| {
@@ -113,7 +114,7 @@ impl Diff<'_> {
         if let (Some(a), Some(b)) = (&old.mask, &new.mask)
             && !a.is_same(b)
         {
-            // Of a mask that is painted on, only some tiles are others.
+            // If a mask was painted on, only some of its tiles differ.
             let Some(tiles) = mask::changed_tiles(a, b) else { return self.both(old, new) };
             let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
             return self.tiles(tiles) | self.layer(old, &unmasked, beneath);
@@ -137,7 +138,7 @@ impl Diff<'_> {
             _ => self.both(old, new),
         }
     }
-    /// Two versions of a stroke layer that see the same surface: where both are rendered, their tiles tell.
+    /// Two versions of a stroke layer on the same surface: where both are rendered, their tiles are compared.
     fn drawn(&mut self, layer: LayerId, old: &Live<StrokeList>, new: &Live<StrokeList>) -> bool {
         let seen = if self.sees_normals(layer) { self.document.scene_of(layer) } else { None };
         let scene = seen.unwrap_or_else(|| self.scene.clone());
@@ -147,7 +148,7 @@ impl Diff<'_> {
         self.tiles(tiles.filter(|&at| !same(at)).collect())
     }
     fn stroke_bounds(&self, layer: LayerId, stroke: &Stroke) -> Rect {
-        // Bounds hold for one surface; normal layers put another in its place.
+        // Bounds are valid for one surface only, and normal layers replace it.
         if self.sees_normals(layer) { self.scene.size.rect() } else { stroke.bounds(&self.scene) }
     }
     fn sees_normals(&self, layer: LayerId) -> bool {
@@ -156,7 +157,7 @@ impl Diff<'_> {
     fn both(&mut self, old: &Layer, new: &Layer) -> bool {
         self.whole(old) | self.whole(new)
     }
-    /// Names every tile that a layer can touch; whether there is any.
+    /// Reports every tile that a layer can touch; returns whether there is any.
     fn whole(&mut self, layer: &Layer) -> bool {
         if !layer.visible {
             return false;
@@ -172,7 +173,7 @@ impl Diff<'_> {
                 bounds.into_iter().fold(false, |changed, rect| self.rect(rect) | changed)
             }
             Content::Group(group) => group.layers.iter().fold(false, |changed, layer| self.whole(layer) | changed),
-            // What sees them has other surroundings.
+            // Layers that see them have another context.
             Content::Normals(_) => false,
             Content::Fill(_)
             | Content::Image(_)
@@ -203,7 +204,7 @@ fn differing<'s>(old: &'s [Arc<Stroke>], new: &'s [Arc<Stroke>]) -> impl Iterato
     old[..old.len() - end].iter().chain(&new[..new.len() - end])
 }
 
-/// All but the content, the name, the lock and what the mask holds is equal.
+/// Whether all but the content, the name, the lock and the mask's pixels is equal.
 fn looks_alike(a: &Layer, b: &Layer) -> bool {
     a.visible == b.visible
         && a.opacity == b.opacity

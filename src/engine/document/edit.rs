@@ -4,7 +4,7 @@
 use super::{Content, Document, Layer, LayerId};
 use std::sync::Arc;
 
-/// A place among layers: in which group (`None`: the document itself), and how many layers stand beneath it there.
+/// A position among layers: the group (`None`: the document itself) and the number of layers beneath it there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerSlot {
     pub group: Option<LayerId>,
@@ -27,7 +27,7 @@ impl Document {
     pub fn layer(&self, id: LayerId) -> Option<&Arc<Layer>> {
         self.walk().into_iter().map(|(_, layer)| layer).find(|layer| layer.id == id)
     }
-    /// Where a layer stands.
+    /// The slot of a layer.
     pub fn place_of(&self, id: LayerId) -> Option<LayerSlot> {
         fn find(layers: &[Arc<Layer>], group: Option<LayerId>, id: LayerId) -> Option<LayerSlot> {
             layers.iter().enumerate().find_map(|(index, layer)| match &layer.content {
@@ -66,7 +66,7 @@ impl Document {
             Some(())
         })
     }
-    /// With a layer elsewhere; `place` counts the layers without it. `None` also for a group into itself.
+    /// With a layer moved; `place` counts the layers without it. `None` also if a group would go into itself.
     pub fn with_moved(&self, id: LayerId, place: LayerSlot) -> Option<Document> {
         let layer = self.layer(id)?.clone();
         let rest = self.without_layer(id)?;

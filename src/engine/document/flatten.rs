@@ -1,5 +1,5 @@
-//! Flattening: the layers of a document to one picture, tile by tile, in f32, quantised once. Floor 4. Tiles are
-//! independent of each other, so they are composed in parallel and the result is the same bytes whatever the threads.
+//! Flattening: composes the layers of a document into one picture, tile by tile, in f32, quantised once. Floor 4. Tiles
+//! are independent, so they are composed in parallel, and the bytes do not depend on the number of threads.
 
 use super::compose::Composer;
 use super::prepare::in_parallel;
@@ -32,13 +32,13 @@ pub fn flatten_deep(document: &Document, progress: &Progress) -> Option<Vec<[f32
 }
 
 /// Flattens one layer alone, shown or not, on transparency: its own opacity and mask, not those of the groups around
-/// it. It sees the surface that it sees in its place. `None` if cancelled or if there is no such layer.
+/// it. It sees the same surface as in the document. `None` if cancelled or if there is no such layer.
 pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> Option<TileGrid> {
     flatten_layers(document, &[id], progress)
 }
 
-/// As [`flatten_layer`], for some layers of one list composed with each other. A layer stays clipped where what it is
-/// clipped to is among them.
+/// As [`flatten_layer`], for some layers of one list composed with each other. A layer stays clipped if its base is
+/// among them.
 pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
     let layers = alone(&document.layers, ids)?;
     flatten(&Document { layers, ..document.clone() }, progress)
@@ -82,11 +82,11 @@ impl PreparedDocument {
     }
     fn compose_tile(&self, at: TileAt) -> PlanarTile {
         let mut pixels = PlanarTile::transparent();
-        // Nothing is sought, so composing runs to its end.
+        // No adjustment is sought, so composing runs to its end.
         let _ = Composer { prepared: self, at, sought: None }.stack(&self.stack, &mut pixels);
         pixels
     }
-    /// A picture with some of its tiles composed anew; `None` if cancelled.
+    /// The picture with some of its tiles composed again; `None` if cancelled.
     pub fn flatten_tiles(&self, old: &TileGrid, tiles: &[TileAt], progress: &Progress) -> Option<TileGrid> {
         let composed = in_parallel(tiles, progress, |at| self.flatten_tile(at))?;
         let mut grid = old.clone();

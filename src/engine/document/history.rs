@@ -1,16 +1,16 @@
-//! Undo: the documents that were, each with the name of the edit that made it.
+//! Undo: past documents, each with the name of the edit that made it.
 //! Floor 4. A document is a value that shares what it did not change, so a step costs what the edit touched.
 
 use super::Document;
 
-/// The present document, those before it and those undone.
+/// The present document, the past ones and the undone ones.
 pub struct History {
     /// Oldest first; the label is of the edit that led away from it.
     past: Vec<HistoryStep>,
     present: Document,
     /// Nearest last; the label is of the edit that leads to it.
     future: Vec<HistoryStep>,
-    /// Steps kept at most.
+    /// The most steps that are kept.
     limit: usize,
 }
 
@@ -27,7 +27,7 @@ impl History {
     pub fn present(&self) -> &Document {
         &self.present
     }
-    /// Makes an edited document the present one; what was undone is forgotten.
+    /// Makes an edited document the present one; undone documents are dropped.
     pub fn commit(&mut self, label: impl Into<String>, document: Document) {
         self.future.clear();
         let before = std::mem::replace(&mut self.present, document);
@@ -35,14 +35,14 @@ impl History {
         let excess = self.past.len().saturating_sub(self.limit);
         self.past.drain(..excess);
     }
-    /// Goes back by one edit and tells its label; `None` at the beginning.
+    /// Goes back by one edit and returns its label; `None` at the beginning.
     pub fn undo(&mut self) -> Option<&str> {
         let HistoryStep { label, document } = self.past.pop()?;
         let document = std::mem::replace(&mut self.present, document);
         self.future.push(HistoryStep { label, document });
         self.undone()
     }
-    /// Goes forward again by one edit and tells its label; `None` at the end.
+    /// Goes forward again by one edit and returns its label; `None` at the end.
     pub fn redo(&mut self) -> Option<&str> {
         let HistoryStep { label, document } = self.future.pop()?;
         let document = std::mem::replace(&mut self.present, document);
@@ -53,15 +53,15 @@ impl History {
     pub fn past(&self) -> impl ExactSizeIterator<Item = &str> {
         self.past.iter().map(|step| step.label.as_str())
     }
-    /// Every edit that was undone, the next to be made again first.
+    /// Every edit that was undone, the next to redo first.
     pub fn future(&self) -> impl ExactSizeIterator<Item = &str> {
         self.future.iter().rev().map(|step| step.label.as_str())
     }
-    /// The edit that undo would take back.
+    /// The edit that undo would revert.
     pub fn done(&self) -> Option<&str> {
         self.past.last().map(|step| step.label.as_str())
     }
-    /// The edit that redo would make again.
+    /// The edit that redo would repeat.
     pub fn undone(&self) -> Option<&str> {
         self.future.last().map(|step| step.label.as_str())
     }

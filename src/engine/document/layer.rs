@@ -9,12 +9,12 @@ use crate::shading::{RadianceScaling, Shading};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Which layer: the same through every edit of it, as long as the program runs. Not stored in files.
+/// The identity of a layer: it stays the same through every edit, as long as the program runs. Not stored in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LayerId(u64);
 
 impl LayerId {
-    /// One that no layer has had.
+    /// An id that no layer has had.
     pub fn fresh() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
@@ -39,7 +39,7 @@ pub struct Layer {
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
     pub content: Content,
-    /// What was worked out for this layer and still holds; of no meaning to a document's value.
+    /// Cached values of this layer; no part of the document's value.
     pub cache: LayerCache,
 }
 
@@ -63,7 +63,7 @@ impl Layer {
     }
 }
 
-/// What of a layer may not be painted on.
+/// What is protected from painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LayerLock {
     #[default]
@@ -125,6 +125,6 @@ pub struct StrokeList {
 pub struct Group {
     /// Bottom first.
     pub layers: Vec<Arc<Layer>>,
-    /// Blend each layer with what lies beneath the group, as if the group were not there.
+    /// Whether each layer blends with what lies beneath the group, as if the group did not exist.
     pub pass_through: bool,
 }

@@ -1,5 +1,5 @@
-//! Live content: parameters, and beside them the tiles they were rendered to, kept for as long as both stand.
-//! Floor 4. Rendering itself is the marks' (`paint`, `shading`).
+//! Live content: parameters together with the tiles rendered from them, valid until a parameter changes. Floor 4. The
+//! rendering of marks is in `paint` and `shading`.
 
 use crate::paint::Scene;
 use crate::raster::{Tile, TileAt};
@@ -12,13 +12,13 @@ pub struct Live<T> {
     rendered: Arc<RenderedTiles>,
 }
 
-/// The tiles of one scene; replaced when the layer is seen on another canvas or surface.
+/// The tiles of one scene; replaced when the layer is rendered on another canvas or surface.
 #[derive(Default)]
 struct RenderedTiles {
     current: Mutex<Option<(Scene, Arc<TileCells>)>>,
 }
 
-/// One cell a tile of the canvas, filled when first asked for.
+/// One cell for each tile of the canvas, filled on first use.
 struct TileCells {
     cols: i32,
     rows: i32,
@@ -44,7 +44,7 @@ impl<T> Live<T> {
     pub fn params(&self) -> &T {
         &self.params
     }
-    /// New parameters that change only some tiles: those for which `keeps` is true are taken over as they are rendered.
+    /// New parameters that change only some tiles: the rendered tiles for which `keeps` is true are taken over.
     pub fn with(&self, params: T, keeps: impl Fn(TileAt) -> bool) -> Self {
         let next = Self::new(params);
         let current = self.lock().clone();
@@ -59,9 +59,9 @@ impl<T> Live<T> {
         }
         next
     }
-    /// New parameters whose tiles differ from these only where `tiles` says, which are rendered already.
+    /// New parameters whose tiles differ from these only in `tiles`, which are rendered already.
     ///
-    /// * `scene`: what the layer sees. On any other than it was rendered for, nothing is taken over.
+    /// * `scene`: what the layer sees. If it is not the rendered one, nothing is taken over.
     pub fn with_tiles(
         &self,
         params: T,
@@ -93,7 +93,7 @@ impl<T> Live<T> {
             both.as_ref().and_then(|(a, b)| Some(tile(a)? == tile(b)?)).unwrap_or(false)
         }
     }
-    /// A tile of the layer on a scene, rendered by `render` unless it has been.
+    /// A tile of the layer on a scene, rendered by `render` if it is not cached.
     pub fn tile(&self, scene: &Scene, at: TileAt, render: impl FnOnce() -> Option<Tile>) -> Option<Arc<Tile>> {
         let cells = self.cells(scene);
         cells.cell(at)?.get_or_init(|| render().map(Arc::new)).clone()

@@ -13,7 +13,7 @@ pub struct LayerMask {
     pub kind: MaskKind,
     /// 1 − the mask.
     pub invert: bool,
-    /// Put aside: the layer shows as if it had none.
+    /// The layer is shown as if it had no mask.
     pub disabled: bool,
 }
 
@@ -29,8 +29,7 @@ pub enum MaskKind {
     Depth { from: f32, to: f32 },
 }
 
-/// How much of a node arrives at each pixel of a tile: its opacity, its mask, and the surface where it is clipped to
-/// it.
+/// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is clipped to it.
 pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
     let coverage = TileCoverage::uniform(node.layer.opacity);
     let coverage = match clip(node) {
@@ -55,14 +54,14 @@ pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
     clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), TileCover::Whole))
 }
 
-/// The surface that a node is clipped to, if any. A group's layers clip themselves: a second time would thin their
-/// rims. An adjustment changes what is painted already.
+/// The surface that a layer is clipped to, if any. A group is not clipped, because its layers clip themselves; clipping
+/// twice would thin their rims. An adjustment changes only what is painted already.
 fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = !matches!(node.layer.content, Content::Group(_) | Content::RadianceScaling(_));
     node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)
 }
 
-/// How far a surface covers a tile.
+/// How much of a tile a surface covers.
 enum TileCover {
     None,
     Part,
@@ -90,12 +89,12 @@ fn pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) 
 }
 
 impl LayerMask {
-    /// A mask that counts, as it is.
+    /// An enabled mask that is not inverted.
     pub fn new(kind: MaskKind) -> Self {
         Self { kind, invert: false, disabled: false }
     }
-    /// The same mask as a picture that can be painted on; what it showed it shows. One derived from a surface covers
-    /// all where there is none.
+    /// The same mask as a picture that can be painted on; it looks the same. A derived mask covers everything where
+    /// there is no surface.
     pub fn as_picture(&self, layer: &Layer, scene: &Scene) -> LayerMask {
         let plain = LayerMask { invert: false, disabled: false, ..self.clone() };
         let curvature = prepare::curvature_of_mask(layer, scene);
@@ -143,7 +142,7 @@ impl LayerMask {
             _ => 1.0,
         }
     }
-    /// Both cover alike: the same picture by pointer, or the same figures.
+    /// Whether both have the same coverage: the same picture by pointer, or the same numbers.
     pub(super) fn is_same(&self, other: &LayerMask) -> bool {
         use MaskKind::{Curvature, Depth, File, Fresnel};
         let same_kind = match (&self.kind, &other.kind) {

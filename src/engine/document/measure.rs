@@ -1,4 +1,4 @@
-//! What an adjustment must know of the whole composite beneath it before one tile can be adjusted.
+//! Measures what an adjustment must know about the whole composite beneath it before one tile can be adjusted.
 //! Floor 4. Tiles are measured in parallel and added up in their order, so the figures do not depend on the threads.
 
 use super::Progress;
@@ -13,7 +13,7 @@ use crate::surface::Scene;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 impl PreparedDocument {
-    /// Measures what lies beneath the next adjustment, or finds it measured; `None` if cancelled.
+    /// Measures what lies beneath the next adjustment, or takes it from the cache; `None` if cancelled.
     pub(super) fn measure(&self, adjustment: &Adjustment, progress: &Progress) -> Option<BackdropStats> {
         let Adjustment { layer, scaling, scene, beneath } = adjustment;
         let brightest = match scaling.reference {
@@ -33,8 +33,8 @@ impl PreparedDocument {
     }
     /// Y*: the greatest luminance beneath the next adjustment.
     fn brightest_beneath(&self, scene: &Scene, progress: &Progress) -> Option<f32> {
-        // A tile that cannot be brighter than one already measured is not measured: whatever the order, the greatest is
-        // found. Luminance is not negative, so that floats are in the order of their bits.
+        // A tile that cannot be brighter than one already measured is skipped; the greatest is found in any order.
+        // Luminance is not negative, so floats compare like their bits.
         let known = AtomicU32::new(0);
         let of_tile = |at| {
             let most = f32::from_bits(known.load(Relaxed));
@@ -67,7 +67,7 @@ impl PreparedDocument {
 /// The greatest luminance (Rec. 709, linear light, straight colour) of a tile, over the surface where there is one.
 ///
 /// Pixels less than half covered, by paint or by surface, do not count: their straight colours are mostly rounding.
-/// Where it can be told at a glance that the tile has none above `known`, 0.
+/// 0 if a quick test shows that the tile has none above `known`.
 fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt, known: f32) -> f32 {
     if bound(pixels.rows()) <= known {
         return 0.0;
@@ -90,7 +90,7 @@ fn brightest(pixels: &PlanarTile, scene: &Scene, at: TileAt, known: f32) -> f32 
     most.into_iter().fold(0.0, f32::max)
 }
 
-/// What no pixel's luminance is above: that of the greatest red, green and blue.
+/// An upper bound of all pixels' luminance: that of the greatest red, green and blue.
 fn bound(rows: &[PixelRow]) -> f32 {
     let mut most = [[0.0; TILE]; 3];
     rows.iter().for_each(|row| raise_to_channels(row, &mut most));
@@ -98,7 +98,7 @@ fn bound(rows: &[PixelRow]) -> f32 {
     luminance(decode(r), decode(g), decode(b)) * (1.0 + DECODE_ERROR)
 }
 
-/// More than [`decode_fast`] is off by, as a ratio.
+/// More than the relative error of [`decode_fast`].
 const DECODE_ERROR: f32 = 1e-3;
 
 crate::widest! {

@@ -37,12 +37,12 @@ pub use source::SurfaceSource;
 use crate::{math::Size, paint::Scene, raster::Asset, surface::Surface};
 use std::{collections::BTreeMap, sync::Arc};
 
-/// A picture in the making: the canvas, the shape it is painted on, and the layers, bottom first.
+/// A picture being painted: the canvas, its surface, and the layers, bottom first.
 #[derive(Clone)]
 pub struct Document {
     pub size: Size,
     pub surface: Option<Arc<Surface>>,
-    /// Which maps the surface was made from; absent where there is none, or it came from no file.
+    /// The maps that the surface was made from; absent if there is no surface or it came from no file.
     pub surface_source: Option<Arc<SurfaceSource>>,
     /// The files that `surface_source` names, by their names, where they are known.
     pub surface_files: Arc<BTreeMap<String, Asset>>,

@@ -1,5 +1,5 @@
-//! Normal layers: detail laid onto the surface, which everything above in the group then sees (SF fig. 12b–c).
-//! Floor 4. The equation is `surface::combine`'s.
+//! Normal layers: detail combined with the surface, for everything above in the group (SF fig. 12b–c). Floor 4. The
+//! equation is in `surface::combine`.
 
 use super::{Layer, LayerMask, prepare, source::NormalConvention};
 use crate::math::{Affine2, Vec2, Vec3, vec2};
@@ -8,8 +8,8 @@ use crate::raster::Outside;
 use crate::surface::{Curvature, DetailMap, NoiseRelief, Surface};
 use std::sync::Arc;
 
-/// Detail combined onto the surface: what stands above in its group sees the combined normals. The layer's opacity and
-/// mask weigh its strength; its blend mode means nothing.
+/// Detail combined with the surface: layers above it in its group see the combined normals. The layer's opacity and
+/// mask weight its strength; its blend mode has no effect.
 #[derive(Clone)]
 pub struct NormalLayer {
     pub source: DetailSource,
@@ -25,7 +25,7 @@ pub enum DetailSource {
     /// A tangent-space normal map.
     Map {
         picture: PictureSource,
-        /// What its numbers mean; found where nothing is said.
+        /// What its numbers mean; detected where it is not given.
         convention: NormalConvention,
         /// As it was read.
         map: Arc<DetailMap>,
@@ -35,7 +35,7 @@ pub enum DetailSource {
 }
 
 impl PartialEq for NormalLayer {
-    /// Both lay the same detail, by pointer.
+    /// Whether both have the same detail, by pointer.
     fn eq(&self, other: &Self) -> bool {
         let same_source = match (&self.source, &other.source) {
             (DetailSource::Map { map: a, .. }, DetailSource::Map { map: b, .. }) => Arc::ptr_eq(a, b),
@@ -49,7 +49,7 @@ impl PartialEq for NormalLayer {
     }
 }
 
-/// All that a combined surface is made from beside the surface beneath.
+/// Everything that a combined surface depends on besides the surface beneath.
 #[derive(Clone)]
 pub struct Combination {
     normals: NormalLayer,
@@ -68,8 +68,8 @@ impl PartialEq for Combination {
     }
 }
 
-/// What the layers above a normal layer see. Kept by the layer: the very same surface, as long as what it is made from
-/// stands.
+/// The scene of the layers above a normal layer. The layer caches it: the surface stays identical until an input
+/// changes.
 pub(super) fn scene_above(layer: &Layer, normals: &NormalLayer, beneath: &Scene) -> Scene {
     let Some(surface) = beneath.surface.as_ref().filter(|_| normals.strength > 0.0 && layer.opacity > 0.0) else {
         return beneath.clone();
@@ -96,7 +96,7 @@ impl Combination {
     }
 }
 
-/// Detail as it lies on the canvas.
+/// Detail placed on the canvas.
 struct PlacedDetail<'a> {
     normals: &'a NormalLayer,
     /// Texels of the map, or px of the grain, from canvas px.

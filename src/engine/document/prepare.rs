@@ -1,5 +1,5 @@
-//! A document made ready to be flattened: which layers show, what each is clipped to, which surface each sees.
-//! Floor 4. Done once before the tiles; composing one tile is `compose`.
+//! Prepares a document for flattening: finds the visible layers, what each is clipped to, and the surface that each
+//! sees. Floor 4. Done once before the tiles; composing one tile is `compose`.
 
 use super::{Content, Document, Group, Layer, MaskKind, Progress, content, normals};
 use crate::math::Size;
@@ -11,12 +11,13 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What of a document flattening needs, resolved. Holds the layers it needs, so the document may be dropped or edited.
+/// Everything that flattening needs of a document, resolved. It holds the layers, so the document may be dropped or
+/// edited.
 pub struct PreparedDocument {
     pub(super) size: Size,
     /// Bottom first.
     pub(super) stack: Vec<PreparedLayer>,
-    /// What is known of the composite beneath each adjustment, in the order they apply.
+    /// Measurements of the composite beneath each adjustment, in the order they apply.
     pub(super) beneath: Vec<BackdropStats>,
 }
 
@@ -31,7 +32,7 @@ pub(super) struct PreparedLayer {
     pub children: Vec<PreparedLayer>,
     /// The run of layers clipped to this one, bottom first.
     pub clipped: Vec<PreparedLayer>,
-    /// Which adjustments stand in this node: itself, its children, its clipped layers.
+    /// The adjustments in this node: itself, its children, its clipped layers.
     pub adjustments: Range<usize>,
 }
 
@@ -51,7 +52,7 @@ impl PreparedDocument {
         let stack = builder.nodes(&document.layers, &mut document.scene(), &[]);
         let mut prepared = Self { size: document.size, stack, beneath: Vec::new() };
         for adjustment in builder.adjustments {
-            // Each may depend on those beneath it, which are known by now.
+            // Each may depend on those beneath it, which are measured by now.
             let beneath = prepared.measure(&adjustment, progress)?;
             prepared.beneath.push(beneath);
         }
@@ -85,7 +86,7 @@ struct StackBuilder {
 
 /// What a clipped layer would be clipped to.
 enum ClipBase {
-    /// Nothing stands beneath: clipped layers paint nothing.
+    /// There is nothing beneath: clipped layers paint nothing.
     Nothing,
     /// Hidden, and its clipped layers with it.
     Hidden,
@@ -94,13 +95,13 @@ enum ClipBase {
 }
 
 impl StackBuilder {
-    /// `scene` is what the first layer sees and becomes what stands above sees; `beneath` is the scope so far.
+    /// `scene` is what the first layer sees, and is updated to what layers above see; `beneath` is the scope so far.
     fn nodes(&mut self, layers: &[Arc<Layer>], scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<PreparedLayer> {
         let mut nodes: Vec<PreparedLayer> = Vec::new();
         let mut base = ClipBase::Nothing;
         for (i, layer) in layers.iter().enumerate() {
             if let Content::Normals(normals) = &layer.content {
-                // It paints nothing, so it neither is a base nor stands between a base and its clipped layers.
+                // It paints nothing, so it is no base and does not separate a base from its clipped layers.
                 if layer.visible {
                     *scene = normals::scene_above(layer, normals, scene);
                 }

@@ -1,5 +1,5 @@
-//! How far a long piece of work has come, and whether it is still wanted.
-//! Floor 4. Floors above show it; nothing here draws or waits.
+//! The progress of long work, and whether it was cancelled. Floor 4. Higher floors display it; nothing here draws or
+//! waits.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -24,7 +24,7 @@ impl Progress {
     pub fn read(&self) -> (u64, u64) {
         (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
     }
-    /// The result is no longer wanted: the work ends soon, without one.
+    /// Cancels the work: it ends soon, without a result.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }

@@ -1,5 +1,5 @@
-//! A document at another resolution: for a quick preview, or a larger print of what is live. Floor 4. Live layers
-//! change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
+//! Scales a document to another resolution: for a quick preview, or for a larger print of live layers. Floor 4. Live
+//! layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
 
 mod reducer;
 
@@ -18,8 +18,8 @@ use std::sync::Arc;
 impl Document {
     /// The same picture on a canvas `factor` times as large, its sides rounded. Layers keep their ids.
     ///
-    /// `factor`: finite and `> 0`, else the document comes back as it is. Whether there is room for the result is the
-    /// caller's to check. Fails where nothing is left of a surface thinner than the new pixels.
+    /// `factor`: finite and `> 0`, else the document is returned unchanged. The caller must check that the result fits
+    /// the memory. Fails if nothing is left of a surface thinner than the new pixels.
     pub fn scaled(&self, factor: f32) -> Result<Document, SurfaceError> {
         let Some(scale) = CanvasScale::of(self.size, factor) else { return Ok(self.clone()) };
         let surface = self.surface.as_ref().map(|s| s.stretched(scale.to).map(Arc::new)).transpose()?;
@@ -29,9 +29,9 @@ impl Document {
 
 /// From one canvas to another.
 struct CanvasScale {
-    /// Of coordinates; the two differ as far as rounding the canvas demands.
+    /// For coordinates; the two differ only because the canvas is rounded.
     per_axis: Vec2,
-    /// Of lengths that have no direction.
+    /// For lengths without a direction.
     length: f32,
     from: Size,
     to: Size,
@@ -125,7 +125,7 @@ impl CanvasScale {
         match &mut brush.stabilizer {
             Stabilizer::None => {}
             Stabilizer::String { length_px } => *length_px *= self.length,
-            // What is left after ten px of a way that is so much longer now.
+            // The same decay over a path that is this much longer.
             Stabilizer::Average { weight } => *weight = weight.max(0.0).powf(1.0 / self.length),
         }
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();

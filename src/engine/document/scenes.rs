@@ -1,19 +1,19 @@
-//! Which surface a layer sees, without preparing the whole document: its own canvas, with the normal layers beneath it.
-//! Floor 4.
+//! Finds the scene of one layer without preparing the whole document: the canvas and the surface with the normal layers
+//! beneath it. Floor 4.
 
 use super::{Content, Document, Layer, LayerId, normals};
 use crate::paint::Scene;
 use std::sync::Arc;
 
 impl Document {
-    /// What a layer is painted on: the document's surface and the normal layers beneath it in its scope. `None` where
+    /// The scene of a layer: the document's surface with the normal layers beneath the layer in its scope. `None` if
     /// there is no such layer.
     pub fn scene_of(&self, layer: LayerId) -> Option<Scene> {
         find(&self.layers, layer, &mut self.scene())
     }
 }
 
-/// `scene` becomes what stands above the layers sees.
+/// `scene` is updated to what layers above see.
 fn find(layers: &[Arc<Layer>], id: LayerId, scene: &mut Scene) -> Option<Scene> {
     for layer in layers {
         if layer.id == id {

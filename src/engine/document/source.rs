@@ -1,4 +1,4 @@
-//! What a document says of its surface: which files, and what their numbers mean.
+//! What a document says about its surface: its files and what their numbers mean.
 //! Floor 4. Plain data with the names they have in JSON; reading the files is `io::maps`' work.
 
 /// The `"surface"` object. At least one of `normal` and `depth`; the importer derives the other.
@@ -30,7 +30,7 @@ pub enum MaskSource {
     Flat,
 }
 
-/// Declares an enum with its names in JSON, in the manner of `BlendMode`.
+/// Declares an enum together with its names in JSON.
 macro_rules! named {
     ($(#[$meta:meta])* $name:ident { $($(#[$row_meta:meta])* $variant:ident = $text:literal),+ $(,)? }) => {
         $(#[$meta])*

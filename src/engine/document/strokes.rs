@@ -1,4 +1,4 @@
-//! Edits of the strokes of a stroke layer: which there are, in what order, where and how each is painted.
+//! Edits of the strokes of a stroke layer: adding, removing, ordering, moving and restyling them.
 //! Floor 4. Only tiles that an edit can change are rendered again.
 
 use super::{
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// The edits. Each is `None` where there is no such layer or stroke, or the layer is locked; strokes are named by their
 /// places, the first painted 0. `self` never changes.
 impl Document {
-    /// The strokes of a stroke layer, the first painted first; none of another.
+    /// The strokes of a stroke layer, the first painted first; `None` for other layers.
     pub fn strokes(&self, layer: LayerId) -> &[Arc<Stroke>] {
         match self.layer(layer).map(|layer| &layer.content) {
             Some(Content::Strokes(live)) => &live.params().strokes,

@@ -31,11 +31,12 @@ impl Default for Adjust {
 }
 
 impl Adjust {
-    /// The adjusted picture, of the same size and kind of light. What changes nothing returns the very same texels.
+    /// The adjusted picture, of the same size and kind of light. An adjustment that changes nothing returns the same
+    /// texels.
     ///
     /// Display-referred pictures are blurred on their encoded values, as layers are blended, and clipped once, at the
     /// end. Scene-referred ones stay linear through blur and exposure and keep light above white throughout, so that
-    /// lowering the brightness brings the sun's disc back.
+    /// lowering the brightness recovers the disc of the sun.
     pub fn apply(&self, picture: &Picture) -> Picture {
         if *self == Self::default() {
             return picture.clone();
@@ -61,7 +62,7 @@ impl Adjust {
     }
 }
 
-/// The adjustments of single texels, made ready.
+/// The adjustments of single texels, precomputed.
 struct TexelAdjust {
     is_linear: bool,
     /// Factor of linear light.
@@ -204,7 +205,7 @@ mod tests {
     #[test]
     fn blurring_keeps_the_mean_and_spreads_no_hidden_colour() {
         let size = Size::new(40, 40);
-        // Green stands hidden under alpha 0 in the left half.
+        // Green is hidden under alpha 0 in the left half.
         let texels = (0..1600).map(|i| if i % 40 < 20 { [0, 255, 0, 0] } else { [255, 0, 0, 255] }).collect();
         let picture = Picture::srgb8(size, texels).unwrap();
         let Texels::Srgb8(t) = Adjust { blur: 4.0, ..Adjust::default() }.apply(&picture).texels else { unreachable!() };

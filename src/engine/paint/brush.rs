@@ -1,5 +1,5 @@
 //! A brush: the footprint of one dab and how dabs follow each other.
-//! Floor 3. Not here: how the hand and the surface drive it (`dynamics`), the dabs themselves (`walker`).
+//! Floor 3. Not here: how pen and surface drive it (`dynamics`), the dabs themselves (`dab_walker`).
 
 use super::dynamics::{Dynamics, Input};
 use super::grain::{BrushGrain, GrainSource};
@@ -24,34 +24,34 @@ pub struct Brush {
     pub spacing: f32,
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
-    /// How symmetry turned the stroke.
+    /// How symmetry turned or mirrored the stroke.
     pub facing: StrokeFrame,
     /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
     pub softness: f32,
-    /// How far a dab may stand from the stroke, a ratio of its diameter, `[0, 10]`.
+    /// The greatest distance of a dab from the stroke, a ratio of its diameter, `[0, 10]`.
     pub scatter: f32,
     pub jitter: ColorJitter,
-    /// How the stroke meets what is beneath it in its layer.
+    /// How the stroke blends with its layer.
     pub blend: BlendMode,
-    /// The stroke takes paint away from its layer instead of adding it.
+    /// The stroke erases from its layer instead of painting.
     pub erases: bool,
-    /// The stroke shows only where its layer is painted already, whose coverage stays.
+    /// The stroke shows only where its layer has paint, and keeps the coverage there.
     pub keeps_alpha: bool,
-    /// How far the stroke may go.
+    /// Where the stroke may paint.
     pub bounded: PaintLimit,
-    /// What the brush does where its footprint lands. Strokes of a stroke layer paint, whatever it says.
+    /// What the brush does where its footprint lands. Strokes of a stroke layer always paint.
     pub mode: BrushMode,
     pub tip: Tip,
     pub grain: Option<BrushGrain>,
-    /// What calmed the hand. The samples of a stroke are calm already: painting them again does not ask for it.
+    /// How the hand is smoothed. The samples of a stroke are smooth already: rendering it does not use this.
     pub stabilizer: Stabilizer,
     pub dynamics: Dynamics,
-    /// Whatever is random about a stroke follows from it: the same seed and samples paint the same pixels.
+    /// The seed of all randomness: the same seed and samples paint the same pixels.
     pub seed: u32,
 }
 
-/// The frame that a stroke was drawn in, as it lies on the canvas: mirrored first, turned then. What turns or scatters
-/// a dab does so within it, so that the images of one stroke are images dab by dab.
+/// The frame in which a stroke was drawn, relative to the canvas: first mirrored, then turned. Dabs are rotated and
+/// scattered within this frame, so that mirror images match dab by dab.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct StrokeFrame {
     /// Counter-clockwise as seen, degrees.
@@ -67,14 +67,14 @@ impl StrokeFrame {
         let across = if is_mirrored { -map.x_axis } else { map.x_axis };
         Self { turn: (-across.y).atan2(across.x).to_degrees(), is_mirrored }
     }
-    /// The map that it is: canvas from the stroke's frame.
+    /// The linear map: canvas from the stroke's frame.
     pub fn map(self) -> Mat2 {
         let mirror = Mat2::from_diagonal(Vec2::new(if self.is_mirrored { -1.0 } else { 1.0 }, 1.0));
         // Counter-clockwise as seen is clockwise where y goes down.
         Mat2::from_angle(-self.turn_rad()) * mirror
     }
-    /// How far a footprint is turned that is turned so far within the frame; mirrored, it is then mirrored left to
-    /// right.
+    /// The rotation on the canvas of a footprint rotated by this much within the frame; in a mirrored frame the
+    /// footprint is also mirrored left to right.
     pub fn rotation_rad(self, within_rad: f32) -> f32 {
         if self.is_mirrored { self.turn_rad() - within_rad } else { self.turn_rad() + within_rad }
     }
@@ -83,30 +83,31 @@ impl StrokeFrame {
     }
 }
 
-/// What a brush does where its footprint lands. All but paint work on what a paint layer holds.
+/// What a brush does where its footprint lands. All but paint change the pixels of a paint layer.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum BrushMode {
     #[default]
     Paint,
-    /// Drags what is there along; `length` in `[0, 1]`, the share of it that is left after a drag of one radius.
+    /// Drags the existing paint along; `length` in `[0, 1]`, the share of it that is left after a drag of one radius.
     Smudge { length: f32 },
-    /// Softens what is there; `width` in `[0, 1]`: the standard deviation that a stroke leaves, a ratio of the radius.
+    /// Softens the existing paint; `width` in `[0, 1]`: the standard deviation that a stroke leaves, a ratio of the
+    /// radius.
     Blur { width: f32 },
     /// Copies from elsewhere.
     Clone {
-        /// From the same distance for every stroke; else every stroke begins at the source point.
+        /// At the same offset for every stroke; otherwise every stroke starts at the source point.
         aligned: bool,
-        /// What the picture shows, not the layer alone.
+        /// Copies from the whole picture, not from the layer alone.
         picture: bool,
     },
 }
 
 impl BrushMode {
-    /// What a smudge keeps, and how wide a blur is, where it is not said.
+    /// The defaults of a smudge's length and a blur's width.
     pub const SMUDGE_LENGTH: f32 = 0.8;
     pub const BLUR_WIDTH: f32 = 0.3;
 
-    /// It works on what is there.
+    /// Whether it changes existing paint.
     pub fn is_retouching(self) -> bool {
         self != BrushMode::Paint
     }
@@ -115,7 +116,7 @@ impl BrushMode {
     }
 }
 
-/// How far a dab's colour may be from the stroke's, either way; each dab at random.
+/// The greatest deviation of a dab's colour from the stroke's, either way; random for each dab.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct ColorJitter {
     /// `[0, 180]`.
@@ -125,15 +126,15 @@ pub struct ColorJitter {
     pub value: f32,
 }
 
-/// How the tool calms the pen before it becomes a stroke.
+/// How the tool smooths the pen's path before it becomes a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Stabilizer {
     #[default]
     None,
-    /// The line trails the pen as a running average; `weight` in `[0, 1)`, the share of the past that is left after
-    /// ten px of the pen's way.
+    /// The line follows the pen as a running average; `weight` in `[0, 1)` is the share of the past that is left after
+    /// the pen has moved ten px.
     Average { weight: f32 },
-    /// The pen pulls the line along on a string, px: wiggles shorter than it do not show.
+    /// The pen pulls the line on a string of this length, px: wiggles shorter than it do not show.
     String { length_px: f32 },
 }
 
@@ -151,14 +152,14 @@ pub enum Tip {
     },
     Bristles(Bristles),
     Noise(Noise),
-    /// A picture whose longer side is the diameter. Opaque and grey throughout, it is coverage, white covering wholly;
-    /// any other is a stamp in its own colours.
+    /// A picture whose longer side is the diameter. An opaque grey picture is coverage, white covering fully; any other
+    /// is a stamp in its own colours.
     Picture(PictureSource),
     Hose(Hose),
 }
 
 impl Brush {
-    /// The pictures that it is made of: its tip's, then its grain's.
+    /// The pictures that it uses: first those of the tip, then that of the grain.
     pub fn pictures(&self) -> impl Iterator<Item = &PictureSource> {
         let tip = match &self.tip {
             Tip::Picture(source) => std::slice::from_ref(source),
@@ -171,7 +172,7 @@ impl Brush {
         });
         tip.iter().chain(grain)
     }
-    /// The same brush, each of its pictures in place of another.
+    /// The same brush with its pictures replaced, in that order.
     pub fn with_pictures<E>(
         &self,
         mut replace: impl FnMut(&PictureSource) -> Result<PictureSource, E>,
@@ -220,7 +221,7 @@ impl Default for Brush {
 }
 
 impl Brush {
-    /// Chance decides something about its strokes: they want a seed of their own.
+    /// Whether its strokes have random properties and so need a seed of their own.
     pub fn is_random(&self) -> bool {
         let ColorJitter { hue_degrees, saturation, value } = self.jitter;
         let strays = [self.scatter, hue_degrees, saturation, value].iter().any(|&v| v > 0.0);

@@ -1,9 +1,9 @@
 //! The smooth curve through the samples of a stroke, segment by segment.
-//! Floor 3. Not here: what is walked along it (`walker`).
+//! Floor 3. Not here: the dabs along it (`dab_walker`).
 
 use crate::math::Vec2;
 
-/// Samples nearer than this are one.
+/// Samples nearer to each other than this count as one.
 pub const SAME_PX: f32 = 1e-3;
 
 /// The curve between two samples: a centripetal Catmull-Rom spline (Barry and Goldman 1988; Yuksel et al. 2011: no cusp
@@ -18,7 +18,7 @@ pub struct CurveSegment {
 }
 
 impl CurveSegment {
-    /// From `from` to `to`, on its way from `before` and toward `after`; where there is none, an end goes on straight.
+    /// From `from` to `to`, coming from `before` and going to `after`; without such a neighbour the end is straight.
     pub fn new(before: Option<Vec2>, from: Vec2, to: Vec2, after: Option<Vec2>) -> Self {
         let (before, after) = (before.unwrap_or(2.0 * from - to), after.unwrap_or(2.0 * to - from));
         let (out, into) = tangents([before, from, to, after]);
@@ -28,7 +28,7 @@ impl CurveSegment {
     pub fn out(&self) -> Vec2 {
         self.out
     }
-    /// How many straight pieces stand for it: two px each; one so long that it takes more than 128 is nearly straight.
+    /// The number of straight pieces that approximate it: two px each, at most 128; a longer one is nearly straight.
     pub fn pieces(&self) -> usize {
         let length = self.from.distance(self.to).max((self.out.length() + self.into.length()) / 3.0);
         (length / 2.0).ceil().max(1.0).min(128.0) as usize

@@ -1,5 +1,6 @@
-//! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch. Floor 3. Not here: where dabs stand (`walker`),
-//! the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up to a stroke (`stroke`).
+//! One dab on one tile: F(A⁻¹(D(q) − q_0)) at every pixel it may touch. Floor 3. Not here: where dabs are placed
+//! (`dab_walker`), the tips (`profile`, `stamp`), the round one's rows (`round`), how dabs add up to a stroke
+//! (`stroke`).
 
 mod coverage;
 mod round;
@@ -36,7 +37,7 @@ pub struct PlacedDab<'s> {
 /// Half a pixel's width on either side: the box of the round tip's filter.
 const ROUND_FILTER_PX: f32 = 0.5;
 
-/// How far a round dab reaches.
+/// The extent of a round dab.
 pub fn round_extent(dab: &Dab) -> DabExtent {
     let profile = RoundProfile::new(dab.hardness, dab.softness);
     DabExtent { radius_px: dab.radius * profile.outer_radius(), filter_px: ROUND_FILTER_PX }
@@ -50,15 +51,15 @@ pub struct DabScratch {
     row: RowZones,
     /// Coverage of a row, or of a part of a tile.
     covered: Vec<f32>,
-    /// What a picture tip brings to a part of a tile.
+    /// The pixels that a picture tip paints on a part of a tile.
     stamped: Vec<[u8; 4]>,
 }
 
-/// What reading a picture tip takes.
+/// Buffers for reading a picture tip.
 #[derive(Default)]
 struct StampScratch {
     patches: Patches,
-    /// Made for the first stamp: round dabs do without.
+    /// Allocated for the first stamp: round dabs do not need it.
     antialias: Option<Box<Antialias>>,
     row: Vec<[u8; 4]>,
 }
@@ -87,7 +88,7 @@ impl<'s> PlacedDab<'s> {
         };
         self.deformation.fill_spans(area.grown(1), columns, deformed);
     }
-    /// What it brings of the stroke's colours; `None`: a stamp's own.
+    /// Its colour, one of the stroke's; `None`: the stamp's own colours.
     fn paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
     }
@@ -111,7 +112,7 @@ impl<'s> PlacedDab<'s> {
             }
             return;
         }
-        // The ceiling is the wash's to keep, which knows the coverage.
+        // The stroke tile applies the ceiling, because it knows the coverage.
         tip.ceiling = 1.0;
         for span in spans(&blocks, at, area) {
             covered.clear();

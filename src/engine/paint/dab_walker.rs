@@ -1,5 +1,6 @@
-//! From the pen's samples to dabs: a smooth curve walked at even steps of arc length, sample by sample as they come.
-//! Floor 3. Not here: the curve (`curve`), what a dab looks like (`profile`, `stamp`), where it lands (`dab`).
+//! The dab walker: turns the samples of a pen into dabs. It fits a smooth curve and walks it at even steps of arc
+//! length, sample by sample as they arrive. Floor 3. Not here: the curve (`curve`), what a dab looks like (`profile`,
+//! `stamp`), where it lands (`dab`).
 
 use super::brush::Brush;
 use super::curve::{CurveSegment, SAME_PX};
@@ -12,21 +13,21 @@ use crate::surface::{Curvature, Operator};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// Farther from the canvas's corner than any canvas reaches: such samples are a broken pen's.
+/// Farther from the canvas's corner than any canvas reaches: such samples come from a broken pen.
 const FAR_PX: f32 = 1e6;
 /// The smallest step between dabs. Below it neighbouring dabs of any size are the same to a byte.
 const MIN_STEP_PX: f32 = 0.1;
-/// A dab due this soon after a piece of the curve ends stands on its end: sums of lengths are rounded.
+/// A dab due this soon after the end of a piece is placed on the end: sums of lengths are rounded.
 const ROUNDING_PX: f64 = 1e-3;
 /// The most steps along a stroke, so that a hostile one ends: a hundred canvases' width of the smallest steps.
 const MAX_STEPS: u32 = 1 << 20;
 /// The smallest dab, a little wider than a pixel.
 const PIXEL_RADIUS_PX: f32 = 0.75;
-/// Within this time a speed has come two thirds of the way to a new one: single readings of a pen jump.
+/// After this time the estimate has moved two thirds of the way to a new speed: single reports of a pen are noisy.
 const SPEED_SECS: f32 = 0.05;
 /// *s* of the κ that drives a brush: *L* over this. Relative, so that a larger canvas paints the same.
 const CURVATURE_SCALES: f32 = 32.0;
-/// Blur of the normals under that κ: one pixel quiets the noise of 8-bit maps.
+/// Blur of the normals under that κ: one pixel suppresses the noise of 8-bit maps.
 const CURVATURE_BLUR_PX: f32 = 1.0;
 
 /// One placement of the footprint.
@@ -50,9 +51,9 @@ pub struct Dab {
     /// Of one-colour tips where the brush's colours vary; else the stroke's.
     pub color: Color,
     pub operator: Operator,
-    /// Which of the stroke it is, counted from 0; those that cannot be seen count too.
+    /// Its number in the stroke, from 0; invisible dabs count too.
     pub number: u32,
-    /// What it was driven by; its seed is this dab's alone.
+    /// The inputs that drove it; the seed belongs to this dab alone.
     pub inputs: DabInputs,
 }
 
@@ -77,7 +78,7 @@ impl Dab {
     }
 }
 
-/// What the dabs of a stroke are made by.
+/// The rules by which the dabs of a stroke are made.
 #[derive(Clone)]
 struct DabRules {
     brush: Brush,
@@ -86,13 +87,13 @@ struct DabRules {
     scene: Scene,
     /// Canvas from the frame that the stroke was drawn in.
     facing: Mat2,
-    /// Where something follows it.
+    /// If some property follows it.
     curvature: Option<Arc<Curvature>>,
     reads_surface: bool,
     varies_in_color: bool,
 }
 
-/// The hand at one place of the curve.
+/// The pen at one point of the curve.
 #[derive(Clone, Copy)]
 struct CurvePoint {
     at: Vec2,
@@ -142,7 +143,7 @@ impl DabRules {
         };
         self.over_surface(place.at, inputs)
     }
-    /// With what the surface is like at the pixel that a dab's centre lies in.
+    /// Adds the surface inputs at the pixel that holds a dab's centre.
     fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
         let flat = DabInputs::default();
         let nowhere = DabInputs { slope: flat.slope, curvature: flat.curvature, depth: flat.depth, ..inputs };
@@ -160,12 +161,12 @@ impl DabRules {
     fn diameter(&self, inputs: &DabInputs) -> f32 {
         self.brush.size * self.brush.dynamics.factor(Property::Size, inputs)
     }
-    /// How far after a dab the next one stands, px. A step that is not a number must not stop the walk.
+    /// The distance from a dab to the next, px. A step that is not a number must not stop the walk.
     fn step(&self, inputs: &DabInputs) -> f64 {
         let spacing = self.brush.spacing * self.brush.dynamics.factor(Property::Spacing, inputs);
         f64::from((spacing * self.diameter(inputs)).max(MIN_STEP_PX))
     }
-    /// Where a dab stands that is due at a place: anywhere within a disc around it.
+    /// The scattered position of a dab: a random point of a disc around its place on the curve.
     fn scattered(&self, at: Vec2, inputs: &DabInputs) -> Vec2 {
         let ratio = self.brush.scatter * self.brush.dynamics.factor(Property::Scatter, inputs);
         let farthest = ratio * self.diameter(inputs);
@@ -177,7 +178,7 @@ impl DabRules {
         // The root spreads them evenly over the disc.
         at + self.facing * (farthest * share.sqrt() * Vec2::from_angle(TAU * turn))
     }
-    /// The dab of a place; `None` where nothing would be seen.
+    /// The dab at a point of the curve; `None` where it would be invisible.
     fn dab(&self, place: Vec2, inputs: DabInputs, number: u32) -> Option<Dab> {
         let at = self.scattered(place, &inputs);
         let inputs = if at == place { inputs } else { self.over_surface(at, inputs) };
@@ -189,7 +190,7 @@ impl DabRules {
         let ceiling = unit(dynamics.factor(Property::Opacity, &inputs));
         // Comparisons that NaN fails.
         let is_visible = radius > 0.01 && radius <= FAR_PX && flow > 0.0 && ceiling > 0.0;
-        // A dab smaller than a pixel is a fainter one of a pixel's size: what it covers is the same.
+        // A dab smaller than a pixel becomes a fainter one of a pixel's size: it covers as much.
         let share = (radius / PIXEL_RADIUS_PX).min(1.0);
         let flow = flow * share * share;
         let rotation_rad = if brush.rotation.is_finite() { brush.rotation.to_radians() } else { 0.0 };
@@ -233,7 +234,7 @@ struct WalkState {
 }
 
 impl WalkState {
-    /// A dab at a place, and the next one due a step further.
+    /// Places a dab; the next one is due a step further.
     fn stand(&mut self, place: CurvePoint, direction: Vec2, travelled_px: f64, rules: &DabRules, dabs: &mut Vec<Dab>) {
         let inputs = rules.inputs(place, direction, travelled_px, self.number);
         dabs.extend(rules.dab(place.at, inputs, self.number));
@@ -270,15 +271,15 @@ impl WalkState {
 /// The hand's speed, from where it was and when.
 #[derive(Clone, Copy)]
 struct HandSpeed {
-    /// `None` until the clock has moved.
+    /// `None` until time has passed.
     px_per_sec: Option<f32>,
-    /// When it was last found, and how far the hand has come since.
+    /// When it was last estimated, and the distance since.
     at_secs: f32,
     since_px: f32,
 }
 
 impl HandSpeed {
-    /// The hand has come so far by then. Samples that share their time count together.
+    /// The pen has moved this far at this time. Samples with equal times count together.
     fn moved(&mut self, px: f32, secs: f32) {
         self.since_px += px;
         let elapsed = secs - self.at_secs;
@@ -291,10 +292,10 @@ impl HandSpeed {
     }
 }
 
-/// A stroke being laid: samples go in one by one, dabs that no later sample changes come out.
+/// Walks along a stroke: samples go in one by one, and dabs that no later sample changes come out.
 ///
-/// Dabs do not depend on how the samples came in batches, nor on how densely the curve was sampled. Skipped are samples
-/// that are not finite, lie beyond all canvases, or are earlier than the one before.
+/// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. Samples that are not
+/// finite, lie beyond all canvases, or are earlier than the one before are skipped.
 #[derive(Clone)]
 pub struct DabWalker {
     rules: DabRules,
@@ -309,7 +310,7 @@ impl DabWalker {
         let speed = HandSpeed { px_per_sec: None, at_secs: f32::MIN, since_px: 0.0 };
         Self { rules: DabRules::new(brush, operator, color, scene), places: Vec::with_capacity(4), speed, walk: None }
     }
-    /// Takes the next sample in, and adds the dabs that it settles.
+    /// Takes the next sample, and adds the dabs that are now final.
     pub fn push(&mut self, sample: &Sample, dabs: &mut Vec<Dab>) {
         let Sample { at, pressure, tilt, time_secs } = *sample;
         let is_good = at.is_finite() && at.abs().max_element() <= FAR_PX && pressure.is_finite();
@@ -325,7 +326,7 @@ impl DabWalker {
         };
         let distance = last.at.distance(at);
         if distance < SAME_PX {
-            // Of samples at one place, the heaviest.
+            // Of samples at one place, the one with the greatest pressure counts.
             last.pressure = last.pressure.max(place.pressure);
             self.speed.moved(0.0, time_secs);
             return;
@@ -339,7 +340,7 @@ impl DabWalker {
         self.places.push(CurvePoint { px_per_sec, ..place });
         self.settle(dabs);
     }
-    /// Walks the curve as far as no later sample bends it.
+    /// Walks the curve as far as later samples cannot change it.
     fn settle(&mut self, dabs: &mut Vec<Dab>) {
         let (before, from, to, after) = match self.places[..] {
             [from, to, after] => (None, from, to, after),
@@ -354,7 +355,7 @@ impl DabWalker {
             self.places.remove(0);
         }
     }
-    /// The dabs from where the settled ones end to the last sample, if it is the last.
+    /// The dabs from the end of the final ones to the last sample, as if the stroke ended there.
     pub fn tail(&self) -> Vec<Dab> {
         let mut dabs = Vec::new();
         let Some(&first) = self.places.first() else { return dabs };

@@ -1,15 +1,15 @@
-//! How a brush follows the hand and the surface: each property of a dab driven by curves over what is known where it
-//! stands. Floor 3. Not here: where dabs stand and what is read there (`walker`).
+//! Brush dynamics: curves drive each property of a dab by inputs of the pen and of the surface. Floor 3. Not here:
+//! where dabs are placed and how the inputs are measured (`dab_walker`).
 
 use crate::math::{Vec2, hash, vec2};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// What can be driven. Curves multiply, except where [`Property::adds`].
+/// A property that can be driven. Curves multiply it, or add to it where [`Property::adds`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Property {
     Size,
-    /// The coverage that a dab may bring its pixels to, beside the stroke's own opacity.
+    /// The greatest coverage of a dab's pixels, in addition to the stroke's own opacity.
     Opacity,
     Flow,
     Hardness,
@@ -48,28 +48,28 @@ impl Property {
         (Property::Gamma, "gamma"),
         (Property::Detail, "detail"),
     ];
-    /// Its curves are turns that add up, instead of factors that multiply.
+    /// Whether its curves are turns that add up instead of factors that multiply.
     pub fn adds(self) -> bool {
         matches!(self, Property::Rotation | Property::Hue)
     }
 }
 
-/// What can drive, each in `[0, 1]`.
+/// An input that can drive properties, in `[0, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Input {
-    /// Of the pen, as it is.
+    /// The pressure of the pen, unchanged.
     Pressure,
     /// From upright, 0, to lying, 1: the length of (tilt x, tilt y) over 90°.
     Tilt,
-    /// Where the pen leans to, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright pen.
+    /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright pen.
     TiltDirection,
-    /// Where the stroke goes, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of a stroke of one sample.
+    /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of a stroke of one sample.
     Direction,
     /// Over [`FAST_LENGTHS_PER_SEC`].
     Speed,
     /// Along the stroke, over [`FAR_DIAMETERS`] of the brush.
     Distance,
-    /// Anew for every dab and property, even.
+    /// Random for every dab and property, uniformly distributed.
     Random,
     /// 1 − n_z: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
     Slope,
@@ -100,7 +100,7 @@ pub const FAST_LENGTHS_PER_SEC: f32 = 2.0;
 /// The distance that reads 1, diameters.
 pub const FAR_DIAMETERS: f32 = 10.0;
 
-/// What is known where a dab stands, each in `[0, 1]` as [`Input`] says.
+/// The inputs at a dab's place, each in `[0, 1]` as [`Input`] defines it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DabInputs {
     pub pressure: f32,
@@ -112,7 +112,7 @@ pub struct DabInputs {
     pub slope: f32,
     pub curvature: f32,
     pub depth: f32,
-    /// Of this dab alone: what is random about it follows.
+    /// The seed of this dab: its random properties follow from it.
     pub seed: u32,
 }
 
@@ -135,7 +135,7 @@ impl Default for DabInputs {
 }
 
 impl DabInputs {
-    /// What drives a property by an input.
+    /// The value of an input, for a property.
     fn of(&self, input: Input, property: Property) -> f32 {
         match input {
             Input::Pressure => self.pressure,
@@ -159,7 +159,7 @@ pub fn turns_of(v: Vec2) -> f32 {
     (turns - turns.floor()) % 1.0
 }
 
-/// What an input in `[0, 1]` makes of a property, in `[0, 1]`.
+/// Maps an input in `[0, 1]` to a factor or share in `[0, 1]`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
     /// The line from 1 − p to 1: p in `[0, 1]` is the share of the property that follows the input.
@@ -168,12 +168,12 @@ pub enum Curve {
     Points(Arc<[Vec2]>),
 }
 
-/// Points of one curve: more than a hand sets.
+/// The most points of one curve: more than anyone sets by hand.
 pub const MAX_POINTS: usize = 64;
 
 impl Curve {
     /// The curve through points (input, output) of `[0, 1]²` from left to right; two above each other are a step.
-    /// `None` of no points, too many, or others than these.
+    /// `None` for no points, too many, or any that are not of this kind.
     pub fn through(points: Vec<Vec2>) -> Option<Self> {
         let is_inside = |p: &Vec2| (0.0..=1.0).contains(&p.x) && (0.0..=1.0).contains(&p.y);
         let is_ordered = points.windows(2).all(|pair| pair[0].x <= pair[1].x);
@@ -199,7 +199,7 @@ impl Curve {
             }
         }
     }
-    /// It is 1 everywhere.
+    /// Whether it is 1 everywhere.
     fn is_idle(&self) -> bool {
         match self {
             Curve::Share(p) => *p == 0.0,
@@ -223,21 +223,21 @@ pub struct Dynamics {
 }
 
 impl Default for Dynamics {
-    /// A lighter hand paints fainter, not thinner.
+    /// Pressure drives the opacity, not the size.
     fn default() -> Self {
         Self::none().with(Property::Flow, Input::Pressure, Curve::Share(1.0))
     }
 }
 
 impl Dynamics {
-    /// Nothing follows anything.
+    /// Whether nothing is driven.
     pub fn none() -> Self {
         Self { drives: Arc::new([]) }
     }
     pub fn drives(&self) -> &[Drive] {
         &self.drives
     }
-    /// With this row in place of the one for the same property and input. A factor that is always 1 is no row.
+    /// Replaces the row for the same property and input by this one. A factor that is always 1 removes it.
     pub fn with(&self, property: Property, input: Input, curve: Curve) -> Self {
         let is_row = |drive: &&Drive| drive.property == property && drive.input == input;
         let is_idle = if property.adds() { curve == Curve::Share(0.0) } else { curve.is_idle() };
@@ -253,18 +253,18 @@ impl Dynamics {
     pub fn curve(&self, property: Property, input: Input) -> Option<&Curve> {
         self.drives.iter().find(|drive| drive.property == property && drive.input == input).map(|drive| &drive.curve)
     }
-    /// The share of a property that follows the pressure, `[0, 1]`: what a slider shows of any curve is its fall.
+    /// The share of a property that follows the pressure, `[0, 1]`: a slider shows any curve by its total fall.
     pub fn pressure_share(&self, property: Property) -> f32 {
         self.curve(property, Input::Pressure).map_or(0.0, |curve| (curve.at(1.0) - curve.at(0.0)).max(0.0))
     }
     pub fn with_pressure(&self, property: Property, share: f32) -> Self {
         self.with(property, Input::Pressure, Curve::Share(share.max(0.0).min(1.0)))
     }
-    /// Some property follows this input.
+    /// Whether some property follows this input.
     pub fn follow(&self, input: Input) -> bool {
         self.drives.iter().any(|drive| drive.input == input)
     }
-    /// Something drives this property.
+    /// Whether something drives this property.
     pub fn drive(&self, property: Property) -> bool {
         self.drives.iter().any(|drive| drive.property == property)
     }
@@ -272,11 +272,11 @@ impl Dynamics {
         let rows = self.drives.iter().filter(move |drive| drive.property == property);
         rows.map(move |drive| drive.curve.at(inputs.of(drive.input, property)))
     }
-    /// What a property is multiplied by, `[0, 1]`.
+    /// The factor of a property, `[0, 1]`.
     pub fn factor(&self, property: Property, inputs: &DabInputs) -> f32 {
         self.outputs(property, inputs).product()
     }
-    /// What is added to an angle, in turns.
+    /// The turns that are added to an angle.
     pub fn turns(&self, property: Property, inputs: &DabInputs) -> f32 {
         self.outputs(property, inputs).sum()
     }

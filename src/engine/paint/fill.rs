@@ -1,6 +1,6 @@
 //! The fill: the pixels joined to one by colours like its own, with small gaps in their border closed and its edge
-//! smoothed. Floor 3. `flood` finds what is joined, `gaps` what would only be reached through a gap; here the settings
-//! and the edge. Not here: which picture is read, and what the pixels become (`tools::fill`).
+//! smoothed. Floor 3. `flood` finds the joined pixels; `gaps` excludes those that are only reached through a gap. Here:
+//! the settings and the edge. Not here: the picture that is read, and what becomes of the pixels (`tools::fill`).
 
 mod flood;
 mod gaps;
@@ -13,7 +13,7 @@ use crate::raster::{Plane, Tile, TileAt, distance};
 use crate::surface::objects::{CanvasPart, PaintLimit};
 use std::sync::Arc;
 
-/// How far a fill goes.
+/// The settings of a fill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fill {
     /// The largest difference to the first pixel's colour, of any channel of the premultiplied encoded colour,
@@ -24,7 +24,7 @@ pub struct Fill {
     /// How far the edge moves outward, px, `[-32, 32]`: under the softened edge of a line, so that no pale seam is
     /// left.
     pub grow_px: f32,
-    /// Pixels at the edge are covered in part.
+    /// Whether pixels at the edge are partly covered.
     pub antialias: bool,
     /// Colours are those of the layer alone, not of the picture.
     pub layer_alone: bool,
@@ -59,10 +59,11 @@ impl FilledArea {
 }
 
 impl Fill {
-    /// Fills from a canvas point. `None` where it is off the canvas or outside of `part`.
+    /// Fills from a canvas point. `None` if it is off the canvas or outside `part`.
     ///
     /// * `part`: of the canvas that may be touched (`PaintLimit::from`); its border is one of the fill's.
-    /// * `tile`: the picture that is read, premultiplied; asked once for each tile that the fill reaches.
+    /// * `tile`: gives a tile of the picture that is read, premultiplied; called once for each tile that the fill
+    ///   reaches.
     pub fn from(
         &self,
         start: Vec2,
@@ -74,7 +75,7 @@ impl Fill {
         if !start.is_finite() || !canvas.rect().contains(x, y) {
             return None;
         }
-        // Comparisons that turn NaN into the least.
+        // Comparisons that turn NaN into the minimum.
         let tolerance = (self.tolerance.max(0.0).min(1.0) * 255.0).round() as u8;
         let mut inside = flood::joined((x, y), canvas, part, tolerance, tile)?;
         let gap_px = self.gap_px.max(0.0).min(WIDEST_GAP_PX);

@@ -9,7 +9,7 @@ use crate::raster::{Tile, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::{Anchor, Bend, Operator, Weights, links};
 
-/// A colour at a place of the ramp.
+/// A colour at a position of the ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GradientStop {
     /// In `[0, 1]`, not decreasing from stop to stop.
@@ -78,7 +78,7 @@ impl RampPositions {
             let t = d.x.iter().zip(&d.y).map(|(&x, &y)| (x - from.x) * flat.x + (y - from.y) * flat.y).collect();
             Self { rect, t, flat }
         } else {
-            // A segment without length: all of the canvas lies beyond its end.
+            // A segment without length: the whole canvas lies beyond its end.
             Self { rect, t: vec![1.0; d.x.len()], flat: Vec2::ZERO }
         }
     }
@@ -88,7 +88,7 @@ impl RampPositions {
     /// |∇t|: the width of a pixel along the ramp. A box of that width has the variance of the pixel's square in every
     /// direction.
     ///
-    /// Differenced only between neighbours of one surface; where there are none, D is the identity or as good as.
+    /// Differences are taken only between neighbours of one surface; a pixel without neighbours counts as unbent.
     fn footprint(&self, x: i32, y: i32, scene: &Scene) -> f32 {
         let linked = scene.surface.as_deref().map_or(0, |s| s.links_plane().at(x as usize, y as usize));
         let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: f32| {

@@ -1,5 +1,5 @@
-//! Grain: a texture that takes paint away from a stroke where the canvas, or the surface, has its valleys.
-//! Floor 3. Patterns are `pattern`'s; where the surface carries the grain is the operator D_p's.
+//! Grain: a texture that reduces a stroke's paint in the valleys of the canvas or of the surface. Floor 3. The patterns
+//! are in `pattern`; the operator D_p places the grain on a surface.
 //!
 //! ```text
 //! F′(q) = F(q) · (1 − k (1 − G(P⁻¹(T(q)))))      T(q) = q            grain on the canvas
@@ -7,7 +7,8 @@
 //! ```
 //!
 //! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) = q_s, so that the
-//! grain there is the canvas's own, nearer parts show it larger and farther ones smaller. G repeats without end.
+//! grain there has its size on the canvas, is larger on nearer parts and smaller on farther ones. G repeats without
+//! end.
 
 use super::image::{PictureSource, transform};
 use super::patches::Patches;
@@ -30,9 +31,10 @@ pub struct BrushGrain {
     pub size_px: f32,
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
-    /// k, `[0, 1]`: 0 paints as if there were none.
+    /// k, `[0, 1]`: 0 is the same as no grain.
     pub strength: f32,
-    /// Greys up to the first take no paint, from the second on all; of `[0, 1]`, the first below the second.
+    /// Greys up to the first take no paint, those from the second on take all; both in `[0, 1]`, the first below the
+    /// second.
     pub levels: [f32; 2],
     pub lies: GrainSpace,
 }
@@ -48,13 +50,13 @@ pub enum GrainSource {
     Picture(PictureSource),
 }
 
-/// What carries the grain.
+/// What the grain lies on.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum GrainSpace {
     /// The flat canvas.
     #[default]
     Canvas,
-    /// The shape, through D_p.
+    /// The surface, through D_p.
     Surface { gamma: f32 },
 }
 
@@ -129,12 +131,12 @@ impl StrokeGrain {
     }
 }
 
-/// 1 − k (1 − G): what grain leaves of a dab's coverage. `strength` k and `grey` G in `[0, 1]`.
+/// 1 − k (1 − G): the share of a dab's coverage that the grain leaves. `strength` k and `grey` G in `[0, 1]`.
 pub fn factor_of(strength: f32, grey: f32) -> f32 {
     1.0 - strength * (1.0 - grey)
 }
 
-/// Textures kept: more grains than one painting has.
+/// Cached textures: more than one painting uses.
 const KEPT: usize = 16;
 static MADE: Mutex<Vec<(PatternKey, Arc<Texture>)>> = Mutex::new(Vec::new());
 
@@ -158,14 +160,14 @@ impl BrushGrain {
     }
 }
 
-/// What was made under a key, or is made now.
+/// The cached texture of a key, or a new one.
 pub fn kept<K: PartialEq, V>(made: &Mutex<Vec<(K, Arc<V>)>>, most: usize, key: K, make: impl FnOnce() -> V) -> Arc<V> {
     let lock = || made.lock().unwrap_or_else(PoisonError::into_inner);
     let find = |made: &[(K, Arc<V>)]| made.iter().find(|(known, _)| *known == key).map(|(_, value)| value.clone());
     if let Some(value) = find(&lock()) {
         return value;
     }
-    // Unlocked: two threads may both make it, and make the same.
+    // Without the lock: two threads may both compute it; the results are equal.
     let value = Arc::new(make());
     let mut made = lock();
     if let Some(value) = find(&made) {
@@ -189,7 +191,7 @@ fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
     Texture::new(&picture)
 }
 
-/// Of premultiplied texels: light on a transparent ground is as dark as none.
+/// Of premultiplied texels: a light but transparent texel counts as dark.
 fn luminance(texture: &Texture) -> Plane<f32> {
     let level = &texture.levels()[0];
     let grey =
@@ -224,7 +226,7 @@ mod tests {
         let source = GrainSource::Pattern { pattern: Pattern::Lines, seed: 0 };
         BrushGrain { source, size_px: 8.0, rotation: 90.0, levels: [0.4, 0.6], lies, ..BrushGrain::default() }
     }
-    /// How often a row crosses from bare to covered within a part of it.
+    /// How often a part of a row changes from bare to covered.
     fn crossings(row: &[f32]) -> usize {
         row.windows(2).filter(|pair| pair[0] < 0.5 && pair[1] >= 0.5).count()
     }

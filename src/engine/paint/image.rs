@@ -40,15 +40,15 @@ impl Placement {
     }
 }
 
-/// A picture and its adjustments; the texture is made once, when it is first needed.
+/// A picture and its adjustments; the texture is made once, on first use.
 #[derive(Clone)]
 pub struct PictureSource {
-    /// The name it goes by in the document: a path relative to the recipe or an entry of the project.
+    /// Its name in the document: a path relative to the recipe, or an entry of the project.
     pub file: String,
     pub picture: Picture,
     pub adjust: Adjust,
     texture: Arc<OnceLock<Texture>>,
-    /// What was made of it as a brush's tip.
+    /// The stamps made of it when it is a brush's tip.
     stamps: Arc<StampCache>,
 }
 
@@ -61,8 +61,8 @@ impl PictureSource {
     }
     /// The adjusted texture.
     ///
-    /// Made by the thread that first asks, without helpers: a worker waiting for helpers here could be handed a tile
-    /// that waits for this very texture.
+    /// Made by the calling thread alone: a worker that waited for others here could be given a tile that waits for this
+    /// same texture.
     pub fn texture(&self) -> &Texture {
         self.texture.get_or_init(|| Texture::new(&self.adjust.apply(&self.picture)))
     }
@@ -101,7 +101,7 @@ impl PlacedImage {
             (Patches::default(), Bilinear::default(), Antialias::default());
         let first = |y: i32| (y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize;
         if margin == 0 && width == TILE {
-            // The rows of a whole tile lie end to end: what the next one reads is asked for while this one is.
+            // The rows of a whole tile are contiguous: the next row is prefetched while this one is read.
             bilinear.row(texture, &positions.x, &positions.y, self.outside, &mut pixels[first(area.y0)..]);
             return Tile::from_pixels(pixels.into_flattened());
         }
@@ -207,7 +207,7 @@ mod tests {
     fn rotation_is_counter_clockwise_as_seen() {
         let size = Size::new(200, 200);
         let placement = Placement { rotation: 90.0, ..Placement::covering(size) };
-        // The picture's right end must be seen at the top of the canvas.
+        // The picture's right end must be at the top of the canvas.
         let texel = placement.texels_from_canvas(size, size).transform_point2(vec2(100.0, 10.0));
         assert!((texel - vec2(190.0, 100.0)).length() < 1e-3, "{texel}");
     }

@@ -51,7 +51,8 @@ impl Patches {
     }
 }
 
-/// The links of a row's pixels; off the surface, where D is smooth too, toward neighbours that are off it as well.
+/// The links of a row's pixels. Off the surface D is smooth too: pixels there are linked to neighbours that are also
+/// off it.
 fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
     let (x1, map) = (x0 + bits.len() as i32, surface.size().rect());
     if map.contains(x0, y) && map.contains(x1 - 1, y) {

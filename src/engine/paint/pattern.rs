@@ -1,5 +1,5 @@
-//! Patterns: greys made by formulas, for tips and for grain.
-//! Floor 3. The same bytes every time; nothing here is drawn by hand or shipped as a file.
+//! Patterns: greys from formulas, for tips and for grain. Floor 3. They are the same bytes every time; none is drawn by
+//! hand or shipped as a file.
 
 use crate::math::{Size, Vec2, hash, noise, vec2};
 use crate::raster::Plane;
@@ -35,8 +35,8 @@ impl Pattern {
     /// Side of that square, texels.
     pub const SIDE: u32 = 512;
 
-    /// Greys in `[0, 1]`; opposite sides meet. Of paper each grey takes the same area, so that a level is a share of
-    /// it.
+    /// Greys in `[0, 1]`; opposite sides meet. In paper every grey covers the same area, so that a level is a share of
+    /// the area.
     pub fn plane(self, seed: u32) -> Plane<f32> {
         let cells = Self::CELLS as f32;
         let side = Size::new(Self::SIDE, Self::SIDE);
@@ -124,7 +124,7 @@ pub fn bristles(count: u32, seed: u32, side: u32) -> Plane<f32> {
         let r = ((i as f32 + 0.2 + 0.6 * chance(0)) / count as f32).sqrt();
         let (sin, cos) = (i as f32 * GOLDEN_ANGLE + 0.5 * chance(1)).sin_cos();
         let radius = (0.55 + 0.65 * chance(2)) / (count as f32).sqrt();
-        // Within the disc whole.
+        // Wholly within the disc.
         let center = vec2(cos, sin) * r * (1.0 - radius).max(0.0);
         hair(&mut plane, center * half + half, radius * half, 0.35 + 0.65 * chance(3));
     }
@@ -134,7 +134,7 @@ pub fn bristles(count: u32, seed: u32, side: u32) -> Plane<f32> {
 /// The angle between one seed of a sunflower and the next.
 const GOLDEN_ANGLE: f32 = 2.399_963_2;
 
-/// Lays one hair's end over the others: round, soft, the denser one showing.
+/// Draws one hair's end over the others: round and soft; the denser one shows.
 fn hair(plane: &mut Plane<f32>, center: Vec2, radius: f32, density: f32) {
     let (low, high) = ((center - radius).floor().max(Vec2::ZERO), (center + radius).ceil());
     for y in low.y as usize..(high.y as usize).min(plane.height()) {

@@ -1,4 +1,4 @@
-//! Which stroke stands under a point, and a stroke in another place or style.
+//! Finds the stroke under a point, and makes copies of a stroke in another place or style.
 //! Floor 3.
 
 use super::brush::Brush;
@@ -8,16 +8,16 @@ use crate::math::Vec2;
 use crate::raster::{BlendMode, TILE, TileAt, TileGrid};
 use std::sync::Arc;
 
-/// A pixel is on a stroke from this alpha on, of 255: faint rims are hard to see and easy to hit.
+/// The least alpha of 255 that counts as part of a stroke: faint rims are hard to see but easy to hit.
 const LEAST_ALPHA: u8 = 16;
 
-/// The topmost of some strokes that can be seen at a canvas point, by its place among them.
+/// The index of the topmost of some strokes that is visible at a canvas point.
 pub fn topmost_at(strokes: &[Arc<Stroke>], scene: &Scene, at: Vec2) -> Option<usize> {
     strokes.iter().rposition(|stroke| stroke.is_at(scene, at))
 }
 
 impl Stroke {
-    /// The stroke's paint can be seen at a canvas point, bent as it is.
+    /// Whether the stroke's paint, bent by the surface, is visible at a canvas point.
     pub fn is_at(self: &Arc<Self>, scene: &Scene, at: Vec2) -> bool {
         let pixel = at.floor().as_ivec2();
         let tile = TileAt::of_pixel(pixel.x, pixel.y);
@@ -28,7 +28,7 @@ impl Stroke {
         let rendered = render_tile(&[self.as_paint()], scene, tile);
         rendered.is_some_and(|tile| tile.bytes().get((y * TILE + x) * 4 + 3).is_some_and(|&a| a >= LEAST_ALPHA))
     }
-    /// What the stroke covers, as paint of its own on transparency: also that of one that erases or blends otherwise.
+    /// The stroke as plain paint on transparency, also if it erases or has another blend mode.
     pub fn covered(self: &Arc<Self>, scene: &Scene) -> TileGrid {
         let paint = [self.as_paint()];
         let mut grid = TileGrid::for_rect(self.bounds(scene));
@@ -37,7 +37,7 @@ impl Stroke {
         }
         grid
     }
-    /// The stroke as it would be seen on nothing.
+    /// The stroke as it looks on a transparent layer.
     fn as_paint(self: &Arc<Self>) -> Arc<Stroke> {
         let brush = self.brush();
         if !brush.erases && !brush.keeps_alpha && brush.blend == BlendMode::Normal {
@@ -46,7 +46,7 @@ impl Stroke {
         let plain = Brush { erases: false, keeps_alpha: false, blend: BlendMode::Normal, ..brush.clone() };
         Arc::new(self.with_brush(plain))
     }
-    /// The same stroke elsewhere: every dab bends anew where it comes to stand.
+    /// The same stroke elsewhere: every dab bends at its new position.
     pub fn moved(&self, by: Vec2) -> Stroke {
         let samples = self.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
         Stroke::new(self.brush().clone(), self.operator(), self.color(), samples)

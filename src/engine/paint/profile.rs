@@ -14,12 +14,12 @@ pub struct RoundProfile {
     per_length: f32,
     /// Width of the box, squared.
     blur_squared: f32,
-    /// The integral up to the centre, which [`RoundProfile::integral`] starts from.
+    /// The integral up to the centre, where [`RoundProfile::integral`] starts.
     start: f32,
 }
 
 impl RoundProfile {
-    /// Narrower falloffs and boxes than this are steps and points: their differences would drown in rounding.
+    /// Falloffs and boxes narrower than this count as steps and points: their differences would be lost in rounding.
     const NARROW: f32 = 5e-4;
 
     /// Hardness and softness in `[0, 1]`.
@@ -30,7 +30,7 @@ impl RoundProfile {
         let (per_length, blur_squared) = (1.0 / length, softness * softness);
         Self { end, length, per_length, blur_squared, start: smoothstep_integral(end * per_length) }
     }
-    /// Beyond this distance coverage is 0 where no pixel's footprint widens it.
+    /// Beyond this distance coverage is 0, apart from the width of a pixel's footprint.
     pub fn outer_radius(&self) -> f32 {
         self.end + 0.5 * self.blur_squared.sqrt()
     }
@@ -50,7 +50,7 @@ impl RoundProfile {
         (self.end - self.length, self.end)
     }
     /// [`RoundProfile::mean`] where the box lies within the falloff: the mean of a cubic over a width is its value in
-    /// the middle and a 24th of its curvature times the width's square. So no width need be known, only its square.
+    /// the middle and a 24th of its curvature times the width's square. So only the square of the width is needed.
     #[inline(always)]
     pub fn mean_in_falloff(&self, r: f32, width_squared: f32) -> f32 {
         let v = (self.end - r) * self.per_length;

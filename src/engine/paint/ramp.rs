@@ -3,9 +3,9 @@
 
 use super::gradient::GradientStop;
 
-/// Stops made ready: sorted, with the integral of the premultiplied colour up to each.
+/// The stops, sorted, with the integral of the premultiplied colour up to each.
 pub struct Ramp {
-    /// One for each interval between neighbouring stops that is longer than nothing.
+    /// One for each interval of nonzero length between neighbouring stops.
     pieces: Vec<RampPiece>,
     /// Premultiplied, before the first piece and after the last.
     first: [f32; 4],
@@ -28,7 +28,7 @@ struct RampPiece {
 impl RampPiece {
     fn between(from: GradientStop, to: GradientStop, before: [f64; 4]) -> Self {
         let (p, q) = (from.color.to_f32(), to.color.to_f32());
-        // Alpha itself is linear: its factor stays 1, which the fourth entry of `weight` says.
+        // Alpha itself is linear: its factor, the fourth entry of `weight`, stays 1.
         let weight = |v: [f32; 4], i: usize| if i == 3 { 1.0 } else { v[3] };
         Self {
             start: from.t,
@@ -68,7 +68,7 @@ impl Ramp {
         }
         Some(Self { pieces, first, last })
     }
-    /// The piece that holds `t`, or the colour that stands before the first or after the last.
+    /// The piece that holds `t`, or the colour before the first or after the last piece.
     fn piece(&self, t: f32) -> Result<&RampPiece, [f32; 4]> {
         let i = self.pieces.partition_point(|p| p.start <= t);
         match i.checked_sub(1).and_then(|i| self.pieces.get(i)) {
@@ -90,7 +90,7 @@ impl Ramp {
         if width.is_nan() || width < 1e-4 {
             return self.at(t);
         }
-        // A footprint wider than this sees the two ends only; the bound keeps infinities out.
+        // A footprint wider than this covers only the two ends; the bound keeps infinities out.
         let half = width.min(1e6) / 2.0;
         let t = t.max(-1e6).min(1e6);
         let (low, high) = (self.integral(t - half), self.integral(t + half));

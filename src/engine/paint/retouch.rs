@@ -1,7 +1,7 @@
-//! Smudge, blur and clone: brushes that work on the paint that is there. Dab by dab through the same bent footprint as
-//! paint, each on what the last one left, in f32, rounded to bytes as it is shown. Floor 3. `drag` says where smudge
-//! and clone take a pixel's colour from, `soften` what blur makes of it, `pixels` holds the pixels. Not here: what the
-//! pen did (`tools`).
+//! Smudge, blur and clone: brushes that change existing paint. Dabs have the same bent footprint as paint; each works
+//! on the result of the last, in f32, which is rounded to bytes only for display. Floor 3. `drag` finds where smudge
+//! and clone take a pixel's colour from, `soften` computes the blur, `pixels` holds the pixels. Not here: the pen
+//! (`tools`).
 
 mod drag;
 mod pixels;
@@ -27,16 +27,16 @@ use rayon::prelude::*;
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// Strokes of retouching drawn together: one, or one and its mirror images. Their dabs take turns.
+/// Retouching strokes that are drawn together: one, or one and its mirror images. Their dabs take turns.
 ///
-/// However their samples come in batches, the pixels that are left are the same.
+/// The resulting pixels do not depend on how the samples are batched.
 pub struct ActiveRetouching {
     scene: Scene,
     /// What clone copies from.
     source: TileGrid,
     retouched: RetouchPixels,
     strokes: Vec<RetouchStroke>,
-    /// Where the end of the curve was shown, which the next sample may bend.
+    /// Where the end of the curve was shown, which the next sample may still change.
     tail: BTreeSet<TileAt>,
 }
 
@@ -47,15 +47,15 @@ struct RetouchStroke {
     walker: DabWalker,
     /// From a pixel to what is cloned onto it, px.
     offset: Vec2,
-    /// Where it may go; known from its first sample on.
+    /// Where it may paint; known from its first sample on.
     part: Option<CanvasPart>,
     progress: DabQueue,
 }
 
-/// How far a stroke has been rubbed in.
+/// The dabs of a stroke that are still to be applied.
 #[derive(Clone, Default)]
 struct DabQueue {
-    /// Dabs whose turn has not come.
+    /// Dabs that were not applied yet.
     waiting: VecDeque<Dab>,
     before: Option<Dab>,
 }
@@ -70,9 +70,9 @@ struct TileDab {
 }
 
 impl ActiveRetouching {
-    /// Begins strokes like these, whose samples do not count.
+    /// Starts strokes with the settings of these; their samples are ignored.
     ///
-    /// * `offsets`: of each stroke, from a pixel to what is cloned onto it, px; 0 where none is said.
+    /// * `offsets`: of each stroke, from a pixel to what is cloned onto it, px; 0 where none is given.
     /// * `base`: the layer's pixels. `source`: what clone copies from, as it was before the stroke.
     pub fn new(strokes: &[Stroke], offsets: &[Vec2], base: TileGrid, source: TileGrid, scene: &Scene) -> Self {
         let offsets = offsets.iter().copied().filter(|offset| offset.is_finite()).chain(std::iter::repeat(Vec2::ZERO));
@@ -87,7 +87,7 @@ impl ActiveRetouching {
         let strokes = strokes.iter().zip(offsets).map(stroke).collect();
         Self { scene: scene.clone(), source, retouched: RetouchPixels::new(base), strokes, tail: BTreeSet::new() }
     }
-    /// Takes the next samples of each stroke in; gives the tiles of the layer that look different now.
+    /// Takes the next samples of each stroke; returns the tiles of the layer that changed.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         for (stroke, samples) in self.strokes.iter_mut().zip(samples) {
             stroke.take(samples, &self.scene);
@@ -106,7 +106,7 @@ impl ActiveRetouching {
         let changed: Vec<TileAt> = changed.into_iter().collect();
         changed.par_iter().map(tile).collect()
     }
-    /// The pixels with the dabs that are due if no more samples come.
+    /// The pixels with the dabs that are due if the strokes end here.
     fn with_tail(&mut self) -> RetouchPixels {
         let mut retouched = self.retouched.clone();
         let mut rests: Vec<DabQueue> = self.strokes.iter().map(RetouchStroke::rest).collect();
@@ -134,7 +134,7 @@ impl RetouchStroke {
         rest.waiting.extend(self.walker.tail());
         rest
     }
-    /// Rubs the next dab in, if there is one; the tiles that it changed.
+    /// Applies the next dab, if there is one; returns the tiles that it changed.
     fn rub_next(
         &self,
         progress: &mut DabQueue,
@@ -170,7 +170,7 @@ impl RetouchStroke {
     fn limits(&self) -> &CanvasPart {
         self.part.as_ref().unwrap_or(&CanvasPart::Whole)
     }
-    /// What a dab covers of a tile; `None` where it covers nothing.
+    /// The part of a tile that a dab covers; `None` if it covers nothing.
     fn touch(&self, placed: &PlacedDab, at: TileAt, scratch: &mut DabScratch, scene: &Scene) -> Option<TileDab> {
         let mut stroke_tile = StrokeTile::one_color();
         let grain = self.stroke_dabs.grain(at);

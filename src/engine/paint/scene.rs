@@ -1,4 +1,4 @@
-//! How a mark reads what it is made of.
+//! How a mark samples its source.
 //! Floor 3.
 
 pub use crate::surface::Scene;

@@ -1,24 +1,24 @@
-//! Calming the hand: the pen's samples drawn into a smoother line while they come, and the line finished when the pen
+//! The stabilizer: turns the pen's samples into a smoother line as they arrive, and completes the line when the pen
 //! lifts. Floor 3.
 
 use super::brush::Stabilizer;
 use super::stroke::Sample;
 use crate::math::Vec2;
 
-/// After so many px of the pen's way the weight of a [`Stabilizer::Average`] is what is left of the past.
+/// The weight of a [`Stabilizer::Average`] is the share of the past that is left after the pen has moved this many px.
 const WEIGHED_PX: f32 = 10.0;
-/// A heavier past would hold the line where it began.
+/// A greater weight would keep the line where it began.
 const MOST_WEIGHT: f32 = 0.99;
 /// The string is pulled in steps no longer than this, so that the line does not depend on how densely the pen reports.
 const PULL_PX: f32 = 1.0;
-/// Steps between two samples: a pen that leaps leaves a straighter line.
+/// The most steps between two samples: a pen that leaps leaves a straighter line.
 const MOST_PULLS: f32 = 4096.0;
 
-/// A line that follows the pen.
+/// The stabilized pen: a line that follows the pen.
 #[derive(Clone)]
 pub struct StabilizedPen {
     stabilizer: Stabilizer,
-    /// Where the line ends, and what the pen said last.
+    /// The end of the line, and the last sample of the pen.
     line: Option<(Vec2, Sample)>,
 }
 
@@ -26,9 +26,9 @@ impl StabilizedPen {
     pub fn new(stabilizer: Stabilizer) -> Self {
         Self { stabilizer, line: None }
     }
-    /// Takes the pen's next sample in; `None` while the line does not move.
+    /// Takes the pen's next sample; `None` while the line does not move.
     ///
-    /// A sample whose place is not finite is passed on as it is, for the stroke to skip.
+    /// A sample whose position is not finite is passed on unchanged; the stroke skips it.
     pub fn push(&mut self, pen: Sample) -> Option<Sample> {
         if self.stabilizer == Stabilizer::None || !pen.at.is_finite() {
             return Some(pen);
@@ -42,12 +42,12 @@ impl StabilizedPen {
             Stabilizer::Average { weight } => trailed(end, last.at, pen.at, weight),
             Stabilizer::String { length_px } => pulled(end, last.at, pen.at, length_px),
         };
-        // A hostile leap may leave f32: the line stays.
+        // A hostile leap may overflow f32: the line stays.
         let at = if at.is_finite() { at } else { end };
         self.line = Some((at, pen));
         (at != end).then_some(Sample { at, ..pen })
     }
-    /// The rest of the way to where the pen lifts; `None` where the line is there already.
+    /// The rest of the way to where the pen lifts; `None` if the line is there already.
     pub fn finish(&mut self) -> Option<Sample> {
         let (end, last) = self.line.take()?;
         (end != last.at).then_some(last)
@@ -63,12 +63,12 @@ fn trailed(end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
     if lag <= 0.0 || length <= 0.0 {
         return if lag <= 0.0 { to } else { end };
     }
-    // How far behind it comes to trail at last.
+    // Its final distance behind the pen.
     let behind = way / length * lag;
     to - behind + (end - from + behind) * (-length / lag).exp()
 }
 
-/// The end of a string of this length whose other end is pulled straight from `from` to `to`.
+/// The end of a string of this length when its other end is pulled straight from `from` to `to`.
 fn pulled(end: Vec2, from: Vec2, to: Vec2, length_px: f32) -> Vec2 {
     let length_px = length_px.max(0.0);
     let steps = (from.distance(to) / PULL_PX).ceil().max(1.0).min(MOST_PULLS) as usize;
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::math::vec2;
 
-    /// The calm line of a pen, finished.
+    /// The complete stabilized line of a pen.
     fn line(stabilizer: Stabilizer, pens: &[Vec2]) -> Vec<Vec2> {
         let mut stabilized = StabilizedPen::new(stabilizer);
         let mut line: Vec<Vec2> = pens.iter().filter_map(|&at| stabilized.push(Sample::at(at))).map(|s| s.at).collect();

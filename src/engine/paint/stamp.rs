@@ -1,5 +1,5 @@
-//! Picture tips: a picture made ready to be stamped, its softness blurred in.
-//! Floor 3. Not here: where a stamp lands (`dab`), reading pictures under a deformation (`raster::sampler`).
+//! Picture tips: a picture prepared as a stamp, blurred by its softness.
+//! Floor 3. Not here: placing a stamp (`dab`), reading pictures through a deformation (`raster::sampler`).
 
 use super::dab_walker::Dab;
 use super::image::PictureSource;
@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// A tip as it is sampled. Its picture covers the square of the dab's diameter; softness makes it larger.
 pub struct TipStamp {
     texture: Texture,
-    /// It brings its own colours; else only its alpha counts.
+    /// Whether it has its own colours; otherwise only its alpha counts.
     pub is_colored: bool,
     /// Texels of `texture` along the radius of a dab.
     texels_per_radius: f32,
@@ -25,13 +25,13 @@ pub struct StampCache {
     grains: Mutex<Vec<([u32; 2], Arc<Texture>)>>,
 }
 
-/// Stamps kept for one picture: the steps of one brush whose softness changes, and a few of others.
+/// Cached stamps of one picture: the steps of one brush whose softness varies, and a few of others.
 const KEPT: usize = STEPS as usize + 8;
-/// Softnesses in between are mixed of the two nearest of these steps, which nobody can tell from the true blur.
+/// Softnesses in between are mixed from the two nearest of these steps; the difference to the true blur is invisible.
 const STEPS: u32 = 12;
 
 impl StampCache {
-    /// What was made of the picture as grain, by its levels.
+    /// The textures made of the picture as grain, by levels.
     pub fn grains(&self) -> &Mutex<Vec<([u32; 2], Arc<Texture>)>> {
         &self.grains
     }
@@ -43,7 +43,7 @@ impl StampCache {
         if let Some(stamp) = find(&lock()) {
             return stamp;
         }
-        // Unlocked: two threads may both make it, and make the same.
+        // Without the lock: two threads may both compute it; the results are equal.
         let stamp = Arc::new(TipStamp::new(source.texture(), softness));
         let mut made = lock();
         if made.len() >= KEPT {
@@ -87,7 +87,7 @@ impl SoftenedStamps {
     pub fn is_colored(&self) -> bool {
         self.at(0.0).0.is_colored
     }
-    /// How far a dab reaches with the widest of its stamps.
+    /// The extent of a dab with the widest of its stamps.
     pub fn extent(&self, dab: &Dab) -> DabExtent {
         let (below, above) = self.at(dab.softness);
         above.map_or(below, |(above, _)| above).extent(dab)
@@ -129,7 +129,7 @@ impl TipStamp {
             * Affine2::from_scale_angle_translation(texels_per_px, dab.rotation_rad, Vec2::ZERO)
             * Affine2::from_translation(-dab.at)
     }
-    /// How far the picture's corners reach, and a texel beyond.
+    /// The distance of the picture's corners, plus a texel.
     pub fn extent(&self, dab: &Dab) -> DabExtent {
         let px_per_texel = dab.radius / self.texels_per_radius;
         let corner = self.texture.size().center().length() + 1.0;
@@ -163,7 +163,7 @@ fn softened(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
     Picture::srgb8(size, straight.collect()).unwrap_or_else(transparent)
 }
 
-/// What stands for a picture that cannot be: nothing is painted.
+/// A transparent picture in place of one that cannot be made: nothing is painted.
 fn transparent() -> Picture {
     let texels: Arc<[[u8; 4]]> = Arc::new([[0; 4]]);
     Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels), encoded: None }
@@ -197,7 +197,7 @@ mod tests {
         let stamp = StampCache::of(&source(Size::new(40, 20), |_, _| [255; 4]), 0.0);
         let upright = stamp.texels_from_canvas(&dab(10.0, 0.0));
         assert!((upright.transform_point2(vec2(60.0, 60.0)) - vec2(40.0, 10.0)).length() < 1e-4);
-        // A quarter turn: the right end of the tip is seen at the top.
+        // A quarter turn: the right end of the tip is at the top.
         let turned = stamp.texels_from_canvas(&dab(10.0, std::f32::consts::FRAC_PI_2));
         assert!((turned.transform_point2(vec2(50.0, 50.0)) - vec2(40.0, 10.0)).length() < 1e-4);
     }

@@ -1,5 +1,5 @@
 //! The brush tool: a stroke is a list of dabs, each a footprint bent around its own centre (SF sec. 5.2, fig. 7).
-//! Floor 3. Not here: dabs from samples (`walker`), one dab on a tile (`dab`).
+//! Floor 3. Not here: dabs from samples (`dab_walker`), one dab on a tile (`dab`).
 
 mod active;
 pub(super) mod dabs;
@@ -17,7 +17,7 @@ use crate::surface::objects::CanvasPart;
 use dabs::StrokeDabs;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// One reading of the pen.
+/// One point of the pen's path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Canvas px.
@@ -37,7 +37,7 @@ impl Sample {
     }
 }
 
-/// One stroke of a stroke layer. Never changed once made: the dabs found from it are kept beside it.
+/// One stroke of a stroke layer. It is never changed, so its dabs are cached with it.
 #[derive(Clone)]
 pub struct Stroke {
     brush: Brush,
@@ -47,11 +47,11 @@ pub struct Stroke {
     found: Arc<Mutex<StrokeCache>>,
 }
 
-/// What was found of a stroke on a canvas, kept beside it.
+/// What was computed of a stroke on a canvas.
 #[derive(Default)]
 struct StrokeCache {
     stroke_dabs: Option<Arc<StrokeDabs>>,
-    /// Bounds that were known before the dabs: a stroke in hand knows its own.
+    /// Bounds that were known before the dabs: active strokes know theirs.
     bounds: Option<(Scene, Rect)>,
 }
 
@@ -77,16 +77,16 @@ impl Stroke {
         let known = self.found().bounds.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, bounds)| *bounds);
         known.unwrap_or_else(|| self.stroke_dabs(scene).bounds()).intersect(scene.size.rect())
     }
-    /// The stroke may paint on a tile.
+    /// Whether the stroke may paint on a tile.
     pub fn touches(&self, scene: &Scene, at: TileAt) -> bool {
         self.stroke_dabs(scene).touches(at)
     }
-    /// The stroke's dabs on a canvas, found once.
+    /// The stroke's dabs on a canvas, computed once.
     fn stroke_dabs(&self, scene: &Scene) -> Arc<StrokeDabs> {
         if let Some(stroke_dabs) = self.found().stroke_dabs.as_ref().filter(|stroke_dabs| stroke_dabs.is_on(scene)) {
             return stroke_dabs.clone();
         }
-        // Unlocked: two threads may both find them, and find the same.
+        // Without the lock: two threads may both compute them; the results are equal.
         let stroke_dabs = Arc::new(StrokeDabs::of(self, scene));
         self.found().stroke_dabs = Some(stroke_dabs.clone());
         stroke_dabs
@@ -97,7 +97,7 @@ impl Stroke {
 }
 
 impl Stroke {
-    /// Paints the stroke over a tile in flight. Flow is per dab; opacity caps the whole.
+    /// Paints the stroke over a tile. Flow applies per dab; opacity caps the whole stroke.
     fn paint(&self, scene: &Scene, at: TileAt, pixels: &mut PlanarTile, scratch: &mut DabScratch) {
         let stroke_dabs = self.stroke_dabs(scene);
         let mut stroke_tile = stroke_dabs.stroke_tile();

@@ -1,5 +1,5 @@
-//! What one stroke lays on one tile, dab by dab, in f32, before its opacity caps it and it meets the layer.
-//! Floor 3.
+//! What one stroke has painted on one tile: its dabs accumulate in f32 before the opacity caps them and the result is
+//! blended with the layer. Floor 3.
 
 use super::brush::Brush;
 use crate::math::srgb::Color;
@@ -8,7 +8,7 @@ use crate::raster::tile::TILE_AREA;
 use crate::raster::{BlendMode, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
 use crate::surface::objects::CanvasPart;
 
-/// The paint of a stroke, still wet.
+/// The accumulated paint of a stroke on a tile.
 #[derive(Clone)]
 pub enum StrokeTile {
     /// Coverage by the stroke's one colour, `[0, 1]`, row by row.
@@ -17,28 +17,28 @@ pub enum StrokeTile {
     Colors(PlanarTile),
 }
 
-/// What one dab brings to a wash.
+/// What one dab adds to a stroke tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DabPaint {
-    /// Coverage that it adds where its footprint is whole, `[0, 1]`.
+    /// Coverage that it adds where its footprint is 1, `[0, 1]`.
     pub flow: f32,
-    /// The coverage that it may bring a pixel to, `[0, 1]`; beyond it only colours mix.
+    /// The greatest coverage that it gives a pixel, `[0, 1]`; above it only colours mix.
     pub ceiling: f32,
     /// Opaque; `None` where a stamp brings its own.
     pub color: Option<Color>,
 }
 
-/// How a dried wash meets the pixels of its layer.
+/// How a stroke tile is blended with the pixels of its layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrokeBlend {
-    /// Of one-colour washes; of others only its alpha counts.
+    /// The colour of one-colour tiles; of others only its alpha counts.
     pub color: Color,
     /// Of the whole stroke, `[0, 1]`.
     pub opacity: f32,
     pub mode: BlendMode,
-    /// Takes away, instead.
+    /// Erases instead of painting.
     pub erases: bool,
-    /// Only where there is paint, whose coverage stays.
+    /// Paints only where there is paint, and keeps its coverage.
     pub keeps_alpha: bool,
 }
 
@@ -59,7 +59,7 @@ impl StrokeTile {
     pub fn is_one_color(&self) -> bool {
         matches!(self, StrokeTile::OneColor(_))
     }
-    /// Coverage of `n` pixels from the `start`th on; nothing of a wash of colours.
+    /// Coverage of `n` pixels from the `start`th on; empty for a tile of colours.
     pub fn coverage(&mut self, start: usize, n: usize) -> &mut [f32] {
         match self {
             StrokeTile::OneColor(coverage) => coverage.get_mut(start..start + n).unwrap_or_default(),
@@ -97,7 +97,7 @@ impl StrokeTile {
             }
         }
     }
-    /// Takes away what lies outside of a part of the canvas.
+    /// Removes what lies outside a part of the canvas.
     pub fn limit_to(&mut self, part: &CanvasPart, at: TileAt) {
         if part.is_whole() {
             return;
@@ -116,10 +116,10 @@ impl StrokeTile {
             }
         }
     }
-    /// Lays the dried paint on pixels.
+    /// Blends the paint over pixels.
     pub fn blend_over(&self, pixels: &mut PlanarTile, manner: StrokeBlend) {
         if manner.erases {
-            // What may not lose its coverage cannot be erased.
+            // Paint that keeps its coverage cannot be erased.
             if !manner.keeps_alpha {
                 self.erase_from(pixels, manner.opacity * f32::from(manner.color.a) / 255.0);
             }
@@ -166,7 +166,7 @@ impl StrokeTile {
     }
 }
 
-/// Coverage of weight f added up to a ceiling; what is beyond the ceiling already stays.
+/// Adds coverage of weight f up to a ceiling; what is already above the ceiling stays.
 #[inline(always)]
 fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
     let room = ceiling - coverage;
@@ -205,7 +205,7 @@ crate::widest! {
             [r[i], g[i], b[i], a[i]] = mixed([r[i], g[i], b[i], a[i]], flow * f32::from(s[3]), source, ceiling);
         }
     }
-    /// Lays one premultiplied colour over a row, as far as each pixel is covered.
+    /// Blends one premultiplied colour over a row, weighted by each pixel's coverage.
     fn lay_coverage(coverage: &[f32; TILE], color: [f32; 4], row: &mut PixelRow) {
         for (plane, c) in row.rgb.iter_mut().chain([&mut row.a]).zip(color) {
             for (p, a) in plane.iter_mut().zip(coverage) {

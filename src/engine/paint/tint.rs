@@ -8,7 +8,7 @@ use crate::math::{
     srgb::{Color, quantise},
 };
 
-/// Dabs of this brush differ in colour.
+/// Whether dabs of this brush differ in colour.
 pub fn varies(brush: &Brush) -> bool {
     let jitter = brush.jitter;
     let jitters = [jitter.hue_degrees, jitter.saturation, jitter.value].iter().any(|&v| v > 0.0);

@@ -1,5 +1,5 @@
 //! Which features of the surface are enhanced: the scales of curvature, their weights and their direction (RS sec. 4).
-//! Floor 3. Curvature itself is the surface's; what κ then does is `scaling`.
+//! Floor 3. Curvature itself is in `surface`; `scaling` applies κ.
 
 use crate::math::{Vec3, fast, simd::prefetch};
 use crate::surface::{
@@ -41,8 +41,7 @@ impl Default for Features {
 }
 
 impl Features {
-    /// The features of a surface. Its curvature is computed here unless the surface has kept it: ask before going
-    /// parallel.
+    /// The features of a surface. Its curvature is computed here unless it is cached: call this before going parallel.
     pub fn on(&self, surface: &Surface) -> FeatureMap {
         let total: f32 = self.scales.iter().map(|s| s.weight).sum();
         let share = |s: &FeatureScale| if total > 0.0 { s.weight / total } else { 0.0 };
@@ -92,11 +91,11 @@ impl FeatureMap {
             }
         }
     }
-    /// κ depends on the direction of the light.
+    /// Whether κ depends on the direction of the light.
     pub fn is_directional(&self) -> bool {
         matches!(self, Self::Directional { .. })
     }
-    /// Asks for what the rows below will soon read of a row.
+    /// Prefetches a row for the functions below.
     pub fn prefetch(&self, x0: usize, y: usize, width: usize) {
         match self {
             Self::Isotropic(kappa) => prefetch(kappa.steps(x0, y, width)),

@@ -1,4 +1,4 @@
-//! Lights: plain data, so that they can be dragged on the canvas, and where they stand seen from a row of pixels.
+//! Lights: plain data, which can be dragged on the canvas, and their directions from a row of pixels.
 //! Floor 3.
 
 use super::surface_row::{LightDirection, RowValues, SurfaceRow};
@@ -14,7 +14,7 @@ pub struct Light {
     pub intensity: f32,
 }
 
-/// Where the light stands.
+/// The position of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
     /// Infinitely far. `direction` points toward the light, camera space (y up), any length but 0.
@@ -55,7 +55,7 @@ impl RowLight {
     fn point(position: Vec3, radiance: [f32; 3]) -> Self {
         Self { direction: [[0.0; TILE], [0.0; TILE], [1.0; TILE]], radiance, stands: RowLightPosition::At(position) }
     }
-    /// Turns to a row.
+    /// Moves on to a row.
     pub fn turn(&mut self, surface_row: &SurfaceRow) {
         let RowLightPosition::At(position) = self.stands else { return };
         let (surface, columns) = (surface_row.surface, surface_row.x0..surface_row.x0 + surface_row.width);
@@ -65,7 +65,7 @@ impl RowLight {
         let depth = &surface.depth_plane().row(surface_row.y)[columns];
         turn_to_point(first, surface.depth_range_px(), depth, &mut self.direction);
     }
-    /// What κ(ℓ) is asked for.
+    /// The direction for κ(ℓ).
     pub fn toward(&self) -> LightDirection<'_> {
         match self.stands {
             RowLightPosition::Afar(l) => LightDirection::One(l),
@@ -75,7 +75,7 @@ impl RowLight {
 }
 
 impl Light {
-    /// The light as the rows of a tile see it; it is turned to each.
+    /// The light as seen from the rows of a tile; it is updated for each row.
     pub fn row_light(&self) -> RowLight {
         let radiance = self.color.linear().map(|c| c * self.intensity);
         match self.kind {
@@ -94,7 +94,7 @@ crate::widest! {
             let (right, up) = (from_first.x - x as i32 as f32, from_first.y);
             let toward = from_first.z + depth * depth_range_px;
             let squared = right * right + up * up + toward * toward;
-            // A light that touches the pixel shines straight at it.
+            // A light at the pixel itself shines straight at it.
             let per_length = 1.0 / fast::max(squared, f32::MIN_POSITIVE).sqrt();
             (*lx, *ly, *lz) = (right * per_length, up * per_length, toward * per_length);
             *lz = if squared > 0.0 { *lz } else { 1.0 };

@@ -1,5 +1,5 @@
-//! The radiance-scaling layer: enhances whatever was painted beneath it in its group (RS eq. 3, MATH 5).
-//! Floor 3. Not here: finding what lies beneath (`document::flatten`).
+//! The radiance-scaling layer: enhances everything beneath it in its group (RS eq. 3, MATH 5). Floor 3. Not here:
+//! composing what lies beneath (`document::compose`).
 
 mod row;
 
@@ -40,12 +40,12 @@ impl Default for RadianceScaling {
     }
 }
 
-/// What must be known of the whole composite beneath before one tile of it can be scaled.
+/// What must be known about the whole composite beneath before one tile of it can be scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BackdropStats {
     /// Its greatest luminance over the surface, linear light.
     pub brightest: f32,
-    /// The factor that restores its mean luminance: [`LuminanceSums::gain`]; 1 where the mean need not stay.
+    /// The factor that restores its mean luminance: [`LuminanceSums::gain`]; 1 if the mean need not be kept.
     pub gain: f32,
 }
 
@@ -80,7 +80,7 @@ impl RadianceScaling {
         self.for_rows(scene, at, |y, kappa, coverage| {
             let Some(row) = rows.get_mut(y) else { return };
             if gain != 1.0 {
-                // Off the surface nothing is gained.
+                // Off the surface the factor is 1.
                 let mut gains = [1.0; TILE];
                 gains.iter_mut().zip(coverage).for_each(|(g, &c)| *g += (gain - 1.0) * f32::from(c) / 255.0);
                 scaler.apply_with_gains(row, kappa, &gains);

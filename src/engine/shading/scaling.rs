@@ -38,7 +38,7 @@ fn ratio(e: f32, delta: f32, alpha: f32) -> f32 {
 }
 
 impl Scaling {
-    /// The paper's α where nothing is said: convexities are mostly brightened (RS fig. 3).
+    /// The paper's default α: convexities are mostly brightened (RS fig. 3).
     pub const ALPHA: f32 = 0.2;
     /// Leaves every term alone.
     pub const NONE: Scaling = Scaling::new(Self::ALPHA, 0.0);
@@ -47,7 +47,7 @@ impl Scaling {
     pub const fn new(alpha: f32, gamma: f32) -> Self {
         Self { alpha, gamma_convex: gamma, gamma_concave: gamma }
     }
-    /// σ is 1 everywhere.
+    /// Whether σ is 1 everywhere.
     pub fn is_none(&self) -> bool {
         self.gamma_convex == 0.0 && self.gamma_concave == 0.0
     }
@@ -93,7 +93,7 @@ impl Reference {
             Reference::Auto => largest,
             Reference::Value(value) => value,
         };
-        // A wholly black picture has no reflectance to speak of: any δ will do.
+        // A wholly black picture has no reflectance: any δ is right.
         if value > 0.0 && value.is_finite() { value.max(f32::MIN_POSITIVE) } else { 1.0 }
     }
 }

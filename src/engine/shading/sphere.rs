@@ -1,4 +1,4 @@
-//! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that tells the colour of every normal.
+//! A lit sphere (Sloan et al. 2001; "matcap"): a painted sphere that gives the colour of every normal.
 //! Floor 3.
 
 use crate::math::{Size, Vec2, Vec3, srgb, vec2, vec3};
@@ -9,10 +9,10 @@ use std::sync::{Arc, LazyLock, OnceLock};
 /// A picture whose inscribed disc is the sphere seen orthographically.
 #[derive(Clone)]
 pub struct LitSphere {
-    /// The name it goes by in the document.
+    /// Its name in the document.
     pub file: String,
     pub picture: Picture,
-    /// Shared by clones, made when first asked for.
+    /// Shared by clones, made on first use.
     light: Arc<OnceLock<SphereLight>>,
 }
 
@@ -34,7 +34,8 @@ impl LitSphere {
 /// Linear light of a sphere by its projected normal.
 pub struct SphereLight {
     size: Size,
-    /// Beyond the disc stands the nearest colour inside, so that lookups at the rim never see the picture's ground.
+    /// Beyond the disc the nearest colour inside is repeated, so that lookups at the rim never read the picture's
+    /// background.
     texels: Vec<[f32; 3]>,
     /// The greatest luminance on the disc.
     brightest: f32,
@@ -43,7 +44,8 @@ pub struct SphereLight {
 impl SphereLight {
     fn new(picture: &Picture) -> Self {
         let (width, height) = (picture.size.width as usize, picture.size.height as usize);
-        // A worker that waited for helpers could be handed a tile that waits for this very sphere: it works alone.
+        // This runs on one thread: a worker that waited for others could be given a tile that waits for this same
+        // sphere.
         let texel = |i: usize| nearest_inside(picture, i % width, i / width);
         let texels: Vec<[f32; 3]> = match rayon::current_thread_index() {
             Some(_) => (0..width * height).map(texel).collect(),
@@ -79,7 +81,7 @@ fn nearest_inside(picture: &Picture, x: usize, y: usize) -> [f32; 3] {
     let (w, h) = (picture.size.width as f32, picture.size.height as f32);
     // In units of the disc's radius, which may differ along x and y as the picture's sides do.
     let at = vec2((x as f32 + 0.5) / w * 2.0 - 1.0, (y as f32 + 0.5) / h * 2.0 - 1.0);
-    // A texel's width from the rim the paint of the sphere ends for certain.
+    // The outermost texel of the rim may be mixed with the background, so it is left out.
     let most = 1.0 - 1.5 / w.min(h);
     let inside = if at.length() > most { at * (most.max(0.0) / at.length()) } else { at };
     let index = |v: f32, n: f32| (((v * 0.5 + 0.5) * n) as usize).min(n as usize - 1);
@@ -107,7 +109,7 @@ fn clay() -> Picture {
 mod tests {
     use super::*;
 
-    /// A disc whose red is x, whose green is y (down), on a blinding ground.
+    /// A disc whose red is x, whose green is y (down), on a bright background.
     fn disc(side: u32) -> LitSphere {
         let color = |i: u32| {
             let at = |v: u32| (v as f32 + 0.5) / side as f32;

@@ -1,5 +1,5 @@
-//! What one row of a tile offers to light: normals, κ, and where it lies.
-//! Floor 3. Materials read it; the maps themselves are the surface's.
+//! One row of a tile on the surface, for shading: normals, κ and position. Floor 3. Materials read it; the maps
+//! themselves are in `surface`.
 
 use super::{features::FeatureMap, scaling::Scaling};
 use crate::math::{Vec3, simd::prefetch, vec3};
@@ -35,7 +35,7 @@ pub enum LightDirection<'a> {
 }
 
 impl LightDirection<'_> {
-    /// Leaves κ isotropic whatever λ is.
+    /// Makes κ isotropic whatever λ is.
     pub const VIEWER: LightDirection<'static> = LightDirection::One(Vec3::Z);
 }
 
@@ -47,7 +47,7 @@ impl<'a> SurfaceRow<'a> {
         surface_row.move_to(y);
         surface_row
     }
-    /// Goes to another row of the tile.
+    /// Moves on to another row of the tile.
     pub fn move_to(&mut self, y: usize) {
         self.y = y;
         let columns = self.x0..self.x0 + self.width;
@@ -57,7 +57,7 @@ impl<'a> SurfaceRow<'a> {
         self.normal[1].iter_mut().zip(nbar_y).for_each(|(up, down)| *up = -down);
         self.prefetch(y + 2);
     }
-    /// Asks for what a row further down will read: it lies a canvas's width away from the one before.
+    /// Prefetches a row further down: it is a canvas's width away in memory.
     fn prefetch(&self, y: usize) {
         if y < self.surface.size().height as usize {
             let columns = self.x0..self.x0 + self.width;
@@ -106,7 +106,7 @@ pub struct RowRelief {
 }
 
 impl Default for RowRelief {
-    /// One to go from row to row with; it knows nothing yet.
+    /// An empty one, to be moved from row to row.
     fn default() -> Self {
         Self { kappa: [0.0; TILE], gammas: None, exponentials: [1.0; TILE], is_isotropic: false }
     }

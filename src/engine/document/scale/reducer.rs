@@ -1,5 +1,5 @@
-//! A document that is made small again and again while it changes: what is the very same is not made small twice.
-//! Floor 4. How one layer is made small is `scale`'s.
+//! Scales a changing document down again and again: parts that did not change are not scaled twice. Floor 4. The
+//! scaling of one layer is in `scale`.
 
 use super::super::{Content, Document, Group, Layer, LayerId};
 use super::CanvasScale;
@@ -7,10 +7,9 @@ use crate::surface::{Surface, SurfaceError};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
-/// Makes documents small by one factor, and remembers the parts of the last one.
+/// Scales documents down by one factor, and remembers the parts of the last one.
 ///
-/// Parts that did not change come back as the very same `Arc`, so that [`diff`](super::super::diff()) names only what
-/// did.
+/// Parts that did not change come back as the same `Arc`, so that [`diff`](super::super::diff()) reports only what did.
 pub struct DocumentReducer {
     factor: f32,
     surface: Option<(Weak<Surface>, Arc<Surface>)>,
@@ -22,7 +21,7 @@ impl DocumentReducer {
     pub fn new(factor: f32) -> Self {
         Self { factor, surface: None, layers: HashMap::new() }
     }
-    /// The document, small: equal to [`Document::scaled`], and failing like it.
+    /// The reduced document: equal to [`Document::scaled`], with the same errors.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
         let Some(scale) = CanvasScale::of(document.size, self.factor) else { return Ok(document.clone()) };
         let surface = document.surface.as_ref().map(|surface| self.surface(surface, &scale)).transpose()?;
@@ -31,9 +30,8 @@ impl DocumentReducer {
         self.layers = layers;
         Ok(Document { size: scale.to, surface, layers: small, ..document.clone() })
     }
-    /// Makes one more part of the document small, so that [`DocumentReducer::of`] finds it made; whether there was one.
-    /// With this a thread that has nothing better to do gets ready in steps; the surface is one of them, half a second
-    /// at 4096².
+    /// Scales one more part of the document in advance for [`DocumentReducer::of`]; returns whether there was one.
+    /// An idle thread can prepare in steps with this; the surface is one of them and takes half a second at 4096².
     pub fn prepare(&mut self, document: &Document) -> bool {
         let Some(scale) = CanvasScale::of(document.size, self.factor) else { return false };
         if let Some(surface) = &document.surface
@@ -41,7 +39,7 @@ impl DocumentReducer {
         {
             return self.surface(surface, &scale).is_ok();
         }
-        // Groups are hollow: they cost nothing once what is in them is known.
+        // Groups cost nothing once their layers are known.
         let is_new = |layer: &&Arc<Layer>| {
             let known = self.layers.get(&layer.id).is_some_and(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
             !known && !matches!(layer.content, Content::Group(_))
@@ -61,7 +59,7 @@ impl DocumentReducer {
         self.surface = Some((Arc::downgrade(surface), small.clone()));
         Ok(small)
     }
-    /// A list of layers, those that are known taken from last time; `next` is what is known from now on.
+    /// Scales a list of layers, taking known ones from last time; `next` collects what is known from now on.
     fn stack(
         &self,
         layers: &[Arc<Layer>],
@@ -71,7 +69,7 @@ impl DocumentReducer {
         let mut small = Vec::with_capacity(layers.len());
         for layer in layers {
             let known = self.layers.get(&layer.id).filter(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
-            // Also where the group itself is known: what is in it must stay known.
+            // Also if the group itself is known: its layers must stay known.
             let inner = match &layer.content {
                 Content::Group(group) => {
                     Some(Group { layers: self.stack(&group.layers, scale, next), ..group.clone() })

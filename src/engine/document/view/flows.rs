@@ -1,4 +1,4 @@
-//! Views of flows: hue is the direction in which a picture is squeezed most, saturation how much, and the lines run
+//! Views of flows: hue is the direction in which a picture is compressed most, saturation the amount, and the lines run
 //! along the direction of least change (SF fig. 2, 3). Floor 4.
 
 use super::{ViewOptions, painted};
@@ -7,7 +7,7 @@ use crate::raster::line_integral::{LineStyle, smeared_noise};
 use crate::raster::{Picture, Plane};
 use crate::surface::{Bend, FlowField, Surface, links};
 
-/// What is shown of one pixel.
+/// What one pixel shows.
 #[derive(Clone, Copy, Default)]
 struct FlowPixel {
     /// Unit or zero; image axes.
@@ -67,7 +67,7 @@ fn shown(marks: &Plane<FlowPixel>, surface: Option<&Surface>) -> Picture {
     })
 }
 
-/// A line may go from a pixel to the next, along both sides where they touch at a corner, without leaving the surface.
+/// Whether a line may go from a pixel to the next without leaving the surface; at a corner, along both sides.
 fn passes(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
     let linked = |(x, y): (usize, usize), bit: u8| plane.at(x, y) & bit != 0;
     let across = if to.0 > from.0 { links::RIGHT } else { links::LEFT };
@@ -83,9 +83,9 @@ fn passes(plane: &Plane<u8>, from: (usize, usize), to: (usize, usize)) -> bool {
     }
 }
 
-/// The magnitude that four fifths of the covered pixels stay below; at least what is all but nothing.
+/// The magnitude that four fifths of the covered pixels stay below; at least a tiny value.
 fn strong(marks: &Plane<FlowPixel>, covered: impl Fn(usize, usize) -> bool) -> f32 {
-    // A spread sample tells as much as every pixel.
+    // A regular sample of the pixels is enough.
     let step = (marks.size().area() / 100_000).max(1);
     let mut sample: Vec<f32> = (0..marks.size().area())
         .step_by(step)

@@ -56,12 +56,12 @@ fn lit_by(normal: Vec3) -> f32 {
     srgb::encode((0.04 + 0.55 * diffuse + 0.35 * glossy).min(1.0))
 }
 
-/// Behind a lit surface: between its light and its dark side, so that the outline of both is seen.
+/// Behind a lit surface: between its light and its dark side, so that the outlines of both are visible.
 const BACKDROP: f32 = 0.40;
 
 pub(super) fn lit(surface: &Surface) -> Picture {
     let size = surface.size();
-    // In the lower right corner, small enough to leave the surface to be seen.
+    // In the lower right corner, small enough not to hide the surface.
     let radius = 0.07 * size.width.min(size.height) as f32;
     let center = [size.width as f32 - 1.3 * radius, size.height as f32 - 1.3 * radius];
     let ball = |x: usize, y: usize| {

@@ -1,4 +1,4 @@
-//! Views: the maps of a document, and what is derived from them, as pictures to look at.
+//! Views: pictures of a document's maps and of what is derived from them.
 //! Floor 4. Not here: the maps and flows themselves (`surface`), files (`io`), the command (`cli::view`).
 
 mod flows;
@@ -24,7 +24,7 @@ pub enum SurfaceView {
     Depth,
     /// White where the surface is.
     Mask,
-    /// What the surface falls into along its depth jumps: a colour for each object.
+    /// The objects into which depth jumps split the surface: a colour for each.
     Objects,
     /// Convex blue, concave red, flat yellow.
     Curvature,
@@ -69,11 +69,11 @@ impl SurfaceView {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, n)| *n == name).map(|(view, _)| *view)
     }
-    /// It shows no document.
+    /// Whether it shows no document.
     pub fn is_of_nothing(self) -> bool {
         self == SurfaceView::Scaling
     }
-    /// It shows a layer's anchors or operator, and so needs one that has them.
+    /// Whether it shows a layer's anchors or operator, and so needs a layer that has them.
     pub fn is_of_layer(self) -> bool {
         matches!(self, SurfaceView::Weights | SurfaceView::FlowOperator)
     }
@@ -84,7 +84,7 @@ impl SurfaceView {
 pub struct ViewOptions {
     /// *s* of κ, px.
     pub curvature_scale_px: f32,
-    /// Standard deviation of the blur of normals and flows, px. One pixel quiets the noise of 8-bit maps.
+    /// Standard deviation of the blur of normals and flows, px. One pixel suppresses the noise of 8-bit maps.
     pub blur_px: f32,
 }
 
@@ -107,7 +107,7 @@ pub enum ViewUnavailable {
     NoAnchors(String),
 }
 
-/// Draws a view. `layer`: whose anchors or operator; where absent, the topmost layer that has them.
+/// Draws a view. `layer`: the layer whose anchors or operator are shown; by default the topmost that has them.
 pub fn draw(
     document: &Document,
     layer: Option<&Layer>,
@@ -134,12 +134,12 @@ pub fn draw(
     })
 }
 
-/// The views that a document has something to show in.
+/// The views that show something for this document.
 pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<SurfaceView> {
     let can = |view: SurfaceView| match view {
         SurfaceView::Weights => bend(document, layer).is_ok(),
         SurfaceView::FlowOperator => bend(document, layer).is_ok(),
-        // It says nothing of this document.
+        // It shows nothing for this document.
         SurfaceView::Scaling => false,
         _ => document.surface.is_some(),
     };

@@ -7,10 +7,10 @@ use crate::raster::Picture;
 /// Longer side of a view on the sheet, px.
 const CELL_PX: f32 = 320.0;
 const GAP_PX: u32 = 8;
-/// A middle grey, against which dark and light views both stand out.
+/// A middle grey: dark and light views are both visible against it.
 const BACKGROUND: f32 = 0.32;
 
-/// Lays pictures of one size out in rows of four, in their order, scaled down to fit. `None` without pictures.
+/// Arranges pictures of one size in rows of four, in order, scaled down to fit. `None` without pictures.
 pub fn sheet(pictures: &[Picture]) -> Option<Picture> {
     let size = pictures.first()?.size;
     let cell = size.scaled((CELL_PX / size.longer_side()).min(1.0));

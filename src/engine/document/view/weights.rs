@@ -1,4 +1,4 @@
-//! The view of weights: one colour an anchor, blended as the anchors share the surface, and a dot where each stands
+//! The view of weights: one colour per anchor, blended by the weights, and a dot at each anchor
 //! (the insets of SF fig. 9).
 //! Floor 4.
 
@@ -15,7 +15,7 @@ pub(super) fn weights(surface: Option<&Surface>, size: Size, bend: &Bend) -> Pic
         let q = crate::math::vec2(x as f32, y as f32) + 0.5;
         let weights = bend.weights.at(&bend.anchors, q);
         let blended = weights.iter().zip(&colors).fold(Vec3::ZERO, |sum, (&w, &color)| sum + w * color);
-        // The surface's slope shows through, so that it can be seen which part an anchor holds.
+        // The surface is shaded, so that the parts that an anchor influences can be recognised.
         let light = surface.map_or(1.0, |s| 0.45 + 0.55 * s.normal(x, y).z.max(0.0));
         (blended * light).to_array()
     });
@@ -28,7 +28,7 @@ pub fn color_of(anchor: usize) -> Vec3 {
     if let Some(&color) = FIRST.get(anchor) {
         return color;
     }
-    // Steps by the golden ratio of the circle never come back.
+    // Steps by the golden ratio around the circle never repeat.
     let turn = (anchor as f32 * 0.618_034 + 0.11).fract();
     let channel = |offset: f32| (((turn + offset).fract() * 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0);
     vec3(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0)) * 0.85 + 0.1

@@ -1,5 +1,5 @@
-//! A dab of any footprint, evaluated row by row as coverage before it is laid: where a texture or a grain has its say.
-//! Floor 3. Not here: the plain round tip (`dab`), which adds its coverage as it finds it.
+//! A dab of any footprint, evaluated row by row as coverage before it is added, so that a texture or grain can be
+//! applied to it. Floor 3. Not here: the plain round tip (`dab`), which adds its coverage directly.
 
 use super::round::{RoundTip, bent_row, flat_row};
 use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, spans, touched};
@@ -143,7 +143,7 @@ impl PlacedDab<'_> {
         d: &'f DeformedRect,
         flat: Mat2,
     ) -> shape::TipSpanNeighbours<'f> {
-        /// Where D is the identity nothing need be differenced.
+        /// Where D is the identity, no derivative is needed.
         const UNLINKED: [u8; TILE] = [0; TILE];
         match self.bent_over {
             Some(surface) => {
@@ -165,7 +165,8 @@ impl PlacedDab<'_> {
             }
         }
     }
-    /// The picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed` becomes texels.
+    /// Reads the picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed` is converted to
+    /// texels.
     fn read(&self, stamps: &SoftenedStamps, part: &TilePart, scratch: &mut DabScratch) {
         let (stamp, above) = stamps.at(self.dab.softness);
         scratch.stamped.clear();

@@ -1,5 +1,5 @@
-//! The round tip over rows of pixels, which are looked at no closer than each of their zones needs.
-//! Floor 3. The profile is `profile`'s, D is `surface`'s.
+//! The round tip over rows of pixels. Pixels are sorted into zones, and each zone is computed no more precisely than it
+//! needs. Floor 3. The profile is in `profile`, D in `surface`.
 
 use super::SpanNeighbours;
 use crate::math::Vec2;
@@ -11,7 +11,7 @@ use crate::surface::links;
 /// Pixels that are judged together. Rows of blocks are whole multiples of them.
 const CHUNK: usize = 8;
 
-/// A round dab made ready for the rows.
+/// A round dab with everything precomputed that its rows share.
 #[derive(Clone, Copy)]
 pub(super) struct RoundTip {
     at: Vec2,
@@ -34,12 +34,12 @@ pub(super) struct RowZones {
     zones: [u32; TILE],
 }
 
-/// Where a pixel's box lies wholly, as bits; none where it lies in several zones, or nowhere that is a number.
+/// The zone that holds a pixel's box wholly, as bits; none where the box lies in several zones or is not a number.
 const BEYOND: u32 = 1;
 const WITHIN: u32 = 2;
 const FALLOFF: u32 = 4;
 
-/// Added to squared distances, px²: at the very centre there is no direction toward it.
+/// Added to squared distances, px²: the centre itself has no direction toward it.
 const AT_CENTER: f32 = 1e-12;
 
 impl Default for RowZones {

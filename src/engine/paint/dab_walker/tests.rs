@@ -1,4 +1,4 @@
-//! Dabs from samples, against hand-computed places and readings.
+//! Dabs from samples, against hand-computed positions and inputs.
 
 use super::*;
 use crate::math::vec2;

@@ -1,6 +1,6 @@
 //! Which pixels are joined to one by colours like its own, over their four neighbours: tile by tile, a row of a tile at
-//! a time. Floor 3. Only tiles that are reached are looked at. What is joined does not depend on the order in which it
-//! is found.
+//! a time. Floor 3. Only tiles that are reached are read. The result does not depend on the order in which pixels are
+//! found.
 
 use super::PixelSet;
 use crate::math::{Rect, Size};
@@ -82,7 +82,7 @@ pub(super) fn joined(
     Some(gathered(&tiles, columns, canvas))
 }
 
-/// What leaves the tiles of a wave enters their neighbours; one entry a tile, in the tiles' order.
+/// Pixels that leave the tiles of a wave enter their neighbours: one entry per tile, in the order of the tiles.
 fn next_wave(spread: &[(TileAt, Box<FloodTile>, FloodEntry)]) -> Vec<(TileAt, FloodEntry)> {
     let mut entries = std::collections::BTreeMap::<TileAt, FloodEntry>::new();
     for (at, _, left) in spread {
@@ -109,7 +109,7 @@ fn next_wave(spread: &[(TileAt, Box<FloodTile>, FloodEntry)]) -> Vec<(TileAt, Fl
 }
 
 impl FloodTile {
-    /// Fills on from where the fill enters.
+    /// Continues the fill from its entry.
     fn enter(&mut self, entry: FloodEntry) {
         self.filled[0] |= entry.rows[0] & self.open[0];
         self.filled[TILE - 1] |= entry.rows[1] & self.open[TILE - 1];
@@ -212,7 +212,7 @@ crate::widest! {
     }
 }
 
-/// No channel differs by more than the tolerance.
+/// Whether no channel differs by more than the tolerance.
 #[inline(always)]
 fn is_like(a: [u8; 4], b: [u8; 4], tolerance: u8) -> bool {
     let near = |c: usize| a[c].abs_diff(b[c]) <= tolerance;

@@ -1,5 +1,5 @@
-//! Gap closing: what a fill reached only through a narrow passage is left out, up to the narrowest place of the
-//! passage. Floor 3.
+//! Gap closing: removes what a fill reached only through a narrow passage, up to the narrowest point of the passage.
+//! Floor 3.
 //!
 //! Every pixel inside has a distance to the border. Rooms are hills of that distance, passages between them saddles; a
 //! watershed (Vincent and Soille 1991, by a union of pixels in falling order) gives each pixel to the hill it lies on.
@@ -9,19 +9,19 @@ use super::PixelSet;
 use crate::math::Size;
 use crate::raster::{Plane, distance};
 
-/// How much lower than both tops a saddle must be to be a gap, px. Pixels make the sides of an even corridor rough by
-/// less.
+/// How much lower than both tops a saddle must be to be a gap, px: more than the roughness of a straight corridor drawn
+/// in pixels.
 const CLEARLY_PX: f32 = 1.0;
 /// Levels of distance to a pixel.
 const LEVELS_PER_PX: f32 = 4.0;
 
 /// The room that holds `start`, of what was joined to it.
 pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: f32) -> PixelSet {
-    // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w + 1)/2. Tops count no
-    // higher than makes a saddle of that distance a gap.
+    // From the middle of a gap w px wide to the centre of the border's nearest pixel: at most (w + 1)/2. Tops are
+    // capped at the height that makes a saddle of that distance a gap.
     let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
     let limit = top_px.ceil() as u16;
-    // The border is seen around the rectangle too; the canvas's edge is none.
+    // The surroundings of the rectangle count as border; the edge of the canvas does not.
     let inside = inside.within(inside.rect.grown(i32::from(limit)).intersect(canvas.rect()));
     let to_border = distance::squared(&inside.pixels.map(|p| u8::from(p == 0)), limit);
     let top = (top_px * LEVELS_PER_PX) as u8;
@@ -68,7 +68,7 @@ impl<'a> DistanceHills<'a> {
     /// The pixels from the tops downward, those of one level in their order.
     fn rise(&mut self) {
         let width = self.pixels.width().max(1);
-        // Tops stand first, and need not be sorted.
+        // The tops come first and need no sorting.
         self.stand_tops(width);
         let mut of_level: Vec<Vec<u32>> = vec![Vec::new(); usize::from(self.top) + 1];
         for (i, (&p, &level)) in self.pixels.values().iter().zip(self.levels.values()).enumerate() {
@@ -83,8 +83,8 @@ impl<'a> DistanceHills<'a> {
     fn is_top(&self, i: usize) -> bool {
         self.pixels.values()[i] != 0 && self.level(i) >= self.top
     }
-    /// The tops, a run of a row at a time: most of what is inside is as far from its border as counts. Those that touch
-    /// are one hill, whose root is its first pixel.
+    /// Joins the tops, a run of a row at a time: most inside pixels are at the capped distance. Tops that touch form
+    /// one hill, whose root is its first pixel.
     fn stand_tops(&mut self, width: usize) {
         let count = self.parent.len();
         let mut i = 0;
@@ -110,7 +110,7 @@ impl<'a> DistanceHills<'a> {
             }
         }
     }
-    /// A pixel joins the highest hill beside it, and makes one of hills that are one room.
+    /// A pixel joins the highest hill beside it, and merges hills that are one room.
     fn stand(&mut self, i: usize, width: usize) {
         self.parent[i] = i as u32;
         let beside = [

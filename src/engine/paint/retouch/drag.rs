@@ -1,4 +1,4 @@
-//! Where smudge and clone take the colour of a pixel from: what a dab drags, or copies, bends as its footprint does.
+//! Where smudge and clone take the colour of a pixel from: what a dab drags or copies is bent like its footprint.
 //! Floor 3.
 
 use super::TileDab;
@@ -11,8 +11,8 @@ use crate::raster::TileGrid;
 use crate::surface::Deformation;
 use crate::surface::deformation::DeformedRect;
 
-/// A smudge takes no colour from farther than this many steps: where the surface turns away, D hardly moves and its
-/// inverse would reach anywhere.
+/// A smudge takes no colour from farther than this many steps: where the surface turns away, D hardly changes and its
+/// inverse would reach arbitrarily far.
 const FARTHEST_STEPS: f32 = 3.0;
 
 /// The colours that a smudge drags onto the pixels of a touched area, row by row; `None` where it did not move.
@@ -37,7 +37,7 @@ pub(super) fn smudged(
 ) -> Option<Vec<[f32; 4]>> {
     let step = dab.at - before.at;
     let length = length.max(0.0).min(1.0);
-    // Comparisons that NaN fails.
+    // Comparisons that are false for NaN.
     if !(step.length() > 0.0 && length > 0.0) {
         return None;
     }
@@ -70,7 +70,7 @@ pub(super) fn cloned(touch: &TileDab, dab: &Dab, offset: Vec2, source: &TileGrid
     let mut colors = Vec::with_capacity(touch.area.width() * touch.area.height());
     field.for_each(scene, |_, there, jacobian| {
         let sides = jacobian.x_axis.length().max(jacobian.y_axis.length());
-        // Whole pixels copied onto whole pixels stay as they are.
+        // Pixels copied by whole pixels stay unchanged.
         let count = (sides - 0.25).ceil().max(1.0).min(MOST) as i32;
         let mut sum = [0.0; 4];
         for (i, j) in (0..count).flat_map(|j| (0..count).map(move |i| (i, j))) {
@@ -83,7 +83,7 @@ pub(super) fn cloned(touch: &TileDab, dab: &Dab, offset: Vec2, source: &TileGrid
     colors
 }
 
-/// J⁻¹ v, and v where J turns a pixel into next to nothing.
+/// J⁻¹ v, or v where J is nearly singular.
 fn solved(jacobian: Mat2, v: Vec2) -> Vec2 {
     if jacobian.determinant().abs() > 1e-3 { jacobian.inverse() * v } else { v }
 }

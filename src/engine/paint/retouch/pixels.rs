@@ -1,4 +1,4 @@
-//! The pixels of a layer while they are rubbed: f32 where they were touched, the layer's bytes elsewhere.
+//! The pixels of a layer while they are retouched: f32 where they changed, the layer's bytes elsewhere.
 //! Floor 3.
 
 use crate::math::{Vec2, vec2};
@@ -43,7 +43,7 @@ impl RetouchPixels {
     }
 }
 
-/// Reads pixels; those of one tile after each other cost no search.
+/// Reads pixels; consecutive reads from one tile need no lookup.
 pub(super) struct PixelReader<'p> {
     retouched: Option<&'p RetouchPixels>,
     base: &'p TileGrid,

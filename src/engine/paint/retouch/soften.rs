@@ -1,5 +1,5 @@
-//! What blur makes of pixels: their mean over a Gaussian, in which nothing counts that the stroke may not touch.
-//! Floor 3. The filter is `raster`'s; its cost does not grow with its width.
+//! The blur brush: the Gaussian mean of pixels, excluding what the stroke may not touch. Floor 3. The filter is in
+//! `raster::blur`; its cost does not grow with its width.
 
 use super::TileDab;
 use super::pixels::RetouchPixels;
@@ -11,7 +11,7 @@ use crate::surface::objects::CanvasPart;
 
 /// The widest Gaussian of one dab, px.
 const WIDEST_PX: f32 = 40.0;
-/// Beyond so many standard deviations a Gaussian is nothing.
+/// Beyond this many standard deviations a Gaussian is negligible.
 const CUT: f32 = 3.0;
 
 /// Where less than this of a Gaussian's weight may count, its own error would be divided: such pixels stay as they are.
@@ -31,7 +31,7 @@ pub(super) fn blurred(
     retouched: &RetouchPixels,
     scene: &Scene,
 ) -> Vec<[f32; 4]> {
-    // A single dab is as a stroke of them a tenth of the diameter apart.
+    // A single dab counts as one of a stroke with a spacing of a tenth of the diameter.
     let step = before.map_or(0.2 * dab.radius, |before| dab.at.distance(before.at).min(2.0 * dab.radius));
     let variance = (width.max(0.0).min(10.0) * dab.radius).powi(2) * step / (2.0 * dab.radius);
     let variance = variance.max(0.0).min(WIDEST_PX * WIDEST_PX);
@@ -52,7 +52,7 @@ pub(super) fn blurred(
 /// The colour of what was weighed, premultiplied.
 fn mean([r, g, b, a, weight]: &WeightedPixel) -> [f32; 4] {
     let per = if *weight > 0.0 { 1.0 / weight } else { 0.0 };
-    // The filter for wide Gaussians swings below 0 by its error.
+    // The filter for wide Gaussians can undershoot 0 by its error.
     let a = (a * per).max(0.0).min(1.0);
     let [r, g, b] = [r, g, b].map(|c| (c * per).max(0.0).min(a));
     [r, g, b, a]

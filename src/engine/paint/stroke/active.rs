@@ -1,6 +1,6 @@
-//! Strokes in the making: samples come in, the tiles that they change come out. Each dab is laid once and painted once,
-//! over what the stroke has left on its tiles so far; only the end of the curve, which the next sample may bend, is
-//! painted again. Floor 3. Not here: what the pen did (`tools`).
+//! Active strokes: samples go in, and the tiles that they change come out. Each dab is placed and painted once, over
+//! what the stroke has painted so far; only the end of the curve, which the next sample may change, is painted again.
+//! Floor 3. Not here: the pen (`tools`).
 
 use super::dabs::{StrokeDabs, tiles_of};
 use super::{Sample, Stroke, StrokeCache, pixels};
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex};
 
-/// What strokes in hand are painted on.
+/// What active strokes are painted on.
 pub enum Backdrop {
     /// A paint layer's pixels.
     Pixels(TileGrid),
@@ -28,8 +28,9 @@ pub enum Backdrop {
 
 /// Strokes that are drawn together, the first lowest: one, or one and its mirror images.
 ///
-/// However their samples come in batches, their pixels are those of the finished strokes painted at once. Takes 16 KiB
-/// for every tile that a stroke touches (64 where its dabs vary in colour), and 64 where strokes lie beneath.
+/// Their pixels do not depend on how the samples are batched: they equal those of the finished strokes painted at once.
+/// It takes 16 KiB for every tile that a stroke touches (64 if its dabs vary in colour), and 64 more if strokes lie
+/// beneath.
 pub struct ActiveStrokes {
     scene: Scene,
     backdrop: Backdrop,
@@ -37,7 +38,7 @@ pub struct ActiveStrokes {
     tiles: HashMap<TileAt, ActiveTile>,
 }
 
-/// One stroke in the making.
+/// One active stroke.
 struct ActiveStroke {
     brush: Brush,
     operator: Operator,
@@ -51,13 +52,13 @@ struct ActiveStroke {
     bounds: Rect,
 }
 
-/// A tile under strokes in hand.
+/// A tile under active strokes.
 struct ActiveTile {
     /// The strokes beneath, once they were painted.
     beneath: Option<PlanarTile>,
-    /// The settled dabs of each stroke in hand.
+    /// The settled dabs of each active stroke.
     stroke_tiles: Vec<Option<StrokeTile>>,
-    /// What their grains leave.
+    /// What their grains leave of each pixel.
     grains: Vec<Option<Box<GrainTile>>>,
 }
 
@@ -84,7 +85,7 @@ impl ActiveStroke {
             bounds: Rect::EMPTY,
         }
     }
-    /// Lays what the samples settle, and the tail behind it.
+    /// Places the dabs that the samples settle, and the tail after them.
     fn take<'s>(&mut self, samples: &[Sample], scene: &'s Scene) -> NewDabs<'s> {
         self.samples.extend_from_slice(samples);
         self.stroke_dabs.begin(&self.brush, &self.samples);
@@ -116,7 +117,7 @@ impl ActiveStroke {
         }
         fresh
     }
-    /// The wash of a tile as it is to be seen: with the tail. What is settled is added to `stroke_tile` for good.
+    /// The stroke tile to be shown: with the tail. Settled dabs are added to `stroke_tile` for good.
     fn shown(
         &self,
         fresh: &NewDabs,
@@ -166,12 +167,12 @@ impl ActiveStroke {
 }
 
 impl ActiveStrokes {
-    /// Begins strokes like these, whose samples do not count.
+    /// Starts strokes with the settings of these; their samples are ignored.
     pub fn new(strokes: &[Stroke], backdrop: Backdrop, scene: &Scene) -> Self {
         let strokes = strokes.iter().map(|stroke| ActiveStroke::new(stroke, scene)).collect();
         Self { scene: scene.clone(), backdrop, strokes, tiles: HashMap::new() }
     }
-    /// Takes the next samples of each stroke in; gives the tiles of the layer that look different now.
+    /// Takes the next samples of each stroke; returns the tiles of the layer that changed.
     pub fn draw(&mut self, samples: &[Vec<Sample>]) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         let Self { scene, backdrop, strokes, tiles } = self;
         let mut changed: Vec<TileAt> = strokes.iter().flat_map(|stroke| stroke.tail.iter().copied()).collect();
@@ -203,7 +204,7 @@ impl ActiveStrokes {
         tiles.extend(active_tiles);
         painted
     }
-    /// The strokes as far as they were drawn. They know their bounds; their dabs would be laid anew.
+    /// The strokes as far as they were drawn. Their bounds are known; their dabs would be computed again.
     pub fn strokes(&self) -> Vec<Stroke> {
         self.strokes.iter().map(|stroke| stroke.stroke(&self.scene)).collect()
     }
@@ -215,7 +216,7 @@ impl ActiveStrokes {
 }
 
 impl Backdrop {
-    /// What lies beneath a tile's strokes in hand, f32. `cached`: of strokes, painted once.
+    /// The pixels beneath a tile's active strokes, f32. `cached`: those of the strokes beneath, painted once.
     fn pixels(&self, scene: &Scene, at: TileAt, cached: &mut Option<PlanarTile>) -> PlanarTile {
         match self {
             Backdrop::Pixels(grid) => {

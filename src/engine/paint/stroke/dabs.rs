@@ -20,7 +20,7 @@ use std::ops::Range;
 pub(in crate::paint) struct StrokeDabs {
     scene: Scene,
     tip: PreparedTip,
-    /// Once it is known where the stroke begins.
+    /// Set once the start of the stroke is known.
     grain: Option<StrokeGrain>,
     varies_in_color: bool,
     dabs: Vec<Dab>,
@@ -29,7 +29,7 @@ pub(in crate::paint) struct StrokeDabs {
 
 /// Dabs this near in the stroke's order share a run even if those between them miss the tile.
 const RUN_GAP: u32 = 8;
-/// Runs a tile: beyond, the last one grows. Bounds what a hostile stroke takes.
+/// The most runs per tile: after that the last one grows. This bounds the memory of a hostile stroke.
 const MAX_RUNS: usize = 1024;
 
 impl StrokeDabs {
@@ -53,7 +53,7 @@ impl StrokeDabs {
         }
         stroke_dabs
     }
-    /// Anchors the grain, if there is any, where the stroke begins; later samples change nothing.
+    /// Anchors the grain, if any, at the start of the stroke; later samples do not change it.
     pub fn begin(&mut self, brush: &Brush, samples: &[Sample]) {
         let start = samples.iter().map(|sample| sample.at).find(|at| at.is_finite());
         let grain = brush.grain.as_ref().filter(|grain| grain.strength > 0.0 && self.grain.is_none());
@@ -96,7 +96,7 @@ impl StrokeDabs {
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         self.tip.place(dab, scene)
     }
-    /// What the stroke's dabs add up in, dry.
+    /// An empty stroke tile for the stroke's dabs.
     pub fn stroke_tile(&self) -> StrokeTile {
         if self.varies_in_color || self.tip.brings_colors() { StrokeTile::colors() } else { StrokeTile::one_color() }
     }

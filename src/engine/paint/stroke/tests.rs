@@ -1,4 +1,4 @@
-//! Strokes against a scalar twin that evaluates the definition pixel by pixel over the whole canvas.
+//! Strokes against a scalar reference that evaluates the definition pixel by pixel over the whole canvas.
 
 use super::*;
 use crate::math::{Size, vec2, vec3};

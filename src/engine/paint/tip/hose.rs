@@ -1,5 +1,5 @@
 //! Hoses: tips of several pictures, of which each dab takes one.
-//! Floor 3. The rules are those of GIMP's image hoses, so that theirs paint here as they do there.
+//! Floor 3. The rules are those of GIMP's image hoses, so that imported hoses paint as they do there.
 
 use crate::math::hash;
 use crate::paint::dynamics::DabInputs;
@@ -18,7 +18,7 @@ pub struct Hose {
 /// A row of choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoseRank {
-    /// How many there are, `≥ 1`.
+    /// The number of choices, `≥ 1`.
     pub count: u32,
     pub select: RankSelect,
 }
@@ -63,7 +63,7 @@ pub struct DabMoment {
 }
 
 impl Hose {
-    /// What stands beyond the product of the ranks is never chosen. Without pictures nothing is painted.
+    /// Pictures beyond the product of the ranks are never chosen. Without pictures nothing is painted.
     pub fn new(pictures: Vec<PictureSource>, ranks: Vec<HoseRank>) -> Self {
         Self { pictures: pictures.into(), ranks: ranks.into() }
     }

@@ -1,5 +1,5 @@
-//! A brush's tip made ready for its dabs: pictures blurred, textures made, and each dab put on its tiles.
-//! Floor 3.
+//! A brush's tip prepared for its dabs: pictures are blurred and textures made once, then each dab is painted on its
+//! tiles. Floor 3.
 
 use super::hose::{DabMoment, Hose};
 use super::shape::TipShape;
@@ -16,7 +16,7 @@ use crate::raster::TileAt;
 use crate::raster::tile::TILE_AREA;
 use crate::surface::support::DabExtent;
 
-/// A tip, ready to be put down.
+/// A prepared tip.
 pub enum PreparedTip {
     Round,
     Shape(TipShape),
@@ -45,7 +45,7 @@ impl PreparedTip {
             Tip::Hose(hose) => Self::Hose(hose.clone(), hose.pictures().iter().map(softened).collect()),
         }
     }
-    /// A dab on the canvas, as large and as dense as this tip makes it.
+    /// Places a dab on the canvas, with the size and density that this tip gives it.
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         let (dab, extent) = match self {
             Self::Round | Self::Textured(_) => (dab, round_extent(&dab)),
@@ -54,14 +54,14 @@ impl PreparedTip {
             Self::Hose(hose, stamps) => {
                 let chosen = choice(hose, &dab);
                 let dab = Dab { radius: dab.radius * hose.share(chosen), ..dab };
-                // Without pictures it is nothing, anywhere.
+                // Without pictures it paints nothing.
                 let nothing = DabExtent { radius_px: 0.0, filter_px: 0.0 };
                 (dab, stamps.get(chosen).map_or(nothing, |stamps| stamps.extent(&dab)))
             }
         };
         PlacedDab::new(dab, scene, extent)
     }
-    /// Puts a dab on a tile.
+    /// Paints a dab on a tile.
     pub fn add(
         &self,
         dab: &PlacedDab,

@@ -17,13 +17,14 @@ pub enum TipShape {
     Square { ratio: f32 },
 }
 
-/// Thinner than this a tip's ratio is not told apart.
+/// The least ratio; thinner tips count as this thin.
 const MIN_RATIO: f32 = 0.01;
 /// Half of the least width that a dab has, px: what is thinner is fainter instead.
 const LEAST_HALF_PX: f32 = 0.75;
 
 impl TipShape {
-    /// The shorter half-axis relative to the longer one, as a dab is drawn; and what the dab's flow loses for it.
+    /// The shorter half-axis relative to the longer one, as a dab is drawn, and the factor by which it reduces the
+    /// dab's flow.
     fn ratio(self, radius: f32) -> (f32, f32) {
         let (TipShape::Ellipse { ratio } | TipShape::Square { ratio }) = self;
         let ratio = ratio.max(MIN_RATIO).min(1.0);
@@ -40,7 +41,7 @@ impl TipShape {
         let per_axis = Vec2::new(1.0, 1.0 / ratio) / dab.radius;
         Affine2::from_scale(per_axis) * Affine2::from_angle(dab.rotation_rad) * Affine2::from_translation(-dab.at)
     }
-    /// How far a dab reaches.
+    /// The extent of a dab.
     pub fn extent(self, dab: &Dab) -> DabExtent {
         let (ratio, _) = self.ratio(dab.radius);
         let corner = match self {
@@ -69,7 +70,7 @@ pub struct TipSpanNeighbours<'f> {
 /// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a width |Jᵀ p̂|.
 #[inline(always)]
 pub fn ellipse(profile: &RoundProfile, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) -> f32 {
-    // At the very centre there is no direction; the pixel beside it tells how wide this one is as well as any.
+    // The centre has no direction; any direction gives the width of the pixel well enough.
     let r2 = x * x + y * y + 1e-12;
     let (a, b) = (across.0 * x + across.1 * y, along.0 * x + along.1 * y);
     profile.mean(r2.sqrt(), (a * a + b * b) / r2)
@@ -83,7 +84,7 @@ pub fn square(profile: &RoundProfile, (x, y): (f32, f32), across: (f32, f32), al
 }
 
 impl TipShape {
-    /// Coverage of each pixel of a span, in `[0, 1]`; where D is not a number, none.
+    /// Coverage of each pixel of a span, in `[0, 1]`; 0 where D is not a number.
     pub fn row(self, profile: &RoundProfile, d: TipSpanNeighbours, coverage: &mut [f32]) {
         match self {
             TipShape::Ellipse { .. } => ellipse_row(d, profile, coverage),
@@ -118,7 +119,7 @@ fn for_each(d: TipSpanNeighbours, coverage: &mut [f32], f: impl Fn((f32, f32), (
         let along =
             (slope(u, d, ax[i + 1], x, bx[i + 1], flat_along.x), slope(u, d, ay[i + 1], y, by[i + 1], flat_along.y));
         let value = f((x, y), across, along);
-        // Comparisons turn NaN into nothing, and rounding must not leave the range.
+        // The comparisons turn NaN into 0 and keep rounding errors within the range.
         let value = if value > 0.0 { value } else { 0.0 };
         coverage[i] = if value < 1.0 { value } else { 1.0 };
     }

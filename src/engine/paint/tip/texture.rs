@@ -45,14 +45,14 @@ impl Default for Noise {
     }
 }
 
-/// Pictures kept: more kinds of tips than one painting uses.
+/// Cached pictures: more than one painting uses.
 const KEPT: usize = 32;
 static MADE: Mutex<Vec<((TipTexture, u32), PictureSource)>> = Mutex::new(Vec::new());
 
 impl TipTexture {
     /// The picture for dabs of a diameter in px: coverage, opaque and grey. The same one for every brush that asks.
     pub fn source(self, diameter_px: f32) -> PictureSource {
-        // Comparisons that NaN fails give the smallest.
+        // For NaN the comparisons give the smallest.
         let side = if diameter_px > 400.0 {
             1024
         } else if diameter_px > 100.0 {
@@ -67,7 +67,7 @@ impl TipTexture {
         if let Some(source) = find(&lock()) {
             return source;
         }
-        // Unlocked: two threads may both make it, and make the same.
+        // Without the lock: two threads may both compute it; the results are equal.
         let source = PictureSource::new("tip".into(), self.picture(side), Adjust::default());
         let mut made = lock();
         if let Some(source) = find(&made) {

@@ -1,5 +1,6 @@
-//! An environment gathered over the hemisphere around every direction: what a matt surface sees (RS sec. 5.3.1).
-//! Floor 3. A small prefiltered map, not spherical harmonics: nine of those ring around a sun, a map does not.
+//! Irradiance: an environment integrated over the hemisphere around every direction, which lights matt surfaces (RS
+//! sec. 5.3.1). Floor 3. It is a small prefiltered map instead of spherical harmonics: nine of those ring around a sun,
+//! a map does not.
 
 use super::map::{EnvironmentMap, SphereLevel};
 use super::projection::lat_long_direction;
@@ -7,8 +8,8 @@ use crate::math::{Vec3, srgb};
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
-/// Rows of the parcels the light is gathered from (2.8° each) and of the map it is kept in: a cosine lobe is so wide
-/// that a bilinear look-up stays near the sum over every texel (`the_small_map_is_the_sum_over_every_texel`).
+/// Rows of the parcels of light that are summed (2.8° each) and of the resulting map: a cosine lobe is so wide that a
+/// bilinear lookup stays close to the sum over every texel (`the_small_map_is_the_sum_over_every_texel`).
 const ROWS: usize = 64;
 
 /// L̄(n): the cosine-weighted mean of the light around n. An environment of light 1 has the mean 1.
@@ -19,7 +20,7 @@ pub struct Irradiance {
 
 /// Light of a part of the sphere.
 struct LightParcel {
-    /// Where it comes from on average, unit: a small sun in a large parcel stays where it is.
+    /// Its mean direction, unit: a small sun in a large parcel keeps its position.
     toward: Vec3,
     /// Radiance × solid angle.
     light: Vec3,

@@ -1,6 +1,6 @@
-//! Reading an environment over a footprint: the picture itself where it is looked at closely, and beyond a pyramid of
-//! latitude-longitude maps that know neither seam nor pole.
-//! Floor 3. Directions are the picture's own space, light is linear.
+//! Reads an environment over a footprint: from the picture itself for small footprints, else from a pyramid of
+//! latitude-longitude maps without visible seam or poles. Floor 3. Directions are the picture's own space, light is
+//! linear.
 
 use super::projection::{Projection, lat_long_direction};
 use crate::math::{Size, Vec2, Vec3, srgb, vec2};
@@ -25,10 +25,10 @@ pub(super) struct SphereLevel {
     texels: Vec<Vec3>,
 }
 
-/// At most so many taps along a stretched footprint; beyond, it is blurred across as well.
+/// The most taps along a stretched footprint; a longer one is also blurred across.
 const MOST_TAPS: f32 = 16.0;
 
-/// Of the finest level: even a picture of one pixel is gathered over hemispheres.
+/// The least rows of the finest level: even a picture of one pixel is integrated over hemispheres.
 const FEWEST_ROWS: usize = 64;
 
 impl EnvironmentMap {
@@ -76,7 +76,7 @@ impl EnvironmentMap {
         let Size { width, height } = self.picture.size;
         let texel = |i, j| self.texel(i, j);
         bilinear(width as i32, height as i32, place, texel).unwrap_or_else(|| {
-            // All four texels lie beyond the disc: the nearest one on it.
+            // If all four texels lie beyond the disc: the nearest one on it.
             let inward = 1.0 - 3.0 / width.max(4) as f32;
             bilinear(width as i32, height as i32, 0.5 + (place - 0.5) * inward, texel).unwrap_or_default()
         })
@@ -202,13 +202,14 @@ impl SphereLevel {
         };
         (rows > 0).then(|| SphereLevel::new(rows, (0..rows * columns).map(texel).collect()))
     }
-    /// Averages along each row over as many texels as lie within one texel's height: near the poles they are slivers,
-    /// and a look-up of the level must not see one alone.
+    /// Averages each row over as many texels as fit one texel's height: near the poles texels are slivers, and a lookup
+    /// must not read a single one.
     fn rounded_at_the_poles(self) -> SphereLevel {
         let columns = self.columns();
         let of_row = |row: usize| {
             let texels = &self.texels[row * columns..][..columns];
-            // The outermost row is a cap about the pole, one texel across: one value, or the pole would have many.
+            // The outermost row is a cap around the pole, one texel across: it gets one value, so that the pole is
+            // unique.
             let is_cap = row == 0 || row + 1 == self.rows;
             let sin = ((row as f32 + 0.5) / self.rows as f32 * PI).sin();
             around_row(texels, if is_cap { columns as f32 } else { 1.0 / sin })
@@ -217,7 +218,7 @@ impl SphereLevel {
     }
 }
 
-/// The mean over `width` texels around each one of a row that has no end.
+/// The mean over `width` texels around each texel of a cyclic row.
 fn around_row(texels: &[Vec3], width: f32) -> Vec<Vec3> {
     let n = texels.len();
     if width <= 1.0 {
@@ -255,7 +256,7 @@ fn across_the_poles(i: i32, j: i32, w: i32, h: i32) -> (i32, i32) {
 #[inline(always)]
 fn bilinear(w: i32, h: i32, place: Vec2, texel: impl Fn(i32, i32) -> Option<Vec3>) -> Option<Vec3> {
     let p = place * vec2(w as f32, h as f32) - 0.5;
-    // A direction that is none finds the corner, not NaN.
+    // An invalid direction finds the corner, not NaN.
     let p = if p.is_finite() { p } else { Vec2::ZERO };
     let floor = p.floor();
     let t = p - floor;

@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 /// A picture of the surroundings.
 #[derive(Clone)]
 pub struct Environment {
-    /// The name it goes by in the document.
+    /// Its name in the document.
     pub file: String,
     pub picture: Picture,
     pub projection: Projection,
@@ -27,21 +27,21 @@ pub struct Environment {
     cache: Arc<Mutex<Option<PreparedCache>>>,
 }
 
-/// What was prepared of a picture in a projection.
+/// The cached preparation of a picture in a projection.
 struct PreparedCache {
     picture: Picture,
     projection: Projection,
     prepared: Arc<PreparedEnvironment>,
 }
 
-/// A picture ready to be looked up. It knows neither rotation nor exposure, which may be dragged.
+/// A picture prepared for lookups. It does not depend on rotation and exposure, which may be dragged.
 struct PreparedEnvironment {
     map: EnvironmentMap,
     irradiance: OnceLock<Irradiance>,
 }
 
-/// The light around the surface: what every look-up goes through. Directions are camera space (y up), light is linear,
-/// rotation and exposure are applied.
+/// The light of an environment as the surface receives it: all lookups go through it. Directions are camera space (y
+/// up), light is linear; rotation and exposure are applied.
 #[derive(Clone)]
 pub struct EnvironmentLight {
     prepared: Arc<PreparedEnvironment>,
@@ -65,13 +65,13 @@ impl Environment {
         let projection = Projection::default();
         Self { file, picture, projection, rotation: 0.0, exposure: 0.0, cache: Arc::default() }
     }
-    /// The light, ready to be looked up. What is costly is kept and shared by copies of this environment, whatever
-    /// their rotation and exposure: ask before going parallel.
+    /// The light, prepared for lookups. The costly part is cached and shared by copies of this environment, whatever
+    /// their rotation and exposure. Call it before going parallel.
     pub fn environment_light(&self) -> EnvironmentLight {
         let (sin, cos) = self.rotation.to_radians().sin_cos();
         EnvironmentLight { prepared: self.prepared(), turn: YRotation { sin, cos }, gain: self.exposure.exp2() }
     }
-    /// Never computes under the lock: a thread that waits for its own pool's work would stand still.
+    /// It never computes while holding the lock: a thread that waits for work of its own pool would deadlock.
     fn prepared(&self) -> Arc<PreparedEnvironment> {
         let lock = || self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let holds = |k: &PreparedCache| k.projection == self.projection && is_same(&k.picture, &self.picture);
@@ -130,7 +130,7 @@ impl EnvironmentLight {
         };
         (0..count).map(parcel).collect()
     }
-    /// Kept; computed by the first that asks.
+    /// Cached; computed by the first caller.
     fn irradiance(&self) -> &Irradiance {
         if let Some(found) = self.prepared.irradiance.get() {
             return found;

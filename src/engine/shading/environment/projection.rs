@@ -31,7 +31,7 @@ impl Projection {
                 vec2(u - u.floor(), e.y.clamp(-1.0, 1.0).acos() / PI)
             }
             Projection::Angular => {
-                // The rim is one direction, straight away: any of its points will do.
+                // The whole rim is one direction, straight away from the viewer: any of its points is right.
                 let around = vec2(e.x, -e.y).normalize_or(Vec2::X);
                 // atan2 keeps the digits that acos loses near the centre and the rim.
                 0.5 + 0.5 * around * (e.truncate().length().atan2(e.z) / PI)

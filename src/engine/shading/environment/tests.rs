@@ -44,7 +44,7 @@ fn the_same_light_is_found_whatever_the_projection() {
             let (x, y) = (2.0 * p.x / side as f32 - 1.0, 1.0 - 2.0 * p.y / side as f32);
             let r = x.hypot(y);
             let e = match projection {
-                // Beyond the disc stands what must never be seen.
+                // Beyond the disc is a colour that must never show.
                 _ if r > 1.0 => return [9e3, 9e3, 9e3, 1.0],
                 Projection::Angular => {
                     let (sin, cos) = (r * std::f32::consts::PI).sin_cos();
@@ -87,7 +87,7 @@ fn wide_footprints_see_the_mean() {
 }
 #[test]
 fn neither_the_wrap_nor_the_poles_can_be_seen() {
-    // Noise, so that whatever is special about a place shows.
+    // Noise, so that any irregularity shows.
     let texels = (0..256 * 128).map(|i| [hash::unit(5, i, 0), 0.0, 0.0, 1.0]).collect();
     let seen =
         Environment::new(String::new(), Picture::linear(Size::new(256, 128), texels).unwrap()).environment_light();

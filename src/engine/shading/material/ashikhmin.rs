@@ -1,5 +1,5 @@
-//! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH 5). Floor 3. Its
-//! lobes for one pixel stand first and read like the paper; a row of them is computed by the same functions.
+//! The anisotropic Phong material of Ashikhmin and Shirley (2000) under lights (RS sec. 5.2, MATH 5). Floor 3. The
+//! functions for one pixel come first and read like the paper; rows are computed by the same functions.
 //!
 //! Light is counted as everywhere here, without 1/π: ρ is π times the paper's reflectance, times n·ℓ. R_s is the colour
 //! × weight of the `specular` term, R_d that of `diffuse`.
@@ -107,7 +107,7 @@ fn power_5(x: f32) -> f32 {
 
 /// A unit vector in the frame of the surface: u runs along the picture's x, v along its y (up), then the normal.
 ///
-/// u = (x − (x·n) n) / |…|, v = n × u; where the normal is ±x any u will do.
+/// u = (x − (x·n) n) / |…|, v = n × u; where the normal is ±x, any u is valid.
 #[inline(always)]
 pub fn in_frame(n: [f32; 3], w: [f32; 3]) -> [f32; 3] {
     let dot = n[0] * w[0] + n[1] * w[1] + n[2] * w[2];

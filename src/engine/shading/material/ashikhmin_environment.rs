@@ -1,9 +1,8 @@
-//! The material of Ashikhmin and Shirley under an environment: sampled where it reflects, the same way at every pixel
-//! (RS sec. 5.2, MATH 5).
-//! Floor 3. Its lobes are `ashikhmin`'s.
+//! The material of Ashikhmin and Shirley under an environment: sampled in the directions it reflects, with the same
+//! samples at every pixel (RS sec. 5.2, MATH 5). Floor 3. The lobes are in `ashikhmin`.
 //!
-//! Each sample stands for a part of the lobe and reads the mean of the environment over that part, so that neither a
-//! small sun makes fireflies nor the samples show.
+//! Each sample stands for a part of the lobe and reads the mean of the environment over that part, so that a small sun
+//! makes no fireflies and single samples are invisible.
 
 use super::{Shading, ashikhmin};
 use crate::math::{Vec3, vec3};
@@ -29,7 +28,7 @@ pub struct EnvironmentSamples {
 struct HalfVector {
     /// Unit, in the frame of the surface (`ashikhmin::in_frame`).
     uvn: Vec3,
-    /// The probability that half vectors are found around it, per steradian.
+    /// The probability density of half vectors there, per steradian.
     density: f32,
 }
 

@@ -1,5 +1,5 @@
-//! What reaches a point from everywhere: matt under an environment, and ambient occlusion alone (RS sec. 5.3.1, MATH
-//! 5). Floor 3. Occlusion itself is the surface's; the hemisphere's mean light is `environment::irradiance`.
+//! Light from the whole hemisphere: matt under an environment, and ambient occlusion alone (RS sec. 5.3.1, MATH 5).
+//! Floor 3. Occlusion itself is in `surface`, the mean light of the hemisphere in `environment::irradiance`.
 
 use super::{Shading, lobes};
 use crate::math::{Vec3, srgb};
@@ -24,7 +24,7 @@ pub fn diffuse(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) 
     if !term.is_scaled() {
         return lobes::add_incoming(light, &incoming, None);
     }
-    // The direction that contributes most is the normal's (RS sec. 5.3.1).
+    // The normal is the direction that contributes most (RS sec. 5.3.1).
     let kappa = surface_row.kappa(LightDirection::Each(&surface_row.normal[0], &surface_row.normal[1]));
     lobes::add_incoming(light, &incoming, Some((term.scaling, &kappa, &delta)));
 }
@@ -35,7 +35,7 @@ pub fn occlusion(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3
     lobes::add(light, shading.ambient.linear(), &open);
 }
 
-/// σ(κ, A) A along the row; A is 1 where no radius is given.
+/// σ(κ, A) A along the row; A is 1 if no radius is given.
 fn scaled_occlusion(shading: &Shading, surface_row: &SurfaceRow) -> RowValues {
     let mut open = [1.0; TILE];
     if shading.occlusion_radius_px > 0.0 {

@@ -1,4 +1,4 @@
-//! Lit sphere: the colour that a painted sphere has where its normal is the same; or two spheres, one for convex and
+//! Lit sphere: each pixel gets the colour of a painted sphere at the same normal; or of two spheres, one for convex and
 //! one for concave features, blended by κ (RS sec. 5.3.1, MATH 5). Floor 3.
 
 use super::{Shading, lobes};
@@ -37,7 +37,7 @@ fn convex(shading: &Shading) -> &LitSphere {
     shading.sphere.as_ref().unwrap_or_else(|| LitSphere::clay())
 }
 
-/// Computes now what many tiles would otherwise wait for.
+/// Fills the caches that many tiles would otherwise wait for.
 pub fn warm_caches(shading: &Shading) {
     convex(shading).light();
     let _ = shading.sphere_concave.as_ref().map(LitSphere::light);

@@ -1,5 +1,5 @@
-//! Terms of a material added up along a row: σ(κ, δ) ρ times a colour (RS sec. 5).
-//! Floor 3. What ρ and δ are is each model's own file.
+//! Adds up the terms of a material along a row: σ(κ, δ) ρ times a colour (RS sec. 5). Floor 3. Each model's own file
+//! defines ρ and δ.
 
 use crate::math::fast;
 use crate::raster::TILE;

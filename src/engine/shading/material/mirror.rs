@@ -1,5 +1,5 @@
 //! Mirror and refraction: the environment seen along one ray (RS sec. 5.3.2, MATH 5).
-//! Floor 3. One interface and no second bounce: what the shape hides of the environment is not known.
+//! Floor 3. One interface and no second bounce: occlusion of the environment by the surface is ignored.
 
 use super::{Model, Shading, lobes};
 use crate::math::{Vec3, srgb};
@@ -15,7 +15,7 @@ pub fn mirrored(n: Vec3) -> Vec3 {
 
 /// The refracted view: Snell's law for the view ray −e entering a matter of refractive index `index` > 0 (MATH 5).
 ///
-/// Where it cannot enter (`index` < 1, seen from within the denser matter at too flat an angle) it is mirrored.
+/// Total internal reflection (`index` < 1 at a flat angle) mirrors it.
 #[inline(always)]
 pub fn refracted(n: Vec3, index: f32) -> Vec3 {
     let eta = 1.0 / index;
@@ -54,7 +54,7 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     lobes::add_incoming(light, &incoming, Some((term.scaling, &kappa, &delta)));
 }
 
-/// How a ray changes from pixel to pixel along x and y; across a depth jump or the mask's edge it is not looked at.
+/// How a ray changes from pixel to pixel along x and y; differences do not cross depth jumps or the mask's edge.
 fn changes(surface: &Surface, x: usize, y: usize, r: Vec3, ray: impl Fn(Vec3) -> Vec3) -> (Vec3, Vec3) {
     let joined = surface.links_plane().at(x, y);
     let change = |back: u8, forth: u8, step: (usize, usize)| {

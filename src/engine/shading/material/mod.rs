@@ -1,5 +1,5 @@
-//! A shading layer's material: which model, its terms, and the light it stands in (MATH 5).
-//! Floor 3. One file a model; `render` makes tiles of them.
+//! A shading layer's material: its model, its terms, and its lights (MATH 5). Floor 3. There is one file per model;
+//! `render` makes the tiles.
 
 mod ashikhmin;
 mod ashikhmin_environment;
@@ -31,7 +31,7 @@ pub enum Model {
     SubLambertian,
     /// Anisotropic Phong of Ashikhmin and Shirley (2000), under lights or an environment.
     Ashikhmin,
-    /// Matt under an environment, in its own shade.
+    /// Matt under an environment, with ambient occlusion.
     DiffuseEnvironment,
     AmbientOcclusion,
     /// A painted sphere, or a convex and a concave one.
@@ -56,7 +56,7 @@ impl Model {
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(m, _)| *m == self).map_or("phong", |(_, name)| name)
     }
-    /// Lit by an environment alone: lights mean nothing to it.
+    /// Whether it is lit by an environment alone: lights have no effect.
     pub fn needs_environment(self) -> bool {
         matches!(self, Model::DiffuseEnvironment | Model::Mirror | Model::Refraction)
     }
@@ -76,7 +76,7 @@ impl Term {
     pub const fn plain(color: Color, weight: f32) -> Self {
         Self { color, weight, scaling: Scaling::NONE }
     }
-    /// Its σ is not 1 everywhere.
+    /// Whether its σ is not 1 everywhere.
     pub fn is_scaled(&self) -> bool {
         !self.scaling.is_none()
     }
@@ -113,22 +113,21 @@ pub struct Shading {
     pub nu: f32,
     pub nv: f32,
     pub environment: Option<Environment>,
-    /// Lit sphere; where there is a concave one too, this one stands for convex features. None is grey clay.
+    /// Lit sphere; if there is a concave one too, this one is for convex features. `None` is grey clay.
     pub sphere: Option<LitSphere>,
     pub sphere_concave: Option<LitSphere>,
     /// Refractive index, `> 0`.
     pub index: f32,
-    /// How far away occluders still count, px; 0 leaves occlusion out.
+    /// The distance up to which occluders count, px; 0 turns occlusion off.
     pub occlusion_radius_px: f32,
 }
 
 impl Shading {
-    /// Its model shows an environment, and there is none: it paints black.
+    /// Whether its model needs an environment and there is none: it paints black.
     pub fn lacks_environment(&self) -> bool {
         self.model.needs_environment() && self.environment.is_none()
     }
-    /// The model with the material it has where nothing else is said; no environment, no sphere, one light where it
-    /// needs one.
+    /// The model with its default material: no environment, no sphere, and one light if it needs one.
     pub fn new(model: Model) -> Self {
         let clay = Term::plain(Color { r: 0xc0, g: 0x80, b: 0x60, a: 255 }, 0.7);
         let gloss = Term::plain(Color::WHITE, 0.3);

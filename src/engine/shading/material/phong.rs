@@ -1,5 +1,5 @@
 //! Phong, and the sub-Lambertian material that is Phong with a flatter matt term (RS sec. 5.1, MATH 5).
-//! Floor 3. Toon draws the same terms in bands.
+//! Floor 3. Toon quantises the same terms into bands.
 
 use super::{Model, Shading, lobes};
 use crate::raster::TILE;

@@ -15,8 +15,8 @@ use crate::surface::Scene;
 impl Shading {
     /// One tile of the material on a scene, opaque wherever there is any surface; `None` where there is none.
     ///
-    /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the first and kept:
-    /// [`Shading::warm`] does so ahead.
+    /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the first and cached:
+    /// [`Shading::warm_caches`] does so in advance.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let surface = scene.surface.as_deref()?;
         let inside = at.rect().intersect(surface.size().rect());
@@ -43,7 +43,7 @@ impl Shading {
         }
         Tile::from_pixels(bytes)
     }
-    /// Computes now what many tiles would otherwise compute at the same time.
+    /// Fills the caches that many tiles would otherwise compute at the same time.
     pub fn warm(&self, scene: &Scene) {
         if let Some(surface) = scene.surface.as_deref() {
             self.features.on(surface);
@@ -62,7 +62,7 @@ impl Shading {
     }
 }
 
-/// The material at work on the rows of a tile, with what it reuses from row to row.
+/// Shades the rows of a tile; holds the buffers that are reused from row to row.
 struct RowShader<'a> {
     shading: &'a Shading,
     lights: Vec<RowLight>,
@@ -102,7 +102,7 @@ impl<'a> RowShader<'a> {
             Model::Mirror | Model::Refraction => mirror::shade(shading, surface_row, light),
             Model::DiffuseEnvironment => hemisphere::diffuse(shading, surface_row, light),
             Model::AmbientOcclusion => hemisphere::occlusion(shading, surface_row, light),
-            // Its bands look at whole tiles: `render_tile` draws it.
+            // Toon filters across rows: `render_tile` draws whole tiles.
             Model::Toon => {}
         }
         light

@@ -10,8 +10,8 @@ use crate::surface::links;
 
 /// Adds every light's terms in `bands` tones to the rows of a tile.
 ///
-/// A tone's edge is where σρ crosses a multiple of 1 / bands. It is filtered over the pixel: how fast σρ changes along
-/// the surface there, from its neighbours in the tile, says how much of the pixel lies on either side.
+/// The edge of a tone is where σρ crosses a multiple of 1 / bands. It is antialiased: the gradient of σρ, from the
+/// neighbours in the tile, gives the share of the pixel on either side.
 pub fn shade_tile(shading: &Shading, rows: &[SurfaceRow], light: &mut [Light3]) {
     let mut lights: Vec<RowLight> = shading.lights.iter().map(Light::row_light).collect();
     let (mut terms, mut relief) = (PhongTerms::new(shading, &lights), RowRelief::default());
@@ -173,7 +173,7 @@ mod tests {
                     inside += 1;
                 }
             }
-            // At the rim normals turn within the pixel by more than its neighbours tell.
+            // At the rim, normals turn within a pixel more than its neighbours show.
             if inside == 256 && (x as f32 - 47.5).hypot(y as f32 - 47.5) < 40.0 {
                 let found = crate::math::srgb::decode(f32::from(red) / 255.0);
                 worst = worst.max((found - sum / 256.0).abs());

@@ -1,5 +1,5 @@
-//! One row of a tile scaled, the fast way.
-//! Floor 3. The equation is `scaling::sigma`; the tests of `radiance` hold this to it.
+//! Scales one row of a tile, fast. Floor 3. The equation is `scaling::sigma`; the tests of `radiance` compare this with
+//! it.
 //!
 //! Short loops over the row, each with its result in an array: one long loop per pixel is a single chain of dependent
 //! operations that no processor can overlap (measured: 2.4 times slower).
@@ -11,7 +11,7 @@ use crate::shading::scaling::Scaling;
 /// One value a pixel of the row.
 type LuminanceRow = [f32; TILE];
 
-/// A scaling at work on the rows of a tile. Its arrays are reused from row to row.
+/// Scales the rows of a tile; its arrays are reused from row to row.
 pub(super) struct RowScaler {
     scaling: Scaling,
     per_y_star: f32,
@@ -54,7 +54,7 @@ crate::widest! {
         }
     }
     fn apply_strong(with: &mut RowScaler, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
-        // A strong γ tells dark tones apart that a coarse luminance does not.
+        // A strong γ separates dark tones that an approximate luminance would merge.
         with.find_reflectances::<false>(row, |r, g, b| {
             srgb::luminance(srgb::decode_fast(r), srgb::decode_fast(g), srgb::decode_fast(b))
         });
