@@ -1,4 +1,4 @@
-//! Files of rows of numbers: PNG, JPEG, WebP, TIFF, BMP, TGA and Radiance HDR, decoded within a budget.
+//! Decodes raster files within a budget: PNG, JPEG, WebP, TIFF, BMP, TGA and Radiance HDR.
 //! Floor 5. Not here: what the numbers mean (`picture`, `maps`), EXR (`exr`).
 
 mod tiff;
@@ -12,13 +12,13 @@ use std::{
     path::Path,
 };
 
-/// A decoded file, its colour profile and how it wants to be turned, both not yet applied.
+/// A decoded file, with its colour profile and orientation, both not yet applied.
 pub struct Bitmap {
     pub image: DynamicImage,
     pub icc: Option<Vec<u8>>,
     pub orientation: Orientation,
     pub format: &'static str,
-    /// What was amiss but could be helped, as a sentence.
+    /// A defect that could be worked around, as a sentence.
     pub warning: Option<&'static str>,
 }
 
@@ -35,13 +35,13 @@ const FORMATS: [(ImageFormat, &str, bool); 7] = [
     (ImageFormat::Hdr, "HDR", false),
 ];
 
-/// Decodes a file by what it begins with; TGA, which begins like nothing, by its name.
+/// Decodes a file by its first bytes; TGA, which has no signature, by its name.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let found = sniff(file, bytes)?;
     let result = decode_as(file, bytes, budget, found);
     let end = [0, 0, 0, 0, b'I', b'E', b'N', b'D', 0xae, 0x42, 0x60, 0x82];
     if result.is_err() && found.0 == ImageFormat::Png && !bytes.ends_with(&end) {
-        // A PNG whose pixels are all there may have lost just its end marker; pixels cut short fail again.
+        // A PNG may have lost only its end marker; if pixels are missing, decoding fails again.
         let whole = [bytes, &end].concat();
         if let Ok(bitmap) = decode_as(file, &whole, budget, found) {
             return Ok(Bitmap { warning: Some("the PNG has no end marker; all its pixels are there"), ..bitmap });
@@ -105,8 +105,8 @@ fn limits(budget: &Budget) -> image::Limits {
     limits
 }
 
-/// Refuses headers that promise more than the bytes that follow could hold: DEFLATE reaches 1032 : 1, LZW about 2500
-/// : 1.
+/// Refuses headers that promise more pixels than the following bytes could hold: DEFLATE reaches 1032 : 1, LZW about
+/// 2500 : 1.
 fn plausible(file: &Path, size: Size, decoded_bytes: u64, file_bytes: usize) -> Result<()> {
     const GRANTED: u64 = 1 << 20;
     if decoded_bytes > GRANTED && decoded_bytes / 4096 > file_bytes as u64 {

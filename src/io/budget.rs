@@ -1,10 +1,10 @@
-//! The budget every reader is given: nothing sizes an allocation from a file's own figures without asking it.
+//! The budget of every reader: no allocation is sized by a file's own numbers without a check against it.
 //! Floor 5.
 
 use crate::{Error, Result, math::Size};
 use std::path::Path;
 
-/// Ceilings for what one file may ask for. Raised by `--max-pixels` and `--max-side`.
+/// Limits for what one file may request. The command line raises them with `--max-pixels` and `--max-side`.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// Longest side of a picture, px.
@@ -44,7 +44,7 @@ impl Default for Budget {
             entries: 4_096,
             json_bytes: 16 << 20,
             json_values: 4_000_000,
-            // 32 groups take two levels each; what stands in the innermost takes the rest.
+            // 32 groups take two levels each; the content of the innermost takes the rest.
             json_depth: 80,
             layers: 2_000,
             group_depth: 32,
@@ -55,7 +55,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.
+    /// The size, or an error that names the limit it exceeds. A side of 0 is not a picture.
     pub fn size(&self, file: &Path, width: u64, height: u64) -> Result<Size> {
         if width == 0 || height == 0 {
             return Err(Error::decode(file, format!("a picture of {width} × {height} pixels has no pixels")));

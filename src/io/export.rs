@@ -1,5 +1,5 @@
-//! Pictures out: PNG, JPEG, WebP, TIFF and EXR, each written whole or not at all. Floor 5. Not here: what the picture
-//! shows (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
+//! Writes pictures: PNG, JPEG, WebP, TIFF and EXR, each completely or not at all. Floor 5. Not here: flattening
+//! (`document::flatten`), more than 8 bits (`deep`), layers of an EXR (`layers`).
 
 pub mod deep;
 pub mod layers;
@@ -39,7 +39,7 @@ impl ExportFormat {
         (ExportFormat::Tiff, "tiff"),
     ];
 
-    /// The format that a file's name asks for.
+    /// The format for a file name.
     pub fn of(file: &Path) -> Result<ExportFormat> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let found = Self::ALL.iter().find(|(_, known)| *known == extension);
@@ -53,11 +53,11 @@ impl ExportFormat {
 /// How a picture is written.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportOptions {
-    /// What shows through where the picture is transparent; nothing by default.
+    /// The colour behind transparent parts; none by default.
     pub background: Option<Color>,
     /// Of a JPEG, 1 … 100.
     pub quality: u8,
-    /// What the picture is printed at, where the format can say so (PNG).
+    /// The print resolution, if the format can store it (PNG).
     pub dots_per_inch: Option<f32>,
     /// The part that is written; all of the canvas by default.
     pub crop: Option<Rect>,
@@ -69,25 +69,25 @@ impl Default for ExportOptions {
     }
 }
 
-/// A place to write to, checked before the work that fills it begins.
+/// A file to write to, checked before the work begins.
 pub struct OutputFile {
     /// As the user named it, for messages.
     named: PathBuf,
     /// With links resolved: the file a link leads to is replaced, not the link.
     file: PathBuf,
-    /// Absent for a document, whose bytes are not made here.
+    /// Absent for a document, which other modules write.
     format: Option<ExportFormat>,
 }
 
-/// The name asks for a whole document, not for a picture.
+/// Whether the name is that of a document, not of a picture.
 fn is_document(named: &Path) -> bool {
     let extension = named.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     ["ora", "psd"].contains(&extension.as_str())
 }
 
 impl OutputFile {
-    /// Fails where the name asks for no known format, names a folder, lies in a folder that does not exist, or is one
-    /// of the files that are being read.
+    /// Fails if the name has no known format, names a folder, lies in a folder that does not exist, or is one of the
+    /// input files.
     pub fn new(named: &Path, inputs: &[PathBuf]) -> Result<Self> {
         let format = ExportFormat::of(named);
         let format = if is_document(named) { None } else { Some(format?) };
@@ -125,7 +125,7 @@ impl OutputFile {
             fs::rename(&part, &self.file)
         };
         write().map_err(|error| {
-            // What was begun is taken away; if even that fails, the first failure is the one to tell.
+            // The partial file is removed; if that fails too, the first failure is reported.
             let _ = fs::remove_file(&part);
             Error::io(&self.named, error)
         })

@@ -1,5 +1,5 @@
 //! OpenEXR: every channel of every part, whatever the layers are called.
-//! Floor 5. Header and chunk table are walked and weighed against the budget before anything is decoded or allocated;
+//! Floor 5. The header and the chunk table are checked against the budget before anything is decoded or allocated;
 //! a chunk is decoded by the `exr` crate. Not here: what a channel means (`picture`, `maps`).
 
 mod chunks;
@@ -84,13 +84,13 @@ impl<'a> ExrFile<'a> {
     pub fn world_to_camera(&self) -> Option<[f32; 16]> {
         self.meta.headers.iter().find_map(|h| h.own_attributes.world_to_camera)
     }
-    /// The horizontal field of view in degrees, where the header tells.
+    /// The horizontal field of view in degrees, if the header has it.
     pub fn fov_degrees(&self) -> Option<f32> {
         let told = self.meta.headers.iter().find_map(|h| h.own_attributes.horizontal_field_of_view);
         told.filter(|fov| *fov > 0.0 && *fov < 180.0)
     }
-    /// Decodes some channels (indices into [`Self::channels`]) over the display window; NaN where the data window
-    /// leaves it bare. Unsigned integers become floats.
+    /// Decodes some channels (indices into [`Self::channels`]) over the display window; NaN outside the data window.
+    /// Unsigned integers become floats.
     pub fn read(&self, wanted: &[usize]) -> Result<Vec<Plane<f32>>> {
         let mut planes = vec![Plane::filled(self.size, f32::NAN); wanted.len()];
         let targets: Vec<&ExrChannel> = wanted.iter().filter_map(|&w| self.channels.get(w)).collect();
@@ -126,7 +126,8 @@ fn check_part(file: &Path, header: &Header, budget: &Budget) -> Result<()> {
         return Err(Error::unsupported(file, "EXR channels stored at a lower resolution (subsampling)"));
     }
     let data = budget.size(file, header.layer_size.x() as u64, header.layer_size.y() as u64)?;
-    // What the widest picture within the budget weighs: four floats a pixel; a G-buffer has more but smaller channels.
+    // The memory of the largest picture within the budget: four floats a pixel; a G-buffer has more but smaller
+    // channels.
     let bytes = data.area() as u64 * header.channels.bytes_per_pixel as u64;
     if bytes > budget.area_px.saturating_mul(16) {
         let reason = format!("{data} pixels of {} channels (raise it with --max-pixels)", header.channels.list.len());

@@ -1,5 +1,5 @@
-//! Where a document's files are found: a folder beside a recipe, later a project's zip.
-//! Floor 5. Everything a document names is read through [`Files`]; nothing else opens a path that a file wrote.
+//! Where a document's files are found: in the recipe's folder, or in a project's zip. Floor 5. Every file that a
+//! document names is read through [`Files`]; nothing else opens a path from a file.
 
 use super::Budget;
 use crate::raster::Asset;
@@ -21,7 +21,7 @@ pub trait Files {
     fn path(&self, name: &str) -> PathBuf;
 }
 
-/// Why a stranger's document may not name a file so; `None` where it may.
+/// Why a document may not use this file name; `None` if it may.
 ///
 /// Names are relative, below the document's own folder, with `/` between parts, the same on every system.
 pub fn refusal(name: &str) -> Option<&'static str> {
@@ -91,7 +91,7 @@ impl UserFiles {
     /// The name by which a document knows a path of the user's.
     pub fn add(&mut self, path: &Path) -> String {
         let mut name = path.to_string_lossy().into_owned();
-        // Two paths that are not UTF-8 may read alike.
+        // Two paths that are not UTF-8 may look alike.
         while self.paths.get(&name).is_some_and(|known| known != path) {
             name.push('′');
         }
@@ -109,7 +109,7 @@ impl Files for UserFiles {
     }
 }
 
-/// Files that remember which of them were read, so that none of them is written over.
+/// Files that record which of them were read, so that none of them is overwritten.
 pub struct TrackedFiles<F> {
     files: F,
     read: RefCell<Vec<PathBuf>>,
@@ -135,7 +135,7 @@ impl<F: Files> Files for TrackedFiles<F> {
     }
 }
 
-/// Files each of which is read once, and kept.
+/// Files that are read once and cached.
 pub struct CachedFiles<'a> {
     files: &'a dyn Files,
     read: RefCell<BTreeMap<String, Asset>>,

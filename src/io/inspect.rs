@@ -1,4 +1,4 @@
-//! What a file is, before anyone decides what to use it for: its format, size, channels and layers.
+//! Describes a file before its use is decided: format, size, channels and layers.
 //! Floor 5. `info` prints it; a dialog that opens a file shows it. Conventions are `maps`' work.
 
 use super::maps::{MapRole, fitting};
@@ -34,9 +34,9 @@ pub struct FileDescription {
     pub depths: Vec<String>,
     /// No two colour channels differ.
     pub is_grey: bool,
-    /// A colour picture whose texels, read as normals, have length 1.
+    /// Whether it is a colour picture whose texels, read as normals, have length 1.
     pub looks_like_normals: bool,
-    /// What was amiss but could be helped.
+    /// A defect that could be worked around.
     pub warning: Option<&'static str>,
 }
 

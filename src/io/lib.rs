@@ -1,4 +1,5 @@
-//! Floor 5: files. One module a format; each brings what it reads into the program's own conventions at the door.
+//! Floor 5: files. There is one module per format. Each converts what it reads to the program's own conventions at
+//! once.
 
 pub mod bitmap;
 pub mod brush;
@@ -18,7 +19,7 @@ pub mod recipe;
 pub mod recovery;
 pub mod save;
 
-// The floors beneath, under the names that they have there.
+// The floors beneath, under their own names.
 use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
 
 pub use budget::Budget;

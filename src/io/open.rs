@@ -1,4 +1,4 @@
-//! The one door for documents: whatever a file is, told by its content, it becomes a document.
+//! Opens documents: recognises a file by its content and reads it as a document.
 //! Floor 5. Saving is `save`; the formats are modules of their own.
 
 use super::files::{RecipeFolder, read_file};
@@ -14,12 +14,12 @@ use std::sync::Arc;
 /// A document and where it came from.
 pub struct OpenedDocument {
     pub document: Document,
-    /// What is not as it was saved, or could not be carried over: a sentence each, to be shown.
+    /// What differs from the saved state or could not be imported: a sentence each, to be shown.
     pub notes: Vec<String>,
-    /// Nothing is lost. What is not whole must not be saved over its file unasked.
+    /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
     pub is_whole: bool,
     pub kind: FileKind,
-    /// What the file was when it was read, for [`super::save::Overwrite::This`].
+    /// The file's stamp when it was read, for [`super::save::Overwrite::This`].
     pub stamp: FileStamp,
 }
 
@@ -58,7 +58,7 @@ impl FileKind {
 /// Opens a project, a recipe (the files it names lie beside it), a Photoshop file, or a picture, which becomes a
 /// document of one paint layer.
 ///
-/// A damaged project gives every layer that is intact; `notes` say what is not, and `is_whole` is false.
+/// A damaged project gives every intact layer; `notes` list the others, and `is_whole` is false.
 pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let bytes = read_file(file, budget.file_bytes)?;
     let kind = FileKind::of(&bytes);

@@ -82,12 +82,12 @@ fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
     srgb::quantise(srgb::luminance(r, g, b) * a)
 }
 
-/// The profile of sRGB that this program writes. Its encoder would put the present time into it: a file tells no time,
-/// and the same document gives the same bytes.
+/// The profile of sRGB that this program writes. Its encoder would write the present time into it; the time is fixed,
+/// so that the same document gives the same bytes.
 pub fn own_srgb() -> Vec<u8> {
     /// Year, month, day, hour, minute and second, as the header of a profile holds them.
     const DATE: [u8; 12] = [0x07, 0xd0, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0];
-    /// The illuminant of the connection space, which is always D50 and which the encoder leaves out.
+    /// The illuminant of the connection space, always D50, which the encoder omits.
     const D50: [u8; 12] = [0, 0, 0xf6, 0xd6, 0, 1, 0, 0, 0, 0, 0xd3, 0x2d];
     let mut profile = ColorProfile::new_srgb().encode().unwrap_or_default();
     for (at, value) in [(24, DATE), (68, D50)] {
@@ -98,7 +98,7 @@ pub fn own_srgb() -> Vec<u8> {
     aligned(&profile).unwrap_or(profile)
 }
 
-/// A profile with each of its parts at a multiple of four bytes, which the encoder forgets and readers complain of.
+/// A profile with each part at a multiple of four bytes: readers require it, but the encoder does not do it.
 fn aligned(profile: &[u8]) -> Option<Vec<u8>> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?) as usize);
     let table = 132 + 12 * number(128)?;
@@ -115,7 +115,7 @@ fn aligned(profile: &[u8]) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// The very profile that this program writes: nothing is to be done.
+/// The profile that this program writes itself: nothing needs converting.
 pub fn is_own_srgb(icc: &[u8]) -> bool {
     own_srgb() == icc
 }

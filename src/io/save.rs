@@ -1,5 +1,5 @@
 //! Saving a document: all or nothing, read back and compared before it counts, the previous version kept.
-//! Floor 5. The bytes are `project`'s. Every step is here for a loss that somebody had (docs/PROJECTS.md).
+//! Floor 5. `project` makes the bytes. Every step prevents a loss that has happened to somebody (docs/PROJECTS.md).
 
 mod part;
 
@@ -12,13 +12,13 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Bytes written or compared between two looks at whether the save is still wanted.
+/// Bytes written or compared between two checks for cancellation.
 const CHUNK: usize = 1 << 20;
-/// Programs that synchronise folders hold a file for some milliseconds; waited for, twice as long each time.
+/// Synchronisation programs lock files for some milliseconds: the pause before a retry, doubled each time.
 const RENAME_TRIES: u32 = 6;
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
 
-/// What a file held when it was last read or written here.
+/// The state of a file when it was last read or written here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileStamp {
     pub(super) bytes: u64,
@@ -48,9 +48,9 @@ impl FileStamp {
 pub enum Overwrite {
     /// Nothing: there must be no file of that name yet.
     Nothing,
-    /// The file as it was when it was opened or last saved; another program's change is not overwritten.
+    /// Only the file as it was when opened or last saved; another program's change is not overwritten.
     This(FileStamp),
-    /// Whatever is there: the user said so.
+    /// Whatever is there: the user agreed.
     Anything,
 }
 
@@ -72,12 +72,12 @@ pub fn save(document: &Document, file: &Path, over: Overwrite, progress: &Progre
     replace(&Disk, file, &bytes, over, progress)
 }
 
-/// Takes away what saves that were killed left beside a file; whatever fails, the next one does it.
+/// Removes what killed saves left beside a file; failures are left to the next save.
 pub fn tidy(file: &Path) {
     sweep(&Disk, folder_of(file));
 }
 
-/// Half the processors: the other half is for who paints meanwhile.
+/// Uses half the processors: the other half is for painting meanwhile.
 fn in_own_threads<T: Send>(file: &Path, work: impl FnOnce() -> T + Send) -> Result<T> {
     let threads = (rayon::current_num_threads() / 2).max(1);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -120,7 +120,7 @@ impl SaveJob<'_> {
             Ok(is_written)
         });
         if !matches!(placed, Ok(true)) {
-            // What was begun is taken away; if even that fails, the first failure is the one to tell.
+            // The partial file is removed; if that fails too, the first failure is reported.
             let _ = self.fs.remove(&part.path);
             return placed;
         }
@@ -150,13 +150,13 @@ impl SaveJob<'_> {
             }
         }
     }
-    /// What stands there may be replaced.
+    /// Checks that the existing file may be replaced.
     fn check(&self, target: &Path) -> Result<()> {
         let changed = |reason: &str| Err(Error::Changed { file: self.named.into(), reason: reason.into() });
         let is_there = self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
         match self.over {
             Overwrite::Nothing if is_there => changed("there is a file of this name already"),
-            // Gone is no change that could be overwritten.
+            // A deleted file has no changes to lose.
             Overwrite::This(stamp) if is_there && self.stamp_of(target)? != stamp => {
                 changed("another program changed it since it was opened")
             }
@@ -180,7 +180,7 @@ impl SaveJob<'_> {
             self.progress.step();
         }
         if self.fs.found(target).map_err(failed)?.is_some() {
-            // A disk without permissions of its own must not keep anybody from saving.
+            // A disk without permissions must not prevent saving.
             let _ = self.fs.copy_permissions(target, &part.path);
         }
         part.handle.sync().map_err(failed)?;
@@ -228,7 +228,7 @@ impl SaveJob<'_> {
         }
         Ok(())
     }
-    /// The old file as `name~`: a second name where the disk knows such, else a copy. Never for a moment without one.
+    /// The old file as `name~`: a hard link if the disk supports it, else a copy. There is never a moment without it.
     fn keep(&self, part: &PartFile, target: &Path) -> io::Result<()> {
         let spare = part.path.with_extension(SPARE);
         if self.fs.link(target, &spare).is_err() {
@@ -254,7 +254,7 @@ impl SaveJob<'_> {
     /// Without this a power cut brings the old file back.
     fn flush_folder(&self, target: &Path) -> Result<()> {
         match self.fs.sync_dir(folder_of(target)) {
-            // Some disks cannot; they have no later moment either.
+            // Some disks cannot flush folders; nothing more can be done there.
             Err(e) if !matches!(e.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
                 Err(self.failed("the file was written, but whether it stays after a power cut is unknown", e))
             }

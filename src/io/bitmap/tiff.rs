@@ -16,7 +16,7 @@ use tiff::decoder::{BufferLayoutPreference, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
-/// What the samples of a pixel stand for, those beyond the colours apart.
+/// The meaning of a pixel's samples, without extra samples.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ColorModel {
     Grey,
@@ -29,7 +29,7 @@ enum ColorModel {
 }
 
 impl ColorModel {
-    /// Of the tag's value; `None` for colours that are not read here.
+    /// From the value of the tag; `None` for colour models that are not supported.
     fn of(photometric: u16) -> Option<Self> {
         Some(match photometric {
             0 => ColorModel::Ink,
@@ -50,7 +50,7 @@ impl ColorModel {
     }
 }
 
-/// What the sample behind the colours is.
+/// The meaning of the sample after the colours.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum AlphaKind {
     None,
@@ -67,7 +67,8 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let meaning = ColorModel::of(entry.value);
     let others = "its colours are neither grey, indexed, RGB, YCbCr nor CMYK";
     let meaning = meaning.ok_or_else(|| Error::unsupported(file, others))?;
-    // The crate reads no palettes and no white 0 with alpha, but would as grey. Their meaning is told here.
+    // The crate reads neither palettes nor white-is-zero with alpha, but it reads them as grey. Their meaning is
+    // restored here.
     let as_grey = match meaning {
         ColorModel::Palette | ColorModel::Ink => Some(entry.with_value(bytes, 1)),
         _ => None,
@@ -111,7 +112,7 @@ const JPEG: u16 = 7;
 /// Pixels of a JPEG within that are always allowed for: tiles may be larger than the picture.
 const TILE_PX: u64 = 1 << 22;
 
-/// A JPEG within says that it is larger than the whole: its decoder would make room for that before it looks.
+/// Refuses an embedded JPEG that claims to be larger than the picture: its decoder would allocate that size first.
 fn claims_more(bytes: &[u8], size: Size) -> bool {
     let most = TILE_PX.max(size.area() as u64);
     // The header of a frame: its mark, a length for 1 to 4 components, 8 bits, height, width. Nothing coded holds such
@@ -124,7 +125,7 @@ fn claims_more(bytes: &[u8], size: Size) -> bool {
     })
 }
 
-/// How many samples the crate gives a pixel.
+/// The number of samples per pixel that the crate returns.
 fn samples(color: ColorType) -> usize {
     match color {
         ColorType::Gray(_) | ColorType::Palette(_) => 1,
@@ -147,7 +148,7 @@ fn failure(file: &Path, error: &TiffError) -> Error {
     }
 }
 
-/// Where the tag that tells the colours' meaning has its value.
+/// The position of the photometric tag's value.
 struct Photometric {
     at: usize,
     is_little: bool,
@@ -215,8 +216,7 @@ impl TiffLayout {
             _ => Err("the samples of this TIFF have a sign; those of a picture have none"),
         }
     }
-    /// Samples of less than a byte, which share bytes: a byte each, stretched to its range unless they are numbers of
-    /// colours.
+    /// Unpacks samples of less than a byte to a byte each, scaled to its range unless they are palette indices.
     fn unpacked(&self, packed: &[u8]) -> Vec<u8> {
         let bits = usize::from(self.bits);
         let most = (1u32 << bits) - 1;
@@ -255,7 +255,7 @@ impl TiffLayout {
             (0..area).flat_map(|i| (0..channels).map(move |c| (i, c))).map(|(i, c)| values[at(i, c)]).collect()
         })
     }
-    /// Light, not ink, and not multiplied by alpha.
+    /// Converts to additive colours that are not multiplied by alpha.
     fn straight<T: TiffSample>(&self, mut pixels: Vec<T>) -> Vec<T> {
         for pixel in pixels.chunks_exact_mut(self.channels()) {
             let (colours, alpha) = pixel.split_at_mut(self.meaning.colours());
@@ -270,7 +270,7 @@ impl TiffLayout {
         }
         pixels
     }
-    /// RGB of cyan, magenta, yellow and black, as if they were printed by an ideal press.
+    /// RGB of cyan, magenta, yellow and black, with ideal inks.
     fn printed<T: TiffSample>(&self, pixels: Vec<T>) -> Vec<T> {
         let rgb = |pixel: &[T]| {
             let [c, m, y] = [pixel[0], pixel[1], pixel[2]].map(|ink| ink.inverted().times(pixel[3].inverted()));
@@ -278,7 +278,7 @@ impl TiffLayout {
         };
         self.straight(pixels).chunks_exact(self.channels()).flat_map(rgb).flatten().collect()
     }
-    /// The colours that a palette's numbers stand for.
+    /// The colours of palette indices.
     fn looked_up<T: TiffSample>(&self, pixels: &[T]) -> Option<DynamicImage> {
         let count = self.map.len() / 3;
         // Some programs wrote bytes where 16 bits are meant.

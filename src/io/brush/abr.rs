@@ -1,5 +1,5 @@
 //! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later, and computed round ones.
-//! Floor 5. Of their settings only name, spacing, size, turn, and what shapes a computed tip, are taken.
+//! Floor 5. Only name, spacing, size, rotation and the shape of a computed tip are imported.
 
 mod descriptor;
 mod presets;
@@ -14,12 +14,12 @@ use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// More tips than any collection was seen to have.
+/// More tips than any known collection has.
 const MOST: usize = 4096;
-/// Photoshop's own, where the file does not say.
+/// Photoshop's default, if the file does not say.
 const SPACING: f32 = 0.25;
 
-/// Every brush of a collection. One that is damaged is left out and told of in the notes of the first that is not.
+/// Reads every brush of a collection. Damaged ones are left out; the notes of the first intact one mention them.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBrush>> {
     let mut cursor = ByteCursor::new(bytes);
     let cut = || Error::decode(file, "the collection is cut short");
@@ -56,7 +56,7 @@ struct AbrReader<'a> {
     used_px: u64,
     tips: TipNames,
     brushes: Vec<ImportedBrush>,
-    /// What the sampled tips among them are called by, where the version has that.
+    /// The keys of the sampled tips, if the version has them.
     keys: Vec<(String, usize)>,
     damaged: usize,
 }
@@ -77,7 +77,7 @@ impl AbrReader<'_> {
         }
         Ok(())
     }
-    /// A round or elliptic tip made of numbers.
+    /// A computed round or elliptic tip.
     fn computed(&mut self, mut record: ByteCursor) {
         let mut number = || {
             let value = record.i16()?;
@@ -108,7 +108,7 @@ impl AbrReader<'_> {
     }
     /// Versions 6 and later: blocks, of which one holds all sampled tips and another says what they are called.
     fn later(&mut self, cursor: &mut ByteCursor, subversion: u16) -> Result<()> {
-        // A key of 37 letters, and then what no document tells.
+        // A key of 37 letters, followed by undocumented data.
         let before = match subversion {
             1 => 47,
             2 => 301,
@@ -146,14 +146,14 @@ impl AbrReader<'_> {
         }
         Ok(())
     }
-    /// Brushes by the names they have in the collection, in its order; tips that nobody names come last.
+    /// The brushes by their names in the collection, in its order; tips without a name come last.
     fn call(&mut self, said: Vec<presets::AbrPreset>) {
         let tips = std::mem::take(&mut self.brushes);
         let mut is_called = vec![false; tips.len()];
         for said in said {
             let at = said.sample.as_ref().map(|key| self.keys.iter().find(|(known, _)| known == key).map(|(_, i)| *i));
             match at {
-                // Its tip is damaged, or elsewhere.
+                // Its tip is damaged or missing.
                 Some(None) => {}
                 Some(Some(i)) => {
                     is_called[i] = true;

@@ -18,7 +18,7 @@ pub struct GbrBrush {
 }
 
 const MAGIC: [u8; 4] = *b"GIMP";
-/// A pattern that may follow a grey brush and gives it colours: what was done before brushes had any.
+/// A pattern that may follow a grey brush and gives it colours, from before brushes had their own.
 const PATTERN: [u8; 4] = *b"GPAT";
 const SPACING: f32 = 0.25;
 
@@ -34,7 +34,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush>
     Ok(ImportedBrush::stamp(stamp.name, tip, stamp.spacing))
 }
 
-/// The brush at the cursor, which then stands behind it.
+/// Reads the brush at the cursor, and moves the cursor behind it.
 pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<GbrBrush> {
     let cut = || Error::decode(file, "the brush is cut short");
     let start = cursor.rest().len();
@@ -46,7 +46,7 @@ pub fn next(file: &Path, cursor: &mut ByteCursor, budget: &Budget) -> Result<Gbr
             if cursor.key().ok_or_else(cut)? != MAGIC {
                 return Err(Error::decode(file, "it does not begin like a GIMP brush"));
             }
-            // Per cent; the wildest brushes stand ten of their sizes apart.
+            // Per cent; the greatest spacing is ten times the size.
             cursor.u32().ok_or_else(cut)?.clamp(1, 1000) as f32 / 100.0
         }
         _ => return Err(Error::unsupported(file, format!("version {version} of GIMP's brushes"))),

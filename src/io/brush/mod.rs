@@ -1,4 +1,4 @@
-//! Brushes of other programs: their files become brushes of this one, with notes of what has no counterpart here.
+//! Imports brushes of other programs, with notes on settings that have no counterpart here.
 //! Floor 5.
 //!
 //! | file | |
@@ -30,14 +30,14 @@ use std::path::Path;
 /// A brush that was read from another program's file.
 #[derive(Clone)]
 pub struct ImportedBrush {
-    /// As it is called there; not empty.
+    /// Its name there; not empty.
     pub name: String,
     pub brush: Brush,
     /// Sentences about what could not be carried over, without full stops.
     pub notes: Vec<String>,
 }
 
-/// Whose file it is.
+/// The format of a brush file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BrushFormat {
     GimpBrush,
@@ -46,7 +46,7 @@ pub enum BrushFormat {
     Photoshop,
 }
 
-/// Endings of the files that hold brushes.
+/// File extensions of brushes.
 pub const EXTENSIONS: [(&str, BrushFormat); 4] = [
     ("gbr", BrushFormat::GimpBrush),
     ("gih", BrushFormat::GimpHose),
@@ -55,7 +55,8 @@ pub const EXTENSIONS: [(&str, BrushFormat); 4] = [
 ];
 
 impl BrushFormat {
-    /// By the content where that tells, else by the ending: most of these formats begin with nothing but numbers.
+    /// Recognises the format by the content if possible, else by the extension: most of these formats have no
+    /// signature.
     pub fn of(file: &Path, bytes: &[u8]) -> Option<Self> {
         if gbr::is_gbr(bytes) {
             return Some(BrushFormat::GimpBrush);
@@ -63,7 +64,7 @@ impl BrushFormat {
         let extension = file.extension()?.to_string_lossy().to_lowercase();
         EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|(_, kind)| *kind)
     }
-    /// What such a file is called.
+    /// The name of the format.
     pub fn name(self) -> &'static str {
         match self {
             BrushFormat::GimpBrush => "GIMP brush",
@@ -110,7 +111,7 @@ struct TipNames {
 }
 
 impl TipNames {
-    /// `name`: of the brush; where it has no letters of use the file's own stands in.
+    /// `name`: of the brush; the name of the file replaces one without usable letters.
     fn add(&mut self, file: &Path, picture: Picture, name: &str) -> PictureSource {
         let of_file = || plain(&file.file_stem().unwrap_or_default().to_string_lossy());
         let stem = Some(plain(name)).filter(|n| !n.is_empty()).unwrap_or_else(of_file);
@@ -135,7 +136,7 @@ pub fn plain(name: &str) -> String {
     out.trim_end_matches('-').to_owned()
 }
 
-/// Text up to its NUL, without what a terminal would act on; Latin letters where it is not UTF-8.
+/// Text up to its NUL, without control characters; read as Latin-1 if it is not UTF-8.
 fn text_of(bytes: &[u8]) -> String {
     let bytes = bytes.split(|b| *b == 0).next().unwrap_or_default();
     let text = match std::str::from_utf8(bytes) {

@@ -1,5 +1,5 @@
-//! MyPaint's brushes (JSON, version 3): settings, each a base value and curves over what the hand does that add to it.
-//! Floor 5. Here curves multiply: what adds up over several inputs is matched where all of them are at their most.
+//! MyPaint's brushes (JSON, version 3): settings, each a base value plus curves over the inputs of the pen. Floor 5.
+//! Curves multiply in this program: sums over several inputs are matched where all inputs are at their maximum.
 
 mod curves;
 
@@ -48,7 +48,7 @@ fn brush(settings: &mut MyPaintSettings) -> Brush {
     let (tip, rotation, dynamics) = ellipse(settings, dynamics);
     let jitter = jitter(settings);
     let stabilizer = match settings.plain("slow_tracking", 0.0) {
-        // MyPaint's own scale: at 1 the line is plainly behind the pen, at 10 it crawls.
+        // MyPaint's scale: at 1 the line clearly lags behind the pen, at 10 it crawls.
         slow if slow > 0.0 => Stabilizer::Average { weight: (slow / (slow + 1.5)).min(0.95) },
         _ => Stabilizer::None,
     };
@@ -110,7 +110,7 @@ fn ellipse(settings: &mut MyPaintSettings, dynamics: Dynamics) -> (Tip, f32, Dyn
         settings.note("A tip that changes its shape keeps its flattest one");
     }
     let mut dynamics = dynamics;
-    // Theirs turns clockwise.
+    // MyPaint's angle is clockwise.
     let mut rotation = -angle.base;
     for (input, curve) in &angle.inputs {
         match settings.turns(input, curve) {
@@ -153,7 +153,7 @@ fn with(dynamics: Dynamics, property: Property, driven: &DrivenSetting) -> Dynam
 }
 
 impl MyPaintSettings<'_> {
-    /// What `opaque` is multiplied by: the pressure, where a file does not say.
+    /// The factor of `opaque`: the pressure, if a file does not say.
     fn opaque_multiply(&mut self) -> DrivenSetting {
         if self.has("opaque_multiply") {
             return self.driven("opaque_multiply", 0.0, |v| v.clamp(0.0, 2.0));

@@ -15,7 +15,7 @@ use std::path::Path;
 /// Writes a preset to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder. The preset with these
 /// names.
 ///
-/// The pictures first, so that a preset that is there is whole.
+/// The pictures are written first, so that an existing preset is complete.
 pub fn write(file: &Path, preset: &Preset) -> Result<Preset> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut number = 0;
@@ -32,11 +32,11 @@ pub fn write(file: &Path, preset: &Preset) -> Result<Preset> {
     Ok(written)
 }
 
-/// Takes a preset's file away, and the pictures beside it that it names. What is gone already is no failure.
+/// Removes a preset's file and the pictures that it names. A missing file is no failure.
 pub fn remove(file: &Path, preset: &Preset) -> Result<()> {
     let beside = preset.brush.pictures().map(|source| Path::new(&source.file));
     let beside = beside.filter(|name| name.file_name() == Some(name.as_os_str())).map(|name| file.with_file_name(name));
-    // The preset first: what is left then is named by nobody.
+    // The preset is removed first, so that nothing refers to the remaining pictures.
     for file in std::iter::once(file.to_owned()).chain(beside) {
         match std::fs::remove_file(&file) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(file, error)),
@@ -56,6 +56,6 @@ fn encoded(file: &Path, source: &PictureSource) -> Result<(Asset, &'static str)>
 }
 
 fn replace(file: &Path, bytes: &[u8]) -> Result<()> {
-    // Nothing here cancels.
+    // Nothing cancels this.
     save::replace(&Disk, file, bytes, Overwrite::Anything, &Progress::default()).map(|_| ())
 }

@@ -74,7 +74,7 @@ pub(super) fn exr(size: Size, light: impl Fn(usize) -> [f32; 4] + Sync) -> Resul
         let [r, g, b, a] = light(at.y() * width + at.x()).map(f16::from_f32);
         (r, g, b, a)
     });
-    // Lines in order: the bytes do not depend on which thread is done first.
+    // Lines are written in order, so that the bytes do not depend on the threads.
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
     let layer = Layer::new((width, size.height as usize), LayerAttributes::default(), encoding, channels);

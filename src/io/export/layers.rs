@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::io::Cursor;
 use std::path::Path;
 
-/// The bytes of the EXR; `None` if cancelled. The whole picture stands in R, G, B and A; colours are linear half floats
+/// The bytes of the EXR; `None` if cancelled. The whole picture is in R, G, B and A; colours are linear half floats
 /// multiplied by alpha, each layer with its own opacity and mask; normals and depth are 32 bits.
 pub fn encode(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {
     let size = document.size;

@@ -1,6 +1,5 @@
-//! The chunks of an EXR: found by walking the file, weighed, then decoded in parallel.
-//! Floor 5. The walk trusts no figure of the file: it knows where every chunk lies and that none is missing before a
-//! single pixel is allocated.
+//! The chunks of an EXR: found by walking the file, checked, then decoded in parallel. Floor 5. The walk does not trust
+//! the file's numbers: it finds every chunk and verifies that none is missing before any pixel is allocated.
 
 use super::guarded;
 use crate::{Error, Result};
@@ -30,7 +29,7 @@ enum ChunkPlace {
     Tile { x: usize, y: usize },
 }
 
-/// Little-endian figures read one after another.
+/// Reads little-endian numbers one after another.
 struct WordReader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -46,7 +45,7 @@ impl WordReader<'_> {
 
 /// Finds the chunks of every part's full resolution from the byte after the header.
 ///
-/// Fails where the file ends early, a chunk lies about its place or size, or a block is missing.
+/// Fails if the file ends early, a chunk's position or size is wrong, or a block is missing.
 pub fn walk(file: &Path, bytes: &[u8], header_end: usize, meta: &MetaData) -> Result<Vec<Chunk>> {
     let total: usize = meta.headers.iter().fold(0, |sum, h| h.chunk_count.saturating_add(sum));
     let tables = total.saturating_mul(8).saturating_add(header_end);
@@ -142,7 +141,7 @@ fn dwa_is_sane(header: &Header, body: &[u8]) -> bool {
     inflated.iter().all(|&v| v <= room) && stored.iter().all(|&v| v <= body.len() as u64)
 }
 
-/// Decodes chunks in parallel, a few at a time, and hands the blocks over in the order of the file.
+/// Decodes chunks in parallel, a few at a time, and passes the blocks on in the order of the file.
 pub fn decode(
     file: &Path,
     bytes: &[u8],

@@ -48,7 +48,7 @@ impl ExrPass {
     }
 }
 
-/// The crate takes each byte for a letter; programs write UTF-8.
+/// The crate reads each byte as a character; programs write UTF-8.
 fn text(name: &Text) -> String {
     String::from_utf8_lossy(name.bytes()).into_owned()
 }

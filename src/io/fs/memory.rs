@@ -16,7 +16,7 @@ const BITS_A_FILE: usize = 10;
 #[derive(Clone, Default)]
 struct Inode {
     bytes: Vec<u8>,
-    /// How many of them are on the disk for certain.
+    /// How many bytes are on the disk for certain.
     synced: Vec<u8>,
 }
 
@@ -151,12 +151,12 @@ impl DiskState {
     pub fn lucks(&self, most: u64) -> impl Iterator<Item = u64> {
         let unsynced = self.inodes.iter().filter(|inode| inode.bytes != inode.synced).count();
         let all = 1u64 << (self.pending.len() + BITS_A_FILE * unsynced).min(63);
-        // An odd step visits every value before one comes again.
+        // An odd step visits every value before it repeats.
         let step = if all <= most { 1 } else { 0x9e37_79b9_7f4a_7c15 };
         (0..all.min(most)).map(move |i| i.wrapping_mul(step) % all)
     }
-    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; then some about each file
-    /// that is not synced: what arrived of it, and how much.
+    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; further bits decide how
+    /// much of each file that is not synced arrived.
     pub fn after_power_cut(&self, luck: u64) -> MemoryFs {
         let mut names = self.synced_names.clone();
         let mut bits = luck;

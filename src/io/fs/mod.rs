@@ -1,5 +1,5 @@
-//! The few things that saving and recovery ask of a disk, so that a failing disk and a power cut can be tested.
-//! Floor 5. [`Disk`] is the real one. Tests have one in memory that fails, or forgets what was not synced.
+//! The operations that saving and recovery need from a disk, as a trait, so that failing disks and power cuts can be
+//! tested. Floor 5. [`Disk`] is the real one. Tests have one in memory that fails, or forgets what was not synced.
 
 #[cfg(test)]
 pub mod memory;
@@ -24,7 +24,7 @@ pub trait Fs: Send + Sync {
     fn sync_dir(&self, folder: &Path) -> io::Result<()>;
     /// The path with every link resolved; fails where there is nothing.
     fn resolve(&self, path: &Path) -> io::Result<PathBuf>;
-    /// What stands at a path, a link not followed; `None` where there is nothing.
+    /// What is at a path, without following a link; `None` if there is nothing.
     fn found(&self, path: &Path) -> io::Result<Option<EntryKind>>;
     /// The files of a folder, in the order of their names.
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>>;
@@ -39,14 +39,14 @@ pub trait Fs: Send + Sync {
 
 /// An open file.
 pub trait FileHandle: Read + Write + Send {
-    /// Returns once the file's bytes are on the disk. Never tried again after it failed: the system may have dropped
-    /// them.
+    /// Returns once the file's bytes are on the disk. It is never retried after a failure: the system may have dropped
+    /// the bytes.
     fn sync(&mut self) -> io::Result<()>;
     /// Holds the file as long as the handle and the process live; false where another handle holds it.
     fn hold(&mut self) -> io::Result<bool>;
 }
 
-/// Given up when it is dropped, and by the system when the process dies, however it dies.
+/// Released when it is dropped, and by the system when the process dies for any reason.
 pub trait FileLock: Send {}
 
 /// What stands at a path.

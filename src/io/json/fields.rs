@@ -1,5 +1,5 @@
 //! Reading values out of JSON: every value knows its path, so that every refusal can name it.
-//! Floor 5. Ranges are checked here, at the door; what is read holds values that cannot be wrong.
+//! Floor 5. Ranges are checked here, so that everything that was read is valid.
 
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
@@ -38,7 +38,7 @@ impl<'a> JsonNode<'a> {
         let field = if self.path.is_empty() { "the document" } else { &self.path };
         Error::invalid(self.file, field, reason)
     }
-    /// Names this value in a failure that it led to.
+    /// Names this value in a failure that it caused.
     pub fn led_to(&self, error: Error) -> Error {
         Error::At { file: self.file.into(), field: self.path.clone(), error: Box::new(error) }
     }
@@ -170,7 +170,7 @@ impl<'a> Fields<'a> {
     pub fn one_of<T: Copy>(&mut self, name: &'static str, table: &[(T, &str)], default: T) -> Result<T> {
         self.get(name).map_or(Ok(default), |node| node.one_of(table))
     }
-    /// Refuses a field that nobody asked for, naming its path and the known name it resembles.
+    /// Refuses a field that was never read, naming its path and the most similar known name.
     pub fn finish(self) -> Result<()> {
         let Some((name, value)) = self.map.iter().find(|(name, _)| !self.known.contains(&name.as_str())) else {
             return Ok(());
@@ -184,7 +184,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// How many letters must be put in, left out or replaced to turn one word into the other (Levenshtein).
+/// The edit distance of two words (Levenshtein).
 fn differences(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().take(64).collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

@@ -1,5 +1,4 @@
-//! Objects in the making: the writing twin of [`super::Fields`].
-//! Floor 5. A field that holds its default is left out, so that what is written is what was said.
+//! Writes JSON objects: the counterpart of [`super::Fields`]. Floor 5. A field with its default value is left out.
 
 use crate::math::{Vec2, Vec3, srgb::Color};
 use serde_json::{Map, Value};
@@ -41,7 +40,7 @@ impl JsonObject {
             self.set(name, (*word).into());
         }
     }
-    /// Sets a field where there is something to say.
+    /// Sets a field if there is a value.
     pub fn said<T>(&mut self, name: &str, value: Option<T>, write: impl Fn(T) -> Value) {
         if let Some(value) = value {
             self.set(name, write(value));

@@ -24,11 +24,11 @@ pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
     Ok(value)
 }
 
-/// As how many values an object counts: its table of keys takes that much.
+/// The number of values that an object counts as: its table of keys takes that much memory.
 const OBJECT: usize = 8;
 
 /// Holds nesting and the number of values to the budget without building anything: a text of brackets and commas would
-/// take fifty times its size as values. Tolerates what is not JSON, which the parser refuses in better words.
+/// take fifty times its size as values. It tolerates what is not JSON: the parser refuses that with a better message.
 fn measure(file: &Path, text: &str, budget: &Budget) -> Result<()> {
     let (mut depth, mut values, mut in_string, mut escaped) = (0usize, 1usize, false, false);
     for b in text.bytes() {

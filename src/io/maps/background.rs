@@ -1,13 +1,13 @@
-//! What stands where there is no surface: the value that fills a map's outside, and the values renderers write there.
-//! Floor 5.
+//! Finds the background of maps: the value that fills the outside of the surface, and the values that renderers write
+//! there. Floor 5.
 
 use super::stored::StoredMap;
 use crate::math::{Size, Vec3};
 use crate::raster::Plane;
 use std::collections::HashMap;
 
-/// The one texel that fills the outside: outside the mask where there is one, else along the border. `None` where no
-/// texel stands on a third of it.
+/// The one texel that fills the outside: outside the mask where there is one, else along the border. `None` if no texel
+/// fills a third of it.
 pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
     let size = stored.size;
     let outside: Vec<usize> = match coverage {
@@ -36,7 +36,7 @@ fn border(size: Size) -> Vec<usize> {
     rows.chain((1..h - 1).flat_map(|y| [y * w, y * w + w - 1])).collect()
 }
 
-/// Whether two texels are the same but for what a lossy file does to them.
+/// Whether two texels are equal up to lossy compression.
 pub fn same(a: [f32; 4], b: [f32; 4], lossy: bool) -> bool {
     let tolerance = if lossy { 0.024 } else { 0.0 };
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance || (a.is_nan() && b.is_nan()))
@@ -72,7 +72,7 @@ pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     found
 }
 
-/// Whether a decoded vector can be no normal: not finite, next to nothing, or far too long (black or white read as
+/// Whether a decoded vector cannot be a normal: not finite, nearly zero, or far too long (black or white read as
 /// biased).
 pub fn is_degenerate(n: Vec3) -> bool {
     !n.is_finite() || n.length() < 0.15

@@ -1,4 +1,4 @@
-//! Depth as renderers, sensors and painters store it: its background, its polarity, its encoding, its range.
+//! Reads depth as renderers, sensors and painters store it: finds its background, polarity, encoding and range.
 //! Floor 5.
 
 use super::{background, findings::Findings, samples, stored::StoredMap};
@@ -9,10 +9,10 @@ use crate::{Error, Result};
 
 /// Values beyond this are background whatever the scene's unit: renderers write 1e10.
 const FAR_AWAY: f32 = 1e9;
-/// Numbers that sensors and half floats write where they saw nothing.
+/// Numbers that sensors and half floats use for “no depth”.
 const USUAL: [f32; 3] = [0.0, -1.0, 65504.0];
 
-/// Depth as stored, without its background, and what that told.
+/// Depth as stored, without its background, and what the background implies.
 pub struct RawDepth {
     /// NaN where there is no surface.
     pub values: Plane<f32>,
@@ -20,11 +20,11 @@ pub struct RawDepth {
     pub has_background: bool,
     /// Nearer is higher, where that is certain.
     pub near_high: Option<bool>,
-    /// What speaks for nearer being higher, −1 … 1.
+    /// The evidence that nearer is higher, −1 … 1.
     pub near_high_leaning: f32,
 }
 
-/// Finds the background and what it says of the polarity.
+/// Finds the background and what it implies about the polarity.
 pub fn read(
     stored: &StoredMap,
     overrides: &DepthConvention,
@@ -99,8 +99,8 @@ fn find_sentinel(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option
     is_sentinel(high, next_below, low).then_some(high)
 }
 
-/// Takes out what a lossy compression mixed of surface and background: pixels near the rim beyond the range of those
-/// further in.
+/// Removes pixels that lossy compression mixed from surface and background: pixels near the rim beyond the range of
+/// those further in.
 fn drop_bled(values: &mut Plane<f32>, covered: impl Fn(usize) -> bool) {
     // Blocks of 4 × 4 reach three pixels.
     const REACH: i32 = 3;
@@ -128,7 +128,7 @@ fn range(values: &Plane<f32>, covered: impl Fn(usize) -> bool) -> Option<(f32, f
     inside.fold(None, |r: Option<(f32, f32)>, (_, &v)| Some(r.map_or((v, v), |(a, b)| (a.min(v), b.max(v)))))
 }
 
-/// What is fixed or leans before normals are asked: the convention's words, then the encoding's nature.
+/// The polarity as far as it is known without normals: from the convention, then from the encoding.
 pub fn near_override(overrides: &DepthConvention, raw: &RawDepth) -> Option<bool> {
     match (overrides.near, overrides.encoding) {
         (Near::Low, _) => Some(false),
@@ -175,7 +175,7 @@ pub fn planar(
 /// Whether stored numbers that are nearer where they are higher are 1/z.
 ///
 /// The slope the normals tell, over the step of the stored number v, is the same everywhere where v is linear in depth.
-/// Of 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the farther it is): the exponent tells.
+/// For 1/z it falls as v⁻² (as v⁻¹ in perspective, where a pixel spans more the farther it is): the exponent decides.
 pub fn looks_inverse(values: &Plane<f32>, normals: &Plane<Vec3>, inside: &Plane<bool>) -> bool {
     let w = values.width();
     let at = samples::spread(inside);
@@ -211,8 +211,8 @@ pub struct NormalizedDepth {
     pub far: f32,
 }
 
-/// Normalises planar depth over the surface, near 0, far 1. Only where stray pixels would flatten the rest (the range
-/// from the 0.1th to the 99.9th percentile is under half of the full one) that range is taken and said so.
+/// Normalises planar depth over the surface, near 0, far 1. If stray pixels would flatten the rest (the range from the
+/// 0.1th to the 99.9th percentile is under half of the full one), that range is used, with a note.
 ///
 /// * `inside`: pixels with a depth of their own. Partly covered ones that hold the background's value join the range
 ///   where that value carries on from the surface's (a map whose far end is the background's), and get no depth.

@@ -1,5 +1,5 @@
-//! A detail normal map from whatever a file stores: tangent space, as it lies in the picture.
-//! Floor 5. Nothing else is known of the surface it will lie on, so that only its own numbers tell how to read it.
+//! Reads a detail normal map in tangent space. Floor 5. The surface that it will lie on is unknown, so its convention
+//! is detected from its own numbers alone.
 
 use super::encoding;
 use super::findings::Findings;
@@ -13,8 +13,8 @@ use crate::raster::Plane;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Reads a file as tangent-space normals: x right, y up, z out of the map. What the convention leaves open is found
-/// from the numbers themselves.
+/// Reads a file as tangent-space normals: x right, y up, z out of the map. What the convention leaves open is detected
+/// from the numbers.
 pub fn read(file: &Path, bytes: &[u8], overrides: &NormalConvention, budget: &Budget) -> Result<Plane<Vec3>> {
     if overrides.space == Some(NormalSpace::World) {
         return Err(Error::unsupported(
@@ -24,7 +24,7 @@ pub fn read(file: &Path, bytes: &[u8], overrides: &NormalConvention, budget: &Bu
     }
     let stored = stored::load(file, bytes, None, MapRole::Normals, budget)?;
     let area = stored.size.area();
-    // A spread sample tells the encoding of a large map.
+    // A regular sample is enough to detect the encoding of a large map.
     let samples: Vec<usize> = (0..area).step_by((area / 50_000).max(1)).collect();
     let reading = encoding::choose(&stored, &samples, overrides, &mut Findings::default())?;
     let width = stored.size.width as usize;
@@ -33,7 +33,7 @@ pub fn read(file: &Path, bytes: &[u8], overrides: &NormalConvention, budget: &Bu
         if n.is_finite() { n.normalize_or(Vec3::Z) } else { Vec3::Z }
     });
     let order = overrides.channels.map_or([0, 1, 2], |c| order_of(c, reading.encoding));
-    // Of the axes only green's is in doubt: whether the map belongs to a relief tells it.
+    // Only the green axis is in doubt: the better fit to a relief decides.
     let flip = [overrides.flip_x.or(Some(false)), overrides.flip_y, overrides.flip_z.or(Some(false))];
     let fixed = FixedAxes { order: Some(order), flip, ..FixedAxes::default() };
     let everywhere = Plane::filled(stored.size, true);

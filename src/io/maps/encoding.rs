@@ -1,4 +1,4 @@
-//! How stored numbers become the components of normals: chosen by which reading makes them of length 1.
+//! Detects how stored numbers encode the components of normals: the right decoding gives vectors of length 1.
 //! Floor 5. Not here: which way the axes point (`orientation`).
 
 use super::{findings::Findings, stored::StoredMap};
@@ -6,7 +6,7 @@ use crate::document::source::{NormalConvention, NormalEncoding};
 use crate::math::{Vec3, srgb, vec3};
 use crate::{Error, Result};
 
-/// A way to read a texel.
+/// A way to decode a texel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelReading {
     pub encoding: NormalEncoding,
@@ -37,7 +37,7 @@ fn rebuilt(x: f32, y: f32) -> Vec3 {
     vec3(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
 }
 
-/// Chooses the reading that suits the sampled texels; what the convention fixes is kept.
+/// Chooses the decoding that fits the sampled texels; what the convention fixes is kept.
 pub fn choose(
     stored: &StoredMap,
     samples: &[usize],
@@ -75,7 +75,7 @@ pub fn choose(
     let Some(&(error, reading)) = scored.first() else {
         return Err(Error::decode(&stored.file, "no encoding of normals fits these numbers"));
     };
-    // A rival counts only where it reads the numbers otherwise.
+    // A rival counts only where it decodes the numbers differently.
     let rival = scored.iter().skip(1).map(|s| s.0).next();
     let confidence = rival.map_or(0.95, |r| 1.0 - error / r.max(1e-6));
     report(overrides, &reading, confidence, error, findings);
@@ -145,7 +145,7 @@ fn plausible(stored: &StoredMap, shape: &TexelStats) -> Vec<NormalEncoding> {
     if shape.least < -0.05 {
         return vec![Signed];
     }
-    // Blue that never changes while red and green do carries nothing, unless it is a flat map's 1.
+    // Blue that is constant while red and green vary has no meaning, unless it is the 1 of a flat map.
     let blue_is_empty = shape.spread[2] < 0.008 && shape.spread[0].max(shape.spread[1]) > 0.05;
     if blue_is_empty {
         return vec![TwoChannel];
@@ -158,7 +158,7 @@ fn plausible(stored: &StoredMap, shape: &TexelStats) -> Vec<NormalEncoding> {
 
 fn refuse_grey(stored: &StoredMap, overrides: &NormalConvention, shape: &TexelStats) -> Result<()> {
     let told_pair = matches!(overrides.encoding, Some(NormalEncoding::Dxt5nm));
-    // A picture of one value is a flat map, or nothing.
+    // A picture of one value is a flat map or no map at all.
     let varies = shape.spread[..3].iter().any(|&s| s > 0.02);
     if stored.colours() == 1 || (shape.grey && varies && !told_pair && !shape.is_dxt5nm()) {
         let reason = "the picture is grey; a normal map has at least two different channels (is it the depth map?)";

@@ -1,16 +1,16 @@
-//! What the importer found of each choice, and how sure it is.
+//! The importer's findings: each detected choice, and how sure it is.
 //! Floor 5. Plain data: `info` prints it, an import dialog shows it.
 
 use crate::document::source::{DepthConvention, NormalConvention};
 
-/// How a choice was made.
+/// The origin of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChoiceOrigin {
     /// The document says so.
     Given,
-    /// The numbers tell.
+    /// Detected from the numbers.
     Found,
-    /// Nothing tells; the commonest choice.
+    /// Not detectable; the most common choice.
     Assumed,
 }
 
@@ -40,13 +40,13 @@ pub struct Findings {
     pub choices: Vec<Finding>,
     /// Sentences for people: what was derived, filled, clipped or looks odd.
     pub notes: Vec<String>,
-    /// The whole convention by which the normals were read: give it to read them so again.
+    /// The complete convention by which the normals were read; with it they are read the same way again.
     pub normal: Option<NormalConvention>,
     /// The same for depth.
     pub depth: Option<DepthConvention>,
     /// Planar depth (in the file's unit) at z = 0 and z = 1, so that anchors keep their meaning when maps are replaced.
     pub depth_range: Option<(f32, f32)>,
-    /// The share of pixels, joined to the border, that look like background and are taken for surface.
+    /// The share of pixels, connected to the border, that look like background but count as surface.
     pub flat_border: f32,
 }
 

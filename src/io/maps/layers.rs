@@ -1,4 +1,4 @@
-//! Which layer of an EXR holds the normals, the depth or the coverage: by the names that renderers give them.
+//! Finds the layer of an EXR that holds the normals, the depth or the coverage, by the names that renderers use.
 //! Floor 5.
 
 use super::stored::MapRole;
@@ -14,7 +14,7 @@ pub struct ChannelChoice {
     pub name: String,
 }
 
-/// Chooses by the name given, else by what layers are usually called.
+/// Chooses by the given name, else by the usual names of layers.
 pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> Result<ChannelChoice> {
     let alpha = coverage(exr);
     let (channels, name) = match (told, role) {
@@ -32,7 +32,7 @@ pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> 
     Ok(ChannelChoice { channels, alpha, name })
 }
 
-/// The layers that fit a role, best first: a window lists them for the user to pick.
+/// The layers that fit a role, best first: the window lists them for the user to choose.
 pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
     let rank = |p: &ExrPass| match role {
         MapRole::Normals => normal_rank(p).filter(|_| vector_channels(p).is_some()),

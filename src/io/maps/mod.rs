@@ -1,6 +1,6 @@
-//! Normal, depth and mask maps in whatever convention, brought into the program's own: camera space, y up; depth 0 near
-//! … 1 far; coverage.
-//! Floor 5. Nothing behind this door knows of any other convention. What is not told is found, with a confidence.
+//! Imports normal, depth and mask maps of any convention into the program's own: camera space, y up; depth 0 near … 1
+//! far; coverage. Floor 5. The rest of the program knows no other convention. What is not given is detected, with a
+//! confidence.
 
 mod background;
 mod depth;
@@ -30,11 +30,11 @@ use crate::{Error, Result};
 use std::collections::BTreeMap;
 use stored::StoredMap;
 
-/// A surface and how its maps were understood.
+/// A surface and how its maps were interpreted.
 pub struct ImportedSurface {
     pub surface: Surface,
     pub findings: Findings,
-    /// What was read, by the names in the source: a project keeps these very bytes.
+    /// The files that were read, by their names in the source: a project keeps their bytes.
     pub files: BTreeMap<String, Asset>,
 }
 
@@ -66,7 +66,7 @@ pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Res
     Ok(ImportedSurface { surface, findings, files: files.assets() })
 }
 
-/// The conventions a document tells, the found ones where it is silent.
+/// The conventions that the document gives; what they leave open is detected.
 struct ConventionOverrides {
     normal: NormalConvention,
     depth: DepthConvention,
@@ -99,7 +99,7 @@ fn same_size(file: &std::path::Path, sizes: impl Iterator<Item = (String, Size)>
     }
 }
 
-/// The mask that the document names, and the name to blame.
+/// The mask that the document names, and its name for messages.
 fn given_mask(
     source: &SurfaceSource,
     normal: Option<&StoredMap>,
@@ -132,7 +132,7 @@ fn given_mask(
     }
 }
 
-/// 0 where the border's own value goes on from the border inward, 255 elsewhere.
+/// 0 where the border's value continues inward from the border, 255 elsewhere.
 fn not_flat(normal: &StoredMap) -> Plane<u8> {
     let edge = background::constant(normal, None);
     let flat = background::joined_to_border(normal.size, |i| {
@@ -152,7 +152,7 @@ fn alpha(maps: &[&StoredMap], overrides: &ConventionOverrides, findings: &mut Fi
     Some(alpha.map(srgb::quantise))
 }
 
-/// Brings loaded maps into the program's convention.
+/// Converts loaded maps to the program's convention.
 fn understand(
     normal: Option<&StoredMap>,
     depth: Option<&StoredMap>,
@@ -177,7 +177,7 @@ fn understand(
     let masked = explicit.then_some(&coverage);
     let edge_n = normal.and_then(|m| Some((m, background::constant(m, masked)?)));
     let edge_d = depth.and_then(|m| Some((m, background::constant(m, masked)?)));
-    // A partly covered rim pixel that holds the background's value has none of its own.
+    // A partly covered rim pixel with the background's value has no value of its own.
     let borrowed = |edge: Option<(&StoredMap, [f32; 4])>, i: usize| {
         let partly = explicit && coverage.values()[i] < 255;
         partly && edge.is_some_and(|(m, e)| background::same(m.texel(i), e, m.lossy))
@@ -187,7 +187,7 @@ fn understand(
         let zero = raw_normals.as_ref().is_some_and(|r| background::is_degenerate(r.vectors.values()[i]));
         coverage.values()[i] > 0 && !bare(i) && !zero && !borrowed(edge_n, i) && !borrowed(edge_d, i)
     });
-    // What fills the border unchanged says nothing of conventions, and its end may be the silhouette.
+    // A constant border does not help to detect conventions, and its edge may be the silhouette.
     let fills = |i: usize| !explicit && edge_n.is_some_and(|(m, e)| background::same(m.texel(i), e, m.lossy));
     let judged = Plane::from_fn(size, |x, y| inside.at(x, y) && !fills(y * w + x));
     let enough = judged.values().iter().filter(|j| **j).count() >= 16;
@@ -315,8 +315,8 @@ fn complete(
     }
 }
 
-/// How many pixels deep a surface is: by the camera where depth is metric and the field of view known, else half the
-/// longer side of the surface, as a ball is.
+/// The depth of a surface in pixels: from the camera if depth is metric and the field of view known, else half the
+/// longer side of the surface, as for a ball.
 fn depth_range_px(depth: &depth::NormalizedDepth, inside: &Plane<bool>, fov_degrees: Option<f32>) -> f32 {
     if let Some(fov) = fov_degrees.filter(|_| depth.near > 0.0) {
         let middle = 0.5 * (depth.near + depth.far);
@@ -333,7 +333,7 @@ fn depth_range_px(depth: &depth::NormalizedDepth, inside: &Plane<bool>, fov_degr
     wide.max(tall) as f32 * 0.5
 }
 
-/// Says where the mask came from, and of a border that looks like background but is not taken for it.
+/// Notes where the mask came from, and a border that looks like background but does not count as such.
 fn report_mask(
     normal: Option<&StoredMap>,
     depth: Option<&depth::RawDepth>,

@@ -1,4 +1,4 @@
-//! Normals from whatever a file stores to camera space: reading, axes, space, rim.
+//! Converts stored normals to camera space: decoding, axes, space, rim.
 //! Floor 5.
 
 use super::background::{self, is_degenerate};
@@ -11,7 +11,7 @@ use crate::document::source::{NormalConvention, NormalEncoding, NormalSpace};
 use crate::math::{Mat3, Vec3};
 use crate::raster::Plane;
 
-/// Normals read as vectors, their axes still the file's.
+/// Normals decoded as vectors, their axes still those of the file.
 pub struct RawNormals {
     /// Zero where there are none; any length.
     pub vectors: Plane<Vec3>,
@@ -22,7 +22,7 @@ pub struct RawNormals {
 
 /// Reads the numbers as vectors.
 ///
-/// * `coverage`: the mask, where something tells one.
+/// * `coverage`: the mask, if there is one.
 /// * `without`: pixels that depth says are background.
 pub fn read(
     stored: &StoredMap,
@@ -41,7 +41,7 @@ pub fn read(
         in_mask(i) && !without(i) && edge.is_none_or(|e| !background::same(stored.texel(i), e, stored.lossy))
     });
     let mut at = samples::spread(&likely);
-    // A map of one value, or of one pixel, is all there is to look at.
+    // A constant map, or one of a single pixel: use all pixels.
     if at.len() < 4 {
         at = (0..size.area()).filter(|&i| in_mask(i)).collect();
     }
@@ -63,7 +63,7 @@ pub fn read(
     Ok(RawNormals { vectors, reading, coverage })
 }
 
-/// A copy of the file's numbers without the steps of 8 bits, where that is asked for.
+/// A copy of the file's numbers without the steps of 8 bits, if requested.
 fn smooth_if_asked<'a>(
     stored: &'a StoredMap,
     overrides: &NormalConvention,
@@ -94,7 +94,7 @@ pub fn orient(
     let at = samples::spread(inside);
     let turn = space(&unit, stored, overrides, inside, &at, depth, near, findings);
     let turned = turn.map_or_else(|| unit.clone(), |m| unit.map(|n| m * n));
-    // Turned normals are already the camera's: only what the user says flips them.
+    // Rotated normals are already in camera space: only the user can flip them.
     let fixed = FixedAxes {
         order: overrides.channels.map(|c| order_of(c, raw.reading.encoding)).or(turn.map(|_| [0, 1, 2])),
         flip: [0, 1, 2].map(|k| [overrides.flip_x, overrides.flip_y, overrides.flip_z][k].or(turn.map(|_| false))),
@@ -243,7 +243,7 @@ fn space(
     None
 }
 
-/// The matrix or its half turn about the view axis, whichever is nearer to what the silhouette tells.
+/// The matrix or its half turn about the view axis, whichever fits the silhouette better.
 fn upright(matrix: Mat3, by_rim: Option<&world::FittedRotation>) -> Mat3 {
     let Some(rim) = by_rim else { return matrix };
     let likeness = |m: Mat3| (m.transpose() * rim.matrix).to_cols_array().iter().step_by(4).sum::<f32>();

@@ -1,9 +1,9 @@
-//! Which way the stored axes point: x, y and z flips, channel order and the polarity of depth, weighed together.
-//! Floor 5.
+//! Detects the orientation of the stored axes: flips of x, y and z, channel order and the polarity of depth, judged
+//! together. Floor 5.
 //!
-//! Evidence, each in [−1, 1]: how the slopes the normals tell go with the depth's; whether normals at the rim point
-//! outward; for which handedness the normals belong to a height field (no curl). Priors settle what evidence leaves
-//! open.
+//! The evidence, each in [−1, 1]: how well the slopes of the normals agree with those of the depth; whether normals at
+//! the rim point outward; for which handedness the normals are those of a height field (no curl). Priors decide what
+//! the evidence leaves open.
 
 use super::samples;
 use crate::math::{Vec2, Vec3, vec2, vec3};
@@ -26,18 +26,18 @@ impl AxisMapping {
     }
 }
 
-/// What is fixed beforehand: by the user, or by what a depth map's background tells.
+/// What is fixed in advance: by the user, or by the background of a depth map.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FixedAxes {
     pub order: Option<[usize; 3]>,
     pub flip: [Option<bool>; 3],
     /// The stored depth is nearer where it is higher.
     pub near_high: Option<bool>,
-    /// What else speaks for `near_high`, −1 … 1.
+    /// Further evidence for `near_high`, −1 … 1.
     pub near_high_leaning: f32,
 }
 
-/// The best way and how sure each part of it is.
+/// The best mapping and the confidence of each part.
 #[derive(Clone, Copy, Debug)]
 pub struct FoundAxes {
     pub axes: AxisMapping,
@@ -101,7 +101,7 @@ fn orders(fixed: &FixedAxes, sided: [bool; 3]) -> Vec<[usize; 3]> {
 fn decide(tried: &[(f32, AxisMapping, bool)], sampled: &[Vec3]) -> FoundAxes {
     let plain = (0.0, AxisMapping::PLAIN, false);
     let best = *tried.iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(&plain);
-    // How far behind the best way with the other choice falls.
+    // How much worse the best mapping with the other choice is.
     let sure = |other: &dyn Fn(&(f32, AxisMapping, bool)) -> bool| {
         let rival = tried.iter().filter(|t| other(t)).map(|t| t.0).fold(f32::NEG_INFINITY, f32::max);
         1.0 - (-1.5 * (best.0 - rival)).exp()
@@ -210,7 +210,7 @@ fn handedness(inside: &Plane<bool>, at: &[usize], w: usize, n: impl Fn(usize) ->
         };
         let [Some(left), Some(right), Some(up), Some(down)] = near.map(slope) else { continue };
         let (q_x, p_y) = (right.y - left.y, up.x - down.x);
-        // Creases and jumps say nothing.
+        // Creases and jumps are no evidence.
         if q_x.abs().max(p_y.abs()) < 1.0 {
             plain += f64::from((p_y - q_x).powi(2));
             mirrored += f64::from((p_y + q_x).powi(2));

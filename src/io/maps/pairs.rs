@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// What a file's name says it is.
+/// The kind of map that a file name indicates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MapPart {
     Normal,
@@ -60,7 +60,7 @@ pub fn part_of(file: &Path) -> Option<(String, MapPart)> {
     })
 }
 
-/// Groups files of the same folder and name; files that say nothing are left out, and so are sets of one file.
+/// Groups files of the same folder and name; unrecognised files are left out, and so are sets of one file.
 pub fn sets(files: &[PathBuf]) -> Vec<MapSet> {
     let mut found: Vec<(PathBuf, MapSet)> = Vec::new();
     for file in files {

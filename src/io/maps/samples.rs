@@ -1,10 +1,10 @@
-//! The pixels that conventions are judged by: inside the surface, spread over it, few enough to be quick.
+//! The pixels by which conventions are detected: inside the surface, evenly spread, few enough to be fast.
 //! Floor 5.
 
 use crate::math::{Vec2, vec2};
 use crate::raster::Plane;
 
-/// At most about this many pixels are looked at.
+/// The approximate number of pixels that are read.
 const ENOUGH: usize = 60_000;
 
 /// Indices of pixels where `inside` holds, evenly thinned.

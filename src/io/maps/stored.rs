@@ -1,5 +1,5 @@
-//! Maps as their files store them: numbers per channel, nothing interpreted but which layer of an EXR is meant.
-//! Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
+//! Maps as their files store them: numbers per channel. Only the layer of an EXR is chosen; nothing else is
+//! interpreted. Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
 
 use super::layers;
 use crate::math::Size;
@@ -9,13 +9,13 @@ use crate::{Error, Result};
 use image::DynamicImage;
 use std::path::{Path, PathBuf};
 
-/// What a file holds of one map.
+/// The contents of one map file.
 pub struct StoredMap {
     pub file: PathBuf,
     pub size: Size,
     /// One to four channels: red, green, blue, alpha of a picture; x, y, z of an EXR layer. `[0, 1]` in integer files.
     pub channels: Vec<Plane<f32>>,
-    /// Coverage told by the file itself, `[0, 1]`; absent where it is 1 everywhere.
+    /// Coverage from the file itself, `[0, 1]`; absent if it is 1 everywhere.
     pub alpha: Option<Plane<f32>>,
     /// The step between two neighbouring numbers of an integer file: 1/255 or 1/65535.
     pub step: Option<f32>,
@@ -25,7 +25,7 @@ pub struct StoredMap {
     pub layer: String,
     pub world_to_camera: Option<[f32; 16]>,
     pub fov_degrees: Option<f32>,
-    /// What was amiss with the file but could be helped.
+    /// A defect of the file that could be worked around.
     pub warning: Option<&'static str>,
 }
 

@@ -1,5 +1,5 @@
 //! Normals stored in world space: the rotation that brings them into the camera's.
-//! Floor 5. Given by the user or the file, else the one that best turns them onto what depth or silhouette tell.
+//! Floor 5. It is given by the user or the file; otherwise the best fit to depth or silhouette is used.
 
 use super::samples;
 use crate::math::{Mat3, Vec2, Vec3, vec3};
@@ -43,12 +43,12 @@ pub fn orthonormal(matrix: Mat3) -> Option<Mat3> {
     (scale > 1e-6 && worst < 0.02).then_some(unit)
 }
 
-/// The share of normals that a matrix turns away from the viewer.
+/// The share of normals that face away from the viewer after a rotation.
 pub fn share_away(matrix: Mat3, normals: &[Vec3]) -> f32 {
     normals.iter().filter(|n| (matrix * **n).z < -0.02).count() as f32 / normals.len().max(1) as f32
 }
 
-/// How the free rotation and the best mere exchange of axes fit a depth map.
+/// How well the free rotation, and the best exchange of axes, fit a depth map.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldAlignment {
     pub free: FittedRotation,
@@ -57,7 +57,7 @@ pub struct WorldAlignment {
 }
 
 impl WorldAlignment {
-    /// Whether the normals must have been turned: axes alone leave clearly more unexplained than a rotation does.
+    /// Whether the normals are in world space: a rotation fits clearly better than an exchange of axes.
     pub fn is_turned(&self) -> bool {
         let (free, axes) = (1.0 - self.free.fit, 1.0 - self.axes_fit);
         axes > 1.5 * free + 0.004

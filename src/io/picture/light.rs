@@ -7,7 +7,7 @@ use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// What programs call the layer that shows all the others, the likeliest first.
+/// Usual names of the layer that shows all the others, the likeliest first.
 const WHOLE: [&str; 7] = ["", "combined", "beauty", "rgba", "rgb", "color", "colour"];
 
 /// The picture of an EXR, straight alpha.
@@ -21,7 +21,7 @@ pub struct LightLayer {
     /// Empty for the channels without a layer.
     pub name: String,
     pub picture: Picture,
-    /// It is the picture to show; mostly it shows all the others.
+    /// Whether it is the picture to show; usually it combines all the others.
     pub is_whole: bool,
 }
 
@@ -33,7 +33,7 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLay
         return Ok(Vec::new());
     }
     let exr = ExrFile::open(file, bytes, budget)?;
-    // Cryptomatte keeps numbers of objects under the letters of colours.
+    // Cryptomatte stores object ids in colour channels.
     let is_light = |pass: &&ExrPass| pass.letters("rgb").is_some() && !pass.key().starts_with("crypto");
     let passes: Vec<&ExrPass> = exr.passes().iter().filter(is_light).collect();
     if passes.len() < 2 {

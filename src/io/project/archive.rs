@@ -1,5 +1,5 @@
 //! A zip read within a budget: its names checked, its bytes counted, its entries found even where its table of contents
-//! is lost. Floor 5. What the entries mean is the other files' here; nothing is ever unpacked to the disk.
+//! is lost. Floor 5. The other files of this folder interpret the entries. Nothing is ever unpacked to the disk.
 
 use crate::{Budget, Files, files};
 use crate::{Error, Result};
@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use zip::ZipArchive;
 use zip::read::read_zipfile_from_stream;
 
-/// What every local file header begins with.
+/// The signature of local file headers.
 const LOCAL_HEADER: [u8; 4] = *b"PK\x03\x04";
 
 /// The entries of a zip in memory.
@@ -22,9 +22,9 @@ pub struct Archive<'a> {
     zip: Option<ZipArchive<Cursor<&'a [u8]>>>,
     /// By the table of contents.
     listed: BTreeMap<String, usize>,
-    /// By the headers before the entries themselves: where they begin. Looked up where the table fails.
+    /// Positions of entries by their own headers, used where the table of contents fails.
     found: BTreeMap<String, usize>,
-    /// Bytes that may still be read; entries of a few bytes can unfold to any number.
+    /// Bytes that may still be read; entries of a few bytes can expand to any number.
     left: AtomicU64,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Archive<'a> {
     /// Fails where a name could lead out of the document's folder, where two entries could be taken for each other,
     /// where there are more entries than the budget allows, and where there is no entry at all.
     pub fn open(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Self> {
-        // The zip reader is not ours: a panic in it is a damaged file.
+        // The zip reader is third-party code: a panic in it counts as a damaged file.
         let opened = catch_unwind(AssertUnwindSafe(|| ZipArchive::new(Cursor::new(bytes))));
         let zip = opened.ok().and_then(std::result::Result::ok);
         let found = match zip {
@@ -52,7 +52,7 @@ impl<'a> Archive<'a> {
         let left = AtomicU64::new(budget.unpacked_bytes);
         Ok(Self { file: file.into(), bytes, zip, listed, found, left })
     }
-    /// The table of contents is lost, or does not name all there is.
+    /// Whether the table of contents is lost or incomplete.
     pub fn is_damaged(&self) -> bool {
         self.found.keys().any(|name| !self.listed.contains_key(name))
     }
@@ -102,7 +102,7 @@ impl<'a> Archive<'a> {
         let mut bytes = Vec::new();
         entry.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
         let read = bytes.len() as u64;
-        // Of two threads both may read what is left for one; each entry alone stays within its own ceiling.
+        // Two threads may both use the remaining bytes; each entry alone stays within its own limit.
         let less = |left: u64| Some(left.saturating_sub(read));
         let _ = self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less);
         Ok((read <= most).then_some(bytes))
@@ -169,7 +169,7 @@ fn scan(file: &Path, bytes: &[u8], budget: &Budget) -> Result<BTreeMap<String, u
     Ok(found)
 }
 
-/// The first header leaves the entry's size to be told after it.
+/// Whether the first header leaves the entry's size to a later record.
 fn is_streamed(bytes: &[u8]) -> bool {
     bytes.get(6).is_some_and(|flags| flags & 8 != 0)
 }
@@ -181,7 +181,7 @@ fn header(bytes: &[u8]) -> Option<(String, usize)> {
     let (size, name_length, extra) = (long(18)?, short(26)?, short(28)?);
     let name = std::str::from_utf8(bytes.get(30..30 + name_length)?).ok()?;
     let end = (30 + name_length + extra).checked_add(size)?;
-    // An entry cut short by the end of the file may still hold something; its reader will tell.
+    // An entry cut short by the end of the file may still be partly readable; its reader decides.
     Some((name.to_owned(), end.min(bytes.len())))
 }
 

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Where the files stand in the zip; not below `data/`, where every entry belongs to a layer of `stack.xml`.
+/// The folder of the files in the zip; not below `data/`, where every entry belongs to a layer of `stack.xml`.
 const FOLDER: &str = "rilievo/files/";
 const PIXELS: &str = "rilievo/pixels/";
 
@@ -25,12 +25,12 @@ const PIXELS: &str = "rilievo/pixels/";
 #[derive(Default)]
 pub struct AssetList {
     files: Vec<(String, Asset)>,
-    /// In lower case: names differ in more than capitals.
+    /// In lower case: names must differ in more than capitals.
     taken: BTreeSet<String>,
     made: MadeFiles,
 }
 
-/// Files made of what came from none, by where it lies in memory; kept, so that it is encoded once.
+/// Files made of data that came from no file, by its address in memory; kept, so that it is encoded once.
 #[derive(Default)]
 pub struct MadeFiles {
     pictures: BTreeMap<usize, (Picture, Asset)>,
@@ -47,7 +47,7 @@ pub struct StoredPixels<'a> {
 }
 
 impl AssetList {
-    /// With what was encoded for an earlier version of the document.
+    /// Starts with what was encoded for an earlier version of the document.
     pub fn again(made: MadeFiles) -> Self {
         Self { made, ..Self::default() }
     }
@@ -130,7 +130,7 @@ impl AssetList {
         source.file = self.picture(file, &source.file, &source.picture)?;
         Ok(())
     }
-    /// The maps as their own files; where any of their bytes is not known, the surface as it is.
+    /// The maps as their original files; if any of these is unknown, the surface itself.
     fn surface(&mut self, file: &Path, surface: &Arc<Surface>, document: &Document) -> Result<SurfaceSource> {
         let known = document.surface_source.as_deref();
         let known = known.filter(|source| files_of(source).all(|name| document.surface_files.contains_key(name)));

@@ -1,5 +1,5 @@
-//! OpenRaster files that other programs wrote, and ours that they changed: every picture becomes a paint layer, and
-//! what is still as we wrote it becomes live again. Floor 5.
+//! Reads OpenRaster files that other programs wrote or changed: every picture becomes a paint layer, and layers that
+//! are still as we wrote them become live again. Floor 5.
 
 use super::MERGED;
 use super::manifest::Manifest;
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A document of what any program sees.
+/// A document from the plain OpenRaster entries.
 pub fn document(reading: &mut ProjectReader, stack: StackXml) -> Result<Document> {
     let size = size(reading, &stack)?;
     let mut reader = ForeignReader { reading, used_px: 0, live: None };
@@ -34,7 +34,7 @@ fn size(reading: &ProjectReader, stack: &StackXml) -> Result<Size> {
 }
 
 /// A document that another program saved but left our entries in: its layers are those of `stack.xml`, and those whose
-/// pictures it left alone are as we saved them.
+/// pictures are unchanged are as we saved them.
 pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifest: &Manifest) -> Result<Document> {
     let stack = stack::read(reading.file, text, reading.budget)?;
     let size = size(reading, &stack)?;
@@ -54,7 +54,7 @@ pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifes
     Ok(Document { layers, size, ..base })
 }
 
-/// Nothing tells the layers any more: each picture that can be read becomes one, else the merged picture.
+/// The list of layers is lost: each readable picture becomes a layer, else the merged picture.
 pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> {
     let names: Vec<String> = reading.archive.names().into_iter().map(str::to_owned).collect();
     let is_layer = |name: &&String| name.starts_with("data/") && name.to_lowercase().ends_with(".png");
@@ -169,8 +169,8 @@ impl ForeignReader<'_, '_> {
     }
 }
 
-/// What lies beneath a layer that keeps to all of it, so that it may be clipped to one: the layers as they are if the
-/// lowest is the only one not clipped itself, else a group of them.
+/// Makes one base of the layers beneath an “atop” layer, so that it can be clipped: the layers themselves if only the
+/// lowest is not clipped, else a group of them.
 fn as_one_base(layers: Vec<Arc<Layer>>) -> Vec<Arc<Layer>> {
     let is_set_apart = |layer: &Layer| !matches!(&layer.content, Content::Group(group) if group.pass_through);
     let is_base = |(i, layer): (usize, &Arc<Layer>)| (i == 0) != layer.clip_below && (i > 0 || is_set_apart(layer));

@@ -1,5 +1,5 @@
-//! The pictures of a plan, each rendered and encoded once: a layer that has not changed since is taken as it was.
-//! Floor 5. Encoding is `pixels`', composing `document::flatten`'s.
+//! Renders and encodes the pictures of a plan, each once: an unchanged layer is taken from the cache. Floor 5. Encoding
+//! is in `pixels`, composing in `document::flatten`.
 
 use super::pixels;
 use super::plan::{ItemContent, PlanItem};
@@ -94,20 +94,20 @@ fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a T
     }
 }
 
-/// What a layer's look depends on beside the scene: itself, and any normals that may stand beneath it.
+/// What a layer's look depends on besides the scene: the layer itself, and normal layers beneath it.
 fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
     let normals = document.walk().into_iter().map(|(_, layer)| layer);
     let normals = normals.filter(|layer| matches!(layer.content, Content::Normals(_)));
     std::iter::once(layer).chain(normals).cloned().collect()
 }
 
-/// Takes pictures that were read with a document for the looks of its layers, so that saving it copies them.
+/// Stores the pictures that were read with a document as the looks of its layers, so that saving copies them.
 pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
     for (_, layer) in document.walk() {
         if let Some(encoded) = looks.get(&layer.id) {
             let (scene, seen) = (document.scene(), layers_seen_by(document, layer));
             layer.cache.look.get(&scene, &seen, &true, || Some(encoded.clone()));
-            // Nothing hides any of its pixels: they are its look.
+            // Nothing hides any of its pixels, so they are its look.
             if bare(document, layer, true).is_some() {
                 layer.cache.pixels.get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));
             }

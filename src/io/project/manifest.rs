@@ -1,4 +1,4 @@
-//! Which picture of `data/` shows which layer, with checksums: so that a change by another program is seen.
+//! Records which picture of `data/` shows which layer, with checksums, so that changes by other programs are detected.
 //! Floor 5.
 
 use crate::document::cache::EncodedPixels;
@@ -6,15 +6,15 @@ use crate::document::{Document, LayerId};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Another version of the program may render a layer otherwise.
+/// Another version of the program may render a layer differently.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
-/// What a project says of its own entries.
+/// A project's record of its own entries.
 #[derive(Debug, PartialEq)]
 pub struct Manifest {
     /// The version that wrote the file.
     pub program: String,
-    /// CRC-32 of `stack.xml`, or of what tells the layers in another format.
+    /// CRC-32 of `stack.xml`, or of the layer structure in another format.
     pub stack: u32,
     pub pictures: Vec<ManifestPicture>,
 }

@@ -1,5 +1,5 @@
-//! Projects: a zip that is a valid OpenRaster file and holds beside it what only Rilievo understands
-//! (docs/PROJECTS.md). Floor 5. Bytes in memory both ways; files on the disk are `io::save`'s.
+//! Projects: a zip that is a valid OpenRaster file and also holds Rilievo's own document (docs/PROJECTS.md). Floor 5.
+//! It reads and writes bytes in memory; `io::save` handles files on the disk.
 //!
 //! | file | |
 //! |---|---|
@@ -8,7 +8,7 @@
 //! | `look`, `pixels` | those pictures, rendered, encoded and checked |
 //! | `stack` | `stack.xml`, written and read |
 //! | `assets` | maps, sources and tips under their names in the zip |
-//! | `manifest` | which picture is whose, so that another program's change is seen |
+//! | `manifest` | which picture belongs to which layer, so that another program's change is detected |
 //! | `open`, `repair`, `foreign` | reading: our own, damaged, other programs' |
 
 pub(super) mod archive;
@@ -68,7 +68,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let xml = stack::write(document.size, &items, &pictures);
     let mut entries = vec![ZipEntry::text(MIMETYPE, MIME.as_bytes().to_vec())];
     entries.extend(documents(file, document, &paint, &shown, crc32fast::hash(xml.as_bytes()))?);
-    // Behind the document and the manifest, before all pictures.
+    // After the document and the manifest, before all pictures.
     entries.insert(3, ZipEntry::text(STACK, xml.into_bytes()));
     let layers = pictures.iter().map(|(name, picture)| ZipEntry::bytes(name, picture.file.clone()));
     entries.splice(4..4, layers);
@@ -96,12 +96,11 @@ impl ZipEntry {
     }
 }
 
-/// What only Rilievo understands: the document, the manifest, and every file they name that is none of the pictures
-/// `shown`.
+/// Rilievo's own entries: the document, the manifest, and every file they name except the pictures in `shown`.
 ///
 /// * `paint`: all pixels of the paint layers.
 /// * `shown`: the pictures that show one layer alone, with their names.
-/// * `stack`: a checksum of what tells other programs how the layers lie.
+/// * `stack`: a checksum of the layer structure that other programs see.
 pub fn documents(
     file: &Path,
     document: &Document,

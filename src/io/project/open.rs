@@ -1,4 +1,4 @@
-//! A project read: as it was saved, as far as it is intact, or as another program left it.
+//! Reads a project: as it was saved, as far as it is intact, or as another program changed it.
 //! Floor 5.
 
 use super::look::remember;
@@ -17,16 +17,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What a project gave.
+/// The result of reading a project.
 pub struct ProjectContents {
     pub document: Document,
-    /// What is not as it was saved, a sentence each, for the artist.
+    /// What differs from the saved state, a sentence each, for the user.
     pub notes: Vec<String>,
-    /// Nothing is lost. A document that is not whole must not be saved over its file unasked.
+    /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
     pub is_whole: bool,
 }
 
-/// Reads a project of ours, or any OpenRaster file. Fails only where nothing can be given back.
+/// Reads a project of ours, or any OpenRaster file. Fails only if nothing can be recovered.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let archive = Archive::open(file, bytes, budget)?;
     let mut reading = ProjectReader { file, archive: &archive, budget, notes: Vec::new(), is_whole: true };
@@ -37,7 +37,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     Ok(ProjectContents { document, notes: reading.notes, is_whole: reading.is_whole })
 }
 
-/// A project being read, and what there is to say of it.
+/// A project being read, and the notes on it.
 pub struct ProjectReader<'a> {
     pub file: &'a Path,
     pub archive: &'a Archive<'a>,
@@ -47,11 +47,11 @@ pub struct ProjectReader<'a> {
 }
 
 impl ProjectReader<'_> {
-    /// Tells what is not as it was, though nothing is lost.
+    /// Notes a difference that loses nothing.
     pub fn note(&mut self, sentence: impl Into<String>) {
         self.notes.push(sentence.into());
     }
-    /// Tells what is lost.
+    /// Notes a loss.
     pub fn lost(&mut self, sentence: impl Into<String>) {
         self.is_whole = false;
         self.notes.push(sentence.into());
@@ -111,7 +111,7 @@ impl ProjectReader<'_> {
         let document = match recipe::read_with_tiles(&value, source, self.decoded_ahead(&value)) {
             Ok(document) => document,
             Err(error) => {
-                // A newer version, or a field out of range, is no damage that leaving something out would mend.
+                // A newer version or a field out of range is no damage: leaving something out would not help.
                 if !repair::leave_out_damaged(self, &mut value, manifest) {
                     return Err(error);
                 }
@@ -124,7 +124,7 @@ impl ProjectReader<'_> {
         }
         Ok(document)
     }
-    /// The pixels of the paint layers, decoded side by side; what cannot be read is left to be told in its turn.
+    /// The pixels of the paint layers, decoded in parallel; failures are reported later, in order.
     fn decoded_ahead(&self, value: &Value) -> TileGrids {
         let mut wanted = BTreeSet::new();
         list_paint(&value["layers"], &mut wanted);

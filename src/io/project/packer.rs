@@ -1,4 +1,4 @@
-//! A zip in the making: the same entries always give the same bytes.
+//! Writes a zip: the same entries always give the same bytes.
 //! Floor 5. Reading one is `archive`.
 
 use std::io::{Cursor, Write};
@@ -6,8 +6,8 @@ use zip::result::ZipResult;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Entries in the order they are added. No entry carries a date, and every header before an entry its size and
-/// checksum, so that entries can be found without the table of contents.
+/// Entries in the order they are added. Entries have no date, and the header of each has its size and checksum, so that
+/// entries can be found without the table of contents.
 pub struct ZipPacker {
     zip: ZipWriter<Cursor<Vec<u8>>>,
 }

@@ -1,5 +1,5 @@
 //! Pixels as a project stores them: 8-bit sRGB PNGs with straight alpha, each decoded again and compared before it is
-//! trusted. Floor 5. Which pixels are stored is `look`'s.
+//! trusted. Floor 5. `look` decides which pixels are stored.
 
 use crate::Budget;
 use crate::document::cache::EncodedPixels;
@@ -30,7 +30,7 @@ pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asse
     checked(file, texels.as_flattened(), size, png::ColorType::Rgba)
 }
 
-/// Encodes, decodes what was encoded, and compares: encoders have written files that nobody could read.
+/// Encodes, decodes the result and compares it: encoders have written unreadable files before.
 fn checked(file: &Path, values: &[u8], size: Size, color: png::ColorType) -> Result<Asset> {
     let bytes = encoded(values, size, color).map_err(|e| Error::unsupported(file, e))?;
     if decoded(&bytes).as_deref() != Some(values) {
@@ -62,8 +62,8 @@ pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
     Some(values)
 }
 
-/// The tiles of a PNG of the kind that is stored here, its corner at a canvas pixel; `None` for any other, and for a
-/// damaged one: `picture` reads it, or tells what is wrong.
+/// The tiles of a PNG of the kind that is stored here, its corner at a canvas pixel; `None` for any other or damaged
+/// one: `picture` then reads it or reports the error.
 ///
 /// A row of tiles at a time, so that no more than that is in memory twice.
 pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<TileGrid> {

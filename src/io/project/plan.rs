@@ -1,42 +1,42 @@
-//! What other programs see of a document: nested stacks of pictures, in the words of the format.
-//! Floor 5. Pure: which pictures there are, not their pixels (`look`) nor their XML (`stack`).
+//! Plans what other programs see of a document: nested stacks of pictures, as far as the format can express them.
+//! Floor 5. It only lists the pictures; `look` renders them and `stack` writes the XML.
 //!
-//! OpenRaster has no masks, no clipping, no adjustments, and not every way to blend; Photoshop's format has more words.
-//! What the format cannot say is composed here:
+//! OpenRaster has no masks, no clipping, no adjustments, and not every blend mode; Photoshop's format has more. What
+//! the format cannot express is composed:
 //!
 //! * a mask, and clipping to the surface, go into the layer's own picture;
 //! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden beside it;
 //! * so does an isolated group with a mask;
-//! * a layer that changes or reads what lies beneath in a way that cannot be said (radiance scaling, exclusion, plus,
-//!   blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies beneath it
-//!   in its scope.
+//! * a layer that changes or reads what lies beneath in a way that cannot be expressed (radiance scaling, exclusion,
+//!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
+//!   beneath it in its scope.
 
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind};
 use crate::raster::BlendMode;
 use std::sync::Arc;
 
-/// A picture or a stack of them, and how it meets what lies beneath.
+/// A picture or a stack of pictures, and how it blends with what lies beneath.
 pub struct PlanItem {
     pub name: String,
     pub visible: bool,
     pub opacity: f32,
     pub blend: BlendMode,
     pub lock: LayerLock,
-    /// Clipped to the item beneath, where the format has a word for it.
+    /// Whether it is clipped to the item beneath, if the format has clipping.
     pub clipped: bool,
-    /// Not in the pixels, where the format has a word for it.
+    /// A mask that is not part of the pixels, if the format has masks.
     pub mask: Option<LayerMask>,
     pub shows: ItemContent,
 }
 
-/// What a format has words for.
+/// What a format can express.
 #[derive(Clone, Copy)]
 pub struct FormatSupport {
     /// Layers clipped to one beneath.
     pub clipping: bool,
     /// Masks that are pictures.
     pub masks: bool,
-    /// Whether it has a word for a blend mode that others read as we do.
+    /// Whether it has a name for a blend mode that other programs read as we do.
     pub says: fn(BlendMode) -> bool,
 }
 
@@ -51,7 +51,7 @@ pub enum ItemContent {
     Nothing(Arc<Layer>),
     /// A layer alone, wholly opaque, its mask in its pixels.
     Layer(Arc<Layer>),
-    /// Some layers composed on transparency, in a document where the first's own opacity and blend mode are taken away.
+    /// Some layers composed on transparency, in a document where the first layer's opacity and blend mode are reset.
     Composed { document: Document, layers: Vec<LayerId> },
     /// Bottom first.
     Stack { isolated: bool, items: Vec<PlanItem> },
@@ -104,7 +104,7 @@ impl Planner<'_> {
         }
         let mut items: Vec<PlanItem> = run.iter().map(|layer| self.single(layer)).collect();
         for (item, layer) in items.iter_mut().zip(run) {
-            // Clipped to what is not there, a layer paints nothing.
+            // A layer without its clipping base paints nothing.
             item.visible &= !layer.clip_below;
         }
         items
@@ -116,7 +116,7 @@ impl Planner<'_> {
         let items = vec![hidden_parts(&base.name, parts), picture(base.name.clone(), composed)];
         PlanItem { shows: ItemContent::Stack { isolated: true, items }, ..item(base) }
     }
-    /// The document with one layer as it is before it meets what lies beneath.
+    /// The document with one layer's opacity and blend mode reset.
     fn plain(&self, id: LayerId) -> Document {
         let plain = self.document.with_layer(id, |layer| {
             (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
@@ -172,12 +172,12 @@ impl Planner<'_> {
     }
 }
 
-/// Layers above may be clipped to it; normals stand in nobody's way.
+/// Whether layers above may be clipped to it; normal layers do not interrupt clipping.
 fn is_base(layer: &Layer) -> bool {
     !layer.clip_below && !matches!(layer.content, Content::Normals(_))
 }
 
-/// Layers cut before each that is a base: not clipped, and not normals, which stand in nobody's way.
+/// The layers, split before each base: a layer that is neither clipped nor a normal layer.
 fn runs(layers: &[Arc<Layer>]) -> Vec<&[Arc<Layer>]> {
     let mut runs = Vec::new();
     let mut start = 0;
@@ -216,7 +216,7 @@ fn picture(name: String, shows: ItemContent) -> PlanItem {
     }
 }
 
-/// The layers that a composed picture shows, kept out of sight.
+/// The layers that a composed picture shows, themselves hidden.
 fn hidden_parts(name: &str, items: Vec<PlanItem>) -> PlanItem {
     let shows = ItemContent::Stack { isolated: true, items };
     PlanItem { visible: false, ..picture(format!("{name} (parts)"), shows) }

@@ -1,4 +1,4 @@
-//! A project of which something is damaged or was changed elsewhere: every intact layer is kept, the others are named.
+//! Repairs a project that is damaged or was changed elsewhere: every intact layer is kept, the others are reported.
 //! Floor 5. Works on the document's JSON, before it is read.
 
 use super::manifest::{Manifest, ManifestPicture};
@@ -8,7 +8,7 @@ use crate::raster::Asset;
 use serde_json::{Map, Value, json};
 
 /// Compares the layers' pictures with the manifest. A layer whose picture another program changed becomes that picture.
-/// The intact ones are given back.
+/// Returns the intact pictures.
 pub fn check_pictures(
     reading: &mut ProjectReader,
     document: &mut Value,
@@ -30,7 +30,7 @@ pub fn check_pictures(
                 reading.note(format!("“{name}” was changed by another program: {what}"));
                 *layer = as_picture(layer, Some(shown));
             }
-            // A paint layer's pixels are missed when the document is read.
+            // Missing pixels of a paint layer are noticed when the document is read.
             Err(_) if is_paint => {}
             Err(_) => reading.note(format!("the picture of “{name}” for other programs is lost; saving makes it anew")),
         }
@@ -78,7 +78,7 @@ pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, mani
     left_out
 }
 
-/// Why a layer by itself cannot be read. A group is only what it is without its layers.
+/// Why a single layer cannot be read. A group is tested without its layers.
 fn trouble(reading: &ProjectReader, canvas: &Value, layer: &Value) -> Option<crate::Error> {
     let mut layer = layer.clone();
     if layer["kind"] == "group"
@@ -89,7 +89,7 @@ fn trouble(reading: &ProjectReader, canvas: &Value, layer: &Value) -> Option<cra
     reading.read_value(&json!({ "format": "rilievo", "canvas": canvas, "layers": [layer] })).err()
 }
 
-/// A layer as its picture, or as nothing; how it meets what lies beneath stays.
+/// Replaces a layer by its picture, or by an empty one; its blending stays.
 fn as_picture(layer: &Value, shown: Option<&ManifestPicture>) -> Value {
     let mut out = Map::new();
     for field in ["name", "kind", "visible", "opacity", "blend", "blend_space", "clip_below", "lock"] {

@@ -1,5 +1,5 @@
 //! `stack.xml`, as OpenRaster has it: written from a plan, and read from any program's file into layers.
-//! Floor 5. The pixels are `look`'s and `open`'s.
+//! Floor 5. `look` and `open` handle the pixels.
 
 mod read;
 
@@ -10,7 +10,7 @@ use crate::document::cache::EncodedPixels;
 use crate::document::{Content, LayerLock};
 use crate::math::Size;
 
-/// Marks what is ours; other programs pass it by.
+/// The namespace of our own attributes, which other programs ignore.
 const NAMESPACE: &str = "xmlns:rilievo=\"urn:rilievo:project\"";
 const KIND: &str = "rilievo:kind";
 
@@ -63,7 +63,7 @@ fn write_layer(common: &str, kind: &str, picture: Option<&(String, EncodedPixels
     format!("<layer {common} src=\"{name}\" x=\"{}\" y=\"{}\"{kind}/>\n", encoded.x, encoded.y)
 }
 
-/// What a layer is beside its pixels; empty where its pixels are all.
+/// The kind of a layer beyond its pixels; empty for plain pixels.
 fn kind(content: &Content) -> &'static str {
     match content {
         Content::Pixels(_) | Content::Group(_) => "",

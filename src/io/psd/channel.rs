@@ -33,7 +33,7 @@ pub fn decode(data: &mut ByteCursor, shape: ChannelLayout) -> Option<Vec<u8>> {
     decode_as(data, shape, compression)
 }
 
-/// As [`decode`], for data whose compression was told before; leaves the cursor behind the channel.
+/// As [`decode`], for data whose compression is already known; leaves the cursor after the channel.
 pub fn decode_as(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) -> Option<Vec<u8>> {
     match compression {
         0 => Some(to_bytes(data.take(shape.bytes())?, shape)),
@@ -64,7 +64,7 @@ pub fn inflate_planes(zlib: &[u8], shape: ChannelLayout, count: usize, is_predic
 
 /// How long each packed row is.
 pub fn row_lengths(data: &mut ByteCursor, shape: ChannelLayout, rows: usize) -> Option<Vec<usize>> {
-    // The table is there before room is made for it.
+    // The table must be complete before memory is allocated for it.
     let width = if shape.large { 4 } else { 2 };
     let mut table = ByteCursor::new(data.take(rows.checked_mul(width)?)?);
     (0..rows).map(|_| if shape.large { table.length(false) } else { table.u16().map(usize::from) }).collect()
@@ -126,7 +126,7 @@ pub fn pack(row: &[u8], out: &mut Vec<u8>) {
     }
 }
 
-/// Unfolds a zlib stream to exactly `wanted` bytes.
+/// Inflates a zlib stream to exactly `wanted` bytes.
 ///
 /// The inflater is the zip reader's, which wants a file header before the data.
 fn inflate(zlib: &[u8], wanted: usize) -> Option<Vec<u8>> {
@@ -148,7 +148,7 @@ fn inflate(zlib: &[u8], wanted: usize) -> Option<Vec<u8>> {
     (values.len() == wanted).then_some(values)
 }
 
-/// Each value was stored as what it differs by from its left neighbour.
+/// Each value was stored as the difference to its left neighbour.
 fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
     for row in values.chunks_exact_mut(shape.row_bytes().max(1)) {
         if shape.bits == 16 {

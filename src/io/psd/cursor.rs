@@ -1,9 +1,9 @@
-//! Numbers and sections read from bytes in the order they stand, big-endian, never beyond the end.
+//! Reads numbers and sections from bytes in order, big-endian, never beyond the end.
 //! Floor 5.
 
 use crate::math::Rect;
 
-/// A place in bytes. Each reading is `None` where it would go beyond the end.
+/// A position in bytes. Each read is `None` if it would go beyond the end.
 #[derive(Clone, Copy)]
 pub struct ByteCursor<'a> {
     rest: &'a [u8],
@@ -46,7 +46,7 @@ impl<'a> ByteCursor<'a> {
     pub fn length(&mut self, large: bool) -> Option<usize> {
         if large { usize::try_from(u64::from_be_bytes(self.array()?)).ok() } else { usize::try_from(self.u32()?).ok() }
     }
-    /// A part that says its own length.
+    /// A section preceded by its length.
     pub fn section(&mut self, large: bool) -> Option<ByteCursor<'a>> {
         let length = self.length(large)?;
         self.take(length).map(ByteCursor::new)

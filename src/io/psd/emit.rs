@@ -1,4 +1,4 @@
-//! Records laid out as the bytes of a Photoshop file.
+//! Writes records as the bytes of a Photoshop file.
 //! Floor 5.
 
 use super::channel::pack;
@@ -6,7 +6,7 @@ use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, Recor
 use crate::math::{Rect, Size};
 use crate::picture;
 
-/// What the picture is printed at, unless somebody says otherwise.
+/// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
 
 /// The whole file. `merged` is straight RGBA of the canvas, `ours` our own resource.
@@ -33,7 +33,7 @@ pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], ours: &[u8]) -> 
     out
 }
 
-/// The merged picture's colours stand on white, as far as it is transparent; readers take the white away again.
+/// The merged picture's colours are blended with white where it is transparent; readers remove the white again.
 fn on_white(straight: &[u8]) -> Vec<u8> {
     let mixed = |c: u8, a: u8| ((u32::from(c) * u32::from(a) + 255 * (255 - u32::from(a)) + 127) / 255) as u8;
     straight.as_chunks().0.iter().flat_map(|&[r, g, b, a]| [mixed(r, a), mixed(g, a), mixed(b, a), a]).collect()
@@ -45,7 +45,7 @@ fn short(out: &mut Vec<u8>, value: u16) {
 fn long(out: &mut Vec<u8>, value: u32) {
     out.extend(value.to_be_bytes());
 }
-/// A part behind its length.
+/// A section preceded by its length.
 fn section(out: &mut Vec<u8>, bytes: &[u8]) {
     long(out, bytes.len() as u32);
     out.extend(bytes);
@@ -70,7 +70,7 @@ fn resources(ours: &[u8]) -> Vec<u8> {
     }
     let mut version = Vec::new();
     long(&mut version, 1);
-    // The merged picture is really there.
+    // The merged picture is valid.
     version.push(1);
     unicode(&mut version, "Rilievo");
     unicode(&mut version, "Rilievo");
@@ -124,7 +124,7 @@ fn plane(rgba: &[u8], channel: usize) -> Vec<u8> {
     rgba.iter().skip(channel).step_by(4).copied().collect()
 }
 
-/// Planes in run lengths: all rows' lengths, then the rows. Of nothing, nothing plain.
+/// Planes in run lengths: the lengths of all rows, then the rows. An empty plane is stored uncompressed.
 fn packed(out: &mut Vec<u8>, planes: &[Vec<u8>], width: usize) {
     if planes.iter().all(Vec::is_empty) || width == 0 {
         return short(out, 0);

@@ -1,5 +1,5 @@
-//! The layers of a Photoshop file as records: what each says of itself, the blocks behind it, its channels and its
-//! mask. Floor 5. Where they stand in the file is `parse`'s.
+//! Reads the layers of a Photoshop file as records: their fields, the blocks after them, their channels and masks.
+//! Floor 5. `parse` finds their position in the file.
 
 use super::channel::{self, ChannelLayout};
 use super::cursor::ByteCursor;
@@ -10,9 +10,9 @@ use crate::math::Rect;
 use crate::{Error, Result};
 use std::path::Path;
 
-/// Coordinates beyond this are no drawing's.
+/// Coordinates beyond this are invalid.
 const FARTHEST: i32 = 1_000_000;
-/// Blocks of a layer that say what is not carried.
+/// Blocks that mean something is not imported.
 const LOSSES: [(&[[u8; 4]], &str); 5] = [
     (&[*b"TySh", *b"tySh"], "its text became pixels"),
     (&[*b"lfx2", *b"lrFX", *b"lmfx"], "its effects are left out"),
@@ -68,7 +68,7 @@ impl<'a> RecordReader<'a> {
     pub fn new(file: &'a Path, budget: &'a Budget, header: &'a PsdHeader) -> Self {
         Self { file, budget, header, used_px: 0, damage: Vec::new() }
     }
-    /// All of them, bottom first; those that cannot be read are told.
+    /// All of them, bottom first; unreadable ones are reported.
     pub fn records(&mut self, mut rest: ByteCursor) -> Result<Vec<LayerRecord>> {
         let count = usize::from(rest.i16().map_or(0, i16::unsigned_abs));
         if count > self.budget.layers * 2 {
@@ -160,7 +160,7 @@ impl<'a> RecordReader<'a> {
     fn shape(&self, rect: Rect) -> ChannelLayout {
         ChannelLayout { width: rect.width(), height: rect.height(), bits: self.header.bits, large: self.header.large }
     }
-    /// The rectangle if it is one, and there is room for it; `None` where it holds nothing.
+    /// The rectangle if it is valid and within the budget; `None` if it is empty.
     fn affordable(&mut self, name: &str, rect: Rect) -> Result<Option<Rect>> {
         if rect.is_empty() {
             return Ok(None);
@@ -182,7 +182,7 @@ impl<'a> RecordReader<'a> {
         Ok(())
     }
     fn mask(&mut self, name: &str, data: &mut ByteCursor, rect: Rect, outside: u8) -> Result<Option<RecordMask>> {
-        // Here it will cover the canvas, a byte a pixel, however small it is in the file.
+        // In memory it covers the canvas, a byte per pixel, however small it is in the file.
         self.spend(self.header.size.area() as u64 / 4)?;
         let Some(rect) = self.affordable(name, rect)? else {
             return Ok(Some(RecordMask { rect: Rect::EMPTY, outside, values: Vec::new() }));

@@ -1,5 +1,5 @@
-//! A document into records: what Photoshop has words for as such, the rest as pixels, with the document itself beside
-//! them. Floor 5. Laying the records out as bytes is `emit`'s.
+//! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the document itself is
+//! stored beside them. Floor 5. `emit` writes the records as bytes.
 
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, emit, signature};
 use crate::document::cache::EncodedPixels;
@@ -16,7 +16,7 @@ use std::path::Path;
 /// A side of a file of this kind.
 const LONGEST_PX: u32 = 30_000;
 
-/// A Photoshop file and what other programs see otherwise than here.
+/// A Photoshop file, and notes on what other programs show differently.
 pub struct WrittenPsd {
     pub bytes: Vec<u8>,
     pub notes: Vec<String>,
@@ -48,7 +48,7 @@ struct RecordBuilder {
     /// Of the plan's pictures, in their order.
     looks: std::vec::IntoIter<EncodedPixels>,
     records: Vec<LayerRecord>,
-    /// Which record shows a layer alone, as the manifest names it.
+    /// The records that show a single layer, for the manifest.
     shown: Vec<(LayerId, (String, EncodedPixels))>,
     notes: Vec<String>,
 }
@@ -119,7 +119,7 @@ fn record(item: &PlanItem) -> LayerRecord {
         opacity: (item.opacity * 255.0).round() as u8,
         clipped: item.clipped,
         visible: item.visible,
-        // Who may change nothing may not change the transparency either.
+        // A fully locked layer also has its transparency locked.
         lock_alpha: item.lock != LayerLock::None,
         lock_all: item.lock == LayerLock::All,
         ..LayerRecord::default()

@@ -1,16 +1,16 @@
-//! Photoshop documents, in and out: the format that illustrators exchange (docs/PROJECTS.md says what is carried).
+//! Photoshop documents, in and out: the exchange format of illustrators (docs/PROJECTS.md lists what is kept).
 //! Floor 5. 8- and 16-bit RGB and grey in, PSD and PSB; 8-bit RGB out.
 //!
 //! | file | |
 //! |---|---|
 //! | `cursor` | numbers and sections read from bytes, never beyond their end |
 //! | `channel` | planes of bytes, plain, PackBits or ZIP |
-//! | `parse`, `layers` | a file into its parts and its records, as they stand in it |
+//! | `parse`, `layers` | a file into its parts and its records |
 //! | `tree` | records into a document |
 //! | `lower` | a document into records |
 //! | `emit` | records into a file |
 //!
-//! Ours hold a private resource with the document itself, so that live layers come back live.
+//! Our files hold a private resource with the document itself, so that live layers come back live.
 
 pub(super) mod channel;
 pub(super) mod cursor;
@@ -27,19 +27,19 @@ pub use tree::read;
 
 use crate::math::Rect;
 
-/// What a file begins with.
+/// The signature of a file.
 pub const MAGIC: [u8; 4] = *b"8BPS";
 /// Image resources.
 const RESOLUTION: u16 = 1005;
 const ICC_PROFILE: u16 = 1039;
 const VERSION_INFO: u16 = 1057;
-/// Of the numbers left to plug-ins, ours: a zip of the document and its files.
+/// Our number among those reserved for plug-ins: a zip of the document and its files.
 const OURS: u16 = 4711;
 
 /// The key of a group whose layers blend with what lies beneath it.
 const PASS_THROUGH: [u8; 4] = *b"pass";
 
-/// A layer as it stands in the file; groups are records too, around those of their layers.
+/// A layer as stored in the file; groups are records too, around those of their layers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerRecord {
     pub name: String,
@@ -54,7 +54,7 @@ pub struct LayerRecord {
     pub mask: Option<RecordMask>,
     /// Straight RGBA of `rect`, row by row.
     pub rgba: Vec<u8>,
-    /// What the layer has that is not carried.
+    /// Features of the layer that are not imported.
     pub lost: Vec<&'static str>,
 }
 
@@ -78,7 +78,7 @@ impl Default for LayerRecord {
     }
 }
 
-/// What a record stands for.
+/// The role of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordSection {
     Layer,
@@ -95,7 +95,7 @@ pub struct RecordMask {
     pub values: Vec<u8>,
 }
 
-/// What tells whether another program changed the layers: all of them but their pixels.
+/// A checksum of the layers without their pixels: it shows whether another program changed them.
 fn signature(records: &[LayerRecord]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     for r in records {

@@ -1,5 +1,5 @@
-//! A Photoshop file into its parts: header, resources, where the layers stand, merged picture.
-//! Floor 5. The layers' records are `layers`', what they make together `tree`'s.
+//! Splits a Photoshop file into its parts: header, resources, layers, merged picture. Floor 5. `layers` reads the
+//! records, `tree` builds the document.
 
 use super::channel::{self, ChannelLayout};
 use super::cursor::ByteCursor;
@@ -26,7 +26,7 @@ pub struct ParsedPsd<'a> {
     pub damage: Vec<String>,
 }
 
-/// What the file says of itself.
+/// The header of a file.
 pub struct PsdHeader {
     pub large: bool,
     pub size: Size,
@@ -37,7 +37,7 @@ pub struct PsdHeader {
     is_indexed: bool,
 }
 
-/// Reads a file. Damaged layers are told and left out; fails where there is nothing to give back.
+/// Reads a file. Damaged layers are reported and left out; fails only if nothing can be recovered.
 pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<ParsedPsd<'a>> {
     let cut = || Error::decode(file, "the file is cut short");
     let mut rest = ByteCursor::new(bytes);
@@ -101,7 +101,7 @@ fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<PsdHead
     }
     let size = budget.size(file, width.into(), height.into())?;
     let modes = ["bitmap", "grey", "indexed", "RGB", "CMYK", "", "", "multichannel", "duotone", "Lab"];
-    // A duotone is grey to everybody but its printer.
+    // A duotone is read as grey.
     if ![1, 2, 3, 8].contains(&mode) {
         let name = modes.get(usize::from(mode)).copied().unwrap_or("unknown");
         return Err(Error::unsupported(file, format!("its colours are {name}; RGB, grey and indexed can be read")));

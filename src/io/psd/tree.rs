@@ -1,5 +1,5 @@
-//! A Photoshop file's records into a document: ours as it was written, others' as far as both programs agree.
-//! Floor 5. Parsing is `parse`'s.
+//! Builds a document from a Photoshop file's records: ours as it was written, others as far as both programs agree.
+//! Floor 5. Parsing is in `parse`.
 
 use super::parse::{ParsedPsd, parse};
 use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, signature};
@@ -15,7 +15,7 @@ use crate::{Error, Result};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads a Photoshop file; what was not carried over stands in the notes.
+/// Reads a Photoshop file; what was not imported is in the notes.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let mut parsed = parse(file, bytes, budget)?;
     let damage = std::mem::take(&mut parsed.damage);
@@ -41,8 +41,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty() })
 }
 
-/// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are
-/// others.
+/// The document that our own resource holds, the layers' pixels taken from the file; `None` if the layers were changed.
 fn restored(file: &Path, ours: &[u8], records: &[LayerRecord], budget: &Budget) -> Result<Option<ProjectContents>> {
     let archive = Archive::open(file, ours, budget)?;
     let damaged = |e: zip::result::ZipError| Error::decode(file, format!("our part of the file is damaged ({e})"));
@@ -91,10 +90,10 @@ fn layers_of(parsed: &mut ParsedPsd) -> Vec<LayerRecord> {
     records
 }
 
-/// Layers gathered bottom first, each open group a list of its own.
+/// Collects layers bottom first, with a list for each open group.
 struct TreeBuilder {
     size: Size,
-    /// Groups may lie within each other so many times.
+    /// The greatest depth of groups.
     deepest: usize,
     open: Vec<Vec<Arc<Layer>>>,
     notes: Vec<String>,
@@ -108,7 +107,7 @@ impl TreeBuilder {
         let layer = match record.section {
             RecordSection::End => return self.open.push(Vec::new()),
             RecordSection::Group => {
-                // Without a beginning, a group holds nothing.
+                // A group without a beginning is empty.
                 let layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
                 if self.open.len() > self.deepest {
                     self.notes

@@ -12,14 +12,14 @@ use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
 use serde_json::{Value, json};
 
-/// A brush's fields; what is not said stays as it is in `base`.
+/// The fields of a brush; missing ones are taken from `base`.
 pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
     Ok(Brush {
         size: fields.number("size", base.size, 0.1..=20_000.0)?,
         hardness: fields.number("hardness", base.hardness, 0.0..=1.0)?,
         opacity: fields.number("opacity", base.opacity, 0.0..=1.0)?,
         flow: fields.number("flow", base.flow, 0.0..=1.0)?,
-        // A hundredth of the diameter is as good as a line; less only costs time.
+        // A hundredth of the diameter already gives a solid line; less only costs time.
         spacing: fields.number("spacing", base.spacing, 0.01..=100.0)?,
         rotation: fields.number("rotation", base.rotation, TURNS)?,
         facing: fields.get("facing").map_or(Ok(base.facing), |node| facing(&node))?,
@@ -61,7 +61,7 @@ fn jitter(node: &JsonNode, base: ColorJitter) -> Result<ColorJitter> {
 }
 
 /// `{ "kind": "smudge", "length": 0.8 }`, `{ "kind": "blur", "width": 0.3 }` or
-/// `{ "kind": "clone", "aligned": true, "picture": false }`; `{ "kind": "paint" }` is what is not said.
+/// `{ "kind": "clone", "aligned": true, "picture": false }`; `{ "kind": "paint" }` is the default.
 fn mode(node: &JsonNode) -> Result<BrushMode> {
     const KINDS: [(usize, &str); 4] = [(0, "paint"), (1, "smudge"), (2, "blur"), (3, "clone")];
     let mut fields = node.fields()?;
@@ -182,7 +182,7 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
     out
 }
 
-/// What differs from the plain brush's: what that follows and this does not is said to be 0.
+/// What differs from the plain brush: a row that only the plain brush has is written as 0.
 fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
     let plain = Dynamics::default();
     let mut out = JsonObject::default();

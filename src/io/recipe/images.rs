@@ -1,6 +1,5 @@
-//! What is bent as a whole: placed images and gradients; and the parts they share with others: operator, anchors,
-//! placement, source. Read and written.
-//! Floor 5.
+//! Reads and writes placed images and gradients, and the fields they share with others: operator, anchors, placement,
+//! source. Floor 5.
 
 use super::LayerReader;
 use super::names::{FILTERS, OUTSIDES};
@@ -29,7 +28,7 @@ impl LayerReader<'_> {
             filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
         })
     }
-    /// From the middle of the left side to the middle of the right one, black to white, unless told otherwise.
+    /// By default from the middle of the left side to the middle of the right one, black to white.
     pub fn gradient(&mut self, fields: &mut Fields) -> Result<Gradient> {
         let (w, h) = (self.size.width as f32, self.size.height as f32);
         let black_to_white =
@@ -82,7 +81,7 @@ impl LayerReader<'_> {
     }
 }
 
-/// Where an image is pinned unless told: at its centre, once it bends at all.
+/// The default anchor of an image: its centre, if it bends at all.
 pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
     match operator {
         Operator::None => Vec::new(),
@@ -105,13 +104,13 @@ const OPERATORS: [(RecipeOperator, &str); 4] = [
     (RecipeOperator::Reflection, "reflection"),
 ];
 
-/// The field `operator`, where it is there.
+/// The field `operator`, if present.
 pub fn operator(fields: &mut Fields) -> Result<Option<Operator>> {
     let Some(node) = fields.get("operator") else { return Ok(None) };
     let mut fields = node.fields()?;
     let operator = match fields.one_of("kind", &OPERATORS, RecipeOperator::None)? {
         RecipeOperator::None => Operator::None,
-        // e^20 is half a thousand million: a stronger bend only loses digits.
+        // e^20 is about 5 · 10⁸: a stronger bend only loses precision.
         RecipeOperator::Depth => Operator::Depth { gamma: fields.number("gamma", 1.0, 0.0..=20.0)? },
         RecipeOperator::Normal => Operator::Normal {
             alpha: fields.number("alpha", 0.5, -100.0..=100.0)?,

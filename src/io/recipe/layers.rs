@@ -1,4 +1,4 @@
-//! Layers: what each has whatever its kind, and the kinds that need no more than a line; read and written.
+//! Reads and writes layers: the common fields, and the kinds that need only a line.
 //! Floor 5.
 
 use super::LayerReader;
@@ -40,7 +40,7 @@ const KINDS: [(LayerKind, &str); 9] = [
 ];
 
 impl LayerReader<'_> {
-    /// A list of layers, bottom first; `depth` is how many groups stand around it.
+    /// A list of layers, bottom first; `depth` is the number of enclosing groups.
     pub fn layers(&mut self, node: &JsonNode, depth: usize) -> Result<Vec<Arc<Layer>>> {
         let items = node.list(self.layers_left)?;
         self.layers_left -= items.len();
@@ -97,7 +97,7 @@ impl LayerReader<'_> {
     }
 }
 
-/// Layers back to JSON; `canvas` tells which placements are the default.
+/// Layers as JSON; `canvas` determines the default placements.
 pub fn write(layers: &[Arc<Layer>], canvas: Size) -> Value {
     layers.iter().map(|layer| write_layer(layer, canvas)).collect()
 }

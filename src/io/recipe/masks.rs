@@ -1,4 +1,4 @@
-//! Layer masks: a picture of coverage, or one derived from the surface; read and written.
+//! Reads and writes layer masks: a picture of coverage, or one derived from the surface.
 //! Floor 5.
 
 use super::LayerReader;

@@ -49,12 +49,12 @@ use std::{collections::BTreeMap, path::Path, sync::Arc};
 /// The newest schema this program reads, and the one it writes.
 pub const VERSION: i64 = 1;
 
-/// What a document is read from.
+/// The source of a document.
 #[derive(Clone, Copy)]
 pub struct RecipeSource<'a> {
     /// The recipe, for messages.
     pub file: &'a Path,
-    /// What it may name.
+    /// The files that it may name.
     pub files: &'a dyn Files,
     pub budget: &'a Budget,
     /// Another object to put the painting on, in place of the document's own.
@@ -134,7 +134,7 @@ fn canvas(node: &JsonNode, source: RecipeSource) -> Result<Size> {
     source.budget.size(source.file, width as u64, height as u64)
 }
 
-/// A document put on another object; its canvas stays, the maps are fitted to it.
+/// Puts a document on another object; the canvas stays, the maps are fitted to it.
 pub fn put_onto(document: &Document, file: &Path, onto: OtherSurface, budget: &Budget) -> Result<Document> {
     let maps::ImportedSurface { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
     let surface = fitted(surface, document.size).map_err(|e| Error::unsupported(file, e))?;
@@ -150,13 +150,13 @@ struct CanvasAndSurface {
     notes: Vec<String>,
 }
 
-/// The canvas's size, where nothing is said that of the document's own maps; and the surface fitted to it.
+/// The size of the canvas (by default that of the document's own maps), and the surface fitted to it.
 fn shape(
     canvas: Option<Size>,
     own: Option<&(SurfaceSource, JsonNode)>,
     source: RecipeSource,
 ) -> Result<CanvasAndSurface> {
-    // Another object keeps the document's canvas, so its own maps are read only where they tell the size.
+    // Another object keeps the document's canvas, so its own maps are read only if they determine the size.
     let own = match own {
         Some((own, node)) if canvas.is_none() || source.onto.is_none() => {
             let import = maps::import(own, source.files, source.budget).map_err(|e| node.led_to(e))?;
@@ -188,7 +188,7 @@ fn fitted(map: Surface, canvas: Size) -> std::result::Result<Arc<Surface>, Surfa
     Ok(Arc::new(if map.size() == canvas { map } else { map.fitted(canvas)? }))
 }
 
-/// Reads layers: what is known once the canvas is.
+/// Reads layers, once the canvas is known.
 struct LayerReader<'a> {
     source: RecipeSource<'a>,
     size: Size,

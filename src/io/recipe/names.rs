@@ -1,5 +1,5 @@
-//! The words of the document for what is chosen from a few.
-//! Floor 5. One table each, for reading and writing. Blend modes keep theirs in `raster::blend`.
+//! The names of choices in documents. Floor 5. There is one table each, for reading and writing. The names of blend
+//! modes are in `raster::blend`.
 
 use crate::document::LayerLock;
 use crate::paint::ImageFilter;
@@ -17,7 +17,7 @@ pub const FILTERS: [(ImageFilter, &str); 2] =
 /// Whether a layer blends linear light.
 pub const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 
-/// The word for a value; every value of a table's type stands in it.
+/// The name of a value; the table has all values of the type.
 pub fn name_of<T: PartialEq>(table: &[(T, &'static str)], value: T) -> &'static str {
     table.iter().find(|(v, _)| *v == value).map_or("", |(_, name)| name)
 }

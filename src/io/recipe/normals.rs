@@ -1,4 +1,4 @@
-//! Normal layers: detail from a map, or grain; read and written.
+//! Reads and writes normal layers: detail from a map, or grain.
 //! Floor 5. Reading a map's numbers is `io::maps::detail`'s work.
 
 use super::LayerReader;

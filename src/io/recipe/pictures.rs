@@ -1,5 +1,5 @@
 //! The files that layers name: each is read and decoded once, however many layers use it.
-//! Floor 5. Decoding is `io::picture`'s.
+//! Floor 5. Decoding is in `io::picture`.
 
 use super::RecipeSource;
 use crate::document::source::NormalConvention;
@@ -20,7 +20,7 @@ pub type TileGrids = HashMap<(String, i32, i32), TileGrid>;
 #[derive(Default)]
 pub struct PictureCache {
     pictures: HashMap<String, Picture>,
-    /// With each set of adjustments in use, so that layers share the adjusted texture as well.
+    /// By set of adjustments, so that layers share the adjusted texture as well.
     sources: HashMap<String, Vec<PictureSource>>,
     coverages: HashMap<String, Arc<Plane<u8>>>,
     tiles: TileGrids,
@@ -63,7 +63,7 @@ impl PictureCache {
         self.pictures.insert(name.text()?.to_owned(), picture.clone());
         Ok(picture)
     }
-    /// The detail normals of a picture that a field names, blurred by `blur_px` texels; read anew for each convention.
+    /// The detail normals of a picture that a field names, blurred by `blur_px` texels; read again for each convention.
     pub fn detail(
         &mut self,
         source: RecipeSource,
@@ -85,7 +85,7 @@ impl PictureCache {
         self.details.push(CachedDetail { file, convention, blur_px, map: map.clone() });
         Ok(map)
     }
-    /// Counts what a document holds: many pictures, each within its own ceiling, would fill the memory together.
+    /// Counts the pixels of a document: many pictures, each within its own limit, could fill the memory together.
     fn spend(&mut self, source: RecipeSource, size: Size) -> Result<()> {
         self.used_px += size.area() as u64;
         if self.used_px > source.budget.document_px {

@@ -18,9 +18,9 @@ use std::path::Path;
 /// A brush that can be chosen by name.
 #[derive(Clone)]
 pub struct Preset {
-    /// What recipes call it: small letters and hyphens.
+    /// Its key in recipes: lower-case letters and hyphens.
     pub key: String,
-    /// What people call it.
+    /// Its name in the window.
     pub name: String,
     pub group: PresetGroup,
     /// One sentence.
@@ -32,7 +32,7 @@ pub struct Preset {
     pub operator: Operator,
 }
 
-/// Where a preset stands in the list.
+/// The group of a preset in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum PresetGroup {
     Drawing,
@@ -64,7 +64,7 @@ impl PresetGroup {
     }
 }
 
-/// The colour of a preset that says none: a warm white.
+/// The default colour of a preset: a warm white.
 const SHOWN: Color = Color { r: 0xf4, g: 0xee, b: 0xe0, a: 255 };
 
 /// The keys of the brushes that come with the program.
@@ -104,7 +104,7 @@ fn built_in(key: &str, text: &str) -> Result<Preset> {
     read(Path::new("brushes"), key, text.as_bytes(), &Budget::default(), &mut none)
 }
 
-/// A brush as [`written_brush`] writes it, its pictures those of `like`: what a value can only name is had already.
+/// A brush as [`written_brush`] writes it, with the pictures of `like`, because a value can only name them.
 ///
 /// Fails with a sentence that names the field.
 pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
@@ -120,7 +120,7 @@ pub fn read_brush(value: &Value, like: &Brush) -> Result<Brush> {
     Ok(brush)
 }
 
-/// All that a brush is beyond the plain one, its pictures by their names.
+/// Everything that differs from the plain brush, pictures by name.
 pub fn written_brush(brush: &Brush) -> Value {
     write_brush(brush).done()
 }

@@ -1,4 +1,4 @@
-//! Light: shading layers and radiance scaling; read and written.
+//! Reads and writes light: shading layers and radiance scaling.
 //! Floor 5.
 
 use super::LayerReader;
@@ -22,13 +22,13 @@ const INVARIANT: RangeInclusive<f32> = 0.001..=0.999;
 const FACTOR: RangeInclusive<f32> = 0.0..=10_000.0;
 
 impl LayerReader<'_> {
-    /// What is not said is as the model has it by default ([`Shading::new`]).
+    /// Missing fields have the defaults of the model ([`Shading::new`]).
     pub fn shading(&mut self, fields: &mut Fields) -> Result<Shading> {
         let base = Shading::new(fields.one_of("model", &Model::ALL, Model::Phong)?);
         let environment = fields.get("environment").map(|node| self.environment(&node)).transpose()?;
         let lights = match fields.get("lights") {
             Some(node) => node.list(MOST_LIGHTS)?.iter().map(light).collect::<Result<_>>()?,
-            // Lit by its environment, such a material needs no light; those that are named are added.
+            // A material lit by its environment needs no light; named lights are added.
             None if base.model == Model::Ashikhmin && environment.is_some() => Vec::new(),
             None => base.lights.clone(),
         };
@@ -139,7 +139,7 @@ fn reference(fields: &mut Fields) -> Result<Reference> {
     Ok(Reference::Value(node.number(1e-4..=65_504.0)?))
 }
 
-/// The object of one term, where it is there, its own fields read by `more`.
+/// The object of one term, if present; `more` reads its own fields.
 fn term_and<T>(
     fields: &mut Fields,
     name: &'static str,
@@ -197,7 +197,7 @@ fn light(node: &JsonNode) -> Result<Light> {
     Ok(Light { kind, color, intensity })
 }
 
-/// A direction of any length but 0, which is nowhere.
+/// A direction of any length but 0.
 fn direction(node: &JsonNode) -> Result<Vec3> {
     let v = node.vector(-1e6..=1e6)?;
     if v.abs().max_element() < 1e-6 {
@@ -264,7 +264,7 @@ fn write_features(out: &mut JsonObject, features: &Features) {
         out.number("blur", scale.blur_px, base.blur_px);
     };
     match &features.scales[..] {
-        // The weight of a lone scale says nothing, unless it is odd enough to be kept.
+        // The weight of a single scale has no effect; it is written only if it is unusual.
         [scale] if scale.weight == base.weight => write_scale(out, scale),
         scales => {
             let one = |scale: &FeatureScale| {

@@ -1,4 +1,4 @@
-//! Strokes: samples of the pen, each stroke with its brush, operator and colour. Read and written.
+//! Reads and writes strokes: the samples of the pen, with brush, operator and colour.
 //! Floor 5. Not here: brushes (`brush`, `tips`), the ones that come with the program (`presets`).
 
 use super::LayerReader;
@@ -14,7 +14,7 @@ use crate::surface::Operator;
 use serde_json::Value;
 use std::sync::Arc;
 
-/// A reading of the pen whose last fields are absent.
+/// A sample whose last fields are absent.
 const UNSAID: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
 
 impl LayerReader<'_> {
@@ -83,7 +83,7 @@ pub fn write_stroke(stroke: &Stroke) -> Value {
     out.done()
 }
 
-/// As few numbers as say it.
+/// As few numbers as possible.
 fn write_sample(sample: &Sample) -> Value {
     let Sample { at, pressure, tilt, time_secs } = *sample;
     let mut values = vec![at.x, at.y, pressure, tilt.x, tilt.y, time_secs];

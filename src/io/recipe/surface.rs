@@ -1,5 +1,4 @@
-//! The surface: which maps, and what their numbers mean; read and written.
-//! Floor 5. What is found where nothing is said is `io::maps`' work.
+//! Reads and writes the surface: its maps and what their numbers mean. Floor 5. `io::maps` detects what is not given.
 
 use crate::Result;
 use crate::document::source::{
@@ -39,7 +38,7 @@ fn normal(node: &JsonNode) -> Result<MapSource<NormalConvention>> {
     Ok(map)
 }
 
-/// A word, or an object that says each choice it does not leave to be found.
+/// A word, or an object with each choice that is not to be detected.
 pub fn normal_convention(node: &JsonNode) -> Result<NormalConvention> {
     if node.value().is_string() {
         let words = NormalConvention::WORDS.map(|word| (word, word));
@@ -129,7 +128,7 @@ fn channel(fields: &mut Fields) -> Result<Option<String>> {
     fields.get("channel").map(|node| node.text().map(str::to_owned)).transpose()
 }
 
-/// The object `surface` back to JSON.
+/// The object `surface` as JSON.
 pub fn write(source: &SurfaceSource) -> Value {
     let mut out = JsonObject::default();
     if let Some(normal) = &source.normal {

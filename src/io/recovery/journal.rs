@@ -1,5 +1,5 @@
-//! One drawing's recovery log on a disk: appended to after every edit, written anew when it has grown to twice its use.
-//! Floor 5. Called from one thread; the thread is `mod`'s.
+//! One drawing's recovery log on a disk: appended to after every edit, and rewritten when it has grown to twice the
+//! needed size. Floor 5. It is used from one thread, which `mod` owns.
 
 use super::log::{self, RecordKind};
 use super::state::{self, LoggedParts};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// A log smaller than this is not worth writing anew.
+/// A log smaller than this is not worth rewriting.
 const LEAST_COMPACTED: u64 = 16 << 20;
 
 /// The log of a session.
@@ -23,14 +23,14 @@ pub struct Journal {
     path: PathBuf,
     head: Value,
     known: LoggedParts,
-    /// Absent after a failure: what was half written makes all that would follow unreadable.
+    /// Absent after a failure: a half-written record makes everything after it unreadable.
     handle: Option<Box<dyn FileHandle>>,
     bytes: u64,
     /// Its length when it was last written anew.
     fresh_bytes: u64,
     unsynced: bool,
     pub least_compacted: u64,
-    /// Nobody wants the log any more: what is being written need not be finished.
+    /// The log is no longer needed: the current write need not be finished.
     pub given_up: Arc<AtomicBool>,
 }
 
@@ -53,7 +53,7 @@ impl Journal {
     }
     /// The version recorded last is what a file holds, or with no file what the drawing was made as.
     ///
-    /// A log that could not be written does not tell; then the drawing is offered once more than it need be.
+    /// If this cannot be written, the drawing is offered for recovery once more than necessary.
     pub fn saved(&mut self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) -> Result<()> {
         (self.head["title"], self.head["file"]) = (json!(title), json!(file));
         let stamp = stamp.map(|stamp| json!([stamp.bytes, stamp.crc]));
@@ -71,7 +71,7 @@ impl Journal {
         }
         let mut out = Vec::new();
         if let Err(error) = state::write(&self.path, document, &mut self.known, &mut out, &self.given_up) {
-            // What it knows no longer is what stands in the log.
+            // What it knows no longer matches the log.
             self.handle = None;
             return Err(error);
         }
@@ -94,7 +94,7 @@ impl Journal {
         }
         let Some(handle) = &mut self.handle else { return Ok(()) };
         handle.sync().map_err(|e| {
-            // What the system dropped cannot be asked for again.
+            // What the system dropped cannot be written again.
             self.handle = None;
             Error::io(&self.path, e)
         })
@@ -108,7 +108,7 @@ impl Journal {
         debug_assert!(is_short, "a head has a few hundred bytes");
         state::write(&self.path, document, &mut known, &mut out, &self.given_up)?;
         let part = self.path.with_extension("new");
-        // Left by a session of this name that was cut off just here.
+        // Left by a session of this name that was interrupted here.
         let _ = self.fs.remove(&part);
         let mut handle = self.fs.create_new(&part).map_err(failed)?;
         let written = handle.write_all(&out).and_then(|()| handle.sync());

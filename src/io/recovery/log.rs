@@ -1,9 +1,9 @@
-//! The recovery log as bytes: records that can be told from garbage, and the longest run of them that holds.
+//! The recovery log as bytes: checksummed records, of which the longest valid prefix counts.
 //! Floor 5.
 
 use std::io::{BufRead, BufReader, Read};
 
-/// What a log begins with.
+/// The signature of a log.
 pub const MAGIC: [u8; 8] = *b"RILOG\0\0\x01";
 /// Length, kind and checksum before each payload.
 const HEADER: usize = 4 + 1 + 4;
@@ -46,7 +46,7 @@ pub fn push(log: &mut Vec<u8>, kind: RecordKind, payload: &[&[u8]]) -> bool {
     true
 }
 
-/// The records of a log up to the first that does not hold.
+/// The records of a log up to the first invalid one.
 pub struct Records<'a> {
     rest: &'a [u8],
 }
@@ -77,7 +77,7 @@ impl<'a> Iterator for Records<'a> {
     }
 }
 
-/// How a log ends, if every byte of it holds: the kind of its last record, and what stood in the last one of kind
+/// The end of a log, if all of it is valid: the kind of its last record, and the contents of the last one of kind
 /// [`RecordKind::Saved`].
 ///
 /// Reads piece by piece: a broken log may be long.

@@ -1,13 +1,13 @@
-//! Recovery: after every edit the drawing goes to a log beside the settings, so that neither a crash nor a power cut
-//! takes more than the last moments (docs/PROJECTS.md). Floor 5. Saving is `io::save`; the log is for accidents only,
-//! and is gone once the drawing is closed.
+//! Recovery: after every edit the drawing is written to a log beside the settings, so that a crash or a power cut loses
+//! only the last moments (docs/PROJECTS.md). Floor 5. Saving is `io::save`; the log is for accidents only, and is gone
+//! once the drawing is closed.
 //!
 //! | file | |
 //! |---|---|
-//! | `log` | records of bytes, and the longest run of them that holds |
+//! | `log` | records of bytes, and their longest valid prefix |
 //! | `state` | a document as records |
 //! | `journal` | one drawing's log on a disk |
-//! | `sessions` | what accidents left, brought back |
+//! | `sessions` | recovery after an accident |
 
 mod journal;
 mod log;
@@ -30,10 +30,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Appended edits wait no longer than this for being flushed; with the flush itself it stays below five seconds.
+/// Appended edits are flushed after this time at the latest; with the flush itself it stays below five seconds.
 const FLUSH_AFTER: Duration = Duration::from_secs(3);
 
-/// The recovery of one open drawing: a worker that writes what it is told, and a lock that says the session lives.
+/// The recovery log of one open drawing: a worker that writes it, and a lock that marks the session as alive.
 ///
 /// Dropped without [`RecoveryLog::close`], it leaves the log, as a crash does.
 pub struct RecoveryLog {
@@ -49,7 +49,7 @@ pub struct RecoveryLog {
 enum RecoveryTask {
     Record(Document),
     Saved(String, Option<PathBuf>, Option<FileStamp>),
-    /// Tells when all before it is written, `true`: and on the disk.
+    /// Signals when everything before it is written; `true`: flushed to the disk.
     Tell(Sender<()>, bool),
 }
 
@@ -88,15 +88,15 @@ impl RecoveryLog {
     pub fn saved(&self, title: &str, file: Option<&Path>, stamp: Option<FileStamp>) {
         self.send(RecoveryTask::Saved(title.into(), file.map(Path::to_owned), stamp));
     }
-    /// Waits until all that was recorded is with the system, where neither a crash nor `kill -9` takes it; no longer
-    /// than `patience`. Whether it is.
+    /// Waits until everything recorded has reached the system, where a crash or `kill -9` cannot lose it; no longer
+    /// than `patience`. Returns whether it has.
     pub fn settle(&self, patience: Duration) -> bool {
         let (done, is_done) = channel();
         self.send(RecoveryTask::Tell(done, false));
-        // The worker tells by letting go, and lets go when it is gone, too.
+        // The worker signals by dropping the sender, which also happens if it ends.
         !matches!(is_done.recv_timeout(patience), Err(RecvTimeoutError::Timeout))
     }
-    /// Waits until all that was recorded is on the disk, where a power cut does not take it.
+    /// Waits until everything recorded is on the disk, where a power cut cannot lose it.
     pub fn flush(&self) {
         let (done, is_done) = channel();
         self.send(RecoveryTask::Tell(done, true));
@@ -106,7 +106,7 @@ impl RecoveryLog {
     pub fn trouble(&self) -> Option<String> {
         self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
-    /// Ends the session and deletes its log: the drawing is saved, or its user let it go.
+    /// Ends the session and deletes its log: the drawing is saved, or the user discarded it.
     pub fn close(mut self) -> Result<()> {
         self.given_up.store(true, Ordering::Relaxed);
         self.stop();
@@ -121,11 +121,11 @@ impl RecoveryLog {
     }
     fn send(&self, task: RecoveryTask) {
         if let Some(tasks) = &self.tasks {
-            // A worker that is gone has told its trouble.
+            // A worker that has ended has reported its error.
             let _ = tasks.send(task);
         }
     }
-    /// The worker writes what it was told, and ends.
+    /// The worker writes everything recorded, and ends.
     fn stop(&mut self) {
         self.tasks = None;
         if let Some(worker) = self.worker.take() {
@@ -141,7 +141,7 @@ impl Drop for RecoveryLog {
     }
 }
 
-/// Where sessions stand: `rilievo/recovery` in the user's folder for state; `None` where the system names none.
+/// The folder of sessions: `rilievo/recovery` in the user's folder for state; `None` if the system has none.
 pub fn folder() -> Option<PathBuf> {
     use etcetera::BaseStrategy;
     let base = etcetera::choose_base_strategy().ok()?;
@@ -172,7 +172,7 @@ fn work(mut journal: Journal, tasks: &Receiver<RecoveryTask>, trouble: &Mutex<Op
     let say = |what: Option<Error>| {
         *trouble.lock().unwrap_or_else(PoisonError::into_inner) = what.map(|error| error.to_string());
     };
-    // Only a version that is written takes a trouble away.
+    // Only a successfully written version clears an error.
     let tell = |result: Result<()>| {
         if let Err(error) = result {
             say(Some(error));

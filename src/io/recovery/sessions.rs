@@ -1,5 +1,5 @@
-//! The sessions that ended without being closed: what they left, and how it is brought back.
-//! Floor 5. Nothing here is deleted unasked, and nothing here can keep the program from starting.
+//! Lost sessions: what sessions left that ended without being closed, and how it is recovered. Floor 5. Nothing is
+//! deleted without asking, and nothing here can keep the program from starting.
 
 use super::log::{self, RecordKind};
 use super::state::LastState;
@@ -14,15 +14,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// A session that nobody holds any more. While this lives, no other window takes it.
+/// A session that no process holds any more. While this value lives, no other window takes it.
 pub struct LostSession {
     fs: Arc<dyn Fs>,
     path: PathBuf,
-    /// What the drawing was called.
+    /// The title of the drawing.
     pub title: String,
     /// Where it was last saved, if it was. The recovered drawing is untitled all the same.
     pub file: Option<PathBuf>,
-    /// Bringing it back was begun once and not finished: only to be tried when the user asks for this very one.
+    /// Recovery was started once and did not finish: it is tried again only if the user asks for this one.
     pub has_failed: bool,
     _lock: Box<dyn FileLock>,
 }
@@ -31,11 +31,11 @@ pub struct LostSession {
 pub struct RecoveredDocument {
     pub document: Document,
     pub title: String,
-    /// Versions that the log told of, the first being the drawing as it was opened.
+    /// Versions in the log, the first being the drawing as it was opened.
     pub versions: usize,
 }
 
-/// The sessions below a folder that are not alive, oldest first. What cannot be read is left where it is.
+/// The sessions below a folder that are not alive, oldest first. Unreadable ones are left where they are.
 pub fn sessions(fs: &Arc<dyn Fs>, folder: &Path) -> Vec<LostSession> {
     let paths = fs.list(folder).unwrap_or_default();
     let logs = paths.into_iter().filter(|path| path.extension().is_some_and(|extension| extension == "log"));
@@ -66,7 +66,7 @@ fn session(fs: &Arc<dyn Fs>, path: PathBuf) -> Option<LostSession> {
     Some(LostSession { fs: fs.clone(), path, title, file, has_failed, _lock: lock })
 }
 
-/// What a drawing is called, and where it is kept.
+/// The title and the file of a drawing.
 fn named(head: &Value) -> (String, Option<PathBuf>) {
     let title = head["title"].as_str().unwrap_or_default().chars().take(200).collect();
     (title, head["file"].as_str().map(PathBuf::from))
@@ -82,7 +82,7 @@ pub fn read(file: &Path, log: &[u8], budget: &Budget) -> Result<RecoveredDocumen
 }
 
 impl LostSession {
-    /// When the session was begun, as its name tells.
+    /// When the session began, from its name.
     pub fn begun(&self) -> Option<SystemTime> {
         let name = self.path.file_stem()?.to_str()?;
         let micros = u64::from_str_radix(name.split('-').next()?, 16).ok()?;
@@ -90,7 +90,7 @@ impl LostSession {
     }
     /// The last whole version in the log.
     ///
-    /// Leaves a mark while it works: should it bring the program down, `has_failed` says so the next time.
+    /// It leaves a mark file while it works: if it crashes the program, `has_failed` is true the next time.
     pub fn recover(&mut self, budget: &Budget) -> Result<RecoveredDocument> {
         let mark = self.path.with_extension("trying");
         // Without the mark nothing would be lost but the warning.
@@ -101,7 +101,7 @@ impl LostSession {
         self.has_failed = false;
         Ok(recovered)
     }
-    /// Whether the last version is what its file still holds, or what the drawing was made as: then nothing was lost.
+    /// Whether the last version equals its file, or the drawing as created: then nothing was lost.
     /// Reads the whole log, piece by piece, and with it what the drawing was called last.
     pub fn is_safe(&mut self) -> bool {
         let end = self.fs.open(&self.path).ok().and_then(|mut handle| log::end(&mut handle));
@@ -122,7 +122,7 @@ impl LostSession {
         handle.take(budget.unpacked_bytes).read_to_end(&mut log).map_err(io)?;
         read(&self.path, &log, budget)
     }
-    /// Deletes what the session left. Only when the user says so, or once the drawing is safe in a session of its own.
+    /// Deletes what the session left: only if the user says so, or once the drawing is safe in another session.
     pub fn discard(self) -> Result<()> {
         for extension in ["trying", "new", "log", "lock"] {
             let path = self.path.with_extension(extension);

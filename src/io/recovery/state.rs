@@ -1,5 +1,5 @@
-//! A document as a recovery log holds it: small JSON after every edit, and what is large in it once, by keys.
-//! Floor 5. The schema is the recipe's; tiles, strokes and files stand in it as keys of blobs.
+//! A document in a recovery log: small JSON after every edit, and each large part once, by key. Floor 5. The schema is
+//! that of recipes; tiles, strokes and files are replaced by keys of blobs.
 
 use super::log::{self, RecordKind};
 use crate::document::{Content, Document, Layer, Live, PixelLayer, StrokeList};
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a log holds already, by where it lies in memory; kept alive, so that no other thing takes its place.
+/// What a log already holds, by address in memory; kept alive, so that no address is reused.
 #[derive(Default)]
 pub struct LoggedParts {
     keys: HashMap<usize, (u64, LoggedPart)>,
@@ -35,7 +35,7 @@ enum LoggedPart {
 
 /// Appends what a document needs and the log does not hold yet, then the document itself.
 ///
-/// Fails, too, once it is given up; after a failure neither `known` nor what was appended is of use.
+/// It also fails when the log was given up; after a failure neither `known` nor the appended bytes are usable.
 pub fn write(
     file: &Path,
     document: &Document,
@@ -61,7 +61,7 @@ pub fn write(
     if !log::push(out, RecordKind::State, &[state.as_bytes()]) {
         return Err(Error::too_large(file, "the document's description has more than 4 GiB"));
     }
-    // What the document no longer holds may be freed; should it come back, it is written again.
+    // Parts that the document no longer has may be freed; if one comes back, it is written again.
     (known.keys, known.made) = (used, assets.into_made());
     Ok(())
 }
@@ -117,7 +117,7 @@ impl StateWriter<'_> {
         let bytes = || Ok(recipe::write_stroke(stroke).to_string().into_bytes());
         Ok(self.key(Arc::as_ptr(stroke) as usize, held, bytes)?.into())
     }
-    /// The key of a thing in memory; its bytes are written where the log does not hold them.
+    /// The key of a part in memory; its bytes are written if the log does not have them yet.
     fn key(&mut self, address: usize, held: LoggedPart, bytes: impl FnOnce() -> Result<Vec<u8>>) -> Result<u64> {
         if let Some((key, _)) = self.used.get(&address) {
             return Ok(*key);
@@ -151,9 +151,9 @@ fn encode_tile(file: &Path, at: TileAt, tile: &Arc<Tile>) -> Result<Vec<u8>> {
 
 /// The last document in a log; `None` where there is none.
 pub struct LastState<'a> {
-    /// Whose drawing it is, as it was told last.
+    /// The latest head: whose drawing it is.
     pub head: Option<Value>,
-    /// How many edits the log tells of, the first being the document as it was opened.
+    /// The number of versions in the log, the first being the document as it was opened.
     pub states: usize,
     state: Option<&'a [u8]>,
     blobs: HashMap<u64, &'a [u8]>,

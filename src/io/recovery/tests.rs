@@ -214,14 +214,14 @@ fn a_session_that_failed_once_says_so_and_garbage_keeps_nobody_from_starting() {
     assert!(folder.path().join("c.log").exists(), "nothing is deleted unasked");
     assert!(sessions(&disk(), Path::new("/no/such/folder")).is_empty());
 }
-/// Processes are known by what they hold, not by their numbers: those come again.
+/// Processes are recognised by the locks they hold, not by their ids, which are reused.
 #[test]
 fn a_process_number_that_came_again_hides_nothing() {
     let folder = tempfile::tempdir().unwrap();
     drop(RecoveryLog::start(disk(), folder.path(), &dotted(3), "one", None).unwrap());
     let paths = std::fs::read_dir(folder.path()).unwrap().flatten().map(|entry| entry.path());
     let log = paths.into_iter().find(|path| path.extension().is_some_and(|extension| extension == "log")).unwrap();
-    // The proof can fail: who asks whether the process in the name lives finds that it does, and hides the drawing.
+    // The test can fail: a check of the process id in the name finds a live process and hides the drawing.
     let number = log.file_name().unwrap().to_string_lossy().split('-').nth(1).unwrap().to_owned();
     assert_eq!(number, std::process::id().to_string());
     assert_eq!(sessions(&disk(), folder.path()).len(), 1);

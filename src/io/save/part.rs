@@ -1,5 +1,4 @@
-//! The new file while it is being written: beside its target, under a name of its own, held so that others know it is
-//! in use. Floor 5.
+//! The temporary file of a save: beside its target, under its own name, locked while it is in use. Floor 5.
 
 use crate::fs::{FileHandle, Fs};
 use std::io;
@@ -8,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 const PREFIX: &str = ".rilievo-";
 const PART: &str = "part";
-/// What the old file is called for a moment, before it becomes `name~`.
+/// The suffix of the old file for the moment before it becomes `name~`.
 pub const SPARE: &str = "old";
 
 /// `.rilievo-PROCESS-NUMBER.part`, and the handle that holds it.
@@ -28,7 +27,7 @@ impl PartFile {
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
                 made => made?,
             };
-            // A disk that cannot hold files is not swept either. One that is swept may have been so before it was held.
+            // On a disk without locks nothing is swept either. The file may have been swept before it was locked.
             let is_ours = handle.hold().unwrap_or(true);
             if is_ours && fs.found(&path)?.is_some() {
                 return Ok(Self { path, handle });
@@ -37,14 +36,14 @@ impl PartFile {
     }
 }
 
-/// Takes away what killed saves left in a folder: files of our names that no process holds. Processes are not asked for
-/// by number, for numbers come again. Whatever fails is left for the next time.
+/// Removes what killed saves left in a folder: files with our names that no process holds. Process ids are not checked,
+/// because they are reused. Failures are left for the next time.
 pub fn sweep(fs: &dyn Fs, folder: &Path) {
     for path in fs.list(folder).unwrap_or_default().into_iter().filter(|path| is_ours(path)) {
         let part = path.with_extension(PART);
         match fs.open(&part) {
             Ok(mut handle) => {
-                // Removed while it is held, so that nobody takes it for theirs.
+                // Removed while it is locked, so that no other process takes it.
                 if handle.hold().unwrap_or(false) {
                     let _ = fs.remove(&path);
                 }

@@ -153,7 +153,7 @@ fn a_power_cut_leaves_the_old_file_or_the_new_one() {
     eprintln!("{states} states after power cuts");
     assert!(states >= 20_000, "{states}");
 }
-/// The proof can fail: saving without any one of its steps is caught.
+/// The test can fail: it catches a save without any one of its steps.
 #[test]
 fn the_power_cuts_catch_a_save_that_leaves_out_a_step() {
     let write = |fs: &MemoryFs, path: &str, sync: bool| {
@@ -252,7 +252,7 @@ fn a_disk_that_gives_back_other_bytes_is_caught_before_anything_is_replaced() {
     let said = replace(&Lying(fs.clone()), Path::new(FILE), NEW, this(), &Progress::default()).unwrap_err();
     assert!(said.to_string().contains("other bytes"), "{said}");
     assert_eq!((fs.file(FILE).unwrap(), fs.names().len()), (OLD.to_vec(), 2));
-    // The proof can fail: the very same without reading back tells nothing, and the drawing is broken.
+    // The test can fail: without reading back, the same save reports success and the drawing is broken.
     let careless = Lying(disk());
     let mut handle = careless.create_new(Path::new("/d/part")).unwrap();
     handle.write_all(NEW).and_then(|()| handle.sync()).unwrap();

@@ -1,10 +1,10 @@
-//! The kinds of numbers that a TIFF's samples are: bytes, 16-bit integers, floats; and what is done with them.
+//! The number types of TIFF samples (bytes, 16-bit integers, floats) and their arithmetic.
 //! Floor 5.
 
 use crate::math::Size;
 use image::{DynamicImage, ImageBuffer};
 
-/// A number that a sample may be.
+/// A number type of samples.
 pub trait TiffSample: Copy {
     /// White for black.
     fn inverted(self) -> Self;

@@ -4,7 +4,7 @@
 use super::utf16;
 use crate::psd::cursor::ByteCursor;
 
-/// Objects within objects; more is no brush's.
+/// The deepest nesting of objects; no brush has more.
 const DEEPEST: u32 = 16;
 /// Values of one descriptor together.
 const MOST: u32 = 1 << 20;
@@ -17,7 +17,7 @@ pub enum DescriptorValue {
     Text(String),
     Object(DescriptorObject),
     List(Vec<DescriptorValue>),
-    /// Of a kind that no brush is read from.
+    /// A value of a kind that brushes do not use.
     Else,
 }
 

@@ -1,4 +1,4 @@
-//! What later versions of Photoshop say of their brushes beside the tips: names, sizes, spacings.
+//! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings.
 //! Floor 5.
 
 use super::descriptor::{self, DescriptorObject};
@@ -7,7 +7,7 @@ use crate::brush::ImportedBrush;
 use crate::paint::{Brush, Tip};
 use crate::psd::cursor::ByteCursor;
 
-/// What is switched on in a brush and not taken from it.
+/// Settings that are not imported.
 const LEFT_OUT: [(&str, &str); 7] = [
     ("useTipDynamics", "shape dynamics"),
     ("useScatter", "scattering"),

@@ -6,7 +6,7 @@ use crate::paint::dynamics::{Curve, Input, MAX_POINTS};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// The settings of a file. Those that are asked for count as carried over; the others are told of.
+/// The settings of a file. Those that are read count as imported; the others are reported.
 pub struct MyPaintSettings<'a> {
     all: &'a Map<String, Value>,
     asked: BTreeSet<&'static str>,
@@ -20,13 +20,13 @@ pub struct MyPaintSetting {
     pub inputs: Vec<(String, Vec<Vec2>)>,
 }
 
-/// A setting at its most, and the factors by which inputs lower it.
+/// A setting's maximum, and the factors by which inputs reduce it.
 pub struct DrivenSetting {
     pub most: f32,
     pub rows: Vec<(Input, Curve)>,
 }
 
-/// Settings that say nothing about the mark, or only what is this program's own business.
+/// Settings that do not affect marks, or that this program handles itself.
 const OF_NO_MATTER: [&str; 16] = [
     "anti_aliasing",
     "color_h",
@@ -52,7 +52,7 @@ struct CurvePiece {
     x: [f32; 2],
 }
 
-/// Straight pieces by which a bent curve is followed.
+/// The number of straight pieces that approximate a curve.
 const STEPS: usize = 12;
 
 impl<'a> MyPaintSettings<'a> {
@@ -67,7 +67,7 @@ impl<'a> MyPaintSettings<'a> {
             self.notes.push(note.to_owned());
         }
     }
-    /// A setting as the file has it; damaged numbers are as good as none.
+    /// A setting as in the file; damaged numbers are ignored.
     pub fn setting(&mut self, name: &'static str, default: f32) -> MyPaintSetting {
         self.asked.insert(name);
         let value = self.all.get(name);
@@ -78,13 +78,13 @@ impl<'a> MyPaintSettings<'a> {
             let points = points.filter_map(|p| Some(vec2(number(p.get(0)?)?, number(p.get(1)?)?)));
             let mut points: Vec<Vec2> = points.collect();
             points.sort_by(|a, b| a.x.total_cmp(&b.x));
-            // A curve that adds nothing is none.
+            // A curve that adds nothing is dropped.
             points.iter().any(|p| p.y != 0.0).then_some(points)
         };
         let inputs = inputs.into_iter().flatten().filter_map(|(input, points)| Some((input.clone(), curve(points)?)));
         MyPaintSetting { base, inputs: inputs.collect() }
     }
-    /// A setting as a value at its most and factors. `value`: the setting's meaning, rising with it, not negative.
+    /// A setting as a maximum and factors. `value`: the meaning of the setting, increasing and not negative.
     pub fn driven(&mut self, name: &'static str, default: f32, value: impl Fn(f32) -> f32) -> DrivenSetting {
         let MyPaintSetting { base, inputs } = self.setting(name, default);
         let most_of = |curve: &[Vec2]| curve.iter().map(|p| p.y).fold(f32::NEG_INFINITY, f32::max);
@@ -109,7 +109,7 @@ impl<'a> MyPaintSettings<'a> {
         let curve = sampled(&pieces, points, |x| (most - at(points, x)) / 360.0)?;
         Some((ours, -most, curve))
     }
-    /// Which of our inputs is one of theirs, and how it runs.
+    /// Maps an input of MyPaint to one of ours.
     fn way(&mut self, input: &str) -> Option<(Input, Vec<CurvePiece>)> {
         let whole = |x: [f32; 2]| vec![CurvePiece { t: [0.0, 1.0], x }];
         Some(match input {
@@ -134,7 +134,7 @@ impl<'a> MyPaintSettings<'a> {
             _ => return None,
         })
     }
-    /// What was noted, and the settings that nothing asked for though they do something.
+    /// The notes, and the settings that were not read although they have an effect.
     pub fn into_notes(mut self) -> Vec<String> {
         let all = self.all;
         for (name, value) in all {
@@ -150,7 +150,7 @@ impl<'a> MyPaintSettings<'a> {
     }
 }
 
-/// The base value at which a setting does nothing, where that is not 0.
+/// The base value at which a setting has no effect, if it is not 0.
 fn idle(name: &str) -> f32 {
     match name {
         "smudge_length" => 0.5,

@@ -1,4 +1,4 @@
-//! `stack.xml` read, as strictly as its layers need and no more: programs differ in what they write beside them.
+//! Reads `stack.xml`, only as strictly as the layers need: programs add different things of their own.
 //! Floor 5.
 
 use super::KIND;
@@ -12,10 +12,10 @@ use quick_xml::{Reader, XmlVersion};
 use std::borrow::Cow;
 use std::path::Path;
 
-/// What Krita and Drawpile call a layer that keeps to what is painted beneath it.
+/// The operation of Krita and Drawpile for a layer that keeps to the paint beneath it.
 const ATOP: &str = "svg:src-atop";
 
-/// What a `stack.xml` says.
+/// The contents of a `stack.xml`.
 pub struct StackXml {
     /// `None` where it does not say.
     pub size: Option<Size>,
@@ -30,7 +30,7 @@ pub struct StackElement {
     pub shows: ElementContent,
     /// The kind of live layer that this is the picture of; empty for none.
     pub kind: String,
-    /// A composite operation that has no equal here.
+    /// A composite operation that has no equivalent here.
     pub unknown_op: Option<String>,
     /// Seen only where everything beneath it in its stack is.
     pub is_atop: bool,
@@ -49,7 +49,7 @@ pub enum ElementContent {
     },
 }
 
-/// Reads a `stack.xml`. Elements and attributes beyond OpenRaster's are passed by.
+/// Reads a `stack.xml`. Elements and attributes beyond OpenRaster's are ignored.
 pub fn read(file: &Path, text: &[u8], budget: &Budget) -> Result<StackXml> {
     let text = utf8(text).ok_or_else(|| Error::decode(file, "stack.xml is neither UTF-8 nor UTF-16"))?;
     let mut parser = StackParser { file, budget, xml: Reader::from_str(&text), left: budget.layers };
@@ -150,7 +150,7 @@ impl<'a> StackParser<'a> {
         let mut all = XmlAttributes::default();
         for attribute in element.attributes() {
             let attribute = attribute.map_err(|e| self.refused(format!("an attribute is damaged ({e})")))?;
-            // Entities of the file's own are left as they stand: nothing here may grow, nor lead to other files.
+            // Custom entities are not expanded: they could grow without bound or lead to other files.
             let value = attribute.normalized_value(XmlVersion::Implicit1_0);
             let value = value.map_or_else(|_| attribute.value.as_ref().to_owned(), Cow::into_owned);
             all.0.push((attribute.key.as_ref().to_owned(), value));
