@@ -1,5 +1,5 @@
-//! The system's clipboard: pictures in and out, and texts for the fields that are typed in. Floor 7. The toolkit's own
-//! needs more than this to speak to the system, so its keys and texts come and go through here.
+//! The system's clipboard: pictures, and texts for text fields. Floor 7. The toolkit's own clipboard is not built in,
+//! so its keys and texts are handled here.
 
 use crate::math::Size;
 use crate::raster::Picture;
@@ -9,7 +9,7 @@ use arboard::ImageData;
 use eframe::egui::{Context, Event, Key, Modifiers, OutputCommand};
 use std::path::PathBuf;
 
-/// What was found in the clipboard to be pasted.
+/// The content of the clipboard to paste.
 pub enum PastedContent {
     Picture(Picture),
     /// Copied in a file manager.
@@ -20,7 +20,7 @@ fn open() -> Result<Clipboard> {
     Clipboard::new().map_err(|error| Error::unsupported("clipboard", error))
 }
 
-/// The picture in the clipboard, or the files; fails where there are none. Takes as long as the program that owns them.
+/// The picture or the files in the clipboard; fails if there are none. It takes as long as the program that owns them.
 pub fn pasted() -> Result<PastedContent> {
     let mut clipboard = open()?;
     if let Ok(image) = clipboard.get_image() {
@@ -34,7 +34,7 @@ pub fn pasted() -> Result<PastedContent> {
     files.map(PastedContent::Files).ok_or_else(|| Error::unsupported("clipboard", "it holds no picture"))
 }
 
-/// Puts a picture of straight RGBA into the clipboard. It stays there as long as what is returned is kept.
+/// Puts a picture of straight RGBA into the clipboard. It stays there as long as the returned value is kept.
 pub fn put(size: Size, rgba: &[u8]) -> Result<Clipboard> {
     let mut clipboard = open()?;
     let image = ImageData { width: size.width as usize, height: size.height as usize, bytes: rgba.into() };
@@ -42,7 +42,7 @@ pub fn put(size: Size, rgba: &[u8]) -> Result<Clipboard> {
     Ok(clipboard)
 }
 
-/// While a text is typed: the keys that cut, copy and paste become what they mean.
+/// In text fields: turns the keys for cut, copy and paste into their events.
 pub fn hear(ctx: &Context, events: &mut [Event]) {
     if !ctx.egui_wants_keyboard_input() {
         return;

@@ -1,4 +1,4 @@
-//! The window's event loop, in which the tablet hears of the pointer before the window does.
+//! The window's event loop: the tablet receives pointer events before the window does.
 //! Floor 7.
 
 use super::pen::{self, PenDevices, SharedTablet};
@@ -15,7 +15,7 @@ use winit::window::WindowId;
 #[cfg(all(unix, not(target_os = "macos")))]
 const PREFERS_WAYLAND: &str = "RILIEVO_WAYLAND";
 
-/// Runs the window until it is closed; the tablet is told of every motion first.
+/// Runs the window until it is closed; the tablet receives every motion first.
 ///
 /// Fails where there is no display, or where the window cannot be opened on it.
 pub fn run(options: eframe::NativeOptions, tablet: SharedTablet, start: eframe::AppCreator<'_>) -> eframe::Result {

@@ -1,4 +1,4 @@
-//! Asking for a file: the system's own dialog, or one of the window where the system has none.
+//! File dialogs: the system's own, or the window's if the system has none.
 //! Floor 7.
 
 use super::jobs::{JobKind, JobResult, Jobs};
@@ -9,7 +9,7 @@ use crate::session::storage::{DOCUMENTS, PICTURES};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// What the file is asked for.
+/// What the file is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePurpose {
     Open,
@@ -18,7 +18,7 @@ pub enum FilePurpose {
     NormalMap,
     DepthMap,
     MaskMap,
-    /// A picture that the selected layer is made of.
+    /// A picture of the selected layer.
     Part(PicturePart),
     Save,
     Export,
@@ -41,7 +41,7 @@ impl FilePurpose {
     pub fn is_saving(self) -> bool {
         matches!(self, FilePurpose::Save | FilePurpose::Export)
     }
-    /// The endings of files to choose from, each with what they are called together.
+    /// The extensions of files to choose from, with the name of each group.
     pub fn filters(self) -> Vec<(&'static str, Vec<&'static str>)> {
         let pictures = || PICTURES.to_vec();
         match self {
@@ -66,10 +66,11 @@ impl FilePurpose {
     }
 }
 
-/// A dialog that comes back this soon without an answer was never shown: there is no portal. Nobody cancels as fast.
+/// A dialog that returns this soon without an answer was never shown, because there is no portal. Nobody cancels that
+/// fast.
 const NEVER_SHOWN: Duration = Duration::from_millis(500);
 
-/// What the system's dialog came to.
+/// The result of the system's dialog.
 pub enum FileAnswer {
     File(PathBuf),
     Cancelled,
@@ -78,7 +79,7 @@ pub enum FileAnswer {
 }
 
 /// Asks with the system's dialog, on another thread. [`JobResult::Chosen`] with `None` means that there is none, or
-/// that the window is to ask `by_itself`.
+/// that the window should show its own (`by_itself`).
 pub fn request(jobs: &mut Jobs, purpose: FilePurpose, name: &str, by_itself: bool) {
     let name = name.to_owned();
     jobs.start(purpose.title().into(), JobKind::Asking, move |_| match answer(purpose, &name, by_itself) {
@@ -93,7 +94,7 @@ fn answer(purpose: FilePurpose, name: &str, by_itself: bool) -> FileAnswer {
 }
 
 fn system_dialog(purpose: FilePurpose, name: &str) -> FileAnswer {
-    // Elsewhere than on Windows and macOS the dialog is another program's, reached over the session's bus.
+    // Except on Windows and macOS, the dialog is another program's, reached over the session bus.
     let is_own = cfg!(any(target_os = "windows", target_os = "macos"));
     if !is_own && std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_none() {
         return FileAnswer::Nowhere;

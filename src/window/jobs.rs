@@ -1,5 +1,5 @@
-//! Long work, each piece on a thread of its own with a bar of progress and a way to give it up, so that the window
-//! never waits. Floor 7.
+//! Long work: each job runs on its own thread, with a progress bar and a cancel button, so that the window never waits.
+//! Floor 7.
 
 use crate::clipboard::{Clipboard, PastedContent};
 use crate::document::{Document, LayerId, Progress, SurfaceSource};
@@ -21,43 +21,43 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// What a job came to; done by the window when it arrives.
+/// The result of a job; the window handles it when it arrives.
 pub enum JobResult {
-    /// A document, of this file if it is of one.
+    /// A document, with its file if it has one.
     Opened(Option<PathBuf>, Box<Result<OpenedTab>>),
-    /// Maps of an object: their conventions are to be seen first.
+    /// Maps of an object: the import dialog shows their conventions first.
     AreMaps(Box<SurfaceSource>),
-    /// The file is to be opened as a document of its own.
+    /// The file is opened as a document of its own.
     IsDocument(PathBuf),
-    /// The file is to be read, to become an image layer.
+    /// The file is read to become an image layer.
     IsPicture(PathBuf, PinPosition),
-    /// A job came to several things.
+    /// Several results.
     Several(Vec<JobResult>),
-    /// It went well, and whoever waits is told so.
+    /// It succeeded; the message is shown.
     Said(String),
     /// Maps were read, for the import dialog.
     Read(Box<Result<maps::ImportedSurface>>),
-    /// Drawings that an accident left.
+    /// Drawings that can be recovered.
     Lost(Vec<recovery::LostSession>),
-    /// One of them was brought back.
+    /// One of them was recovered.
     Recovered(Box<Result<RecoveredTab>>),
     /// A picture was read from a file, to become an image layer.
     Pictured(PathBuf, String, Picture, PinPosition),
     /// A picture was read that a layer of a tab is to be made of.
     Part(Box<PartResult>),
-    /// The document of a tab was saved; `None` if that was given up.
+    /// The document of a tab was saved; `None` if it was cancelled.
     Saved(Box<SaveResult>),
     /// An edit of the document of a tab that took long.
     Edited(Box<EditResult>),
-    /// The finished picture is in the clipboard, as long as this is kept.
+    /// The flattened picture is in the clipboard as long as this is kept.
     Copied(Clipboard),
     Pasted(PastedContent),
-    /// The user's own brushes, and what cannot be read of them.
+    /// The user's own brushes, and the errors of unreadable ones.
     Brushes(Vec<Preset>, Vec<String>),
-    /// Nothing is left to be done, as when a job was given up.
+    /// Nothing to do, as after a cancelled job.
     Nothing,
     Failed(Error),
-    /// A file dialog was answered; `None` where the system has no dialog.
+    /// The answer of a file dialog; `None` if the system has no dialog.
     Chosen(FilePurpose, Option<PathBuf>),
 }
 
@@ -97,21 +97,21 @@ pub struct EditResult {
     pub edit: Edit,
 }
 
-/// What can be seen and done while a job lasts.
+/// What the user can do while a job runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JobKind {
-    /// It can be given up.
+    /// It can be cancelled.
     Working,
-    /// It edits the document in front, so nothing else may meanwhile. It can be given up.
+    /// It edits the document in front, so no other edits are possible meanwhile. It can be cancelled.
     Editing,
-    /// Another program is at work: a dialog of the system.
+    /// It waits for another program: a dialog of the system.
     Asking,
 }
 
-/// A job under way.
+/// A running job.
 pub struct RunningJob {
     key: usize,
-    /// What it does, for the status bar.
+    /// Its description for the status bar.
     pub name: String,
     pub progress: Arc<Progress>,
     pub kind: JobKind,
@@ -119,18 +119,18 @@ pub struct RunningJob {
 }
 
 impl RunningJob {
-    /// How far it has come, `[0, 1]`; `None` while that cannot be told.
+    /// Its progress, `[0, 1]`; `None` while it is unknown.
     pub fn share(&self) -> Option<f32> {
         let (done, total) = self.progress.read();
         (total > 0).then(|| done as f32 / total as f32)
     }
-    /// It has lasted long enough to be worth a word.
+    /// Whether it has run long enough to be shown.
     pub fn is_long(&self) -> bool {
         self.since.elapsed() > Duration::from_millis(250)
     }
 }
 
-/// The jobs under way.
+/// The running jobs.
 pub struct Jobs {
     sender: Sender<(usize, JobResult)>,
     done: Receiver<(usize, JobResult)>,
@@ -145,7 +145,7 @@ impl Jobs {
         let (sender, done) = channel();
         Self { sender, done, ctx: ctx.clone(), next: 0, under_way: Vec::new(), said: None }
     }
-    /// Runs a job; `name` is shown while it lasts.
+    /// Runs a job; `name` is shown meanwhile.
     pub fn start(&mut self, name: String, kind: JobKind, work: impl FnOnce(&Progress) -> JobResult + Send + 'static) {
         let key = self.next;
         self.next += 1;
@@ -198,16 +198,16 @@ impl Jobs {
             Err(error) => JobResult::Failed(error),
         });
     }
-    /// Tells that something went well, for a while.
+    /// Shows a success message for a while.
     pub fn say(&mut self, sentence: String) {
         self.said = Some((sentence, Instant::now()));
     }
-    /// What went well a moment ago.
+    /// The current success message.
     pub fn said(&self) -> Option<&str> {
         let (sentence, _) = self.said.as_ref().filter(|(_, since)| since.elapsed() < TOLD)?;
         Some(sentence)
     }
-    /// What was finished since the last call. What was given up comes to nothing, unless it was done already.
+    /// The results since the last call. Cancelled jobs have none, unless they were done already.
     pub fn finished(&mut self) -> Vec<JobResult> {
         let mut finished = Vec::new();
         for (key, done) in self.done.try_iter() {
@@ -219,21 +219,21 @@ impl Jobs {
         }
         finished
     }
-    /// The job that nothing else may be done beside.
+    /// The job that blocks other edits.
     pub fn editing(&self) -> Option<&RunningJob> {
         self.under_way.iter().find(|job| job.kind == JobKind::Editing)
     }
 }
 
-/// How long a sentence about something that went well stays.
+/// How long a success message stays.
 const TOLD: Duration = Duration::from_secs(8);
 
-/// A file's own name, for a line in which a whole path has no room.
+/// The name of a file, for lines without room for the path.
 pub fn short(file: &Path) -> String {
     file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Starts a thread. Fails where the system starts none, with a sentence that names what it was for.
+/// Starts a thread. Fails if the system cannot start one, with an error that names the purpose.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<()> {
     let started = std::thread::Builder::new().name("rilievo".into()).spawn(work);
     started.map(drop).map_err(|error| Error::io(name, error))

@@ -1,5 +1,5 @@
-//! Which keys do what: the commands' and tools' own, and those the user chose instead.
-//! Floor 7. Listening to them is `keys`'.
+//! The keymap: the default keys of commands and tools, and those the user chose instead. Floor 7. `keys` handles key
+//! presses.
 
 use super::commands::{self, MenuCommand};
 use crate::tools::{ToolKind, ToolRow};
@@ -7,13 +7,13 @@ use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// The keys chosen by the user, by the name of the command or the label of the tool; all others keep their own.
+/// The keys chosen by the user, by the name of the command or the label of the tool; all others keep their defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Keymap {
     chosen: BTreeMap<String, Vec<KeyboardShortcut>>,
 }
 
-/// What keys can be given to.
+/// A command or tool that can have keys.
 #[derive(Clone, Copy)]
 pub enum KeyTarget {
     Command(&'static MenuCommand),
@@ -39,7 +39,7 @@ impl KeyTarget {
             KeyTarget::Tool(row) => row.hint,
         }
     }
-    /// The keys it comes with.
+    /// Its default keys.
     fn own(self) -> Vec<KeyboardShortcut> {
         match self {
             KeyTarget::Command(command) => command.keys.to_vec(),
@@ -62,7 +62,7 @@ impl Keymap {
     pub fn is_chosen(&self, keyed: KeyTarget) -> bool {
         self.chosen.contains_key(keyed.name())
     }
-    /// Gives keys; those it comes with need not be remembered.
+    /// Sets the keys; default ones are not stored.
     pub fn set(&mut self, keyed: KeyTarget, keys: Vec<KeyboardShortcut>) {
         if keys == keyed.own() {
             self.chosen.remove(keyed.name());
@@ -77,7 +77,7 @@ impl Keymap {
     pub fn conflict(&self, keys: KeyboardShortcut, except: KeyTarget) -> Option<KeyTarget> {
         KeyTarget::all().find(|other| other.name() != except.name() && self.of(*other).contains(&keys))
     }
-    /// Takes a key from whatever has it, and gives it.
+    /// Takes a key from its present owner, and assigns it.
     pub fn take(&mut self, keys: KeyboardShortcut, to: KeyTarget) {
         while let Some(other) = self.conflict(keys, to) {
             let left = self.of(other).into_iter().filter(|known| *known != keys).collect();
@@ -93,7 +93,7 @@ impl Keymap {
         let text = |keys: &Vec<KeyboardShortcut>| keys.iter().map(|&keys| Value::from(written(keys))).collect();
         Value::Object(self.chosen.iter().map(|(name, keys)| (name.clone(), Value::Array(text(keys)))).collect())
     }
-    /// What is not understood is left out.
+    /// Unknown entries are left out.
     pub fn from_json(value: &Map<String, Value>) -> Self {
         let known = |name: &str| KeyTarget::all().any(|keyed| keyed.name() == name);
         let keys = |list: &Value| -> Option<Vec<KeyboardShortcut>> {
@@ -104,10 +104,10 @@ impl Keymap {
     }
 }
 
-/// A key as people read it: “Ctrl+[”, in the system's words for what is held.
+/// A key for display: “Ctrl+[”, with the system's names of modifiers.
 pub fn shown(ctx: &Context, keys: KeyboardShortcut) -> String {
     let (text, key) = (ctx.format_shortcut(&keys), keys.logical_key);
-    // The toolkit writes “OpenBracket”; its arrows are in no font that everyone has.
+    // The toolkit writes “OpenBracket”; its arrows are not in every font.
     match text.strip_suffix(key.name()) {
         Some(held) if key.symbol_or_name().is_ascii() => format!("{held}{}", key.symbol_or_name()),
         _ => text,

@@ -1,5 +1,5 @@
 //! The keyboard: commands and tools by their keys.
-//! Floor 7. Which keys those are is `keymap`'s.
+//! Floor 7. The keys are in `keymap`.
 
 use super::keymap::{KeyTarget, Keymap};
 use super::requests::UiRequests;
@@ -7,7 +7,7 @@ use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
 use eframe::egui::{Context, Event, KeyboardShortcut, Modifiers};
 
-/// Pushes what the keys of this frame ask for. Nothing while a text is being typed.
+/// Requests what the keys of this frame mean; nothing while a text is being typed.
 pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
     if ctx.egui_wants_keyboard_input() || session.is_drawing() {
         return;

@@ -1,5 +1,5 @@
-//! Floor 7: the window. Panels are functions that see the session and ask for actions; once a frame the actions are
-//! done. Nothing here knows pixels or equations.
+//! Floor 7: the window. Panels are functions that read the session and request actions; the actions are performed once
+//! per frame. Pixels and equations are not here.
 
 mod canvas;
 mod clipboard;
@@ -27,7 +27,7 @@ mod window;
 
 pub use window::MainWindow;
 
-// The floors beneath, under the names that they have there.
+// The floors beneath, under their own names.
 use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
 use rilievo_io as io;
 use rilievo_program::{session, tools};
@@ -47,7 +47,7 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         .with_inner_size([1280.0, 820.0])
         .with_min_inner_size([720.0, 480.0])
         .with_drag_and_drop(true);
-    // Its keys come as keys: see `clipboard`.
+    // Clipboard shortcuts arrive as keys: see `clipboard`.
     let options = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
     let (tablet, is_open) = (pen::SharedTablet::default(), Rc::new(Cell::new(false)));
     let (pen, opened) = (tablet.clone(), is_open.clone());
@@ -67,11 +67,11 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
     };
     let wrong = match event_loop::run(options, tablet, Box::new(start)) {
         Ok(()) if is_open.get() => return Ok(()),
-        // The windowing library keeps what was wrong to itself.
+        // The windowing library does not report the reason.
         Ok(()) => "the display has no OpenGL to draw with".to_owned(),
         Err(error) => error.to_string(),
     };
-    // Only what is wrong, not where the windowing library found it.
+    // Only the reason, without the library's context.
     let wrong = wrong.rsplit(": ").next().unwrap_or(&wrong).trim_end_matches(['.', ')']);
     let told = format!("no window can be opened here ({wrong}); “rilievo render” paints without one");
     Err(Error::unsupported("display", told))

@@ -1,9 +1,8 @@
-//! How much memory the program holds, for the status bar.
-//! Floor 7. Asked of the system; where it tells nothing, nothing is shown.
+//! The program's memory use, for the status bar. Floor 7. The system reports it; nothing is shown if it does not.
 
 use std::time::{Duration, Instant};
 
-/// Between two looks.
+/// The time between two measurements.
 const PAUSE: Duration = Duration::from_secs(1);
 
 #[derive(Default)]
@@ -12,7 +11,7 @@ pub struct MemoryMeter {
 }
 
 impl MemoryMeter {
-    /// Bytes held a moment ago.
+    /// Bytes held at the last measurement.
     pub fn bytes(&mut self) -> Option<u64> {
         match self.sampled {
             Some((since, bytes)) if since.elapsed() < PAUSE => bytes,
@@ -32,7 +31,7 @@ fn resident(status: &str) -> Option<u64> {
     kib.checked_mul(1024)
 }
 
-/// Bytes as people read them: “312 MB”, “1.4 GB”.
+/// Bytes for display: “312 MB”, “1.4 GB”.
 pub fn spoken(bytes: u64) -> String {
     let mb = bytes as f64 / 1e6;
     if mb < 1000.0 { format!("{mb:.0} MB") } else { format!("{:.1} GB", mb / 1000.0) }

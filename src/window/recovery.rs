@@ -1,5 +1,5 @@
-//! Recovery in the window: the open documents have logs, and what an accident left is offered at the start.
-//! Floor 7. Logs are `session::autosave`'s; everything that reads one happens on another thread.
+//! Recovery in the window: keeps logs of the open documents, and offers lost drawings at the start. Floor 7. The logs
+//! are in `session::autosave`; they are read on another thread.
 
 use super::MainWindow;
 use super::dialogs::{Dialog, recovery};
@@ -13,12 +13,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 impl MainWindow {
-    /// Keeps recovery logs in a folder, and offers what accidents left there.
+    /// Keeps recovery logs in a folder, and offers lost drawings from it.
     pub fn keep_recovery_in(&mut self, folder: PathBuf) {
         let autosave = Autosave::new(folder);
         let lost = autosave.lost();
         self.session.autosave = Some(autosave);
-        // Whatever is in that folder, the window opens.
+        // The window opens, whatever is in that folder.
         let look = move || catch_unwind(AssertUnwindSafe(|| lost.list())).unwrap_or_default();
         self.jobs.start("Looking for unsaved drawings".into(), JobKind::Working, move |_: &Progress| {
             JobResult::Lost(look())

@@ -1,7 +1,7 @@
-//! The painter: a thread that flattens documents tile by tile, so that the window never waits for pixels. It compares
-//! what it shows with what it is given and paints only tiles that differ, those in sight first. While something is
-//! dragged and whole pixels would take longer than a frame, it paints a smaller picture instead, and the whole one as
-//! soon as the hand rests. Floor 7. Pixels are `document::flatten`'s; what is left to paint of one picture is `pass`'s.
+//! The render thread: flattens documents tile by tile, so that the window never waits for pixels. It compares the shown
+//! document with the requested one and paints only tiles that differ, visible ones first. While something is dragged
+//! and whole pixels would take longer than a frame, it paints a smaller picture instead, and the full one as soon as
+//! the hand rests. Floor 7. Pixels come from `document::flatten`; `pass` tracks what is left to paint of one picture.
 
 mod pass;
 
@@ -13,14 +13,14 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What is to be shown.
+/// A request: what to show.
 pub struct RenderRequest {
-    /// Another number is another picture: nothing of the last one holds.
+    /// A new number is a new picture: nothing of the last one is valid.
     pub picture: u64,
     pub document: Document,
-    /// The canvas pixels in sight.
+    /// The visible canvas pixels.
     pub visible: Rect,
-    /// The hand holds a slider or a handle: a smaller picture soon is worth more than a whole one late.
+    /// Whether a slider or a handle is being dragged: a smaller picture soon is better than a full one late.
     pub is_dragged: bool,
 }
 
@@ -32,9 +32,9 @@ pub struct RenderedTileBatch {
     /// Of the picture that the tiles are cut from.
     pub size: Size,
     pub tiles: Vec<(TileAt, Option<Arc<Tile>>)>,
-    /// Nothing in sight is left to paint.
+    /// Whether nothing visible is left to paint.
     pub is_settled: bool,
-    /// Since the document that these tiles belong to was taken up.
+    /// The time since work on this document began.
     pub took: Duration,
 }
 
@@ -45,29 +45,30 @@ struct SharedRequest {
     closed: Mutex<bool>,
 }
 
-/// The thread's handle; it ends with it.
+/// The handle of the thread, which ends with it.
 pub struct RenderThread {
     shared: Arc<SharedRequest>,
     painted: Receiver<RenderedTileBatch>,
 }
 
-/// Tiles painted between two looks at whether something newer is wanted.
+/// Tiles painted between two checks for a newer request.
 const BATCH: usize = 48;
-/// The same while something is dragged: a slow redraw is to be noticed soon.
+/// The same during a drag, so that a slow redraw is noticed soon.
 const FEW: usize = 12;
-/// A pass over what is in sight may take so long before something newer cuts in, so that a drag shows whole pictures.
+/// A pass over the visible tiles may take this long before a newer request interrupts it, so that a drag shows complete
+/// pictures.
 const PASS: Duration = Duration::from_millis(150);
-/// A redraw during a drag that takes no longer is painted in whole pixels.
+/// A redraw during a drag that takes no longer than this is painted at full resolution.
 const FRAME: Duration = Duration::from_millis(30);
-/// The hand rests when nothing newer came for so long: then the whole picture is painted.
+/// The hand rests if no request came for this long: then the full picture is painted.
 const REST: Duration = Duration::from_millis(180);
-/// Nothing was wanted for so long: time to get ready for the next drag.
+/// After this long without a request, the thread prepares for the next drag.
 const PAUSE: Duration = Duration::from_millis(600);
 /// Canvas pixels to a pixel of the smallest picture.
 const COARSEST: u32 = 8;
 
 impl RenderThread {
-    /// `done` is called on the painter's thread after each batch. Fails where the system starts no thread.
+    /// `done` is called on the render thread after each batch. Fails if the system cannot start a thread.
     pub fn new(done: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let shared = Arc::new(SharedRequest::default());
         let (sender, painted) = channel();
@@ -75,7 +76,7 @@ impl RenderThread {
         std::thread::Builder::new().name("painter".into()).spawn(move || work(&for_thread, &sender, &done))?;
         Ok(Self { shared, painted })
     }
-    /// Asks for a document; the last one asked for counts.
+    /// Requests a document; only the last request counts.
     pub fn want(&self, wanted: RenderRequest) {
         *lock(&self.shared.wanted) = Some(wanted);
         self.shared.wake.notify_one();
@@ -97,17 +98,17 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the thread works on.
+/// The current work of the thread.
 #[derive(Default)]
 struct RenderWork {
     wanted: Option<RenderRequest>,
     whole: RenderPass,
     draft: Option<DraftRender>,
-    /// The drag is shown by the draft.
+    /// Whether the drag is shown by the draft.
     is_drafting: bool,
-    /// The hand rested on this document: it is painted whole, however long that takes.
+    /// Whether the hand rests: then the document is painted in full, however long that takes.
     is_resting: bool,
-    /// All of this document is small already, ready for a drag.
+    /// Whether the reduced document is ready for a drag.
     is_prepared: bool,
 }
 

@@ -1,6 +1,5 @@
-//! What the window remembers from one run to the next: recent files, where panels stand, the theme, keys. A small JSON
-//! file in the user's folder for settings; one that is broken is told of and never keeps the program from starting.
-//! Floor 7. Replacing the file is `io::save`'s.
+//! The window's settings: recent files, panel layout, theme, keys. They are a small JSON file in the user's folder for
+//! settings; a broken one is reported and never keeps the program from starting. Floor 7. `io::save` replaces the file.
 
 use super::jobs;
 use super::keymap::Keymap;
@@ -13,33 +12,33 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Files remembered.
+/// The number of recent files.
 const RECENT: usize = 12;
-/// A settings file is never larger; what is, is none.
+/// The greatest size of a settings file; larger files are ignored.
 const LARGEST_BYTES: u64 = 1 << 20;
-/// Between two looks at whether something changed.
+/// The time between two checks for changes.
 const PAUSE: Duration = Duration::from_secs(2);
 
-/// Everything that is remembered.
+/// All settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Newest first.
     pub recent: Vec<PathBuf>,
     pub is_light: bool,
-    /// How large the interface is, if that was chosen.
+    /// The scale of the interface, if it was chosen.
     pub scale: Option<f32>,
     pub layout: PanelLayout,
     pub keymap: Keymap,
-    /// The three steps of a first start were seen to the end, or put away.
+    /// Whether the three hints of the first start were completed or dismissed.
     pub is_hint_done: bool,
 }
 
-/// Where the panels stand.
+/// The layout of the panels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanelLayout {
     pub side: PanelSide,
     pub is_hidden: bool,
-    /// Which panel is in front above the layers.
+    /// The panel in front above the layers.
     pub front: PanelKind,
     /// Panels in windows of their own.
     pub apart: Vec<PanelKind>,
@@ -93,7 +92,7 @@ impl Settings {
             "keys": self.keymap.to_json(),
         })
     }
-    /// What is not understood stays as it comes with the program.
+    /// Unknown values keep their defaults.
     fn from_json(value: &Map<String, Value>) -> Self {
         let text = |value: &Value| value.as_str().map(str::to_owned);
         let texts = |value: Option<&Value>| -> Vec<String> {
@@ -140,21 +139,21 @@ impl Settings {
     }
 }
 
-/// Where settings stand: `rilievo/settings.json` in the user's folder for them; `None` where the system names none.
+/// The settings file: `rilievo/settings.json` in the user's folder for them; `None` if the system has none.
 pub fn file() -> Option<PathBuf> {
     use etcetera::BaseStrategy;
     let base = etcetera::choose_base_strategy().ok()?;
     Some(base.config_dir().join("rilievo").join("settings.json"))
 }
 
-/// Where the user's own brushes lie: `rilievo/brushes` in the user's folder for data.
+/// The folder of the user's own brushes: `rilievo/brushes` in the user's folder for data.
 pub fn brushes() -> Option<PathBuf> {
     use etcetera::BaseStrategy;
     let base = etcetera::choose_base_strategy().ok()?;
     Some(base.data_dir().join("rilievo").join("brushes"))
 }
 
-/// Keeps the file as the settings are.
+/// Keeps the file up to date.
 pub struct SettingsFile {
     file: Option<PathBuf>,
     written: Settings,
@@ -162,7 +161,7 @@ pub struct SettingsFile {
 }
 
 impl SettingsFile {
-    /// The settings of a file and their keeper; without one nothing is remembered.
+    /// The settings of a file and the value that keeps it up to date; without a file nothing is stored.
     pub fn new(file: Option<PathBuf>) -> (Settings, Self, Option<String>) {
         let read = file.as_deref().map_or_else(|| Ok(Settings::default()), Settings::read);
         let (settings, trouble) = match read {
@@ -183,7 +182,7 @@ impl SettingsFile {
         let Some(file) = self.file.clone().filter(|_| self.written != *settings) else { return };
         self.written = settings.clone();
         let settings = settings.clone();
-        // That settings are not kept is no reason to disturb who paints; leaving tells it.
+        // A failure does not disturb painting; it is reported on leaving.
         let _ = jobs::spawn("settings", move || drop(settings.write(&file)));
     }
     /// Writes what changed, now.

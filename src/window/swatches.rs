@@ -1,5 +1,5 @@
-//! The pictures of the brushes: each painted once, on a thread of its own, when its place in the list is first seen.
-//! Floor 7. What is painted is `session::swatch`'s.
+//! The pictures of the brushes: each is painted once, on another thread, when its row is first visible. Floor 7.
+//! `session::swatch` paints them.
 
 use super::jobs;
 use crate::Error;
@@ -15,7 +15,7 @@ pub struct Swatches {
     thread: Option<SwatchThread>,
     requested: HashSet<String>,
     made: HashMap<String, TextureHandle>,
-    /// What cannot be done here, to be told once.
+    /// Errors to report once.
     pub trouble: Option<Error>,
 }
 
@@ -40,7 +40,7 @@ impl Swatches {
             self.made.insert(key.clone(), ctx.load_texture(key, image, TextureOptions::LINEAR));
         }
         if self.requested.insert(preset.key.clone()) {
-            // A painter that is gone paints nothing.
+            // If the thread has ended, nothing is painted.
             let _ = thread.wanted.send(preset.clone());
         }
         self.made.get(&preset.key).map(TextureHandle::id)

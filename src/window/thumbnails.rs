@@ -14,19 +14,19 @@ use std::sync::{Arc, Weak};
 /// The longer side of a thumbnail, px.
 const SIDE: u32 = 64;
 
-/// A layer to be painted small.
+/// A request for a thumbnail.
 struct ThumbnailOrder {
     layer: Arc<Layer>,
     document: Document,
 }
 
-/// A layer, painted small.
+/// A finished thumbnail.
 struct Thumbnail {
     id: LayerId,
     image: ColorImage,
 }
 
-/// The thumbnails there are, and the thread that makes them.
+/// The finished thumbnails, and the thread that makes them.
 pub struct Thumbnails {
     orders: Sender<ThumbnailOrder>,
     done: Receiver<Thumbnail>,
@@ -35,7 +35,7 @@ pub struct Thumbnails {
     ordered: HashMap<LayerId, Weak<Layer>>,
     /// Of masks that are pictures, each with the one it shows.
     masks: HashMap<LayerId, (Weak<Plane<u8>>, bool, TextureHandle)>,
-    /// What cannot be done here, to be told once.
+    /// Errors to report once.
     pub trouble: Option<Error>,
 }
 
@@ -70,7 +70,7 @@ impl Thumbnails {
             self.made.insert(id, texture);
         }
     }
-    /// The thumbnail of a layer, of its last version as soon as that is made. Adjustments have none.
+    /// The thumbnail of a layer, updated to the latest version as soon as possible. Adjustments have none.
     pub fn of(&mut self, _ctx: &egui::Context, document: &Document, layer: &Arc<Layer>) -> Option<(TextureId, Vec2)> {
         if matches!(layer.content, Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_)) {
             return None;
@@ -79,12 +79,12 @@ impl Thumbnails {
         if !is_ordered {
             self.ordered.insert(layer.id, Arc::downgrade(layer));
             let alone = Document { layers: vec![layer.clone()], ..document.clone() };
-            // Without a thread nobody takes orders, and that was told.
+            // Without a thread there is no receiver; the error was reported.
             let _ = self.orders.send(ThumbnailOrder { layer: layer.clone(), document: alone });
         }
         self.made.get(&layer.id).map(|texture| (texture.id(), vec2(texture.size()[0] as f32, texture.size()[1] as f32)))
     }
-    /// The mask of a layer, small, as it counts; one that is derived has none.
+    /// The thumbnail of a layer's mask with its inversion; a derived mask has none.
     pub fn of_mask(&mut self, ctx: &egui::Context, layer: &Layer) -> Option<(TextureId, Vec2)> {
         let LayerMask { kind: MaskKind::File { coverage, .. }, invert, .. } = layer.mask.as_ref()? else { return None };
         let known = self
@@ -108,7 +108,7 @@ impl Thumbnails {
     }
 }
 
-/// The thread's own: the last surface, small.
+/// The thread's state: the last reduced surface.
 #[derive(Default)]
 struct ThumbnailMaker {
     surface: Option<(Weak<Surface>, Option<Arc<Surface>>)>,
@@ -118,7 +118,7 @@ impl ThumbnailMaker {
     fn make(&mut self, order: &ThumbnailOrder) -> Option<Thumbnail> {
         let size = order.document.size;
         let factor = (SIDE as f32 / size.longer_side()).min(1.0);
-        // The surface is made small once, not for every layer.
+        // The surface is reduced once, not for every layer.
         let flat = Document { surface: None, ..order.document.clone() };
         let mut small = flat.scaled(factor).ok()?;
         small.surface = self.small_surface(order.document.surface.as_ref(), &small);

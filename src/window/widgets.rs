@@ -1,16 +1,16 @@
-//! The window's own widgets: every one has a name that a screen reader and a test can find, and tells a drag from its
-//! end. Floor 7.
+//! The window's own widgets: each has a name that a screen reader and a test can find, and distinguishes dragging from
+//! its end. Floor 7.
 
 use super::canvas::color32;
 use crate::math::srgb::Color;
 use eframe::egui::{self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, Ui, vec2};
 use std::ops::RangeInclusive;
 
-/// A value that a widget gave: shown only, or to be kept.
+/// A new value from a widget: a preview, or final.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValueChange<T> {
     pub to: T,
-    /// The hand let go: one step of history.
+    /// The widget was released: one step of history.
     pub done: bool,
 }
 
@@ -20,7 +20,7 @@ impl<T> ValueChange<T> {
     }
 }
 
-/// Whether a widget's value is to be shown, kept, or neither.
+/// Turns a widget's response into a preview, a final value, or nothing.
 pub fn change<T>(response: &Response, to: T) -> Option<ValueChange<T>> {
     if response.drag_stopped() {
         return Some(ValueChange { to, done: true });
@@ -91,7 +91,7 @@ impl<'a> NumberField<'a> {
         let name_pt = ui.painter().layout_no_wrap(self.label.into(), font, egui::Color32::WHITE).size().x;
         let room =
             vec2(name_pt + width_pt + NUMBER_PT + 2.0 * ui.spacing().item_spacing.x, ui.spacing().interact_size.y);
-        // A bar that wraps takes it to the next row whole.
+        // In a wrapping bar, label and slider stay together.
         let inner = ui.allocate_ui_with_layout(room, Layout::left_to_right(Align::Center), |ui| {
             let label = ui.label(self.label);
             ui.spacing_mut().slider_width = width_pt;
@@ -131,7 +131,7 @@ pub fn name(ui: &mut Ui, text: &str) -> Response {
     response
 }
 
-/// One of several words.
+/// A choice among several options.
 pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, label: &str, current: T, choices: &[(T, &str)]) -> Option<T> {
     let shown = choices.iter().find(|(choice, _)| *choice == current).map_or("", |(_, word)| word);
     let mut to = current;
@@ -153,7 +153,7 @@ pub fn choice_row<T: Copy + PartialEq>(ui: &mut Ui, label: &str, current: T, cho
     .inner
 }
 
-/// “color-dodge” as people read it.
+/// A name such as “color-dodge” for display.
 pub fn sentence(word: &str) -> String {
     let spaced = word.replace('-', " ");
     let mut letters = spaced.chars();

@@ -130,7 +130,7 @@ impl<'a> JsonNode<'a> {
     }
 }
 
-/// The fields of one object. Each is asked for by name; [`Fields::finish`] refuses those that were never asked for.
+/// The fields of one object. Each is read by name; [`Fields::finish`] refuses those that were never read.
 pub struct Fields<'a> {
     node: JsonNode<'a>,
     map: &'a Map<String, Value>,

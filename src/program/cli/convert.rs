@@ -1,5 +1,5 @@
 //! `rilievo convert`: from any file that can be opened to any that can be written.
-//! Floor 7. What each format can hold is the formats' own knowledge (`io`); what is left behind is told.
+//! Floor 7. The formats themselves are in `io`; losses are reported.
 
 use super::{LimitArgs, progress, render};
 use crate::Result;
@@ -55,7 +55,7 @@ fn dots_per_inch(text: &str) -> std::result::Result<f32, String> {
     dots.ok_or_else(|| "a resolution is a number between 1 and 100000".to_owned())
 }
 
-/// What a name asks for.
+/// The kind of output, from the file name.
 enum OutputKind {
     Project,
     Psd,
@@ -96,7 +96,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
                 picture(args, &document, format, &target)?;
             }
         }
-        // Beside an error they would only hide it.
+        // Beside an error, notes would only hide it.
         tell(&args.from, &notes);
         Ok(())
     })
@@ -121,7 +121,7 @@ fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, target
     target.write(&pixels, document.size, &options)
 }
 
-/// Every layer with pixels, hidden ones too, beside the name that was asked for: `out-00-sky.png`.
+/// Every layer with pixels, hidden ones too, under numbered names: `out-00-sky.png`.
 fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions) -> Result<()> {
     let stem = args.to.file_stem().unwrap_or_default().to_string_lossy();
     let extension = args.to.extension().unwrap_or_default().to_string_lossy();
@@ -153,10 +153,10 @@ fn covered(document: &Document) -> Option<Rect> {
     Some(rect)
 }
 
-/// What was not carried over goes to standard error: it is no failure, but it must not pass unseen.
+/// What could not be converted goes to standard error: it is no failure, but the user must see it.
 pub fn tell(file: &Path, notes: &[String]) {
     for note in notes {
-        // A note that passes an error on names its file already.
+        // A note that repeats an error already names its file.
         let named = format!("{}", file.display());
         let sentence = if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
         eprintln!("rilievo: {}", super::printable(&sentence));

@@ -1,14 +1,14 @@
-//! A defect of the program ends it with a sentence like any other failure, not with a trace.
+//! A panic ends the program with a sentence like any other failure, not with a backtrace.
 //! Floor 7.
 
 use crate::Result;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
 use std::sync::{Mutex, PoisonError};
 
-/// Where the first panic happened; readers catch those of decoders, and then it is no crash.
+/// Where the first panic happened; panics of decoders are caught and are no crash.
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
-/// The sentence of whatever went wrong, a panic included.
+/// The message of any failure, including a panic.
 pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), String> {
     set_hook(Box::new(|panic| {
         let place = panic.location().map_or_else(String::new, |l| format!(" ({}:{})", l.file(), l.line()));

@@ -1,4 +1,4 @@
-//! `rilievo info`: what files are, which belong together, and by which conventions they were understood.
+//! `rilievo info`: describes files, which of them belong together, and their detected conventions.
 //! Floor 7.
 //!
 //! With `--json`, one object (stable: fields may be added, never renamed):
@@ -24,7 +24,7 @@
 //! ```
 //!
 //! `role` is normal, depth, mask, layers (an EXR of several) or picture. `how` is given, found or assumed. `surface`
-//! can be pasted into a recipe: it spells what was found.
+//! can be pasted into a recipe: it spells out what was detected.
 
 mod brushes;
 mod documents;
@@ -110,7 +110,7 @@ struct SurfaceReport {
 }
 
 impl PictureReport {
-    /// What the file is for, by its name, then by what it holds.
+    /// The role of the file, from its name, then from its contents.
     fn role(&self) -> &'static str {
         let Ok(d) = &self.described else { return "unreadable" };
         if !d.layers.is_empty() {
@@ -132,7 +132,7 @@ impl PictureReport {
 }
 
 impl InfoReport {
-    /// The surfaces these files make: sets by name, then what is left by itself.
+    /// The surfaces made by these files: sets by name, then single files.
     fn sources(&self) -> Vec<MapFiles> {
         let readable: Vec<&PictureReport> = self.files.iter().filter(|f| f.described.is_ok()).collect();
         let paths: Vec<PathBuf> = readable.iter().map(|f| f.path.clone()).collect();
@@ -145,7 +145,7 @@ impl InfoReport {
                 out.push(MapFiles::new(&set.name, normal, depth, mask));
             }
         }
-        // One normal map, one depth map and nothing else of their kind belong together whatever they are called.
+        // A single normal map and a single depth map belong together, whatever their names.
         let only = |role: &str| {
             let mut left =
                 readable.iter().filter(|f| f.role() == role && !out.iter().any(|s| s.files.contains(&f.name)));
@@ -208,7 +208,7 @@ impl MapFiles {
         };
         Self { name: name.into(), files, source }
     }
-    /// The source with everything that was found spelled out.
+    /// The source with everything that was detected spelled out.
     fn spelled(&self, findings: &Findings) -> SurfaceSource {
         let mut source = self.source.clone();
         if let (Some(map), Some(convention)) = (&mut source.normal, &findings.normal) {

@@ -1,4 +1,4 @@
-//! Ceilings and threads, as every subcommand takes them.
+//! Options for limits and threads, common to all subcommands.
 //! Floor 7.
 
 use crate::io::Budget;
@@ -19,7 +19,7 @@ pub struct LimitArgs {
 }
 
 impl LimitArgs {
-    /// The budget that readers are given.
+    /// The budget for readers.
     pub fn budget(&self) -> Budget {
         let usual = Budget::default();
         let area_px = self.max_pixels.unwrap_or(usual.area_px);
@@ -30,7 +30,7 @@ impl LimitArgs {
             ..usual
         }
     }
-    /// Does the work with as many threads as were asked for.
+    /// Does the work with the requested number of threads.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
         let Some(threads) = self.threads else { return work() };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();

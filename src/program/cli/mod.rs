@@ -22,7 +22,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
-/// Opens the window on some files and returns when it is closed. Handed in, for the window stands on the same floor.
+/// Opens the window on some files and returns when it is closed. It is passed in, because the window is on the same
+/// floor.
 pub type OpenWindow = fn(Vec<PathBuf>) -> Result<()>;
 
 /// Paint over normal and depth maps: brushes, gradients and photos that bend over the shape they are put on.
@@ -51,7 +52,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
     let parsed = match Arguments::try_parse_from(with_command(arguments.into_iter().collect(), window.is_some())) {
         Ok(parsed) => parsed,
         Err(refusal) => {
-            // A closed pipe is no reason to complain about a help page.
+            // A closed pipe while printing help is no failure.
             let _ = refusal.print();
             return ExitCode::from(u8::try_from(refusal.exit_code()).unwrap_or(2));
         }
@@ -75,7 +76,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
     }
 }
 
-/// Files alone, or nothing at all, open the window: `rilievo open` need not be said.
+/// Files alone, or no arguments at all, open the window: `open` may be left out.
 fn with_command(mut arguments: Vec<OsString>, has_window: bool) -> Vec<OsString> {
     let is_file = |word: &OsString| {
         let is_command = Arguments::command().get_subcommands().any(|command| *word == *command.get_name());
@@ -87,7 +88,7 @@ fn with_command(mut arguments: Vec<OsString>, has_window: bool) -> Vec<OsString>
     arguments
 }
 
-/// Writes to standard output. Whoever closed it has read enough: that is no failure.
+/// Writes to standard output. A reader that closed it has read enough: that is no failure.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

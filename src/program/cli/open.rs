@@ -1,5 +1,5 @@
 //! `rilievo open`: the window.
-//! Floor 7. The window itself is handed in.
+//! Floor 7. The window itself is passed in.
 
 use super::OpenWindow;
 use crate::{Error, Result};

@@ -7,11 +7,11 @@ use std::io::IsTerminal;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// Work that is over sooner shows nothing.
+/// Shorter work shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 const REDRAW: Duration = Duration::from_millis(100);
 
-/// Does the work and shows how far it has come.
+/// Does the work and shows its progress.
 pub fn shown<T>(work: impl FnOnce(&Progress) -> T) -> T {
     let progress = Progress::default();
     if !std::io::stderr().is_terminal() {
@@ -22,7 +22,7 @@ pub fn shown<T>(work: impl FnOnce(&Progress) -> T) -> T {
         let watched = &progress;
         scope.spawn(move || draw(watched, || is_over.recv_timeout(REDRAW) == Err(RecvTimeoutError::Timeout)));
         let result = work(&progress);
-        // Dropped, it wakes the one who draws; a panic drops it as well.
+        // Dropping it wakes the drawing thread; a panic drops it as well.
         drop(over);
         result
     })

@@ -76,7 +76,7 @@ pub(super) fn color(text: &str) -> std::result::Result<Color, String> {
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
-    // A misspelt ending is told before the work, not after it.
+    // A misspelt extension is reported before the work, not after it.
     ExportFormat::of(&args.output)?;
     args.limits.install(|| {
         let LoadedDocument { document, notes, inputs } = load(args)?;
@@ -94,7 +94,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
             document.size,
             &ExportOptions { background: args.background, quality: args.quality, ..ExportOptions::default() },
         )?;
-        // Beside an error they would only hide it.
+        // Beside an error, notes would only hide it.
         convert::tell(&args.document, &notes);
         Ok(())
     })
@@ -134,7 +134,7 @@ fn load(args: &RenderArgs) -> Result<LoadedDocument> {
     Ok(LoadedDocument { document, notes, inputs })
 }
 
-/// Layers that would paint black for want of what they show: better a sentence.
+/// Refuses layers that would paint black because their picture is missing.
 pub(super) fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> {
     for (path, layer) in document.walk() {
         let Content::Shading(shading) = &layer.content else { continue };
@@ -146,7 +146,7 @@ pub(super) fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> 
     Ok(())
 }
 
-/// The object that the command line names, if it names one.
+/// The object from the command line, if any.
 fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSource> {
     let mut name = |path: &Option<PathBuf>| path.as_deref().map(|path: &Path| given.add(path));
     let (normal, depth, mask) = (name(&args.normal), name(&args.depth), name(&args.mask));

@@ -1,4 +1,4 @@
-//! `rilievo replay`: what was done in the window, done again without it.
+//! `rilievo replay`: repeats recorded actions without the window.
 //! Floor 7.
 
 use super::print;

@@ -1,5 +1,5 @@
 //! `rilievo view`: the maps of a document, or of loose files, as pictures.
-//! Floor 7. What the pictures show is `document::view`'s.
+//! Floor 7. The views are in `document::view`.
 
 use super::LimitArgs;
 use crate::document::source::{MapSource, MaskSource};
@@ -107,7 +107,7 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     })
 }
 
-/// The file that a sentence about the whole command names.
+/// The file named in errors about the whole command.
 fn named_file(args: &ViewArgs) -> &Path {
     args.files.first().or(args.normal.as_ref()).or(args.depth.as_ref()).unwrap_or(&args.output)
 }
@@ -141,14 +141,14 @@ fn of_maps(args: &ViewArgs, budget: &Budget) -> Result<(Document, Vec<PathBuf>)>
     let sources = sources(args, &mut files)?;
     let files = TrackedFiles::new(files);
     let mut imports = sources.iter().map(|source| maps::import(source, &files, budget));
-    // The first way to read them counts, and its sentence where none succeeds.
+    // The first successful reading counts; if none succeeds, the first error is reported.
     let first = imports.next().unwrap_or_else(|| Err(Error::invalid(named_file(args), "FILES", "no map is named")));
     let import = first.or_else(|refused| imports.find_map(Result::ok).ok_or(refused))?;
     let surface = Arc::new(import.surface);
     Ok((Document { surface: Some(surface.clone()), ..Document::empty(surface.size()) }, files.read_paths()))
 }
 
-/// Which file is which, in the order in which readings are tried.
+/// The possible roles of the files, in the order in which they are tried.
 fn sources(args: &ViewArgs, files: &mut UserFiles) -> Result<Vec<SurfaceSource>> {
     let mut parts = [args.normal.clone(), args.depth.clone(), args.mask.clone()];
     if let ([layers], [None, None, _]) = (args.files.as_slice(), &parts)
@@ -169,7 +169,7 @@ fn sources(args: &ViewArgs, files: &mut UserFiles) -> Result<Vec<SurfaceSource>>
             Some(pairs::MapPart::Depth) => 1,
             Some(pairs::MapPart::Mask) => 2,
             Some(pairs::MapPart::Normal) => 0,
-            // A picture alone is taken for normals: that is what there is most of.
+            // A single picture counts as a normal map, the most common kind.
             None if args.files.len() == 1 => 0,
             None => {
                 let reason = "its name does not say what it is; use --normal, --depth or --mask";

@@ -1,5 +1,6 @@
-//! Recovery of the open documents: each has a log that follows its edits and is gone once it is closed; and what an
-//! accident left is brought back. Floor 6. Logs and their workers are `io::recovery`'s (docs/PROJECTS.md).
+//! Recovery of the open documents: each has a log that follows its edits and is deleted when it is closed. After an
+//! accident, lost documents are recovered. Floor 6. The logs and their workers are in `io::recovery`
+//! (docs/PROJECTS.md).
 
 use super::{OpenDocument, is_same};
 use crate::Result;
@@ -13,11 +14,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long an edit waits for being written: so long a dab may take. The record of a stroke takes a fraction of it; one
-/// of a large drawing goes on by itself.
+/// The longest wait until an edit is written. The record of a stroke takes a fraction of it; that of a large drawing
+/// continues in the background.
 const PATIENCE: Duration = Duration::from_millis(8);
-/// How long a program that was killed may take to die: one with many threads on a busy computer still holds its logs
-/// when it is started again.
+/// How long a killed program may take to end: with many threads on a busy computer it may still hold its logs when it
+/// is started again.
 const DYING: Duration = Duration::from_secs(5);
 const LOOK_AGAIN: Duration = Duration::from_millis(200);
 
@@ -26,21 +27,21 @@ pub struct Autosave {
     fs: Arc<dyn Fs>,
     folder: PathBuf,
     followed: BTreeMap<usize, FollowedDocument>,
-    /// The trouble that was told last.
+    /// The last error that was reported.
     told: Option<String>,
 }
 
-/// The log of a document, and what it was told last.
+/// The log of a document, and the last recorded state.
 struct FollowedDocument {
-    /// Absent where none could be begun.
+    /// Absent if none could be created.
     recovery: Option<RecoveryLog>,
     document: Document,
-    /// Where the file holds the very same.
+    /// Set if the file has the same content.
     held: Option<(String, Option<PathBuf>, Option<FileStamp>)>,
 }
 
 impl FollowedDocument {
-    /// The first word is all of the document; `saved` follows by itself.
+    /// The first record is the whole document; `saved` follows separately.
     fn begin(fs: &Arc<dyn Fs>, folder: &Path, tab: &OpenDocument) -> (Self, Option<String>) {
         let document = tab.document().clone();
         let begun = RecoveryLog::start(fs.clone(), folder, &document, &tab.title(), tab.file.as_deref());
@@ -50,7 +51,7 @@ impl FollowedDocument {
         };
         (Self { recovery, document, held: None }, trouble)
     }
-    /// Tells the log what became of the document; whether there was anything to tell.
+    /// Records changes of the document in the log; returns whether there were any.
     fn follow(&mut self, tab: &OpenDocument) -> bool {
         let Some(recovery) = &self.recovery else { return false };
         let is_edited = !is_same(&self.document, tab.document());
@@ -72,10 +73,9 @@ impl Autosave {
     pub fn new(folder: PathBuf) -> Self {
         Self { fs: Arc::new(Disk), folder, followed: BTreeMap::new(), told: None }
     }
-    /// Brings the logs up to the open documents; called after whatever may have changed them. A new trouble as a
-    /// sentence.
+    /// Updates the logs to the open documents; called after every change. Returns a new error as a sentence.
     ///
-    /// An edit waits a few milliseconds for being written, so that what is seen as done is safe from `kill -9`.
+    /// It waits a few milliseconds for an edit to be written, so that what the user sees is safe from `kill -9`.
     pub fn follow(&mut self, open_documents: &[OpenDocument]) -> Option<String> {
         let mut trouble = None;
         for tab in open_documents {
@@ -83,7 +83,7 @@ impl Autosave {
                 Some(followed) if followed.recovery.is_some() || is_same(&followed.document, tab.document()) => {
                     followed.follow(tab)
                 }
-                // Not known yet, or edited since its log could not be begun: perhaps now it can.
+                // Not known yet, or edited since its log could not be created: try again.
                 _ => {
                     let (mut followed, why) = FollowedDocument::begin(&self.fs, &self.folder, tab);
                     trouble = trouble.or(why);
@@ -110,7 +110,7 @@ impl Autosave {
         let sentence = |why| format!("Not safe from a crash until it is saved: {why}");
         trouble.filter(|_| is_new).map(sentence)
     }
-    /// A document that has a log already, such as a recovered one.
+    /// Takes over a document that already has a log, such as a recovered one.
     pub fn adopt(&mut self, tab: &OpenDocument, recovery: RecoveryLog) {
         let document = tab.document().clone();
         self.followed.insert(tab.key, FollowedDocument { recovery: Some(recovery), document, held: None });
@@ -121,11 +121,11 @@ impl Autosave {
             while !recovery.settle(Duration::from_secs(1)) {}
         }
     }
-    /// The program ends as it should: what is saved, or never was touched, needs no log. Others stay, to be offered.
+    /// The program ends normally: saved or untouched documents need no log. Other logs stay, to be offered.
     pub fn close(&mut self, open_documents: &[OpenDocument]) {
         self.follow(open_documents);
         for tab in open_documents.iter().filter(|tab| !tab.is_dirty()) {
-            // What cannot be deleted is found to be safe the next time.
+            // A log that cannot be deleted is recognised as safe the next time.
             let _ = self.end(tab.key);
         }
     }
@@ -133,29 +133,28 @@ impl Autosave {
         let recovery = self.followed.remove(&key).and_then(|followed| followed.recovery);
         recovery.map_or(Ok(()), RecoveryLog::close)
     }
-    /// For a thread that looks after what was left, or brings it back.
+    /// For a thread that finds or recovers lost sessions.
     pub fn lost(&self) -> LostSessions {
         LostSessions { fs: self.fs.clone(), folder: self.folder.clone() }
     }
 }
 
-/// What accidents left.
+/// The sessions that accidents left.
 pub struct LostSessions {
     fs: Arc<dyn Fs>,
     folder: PathBuf,
 }
 
-/// A document that was brought back, and the log it has now.
+/// A recovered document, and its new log.
 pub struct RecoveredTab {
     pub tab: OpenDocument,
     pub recovery: Option<RecoveryLog>,
 }
 
 impl LostSessions {
-    /// The drawings to offer, oldest first. Logs of which a file holds the very last version are deleted.
+    /// The drawings to offer, oldest first. Logs whose last version is saved in a file are deleted.
     ///
-    /// Where there are none it looks again for some seconds as long as other processes hold logs: one may be just
-    /// dying.
+    /// If there are none, it retries for some seconds while other processes hold logs: one may be just ending.
     pub fn list(&self) -> Vec<recovery::LostSession> {
         for _ in 0..DYING.as_millis() / LOOK_AGAIN.as_millis() {
             let lost = self.list_now();
@@ -169,7 +168,7 @@ impl LostSessions {
     fn list_now(&self) -> Vec<recovery::LostSession> {
         let mut lost = Vec::new();
         for mut session in recovery::sessions(&self.fs, &self.folder) {
-            // One that failed is not so much as read unasked.
+            // One that failed before is not even read without asking.
             if !session.has_failed && session.is_safe() {
                 // If it cannot be deleted, it is as safe the next time.
                 let _ = session.discard();
@@ -179,8 +178,7 @@ impl LostSessions {
         }
         lost
     }
-    /// Brings a drawing back: untitled, with something to save. What was left of it is deleted once another log holds
-    /// it.
+    /// Recovers a drawing: untitled and unsaved. Its old log is deleted once a new one holds it.
     pub fn bring_back(&self, mut session: recovery::LostSession) -> Result<RecoveredTab> {
         let recovered = session.recover(&Budget::default())?;
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
@@ -192,7 +190,7 @@ impl LostSessions {
             recovery.trouble().is_none()
         });
         if recovery.is_some() {
-            // What stays is offered once more; nothing is lost by that.
+            // A log that stays is offered once more; nothing is lost.
             let _ = session.discard();
         }
         Ok(RecoveredTab { tab, recovery })

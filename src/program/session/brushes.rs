@@ -1,5 +1,5 @@
-//! The brushes to choose from: those of the program, and the user's own, which were brought in from files or kept from
-//! the hand. Floor 6. Formats are `io`'s. The user's own lie in a folder, where there is one, a preset's file each.
+//! The available brushes: those of the program, and the user's own, which were imported from files or saved by the
+//! user. Floor 6. The formats are in `io`. The user's own are in a folder, one preset file each.
 
 use super::Session;
 use crate::io::brush::{self, ImportedBrush, plain};
@@ -11,7 +11,7 @@ use crate::surface::Operator;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// Endings of the files that brushes come from: five of brushes, then pictures.
+/// Extensions of files with brushes: five brush formats, then pictures.
 pub const EXTENSIONS: [&str; 12] =
     ["gbr", "gih", "myb", "abr", "json", "png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp"];
 
@@ -29,7 +29,7 @@ pub fn read(file: &Path, budget: &Budget) -> Result<Vec<(Preset, Vec<String>)>> 
     Ok(brushes.into_iter().map(|imported| preset_of(file, imported)).collect())
 }
 
-/// A brush of another program as one that can be chosen, and what could not be carried over.
+/// An imported brush as a preset, with notes on what could not be imported.
 fn preset_of(file: &Path, imported: ImportedBrush) -> (Preset, Vec<String>) {
     let ImportedBrush { name, brush, notes } = imported;
     let about = format!("From {}.", file.file_name().unwrap_or_default().to_string_lossy());
@@ -38,7 +38,7 @@ fn preset_of(file: &Path, imported: ImportedBrush) -> (Preset, Vec<String>) {
     (Preset { key, name, group: PresetGroup::Imported, about, color, brush, operator: Operator::None }, notes)
 }
 
-/// The brushes of a file join the list, and the first of them goes to hand.
+/// Adds the brushes of a file to the list, and selects the first.
 pub fn import(session: &mut Session, file: &Path) -> Result<()> {
     let mut first = None;
     for (preset, notes) in read(file, &Budget::default())? {
@@ -52,7 +52,7 @@ pub fn import(session: &mut Session, file: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The brush in hand joins the list under a name.
+/// Adds the current brush to the list under a name.
 pub fn keep(session: &mut Session, name: &str) -> Result<()> {
     let name: String = name.trim().chars().filter(|c| !c.is_control()).take(80).collect();
     let name = if name.is_empty() { "My brush".to_owned() } else { name };
@@ -63,7 +63,7 @@ pub fn keep(session: &mut Session, name: &str) -> Result<()> {
     Ok(())
 }
 
-/// A brush joins the list and the folder; the key that it got.
+/// Adds a brush to the list and the folder; returns its key.
 fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
     preset.key = free_key(session, &preset.key);
     preset.group = PresetGroup::Imported;
@@ -76,7 +76,7 @@ fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
     Ok(key)
 }
 
-/// One of the user's own brushes leaves the list and the folder. Its pictures go with it.
+/// Removes one of the user's own brushes from the list and the folder, with its pictures.
 pub fn remove(session: &mut Session, key: &str) -> Result<()> {
     let is_it = |preset: &Preset| preset.key == key && preset.group == PresetGroup::Imported;
     let Some(at) = session.presets.iter().position(is_it) else { return Ok(()) };
@@ -107,7 +107,7 @@ pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
     (presets, notes)
 }
 
-/// Brushes of the folder join the list, each under the name of its file.
+/// Adds the brushes of the folder to the list, each under the name of its file.
 pub fn adopt(session: &mut Session, presets: Vec<Preset>) {
     for preset in presets {
         if free_key(session, &preset.key) == preset.key {
@@ -143,7 +143,7 @@ fn free_key(session: &Session, key: &str) -> String {
     free
 }
 
-/// The brush is one that a search asks for: every word stands in its name, its group or its sentence.
+/// Whether a brush matches a search: every word is in its name, its group or its description.
 pub fn is_found(preset: &Preset, search: &str) -> bool {
     let text = format!("{} {} {}", preset.name, preset.group.name(), preset.about).to_lowercase();
     search.to_lowercase().split_whitespace().all(|word| text.contains(word))

@@ -1,5 +1,5 @@
-//! Floor 6: the program without its window. Open documents, what is in hand, and everything that can be done as
-//! [`Action`]s, so that a replay file, a test and the window do the very same.
+//! Floor 6: the program without its window. It holds the open documents and the current tool settings, and does
+//! everything as [`Action`]s, so that a replay file, a test and the window behave the same.
 
 pub mod actions;
 pub mod autosave;
@@ -30,31 +30,31 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use storage::OpenedTab;
 
-/// Colours remembered.
+/// The number of recent colours.
 const RECENT: usize = 16;
 
 /// Everything but the window.
 pub struct Session {
     pub open_documents: Vec<OpenDocument>,
-    /// The one in front, if any.
+    /// The index of the one in front.
     pub current: usize,
     pub tool: ToolKind,
-    /// Brushes to choose from: the program's own, then those brought in, none twice by its key.
+    /// The available brushes: the program's own, then imported ones; each key is unique.
     pub presets: Vec<Preset>,
-    /// The key of the brush in hand among them.
+    /// The key of the current brush among them.
     pub preset: String,
     pub brush: Brush,
     pub color: Color,
     pub second_color: Color,
-    /// The last ones painted with, newest first.
+    /// The last colours painted with, newest first.
     pub recent_colors: Vec<Color>,
     /// How new marks follow the surface.
     pub operator: Operator,
     /// How strokes repeat.
     pub symmetry: Symmetry,
-    /// How far the fill tool goes.
+    /// The settings of the fill tool.
     pub fill: Fill,
-    /// A mouse, which has no pressure, presses less the faster it goes.
+    /// Whether a mouse, which has no pressure, presses less the faster it moves.
     pub presses_by_speed: bool,
     /// A view of the surface shown over the picture, by its name.
     pub overlay: Option<String>,
@@ -63,7 +63,7 @@ pub struct Session {
     last_pen: Option<Vec2>,
     /// The recovery logs of the open documents, where they are kept.
     pub autosave: Option<Autosave>,
-    /// Where the user's own brushes are kept, where they are.
+    /// The folder of the user's own brushes, if there is one.
     pub brush_folder: Option<PathBuf>,
     /// Sentences for the user, not shown yet.
     pub notes: Vec<String>,
@@ -109,21 +109,21 @@ impl Session {
     pub fn active_mut(&mut self) -> Option<&mut OpenDocument> {
         self.open_documents.get_mut(self.current)
     }
-    /// The document in front, as it is to be seen.
+    /// The document in front as shown, with the preview.
     pub fn shown(&self) -> Option<&Document> {
         self.active().map(OpenDocument::shown)
     }
-    /// The selected layer, as it is to be seen.
+    /// The selected layer as shown.
     pub fn layer(&self) -> Option<&Arc<Layer>> {
         let tab = self.active()?;
         tab.shown().layer(tab.selected?)
     }
-    /// Where the selected layer stands.
+    /// The path of the selected layer.
     pub fn layer_path(&self) -> Option<LayerPath> {
         let tab = self.active()?;
         LayerPath::of(tab.document(), tab.selected?)
     }
-    /// A tool is between press and release.
+    /// Whether a tool is between press and release.
     pub fn is_drawing(&self) -> bool {
         self.gesture.is_some()
     }
@@ -154,7 +154,7 @@ impl Session {
         self.untitled += 1;
         format!("Untitled {}", self.untitled)
     }
-    /// Takes a brush to hand by its key. One made for an operator brings it; one that is not leaves what is in hand.
+    /// Selects a brush by its key. A brush made for an operator selects it too; others leave the operator as it is.
     pub fn take_preset(&mut self, key: &str) {
         let Some(preset) = self.presets.iter().find(|preset| preset.key == key) else { return };
         if preset.operator != Operator::None {
@@ -164,7 +164,7 @@ impl Session {
         self.preset = preset.key.clone();
         self.tool = ToolKind::Brush;
     }
-    /// What was begun is forgotten, and what it showed with it.
+    /// Drops the current gesture and its preview.
     pub fn drop_gesture(&mut self) {
         if self.gesture.take().is_some()
             && let Some(tab) = self.active_mut()
@@ -172,7 +172,7 @@ impl Session {
             tab.forget_preview();
         }
     }
-    /// The colour in hand goes to the front of those remembered.
+    /// Moves the current colour to the front of the recent ones.
     fn remember_color(&mut self) {
         let color = self.color;
         self.recent_colors.retain(|known| *known != color);
@@ -184,17 +184,17 @@ impl Session {
         let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.open_documents));
         self.notes.extend(trouble);
     }
-    /// The program ends: see [`Autosave::close`].
+    /// Called when the program ends: see [`Autosave::close`].
     pub fn close(&mut self) {
         if let Some(autosave) = &mut self.autosave {
             autosave.close(&self.open_documents);
         }
     }
-    /// Does what a replay file says, line by line; the first that fails ends it with a sentence.
+    /// Performs the actions of a replay file line by line; stops with an error at the first that fails.
     pub fn replay(&mut self, file: &Path, text: &str) -> Result<()> {
         self.replay_telling(file, text, |_| Ok(()))
     }
-    /// The same, and tells after each line.
+    /// The same, and calls back after each line.
     pub fn replay_telling(
         &mut self,
         file: &Path,

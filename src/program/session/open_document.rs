@@ -1,4 +1,4 @@
-//! A document that is open: its history, what is selected in it, where it is kept, and how it is seen.
+//! An open document: its history, selection, file and view.
 //! Floor 6.
 
 use super::view::CanvasView;
@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Steps that can be undone.
 const STEPS: usize = 200;
 
-/// A step: what it is called, the document it leads to, and what is selected then.
+/// A step: its name, the resulting document, and the new selection.
 pub struct Edit {
     pub label: &'static str,
     pub document: Document,
@@ -21,21 +21,21 @@ pub struct Edit {
 
 /// An open document.
 pub struct OpenDocument {
-    /// Which tab, as long as the program runs.
+    /// Identifies the tab as long as the program runs.
     pub key: usize,
     pub history: History,
-    /// What is shown while the hand moves: not a step yet.
+    /// The preview during a gesture: not a step yet.
     preview: Option<Preview>,
     pub selected: Option<LayerId>,
     /// Where it was opened from or saved to.
     pub file: Option<PathBuf>,
-    /// What it is called while it has no file.
+    /// Its name while it has no file.
     pub name: String,
-    /// What that file held when it was last read or written here.
+    /// The stamp of that file when it was last read or written here.
     pub stamp: Option<FileStamp>,
-    /// As the file holds it.
+    /// The document as saved in the file.
     saved: Document,
-    /// `None` until the window has shown it once.
+    /// `None` until the window has shown it.
     pub view: Option<CanvasView>,
     /// The brush and the eraser change the selected layer's mask, not the layer.
     pub on_mask: bool,
@@ -45,7 +45,7 @@ pub struct OpenDocument {
     pub last_end: Option<Vec2>,
     /// Where clone brushes copy from.
     pub clone_source: Option<CloneSource>,
-    /// The strokes chosen, by their places in the layer.
+    /// The indices of the selected strokes in the layer.
     chosen: Option<(LayerId, Vec<usize>)>,
 }
 
@@ -88,11 +88,11 @@ impl OpenDocument {
     pub fn document(&self) -> &Document {
         self.history.present()
     }
-    /// The document as it is to be seen: with what the hand is doing.
+    /// The document as shown: with the preview.
     pub fn shown(&self) -> &Document {
         self.preview.as_ref().map_or(self.history.present(), |preview| &preview.document)
     }
-    /// As it is to be drawn: a layer that is alone hides the others.
+    /// The document as drawn: a solo layer hides the others.
     pub fn drawn(&self) -> Document {
         let shown = self.shown();
         self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
@@ -102,7 +102,7 @@ impl OpenDocument {
         let name = self.file.as_ref().and_then(|file| file.file_name());
         name.map_or_else(|| self.name.clone(), |name| name.to_string_lossy().into_owned())
     }
-    /// There is something that no file holds.
+    /// Whether there are unsaved changes.
     pub fn is_dirty(&self) -> bool {
         !is_same(&self.saved, self.document())
     }
@@ -110,18 +110,18 @@ impl OpenDocument {
         self.saved = document;
         (self.file, self.stamp) = (Some(file), Some(stamp));
     }
-    /// What came from elsewhere than a file of its own, such as a recovered document: there is something to save.
+    /// Marks a document that did not come from its own file, such as a recovered one, as unsaved.
     pub fn mark_unsaved(&mut self) {
         self.saved = Document::empty(self.document().size);
     }
     pub fn is_previewing(&self) -> bool {
         self.preview.is_some()
     }
-    /// Shows a document without keeping it.
+    /// Shows a document as preview.
     pub fn show(&mut self, label: impl Into<String>, document: Document) {
         self.preview = Some(Preview { label: label.into(), document });
     }
-    /// Keeps a document as a step.
+    /// Adds a document as a step.
     pub fn commit(&mut self, label: impl Into<String>, document: Document) {
         self.preview = None;
         if !is_same(self.document(), &document) {
@@ -129,23 +129,23 @@ impl OpenDocument {
         }
         self.repair();
     }
-    /// Keeps an edit as a step.
+    /// Adds an edit as a step.
     pub fn take(&mut self, edit: Edit) {
         let Edit { label, document, select } = edit;
         self.commit(label, document);
         self.selected = select.or(self.selected);
     }
-    /// Keeps what is shown.
+    /// Adds the preview as a step.
     pub fn keep_preview(&mut self) {
         if let Some(Preview { label, document }) = self.preview.take() {
             self.commit(label, document);
         }
     }
-    /// Forgets what is shown.
+    /// Drops the preview.
     pub fn forget_preview(&mut self) {
         self.preview = None;
     }
-    /// The strokes of the selected layer that are chosen, in rising order; those that are there.
+    /// The selected strokes of the selected layer that exist, in rising order.
     pub fn chosen_strokes(&self) -> Vec<usize> {
         let Some((layer, chosen)) = self.chosen.as_ref().filter(|(layer, _)| Some(*layer) == self.selected) else {
             return Vec::new();
@@ -176,7 +176,7 @@ impl OpenDocument {
         }
         self.repair();
     }
-    /// A selected layer that is gone gives way to the topmost.
+    /// Selects the topmost layer if the selected one is gone.
     pub(super) fn repair(&mut self) {
         let has_mask = |layer: &Arc<crate::document::Layer>| {
             layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }))
@@ -193,7 +193,7 @@ impl OpenDocument {
     }
 }
 
-/// Both are the same value: nothing was edited between them.
+/// Whether both are the same value: nothing was edited between them.
 pub fn is_same(a: &Document, b: &Document) -> bool {
     let same_layers =
         a.layers.len() == b.layers.len() && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));

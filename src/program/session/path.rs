@@ -1,4 +1,4 @@
-//! Which layer, in words that hold from one run to the next: its place from the bottom, groups opened.
+//! A layer's path that is valid from one run to the next: indices from the bottom through the groups.
 //! Floor 6. In memory layers have ids; those are new with every run.
 
 use super::replay::ReplayValue;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub struct LayerPath(Vec<usize>);
 
 impl LayerPath {
-    /// Where a layer stands.
+    /// The path of a layer.
     pub fn of(document: &Document, id: LayerId) -> Option<Self> {
         fn find(layers: &[Arc<Layer>], id: LayerId, path: &mut Vec<usize>) -> bool {
             layers.iter().enumerate().any(|(index, layer)| {
@@ -27,7 +27,7 @@ impl LayerPath {
         let mut path = Vec::new();
         find(&document.layers, id, &mut path).then_some(Self(path))
     }
-    /// The layer that stands there.
+    /// The layer at the path.
     pub fn find<'a>(&self, document: &'a Document) -> Option<&'a Arc<Layer>> {
         let (first, rest) = self.0.split_first()?;
         rest.iter().try_fold(document.layers.get(*first)?, |layer, index| match &layer.content {

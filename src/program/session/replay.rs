@@ -1,5 +1,5 @@
-//! Actions as text: one JSON object a line, so that what was done in the window can be done again without it.
-//! Floor 6. [`ReplayValue`] is how a value is written and read; `actions!`, `record!` and `names!` derive it.
+//! Actions as text: one JSON object per line, so that recorded actions can be replayed without the window. Floor 6.
+//! [`ReplayValue`] writes and reads a value; `actions!`, `record!` and `names!` derive it.
 
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
@@ -60,7 +60,7 @@ impl ReplayValue for String {
     }
 }
 
-/// Whatever has a form of its own in files.
+/// Values with their own JSON form in files.
 impl ReplayValue for Value {
     fn written(&self) -> Value {
         self.clone()
@@ -130,7 +130,7 @@ impl<T: ReplayValue> ReplayValue for Option<T> {
     }
 }
 
-/// Declares an enum of actions; each variant has a word in replays and named fields.
+/// Declares an enum of actions; each variant has a name in replays and named fields.
 macro_rules! actions {
     ($(#[$meta:meta])* $name:ident {
         $($(#[$about:meta])* $word:literal $variant:ident { $($field:ident: $ty:ty),* $(,)? })+
@@ -209,7 +209,7 @@ macro_rules! names {
 }
 pub(crate) use names;
 
-/// The lines of a replay as values. Empty lines and lines that begin with `#` say nothing.
+/// The lines of a replay as values. Empty lines and lines that begin with `#` are skipped.
 pub fn lines<T: ReplayValue>(file: &Path, text: &str) -> Result<Vec<T>> {
     let told = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     told.map(|(i, line)| {

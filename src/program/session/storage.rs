@@ -1,5 +1,5 @@
-//! Where documents come from and go to: projects, recipes, pictures, maps.
-//! Floor 6. Formats are `io`'s; here is which of them a file is.
+//! Opens and saves documents: projects, recipes, pictures, maps. Floor 6. The formats are in `io`; here a file's format
+//! and use are recognised.
 
 use super::OpenDocument;
 use crate::Result;
@@ -19,7 +19,7 @@ pub const DOCUMENTS: [&str; 2] = ["ora", "json"];
 /// Endings of the files that hold pictures.
 pub const PICTURES: [&str; 10] = ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr"];
 
-/// What a file is good for.
+/// What a file can be used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileUse {
     Document,
@@ -47,7 +47,7 @@ fn ends_in(file: &Path, extensions: &[&str]) -> bool {
     extensions.contains(&extension.as_str())
 }
 
-/// What a dropped or opened file is, by its ending, its contents and its name.
+/// Recognises a dropped or opened file by its extension, its contents and its name.
 pub fn kind_of(file: &Path) -> Result<FileUse> {
     if is_document(file) {
         return Ok(FileUse::Document);
@@ -74,7 +74,7 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let is_project = kind == io::open::FileKind::Project;
             let mut tab = OpenDocument::new(name, document, is_project.then(|| file.into()));
-            // What is not whole must not replace its file unasked.
+            // A document that is not whole must not overwrite its file without asking.
             tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
             Ok(OpenedTab { tab, notes })
         }
@@ -126,15 +126,16 @@ pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     source
 }
 
-/// Files that came together, sorted: the maps of each object, and what is opened by itself, in their order.
+/// Files that were opened together, sorted: the maps of each object, and the files that are opened separately, in
+/// order.
 #[derive(Debug, Default, PartialEq)]
 pub struct SortedFiles {
     pub objects: Vec<SurfaceSource>,
     pub others: Vec<(PathBuf, FileUse)>,
 }
 
-/// Sorts files of known kinds. A normal map, a depth map and a mask that come together are one object's, whatever they
-/// are called; a second normal map begins another object. What is missing is looked for beside each file (see
+/// Sorts files of known kinds. A normal map, a depth map and a mask that are opened together belong to one object,
+/// whatever their names; a second normal map begins another object. Missing maps are looked for beside each file (see
 /// [`maps_beside`]).
 pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     let mut sorted = SortedFiles::default();
@@ -165,7 +166,7 @@ pub fn sorted(files: Vec<(PathBuf, FileUse)>) -> SortedFiles {
     sorted
 }
 
-/// A new document on a surface, with a plain ground to paint on.
+/// A new document on a surface, with a plain background to paint on.
 pub fn open_maps(source: &SurfaceSource) -> Result<OpenedTab> {
     Ok(of_import(source, import(source)?))
 }
@@ -190,8 +191,8 @@ pub fn of_import(source: &SurfaceSource, import: maps::ImportedSurface) -> Opene
 
 const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
 
-/// What a new surface is covered with: light to dark from above left, bent by the normals, so that the shape is seen
-/// before the first stroke.
+/// The fill of a new surface: a gradient from light to dark, bent by the normals, so that the shape is visible before
+/// the first stroke.
 fn clay(size: Size) -> Gradient {
     let side = Vec2::new(size.width as f32, size.height as f32);
     let stop = |t: f32, [r, g, b]: [u8; 3]| GradientStop { t, color: Color { r, g, b, a: 255 } };
@@ -205,7 +206,7 @@ fn clay(size: Size) -> Gradient {
 }
 
 /// Saves a document as a project. `stamp`: of the file as it was last read or written here, if it was.
-/// `None` if it was given up.
+/// `None` if it was cancelled.
 pub fn save(
     file: &Path,
     document: &Document,
@@ -221,7 +222,7 @@ pub fn is_openable(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS) || ends_in(file, &PICTURES)
 }
 
-/// With the ending that a project has.
+/// The file name with the extension of projects.
 pub fn with_document_extension(file: PathBuf) -> PathBuf {
     if ends_in(&file, &DOCUMENTS[..1]) { file } else { file.with_extension(DOCUMENTS[0]) }
 }

@@ -1,5 +1,5 @@
-//! What a brush paints: one stroke over a ball, bent as the brush is meant to be.
-//! Floor 6. Pictures only; keeping them is the window's business.
+//! Preview pictures of brushes: one stroke over a ball, bent by the brush's operator. Floor 6. The window caches the
+//! pictures.
 
 mod retouched;
 
@@ -13,7 +13,7 @@ use crate::surface::{Maps, Operator, Surface};
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// The side of a canvas on which a brush's own sizes are those of the picture.
+/// The side of a canvas at which brush sizes are not scaled.
 const NATURAL_SIDE: f32 = 360.0;
 /// Least and most diameter of the brush in the picture, as shares of its side.
 const SIZES: [f32; 2] = [0.022, 0.3];
@@ -42,7 +42,7 @@ pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     }
     let brush = scaled(brush, side / NATURAL_SIDE, side);
     let blend = brush.blend;
-    // An eraser is shown by what it takes away.
+    // An eraser is shown by what it removes.
     let under = if brush.erases { preset.color } else { Color::TRANSPARENT };
     let brush = Brush { erases: false, ..brush };
     let stroke = Arc::new(Stroke::new(brush, *operator, shown(preset, background), wave(size)));
@@ -58,7 +58,7 @@ pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     Some(grid.to_straight_rgba(size.rect()))
 }
 
-/// Light from the upper left, so that the shape is seen.
+/// Light from the upper left, so that the shape is visible.
 fn clay(background: Color, size: Size) -> Gradient {
     let (middle, side) = (size.center(), size.width.min(size.height) as f32);
     let lit = |factor: f32| {
@@ -78,7 +78,7 @@ fn clay(background: Color, size: Size) -> Gradient {
 /// Height of the grooves on the ball of a brush that follows the relief.
 const GROOVES: f32 = 0.055;
 
-/// An eraser paints the ground back.
+/// An eraser shows the background again.
 fn shown(preset: &Preset, background: Color) -> Color {
     if preset.brush.erases { background } else { preset.color }
 }
@@ -90,7 +90,7 @@ fn is_dark(color: Color) -> bool {
     2 * u32::from(color.r) + 5 * u32::from(color.g) + u32::from(color.b) < 8 * 0x80
 }
 
-/// A brush at the scale of a small picture: what has a size shrinks with it, within what can still be told.
+/// A brush at the scale of a small picture: its sizes shrink with it, as far as they stay recognisable.
 pub fn scaled(brush: &Brush, scale: f32, side: f32) -> Brush {
     let size = (brush.size * scale).max(SIZES[0] * side).min(SIZES[1] * side);
     let shrunk = size / brush.size;
@@ -112,7 +112,7 @@ pub fn ball(side: usize, relief: f32) -> Option<Surface> {
         round + relief * (TAU * (1.6 * p.y + 0.5 * p.x * p.x)).cos() * round.min(0.7)
     };
     let size = Size::new(side as u32, side as u32);
-    // A pixel of soft rim, so that the silhouette is not a staircase.
+    // One pixel of soft rim against aliasing of the silhouette.
     let cover = |p: Vec2| ((1.0 - p.length()) * radius + 0.5).clamp(0.0, 1.0);
     let normal = move |p: Vec2| {
         if relief == 0.0 {

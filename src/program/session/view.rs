@@ -1,10 +1,11 @@
-//! The view: how the canvas lies under the window. Screen points are measured from the middle of the canvas's area of
-//! the window, y down; canvas px as everywhere. Floor 6. Pure arithmetic; the window draws with it.
+//! The view: position, zoom and rotation of the canvas under the window. Screen points are measured from the middle of
+//! the canvas's area of the window, y down; canvas px as everywhere. Floor 6. Pure arithmetic; the window draws with
+//! it.
 
 use super::replay::record;
 use crate::math::{Affine2, Mat2, Size, Vec2, vec2};
 
-/// Where the canvas is seen.
+/// The view of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CanvasView {
     /// The canvas point in the middle of the window, px.
@@ -13,12 +14,12 @@ pub struct CanvasView {
     pub zoom: f32,
     /// Of the canvas, clockwise as seen, radians.
     pub turn_rad: f32,
-    /// Left and right change places on the screen; the document stays.
+    /// Mirrors the display left to right; the document does not change.
     pub mirrored: bool,
 }
 record!(CanvasView { center, zoom, turn_rad, mirrored });
 
-/// From a canvas that is a speck to pixels as large as a hand.
+/// The range of zooms: from a canvas of a few points to pixels of 64 points.
 pub const ZOOMS: [f32; 2] = [0.01, 64.0];
 
 impl CanvasView {
@@ -38,7 +39,7 @@ impl CanvasView {
     pub fn canvas_from_screen(&self) -> Affine2 {
         self.screen_from_canvas().inverse()
     }
-    /// Zoomed about a screen point, under which the canvas stays.
+    /// Zoomed about a screen point, which stays fixed on the canvas.
     pub fn zoomed(&self, factor: f32, about: Vec2) -> Self {
         let zoom = clamped(self.zoom * factor);
         let still = self.canvas_from_screen().transform_point2(about);
@@ -53,7 +54,7 @@ impl CanvasView {
     pub fn turned(&self, by_rad: f32) -> Self {
         let by = if self.mirrored { -by_rad } else { by_rad };
         let turn = (self.turn_rad + by).rem_euclid(std::f32::consts::TAU);
-        // A hair from upright is upright: pixels are then seen as they are.
+        // Almost upright snaps to upright, so that pixels are shown unrotated.
         let upright = (std::f32::consts::TAU - turn).min(turn) < 1e-4;
         Self { turn_rad: if upright { 0.0 } else { turn }, ..*self }
     }

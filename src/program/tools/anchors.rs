@@ -1,5 +1,5 @@
-//! The anchor tool: where an image is pinned to the surface, and which of its points is pinned there.
-//! Floor 5. What anchors do is `surface::deformation`'s.
+//! The anchor tool: edits where an image is pinned to the surface, and which of its points is pinned there. Floor 5.
+//! The effect of anchors is in `surface::deformation`.
 
 use super::gradient::{self, GradientEnd};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext, lights};
@@ -32,7 +32,7 @@ pub fn handles(layer: &Layer, canvas: Size) -> Vec<Vec2> {
     }
 }
 
-/// The handle that the pen takes hold of.
+/// The handle under the pen.
 pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<usize> {
     let near = handles(layer, canvas).into_iter().map(|handle| handle.distance(at)).enumerate();
     near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= GRAB_PT * px_per_pt).map(|(i, _)| i)
@@ -82,7 +82,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     }
 }
 
-/// A new anchor that changes nothing yet: it pins what is shown there.
+/// A new anchor that changes nothing yet: it pins the image point that is shown there.
 fn add(document: Document, layer: &Layer, mut image: PlacedImage, pen: PenSample) -> GestureStart {
     let surface = document.surface.clone();
     let at = pen.place();
@@ -143,7 +143,7 @@ impl Gesture for AnchorGesture {
         let by = pen.place() - self.from;
         let anchor = match self.how {
             AnchorDrag::Carry => Anchor { at: start.at + by, source: start.source },
-            // The content follows the pen, so what is pinned lies the other way.
+            // The content follows the pen, so the source point moves the other way.
             AnchorDrag::Content => Anchor { at: start.at, source: start.source - by },
             AnchorDrag::Repin => {
                 let at = start.at + by;

@@ -1,5 +1,5 @@
-//! The brush and the eraser: the pen's readings become one stroke, live on a stroke layer, pixels on a paint layer.
-//! Floor 5. Dabs and tiles are `paint`'s.
+//! The brush and the eraser: the pen's samples become one stroke, live on a stroke layer, pixels on a paint layer.
+//! Floor 5. Dabs and tiles are in `paint`.
 
 use super::retouch::{self, ActiveWork};
 use super::symmetry::SymmetryImage;
@@ -37,7 +37,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         }
         (Content::Strokes(list), _) => {
             let strokes = list.params().strokes.clone();
-            // Of an empty layer everything is known.
+            // The tiles of an empty layer are known.
             let blank = TileAt::covering(scene.size.rect()).filter(|_| strokes.is_empty()).map(|at| (at, None));
             let shown = list.with_tiles(list.params().clone(), &scene, blank);
             (StrokeTarget::Strokes { beneath: strokes.clone(), shown }, Backdrop::Strokes(strokes))
@@ -58,7 +58,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     brush.erases |= is_eraser;
     brush.keeps_alpha |= layer.lock == LayerLock::Alpha;
     if brush.is_random() {
-        // Whoever draws the same stroke again gets the same one.
+        // The same samples give the same seed, so a repeated stroke is identical.
         brush.seed = hash::mix(pen.place().x.to_bits() ^ hash::mix(pen.place().y.to_bits()));
     }
     let color = if is_eraser { Color { a: 255, ..context.color } } else { context.color };
@@ -66,7 +66,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     let like = |image: &SymmetryImage| Stroke::new(image.brush(&brush), context.operator, color, Vec::new());
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
     let work = retouch::begun(context, &images, pen, layer, &strokes, &scene);
-    // With Shift a straight line from where the last stroke ended, its pressure that of this pen.
+    // With Shift a straight line from where the last stroke ended, with the pressure of this sample.
     let start = context.last_end.filter(|_| pen.keys.shift).into_iter();
     let line = start.flat_map(|last| (0..8).map(move |i| last.lerp(pen.place(), i as f32 / 8.0)));
     let painting = StrokeGesture {
@@ -88,7 +88,7 @@ fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {
     (Some(Box::new(gesture)), outcome)
 }
 
-/// The document with a layer that a stroke can go to. `None` where the layer in hand is locked, or there is nothing to
+/// The document with a layer that a stroke can go to. `None` if the selected layer is locked, or there is nothing to
 /// erase.
 fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Option<(Document, LayerId)> {
     let document = context.document;
@@ -135,9 +135,9 @@ enum StrokeTarget {
     Pixels { base: PixelLayer, shown: TileGrid },
 }
 
-/// A stroke in the making, and its mirror images.
+/// A stroke being drawn, and its mirror images.
 struct StrokeGesture {
-    /// As it was before the stroke, with the layer that the stroke goes to.
+    /// The document before the stroke, with the layer that the stroke goes to.
     document: Document,
     layer: LayerId,
     /// What the layer sees.
@@ -153,7 +153,7 @@ struct StrokeGesture {
 }
 
 impl StrokeGesture {
-    /// Draws on to more samples; the tiles that changed.
+    /// Draws more samples; returns the tiles that changed.
     fn draw(&mut self, samples: Vec<Sample>) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         let Some(active) = &mut self.active else { return Vec::new() };
         let of_image = |image: &SymmetryImage| samples.iter().map(|sample| image.sample(sample)).collect();
@@ -172,7 +172,7 @@ impl StrokeGesture {
                 *shown = shown.with_tiles(StrokeList { strokes }, &self.scene, tiles);
                 Content::Strokes(shown.clone())
             }
-            // What was painted here is no longer what the file holds.
+            // Painted pixels no longer match the file.
             StrokeTarget::Pixels { base, shown } => {
                 Content::Pixels(PixelLayer { tiles: shown.clone(), ..base.clone() })
             }
@@ -198,7 +198,7 @@ impl Gesture for StrokeGesture {
     }
 }
 
-/// The eraser with Ctrl on a stroke layer: a stroke that is touched is gone.
+/// The eraser with Ctrl on a stroke layer: it removes every stroke that it touches.
 struct EraseStrokesGesture {
     document: Document,
     layer: LayerId,
@@ -239,7 +239,7 @@ impl Gesture for EraseStrokesGesture {
     }
 }
 
-/// The pen stands on a stroke: within its radius of the line through its samples.
+/// Whether the pen is on a stroke: within its radius of the line through its samples.
 pub fn is_on(stroke: &Stroke, at: Vec2) -> bool {
     let radius = (0.5 * stroke.brush().size).max(4.0);
     let round = matches!(stroke.brush().tip, Tip::Round);

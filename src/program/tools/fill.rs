@@ -1,5 +1,5 @@
-//! The fill tool: a click fills what is joined to the pixel under the pen, on a paint layer.
-//! Floor 5. How far it goes is `paint::fill`'s.
+//! The fill tool: a click fills the area connected to the pixel under the pen, on a paint layer. Floor 5. `paint::fill`
+//! finds the area.
 
 use super::brush::free_name;
 use super::{GestureStart, Outcome, PenSample, ToolContext};
@@ -35,7 +35,7 @@ fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
     Some(Outcome::Commit { label: "Fill".into(), document, select: Some(id) })
 }
 
-/// The document with a paint layer to fill; `None` where the layer in hand is locked.
+/// The document with a paint layer to fill; `None` if the selected layer is locked.
 fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
     let document = context.document;
     let selected = context.layer.and_then(|id| document.layer(id));
@@ -51,7 +51,7 @@ fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
     Some((document.with_inserted(layer, place)?, id))
 }
 
-/// The layer's pixels with a colour laid over them as far as they are filled.
+/// The layer's pixels with a colour over the filled area.
 fn painted(base: &TileGrid, filled: &FilledArea, color: Color, mix: Mix) -> TileGrid {
     let tiles: Vec<TileAt> = TileAt::covering(filled.rect).collect();
     let made: Vec<Option<Arc<Tile>>> =

@@ -1,4 +1,4 @@
-//! The gradient tool: a drag lays a gradient; the ends of the selected one are handles.
+//! The gradient tool: a drag creates a gradient; the ends of the selected one are handles.
 //! Floor 5.
 
 use super::brush::free_name;
@@ -42,7 +42,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
 /// A new gradient, from where the pen came down.
 struct NewGradientGesture {
     document: Document,
-    /// Of the layer it goes above.
+    /// The slot above the selected layer.
     place: Option<LayerSlot>,
     gradient: Gradient,
     layer: Option<Layer>,
@@ -81,12 +81,12 @@ fn upright(from: Vec2, to: Vec2) -> Vec2 {
     from + Vec2::from_angle(turn) * from.distance(to)
 }
 
-/// Takes hold of one end of a gradient.
+/// Starts dragging one end of a gradient.
 pub(super) fn drag_end(document: Document, layer: LayerId, gradient: Gradient, end: GradientEnd) -> GestureStart {
     (Some(Box::new(GradientEndGesture { document, layer, gradient, end, moved: false })), Outcome::Idle)
 }
 
-/// One end of a gradient in hand.
+/// One end of a gradient being dragged.
 struct GradientEndGesture {
     document: Document,
     layer: LayerId,

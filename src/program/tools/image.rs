@@ -1,5 +1,4 @@
-//! The image tool: where the selected image lies before it is bent.
-//! Floor 5. Its anchors are `anchors`'.
+//! The image tool: moves, scales and turns the selected image before it is bent. Floor 5. The anchors are in `anchors`.
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, LayerId, LayerLock, Live};

@@ -1,6 +1,6 @@
-//! The lights of a shading layer on the canvas: each is a handle. One infinitely far stands on a disc around the
-//! middle, which is the half sphere of directions seen from the front; one at a point stands there. Floor 5. What light
-//! does is `shading`'s.
+//! The lights of a shading layer on the canvas: each is a handle. A distant light has its handle on a disc around the
+//! middle, which is the half sphere of directions seen from the front; a point light has it at its position. Floor 5.
+//! The effect of light is in `shading`.
 
 use super::{Gesture, Outcome, PenSample};
 use crate::document::{Content, Document, LayerId, Live};
@@ -14,7 +14,7 @@ fn reach_px(canvas: Size) -> f32 {
     REACH * canvas.width.min(canvas.height) as f32
 }
 
-/// Where the handle of each light stands, canvas px.
+/// The position of each light's handle, canvas px.
 pub fn handles(lights: &[Light], canvas: Size) -> Vec<Vec2> {
     let place = |light: &Light| match light.kind {
         LightKind::Directional { direction } => {
@@ -39,7 +39,7 @@ fn dragged(light: Light, to: Vec2, canvas: Size) -> Light {
     Light { kind, ..light }
 }
 
-/// A light in hand.
+/// A light being dragged.
 pub struct LightGesture {
     pub document: Document,
     pub layer: LayerId,

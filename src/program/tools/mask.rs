@@ -1,6 +1,6 @@
 //! The brush and the eraser on a layer's mask: light colours show the layer, dark ones and the eraser hide it. The
-//! strokes are those of the brush, on a paint layer that holds the mask's greys while the hand moves. Floor 5. Strokes
-//! are `brush`'s.
+//! strokes are those of the brush, on a temporary paint layer with the mask's greys. Floor 5. The strokes are in
+//! `brush`.
 
 use super::brush::{self, StrokePurpose};
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
@@ -10,7 +10,7 @@ use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The pen comes down. Nothing begins where the layer is locked, or has no mask that is a picture.
+/// The pen comes down. Nothing starts if the layer is locked or has no paintable mask.
 pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
     let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
     let Some(layer) = layer else { return (None, Outcome::Idle) };
@@ -38,7 +38,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     (Some(Box::new(painting)), outcome)
 }
 
-/// A stroke in the making.
+/// A stroke being drawn.
 struct MaskGesture {
     document: Document,
     layer: LayerId,
@@ -50,7 +50,7 @@ struct MaskGesture {
 }
 
 impl MaskGesture {
-    /// What the brush did to the sheet, done to the mask.
+    /// Copies what the brush did to the sheet into the mask.
     fn took(&mut self, outcome: Outcome) -> Outcome {
         match outcome {
             Outcome::Preview(sheet) => self.with(&sheet).map_or(Outcome::Idle, Outcome::Preview),
@@ -71,7 +71,7 @@ impl MaskGesture {
         let now = self.mask.clone();
         self.document.with_layer(self.layer, |layer| {
             if let Some(LayerMask { kind: MaskKind::File { file, coverage }, .. }) = &mut layer.mask {
-                // What was painted here is no longer what the file holds.
+                // Painted pixels no longer match the file.
                 file.clear();
                 *coverage = now;
             }

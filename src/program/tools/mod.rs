@@ -1,6 +1,6 @@
-//! Floor 5: what the hand holds. A tool turns the pen's events on the canvas into documents: one that is shown while
-//! the hand moves, and one that is kept when it lifts. A tool is a file and a row of [`ToolKind::ALL`]. Not here: which
-//! tool is in hand, history (`session`); screen coordinates (`app`).
+//! Floor 5: tools. A tool turns the pen's events on the canvas into documents: a preview while the pen moves, and a
+//! result when it lifts. Each tool is a file and a row of [`ToolKind::ALL`]. Not here: the current tool and the history
+//! (`session`), screen coordinates (`window`).
 
 pub mod anchors;
 pub mod brush;
@@ -22,7 +22,7 @@ use crate::paint::{Brush, Fill, Sample};
 use crate::surface::Operator;
 pub use symmetry::Symmetry;
 
-/// What can be taken in hand.
+/// The tools.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum ToolKind {
     #[default]
@@ -39,7 +39,7 @@ pub enum ToolKind {
     Zoom,
 }
 
-/// A tool as people know it.
+/// A tool's name, label, key and hint.
 #[derive(Clone, Copy)]
 pub struct ToolRow {
     pub kind: ToolKind,
@@ -47,7 +47,7 @@ pub struct ToolRow {
     pub name: &'static str,
     /// On buttons.
     pub label: &'static str,
-    /// The letter that takes it in hand.
+    /// The letter that selects it.
     pub key: char,
     /// What it does, for tooltips and the status bar.
     pub hint: &'static str,
@@ -139,7 +139,7 @@ impl ToolKind {
     }
 }
 
-/// One reading of the pen with what else is held.
+/// One sample of the pen with the modifier keys held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PenSample {
     pub sample: Sample,
@@ -165,33 +165,33 @@ impl PenSample {
     }
 }
 
-/// What a tool works on and with, as it is when the pen comes down.
+/// Everything a tool works with, as it is when the pen comes down.
 pub struct ToolContext<'a> {
     pub document: &'a Document,
     /// The selected layer.
     pub layer: Option<LayerId>,
     pub brush: &'a Brush,
-    /// The colour in hand, and the one behind it.
+    /// The foreground and the background colour.
     pub color: Color,
     pub second_color: Color,
     /// How new marks follow the surface.
     pub operator: Operator,
-    /// Canvas px to a screen point: how near is near.
+    /// Canvas px per screen point, for hit tests.
     pub px_per_pt: f32,
     /// Where the last stroke ended.
     pub last_end: Option<Vec2>,
     /// How strokes repeat.
     pub symmetry: Symmetry,
-    /// How far the fill tool goes.
+    /// The settings of the fill tool.
     pub fill: Fill,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
-    /// From a pixel to what a clone brush copies onto it, px; `None` before that was said.
+    /// From a pixel to what a clone brush copies onto it, px; `None` before it was set.
     pub clone_offset: Option<Vec2>,
 }
 
 impl<'a> ToolContext<'a> {
-    /// As it is when nothing was chosen yet: no layer, black before white, flat, a pixel to a point.
+    /// The initial context: no layer, black and white, no operator, one pixel per point.
     pub fn new(document: &'a Document, brush: &'a Brush) -> Self {
         Self {
             document,
@@ -210,12 +210,12 @@ impl<'a> ToolContext<'a> {
     }
 }
 
-/// What a tool made of what the pen did.
+/// What a tool returns for an event of the pen.
 pub enum Outcome {
     Idle,
-    /// To be shown until the next outcome.
+    /// A preview until the next outcome.
     Preview(Document),
-    /// To be kept, as a step of this name.
+    /// A finished step with this name.
     Commit {
         label: String,
         document: Document,
@@ -226,25 +226,25 @@ pub enum Outcome {
     Chosen(Vec<usize>),
     /// Clone brushes copy from here from now on.
     CloneFrom(Vec2),
-    /// Nothing was begun, for a reason to be told.
+    /// Nothing was started, for a reason to show.
     Refused(&'static str),
-    /// A colour was taken.
+    /// A colour was picked.
     Picked(Color),
-    /// What was shown is to be forgotten.
+    /// The preview is to be dropped.
     Cancel,
 }
 
-/// A tool between the pen's coming down and its lifting. It holds what it began with: documents are cheap to clone.
+/// A tool between the pen coming down and lifting. It holds a clone of the document it began with, which is cheap.
 pub trait Gesture: Send {
-    /// The pen's readings since the last call, in their order.
+    /// The pen's samples since the last call, in order.
     fn drag(&mut self, pens: &[PenSample]) -> Outcome;
     fn release(&mut self) -> Outcome;
 }
 
-/// What a tool begins with.
+/// The start of a gesture, and its first outcome.
 pub type GestureStart = (Option<Box<dyn Gesture>>, Outcome);
 
-/// The pen comes down. Hand and zoom have nothing to do with documents: they begin nothing.
+/// The pen comes down. Hand and zoom do not concern documents: they start no gesture.
 pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {
     match kind {
         ToolKind::Brush => brush::press(context, pen, brush::StrokePurpose::Paint),

@@ -1,4 +1,4 @@
-//! The move tool: a layer, or one stroke of a stroke layer, elsewhere on the canvas.
+//! The move tool: moves a layer, or one stroke of a stroke layer, on the canvas.
 //! Floor 5.
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
@@ -58,7 +58,7 @@ impl Gesture for MoveGesture {
     }
 }
 
-/// The layer with all it holds elsewhere; `by` in whole pixels. What covers the canvas anyway stays as it is.
+/// The layer with its content moved; `by` in whole pixels. Content that covers the whole canvas stays as it is.
 pub fn moved(layer: &Layer, by: Vec2) -> Layer {
     let content = match &layer.content {
         Content::Pixels(pixels) => Content::Pixels(PixelLayer {

@@ -1,5 +1,5 @@
 //! Outlines: of the next dab as the surface bends it, which is the brush's cursor, and of a stroke.
-//! Floor 5. Where D(q) is as far from the anchor as the footprint is wide, or paint begins, found on a grid.
+//! Floor 5. The curve on which D(q) is one radius from the anchor, or on which paint begins, found on a grid.
 
 use crate::document::Document;
 use crate::math::{Rect, Vec2, vec2};
@@ -8,7 +8,7 @@ use crate::surface::support::{DabExtent, SupportBounds};
 use crate::surface::{Deformation, Operator};
 use std::sync::Arc;
 
-/// Cells along the longer side of the grid: finer than the eye needs for a cursor, and fast enough for every frame.
+/// Cells along the longer side of the grid: fine enough for a cursor, and fast enough for every frame.
 const CELLS: i32 = 72;
 
 /// The outline of a dab of `radius_px` at `at`, as pairs of points to be joined by lines; canvas px.

@@ -1,5 +1,5 @@
-//! The brush as smudge, blur and clone: what it needs before it begins, and what is in its hand.
-//! Floor 5. What it does to pixels is `paint::retouch`'s; the pen's readings become samples in `brush`.
+//! The brush as smudge, blur and clone: checks before it starts, and its active strokes. Floor 5. The effect on pixels
+//! is in `paint::retouch`; `brush` passes the samples on.
 
 use super::brush::StrokePurpose;
 use super::symmetry::SymmetryImage;
@@ -10,7 +10,7 @@ use crate::paint::{ActiveRetouching, ActiveStrokes, BrushMode, Sample, Scene, St
 use crate::raster::{Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
-/// Strokes in the making: of paint, or of what is there.
+/// Active strokes: of paint, or retouching.
 pub(super) enum ActiveWork {
     Strokes(ActiveStrokes),
     Retouching(Box<ActiveRetouching>),
@@ -39,8 +39,8 @@ impl ActiveWork {
     }
 }
 
-/// What comes of a press instead of a stroke: a source point for clones, or why there is none; `None` where one can
-/// begin.
+/// The outcome of a press that starts no stroke: a source point for clones, or the reason; `None` if a stroke can
+/// start.
 pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> Option<Outcome> {
     let mode = context.brush.mode;
     if purpose != StrokePurpose::Paint || !mode.is_retouching() {
@@ -57,7 +57,7 @@ pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurp
     (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush is to copy from, then paint."))
 }
 
-/// What works on the pixels of a layer; `None` where the strokes are paint.
+/// The retouching of a layer's pixels; `None` if the strokes are paint.
 ///
 /// * `strokes`: one for each image.
 pub(super) fn begun(

@@ -1,12 +1,12 @@
-//! The stroke tool: strokes of a stroke layer are chosen on the canvas and moved along the surface.
-//! Floor 5. The edits are `document`'s; which strokes are chosen is remembered by the session.
+//! The stroke tool: selects strokes of a stroke layer on the canvas and moves them along the surface. Floor 5. The
+//! edits are in `document::strokes`; the session keeps the selection.
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, LayerId, LayerLock};
 use crate::math::Vec2;
 use crate::paint::picking;
 
-/// The pen comes down: on a stroke it chooses it (with Shift, it as well, or no longer), beside all it lets go of them.
+/// The pen comes down: on a stroke it selects it (with Shift it toggles it), beside all strokes it deselects them.
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let nothing = (None, Outcome::Idle);
     let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return nothing };
@@ -38,7 +38,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     (Some(Box::new(moving)), Outcome::Chosen(chosen))
 }
 
-/// A hand that chooses trembles: nearer than this nothing is moved, screen points.
+/// Movements smaller than this are ignored, screen points: a hand trembles while it selects.
 const SLOP_PT: f32 = 3.0;
 
 struct MoveStrokesGesture {
@@ -95,7 +95,7 @@ mod tests {
         let layers = vec![Arc::new(Layer::new("Lines", Content::Strokes(Live::new(list))))];
         Document { layers, ..Document::empty(Size::new(200, 150)) }
     }
-    /// What is chosen after a press, and what the drag leads to.
+    /// The selection after a press, and the result of the drag.
     fn dragged(strokes: &[usize], shift: bool, from: Vec2, to: Vec2) -> (Option<Vec<usize>>, Option<Vec<f32>>) {
         let (document, brush) = (document(), Brush::default());
         let layer = Some(document.layers[0].id);

@@ -31,7 +31,7 @@ pub struct SymmetryImage {
 }
 
 impl Symmetry {
-    /// The images of a stroke, itself first.
+    /// The images of a stroke, the stroke itself first.
     pub fn images(self, canvas: Size) -> Vec<SymmetryImage> {
         let mirror = |x: f32, y: f32| Mat2::from_diagonal(Vec2::new(x, y));
         let turns = match self {
@@ -71,7 +71,7 @@ impl SymmetryImage {
         let at = if self.turn == Mat2::IDENTITY { sample.at } else { at };
         Sample { at, tilt: self.turn * sample.tilt, ..*sample }
     }
-    /// The brush that paints the image: whatever turns or scatters its dabs does so in the mirror.
+    /// The brush that paints the image: its dabs are rotated and scattered in the mirrored frame.
     pub fn brush(&self, brush: &Brush) -> Brush {
         Brush { facing: StrokeFrame::of(self.turn * brush.facing.map()), ..brush.clone() }
     }

@@ -1,4 +1,4 @@
-//! The picture on the graphics card: cut into blocks below any driver's limit, of which only changed parts are sent.
+//! The picture on the graphics card: blocks below any driver's texture limit; only changed parts are uploaded.
 //! Floor 7.
 
 use crate::math::{Affine2, Rect, Size, vec2};
@@ -21,14 +21,14 @@ pub struct TextureBlocks {
 }
 
 impl TextureBlocks {
-    /// Another picture: nothing of the last one stays.
+    /// Starts another picture and drops the last one.
     pub fn begin(&mut self, size: Size) {
         if self.size != Some(size) {
             self.size = Some(size);
         }
         self.textures.clear();
     }
-    /// Sends tiles that changed.
+    /// Uploads tiles that changed.
     pub fn update(&mut self, ctx: &egui::Context, grid: &TileGrid, tiles: impl Iterator<Item = TileAt>) {
         let Some(size) = self.size else { return };
         let mut changed: BTreeMap<(i32, i32), Rect> = BTreeMap::new();
@@ -113,7 +113,7 @@ fn block_rect((col, row): (i32, i32)) -> Rect {
 }
 
 /// Premultiplied pixels of a rectangle, as the graphics card takes them. Beyond the canvas's right and lower edge its
-/// last pixels are repeated once, so that smoothing mixes nothing foreign into the rim.
+/// last pixels are repeated once, so that interpolation mixes nothing else into the rim.
 fn image(grid: &TileGrid, rect: Rect, canvas: Size) -> ColorImage {
     let (width, height) = (rect.width(), rect.height());
     let mut pixels = vec![Color32::TRANSPARENT; width * height];

@@ -1,4 +1,4 @@
-//! What lies over the picture: the brush's bent footprint, anchors, a gradient's ends.
+//! Overlays on the picture: the brush's bent footprint, anchors, a gradient's ends.
 //! Floor 7.
 
 use crate::document::Content;
@@ -9,7 +9,7 @@ use crate::tools::{ToolKind, anchors, outline};
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use std::sync::Arc;
 
-/// Draws the marks of the tool in hand; `under`: the canvas point under the pointer.
+/// Draws the overlays of the current tool; `under`: the canvas point under the pointer.
 pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, under: Option<Vec2>, tool: ToolKind) {
     let to_screen = |p: Vec2| {
         let p = screen_from_canvas.transform_point2(p);
@@ -30,7 +30,7 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
             let radius = (0.5 * session.brush.size).max(0.5);
             let lines = outline::outline(document, session.operator, at, radius);
             let lines: Vec<[Pos2; 2]> = lines.into_iter().map(|line| line.map(to_screen)).collect();
-            // Dark beneath light, so that it is seen on any picture.
+            // Dark beneath light, so that it is visible on any picture.
             for stroke in
                 [Stroke::new(2.4, Color32::from_black_alpha(120)), Stroke::new(1.1, Color32::from_white_alpha(230))]
             {
@@ -51,7 +51,7 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     }
 }
 
-/// What strokes repeat about.
+/// The axes of symmetry.
 fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(document) = session.shown() else { return };
     for axis in session.symmetry.axes(document.size) {
@@ -78,13 +78,13 @@ fn clone_source(painter: &Painter, session: &Session, under: Vec2, to_screen: &i
 /// Pairs of points to be joined.
 type OutlineSegments = Arc<Vec<[Vec2; 2]>>;
 
-/// What was found out about the strokes that are chosen: kept by egui between frames.
+/// Cached outlines of the selected strokes, kept by egui between frames.
 #[derive(Clone, Default)]
 struct OutlineCache {
     cache: Vec<(Arc<PaintStroke>, OutlineSegments)>,
 }
 
-/// The chosen strokes: their outlines, or the lines through their samples while they move.
+/// The selected strokes: their outlines, or the lines through their samples while they move.
 fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
     let document = tab.shown();
@@ -158,7 +158,7 @@ fn handles(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Po
     }
 }
 
-/// The colours by which anchors are told apart, here and in their insets (SF fig. 9).
+/// The colours that distinguish anchors, here and in their insets (SF fig. 9).
 pub fn anchor_color(index: usize) -> Color32 {
     let [r, g, b] = crate::document::view::anchor_color(index).to_array().map(crate::math::srgb::quantise);
     Color32::from_rgb(r, g, b)

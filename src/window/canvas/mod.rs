@@ -1,6 +1,6 @@
 //! The canvas: the picture in its view, and the pen on it. Floor 7. `sheet` holds the picture and its copy on the
 //! graphics card, `pointer` turns events into actions, `marks` and `overlay` draw what lies over the picture. Pixels
-//! come from the painter's thread.
+//! come from the render thread.
 
 mod blocks;
 mod marks;
@@ -28,16 +28,16 @@ use pointer::PointerState;
 use sheet::TileSheet;
 use std::time::Duration;
 
-/// What the window knows of the canvas.
+/// The state of the canvas.
 pub struct Canvas {
-    /// Absent where the system starts no thread.
+    /// Absent if the system cannot start a thread.
     render_thread: Option<RenderThread>,
     /// The picture in whole pixels.
     whole: TileSheet,
-    /// The same, smaller, while something is dragged that takes long to redraw.
+    /// A smaller version, while something is dragged that takes long to redraw.
     draft: TileSheet,
     is_draft_in_front: bool,
-    /// Which tab's picture it is, and what was asked for last.
+    /// The tab that is shown, and the last request.
     picture: u64,
     tab: Option<usize>,
     wanted: Option<(crate::document::Document, bool)>,
@@ -45,7 +45,7 @@ pub struct Canvas {
     checker: Option<TextureHandle>,
     overlay: Overlay,
     insets: Insets,
-    /// The picture for the navigator, and whether it is older than the picture.
+    /// The picture for the navigator, and whether it is outdated.
     small: Option<TextureHandle>,
     small_is_old: bool,
     /// Of the canvas's area, screen points.
@@ -55,7 +55,7 @@ pub struct Canvas {
     /// How long the last redraw took.
     pub took: Duration,
     pub is_busy: bool,
-    /// What cannot be done here, to be told once.
+    /// Errors to report once.
     pub trouble: Option<Error>,
 }
 
@@ -91,7 +91,7 @@ impl Canvas {
     pub fn draw_on(&mut self, tablet: SharedTablet) {
         self.hand.draw_on(tablet);
     }
-    /// Draws the canvas and pushes what the pen does to it.
+    /// Draws the canvas and requests what the pen does.
     pub fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
@@ -100,7 +100,7 @@ impl Canvas {
         ui.painter().rect_filled(rect, 0.0, theme::SURROUND[usize::from(!dark)]);
         let Some(tab) = session.active() else { return invite(ui, rect) };
         let Some(view) = tab.view else {
-            // The first time it is seen, it is seen whole.
+            // The first view shows the whole canvas.
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
             return;
@@ -136,7 +136,7 @@ impl Canvas {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
     }
-    /// Asks for what is to be shown, and takes what was painted.
+    /// Requests the picture to show, and takes the tiles that were painted.
     fn follow(&mut self, ctx: &egui::Context, session: &Session, view: &CanvasView, area: egui::Rect) {
         let Some(tab) = session.active() else { return };
         let drawn = tab.drawn();
@@ -173,7 +173,7 @@ impl Canvas {
         self.is_draft_in_front = is_draft_next;
         self.small_is_old |= is_sent;
     }
-    /// The picture, small, for the navigator; made again when the painter rests.
+    /// The small picture for the navigator; updated when the render thread is idle.
     pub fn small(&mut self, ctx: &egui::Context, canvas: Size) -> Option<egui::TextureId> {
         const SIDE: u32 = 200;
         if self.small.is_none() || (self.small_is_old && !self.is_busy) {
@@ -222,13 +222,14 @@ impl Canvas {
     }
 }
 
-/// A slider, a handle or a layer is in hand. A brush is not: its strokes change few tiles, and are looked at closely.
+/// Whether a slider, a handle or a layer is being dragged. A brush does not count: its strokes change few tiles, and
+/// are looked at closely.
 fn is_dragged(session: &Session) -> bool {
     let paints = session.is_drawing() && matches!(session.tool, ToolKind::Brush | ToolKind::Eraser);
     !paints && session.active().is_some_and(|tab| tab.is_previewing())
 }
 
-/// The canvas pixels in sight.
+/// The visible canvas pixels.
 fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
     let inverse = view.canvas_from_screen();
     let half = vec2(area.width(), area.height()) * 0.5;
@@ -239,7 +240,7 @@ fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
     Rect::new(low.x.floor() as i32, low.y.floor() as i32, high.x.ceil() as i32, high.y.ceil() as i32)
 }
 
-/// What an empty window says.
+/// The text of an empty window.
 fn invite(ui: &Ui, area: egui::Rect) {
     let font = egui::TextStyle::Heading.resolve(ui.style());
     let text = "Drop a picture, a normal map or a project here, or open one from the File menu";

@@ -1,5 +1,5 @@
 //! Views of the surface over the picture, drawn on a thread of their own: one over all of it, and the anchors' weights
-//! in a corner (SF fig. 9). Floor 7. What views show is `document::view`'s.
+//! in a corner (SF fig. 9). Floor 7. The views are in `document::view`.
 
 use super::marks::anchor_color;
 use crate::document::view::{SurfaceView, draw};
@@ -15,7 +15,7 @@ use eframe::egui::{
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
-/// What a view shows, as far as it can change.
+/// The inputs of a view that can change.
 #[derive(Clone)]
 struct ViewInputs {
     view: SurfaceView,
@@ -46,7 +46,7 @@ impl ViewInputs {
     }
 }
 
-/// A view as it was drawn last, and the one that is coming.
+/// The view that was drawn last, and the one in progress.
 #[derive(Default)]
 struct DrawnView {
     of: Option<ViewInputs>,
@@ -55,7 +55,7 @@ struct DrawnView {
 }
 
 impl DrawnView {
-    /// The view that is wanted, or the one before until it is drawn.
+    /// The requested view, or the previous one until it is drawn.
     fn texture(
         &mut self,
         ctx: &egui::Context,
@@ -68,7 +68,7 @@ impl DrawnView {
             self.coming = Some(coming);
             let waker = ctx.clone();
             jobs::spawn("view of the surface", move || {
-                // The window may be gone by then.
+                // The window may be closed by then.
                 let _ = sender.send(make(wanted));
                 waker.request_repaint();
             })?;
@@ -89,7 +89,7 @@ pub struct Overlay {
 }
 
 impl Overlay {
-    /// The view that is wanted, once it is drawn.
+    /// The requested view, once it is drawn.
     pub fn texture(&mut self, ctx: &egui::Context, session: &Session) -> Result<Option<egui::TextureId>> {
         let view = session.overlay.as_deref().and_then(SurfaceView::from_name);
         let Some(shows) = view.and_then(|view| ViewInputs::of(session, view)) else { return Ok(None) };
@@ -109,7 +109,7 @@ pub struct Insets {
 const INSET_PT: f32 = 150.0;
 
 impl Insets {
-    /// Draws them where there are anchors to tell apart.
+    /// Draws them if there are several anchors.
     pub fn draw(&mut self, ctx: &egui::Context, session: &Session, painter: &Painter) {
         let anchors = session.layer().map_or(0, |layer| match &layer.content {
             Content::Image(live) => live.params().bend.anchors.len(),

@@ -1,5 +1,5 @@
-//! The pen's and the mouse's events on the canvas become actions. Strokes are made of events, one sample each, never of
-//! where the pointer stands when a frame is drawn. Floor 7.
+//! Turns events of pen and mouse on the canvas into actions. Strokes are made of events, one sample each, never of the
+//! pointer's position when a frame is drawn. Floor 7.
 
 use crate::math::{Vec2, vec2};
 use crate::paint::Sample;
@@ -29,11 +29,11 @@ enum PointerGesture {
     },
 }
 
-/// Two fingers that stay no longer, and move no farther, have tapped.
+/// The greatest time and movement of a two-finger tap.
 const TAP_SECS: f64 = 0.35;
 const TAP_PT: f32 = 12.0;
 
-/// What is known between frames.
+/// The state between frames.
 #[derive(Default)]
 pub struct PointerState {
     holding: PointerGesture,
@@ -52,14 +52,14 @@ impl PointerState {
     pub fn draw_on(&mut self, tablet: SharedTablet) {
         self.pen.on(tablet);
     }
-    /// The view is being moved: nothing is painted, and no cursor of the brush is shown.
+    /// Whether the view is being moved: then nothing is painted, and no brush cursor is shown.
     pub fn is_looking(&self) -> bool {
         matches!(self.holding, PointerGesture::Panning | PointerGesture::Zooming { .. } | PointerGesture::Turning)
             || self.space
     }
-    /// The tool in hand, or the one a held key lends.
+    /// The current tool, or the one selected by a held key.
     pub fn tool(&self, session: &Session) -> ToolKind {
-        // Alt tells a clone brush where to copy from.
+        // Alt sets the source point of a clone brush.
         let clones = session.tool == ToolKind::Brush && session.brush.mode.is_clone();
         let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Gradient) && !clones;
         match self.holding {
@@ -83,7 +83,7 @@ impl PointerState {
             _ => CursorIcon::Crosshair,
         }
     }
-    /// Reads the events of a frame in their order.
+    /// Processes the events of a frame in order.
     pub fn listen(
         &mut self,
         ui: &Ui,
@@ -145,8 +145,7 @@ impl PointerState {
         self.pen.settle();
         listening.flush();
     }
-    /// A finger, or a pen that reports itself as one. Two that come down and go again, without moving, take a step
-    /// back.
+    /// A finger, or a pen that reports itself as one. A tap with two fingers is undo.
     fn touched(&mut self, phase: TouchPhase, is_here: bool, now_secs: f64, listening: &mut FrameInput) {
         let touches = self.pen.touches();
         match phase {
@@ -201,7 +200,7 @@ impl PointerState {
         match self.holding {
             PointerGesture::Nothing => {}
             PointerGesture::Drawing => {
-                // A pen that went bad ends its stroke at the last good reading.
+                // A pen with invalid reports ends its stroke at the last good one.
                 let Some(reading) = self.watch.as_mut().and_then(|watch| watch.follow(report)) else {
                     return self.release(listening);
                 };
@@ -270,14 +269,14 @@ impl PointerState {
     }
 }
 
-/// One frame's listening.
+/// The input of one frame.
 struct FrameInput<'a> {
     session: &'a Session,
-    /// As it is after the actions so far.
+    /// The view after the actions so far.
     view: CanvasView,
     middle: Pos2,
     actions: &'a mut Vec<Action>,
-    /// Readings not yet pushed: all of a frame go together.
+    /// Samples not yet sent: all of a frame go together.
     pens: Vec<PenSample>,
 }
 

@@ -1,5 +1,5 @@
-//! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the whole one, and a
-//! smaller one for what is being dragged. Floor 7.
+//! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the full one, and a
+//! smaller one during drags. Floor 7.
 
 use super::blocks::TextureBlocks;
 use crate::math::{Affine2, Size, vec2};
@@ -14,16 +14,16 @@ pub struct TileSheet {
     pub grid: TileGrid,
     blocks: TextureBlocks,
     size: Option<Size>,
-    /// Tiles that were painted and are not on the graphics card yet, and since when.
+    /// Painted tiles that are not on the graphics card yet, and since when.
     unsent: Vec<TileAt>,
     unsent_since: Option<Instant>,
 }
 
-/// A redraw that takes no longer is shown at once.
+/// A redraw shorter than this is shown at once.
 const WHOLE: Duration = Duration::from_millis(160);
 
 impl TileSheet {
-    /// Another picture: nothing of the last one stays.
+    /// Starts another picture and drops the last one.
     pub fn begin(&mut self, size: Size) {
         self.grid = TileGrid::default();
         self.grid.reserve(size.rect());
@@ -35,15 +35,15 @@ impl TileSheet {
     pub fn size(&self) -> Option<Size> {
         self.size
     }
-    /// Takes what was painted.
+    /// Takes painted tiles.
     pub fn take(&mut self, painted: RenderedTileBatch) {
         for (at, tile) in painted.tiles {
             self.grid.set(at, tile);
             self.unsent.push(at);
         }
     }
-    /// Sends tiles to the graphics card; whether there were any. A drag shows whole pictures, not the tiles of two; a
-    /// long redraw shows itself as it goes.
+    /// Uploads tiles to the graphics card; returns whether there were any. A drag shows complete pictures, never the
+    /// tiles of two; a long redraw is shown in progress.
     pub fn send(&mut self, ctx: &egui::Context, is_busy: bool) -> bool {
         if self.unsent.is_empty() {
             return false;

@@ -1,5 +1,5 @@
-//! Everything in the menus: one row a command, with its keys. Menus, the keyboard, the palette and the list of
-//! shortcuts are made from the same rows. Floor 7.
+//! The commands of the menus: one row per command, with its keys. Menus, keyboard, palette and the list of shortcuts
+//! are made from the same rows. Floor 7.
 
 mod edit;
 mod file;
@@ -16,7 +16,7 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A command.
 pub struct MenuCommand {
-    /// As menus show it; `…` where a dialog follows. Empty is a line between two.
+    /// The label in menus; `…` where a dialog follows. An empty name is a separator.
     pub name: &'static str,
     /// The first is shown.
     pub keys: &'static [KeyboardShortcut],
@@ -24,11 +24,11 @@ pub struct MenuCommand {
     pub hint: &'static str,
     pub can: fn(&Session) -> bool,
     pub run: fn(&Session, &mut UiRequests),
-    /// Of one that switches something on and off: whether it is on.
+    /// For a toggle: whether it is on.
     pub is_on: Option<fn(&Session, &Settings) -> bool>,
 }
 
-/// A command by all that it always has: name, keys, hint, when it can be done, what it does.
+/// A command: name, keys, hint, when it is available, what it does.
 const fn row(
     name: &'static str,
     keys: &'static [KeyboardShortcut],
@@ -40,7 +40,7 @@ const fn row(
 }
 
 impl MenuCommand {
-    /// Marked in the menu while this is so.
+    /// Shows a tick in the menu while this is true.
     const fn ticked(self, is_on: fn(&Session, &Settings) -> bool) -> Self {
         Self { is_on: Some(is_on), ..self }
     }
@@ -49,7 +49,7 @@ impl MenuCommand {
     }
 }
 
-/// A line between two commands of a menu.
+/// A separator between two commands of a menu.
 const LINE: MenuCommand = row("", &[], "", always, |_, _| {});
 
 /// The menus and what is in them.
@@ -76,7 +76,7 @@ pub fn named(name: &str) -> Option<&'static MenuCommand> {
     all().find(|command| command.name == name)
 }
 
-/// The operators as the tool bar offers them: name, what each begins with, what it is for.
+/// The operators of the options bar: name, default values, purpose.
 pub fn operators() -> [(&'static str, crate::surface::Operator, &'static str); 4] {
     paint::OPERATORS
 }

@@ -1,4 +1,4 @@
-//! The Paint menu: what is in hand.
+//! The Paint menu: the current brush, colours and operator.
 //! Floor 7.
 
 use super::{LINE, MenuCommand, always, key, row, shift};

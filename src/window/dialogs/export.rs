@@ -1,4 +1,4 @@
-//! Export: format and what shows through, then where to.
+//! The export dialog: format and background, then the file.
 //! Floor 7.
 
 use super::{DialogAnswer, buttons};
@@ -8,7 +8,7 @@ use crate::session::Session;
 use crate::theme;
 use eframe::egui::{Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2};
 
-/// What was chosen, kept for the next time.
+/// The choices, kept for the next time.
 #[derive(Clone)]
 pub struct ExportDialog {
     pub extension: &'static str,
@@ -55,7 +55,7 @@ impl ExportDialog {
             None => DialogAnswer::Open,
         }
     }
-    /// The picture on what it will be laid on: white, or nothing.
+    /// The picture on its background: white or none.
     fn preview(&self, ui: &mut Ui, preview: TextureId, canvas: Size) {
         const ROOM_PT: Vec2 = vec2(320.0, 180.0);
         let side = vec2(canvas.width as f32, canvas.height as f32);

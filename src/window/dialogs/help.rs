@@ -1,4 +1,4 @@
-//! What this program is.
+//! The About dialog.
 //! Floor 7.
 
 use super::{DialogAnswer, close};

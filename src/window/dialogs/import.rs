@@ -1,6 +1,5 @@
-//! Maps become a document: which files, what was found of their conventions, and what they look like under a light, so
-//! that everything can be seen and corrected before the first stroke. Floor 7. Reading the maps is `io::maps`', on a
-//! thread of its own.
+//! The import dialog: choose the maps, check their detected conventions and their look under a light, and correct them
+//! before the first stroke. Floor 7. `io::maps` reads the maps, on another thread.
 
 use super::{DialogAnswer, buttons};
 use crate::Result;
@@ -21,11 +20,11 @@ use std::path::{Path, PathBuf};
 #[derive(Default)]
 pub struct ImportDialog {
     source: SurfaceSource,
-    /// As it was when the maps were read last.
+    /// The source that was read last.
     read: Option<SurfaceSource>,
     is_reading: bool,
     found: Option<Result<maps::ImportedSurface>>,
-    /// Lit as found, with red, green, and both flipped.
+    /// Lit as detected, with red, green, and both flipped.
     lit: Vec<TextureHandle>,
     /// For the document in front, not for a new one.
     replaces: bool,
@@ -36,13 +35,13 @@ const FLIPS: [(&str, bool, bool); 4] =
     [("As it is", false, false), ("Flip red", true, false), ("Flip green", false, true), ("Flip both", true, true)];
 
 impl ImportDialog {
-    /// With the files that are known.
+    /// Opens the dialog with the known files.
     pub fn of(source: SurfaceSource) -> Self {
         Self { source, ..Self::default() }
     }
-    /// To replace the maps of a document, which are shown as they are.
+    /// Opens the dialog to replace the maps of a document, showing the present ones.
     pub fn replacing(source: Option<&SurfaceSource>) -> Self {
-        // What came out of a project has no file of its own to be read again.
+        // Maps from inside a project have no file to read again.
         let is_there = |source: &&SurfaceSource| {
             let normal = source.normal.as_ref().map(|map| &map.file);
             let file = normal.or(source.depth.as_ref().map(|map| &map.file));
@@ -56,17 +55,17 @@ impl ImportDialog {
         match purpose {
             FilePurpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
             FilePurpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
-            // The first file brings those that belong to it.
+            // The first file adds the maps that belong to it.
             _ if self.source == SurfaceSource::default() => {
                 self.source = storage::maps_beside(Path::new(&file), storage::FileUse::Normals);
             }
             _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
         }
     }
-    /// The maps were read.
+    /// Takes the maps that were read.
     pub fn take(&mut self, ctx: &Context, found: Result<maps::ImportedSurface>) {
         self.is_reading = false;
-        // A flat border is background, unless the user says otherwise; then everything is read once more.
+        // A flat border counts as background unless the user decides otherwise; then everything is read again.
         let is_first = self.found.is_none() && self.source.mask.is_none();
         if is_first && found.as_ref().is_ok_and(|import| import.findings.flat_border > 0.0) {
             self.source.mask = Some(MaskSource::Flat);
@@ -151,7 +150,7 @@ impl ImportDialog {
             });
         }
     }
-    /// What was found, and how it is corrected.
+    /// Shows what was detected, and lets the user correct it.
     fn understood(&mut self, ui: &mut Ui) {
         self.pictures(ui);
         if let Some(map) = &mut self.source.normal {

@@ -1,4 +1,4 @@
-//! Dialogs: one at a time, over the window. Each is a struct that holds what was typed and a function that shows it.
+//! Dialogs: one at a time, over the window. Each is a struct that holds the input and a function that shows it.
 //! Floor 7.
 
 pub mod export;
@@ -34,7 +34,7 @@ pub enum Dialog {
     About,
 }
 
-/// What a dialog came to.
+/// The result of a dialog.
 pub enum DialogAnswer {
     /// It stays open.
     Open,
@@ -44,16 +44,16 @@ pub enum DialogAnswer {
     Import(Box<SurfaceSource>),
     /// The document that was made of them.
     Imported(import::MadeDocument),
-    /// The maps that the document in front is to have.
+    /// The new maps of the document in front.
     Replaced(Box<(SurfaceSource, maps::ImportedSurface)>),
-    /// Lose what is not saved, and do this.
+    /// Discard unsaved changes, then do this.
     Discard(AfterUnsaved),
     /// Save first, then do this.
     SaveThen(AfterUnsaved),
     Ask(WindowRequest),
-    /// Bring these drawings back.
+    /// Recover these drawings.
     Recover(Vec<LostSession>),
-    /// The user said that this drawing is to be deleted.
+    /// The user decided to delete this drawing.
     Delete(LostSession),
 }
 

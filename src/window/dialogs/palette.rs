@@ -12,7 +12,7 @@ use eframe::egui::{Button, Key, TextEdit, Ui};
 #[derive(Default)]
 pub struct CommandPalette {
     typed: String,
-    /// Which of the commands found.
+    /// The index among the matching commands.
     at: usize,
 }
 
@@ -28,7 +28,7 @@ impl CommandPalette {
         }
         let mut found: Vec<&'static MenuCommand> =
             commands::all().filter(|command| matches(command.name, &self.typed)).collect();
-        // What begins with it first; all else as in the menus.
+        // Commands that begin with it come first; otherwise in the order of the menus.
         let typed = self.typed.trim().to_lowercase();
         found.sort_by_key(|command| !command.name.to_lowercase().starts_with(&typed));
         let (up, down, enter) =
@@ -66,7 +66,7 @@ impl CommandPalette {
     }
 }
 
-/// Every word typed begins or stands in the name.
+/// Whether every typed word is in the name.
 fn matches(name: &str, typed: &str) -> bool {
     let name = name.to_lowercase();
     typed.to_lowercase().split_whitespace().all(|word| name.contains(word))

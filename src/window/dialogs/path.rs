@@ -1,4 +1,4 @@
-//! A file dialog of the window's own, for systems that have none.
+//! The window's own file dialog, for systems without one.
 //! Floor 7.
 
 use super::{DialogAnswer, buttons};
@@ -12,16 +12,16 @@ use std::path::{Path, PathBuf};
 pub struct PathDialog {
     purpose: FilePurpose,
     folder: PathBuf,
-    /// What is typed: a name in the folder, or a whole path.
+    /// The typed text: a name in the folder, or a whole path.
     name: String,
     listed: FolderListing,
-    /// The name has been given the keyboard once.
+    /// Whether the name field was focused once.
     is_begun: bool,
-    /// The file that is there already, once that was said.
+    /// The existing file that the user was warned about.
     replaces: Option<PathBuf>,
 }
 
-/// What is in the folder that is shown.
+/// The contents of the shown folder.
 #[derive(Default)]
 struct FolderListing {
     folder: PathBuf,
@@ -90,7 +90,7 @@ impl PathDialog {
             (None, None) => DialogAnswer::Open,
         }
     }
-    /// A file that would be lost is asked for twice.
+    /// Overwriting a file needs a second confirmation.
     fn choose(&mut self, file: PathBuf) -> DialogAnswer {
         let named = if self.purpose == FilePurpose::Save {
             storage::with_document_extension(file.clone())

@@ -1,4 +1,4 @@
-//! What an accident left, offered once at the start: to be brought back, deleted, or left for later.
+//! The recovery dialog, shown once at the start: lost drawings can be recovered, deleted, or left for later.
 //! Floor 7.
 
 use super::DialogAnswer;
@@ -8,7 +8,7 @@ use eframe::egui::{RichText, Ui};
 use std::time::{Duration, SystemTime};
 
 pub struct RecoveryDialog {
-    /// Oldest first, each with whether its deletion was asked for once.
+    /// Oldest first, each with whether its deletion was already confirmed once.
     lost: Vec<(LostSession, bool)>,
 }
 
@@ -19,7 +19,7 @@ impl RecoveryDialog {
     pub fn is_empty(&self) -> bool {
         self.lost.is_empty()
     }
-    /// Closed, it leaves everything for the next start.
+    /// Closing it leaves everything for the next start.
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(460.0);
         ui.heading("Recover unsaved drawings?");
@@ -66,7 +66,7 @@ fn first((lost, _): (LostSession, bool)) -> LostSession {
     lost
 }
 
-/// When it was begun, where it was kept, and whether to be careful.
+/// When the session began, its file, and a warning if recovery failed before.
 fn described(lost: &LostSession) -> String {
     let age = lost.begun().and_then(|begun| SystemTime::now().duration_since(begun).ok());
     let begun = age.map(|age| format!("Begun {} ago", spoken(age)));

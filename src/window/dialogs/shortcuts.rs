@@ -1,5 +1,5 @@
-//! The keys: every command and tool with its own, each to be changed; what already has a key is said before it is
-//! taken. Floor 7.
+//! The keyboard shortcuts: every command and tool with its keys, which can be changed; conflicts are shown before a key
+//! is reassigned. Floor 7.
 
 use super::{DialogAnswer, close};
 use crate::keymap::{KeyTarget, Keymap, shown};
@@ -11,7 +11,7 @@ pub struct ShortcutsDialog {
     filter: String,
     /// What waits for a key.
     waiting: Option<&'static str>,
-    /// A key that was pressed for something, though something else has it.
+    /// A pressed key that already belongs to something else.
     conflict: Option<(&'static str, KeyboardShortcut)>,
 }
 
@@ -57,7 +57,7 @@ impl ShortcutsDialog {
         });
         close(ui)
     }
-    /// The keys of one thing, and what is done to them.
+    /// The keys of one command or tool, and the buttons to change them.
     fn keys(&mut self, ui: &mut Ui, keymap: &mut Keymap, keyed: KeyTarget) {
         let name = keyed.name();
         let keys = keymap.of(keyed);
@@ -88,7 +88,7 @@ impl ShortcutsDialog {
         let Some(keyed) = self.waiting.and_then(keyed) else { return };
         let pressed = ui.input_mut(|i| {
             let at = i.events.iter().position(|event| matches!(event, Event::Key { pressed: true, .. }))?;
-            // Neither does escape close the dialog, nor tab move on.
+            // Escape must not close the dialog, nor Tab move the focus.
             let Event::Key { key, modifiers, .. } = i.events.remove(at) else { return None };
             i.events.retain(|event| !matches!(event, Event::Text(_)));
             Some((key, modifiers))
@@ -110,7 +110,7 @@ impl ShortcutsDialog {
             None => keymap.take(keys, keyed),
         }
     }
-    /// Whether a key may be taken from what has it.
+    /// Asks whether a key may be reassigned.
     fn request(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         let Some((name, keys)) = self.conflict else { return };
         let Some(keyed) = keyed(name) else { return };

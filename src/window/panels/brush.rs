@@ -1,5 +1,5 @@
-//! The brush in hand, all of it: tip, spread, grain, how the hand is calmed, what follows the pen and the surface.
-//! Floor 7. The list of brushes is `brushes`'; what a curve looks like is `curve`'s.
+//! The editor of the current brush: tip, spread, grain, stabilizer and dynamics. Floor 7. The list of brushes is in
+//! `brushes`, the curve widget in `curve`.
 
 use super::curve;
 use crate::io::recipe::written_brush;
@@ -14,7 +14,7 @@ use crate::session::{Action, Session};
 use crate::widgets::{NumberField, check, choice_row, named, sentence};
 use eframe::egui::{self, Ui};
 
-/// The parts of a brush that are opened when they are wanted.
+/// The sections of the brush editor that can be unfolded.
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let brush = &session.brush;
     let mut changed = None;
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
 }
 
-/// The tips that need no file. A picture comes by importing it.
+/// The kinds of tips. A picture is chosen by importing it.
 #[derive(Clone, Copy, PartialEq)]
 enum TipChoice {
     Round,
@@ -163,7 +163,7 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     chosen.or(changed.then_some(Some(to))).map(of_grain)
 }
 
-/// How the hand is calmed, by its kinds.
+/// The kinds of stabilizer.
 #[derive(Clone, Copy, PartialEq)]
 enum StabilizerChoice {
     None,
@@ -244,7 +244,7 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     to.map(|dynamics| Brush { dynamics, ..brush.clone() })
 }
 
-/// A property's or an input's name as people read it.
+/// The display name of a property or an input.
 fn word<T: PartialEq>(all: &[(T, &str)], wanted: &T) -> String {
     all.iter().find(|(known, _)| known == wanted).map_or_else(String::new, |(_, word)| sentence(word))
 }

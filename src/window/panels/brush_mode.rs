@@ -1,4 +1,4 @@
-//! What the brush does where it lands: paint, smudge, blur, clone; and how far it may go.
+//! The brush mode (paint, smudge, blur, clone) and where the brush may paint.
 //! Floor 7.
 
 use super::fill::BOUNDS;
@@ -9,7 +9,7 @@ use crate::session::{Action, Session};
 use crate::widgets::{NumberField, check, choice};
 use eframe::egui::Ui;
 
-/// The marks by their kinds.
+/// The brush modes.
 #[derive(Clone, Copy, PartialEq)]
 enum BrushModeChoice {
     Paint,

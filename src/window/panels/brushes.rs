@@ -1,4 +1,4 @@
-//! The brushes: presets in groups, each shown painted on a ball, and the numbers of the one in hand.
+//! The brushes: presets in groups, each with a picture of its stroke on a ball, and the sliders of the current one.
 //! Floor 7.
 
 use super::brush;
@@ -66,7 +66,7 @@ fn remove(response: &Response, known: &Preset, requests: &mut UiRequests) {
     });
 }
 
-/// The brush in hand under a name of its own.
+/// Saves the current brush under a name.
 fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     let id = Id::unique("brush name");
     let mut name = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
@@ -82,7 +82,7 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
     ui.data_mut(|data| data.insert_temp(id, name));
 }
 
-/// The row above the list; what is searched for.
+/// The row above the list: returns the search text.
 fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     let id = Id::unique("brush search");
     let mut search = ui.data(|data| data.get_temp::<String>(id)).unwrap_or_default();
@@ -117,7 +117,7 @@ fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) ->
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let mut job = LayoutJob::simple_singleline(label.clone(), font, look.text_color());
-    // A long name ends in an ellipsis; the tooltip has it whole.
+    // A long name ends in an ellipsis; the tooltip has all of it.
     job.wrap = TextWrapping::truncate_at_width(rect.width() - 4.0);
     let text = ui.fonts_mut(|fonts| fonts.layout_job(job));
     let place = pos2(rect.center().x - 0.5 * text.size().x, rect.bottom() - 3.0 - text.size().y);

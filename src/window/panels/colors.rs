@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     swatches(ui, "Palette", palette, requests);
 }
 
-/// Colours to be taken to hand by a click.
+/// Colours that a click selects.
 fn swatches(
     ui: &mut Ui,
     name: &str,
@@ -105,7 +105,7 @@ pub fn picker(ui: &mut Ui, label: &str, color: Color) -> Option<ValueChange<Colo
             put(ui, changed.to, changed.done);
         }
     });
-    // The salt tells the picker of the panel from one that is open beside it.
+    // The salt distinguishes the panel's picker from one in a popup.
     egui::Grid::new(("numbers", label)).num_columns(6).min_col_width(0.0).spacing([5.0, 4.0]).show(ui, |ui| {
         for (i, (letter, name, scale)) in
             [("H", "Hue", 360.0), ("S", "Saturation", 100.0), ("V", "Value", 100.0)].into_iter().enumerate()

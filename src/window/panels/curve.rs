@@ -1,5 +1,5 @@
-//! A curve that a hand bends: points in a square, straight lines between them.
-//! Floor 7. What the curve drives is the brush editor's.
+//! A curve widget: points in a square with straight lines between them. Floor 7. The brush editor decides what the
+//! curve drives.
 
 use crate::math::{Vec2, vec2};
 use crate::paint::Curve;
@@ -8,12 +8,12 @@ use crate::theme::ACCENT;
 use crate::widgets::named;
 use eframe::egui::{self, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2};
 
-/// How near, points of the screen, the pointer takes a point of the curve.
+/// The distance within which the pointer grabs a point, screen points.
 const NEAR_PT: f32 = 12.0;
-/// Two points of a curve, in its square, stand at least this far apart.
+/// The least distance between two points, in the unit square.
 const APART: f32 = 0.01;
 
-/// A curve's points, as a hand moves them: a share is the line that it is.
+/// The points of a curve for editing: a share becomes its line.
 pub fn points(curve: &Curve) -> Vec<Vec2> {
     match curve {
         Curve::Share(_) => vec![vec2(0.0, curve.at(0.0)), vec2(1.0, curve.at(1.0))],
@@ -21,7 +21,7 @@ pub fn points(curve: &Curve) -> Vec<Vec2> {
     }
 }
 
-/// Shows a curve and bends it: a click adds a point, a drag moves one, a right click takes one away.
+/// Shows a curve and edits it: a click adds a point, a drag moves one, a right click removes one.
 pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<Curve> {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(ui.available_width(), height_pt), Sense::click_and_drag());
     named(&response, label);
@@ -60,7 +60,7 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<C
     Curve::through(points)
 }
 
-/// Adds a point in its place; which one it is.
+/// Adds a point in its place; returns its index.
 fn add(points: &mut Vec<Vec2>, point: Vec2) -> Option<usize> {
     let is_taken = points.iter().any(|p| (p.x - point.x).abs() < APART);
     if is_taken || points.len() >= MAX_POINTS {

@@ -10,7 +10,7 @@ use crate::surface::PaintLimit;
 use crate::widgets::{NumberField, check, choice};
 use eframe::egui::Ui;
 
-/// How far a mark may go, as menus say it.
+/// The paint limits, with their labels.
 pub const BOUNDS: [(PaintLimit, &str); 3] =
     [(PaintLimit::Free, "everywhere"), (PaintLimit::Surface, "on the surface"), (PaintLimit::Object, "on one object")];
 

@@ -10,7 +10,7 @@ use crate::session::property::{DerivedMask, DerivedMaskNumbers};
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::Ui;
 
-/// The kinds of mask that a panel makes; a picture's is kept as it is.
+/// The kinds of mask in the menu; a picture is kept as it is.
 #[derive(Clone, Copy, PartialEq)]
 enum MaskChoice {
     None,
@@ -20,7 +20,7 @@ enum MaskChoice {
     Depth,
 }
 
-/// The mask of a layer: of what it is made, whether it counts, and whether the brush paints on it.
+/// The mask of a layer: its kind, whether it is enabled, and whether the brush paints on it.
 pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter) {
     title(ui, "Mask");
     let current = match layer.mask.as_ref().map(|mask| &mask.kind) {

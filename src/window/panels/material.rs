@@ -58,7 +58,7 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerS
     features(ui, &shading.features, setter);
 }
 
-/// The environment or the lit spheres, where the model knows them.
+/// The environment or the lit spheres, if the model uses them.
 fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
     let mut picture = |ui: &mut Ui, part: PicturePart, file: Option<&str>, none: &str| {
         title(ui, part.title());
@@ -131,7 +131,7 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
         ui.horizontal(|ui| {
             let direction = match light.kind {
                 LightKind::Directional { direction } => direction,
-                // Seen from far enough, a point is a direction; the ball shows which.
+                // From far enough a point light is a direction, which the ball shows.
                 LightKind::Point { position } => position,
             };
             if let (Some(changed), LightKind::Directional { .. }) =

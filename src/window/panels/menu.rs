@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
         for (title, commands) in MENUS {
             ui.menu_button(title, |ui| {
                 ui.set_min_width(220.0);
-                // A low window scrolls what does not fit.
+                // A low window scrolls the menu.
                 let room = ui.ctx().content_rect().bottom() - ui.cursor().top() - 12.0;
                 egui::ScrollArea::vertical().max_height(room).min_scrolled_height(room).show(ui, |ui| {
                     for command in commands {
@@ -72,7 +72,7 @@ fn recent_files(ui: &mut Ui, recent: &[PathBuf], requests: &mut UiRequests) {
     });
 }
 
-/// One tab a document, a dot before what is not saved.
+/// One tab per document, with a dot if there are unsaved changes.
 pub fn tabs(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;

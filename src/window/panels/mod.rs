@@ -1,5 +1,5 @@
-//! Panels: functions of what there is, `(ui, &session, &mut asked)`. What a panel remembers of itself (an open row, a
-//! text being typed) is egui's to keep. Floor 7.
+//! Panels: functions `(ui, &session, &mut requests)`. egui stores the state of a panel itself (an open row, a text
+//! being typed). Floor 7.
 
 mod brush;
 pub mod brush_mode;
@@ -29,12 +29,12 @@ pub enum PanelKind {
     Surface,
     History,
     Navigator,
-    /// Beneath the others, which share a place.
+    /// Below the others, which share one area.
     Layers,
 }
 
 impl PanelKind {
-    /// Every panel with what it is called.
+    /// Every panel with its name.
     pub const ALL: [(PanelKind, &'static str); 7] = [
         (PanelKind::Color, "Colour"),
         (PanelKind::Brushes, "Brushes"),

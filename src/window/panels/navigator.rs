@@ -1,4 +1,4 @@
-//! The navigator: the whole picture small, with what the window shows of it; a click looks there.
+//! The navigator: the whole picture with a frame around the visible part; a click moves the view there.
 //! Floor 7.
 
 use crate::canvas::Canvas;
@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut 
             rect.min + egui::vec2(p.x, p.y)
         };
         let frame = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-        // Where all is in sight there is nothing to frame.
+        // If everything is visible, there is no frame.
         if !Rect::from_points(&frame).contains_rect(rect.shrink(1.0)) {
             let painter = ui.painter_at(rect);
             painter.add(Shape::closed_line(frame.to_vec(), Stroke::new(3.0, Color32::from_black_alpha(120))));

@@ -1,4 +1,4 @@
-//! The bar above the canvas: the operator with its numbers, and the options of the tool in hand.
+//! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
 use super::{brush_mode, fill};
@@ -13,7 +13,8 @@ use crate::tools::{Symmetry, ToolKind};
 use crate::widgets::{NumberField, ValueChange};
 use eframe::egui::{Button, RichText, Ui};
 
-/// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the hand's.
+/// Whose operator the bar shows: that of the selected image or gradient for the tools that edit it, else the current
+/// one.
 enum OperatorOwner {
     Hand,
     Layer(LayerPath),
@@ -32,12 +33,12 @@ fn whose(session: &Session) -> (OperatorOwner, Operator) {
     }
 }
 
-/// The bar shows this operator, whatever its numbers.
+/// Whether the bar shows this operator, whatever its values.
 pub fn has(session: &Session, operator: Operator) -> bool {
     std::mem::discriminant(&whose(session).1) == std::mem::discriminant(&operator)
 }
 
-/// Another operator for what the bar shows.
+/// Changes the operator that the bar shows.
 pub fn give(session: &Session, requests: &mut UiRequests, operator: Operator) {
     set(requests, &whose(session).0, ValueChange { to: operator, done: true });
 }
@@ -54,7 +55,7 @@ fn set(requests: &mut UiRequests, whose: &OperatorOwner, operator: ValueChange<O
 
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal_wrapped(|ui| {
-        // It lays pixels where they are: nothing is bent.
+        // Its pixels stay where they are: nothing is bent.
         if session.tool == ToolKind::Fill {
             return fill::options(ui, session.fill, requests);
         }

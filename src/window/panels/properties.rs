@@ -1,5 +1,5 @@
-//! Properties of the selected layer: what it is made of, where it lies, how it bends.
-//! Floor 7. Materials and lights are `material`'s.
+//! Properties of the selected layer: its content, placement and bending. Floor 7. Materials and lights are in
+//! `material`.
 
 use super::{colors, mask, material, options, strokes};
 use crate::document::{Content, DetailSource, Layer, NormalLayer};
@@ -15,7 +15,7 @@ use crate::surface::{NoiseRelief, Weights};
 use crate::widgets::{NumberField, ValueChange, check, choice_row, named, title};
 use eframe::egui::Ui;
 
-/// Pushes changes of one layer.
+/// Requests changes of one layer.
 pub struct LayerSetter<'a> {
     layer: LayerPath,
     requests: &'a mut UiRequests,
@@ -29,7 +29,7 @@ impl LayerSetter<'_> {
     pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
         self.requests.act(Action::Layer(action(self.layer.clone())));
     }
-    /// A button that asks for a picture of the layer's.
+    /// A button to choose a picture of the layer.
     pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
         let response = ui.button(text);
         named(&response, &format!("Choose {}", part.title().to_lowercase()));

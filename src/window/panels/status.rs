@@ -1,5 +1,5 @@
-//! The line at the bottom: zoom, the place under the pointer with what the maps hold there, memory, how long the last
-//! redraw took, and what the tool in hand does. Floor 7.
+//! The status bar: zoom, the point under the pointer with the map values there, memory, the time of the last redraw,
+//! and a hint for the current tool. Floor 7.
 
 use crate::canvas::Canvas;
 use crate::jobs::{JobKind, Jobs};
@@ -50,7 +50,7 @@ pub fn show(
             ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
             ui.separator();
         }
-        // The canvas is drawn after this line: what it knows may be of the document that was in front before.
+        // The canvas is drawn later: its state may still belong to the previous document.
         let is_here = |at: &Vec2| document.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
         if let Some(at) = canvas.under.filter(is_here) {
             let (x, y) = (at.x.floor() as usize, at.y.floor() as usize);

@@ -1,4 +1,4 @@
-//! The strokes of the selected stroke layer: listed, chosen, restyled, ordered, taken away, baked.
+//! The strokes of the selected stroke layer: list, selection, style, order, deletion, baking.
 //! Floor 7.
 
 use super::{colors, options};
@@ -14,10 +14,10 @@ use crate::widgets::{NumberField, ValueChange, swatch, title};
 use eframe::egui::{Button, ScrollArea, Ui, vec2};
 use std::sync::Arc;
 
-/// Rows of the list that are in sight.
+/// The number of visible rows of the list.
 const ROWS: usize = 6;
 
-/// The list, and what can be done to the strokes that are chosen in it.
+/// The list, and the actions on the selected strokes.
 pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<Stroke>], requests: &mut UiRequests) {
     let n = strokes.len();
     ui.label(format!("{n} {}", if n == 1 { "stroke" } else { "strokes" }));
@@ -59,7 +59,7 @@ fn list(ui: &mut Ui, layer: &LayerPath, strokes: &[Arc<Stroke>], chosen: &[usize
     });
 }
 
-/// Those chosen after a click on one of the list.
+/// The selection after a click on a row.
 fn toggled(chosen: &[usize], index: usize, adds: bool) -> Vec<usize> {
     match (adds, chosen.contains(&index)) {
         (false, _) => vec![index],
@@ -103,7 +103,7 @@ fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], reque
     });
 }
 
-/// What the first of the chosen strokes is painted with; a change goes to all of them.
+/// The style of the first selected stroke; changes apply to all of them.
 fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
     let brush = stroke.brush();
     let mut give = |changed: Option<ValueChange<Style>>| {

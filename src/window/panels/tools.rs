@@ -1,4 +1,4 @@
-//! The strip of tools, and the two colours in hand.
+//! The tool bar, and the two current colours.
 //! Floor 7.
 
 use crate::icons::{Icon, icon_button, sized_button};

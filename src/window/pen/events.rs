@@ -1,5 +1,5 @@
 //! The window's own events as a pen: a mouse, a touch with the force that it reports (pens on Windows, phones and the
-//! web), or a pointer whose tablet tells pressure and tilt beside it (pens on X11). Floor 7.
+//! web), or a pointer whose tablet reports pressure and tilt separately (pens on X11). Floor 7.
 
 use super::tablet::PenState;
 use super::{PenPhase, PenReport, PenSource, SharedTablet};
@@ -16,7 +16,7 @@ pub struct WindowPen {
     /// Fingers and pens on the glass.
     touches: usize,
     tablet: Option<SharedTablet>,
-    /// What the tablet told last.
+    /// The last state of the tablet.
     held: PenState,
     is_down: bool,
 }
@@ -26,7 +26,7 @@ impl WindowPen {
     pub fn on(&mut self, tablet: SharedTablet) {
         self.tablet = Some(tablet);
     }
-    /// Hears an event of a frame, in which a point has so many px; what the pen did comes out as reports.
+    /// Takes an event of a frame (`px_per_pt`: px per point) and turns it into reports.
     pub fn hear(&mut self, event: &Event, px_per_pt: f32, now_secs: f64) {
         let phase = match *event {
             Event::Touch { phase, force, .. } => {
@@ -36,7 +36,7 @@ impl WindowPen {
                     TouchPhase::Move => {}
                 }
                 self.force = force.filter(|_| self.touches > 0);
-                // The pointer's own events follow, except where the touch was taken away.
+                // The pointer's own events follow, unless the touch was cancelled.
                 (phase == TouchPhase::Cancel).then_some(PenPhase::Lost)
             }
             Event::PointerMoved(at) => {
@@ -48,7 +48,7 @@ impl WindowPen {
                 self.is_down = pressed;
                 Some(if pressed { PenPhase::Down(button) } else { PenPhase::Up })
             }
-            // A mouse's button goes up elsewhere when the window loses the keyboard, and nobody tells.
+            // When the window loses the focus, the release of a mouse button is not reported.
             Event::WindowFocused(false) => Some(PenPhase::Lost),
             _ => None,
         };
@@ -64,8 +64,8 @@ impl WindowPen {
     fn moved(&mut self, at: Pos2, px_per_pt: f32, now_secs: f64) {
         let at_px = [at.x * px_per_pt, at.y * px_per_pt].map(f64::from);
         if let Some(held) = self.tablet.as_ref().and_then(|tablet| tablet.borrow_mut().take(at_px)) {
-            // Another device took the pointer: what a pen drew ends where it was. Which of several mice moves may be
-            // told late.
+            // Another device took the pointer: a pen's stroke ends where it was. With several mice this may be reported
+            // late.
             if self.is_down && self.held.pressure.is_some() && held.device != self.held.device {
                 self.is_down = false;
                 self.reports.push_back(self.report(PenPhase::Lost, now_secs));
@@ -78,7 +78,7 @@ impl WindowPen {
         let PenState { pressure, tilt, is_eraser, .. } = self.held;
         PenReport { phase, at: self.at, pressure: self.force.or(pressure), tilt, secs, is_eraser }
     }
-    /// How many fingers and pens are on the glass: two or more look, they do not paint.
+    /// The number of fingers and pens on the glass: two or more move the view instead of painting.
     pub fn touches(&self) -> usize {
         self.touches
     }

@@ -1,7 +1,7 @@
-//! The pen as a platform reports it, whichever that is: a [`PenSource`] says what the pen did, [`ReportFilter`] makes
-//! good readings of it and ends a stroke whose pen went bad. Floor 7. Sources: `events`, the window's own (mouse, touch
-//! with its force, pens that come as touch, pens that come as a pointer with a `tablet`'s axes); `recorded`, for tests.
-//! What the axes mean is told by a platform's [`PenDevices`]: `x11`. Not here: what the reports do (`canvas::hand`).
+//! The pen as the platform reports it: a [`PenSource`] gives its reports, and [`ReportFilter`] passes the good ones on
+//! and ends a stroke whose reports become invalid. Floor 7. Sources: `events`, the window's own (mouse, touch with its
+//! force, pens that come as touch, pens that come as a pointer with a `tablet`'s axes); `recorded`, for tests. A
+//! platform's [`PenDevices`] give the meaning of the axes: `x11`. Not here: the use of the reports (`canvas::pointer`).
 
 mod events;
 #[cfg(test)]
@@ -25,7 +25,7 @@ pub struct PenReport {
     pub phase: PenPhase,
     /// Screen pt.
     pub at: Pos2,
-    /// `[0, 1]`; `None` of what cannot tell.
+    /// `[0, 1]`; `None` for devices without pressure.
     pub pressure: Option<f32>,
     /// Degrees from upright, right and down positive.
     pub tilt: (f32, f32),
@@ -38,29 +38,28 @@ pub struct PenReport {
 /// What the pen did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PenPhase {
-    /// A barrel button comes as the mouse's that it stands for.
+    /// A barrel button is reported as its mouse button.
     Down(PointerButton),
     /// Above the canvas or on it.
     Move,
     Up,
-    /// It left the tablet's reach, was unplugged, or the platform took it away: whatever it drew ends where it last
-    /// was.
+    /// It left the tablet, was unplugged, or was cancelled by the platform: its stroke ends where it last was.
     Lost,
 }
 
-/// Something that a pen's reports come from, in their order.
+/// A source of a pen's reports, in order.
 pub trait PenSource {
     /// The next report; `None` while there is none.
     fn next(&mut self) -> Option<PenReport>;
 }
 
-/// Whatever knows which pen moves the pointer.
+/// Reports which pen moves the pointer.
 pub trait PenDevices {
-    /// The axes of the device that moves the pointer now, where they are not those it last told.
+    /// The axes of the device that moves the pointer now, if they changed since the last call.
     fn change(&mut self) -> Option<PenAxes>;
 }
 
-/// What the platform of the window knows of pens beyond its events; `None` where that is all there is.
+/// The platform's information on pens beyond its events; `None` if there is none.
 #[cfg(all(unix, not(target_os = "macos")))]
 pub fn devices<T>(events: &winit::event_loop::EventLoop<T>) -> Option<Box<dyn PenDevices>> {
     let is_x11 = winit::platform::x11::EventLoopExtX11::is_x11(events);

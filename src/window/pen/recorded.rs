@@ -1,12 +1,12 @@
-//! A recorded pen, for tests: one report a line, `[x, y, pressure, secs]`, `null` for a pressure that was not told and
-//! `"nan"` for what is no number. Floor 7.
+//! A recorded pen, for tests: one report a line, `[x, y, pressure, secs]`, `null` for a missing pressure and `"nan"`
+//! for an invalid number. Floor 7.
 
 use super::{PenPhase, PenReport, PenSource};
 use eframe::egui::{PointerButton, pos2};
 use serde_json::Value;
 use std::collections::VecDeque;
 
-/// Reports to be given one by one: the first comes down, the others move.
+/// Reports that are returned one by one: the first comes down, the others move.
 pub struct RecordedPen {
     reports: VecDeque<PenReport>,
 }

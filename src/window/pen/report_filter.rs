@@ -1,19 +1,19 @@
-//! Good readings of a pen while it draws, and the end of a stroke whose pen went bad.
+//! Filters the reports of a pen while it draws: passes good ones on, and ends a stroke at the first invalid one.
 //! Floor 7.
 
 use super::PenReport;
 use eframe::egui::Pos2;
 
-/// The speed, pt a second, at which a hand without a pen presses least.
+/// The speed, pt per second, at which a mouse has the least pressure.
 const FAST_PT_PER_SEC: f32 = 2000.0;
-/// What is left of the pressure then.
+/// The least pressure.
 const LEAST_PRESSURE: f32 = 0.2;
-/// What a stroke without a pen begins with.
+/// The initial pressure of a mouse's stroke.
 const FIRST_PRESSURE: f32 = 0.5;
 /// Within this time a pressure made from speed has come two thirds of the way to a new one.
 const PRESSURE_SECS: f32 = 0.06;
 
-/// One good reading of a pen that draws.
+/// One good report of a pen that draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilteredReport {
     /// Screen pt.
@@ -25,19 +25,19 @@ pub struct FilteredReport {
     pub secs: f32,
 }
 
-/// Watches one stroke from the pen's coming down.
+/// Filters the reports of one stroke.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportFilter {
     began_secs: f64,
     last: PenReport,
     pressure: f32,
-    /// Pressure is made from speed where the pen reports none.
+    /// Whether pressure is derived from speed if the pen reports none.
     presses_by_speed: bool,
-    /// Pt moved since the clock last did.
+    /// The distance since time last advanced, pt.
     since_pt: f32,
 }
 
-/// A report that can be painted with.
+/// Whether a report is valid.
 fn is_good(report: &PenReport) -> bool {
     let tilt = [report.tilt.0, report.tilt.1];
     let is_finite = report.at.is_finite() && report.secs.is_finite() && tilt.iter().all(|v| v.is_finite());
@@ -52,8 +52,8 @@ impl ReportFilter {
         let watch = Self { began_secs: report.secs, last: *report, pressure, presses_by_speed, since_pt: 0.0 };
         is_good(report).then(|| (watch, watch.reading(report)))
     }
-    /// The pen goes on; `None` where the stroke is to end at its last good reading: the report holds what is no number,
-    /// or a time before the last one's.
+    /// The next report; `None` if the stroke must end at its last good one: the report has an invalid number, or is
+    /// earlier than the last one.
     pub fn follow(&mut self, report: &PenReport) -> Option<FilteredReport> {
         if !is_good(report) || report.secs < self.last.secs {
             return None;
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
     use crate::pen::{PenSource, RecordedPen};
 
-    /// The readings of a recorded stroke until it ends.
+    /// The good reports of a recorded stroke until it ends.
     fn readings(lines: &str, presses_by_speed: bool) -> Vec<FilteredReport> {
         let mut pen = RecordedPen::of(lines);
         let Some((mut watch, first)) = ReportFilter::begin(&pen.next().unwrap(), presses_by_speed) else {

@@ -1,11 +1,11 @@
-//! A pen that moves the pointer as a mouse does and tells its pressure and tilt on axes of its own: what it held at
-//! each motion. Floor 7. Which axes those are is [`Devices`](super::PenDevices)' to say.
+//! A pen that moves the pointer like a mouse and reports pressure and tilt on separate axes: keeps their values at each
+//! motion. Floor 7. [`Devices`](super::PenDevices) identify the axes.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// Heard by the event loop, read by the window, both on one thread.
+/// Updated by the event loop and read by the window, both on one thread.
 pub type SharedTablet = Rc<RefCell<Tablet>>;
 
 /// Motions kept for a window that does not read them: more than a second of the fastest pen.
@@ -13,10 +13,10 @@ const MOST_MOTIONS: usize = 4096;
 /// Places that the window rounded to points and back are the same within this, px.
 const SAME_PX: f64 = 0.02;
 
-/// How far pens tell their tilt.
+/// The range of tilt that pens report.
 const FARTHEST_DEGREES: f64 = 60.0;
 
-/// What one axis of a device tells.
+/// The meaning of one axis of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisMeaning {
     Pressure,
@@ -32,16 +32,16 @@ pub struct PenAxis {
     pub number: u32,
     pub reads: AxisMeaning,
     pub range: (f64, f64),
-    /// When the device was found.
+    /// Its value when the device was found.
     pub value: f64,
 }
 
 impl PenAxis {
-    /// `None` where the device tells a range that nothing lies in.
+    /// `None` if the device reports an empty range.
     pub fn new(number: u32, reads: AxisMeaning, range: (f64, f64), value: f64) -> Option<Self> {
         (range.1 > range.0).then_some(Self { number, reads, range, value })
     }
-    /// Of the range, `[0, 1]`. What is no number stays so, and ends the stroke it comes in.
+    /// Of the range, `[0, 1]`. NaN stays NaN, and ends the stroke.
     fn ratio(&self, value: f64) -> f64 {
         ((value - self.range.0) / (self.range.1 - self.range.0)).clamp(0.0, 1.0)
     }
@@ -58,27 +58,27 @@ pub struct PenAxes {
     /// Which device, by the platform's count.
     pub device: u32,
     pub axes: Vec<PenAxis>,
-    /// The device is the other end of a pen.
+    /// Whether the device is the eraser end of a pen.
     pub is_eraser: bool,
 }
 
-/// What a pen held at one motion.
+/// The state of a pen at one motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PenState {
     pub device: u32,
-    /// `[0, 1]`; `None` of a mouse.
+    /// `[0, 1]`; `None` for a mouse.
     pub pressure: Option<f32>,
     /// Degrees from upright, right and down positive, `[-90, 90]`.
     pub tilt: (f32, f32),
     pub is_eraser: bool,
 }
 
-/// What the pen held at each motion of the pointer that the window has not yet read.
+/// The states of the pen at motions of the pointer that the window has not read yet.
 #[derive(Debug, Default)]
 pub struct Tablet {
     axes: PenAxes,
     held: PenState,
-    /// Where, px, and what was held there.
+    /// Position, px, and state there.
     motions: VecDeque<([f64; 2], PenState)>,
 }
 
@@ -98,7 +98,7 @@ impl Tablet {
         }
         self.motions.push_back((at_px, self.held));
     }
-    /// An axis of the motion that was told last.
+    /// Sets an axis of the last motion.
     pub fn axis(&mut self, number: u32, value: f64) {
         if let Some(axis) = self.axes.axes.iter().find(|axis| axis.number == number).copied() {
             self.read(&axis, value);
@@ -114,7 +114,7 @@ impl Tablet {
             AxisMeaning::TiltY => self.held.tilt.1 = axis.degrees(value) as f32,
         }
     }
-    /// What was held at the window's next motion, which went to this place, px; `None` where no device told of it.
+    /// The state at the window's next motion, which went to this place, px; `None` if no device reported it.
     pub fn take(&mut self, at_px: [f64; 2]) -> Option<PenState> {
         let is_here = |at: [f64; 2]| (at[0] - at_px[0]).abs() < SAME_PX && (at[1] - at_px[1]).abs() < SAME_PX;
         let found = self.motions.iter().position(|&(at, _)| is_here(at))?;
@@ -154,7 +154,7 @@ mod tests {
         pen.axis(4, 75.0);
         let pressure = |held: Option<PenState>| held.and_then(|held| held.pressure);
         assert_eq!(pressure(pen.take([1.0, 0.0])), Some(0.25));
-        // The window put two motions together: the second is what it read.
+        // The window merged two motions: the second counts.
         let last = pen.take([3.0, 0.001]).unwrap();
         assert_eq!((last.pressure, last.tilt, last.device), (Some(1.0), (30.0, 30.0), 9));
         assert_eq!(pen.take([2.0, 0.0]), None);
@@ -164,7 +164,7 @@ mod tests {
         let mut tablet = pen();
         tablet.follow(PenAxes::default());
         tablet.moved([5.0, 5.0]);
-        // A wheel's axis is nobody's.
+        // The axis of a wheel is ignored.
         tablet.axis(3, 120.0);
         assert_eq!(tablet.take([5.0, 5.0]), Some(PenState::default()));
     }

@@ -1,6 +1,6 @@
-//! Pens on X11, XWayland's too: which device moves the pointer now, and which of its axes are pressure and tilt, as the
-//! server tells. How the axes move comes with the window's own events. Floor 7. Particular to X11. A server that does
-//! not answer leaves a mouse.
+//! Pens on X11, XWayland's too: finds which device moves the pointer now, and which of its axes are pressure and tilt,
+//! by asking the server. The values of the axes come with the window's own events. Floor 7. X11 only. Without an answer
+//! of the server, everything is a mouse.
 
 use super::{AxisMeaning, PenAxes, PenAxis, PenDevices};
 use x11rb::connection::Connection;
@@ -13,7 +13,7 @@ use x11rb::rust_connection::RustConnection;
 /// All pointers that slave devices move, by the server's count.
 const ALL_MASTERS: DeviceId = 1;
 
-/// What the server calls the axes of a pen.
+/// The server's names of a pen's axes.
 const LABELS: [(&[u8], AxisMeaning); 3] = [
     (b"Abs Pressure", AxisMeaning::Pressure),
     (b"Abs Tilt X", AxisMeaning::TiltX),
@@ -24,9 +24,9 @@ const LABELS: [(&[u8], AxisMeaning); 3] = [
 pub struct X11Server {
     connection: RustConnection,
     labels: Vec<(Atom, AxisMeaning)>,
-    /// Found when connecting, not yet told.
+    /// Found when connecting, not yet reported.
     first: Option<PenAxes>,
-    /// The connection broke: no more is known.
+    /// The connection is broken: there is no more information.
     is_gone: bool,
 }
 
@@ -64,11 +64,11 @@ impl X11Server {
             _ => None,
         };
         let axes: Vec<_> = classes.iter().filter_map(axis).collect();
-        // The server tells a pen's two ends apart by their names alone.
+        // The server distinguishes a pen's two ends only by their names.
         let is_eraser = !axes.is_empty() && self.name(source).to_lowercase().contains("eraser");
         PenAxes { device: source.into(), axes, is_eraser }
     }
-    /// Empty of a device that is gone.
+    /// Empty for a device that is gone.
     fn name(&self, device: DeviceId) -> String {
         let asked = self.connection.xinput_xi_query_device(device).map_err(ReplyError::from);
         let known = asked.and_then(|asked| asked.reply()).map(|reply| reply.infos).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Files of the window's documents: what was opened or chosen, and what a file is proposed to be called.
+//! Files of the window's documents: handles what was opened or chosen, and proposes file names.
 //! Floor 7.
 
 use super::MainWindow;
@@ -102,8 +102,8 @@ impl MainWindow {
             }
         });
     }
-    /// A picture becomes a layer. Where it fell is where the pointer is once it was read: while files are dragged the
-    /// system tells nobody where they are. Returns the place.
+    /// A picture becomes a layer. It goes where the pointer is once it was read: the system does not report positions
+    /// of dragged files. Returns the position.
     pub(super) fn pictured(&mut self, name: &str, picture: Picture, at: PinPosition) -> Vec2 {
         let center = self.session.shown().map_or(Vec2::ZERO, |document| document.size.center());
         let at = self.canvas.under.filter(|_| at == PinPosition::Pointer).unwrap_or(center);

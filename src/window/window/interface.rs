@@ -1,12 +1,11 @@
-//! How the window looks: light or dark, and how large its controls are.
-//! Floor 7. The colours themselves are `theme`'s.
+//! The look of the window: light or dark, and the size of its controls. Floor 7. The colours are in `theme`.
 
 use super::MainWindow;
 use eframe::egui::{self, Theme};
 
 /// Sizes of the interface to choose from; 1 is what the system asks for.
 const SCALES: [f32; 10] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0];
-/// A screen so many points high that the system did not scale is likely dense.
+/// An unscaled screen of this many points in height is probably dense.
 const DENSE_PT: f32 = 1800.0;
 
 impl MainWindow {
@@ -23,7 +22,7 @@ impl MainWindow {
         self.settings.is_light = !self.settings.is_light;
         ctx.set_theme(if self.settings.is_light { Theme::Light } else { Theme::Dark });
     }
-    /// The next larger or smaller size, remembered from now on.
+    /// Selects and stores the next larger or smaller size.
     pub(super) fn resize_interface(&mut self, ctx: &egui::Context, is_larger: bool) {
         let now = ctx.zoom_factor();
         let next = if is_larger {
@@ -36,7 +35,7 @@ impl MainWindow {
             self.show_at(ctx, next);
         }
     }
-    /// The picture stays as large as it is: only what is around it changes.
+    /// The picture keeps its size on screen: only the controls change.
     fn show_at(&mut self, ctx: &egui::Context, scale: f32) {
         let kept = ctx.zoom_factor() / scale;
         ctx.set_zoom_factor(scale);

@@ -1,5 +1,5 @@
-//! Where the panels stand: beside the canvas, in a window together, or each in one of its own.
-//! Floor 7. What is in them is `panels`'.
+//! The layout of the panels: beside the canvas, together in a window, or each in its own. Floor 7. The panels
+//! themselves are in `panels`.
 
 use super::MainWindow;
 use crate::panels::{self, PanelKind};
@@ -60,7 +60,7 @@ impl MainWindow {
         let shown = beside.show(ui, |ui| self.together(ui, requests));
         self.settings.layout.width_pt = shown.response.rect.width().round();
     }
-    /// One of those that share a place above, the layers below.
+    /// The panel in front above, the layers below.
     fn together(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let apart = &self.settings.layout.apart;
         let strip: Vec<_> = PanelKind::ALL
@@ -89,7 +89,7 @@ impl MainWindow {
             });
         }
     }
-    /// The names of the panels that share a place, and the one in front.
+    /// The tabs of the panels that share the area, and the one in front.
     fn fronted(&mut self, ui: &mut Ui, strip: &[(PanelKind, &str)], mut front: PanelKind, requests: &mut UiRequests) {
         let mut gone = None;
         ui.horizontal_wrapped(|ui| {
@@ -166,7 +166,7 @@ impl MainWindow {
     }
 }
 
-/// What becomes of files that are held over the window.
+/// What will happen to files dragged over the window.
 fn show_hovered(ui: &Ui, area: egui::Rect, has_document: bool) {
     if ui.input(|i| i.raw.hovered_files.is_empty()) {
         return;

@@ -1,4 +1,4 @@
-//! Closing and leaving, and what comes in by other doors: dropped files.
+//! Closing documents, quitting, and dropped files.
 //! Floor 7.
 
 use super::MainWindow;
@@ -18,7 +18,7 @@ impl MainWindow {
             self.proceed(ctx, AfterUnsaved::Close(tab), false);
         }
     }
-    /// After the question about unsaved work. `discarding`: the tab asked about is given up.
+    /// After the question about unsaved work. `discarding`: the changes of the tab are discarded.
     pub(super) fn proceed(&mut self, ctx: &egui::Context, then: AfterUnsaved, discarding: bool) {
         match then {
             AfterUnsaved::Close(index) => self.apply(&Action::File(FileAction::Close { index })),
@@ -30,7 +30,7 @@ impl MainWindow {
             }
         }
     }
-    /// The window is about to be closed: not while there is unsaved work that nobody gave up.
+    /// The window is about to close: it stays open while there is unsaved work.
     pub(super) fn guard_leaving(&mut self, ctx: &egui::Context) {
         if self.leaving || !ctx.input(|i| i.viewport().close_requested()) {
             return;

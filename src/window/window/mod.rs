@@ -1,5 +1,5 @@
-//! The window: lays the panels out, does what they ask for, and tells what went wrong.
-//! Floor 7. `layout` says where the panels stand, `files` and `leaving` hold what files ask for.
+//! The main window: shows the panels, performs their requests, and reports errors. Floor 7. `layout` arranges the
+//! panels; `files` and `leaving` handle files.
 
 mod files;
 mod interface;
@@ -36,36 +36,36 @@ pub struct MainWindow {
     pub(super) jobs: Jobs,
     /// The last one is shown.
     pub(super) dialogs: Vec<Dialog>,
-    /// Sentences that stay until they are read.
+    /// Messages that stay until they are closed.
     pub(super) messages: Vec<String>,
     settings: Settings,
     keeper: SettingsFile,
-    /// Not with the dialogs of the system.
+    /// Whether it uses its own file dialogs instead of the system's.
     asks_itself: bool,
-    /// The program was started without a file, so the sample is open.
+    /// Whether the program was started without a file, so that the sample is open.
     is_first_start: bool,
     export: export::ExportDialog,
-    /// What the file dialog of the system is asked for with this name.
+    /// The purpose of the open system dialog.
     title: String,
-    /// The look that is remembered was put on.
+    /// Whether the stored theme was applied.
     is_dressed: bool,
     /// The user agreed to leave.
     leaving: bool,
-    /// What is to be done once the document is saved.
+    /// What to do once the document is saved.
     after_saving: Option<AfterUnsaved>,
     memory: MemoryMeter,
     /// What was copied last; kept, so that it stays in the system's clipboard.
     clipboard: Option<Clipboard>,
-    /// What was done, while that is written down.
+    /// The recorded actions, if they are recorded.
     recorded: Option<Vec<Action>>,
 }
 
 impl MainWindow {
-    /// A window that remembers nothing.
+    /// A window without stored settings.
     pub fn new(ctx: &egui::Context) -> Self {
         Self::remembering(ctx, None)
     }
-    /// A window with the settings of a file, kept there from now on.
+    /// A window with the settings of a file, which it updates.
     pub fn remembering(ctx: &egui::Context, file: Option<PathBuf>) -> Self {
         let (settings, keeper, trouble) = SettingsFile::new(file);
         ctx.set_theme(if settings.is_light { egui::Theme::Light } else { egui::Theme::Dark });
@@ -91,20 +91,20 @@ impl MainWindow {
             recorded: None,
         }
     }
-    /// A window that asks for files with its own dialog, whatever the system has.
+    /// A window that always uses its own file dialogs.
     pub fn asking_itself(self) -> Self {
         Self { asks_itself: true, ..self }
     }
-    /// A window that writes down what is done, see [`MainWindow::recorded`].
+    /// A window that records its actions, see [`MainWindow::recorded`].
     pub fn recording(self) -> Self {
         Self { recorded: Some(Vec::new()), ..self }
     }
-    /// What was done, as a replay file: one line an action. Documents made with corrected maps, pasted pictures and
-    /// recovered drawings come from no file alone, and are not in it.
+    /// The recorded actions as a replay file, one line each. Documents with corrected maps, pasted pictures and
+    /// recovered drawings do not come from files, and are not in it.
     pub fn recorded(&self) -> String {
         self.recorded.iter().flatten().map(|action| format!("{}\n", action.written())).collect()
     }
-    /// Writes down what was done.
+    /// Records an action.
     fn did(&mut self, action: impl FnOnce() -> Action) {
         if let Some(recorded) = &mut self.recorded {
             recorded.push(action());
@@ -149,7 +149,7 @@ impl MainWindow {
         self.set_title(ui.ctx());
         self.keeper.keep(&self.settings);
     }
-    /// What the window's own threads could not do.
+    /// Collects the errors of the window's threads.
     fn tell_troubles(&mut self) {
         let troubles = [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
         self.messages.extend(troubles.into_iter().filter_map(Option::take).map(|error| error.to_string()));
@@ -197,11 +197,11 @@ impl MainWindow {
             | DialogAnswer::Delete(_) => {}
         }
     }
-    /// Does what was asked for.
+    /// Performs a request.
     fn do_requests(&mut self, ctx: &egui::Context, requests: UiRequests) {
         let is_editing = self.jobs.editing().is_some();
         for action in requests.actions {
-            // Seen it may be, but not changed, while an edit is under way.
+            // While an edit is running, the document can be viewed but not changed.
             if (is_editing && !matches!(action, Action::View(_))) || self.begin_edit(&action) {
                 continue;
             }
@@ -317,7 +317,7 @@ impl eframe::App for MainWindow {
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
         self.session.close();
         if let Err(error) = self.keeper.finish(&self.settings) {
-            // The window is gone; whoever started it from a terminal sees it.
+            // The window is closed; the terminal still shows the message.
             eprintln!("{error}");
         }
     }

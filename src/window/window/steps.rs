@@ -1,4 +1,4 @@
-//! The three steps of a first start, over the canvas until they are done or put away.
+//! The three hints of the first start, shown over the canvas until they are completed or dismissed.
 //! Floor 7.
 
 use super::MainWindow;
@@ -32,7 +32,7 @@ fn has_moved(session: &Session) -> bool {
 }
 
 impl MainWindow {
-    /// Shows them, until all are done or they are put away.
+    /// Shows them until all are completed or they are dismissed.
     pub(super) fn show_steps(&mut self, ui: &mut Ui) {
         let is_over =
             self.settings.is_hint_done || self.session.active().is_none_or(|tab| tab.document().surface.is_none());

@@ -1,4 +1,4 @@
-//! Long work of the window, begun here and finished by `files` when it arrives: saving, exporting, edits that flatten.
+//! Long work of the window: saving, exporting, flattening edits. It is started here, and `files` handles the results.
 //! Floor 7.
 
 use super::MainWindow;
@@ -97,13 +97,13 @@ impl MainWindow {
     pub(super) fn edited(&mut self, edited: EditResult) {
         let EditResult { tab, action, from, edit } = edited;
         let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) else { return };
-        // Nothing else is done meanwhile; what was done all the same must not be lost.
+        // No other edits are possible meanwhile; an edit that happened anyway must not be lost.
         if crate::session::is_same(tab.document(), &from) {
             tab.take(edit);
             self.did(|| Action::Layer(action));
         }
     }
-    /// What is done while nothing else may be, once it takes long.
+    /// Shows the edit that blocks others, once it takes long.
     pub(super) fn show_editing(&self, ctx: &egui::Context) {
         let Some(job) = self.jobs.editing() else { return };
         ctx.request_repaint_after(std::time::Duration::from_millis(60));

@@ -1,4 +1,4 @@
-//! What `rilievo info` says of brushes of other programs: how they would be painted with here, and what is left behind.
+//! What `rilievo info` says about brushes of other programs: how they are imported, and what is lost.
 //! Floor 7.
 
 use crate::Result;

@@ -1,4 +1,4 @@
-//! What `rilievo info` says of documents: their size, their layers, what is not as it was saved.
+//! What `rilievo info` says about documents: their size, their layers, and differences from the saved state.
 //! Floor 7.
 
 use crate::Result;
@@ -7,7 +7,7 @@ use crate::io::OpenedDocument;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// A file that holds a whole document, or should.
+/// A file that should hold a whole document.
 pub struct DocumentReport {
     pub name: String,
     pub opened: Result<OpenedDocument>,

@@ -1,4 +1,4 @@
-//! Walking the history.
+//! Undo and redo.
 //! Floor 6.
 
 use crate::session::Session;

@@ -1,5 +1,4 @@
-//! Documents in and out, and pictures into documents.
-//! Floor 6. Formats are `io`'s.
+//! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
 
 use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource, flatten};
 use crate::io::export::{ExportOptions, OutputFile};
@@ -116,7 +115,7 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
     Document { layers: fill.into_iter().collect(), ..Document::empty(size) }
 }
 
-/// The flattened picture as a file; none is written if that is given up.
+/// Writes the flattened picture to a file; nothing is written if it is cancelled.
 pub fn export(document: &Document, file: &Path, options: &ExportOptions, progress: &Progress) -> Result<()> {
     let target = OutputFile::new(file, &[])?;
     match flatten(document, progress) {
@@ -132,8 +131,8 @@ pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
     Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
 }
 
-/// A picture becomes an image layer, bent by the operator in hand (by the normals, if that is flat), pinned at `at`.
-/// With nothing open it becomes a document of its own.
+/// A picture becomes an image layer, bent by the current operator (by normals, if that is flat), pinned at `at`.
+/// Without an open document it becomes a document of its own.
 pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let operator = match session.operator {
         Operator::None => DROPPED,
@@ -162,8 +161,8 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     }
 }
 
-/// Another surface beneath the layers, as a step; stretched to the canvas, which is said. Fails where a surface of the
-/// canvas's size cannot be made of it.
+/// Replaces the surface beneath the layers, as a step; it is stretched to the canvas, with a note. Fails if no surface
+/// of the canvas's size can be made of it.
 pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
     let maps::ImportedSurface { surface, findings, files } = import;
     let Some(tab) = session.active_mut() else { return Ok(()) };
@@ -186,7 +185,7 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
     Ok(())
 }
 
-/// How a dropped picture bends where nothing else is in hand: like a reflection that is still recognised.
+/// The operator of a dropped picture if the current one is flat: like a reflection that is still recognisable.
 const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
 
 /// A picture as a document of its own size.
@@ -203,7 +202,7 @@ pub fn of_picture(name: &str, picture: Picture) -> Document {
     Document { layers: vec![Arc::new(Layer::new(stem, Content::Image(Live::new(image))))], ..Document::empty(size) }
 }
 
-/// A file name that no other picture of the document goes by.
+/// A file name that no other picture of the document has.
 pub(super) fn free_file(document: &Document, name: &str) -> String {
     let taken = |name: &str| {
         document.walk().iter().any(|(_, layer)| match &layer.content {

@@ -1,5 +1,5 @@
-//! Edits that flatten: they take as long as a picture takes, so the window does them beside itself.
-//! Floor 6. Flattening itself is `document::flatten`'s.
+//! Edits that flatten layers: they can take long, so the window runs them on another thread. Floor 6. Flattening itself
+//! is in `document::flatten`.
 
 use super::LayerAction;
 use super::layers::sibling;
@@ -9,7 +9,7 @@ use crate::session::open_document::Edit;
 use std::sync::Arc;
 
 impl LayerAction {
-    /// What is being done, of an edit that takes long.
+    /// A description of an edit that takes long.
     pub fn takes_long(&self) -> Option<&'static str> {
         match self {
             LayerAction::MergeDown { .. } => Some("Merging layers"),
@@ -18,7 +18,7 @@ impl LayerAction {
             _ => None,
         }
     }
-    /// Does an edit that takes long to a document; `None` for any other, where it cannot be done, or given up.
+    /// Performs a long edit on a document; `None` for any other edit, if it is impossible, or if it was cancelled.
     pub fn flattened(&self, document: &Document, progress: &Progress) -> Option<Edit> {
         match self {
             LayerAction::MergeDown { layer } => merged(document, layer.find(document)?, progress),

@@ -1,4 +1,4 @@
-//! What the hand holds: tool, brush, colours, operator.
+//! The current settings: tool, brush, colours, operator.
 //! Floor 6.
 
 use crate::io::recipe::read_brush;
@@ -61,12 +61,12 @@ impl ReplayValue for Symmetry {
 }
 
 actions! {
-    /// Nothing here changes a document.
+    /// These actions do not change a document.
     HandAction {
         "tool" Tool { tool: ToolKind }
-        /// One of the brushes to choose from, by its key.
+        /// Selects one of the available brushes by its key.
         "preset" Preset { name: String }
-        /// The whole brush as recipes have it; it may name the pictures of the one in hand.
+        /// The whole brush as in recipes; it may name the pictures of the current one.
         "brush" Brush { brush: Value }
         /// Diameter, px.
         "size" Size { to: f32 }
@@ -85,16 +85,16 @@ actions! {
         "operator" Operator { operator: Operator }
         "symmetry" Symmetry { symmetry: Symmetry }
         "fill" Fill { fill: Fill }
-        /// A mouse presses less the faster it goes.
+        /// Whether a mouse presses less the faster it moves.
         "press by speed" PressBySpeed { on: bool }
         /// Whether the brush paints, smudges, blurs or clones.
         "mark" Mark { mark: BrushMode }
-        /// How far the brush may go.
+        /// Where the brush may paint.
         "bounded" Bounded { bounded: PaintLimit }
     }
 }
 
-/// Diameters that the hand can choose, px.
+/// The range of brush diameters, px.
 pub const SIZES: [f32; 2] = [1.0, 2000.0];
 
 impl HandAction {

@@ -1,5 +1,4 @@
-//! The layer tree and its layers.
-//! Floor 6. The edits themselves are `document::edit`'s.
+//! Actions on the layer tree and its layers. Floor 6. The edits themselves are in `document::edit`.
 
 use super::flattening::no_pixels;
 use crate::document::{
@@ -17,7 +16,7 @@ use crate::surface::NoiseRelief;
 use crate::tools::brush::free_name;
 use std::sync::Arc;
 
-/// Layers that can be made of nothing.
+/// Kinds of new layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NewLayer {
     Paint,
@@ -37,7 +36,7 @@ names!(NewLayer, [
 ]);
 
 impl NewLayer {
-    /// Every kind with what it is called.
+    /// Every kind with its name in replays.
     pub const ALL: [(NewLayer, &'static str); 8] = [
         (NewLayer::Paint, "Paint layer"),
         (NewLayer::Strokes, "Stroke layer"),
@@ -51,7 +50,7 @@ impl NewLayer {
 }
 
 actions! {
-    /// `layer` is always where it stood before.
+    /// `layer` is always the path before the action.
     LayerAction {
         "select" Select { layer: LayerPath }
         /// Above the selected layer; into it, if it is a group.
@@ -63,15 +62,15 @@ actions! {
         /// One place up (positive) or down among its siblings.
         "nudge" Nudge { layer: LayerPath, by: i32 }
         "merge down" MergeDown { layer: LayerPath }
-        /// All that shows becomes one paint layer.
+        /// Everything visible becomes one paint layer.
         "flatten" Flatten {}
         /// A live layer becomes paint.
         "bake" Bake { layer: LayerPath }
         /// A shading layer of a model, with the material it begins with.
         "add shading" AddShading { model: Model }
-        /// A mask to paint on that shows all of the layer, or hides it; one that there is becomes paint as it is.
+        /// Adds a paintable mask that shows all of the layer, or hides it; an existing mask becomes paintable.
         "paint mask" PaintMask { layer: LayerPath, hides: bool }
-        /// The brush changes the mask from now on, or the layer again.
+        /// Selects whether the brush paints on the mask or on the layer.
         "on mask" OnMask { layer: LayerPath, on: bool }
         /// Into a group of its own.
         "group" Group { layer: LayerPath }
@@ -112,7 +111,7 @@ impl LayerAction {
             LayerAction::OnMask { layer, on } => {
                 tab.selected = id(layer).or(tab.selected);
                 tab.on_mask = *on;
-                // Only where there is one to paint on.
+                // Only if there is one to paint on.
                 tab.repair();
             }
             LayerAction::Solo { layer } => {
@@ -127,7 +126,7 @@ impl LayerAction {
             }
         }
     }
-    /// The step, the document it leads to, and what is selected then.
+    /// The step: its name, the resulting document, and the new selection.
     fn edit(&self, tab: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
         let document = tab.document();
         let layer = |path: &LayerPath| path.find(document).cloned();

@@ -1,5 +1,5 @@
-//! Everything that can be done, as values: the window pushes them, a replay reads them, [`Action::apply`] does them.
-//! Floor 6. One small enum a room of the house, each with its `apply` in its own file.
+//! Everything that can be done, as values: the window creates them, a replay reads them, [`Action::apply`] performs
+//! them. Floor 6. There is one small enum per area, with its `apply` in its own file.
 
 pub mod edit;
 pub mod files;
@@ -24,7 +24,7 @@ use super::replay::ReplayValue;
 use crate::Result;
 use serde_json::Value;
 
-/// One thing done.
+/// One action.
 #[derive(Clone)]
 pub enum Action {
     Edit(EditAction),
@@ -37,7 +37,7 @@ pub enum Action {
 }
 
 impl Action {
-    /// Does it. What cannot be done changes nothing; only files fail.
+    /// Performs it. An impossible action changes nothing; only file access can fail.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         match self {
             Action::Edit(action) => action.apply(session),

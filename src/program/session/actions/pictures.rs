@@ -1,5 +1,5 @@
-//! Pictures that layers are made of, chosen from the user's own files: read on any thread, then put where they belong.
-//! Floor 6. Reading files is `io`'s.
+//! Pictures that layers use, chosen from the user's files: read on any thread, then put into the layer. Floor 6.
+//! Reading files is in `io`.
 
 use super::files::{free_file, read_picture};
 use crate::Result;
@@ -16,14 +16,14 @@ use crate::surface::DetailMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What of a layer is a picture.
+/// The part of a layer that is a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PicturePart {
     /// What a placed image shows.
     Image,
     Mask,
     Environment,
-    /// The lit sphere; where there is a concave one, of convex features.
+    /// The lit sphere; for convex features if there is a concave one.
     Sphere,
     ConcaveSphere,
     /// The normals of a normal layer.
@@ -37,7 +37,7 @@ names!(PicturePart, [
 ]);
 
 impl PicturePart {
-    /// What a dialog that asks for it is called.
+    /// The title of a file dialog for it.
     pub fn title(self) -> &'static str {
         match self {
             PicturePart::Image => "Picture of the layer",
@@ -95,7 +95,7 @@ pub fn read(part: PicturePart, file: &Path) -> Result<ReadPart> {
     Ok(ReadPart { part, name, what })
 }
 
-/// Puts what was read into a layer, as a step. A layer that has no such part stays as it is.
+/// Puts a part into a layer, as a step. A layer without such a part is left as it is.
 pub fn put(tab: &mut OpenDocument, layer: LayerId, read: ReadPart) {
     let ReadPart { part, name, what } = read;
     let document = tab.document();

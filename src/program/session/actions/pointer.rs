@@ -1,4 +1,4 @@
-//! The pen on the canvas, handed to the tool in hand.
+//! The pen on the canvas, passed on to the current tool.
 //! Floor 6.
 
 use crate::math::vec2;
@@ -37,11 +37,11 @@ impl ReplayValue for PenSample {
 actions! {
     /// Canvas px.
     PointerAction {
-        /// With which tool, for a key may lend another; near is so many px to a screen point.
+        /// `tool`: a held key may select another than the current one. `px_per_pt`: canvas px per screen point.
         "press" Press { tool: ToolKind, pen: PenSample, px_per_pt: f32 }
         "drag" Drag { pens: Vec<PenSample> }
         "release" Release {}
-        /// What was begun is forgotten.
+        /// Drops the current gesture.
         "cancel" Cancel {}
     }
 }

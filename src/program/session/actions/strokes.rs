@@ -1,5 +1,5 @@
-//! The strokes of stroke layers: chosen, changed, ordered, taken away, baked.
-//! Floor 6. The edits themselves are `document`'s.
+//! Actions on the strokes of stroke layers: selecting, changing, ordering, deleting, baking. Floor 6. The edits
+//! themselves are in `document::strokes`.
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color, vec2};
@@ -11,19 +11,19 @@ use crate::surface::Operator;
 actions! {
     /// `strokes` are places in the layer's list, the first painted 0.
     StrokeAction {
-        /// Chosen, to be changed; none, to let go.
+        /// Selects strokes; an empty list selects none.
         "choose" Choose { layer: LayerPath, strokes: Vec<usize> }
         "move" Move { layer: LayerPath, strokes: Vec<usize>, by: Vec2 }
         /// Shown only, until it is `done`.
         "restyle" Restyle { layer: LayerPath, strokes: Vec<usize>, to: Style, done: bool }
         /// To a place counted without it.
         "order" Order { layer: LayerPath, stroke: usize, to: usize }
-        /// Each right above itself, a little aside.
+        /// Copies each directly above itself, a little to the side.
         "duplicate" Duplicate { layer: LayerPath, strokes: Vec<usize> }
         "delete" Delete { layer: LayerPath, strokes: Vec<usize> }
         /// To pixels, on a paint layer of their own.
         "bake" Bake { layer: LayerPath, strokes: Vec<usize> }
-        /// Its brush, operator and colour come into the hand.
+        /// Takes over its brush, operator and colour.
         "take" Take { layer: LayerPath, stroke: usize }
     }
 }
@@ -40,12 +40,12 @@ actions! {
         "softness" Softness { to: f32 }
         "spacing" Spacing { to: f32 }
         "rotation" Rotation { to: f32 }
-        /// With the brush in hand.
+        /// The current brush.
         "brush" Brush {}
     }
 }
 
-/// A copy stands so far right of and below what it is a copy of, px.
+/// The offset of a copy to the right and down, px.
 const ASIDE_PX: f32 = 12.0;
 
 impl StrokeAction {
@@ -87,7 +87,7 @@ impl StrokeAction {
             }
         }
     }
-    /// The step, the document it leads to, and which strokes of which layer are chosen then.
+    /// The step: its name, the resulting document, and the strokes that are selected then.
     fn edit(&self, document: &Document) -> Option<(&'static str, Document, LayerId, Vec<usize>)> {
         let id = |path: &LayerPath| path.find(document).map(|layer| layer.id);
         Some(match self {

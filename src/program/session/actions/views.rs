@@ -1,4 +1,4 @@
-//! How the canvas is seen. Nothing here changes a document.
+//! Actions on the view of the canvas. They do not change a document.
 //! Floor 6.
 
 use crate::math::Vec2;
@@ -10,7 +10,7 @@ actions! {
     ViewAction {
         "pan" Pan { by: Vec2 }
         "zoom" Zoom { factor: f32, about: Vec2 }
-        /// One canvas pixel to so many screen points.
+        /// Screen points per canvas pixel.
         "zoom to" ZoomTo { zoom: f32 }
         "turn" Turn { by_rad: f32 }
         "mirror" Mirror {}

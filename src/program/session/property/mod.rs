@@ -1,4 +1,4 @@
-//! One property of a layer and its new value: what sliders, boxes and menus of the panels change.
+//! One property of a layer and its new value, as changed by sliders, boxes and menus of the panels.
 //! Floor 6.
 
 mod values;
@@ -41,13 +41,13 @@ actions! {
         /// A mask derived from the surface, or none.
         "mask" Mask { mask: Option<DerivedMask> }
         "mask inverted" MaskInverted { on: bool }
-        /// Put aside, or counting again.
+        /// Disables or enables the mask.
         "mask disabled" MaskDisabled { on: bool }
         /// How the environment lies: degrees about the vertical axis, stops.
         "environment" Surrounded { projection: Projection, rotation: f32, exposure: f32 }
-        /// The layer does without that picture.
+        /// Removes that picture from the layer.
         "without" Without { part: PicturePart }
-        /// How far away occluders still count, px.
+        /// The distance up to which occluders count, px.
         "occlusion" Occlusion { to: f32 }
         /// Of a normal layer without a map.
         "grain" Grained { grain: NoiseRelief }
@@ -71,7 +71,7 @@ actions! {
 }
 
 impl Property {
-    /// What the step is called.
+    /// The name of the step.
     pub fn label(&self) -> &'static str {
         match self {
             Property::Name { .. } => "Rename layer",
@@ -111,7 +111,7 @@ impl Property {
             Property::Strength { .. } => "Strength",
         }
     }
-    /// Gives a layer the value. What the layer does not have stays as it is.
+    /// Sets the value of a layer. A layer without the property is left as it is.
     pub fn apply(&self, layer: &mut Layer) {
         match self {
             Property::Name { name } => layer.name.clone_from(name),
@@ -206,7 +206,7 @@ impl Property {
         let mut next = shading.clone();
         match self {
             Property::ShadingModel { model } => {
-                // The pictures and lights stay; the terms are those the model begins with.
+                // Keeps pictures and lights; the terms become the model's defaults.
                 let fresh = Shading::new(*model);
                 next.model = *model;
                 (next.ambient, next.diffuse, next.specular) = (fresh.ambient, fresh.diffuse, fresh.specular);

@@ -1,4 +1,4 @@
-//! How the values of properties stand in a replay.
+//! The values of properties in replays.
 //! Floor 6.
 
 use crate::document::{Layer, LayerLock, LayerMask, MaskKind};
@@ -125,7 +125,7 @@ impl crate::session::replay::ReplayValue for DerivedMask {
     }
 }
 
-/// Gives a layer a derived mask, or none. The way it counts stays.
+/// Gives a layer a derived mask, or none; inversion and enabling stay.
 pub(super) fn set_mask(layer: &mut Layer, mask: Option<DerivedMask>) {
     let invert = layer.mask.as_ref().is_some_and(|mask| mask.invert);
     layer.mask = mask.map(|DerivedMask(numbers)| {

@@ -1,4 +1,4 @@
-//! What a brush does that works on paint: bands of colour over the surface, and one stroke across them.
+//! Preview of a retouching brush: bands of colour over the surface, and one stroke across them.
 //! Floor 6.
 
 use super::{clay, scaled, wave};
@@ -15,7 +15,7 @@ const BANDS: f32 = 5.0;
 /// The colours of the bands, one after the other.
 const COLORS: [[u8; 4]; 3] = [[0xc9, 0x65, 0x3f, 255], [0x2f, 0x7f, 0x86, 255], [0xec, 0xe0, 0xc4, 255]];
 
-/// The document once the stroke is drawn; `None` where nothing came of it.
+/// The document with the stroke; `None` if the stroke changed nothing.
 pub fn drawn(preset: &Preset, surface: Arc<Surface>, scale: f32, background: Color) -> Option<Document> {
     let size = surface.size();
     let side = size.width.min(size.height) as f32;

@@ -1,4 +1,4 @@
-//! A layer dragged to another place of the list.
+//! Dragging a layer to another position of the list.
 //! Floor 7.
 
 use crate::document::{Content, Document, Layer, LayerId};
@@ -9,7 +9,7 @@ use crate::theme::ACCENT;
 use eframe::egui::{self, Rect, Response, Stroke, Ui};
 use std::sync::Arc;
 
-/// A row in hand, and rows it can be dropped between or into.
+/// The dragged row, and the rows it can be dropped between or into.
 pub fn show(
     ui: &Ui,
     document: &Document,

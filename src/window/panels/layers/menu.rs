@@ -1,4 +1,4 @@
-//! What a right-click on a layer offers.
+//! The context menu of a layer.
 //! Floor 7.
 
 use super::set;

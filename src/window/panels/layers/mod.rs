@@ -1,5 +1,5 @@
-//! The layers, the topmost first, with what is done to the selected one above and beneath them.
-//! Floor 7. One layer is `row`'s, dragging it `drag`'s, its own menu `menu`'s.
+//! The layer list, the topmost first, with controls of the selected layer above and below. Floor 7. `row` shows one
+//! layer, `drag` handles dragging, `menu` the context menu.
 
 mod drag;
 mod menu;

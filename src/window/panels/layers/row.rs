@@ -1,4 +1,4 @@
-//! A layer's row: eye, thumbnails of the layer and its mask, name, what is special about it.
+//! A layer's row: eye, thumbnails of the layer and its mask, name, and flags.
 //! Floor 7.
 
 use super::{drag, kind_icon, menu, set};
@@ -32,7 +32,7 @@ fn folded(layer: LayerId) -> Id {
     Id::unique(("folded", layer))
 }
 
-/// What is in the group is not shown.
+/// Whether the group is folded.
 pub fn is_folded(ui: &Ui, layer: LayerId) -> bool {
     ui.data(|data| data.get_temp::<bool>(folded(layer)).unwrap_or(false))
 }
@@ -84,7 +84,7 @@ impl LayerRow<'_> {
             Icon::Clip.draw(ui.painter(), at, ui.visuals().text_color());
         }
     }
-    /// The mask, small: a click paints on it, with Shift puts it aside.
+    /// The mask's thumbnail: a click selects it for painting, with Shift it disables the mask.
     fn mask(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
         let Some(mask) = &self.layer.mask else { return };
         let is_on = self.session.active().is_some_and(|tab| tab.on_mask && tab.selected == Some(self.layer.id));
@@ -143,7 +143,7 @@ fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mu
     }
 }
 
-/// The name, or a field to type another into.
+/// The name, or a text field to change it.
 fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &Response, requests: &mut UiRequests) {
     let renaming = Id::unique("renaming layer");
     let typed = ui.data(|data| data.get_temp::<(LayerId, String)>(renaming)).filter(|(id, _)| *id == layer.id);
