@@ -52,7 +52,8 @@ fn injected(folder: &Path, target: &str, calls: &str, what: &str, n: usize) -> O
     let inject = format!("inject={calls}:{what}:when={n}");
     let run = Command::new("strace")
         .args(["-f", "-o", "/dev/null", "-e", &format!("trace={calls}"), "-e", &inject, PROGRAM])
-        .args(["convert", "new.json", target, "--threads", "1"])
+        // One of the files is set read-only.
+        .args(["convert", "new.json", target, "--threads", "1", "--force"])
         .current_dir(folder)
         .stderr(Stdio::piped())
         .output()

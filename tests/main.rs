@@ -13,6 +13,7 @@ mod interchange;
 mod kills;
 mod lines;
 mod maps;
+mod overwriting;
 mod recipe;
 mod view;
 #[cfg(feature = "window-tests")]

@@ -50,7 +50,7 @@ impl Desk {
     /// `rilievo view FILES -o OUT …`
     fn view(&self, files: &[&str], out: &str, more: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
-        command.arg("view").args(files.iter().map(|f| self.path(f)));
+        command.args(["view", "--force"]).args(files.iter().map(|f| self.path(f)));
         command.arg("-o").arg(self.path(out)).args(more).output().unwrap()
     }
     fn shown(&self, files: &[&str], more: &[&str]) -> image::RgbaImage {
@@ -128,7 +128,10 @@ fn what_cannot_be_shown_is_refused_in_a_sentence() {
     refused(&show(&["r.json"], &["--layer", "sky"]), &["--layer", "sky", "ramp"]);
     refused(&show(&["missing_n.png"], &[]), &["missing_n.png"]);
     refused(&show(&["ball_n.png", "ball_n.png"], &[]), &["same kind"]);
-    refused(&desk.view(&MAPS, "ball_n.png", &["--show", "normals"]), &["ball_n.png", "read by this very command"]);
+    refused(
+        &desk.view(&MAPS, "ball_n.png", &["--show", "normals"]),
+        &["ball_n.png", "an open document is made from it"],
+    );
     assert_eq!(show(&MAPS, &["--show", "everything"]).status.code(), Some(2));
     assert_eq!(show(&MAPS, &["--blur", "-1"]).status.code(), Some(2));
 }

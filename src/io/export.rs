@@ -4,13 +4,14 @@
 pub mod deep;
 pub mod layers;
 
+use crate::document::Progress;
+use crate::fs::Disk;
 use crate::math::{Rect, Size, srgb, srgb::Color};
 use crate::raster::TileGrid;
+use crate::replace::{Terms, check, replace};
 use crate::{Error, Result};
-use std::fs;
-use std::io::{Cursor, Write};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A kind of file that a picture can be written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,71 +70,51 @@ impl Default for ExportOptions {
     }
 }
 
-/// A file to write to, checked before the work begins.
-pub struct OutputFile {
-    /// As the user named it, for messages.
-    named: PathBuf,
-    /// With links resolved: the file a link leads to is replaced, not the link.
-    file: PathBuf,
-    /// Absent for a document, which other modules write.
-    format: Option<ExportFormat>,
+/// What a file's name asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// The whole document as a project.
+    Project,
+    /// The whole document as a Photoshop file.
+    Psd,
+    Picture(ExportFormat),
 }
 
-/// Whether the name is that of a document, not of a picture.
-fn is_document(named: &Path) -> bool {
-    let extension = named.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    ["ora", "psd"].contains(&extension.as_str())
-}
-
-impl OutputFile {
-    /// Fails if the name has no known format, names a folder, lies in a folder that does not exist, or is one of the
-    /// input files.
-    pub fn new(named: &Path, inputs: &[PathBuf]) -> Result<Self> {
-        let format = ExportFormat::of(named);
-        let format = if is_document(named) { None } else { Some(format?) };
-        let file = fs::canonicalize(named).unwrap_or_else(|_| named.into());
-        if file.exists() && !file.is_file() {
-            return Err(Error::unsupported(named, "it is not a regular file, so it cannot be replaced"));
-        }
-        let folder = folder_of(&file);
-        if !folder.is_dir() {
-            return Err(Error::io(named, std::io::Error::other(format!("there is no folder {}", folder.display()))));
-        }
-        if inputs.iter().any(|input| fs::canonicalize(input).is_ok_and(|input| input == file)) {
-            return Err(Error::unsupported(named, "it is read by this very command; write to another file"));
-        }
-        Ok(Self { named: named.into(), file, format })
-    }
-    /// Encodes and writes the part of a flattened picture that the canvas shows.
-    pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &ExportOptions) -> Result<()> {
-        let format = self.format.map_or_else(|| ExportFormat::of(&self.named), Ok)?;
-        self.replace(&encode(&self.named, format, pixels, canvas, options)?)
-    }
-    /// Writes a temporary file beside the target and renames it: the target is the old file or the new one, never half
-    /// of it.
-    pub fn replace(&self, bytes: &[u8]) -> Result<()> {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let part = folder_of(&self.file).join(format!(".rilievo-{}-{number}.part", std::process::id()));
-        let write = || -> std::io::Result<()> {
-            let mut file = fs::OpenOptions::new().write(true).create_new(true).open(&part)?;
-            file.write_all(bytes)?;
-            if let Ok(old) = fs::metadata(&self.file) {
-                fs::set_permissions(&part, old.permissions())?;
-            }
-            file.sync_all()?;
-            fs::rename(&part, &self.file)
-        };
-        write().map_err(|error| {
-            // The partial file is removed; if that fails too, the first failure is reported.
-            let _ = fs::remove_file(&part);
-            Error::io(&self.named, error)
+impl Output {
+    /// Fails where the name asks for nothing that is written.
+    pub fn of(file: &Path) -> Result<Self> {
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        Ok(match extension.as_str() {
+            "ora" => Output::Project,
+            "psd" => Output::Psd,
+            _ => Output::Picture(ExportFormat::of(file)?),
         })
     }
 }
 
-fn folder_of(file: &Path) -> &Path {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+/// A place to write to, checked before the work that fills it begins.
+#[derive(Debug)]
+pub struct OutputFile {
+    named: PathBuf,
+    terms: Terms,
+}
+
+impl OutputFile {
+    /// Fails where the name asks for nothing that is written, or where [`replace`] would.
+    pub fn new(named: &Path, terms: Terms) -> Result<Self> {
+        Output::of(named)?;
+        check(&Disk, named, &terms)?;
+        Ok(Self { named: named.into(), terms })
+    }
+    /// Encodes and writes the part of a flattened picture that the canvas shows.
+    pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &ExportOptions) -> Result<()> {
+        self.replace(&encode(&self.named, ExportFormat::of(&self.named)?, pixels, canvas, options)?)
+    }
+    /// The target is the old file or the new one, never half of it.
+    pub fn replace(&self, bytes: &[u8]) -> Result<()> {
+        // It is cancelled while it is painted, if at all: writing is short.
+        replace(&Disk, &self.named, bytes, &self.terms, &Progress::default()).map(drop)
+    }
 }
 
 /// The bytes of a picture file; `file` is for messages.
@@ -243,7 +224,7 @@ fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, picture};
+    use crate::{Budget, Overwrite, picture};
 
     fn checker() -> (TileGrid, Size) {
         let size = Size::new(70, 3);
@@ -294,20 +275,28 @@ mod tests {
     fn a_target_is_replaced_whole_and_leaves_nothing_beside_it() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.png");
-        fs::write(&file, "old").unwrap();
-        OutputFile::new(&file, &[]).unwrap().replace(b"new").unwrap();
-        assert_eq!(fs::read(&file).unwrap(), b"new");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        std::fs::write(&file, "old").unwrap();
+        let said = OutputFile::new(&file, Terms::export(Overwrite::Nothing, Vec::new())).unwrap_err();
+        assert!(matches!(said, Error::Changed { .. }), "{said}");
+        OutputFile::new(&file, Terms::export(Overwrite::Forced, Vec::new())).unwrap().replace(b"new").unwrap();
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
     #[test]
-    fn a_file_that_is_read_is_never_a_target() {
+    fn a_target_that_came_to_be_since_it_was_checked_is_not_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.png");
-        fs::write(&file, "input").unwrap();
-        let roundabout = folder.path().join("../").join(folder.path().file_name().unwrap()).join("a.png");
-        let said = OutputFile::new(&roundabout, &[file]).err().unwrap().to_string();
-        assert!(said.contains("read by this very command"), "{said}");
-        assert!(OutputFile::new(folder.path().join("no/a.png").as_path(), &[]).is_err());
+        let target = OutputFile::new(&file, Terms::export(Overwrite::Nothing, Vec::new())).unwrap();
+        std::fs::write(&file, "somebody's").unwrap();
+        assert!(matches!(target.replace(b"new"), Err(Error::Changed { .. })));
+        assert_eq!(std::fs::read(&file).unwrap(), b"somebody's");
+    }
+    #[test]
+    fn names_that_ask_for_nothing_are_refused() {
         assert!(ExportFormat::of(Path::new("a.gif")).unwrap_err().to_string().contains(".png, .exr, .jpg"));
+        let terms = || Terms::export(Overwrite::Forced, Vec::new());
+        assert!(OutputFile::new(Path::new("a.gif"), terms()).is_err());
+        let said = OutputFile::new(Path::new("no such folder/a.png"), terms()).unwrap_err().to_string();
+        assert!(said.contains("there is no folder no such folder"), "{said}");
     }
 }

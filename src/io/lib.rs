@@ -17,6 +17,7 @@ pub mod project;
 pub mod psd;
 pub mod recipe;
 pub mod recovery;
+pub mod replace;
 pub mod save;
 
 // The floors beneath, under their own names.
@@ -25,4 +26,5 @@ use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surf
 pub use budget::Budget;
 pub use files::{Files, RecipeFolder, UserFiles};
 pub use open::{OpenedDocument, open};
-pub use save::{Overwrite, SavedDocument, save};
+pub use replace::{Overwrite, Terms};
+pub use save::{SavedDocument, save};

@@ -1,14 +1,14 @@
 //! Opens documents: recognises a file by its content and reads it as a document.
 //! Floor 5. Saving is `save`; the formats are modules of their own.
 
-use super::files::{RecipeFolder, read_file};
+use super::files::{RecipeFolder, TrackedFiles, read_file};
 use super::project::{self, Archive, ProjectContents};
 use super::recipe::{self, RecipeSource};
-use super::save::FileStamp;
-use super::{Budget, picture, psd};
+use super::replace::FileStamp;
+use super::{Budget, json, picture, psd};
 use crate::Result;
 use crate::document::{Content, Document, Layer, PixelLayer};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A document and where it came from.
@@ -19,8 +19,10 @@ pub struct OpenedDocument {
     /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
     pub is_whole: bool,
     pub kind: FileKind,
-    /// The file's stamp when it was read, for [`super::save::Overwrite::This`].
+    /// What the file was when it was read, for [`super::replace::Overwrite::This`].
     pub stamp: FileStamp,
+    /// Every file that was read for it, itself first: none of them may be written over by what is made from it.
+    pub reads: Vec<PathBuf>,
 }
 
 /// What a file is.
@@ -49,6 +51,8 @@ impl FileKind {
         match text.first() {
             _ if Archive::is_zip(bytes) => FileKind::Project,
             Some(b'{') => FileKind::Recipe,
+            // The reader says what is wrong with it.
+            _ if json::is_utf16(bytes) => FileKind::Recipe,
             _ if bytes.starts_with(&psd::MAGIC) => FileKind::Psd,
             _ => FileKind::Picture,
         }
@@ -62,17 +66,18 @@ impl FileKind {
 pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let bytes = read_file(file, budget.file_bytes)?;
     let kind = FileKind::of(&bytes);
+    let files = TrackedFiles::new(RecipeFolder::beside(file));
     let whole = |(document, notes)| ProjectContents { document, notes, is_whole: true };
     let ProjectContents { document, notes, is_whole } = match kind {
         FileKind::Project => project::read(file, &bytes, budget)?,
-        FileKind::Recipe => whole(recipe::read_noting(
-            &bytes,
-            RecipeSource { file, files: &RecipeFolder::beside(file), budget, onto: None },
-        )?),
+        FileKind::Recipe => {
+            whole(recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto: None })?)
+        }
         FileKind::Psd => psd::read(file, &bytes, budget)?,
         FileKind::Picture => single(file, &bytes, budget)?,
     };
-    Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes) })
+    let reads = [vec![file.into()], files.read_paths()].concat();
+    Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes), reads })
 }
 
 /// A picture as a document of its size; an EXR of several layers with all of them.
@@ -128,6 +133,8 @@ mod tests {
     fn what_a_file_is_shows_in_its_first_bytes() {
         assert_eq!(FileKind::of(b"PK\x03\x04rest"), FileKind::Project);
         assert_eq!(FileKind::of(b"\xef\xbb\xbf \n{\"format\""), FileKind::Recipe);
+        assert_eq!(FileKind::of(b"\xff\xfe \0{\0"), FileKind::Recipe);
+        assert_eq!(FileKind::of(b"\0 \0{\0\""), FileKind::Recipe);
         assert_eq!(FileKind::of(b"8BPS\0\x01"), FileKind::Psd);
         assert_eq!(FileKind::of(b"\x89PNG"), FileKind::Picture);
     }

@@ -2,10 +2,9 @@
 //! Floor 7.
 
 use super::jobs::{JobKind, JobResult, Jobs};
-use crate::io::export::ExportFormat;
 use crate::session::actions::pictures::PicturePart;
 use crate::session::brushes::EXTENSIONS;
-use crate::session::storage::{DOCUMENTS, PICTURES};
+use crate::session::storage::{DOCUMENTS, PICTURES, SAVED, exported, with_document_extension};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -58,10 +57,16 @@ impl FilePurpose {
             | FilePurpose::Part(_) => {
                 vec![("Pictures", pictures())]
             }
-            FilePurpose::Save => vec![("Documents", DOCUMENTS.to_vec())],
-            FilePurpose::Export => {
-                vec![("Pictures", ExportFormat::ALL.iter().map(|(_, extension)| *extension).collect())]
-            }
+            FilePurpose::Save => vec![("Documents", SAVED.to_vec())],
+            FilePurpose::Export => vec![("Pictures", exported().collect())],
+        }
+    }
+    /// What a chosen file will be called. `extension`: of exports that have none.
+    pub fn named(self, file: PathBuf, extension: &str) -> PathBuf {
+        match self {
+            FilePurpose::Save => with_document_extension(file, SAVED[0], &SAVED),
+            FilePurpose::Export => with_document_extension(file, extension, &exported().collect::<Vec<_>>()),
+            _ => file,
         }
     }
 }

@@ -5,9 +5,10 @@ use crate::clipboard::{Clipboard, PastedContent};
 use crate::document::{Document, LayerId, Progress, SurfaceSource};
 use crate::files::FilePurpose;
 use crate::io::recipe::Preset;
-use crate::io::save::FileStamp;
+use crate::io::replace::FileStamp;
 use crate::io::{maps, recovery};
 use crate::raster::Picture;
+use crate::saving::{Pending, Saving};
 use crate::session::Edit;
 use crate::session::actions::LayerAction;
 use crate::session::actions::files::read_picture;
@@ -33,8 +34,6 @@ pub enum JobResult {
     IsPicture(PathBuf, PinPosition),
     /// Several results.
     Several(Vec<JobResult>),
-    /// It succeeded; the message is shown.
-    Said(String),
     /// Maps were read, for the import dialog.
     Read(Box<Result<maps::ImportedSurface>>),
     /// Drawings that can be recovered.
@@ -45,8 +44,14 @@ pub enum JobResult {
     Pictured(PathBuf, String, Picture, PinPosition),
     /// A picture was read that a layer of a tab is to be made of.
     Part(Box<PartResult>),
-    /// The document of a tab was saved; `None` if it was cancelled.
-    Saved(Box<SaveResult>),
+    /// The document of a tab was saved.
+    Saved(Box<Saving>, FileStamp),
+    /// It was not yet: the user has to know first what the format cannot hold.
+    Loses(Box<Saving>),
+    /// Something was exported; what the format cannot hold.
+    Exported(PathBuf, Vec<String>),
+    /// Something would be lost that nobody was asked about; why.
+    Refused(Pending, String),
     /// An edit of the document of a tab that took long.
     Edited(Box<EditResult>),
     /// The flattened picture is in the clipboard as long as this is kept.
@@ -77,15 +82,6 @@ pub enum PinPosition {
     Middle,
     /// Under the pointer, if that is on the canvas.
     Pointer,
-}
-
-pub struct SaveResult {
-    /// By its key.
-    pub tab: usize,
-    pub file: PathBuf,
-    /// What the file holds now.
-    pub document: Document,
-    pub stamp: Result<Option<FileStamp>>,
 }
 
 pub struct EditResult {
@@ -213,7 +209,7 @@ impl Jobs {
         for (key, done) in self.done.try_iter() {
             let given_up = self.under_way.iter().any(|job| job.key == key && job.progress.is_cancelled());
             self.under_way.retain(|job| job.key != key);
-            if !given_up || matches!(done, JobResult::Saved(_)) {
+            if !given_up || matches!(done, JobResult::Saved(..)) {
                 finished.push(done);
             }
         }

@@ -18,6 +18,7 @@ mod recovery;
 mod render_thread;
 mod requests;
 mod sample;
+mod saving;
 mod settings;
 mod swatches;
 mod theme;

@@ -1,12 +1,13 @@
-//! The window's settings: recent files, panel layout, theme, keys. They are a small JSON file in the user's folder for
-//! settings; a broken one is reported and never keeps the program from starting. Floor 7. `io::save` replaces the file.
+//! What the window remembers from one run to the next: recent files, where panels stand, the theme, keys. A small JSON
+//! file in the user's folder for settings; one that is broken is told of and never keeps the program from starting.
+//! Floor 7. Replacing the file is `io::replace`'s.
 
 use super::jobs;
 use super::keymap::Keymap;
 use super::panels::PanelKind;
 use crate::document::Progress;
 use crate::io::fs::Disk;
-use crate::io::save::{Overwrite, replace};
+use crate::io::replace::{Overwrite, replace};
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -135,7 +136,7 @@ impl Settings {
             std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
         }
         let text = format!("{:#}\n", self.to_json());
-        replace(&Disk, file, text.as_bytes(), Overwrite::Anything, &Progress::default()).map(drop)
+        replace(&Disk, file, text.as_bytes(), &Overwrite::Anything.into(), &Progress::default()).map(drop)
     }
 }
 

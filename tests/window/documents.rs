@@ -185,3 +185,96 @@ fn a_smaller_document_comes_to_the_front_under_a_pointer_over_a_larger_one() {
     until(&mut harness, |harness| session(harness).open_documents.len() == 2);
     assert!(session(&harness).shown().is_some_and(|document| document.surface.is_some()));
 }
+#[test]
+fn what_stands_after_a_point_is_a_part_of_the_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("robot v1.ora"), "another painting").unwrap();
+    let mut harness = window();
+    command(&mut harness, "Save as");
+    choose(&mut harness, &at("robot v1.2"));
+    until(&mut harness, |harness| session(harness).active().unwrap().file.is_some());
+    assert!(at("robot v1.2.ora").is_file());
+    command(&mut harness, "Export…");
+    press(&mut harness, "Export…");
+    // The name that is proposed keeps all of it.
+    until(&mut harness, |harness| harness.query_by_label("File name").is_some());
+    assert_eq!(harness.get_by_label("File name").value().as_deref(), Some("robot v1.2.png"));
+    choose(&mut harness, &at("final v1.2"));
+    until(&mut harness, |_| at("final v1.2.png").is_file());
+    assert_eq!(std::fs::read(at("robot v1.ora")).unwrap(), b"another painting");
+}
+#[test]
+fn a_photoshop_file_is_saved_once_it_was_said_what_it_loses() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("s.psd");
+    let mut harness = window();
+    stroke(&mut harness, vec2(40.0, 10.0));
+    command(&mut harness, "Save as");
+    choose(&mut harness, &file);
+    until(&mut harness, |harness| harness.query_by_label("Save as a Photoshop file?").is_some());
+    assert!(!file.exists());
+    press(&mut harness, "Save");
+    until(&mut harness, |harness| !session(harness).active().unwrap().is_dirty());
+    assert!(std::fs::read(&file).unwrap().starts_with(b"8BPS"));
+    // Known from now on.
+    stroke(&mut harness, vec2(-30.0, 10.0));
+    command(&mut harness, "Save");
+    until(&mut harness, |harness| !session(harness).active().unwrap().is_dirty());
+    // Opened again, everything is live and it is saved to the same file.
+    harness.state_mut().as_mut().unwrap().begin(vec![file.clone()]);
+    until(&mut harness, |harness| session(harness).open_documents.len() == 2);
+    assert_eq!(layers(&harness), ["Background", "Strokes"]);
+    assert_eq!(session(&harness).active().unwrap().file, Some(file));
+}
+#[test]
+fn a_photoshop_file_is_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("out.psd");
+    let mut harness = window();
+    command(&mut harness, "Export…");
+    harness.get_by_label_contains("PSD").click();
+    steps(&mut harness);
+    press(&mut harness, "Export…");
+    choose(&mut harness, &folder.path().join("out"));
+    until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
+    assert!(std::fs::read(&file).unwrap().starts_with(b"8BPS"));
+    assert!(session(&harness).active().unwrap().file.is_none(), "an export is no save");
+}
+#[test]
+fn what_an_open_document_was_made_from_is_never_exported_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let photo = folder.path().join("photo.png");
+    image::RgbImage::from_pixel(30, 20, image::Rgb([200, 10, 10])).save(&photo).unwrap();
+    let before = std::fs::read(&photo).unwrap();
+    let mut harness = window();
+    drop_files(&mut harness, &[&photo]);
+    until(&mut harness, |harness| layers(harness).contains(&"photo".to_owned()));
+    command(&mut harness, "Export…");
+    press(&mut harness, "Export…");
+    choose(&mut harness, &photo);
+    press(&mut harness, "Replace");
+    until(&mut harness, |harness| harness.query_by_label_contains("made from it").is_some());
+    assert_eq!(std::fs::read(&photo).unwrap(), before);
+}
+#[test]
+fn a_file_that_may_not_be_replaced_unasked_is_asked_about_when_it_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.ora");
+    let mut harness = window();
+    command(&mut harness, "Save as");
+    choose(&mut harness, &file);
+    until(&mut harness, |harness| !session(harness).active().unwrap().is_dirty() && file.is_file());
+    std::fs::write(&file, "another program's").unwrap();
+    stroke(&mut harness, vec2(40.0, 10.0));
+    command(&mut harness, "Save");
+    until(&mut harness, |harness| harness.query_by_label("Replace “a.ora”?").is_some());
+    press(&mut harness, "Cancel");
+    assert_eq!(std::fs::read(&file).unwrap(), b"another program's");
+    command(&mut harness, "Save");
+    until(&mut harness, |harness| harness.query_by_label("Replace “a.ora”?").is_some());
+    press(&mut harness, "Replace");
+    until(&mut harness, |harness| !session(harness).active().unwrap().is_dirty());
+    assert_ne!(std::fs::read(&file).unwrap(), b"another program's");
+    assert_eq!(std::fs::read(folder.path().join("a.ora~")).unwrap(), b"another program's");
+}

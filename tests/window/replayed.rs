@@ -4,6 +4,7 @@ use super::{Story, click, command, drag, drop_files, key, layers, press, session
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_engine::document::{Document, Progress, flatten};
+use rilievo_io::Overwrite;
 use rilievo_program::session::{Session, storage};
 use rilievo_window::MainWindow;
 use std::io::Read;
@@ -20,14 +21,14 @@ fn project(folder: &Path) -> std::path::PathBuf {
     image::RgbImage::from_fn(256, 192, at).save(&normals).unwrap();
     let opened = storage::open_maps(&storage::maps_of(Some(&normals), None)).unwrap();
     let file = folder.join("wave.ora");
-    storage::save(&file, opened.tab.document(), None, &Progress::default()).unwrap().unwrap();
+    storage::save(&file, opened.tab.document(), Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
     file
 }
 /// The bytes of the picture, and of the document as its project describes it.
 fn bytes(document: &Document, folder: &Path, name: &str) -> (Vec<u8>, Vec<u8>) {
     let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     let file = folder.join(name);
-    storage::save(&file, document, None, &Progress::default()).unwrap().unwrap();
+    storage::save(&file, document, Overwrite::Anything, &Progress::default()).unwrap().unwrap();
     let mut archive = zip::ZipArchive::new(std::fs::File::open(file).unwrap()).unwrap();
     let mut text = Vec::new();
     archive.by_name("rilievo/document.json").unwrap().read_to_end(&mut text).unwrap();

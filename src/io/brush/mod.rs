@@ -17,7 +17,7 @@ mod myb;
 mod tests;
 mod write;
 
-pub use write::{remove, write};
+pub use write::{Encoded, encode, pictures_beside, remove};
 
 use super::Budget;
 use crate::paint::tip::Hose;

@@ -8,36 +8,59 @@ use crate::project::pixels;
 use crate::raster::Asset;
 use crate::raster::picture::Texels;
 use crate::recipe::{Preset, write_preset};
-use crate::{Error, Result};
-use crate::{Overwrite, exr, save};
-use std::path::Path;
+use crate::replace::{Terms, check, replace};
+use crate::{Error, Result, exr};
+use std::path::{Path, PathBuf};
 
-/// Writes a preset to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder. The preset with these
-/// names.
-///
-/// The pictures are written first, so that an existing preset is complete.
-pub fn write(file: &Path, preset: &Preset) -> Result<Preset> {
+/// A preset as files, not written yet.
+pub struct Encoded {
+    /// With the names of its pictures.
+    pub preset: Preset,
+    /// The pictures first, so that a preset that is there is whole.
+    files: Vec<(PathBuf, Asset)>,
+}
+
+/// A preset as it is written to `file`; its pictures become `STEM.png`, `STEM.2.png` … in the same folder.
+pub fn encode(file: &Path, preset: &Preset) -> Result<Encoded> {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut number = 0;
+    let mut files: Vec<(PathBuf, Asset)> = Vec::new();
     let brush = preset.brush.with_pictures(|source| {
-        number += 1;
         let (bytes, extension) = encoded(file, source)?;
+        let number = files.len() + 1;
         let name = if number == 1 { format!("{stem}.{extension}") } else { format!("{stem}.{number}.{extension}") };
-        replace(&file.with_file_name(&name), bytes.bytes())?;
+        files.push((file.with_file_name(&name), bytes));
         Ok::<_, Error>(PictureSource::new(name, source.picture.clone(), source.adjust))
     })?;
-    let written = Preset { brush, ..preset.clone() };
-    let text = serde_json::to_string_pretty(&write_preset(&written)).map_err(|e| Error::unsupported(file, e))? + "\n";
-    replace(file, text.as_bytes())?;
-    Ok(written)
+    let preset = Preset { brush, ..preset.clone() };
+    let text = serde_json::to_string_pretty(&write_preset(&preset)).map_err(|e| Error::unsupported(file, e))? + "\n";
+    files.push((file.into(), text.into_bytes().into()));
+    Ok(Encoded { preset, files })
+}
+
+impl Encoded {
+    /// Whether each of its files may be written.
+    pub fn check(&self, terms: &Terms) -> Result<()> {
+        self.files.iter().try_for_each(|(file, _)| check(&Disk, file, terms))
+    }
+    /// Writes them; none where `terms` do not allow all of them.
+    pub fn write(&self, terms: &Terms) -> Result<()> {
+        self.check(terms)?;
+        // Nothing here cancels.
+        let put = |(file, bytes): &(PathBuf, Asset)| replace(&Disk, file, bytes.bytes(), terms, &Progress::default());
+        self.files.iter().try_for_each(|file| put(file).map(drop))
+    }
+}
+
+/// The pictures that a preset's file names, which lie beside it.
+pub fn pictures_beside(file: &Path, preset: &Preset) -> impl Iterator<Item = PathBuf> {
+    let names = preset.brush.pictures().map(|source| Path::new(&source.file));
+    names.filter(|name| name.file_name() == Some(name.as_os_str())).map(|name| file.with_file_name(name))
 }
 
 /// Removes a preset's file and the pictures that it names. A missing file is no failure.
 pub fn remove(file: &Path, preset: &Preset) -> Result<()> {
-    let beside = preset.brush.pictures().map(|source| Path::new(&source.file));
-    let beside = beside.filter(|name| name.file_name() == Some(name.as_os_str())).map(|name| file.with_file_name(name));
-    // The preset is removed first, so that nothing refers to the remaining pictures.
-    for file in std::iter::once(file.to_owned()).chain(beside) {
+    // The preset first: what is left then is named by nobody.
+    for file in std::iter::once(file.to_owned()).chain(pictures_beside(file, preset)) {
         match std::fs::remove_file(&file) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(Error::io(file, error)),
             _ => {}
@@ -53,9 +76,4 @@ fn encoded(file: &Path, source: &PictureSource) -> Result<(Asset, &'static str)>
         Texels::Srgb8(texels) => pixels::encode_texels(file, texels, picture.size).map(|png| (png, "png")),
         Texels::Linear(texels) => exr::encode_light(file, picture.size, texels).map(|exr| (exr.into(), "exr")),
     }
-}
-
-fn replace(file: &Path, bytes: &[u8]) -> Result<()> {
-    // Nothing cancels this.
-    save::replace(&Disk, file, bytes, Overwrite::Anything, &Progress::default()).map(|_| ())
 }

@@ -3,15 +3,14 @@
 //! Power cut, harsher than any real disk: bytes written since a file's last sync may be lost from any point on; of a
 //! folder's changes since its last sync any may be missing, each by itself.
 
-use super::{EntryKind, FileHandle, FileLock, Fs};
+mod power;
+
+use super::{EntryKind, FileHandle, FileLock, Fs, Identity};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
-
-/// Bits of luck that decide about a file that is not synced.
-const BITS_A_FILE: usize = 10;
 
 #[derive(Clone, Default)]
 struct Inode {
@@ -35,6 +34,10 @@ pub struct DiskState {
     held: BTreeSet<usize>,
     operations: usize,
     has_no_links: bool,
+    /// Another user's files, which in a folder where everybody keeps their own nobody else may rename or remove.
+    others: BTreeSet<usize>,
+    read_only: BTreeSet<PathBuf>,
+    tokens: u64,
     /// Fails the operations of these numbers.
     failing: Option<InjectedFailure>,
     /// The state before every operation, if they are recorded.
@@ -84,6 +87,19 @@ impl MemoryFs {
     pub fn refuse_links(&self) {
         self.state().has_no_links = true;
     }
+    /// A file becomes another user's.
+    pub fn give_away(&self, name: &str) {
+        let mut state = self.state();
+        let inode = state.names[Path::new(name)];
+        state.others.insert(inode);
+    }
+    pub fn set_read_only(&self, name: &str) {
+        self.state().read_only.insert(name.into());
+    }
+    /// As another process would count that began as this one did.
+    pub fn repeat_tokens(&self) {
+        self.state().tokens = 0;
+    }
     pub fn heal(&self) {
         self.state().failing = None;
     }
@@ -130,6 +146,16 @@ impl MemoryFs {
     fn inode(&self, path: &Path) -> io::Result<usize> {
         self.state().names.get(path).copied().ok_or_else(|| io::ErrorKind::NotFound.into())
     }
+    /// Fails where nobody but a file's owner may take its name away.
+    fn may_move(&self, inode: usize) -> io::Result<()> {
+        let is_others = self.state().others.contains(&inode);
+        if is_others { Err(io::ErrorKind::PermissionDenied.into()) } else { Ok(()) }
+    }
+    /// Fails where a name is too long for a disk.
+    fn may_name(path: &Path) -> io::Result<()> {
+        let length = path.file_name().map_or(0, |name| name.len());
+        if length > 255 { Err(io::ErrorKind::InvalidFilename.into()) } else { Ok(()) }
+    }
     fn change(&self, change: NameChange) {
         let mut state = self.state();
         apply(&mut state.names, &change);
@@ -143,53 +169,6 @@ fn apply(names: &mut BTreeMap<PathBuf, usize>, change: &NameChange) {
             Some(inode) => drop(names.insert(name.clone(), *inode)),
             None => drop(names.remove(name)),
         }
-    }
-}
-
-impl DiskState {
-    /// Values of `luck` that [`DiskState::after_power_cut`] tells apart: all there are, or `most` spread over them.
-    pub fn lucks(&self, most: u64) -> impl Iterator<Item = u64> {
-        let unsynced = self.inodes.iter().filter(|inode| inode.bytes != inode.synced).count();
-        let all = 1u64 << (self.pending.len() + BITS_A_FILE * unsynced).min(63);
-        // An odd step visits every value before it repeats.
-        let step = if all <= most { 1 } else { 0x9e37_79b9_7f4a_7c15 };
-        (0..all.min(most)).map(move |i| i.wrapping_mul(step) % all)
-    }
-    /// The disk after a power cut. Each bit of `luck` decides about one change of a folder; further bits decide how
-    /// much of each file that is not synced arrived.
-    pub fn after_power_cut(&self, luck: u64) -> MemoryFs {
-        let mut names = self.synced_names.clone();
-        let mut bits = luck;
-        let mut next = || {
-            let bit = bits & 1 == 1;
-            bits >>= 1;
-            bit
-        };
-        for change in &self.pending {
-            if next() {
-                apply(&mut names, change);
-            }
-        }
-        let mut one = |inode: &Inode| {
-            if inode.bytes == inode.synced {
-                return inode.clone();
-            }
-            // All, what was synced, or some of what came after.
-            let (synced, all) = (inode.synced.len(), inode.bytes.len());
-            let (kind, part) = ((next(), next()), (0..8).fold(0, |n, bit| n | usize::from(next()) << bit));
-            let arrived = &inode.bytes[..synced + (all - synced) * part / 256];
-            let bytes = match kind {
-                (true, true) => inode.bytes.clone(),
-                (true, false) => arrived.to_vec(),
-                // Its length is known already, its bytes are not.
-                (false, true) => [arrived, &vec![0; all - arrived.len()]].concat(),
-                (false, false) => inode.synced.clone(),
-            };
-            Inode { synced: bytes.clone(), bytes }
-        };
-        let inodes = self.inodes.iter().map(&mut one).collect();
-        let state = DiskState { inodes, synced_names: names.clone(), names, ..DiskState::default() };
-        MemoryFs(Arc::new(Mutex::new(state)))
     }
 }
 
@@ -261,6 +240,7 @@ impl Drop for MemoryLock {
 impl Fs for MemoryFs {
     fn create_new(&self, path: &Path) -> io::Result<Box<dyn FileHandle>> {
         self.turn()?;
+        Self::may_name(path)?;
         if self.inode(path).is_ok() {
             return Err(io::ErrorKind::AlreadyExists.into());
         }
@@ -278,7 +258,14 @@ impl Fs for MemoryFs {
     }
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.turn()?;
+        Self::may_name(to)?;
         let inode = self.inode(from)?;
+        self.may_move(inode)?;
+        self.inode(to).map_or(Ok(()), |inode| self.may_move(inode))?;
+        if self.inode(to).is_ok_and(|there| there == inode) {
+            // Two names of one file stay as they are.
+            return Ok(());
+        }
         self.change(vec![(from.into(), None), (to.into(), Some(inode))]);
         Ok(())
     }
@@ -287,6 +274,7 @@ impl Fs for MemoryFs {
         if self.state().has_no_links {
             return Err(io::ErrorKind::PermissionDenied.into());
         }
+        Self::may_name(to)?;
         if self.inode(to).is_ok() {
             return Err(io::ErrorKind::AlreadyExists.into());
         }
@@ -296,7 +284,8 @@ impl Fs for MemoryFs {
     }
     fn remove(&self, path: &Path) -> io::Result<()> {
         self.turn()?;
-        self.inode(path)?;
+        let inode = self.inode(path)?;
+        self.may_move(inode)?;
         self.change(vec![(path.into(), None)]);
         Ok(())
     }
@@ -330,8 +319,28 @@ impl Fs for MemoryFs {
     fn create_folder(&self, _: &Path) -> io::Result<()> {
         self.turn().map(drop)
     }
-    fn copy_permissions(&self, _: &Path, _: &Path) -> io::Result<()> {
+    fn copy_ownership(&self, _: &Path, _: &Path) -> io::Result<()> {
         self.turn().map(drop)
+    }
+    fn is_same_owner(&self, one: &Path, other: &Path) -> io::Result<bool> {
+        self.turn()?;
+        let [one, other] = [self.inode(one)?, self.inode(other)?];
+        let state = self.state();
+        Ok(state.others.contains(&one) == state.others.contains(&other))
+    }
+    fn identity(&self, path: &Path) -> io::Result<Option<Identity>> {
+        self.turn()?;
+        self.inode(path).map(|inode| Some(Identity { device: 0, number: inode as u64 }))
+    }
+    fn is_read_only(&self, path: &Path) -> io::Result<bool> {
+        self.turn()?;
+        self.inode(path)?;
+        Ok(self.state().read_only.contains(path))
+    }
+    fn token(&self) -> u64 {
+        let mut state = self.state();
+        state.tokens += 1;
+        state.tokens
     }
     fn lock(&self, path: &Path) -> io::Result<Option<Box<dyn FileLock>>> {
         self.turn()?;

@@ -8,4 +8,4 @@ pub mod text;
 
 pub use fields::{Fields, JsonNode};
 pub use object::JsonObject;
-pub use text::parse;
+pub use text::{is_utf16, parse};

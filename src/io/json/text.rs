@@ -12,6 +12,9 @@ pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
         let reason = format!("the text has {} bytes; it may have {}", bytes.len(), budget.json_bytes);
         return Err(Error::too_large(file, reason));
     }
+    if is_utf16(bytes) {
+        return Err(Error::decode(file, "it is a text in UTF-16; JSON is written in UTF-8: save it as that"));
+    }
     let text = std::str::from_utf8(bytes)
         .map_err(|e| Error::decode(file, format!("it is not UTF-8 text (at byte {})", e.valid_up_to())))?;
     // Some editors open a text with a byte-order mark.
@@ -24,7 +27,21 @@ pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
     Ok(value)
 }
 
-/// The number of values that an object counts as: its table of keys takes that much memory.
+/// A text of two bytes a character that begins like an object, with or without a byte-order mark: some editors and
+/// shells write such.
+pub fn is_utf16(bytes: &[u8]) -> bool {
+    let begins = |bytes: &[u8], of: fn([u8; 2]) -> u16| {
+        let mut units = bytes.as_chunks().0.iter().take(LONGEST_INDENT).map(|pair| of(*pair));
+        let first = units.find(|unit| !matches!(unit, 0xfeff | 0x20 | 0x09 | 0x0a | 0x0d));
+        first == Some(u16::from(b'{'))
+    };
+    begins(bytes, u16::from_le_bytes) || begins(bytes, u16::from_be_bytes)
+}
+
+/// Characters before a text's first bracket that are looked through.
+const LONGEST_INDENT: usize = 1 << 10;
+
+/// As how many values an object counts: its table of keys takes that much.
 const OBJECT: usize = 8;
 
 /// Holds nesting and the number of values to the budget without building anything: a text of brackets and commas would
@@ -146,6 +163,20 @@ mod tests {
     #[test]
     fn numbers_beyond_every_float_are_refused() {
         assert!(said("1e999").contains("out of range"));
+    }
+    #[test]
+    fn a_text_in_utf16_is_called_so() {
+        for mark in ["", "\u{feff}", " \n"] {
+            let units: Vec<u16> = format!("{mark}{{\"a\": 1}}").encode_utf16().collect();
+            for bytes in [
+                units.iter().flat_map(|unit| unit.to_le_bytes()).collect::<Vec<u8>>(),
+                units.iter().flat_map(|unit| unit.to_be_bytes()).collect(),
+            ] {
+                let said = parse(Path::new("r.json"), &bytes, &Budget::default()).unwrap_err().to_string();
+                assert!(said.contains("UTF-16"), "{said}");
+            }
+        }
+        assert!(!is_utf16(b"{}") && !is_utf16(b"\x89PNG") && !is_utf16(b"{ {") && !is_utf16(b""));
     }
     #[test]
     fn a_byte_order_mark_is_no_error() {

@@ -5,7 +5,7 @@ use super::log::{self, RecordKind};
 use super::state::{self, LoggedParts};
 use crate::document::Document;
 use crate::fs::{FileHandle, Fs};
-use crate::save::FileStamp;
+use crate::replace::FileStamp;
 use crate::{Error, Result};
 use serde_json::{Value, json};
 use std::io::Write;

@@ -19,7 +19,7 @@ mod tests;
 pub use sessions::{LostSession, RecoveredDocument, held_by_others, read, sessions};
 
 use super::fs::{FileLock, Fs};
-use super::save::FileStamp;
+use super::replace::FileStamp;
 use crate::document::Document;
 use crate::{Error, Result};
 use journal::Journal;

@@ -6,7 +6,7 @@ use super::state::LastState;
 use crate::Budget;
 use crate::document::Document;
 use crate::fs::{FileLock, Fs};
-use crate::save::FileStamp;
+use crate::replace::FileStamp;
 use crate::{Error, Result};
 use serde_json::Value;
 use std::io::Read;

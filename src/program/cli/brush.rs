@@ -1,12 +1,13 @@
 //! `rilievo brush`: brushes of other programs as files of this one, and pictures of what a brush paints.
 //! Floor 7.
 
-use super::LimitArgs;
+use super::force::Force;
+use super::{LimitArgs, convert};
 use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::recipe::{Preset, preset};
-use crate::io::{brush, picture};
+use crate::io::{Terms, brush, picture};
 use crate::math::Size;
-use crate::raster::Picture;
+use crate::raster::{Picture, TileGrid};
 use crate::session::{brushes, swatch};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -27,23 +28,33 @@ pub struct BrushArgs {
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(16..=4096))]
     side: u32,
     #[command(flatten)]
+    force: Force,
+    #[command(flatten)]
     limits: LimitArgs,
 }
 
 pub fn run(args: &BrushArgs) -> Result<()> {
     args.limits.install(|| {
         let built_in = args.from.to_str().and_then(preset).filter(|_| !args.from.exists());
-        let brushes = match built_in {
-            Some(preset) => vec![(preset, Vec::new())],
-            None => brushes::read(&args.from, &args.limits.budget())?,
+        let (brushes, reads) = match built_in {
+            Some(preset) => (vec![(preset, Vec::new())], Vec::new()),
+            None => {
+                let brushes = brushes::read(&args.from, &args.limits.budget())?;
+                let reads = brushes.iter().flat_map(|(preset, _)| brush::pictures_beside(&args.from, preset));
+                let reads = std::iter::once(args.from.clone()).chain(reads).collect();
+                (brushes, reads)
+            }
         };
+        let terms = args.force.export(reads);
         let count = brushes.len();
+        let mut made = Vec::new();
         for (i, (preset, notes)) in brushes.into_iter().enumerate() {
-            notes.iter().for_each(|note| eprintln!("{}: {note}", preset.name));
+            notes.iter().for_each(|note| convert::say(&format!("{}: {note}", preset.name)));
             let to = if count == 1 { args.to.clone() } else { numbered(&args.to, i + 1) };
-            write(&args.from, &to, preset, args.side)?;
+            made.push(Made::of(&to, &preset, args.side, &terms)?);
         }
-        Ok(())
+        // All may be written, or none is.
+        made.into_iter().try_for_each(|made| made.write(&terms))
     })
 }
 
@@ -54,17 +65,31 @@ fn numbered(file: &Path, number: usize) -> PathBuf {
     file.with_file_name(format!("{stem}-{number}.{extension}"))
 }
 
-fn write(from: &Path, to: &Path, preset: Preset, side: u32) -> Result<()> {
-    let extension = to.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    if extension == "json" {
-        if to == from {
-            return Err(Error::unsupported(to, "it is read by this very command; write to another file"));
+/// What a brush became, not written yet.
+enum Made {
+    Preset(brush::Encoded),
+    Picture(OutputFile, TileGrid, Size),
+}
+
+impl Made {
+    /// Fails where it may not be written.
+    fn of(to: &Path, preset: &Preset, side: u32, terms: &Terms) -> Result<Self> {
+        let extension = to.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        if extension == "json" {
+            let encoded = brush::encode(to, preset)?;
+            encoded.check(terms)?;
+            return Ok(Made::Preset(encoded));
         }
-        return brush::write(to, &preset).map(drop);
+        let target = OutputFile::new(to, terms.clone())?;
+        let none = || Error::unsupported(to, "the brush cannot be shown");
+        let (pixels, size) = (swatch::painted(preset, side).ok_or_else(none)?, Size::new(side, side));
+        let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;
+        Ok(Made::Picture(target, picture::to_tiles(&picture, 0, 0), size))
     }
-    let target = OutputFile::new(to, &[from.to_owned()])?;
-    let none = || Error::unsupported(to, "the brush cannot be shown");
-    let (pixels, size) = (swatch::painted(&preset, side).ok_or_else(none)?, Size::new(side, side));
-    let picture = Picture::srgb8(size, pixels.as_chunks().0.to_vec()).ok_or_else(none)?;
-    target.write(&picture::to_tiles(&picture, 0, 0), size, &ExportOptions::default())
+    fn write(self, terms: &Terms) -> Result<()> {
+        match self {
+            Made::Preset(encoded) => encoded.write(terms),
+            Made::Picture(target, tiles, size) => target.write(&tiles, size, &ExportOptions::default()),
+        }
+    }
 }

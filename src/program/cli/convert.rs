@@ -1,15 +1,22 @@
 //! `rilievo convert`: from any file that can be opened to any that can be written.
 //! Floor 7. The formats themselves are in `io`; losses are reported.
 
+use super::force::Force;
 use super::{LimitArgs, progress, render};
 use crate::Result;
 use crate::document::{Content, Document, flatten, flatten_deep, flatten_layer};
-use crate::io::export::{ExportFormat, ExportOptions, OutputFile, deep, layers};
-use crate::io::{OpenedDocument, Overwrite, open, psd, save};
+use crate::io::export::{ExportFormat, ExportOptions, Output, OutputFile, deep, layers};
+use crate::io::fs::Disk;
+use crate::io::replace::{Terms, check};
+use crate::io::{OpenedDocument, open, save};
 use crate::math::{Rect, srgb::Color};
 use std::path::{Path, PathBuf};
 
 /// Convert between projects, Photoshop files, recipes and pictures
+///
+/// What is read is never written over: not FROM, nor any picture, map or tip that it names. Another file is replaced
+/// with
+/// --force alone, but for a project: its previous version is kept as TO~.
 #[derive(clap::Args)]
 pub struct ConvertArgs {
     /// What to read: .ora, .psd, .json, or a picture
@@ -42,6 +49,8 @@ pub struct ConvertArgs {
           value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
     #[command(flatten)]
+    force: Force,
+    #[command(flatten)]
     limits: LimitArgs,
 }
 
@@ -55,45 +64,20 @@ fn dots_per_inch(text: &str) -> std::result::Result<f32, String> {
     dots.ok_or_else(|| "a resolution is a number between 1 and 100000".to_owned())
 }
 
-/// The kind of output, from the file name.
-enum OutputKind {
-    Project,
-    Psd,
-    Picture(ExportFormat),
-}
-
-impl OutputKind {
-    fn of(file: &Path) -> Result<Self> {
-        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        Ok(match extension.as_str() {
-            "ora" => OutputKind::Project,
-            "psd" => OutputKind::Psd,
-            _ => OutputKind::Picture(ExportFormat::of(file)?),
-        })
-    }
-}
-
 pub fn run(args: &ConvertArgs) -> Result<()> {
     args.limits.install(|| {
-        let output = OutputKind::of(&args.to)?;
-        let target = OutputFile::new(&args.to, std::slice::from_ref(&args.from))?;
-        let OpenedDocument { document, notes, .. } = open(&args.from, &args.limits.budget())?;
+        let output = Output::of(&args.to)?;
+        let OpenedDocument { document, notes, reads, .. } = open(&args.from, &args.limits.budget())?;
+        let terms = terms(args, output, reads);
         let document = render::scaled(&args.from, args.scale, &args.limits, document)?;
         match output {
-            OutputKind::Project => {
-                // Nothing here cancels, so it is always saved.
-                progress::shown(|progress| save(&document, &args.to, Overwrite::Anything, progress))?;
+            Output::Project | Output::Psd => {
+                check(&Disk, &args.to, &terms)?;
+                whole(&args.to, &document, &terms)?;
             }
-            OutputKind::Psd => {
-                let written = progress::shown(|progress| psd::write(&args.to, &document, progress))?;
-                // As above.
-                let Some(written) = written else { return Ok(()) };
-                target.replace(&written.bytes)?;
-                tell(&args.to, &written.notes);
-            }
-            OutputKind::Picture(format) => {
+            Output::Picture(format) => {
                 render::refuse_incomplete(&args.from, &document)?;
-                picture(args, &document, format, &target)?;
+                picture(args, &document, format, terms)?;
             }
         }
         // Beside an error, notes would only hide it.
@@ -102,16 +86,35 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
     })
 }
 
-fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, target: &OutputFile) -> Result<()> {
+fn terms(args: &ConvertArgs, output: Output, reads: Vec<PathBuf>) -> Terms {
+    match output {
+        Output::Project => args.force.project(reads),
+        Output::Psd | Output::Picture(_) => args.force.export(reads),
+    }
+}
+
+/// The document with all that the format can hold.
+fn whole(to: &Path, document: &Document, terms: &Terms) -> Result<()> {
+    progress::shown(|progress| {
+        // Nothing here cancels, so it is always saved.
+        let Some(encoded) = save::encode(document, to, progress)? else { return Ok(()) };
+        encoded.save(to, terms, progress)?;
+        tell(to, &encoded.notes);
+        Ok(())
+    })
+}
+
+fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, terms: Terms) -> Result<()> {
     let crop = args.crop_to_surface.then(|| covered(document)).flatten();
     let options = ExportOptions { background: args.background, quality: args.quality, dots_per_inch: args.dpi, crop };
     let is_exr = format == ExportFormat::Exr;
-    if args.layers && is_exr {
+    if args.layers && !is_exr {
+        return each_layer(args, document, &options, &terms);
+    }
+    let target = OutputFile::new(&args.to, terms)?;
+    if args.layers {
         let bytes = progress::shown(|progress| layers::encode(&args.to, document, progress))?;
         return target.replace(&bytes.unwrap_or_default());
-    }
-    if args.layers {
-        return each_layer(args, document, &options);
     }
     if is_exr || args.bits == 16 {
         let pixels = progress::shown(|progress| flatten_deep(document, progress)).unwrap_or_default();
@@ -121,10 +124,12 @@ fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, target
     target.write(&pixels, document.size, &options)
 }
 
-/// Every layer with pixels, hidden ones too, under numbered names: `out-00-sky.png`.
-fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions) -> Result<()> {
+/// Every layer with pixels, hidden ones too, beside the name that was asked for: `out-00-sky.png`. None where one of
+/// them would take the place of a file that must stay.
+fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions, terms: &Terms) -> Result<()> {
     let stem = args.to.file_stem().unwrap_or_default().to_string_lossy();
     let extension = args.to.extension().unwrap_or_default().to_string_lossy();
+    let mut targets = Vec::new();
     for (i, (_, layer)) in document.walk().into_iter().enumerate() {
         if matches!(layer.content, Content::Group(_) | Content::Normals(_) | Content::RadianceScaling(_)) {
             continue;
@@ -132,8 +137,10 @@ fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions) 
         let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
         let name: String = layer.name.chars().take(60).map(plain).collect();
         let file = args.to.with_file_name(format!("{stem}-{i:02}-{name}.{extension}"));
-        let target = OutputFile::new(&file, std::slice::from_ref(&args.from))?;
-        let pixels = progress::shown(|progress| flatten_layer(document, layer.id, progress)).unwrap_or_default();
+        targets.push((OutputFile::new(&file, terms.clone())?, layer.id));
+    }
+    for (target, layer) in targets {
+        let pixels = progress::shown(|progress| flatten_layer(document, layer, progress)).unwrap_or_default();
         target.write(&pixels, document.size, options)?;
     }
     Ok(())
@@ -159,6 +166,11 @@ pub fn tell(file: &Path, notes: &[String]) {
         // A note that repeats an error already names its file.
         let named = format!("{}", file.display());
         let sentence = if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
-        eprintln!("rilievo: {}", super::printable(&sentence));
+        say(&format!("rilievo: {sentence}"));
     }
+}
+
+/// A line on standard error, from which a name cannot steer the terminal.
+pub fn say(line: &str) {
+    eprintln!("{}", super::printable(line));
 }

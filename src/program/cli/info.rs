@@ -29,7 +29,7 @@
 mod brushes;
 mod documents;
 
-use super::{LimitArgs, print};
+use super::{LimitArgs, print, print_lines};
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::io::inspect::{FileDescription, describe};
 use crate::io::maps::{self, Findings, ImportedSurface, pairs};
@@ -78,7 +78,11 @@ pub fn run(args: &InfoArgs) -> Result<()> {
             let import = maps::import(&source.source, &given, &budget);
             report.surfaces.push(SurfaceReport { source, import });
         }
-        print(&if args.json { report.json() } else { report.text() })?;
+        if args.json {
+            print(&report.json())?
+        } else {
+            print_lines(&report.text())?
+        }
         report.first_error().map_or(Ok(()), Err)
     })
 }

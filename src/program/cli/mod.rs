@@ -7,6 +7,7 @@
 mod brush;
 mod convert;
 mod crash;
+mod force;
 mod info;
 pub mod limits;
 mod open;
@@ -57,7 +58,18 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
             return ExitCode::from(u8::try_from(refusal.exit_code()).unwrap_or(2));
         }
     };
-    let done = crash::caught(|| match parsed.command {
+    let done = crash::caught(|| force::naming_the_flag(dispatched(parsed.command, window)));
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(sentence) => {
+            let _ = writeln!(std::io::stderr(), "rilievo: {}", printable(&sentence));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatched(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result<()> {
+    match command {
         Some(CliCommand::Brush(args)) => brush::run(&args),
         Some(CliCommand::Convert(args)) => convert::run(&args),
         Some(CliCommand::Info(args)) => info::run(&args),
@@ -66,13 +78,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
         Some(CliCommand::Replay(args)) => replay::run(&args),
         Some(CliCommand::View(args)) => view::run(&args),
         None => print(&Arguments::command().render_help().to_string()),
-    });
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(sentence) => {
-            let _ = writeln!(std::io::stderr(), "rilievo: {}", printable(&sentence));
-            ExitCode::FAILURE
-        }
     }
 }
 
@@ -97,9 +102,18 @@ pub fn print(text: &str) -> Result<()> {
     }
 }
 
-/// One line without control characters: a file's name must not steer the terminal.
+/// Writes lines to standard output, without what would steer the terminal.
+pub fn print_lines(text: &str) -> Result<()> {
+    print(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
+}
+
+/// One line without control characters, nor those that turn the direction of what follows: the name of a file or a
+/// layer must not steer the terminal.
 fn printable(sentence: &str) -> String {
-    sentence.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+    let steers = |c: char| {
+        c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    sentence.chars().map(|c| if steers(c) { '\u{fffd}' } else { c }).collect()
 }
 
 #[cfg(test)]
@@ -122,5 +136,6 @@ mod tests {
     #[test]
     fn control_characters_are_not_printed() {
         assert_eq!(printable("a\u{1b}[31m\nb"), "a\u{fffd}[31m\u{fffd}b");
+        assert_eq!(printable("gnp.\u{202e}exe \u{9b}1m"), "gnp.\u{fffd}exe \u{fffd}1m");
     }
 }

@@ -1,6 +1,7 @@
 //! `rilievo render`: a document to a picture.
 //! Floor 7.
 
+use super::force::Force;
 use super::{LimitArgs, convert, progress};
 use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
 use crate::document::{Content, Document, SurfaceSource, flatten, flatten_layer};
@@ -22,7 +23,7 @@ pub struct RenderArgs {
     /// The project (.ora), or the recipe: a JSON file; the files it names lie beside it
     #[arg(value_name = "DOC")]
     document: PathBuf,
-    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif
+    /// Where the picture goes: .png, .exr, .jpg, .webp or .tif; one that is there is replaced with --force alone
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Put the painting on another object: its normal map
@@ -54,6 +55,8 @@ pub struct RenderArgs {
           value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
     #[command(flatten)]
+    force: Force,
+    #[command(flatten)]
     limits: LimitArgs,
 }
 
@@ -79,9 +82,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     // A misspelt extension is reported before the work, not after it.
     ExportFormat::of(&args.output)?;
     args.limits.install(|| {
-        let LoadedDocument { document, notes, inputs } = load(args)?;
+        let LoadedDocument { document, notes, reads } = load(args)?;
         refuse_incomplete(&args.document, &document)?;
-        let target = OutputFile::new(&args.output, &inputs)?;
+        let target = OutputFile::new(&args.output, args.force.export(reads))?;
         let document = scaled(&args.document, args.scale, &args.limits, document)?;
         let pixels = progress::shown(|progress| match &args.layer {
             None => Ok(flatten(&document, progress)),
@@ -104,7 +107,7 @@ struct LoadedDocument {
     document: Document,
     notes: Vec<String>,
     /// Every file it was made from.
-    inputs: Vec<PathBuf>,
+    reads: Vec<PathBuf>,
 }
 
 fn load(args: &RenderArgs) -> Result<LoadedDocument> {
@@ -115,6 +118,7 @@ fn load(args: &RenderArgs) -> Result<LoadedDocument> {
     let given = TrackedFiles::new(given);
     let onto = surface.as_ref().map(|surface| OtherSurface { surface, files: &given });
     let bytes = read_file(&args.document, budget.file_bytes)?;
+    let mut reads = vec![args.document.clone()];
     let (document, notes) = match FileKind::of(&bytes) {
         FileKind::Recipe => {
             let source = RecipeSource { file: &args.document, files: &files, budget: &budget, onto };
@@ -128,10 +132,9 @@ fn load(args: &RenderArgs) -> Result<LoadedDocument> {
             (document, opened.notes)
         }
     };
-    let mut inputs = vec![args.document.clone()];
-    inputs.extend(files.read_paths());
-    inputs.extend(given.read_paths());
-    Ok(LoadedDocument { document, notes, inputs })
+    reads.extend(files.read_paths());
+    reads.extend(given.read_paths());
+    Ok(LoadedDocument { document, notes, reads })
 }
 
 /// Refuses layers that would paint black because their picture is missing.

@@ -1,9 +1,10 @@
 //! `rilievo replay`: repeats recorded actions without the window.
 //! Floor 7.
 
+use super::force::Force;
 use super::print;
-use crate::io::Budget;
 use crate::io::files::read_file;
+use crate::io::{Budget, Overwrite};
 use crate::session::{Autosave, Session, is_same};
 use crate::{Error, Result};
 use std::path::PathBuf;
@@ -17,12 +18,15 @@ pub struct ReplayArgs {
     /// Keep recovery logs in this folder as the window does, and print every step once it is in its log
     #[arg(long, value_name = "FOLDER")]
     recover_in: Option<PathBuf>,
+    #[command(flatten)]
+    force: Force,
 }
 
 pub fn run(args: &ReplayArgs) -> Result<()> {
     let text = read_file(&args.file, Budget::default().json_bytes)?;
     let text = String::from_utf8_lossy(&text);
     let mut session = Session::default();
+    session.replaces_unasked = args.force.or(Overwrite::Nothing) == Overwrite::Forced;
     session.autosave = args.recover_in.clone().map(Autosave::new);
     let (mut steps, mut last) = (0, None);
     session.replay_telling(&args.file, &text, |session| {

@@ -2,6 +2,7 @@
 //! Floor 7. The views are in `document::view`.
 
 use super::LimitArgs;
+use super::force::Force;
 use crate::document::source::{MapSource, MaskSource};
 use crate::document::view::{self, SurfaceView, ViewOptions};
 use crate::document::{Document, Layer, SurfaceSource};
@@ -52,6 +53,8 @@ pub struct ViewArgs {
     #[arg(long, value_name = "COLOUR", value_parser = super::render::color)]
     background: Option<Color>,
     #[command(flatten)]
+    force: Force,
+    #[command(flatten)]
     limits: LimitArgs,
 }
 
@@ -77,7 +80,7 @@ fn not_negative(text: &str) -> std::result::Result<f32, String> {
 /// Draws what was asked for.
 pub fn run(args: &ViewArgs) -> Result<()> {
     args.limits.install(|| {
-        let (document, inputs) = match args.show {
+        let (document, reads) = match args.show {
             ShowArg::One(view) if view.is_of_nothing() => (Document::empty(Size::new(1, 1)), Vec::new()),
             _ => opened(args)?,
         };
@@ -89,13 +92,15 @@ pub fn run(args: &ViewArgs) -> Result<()> {
         };
         let write = |target: &OutputFile, picture: &Picture| write(target, picture, args.background);
         if args.output.is_dir() {
-            for view in view::available(&document, layer) {
-                let target = OutputFile::new(&args.output.join(view.name()).with_extension("png"), &inputs)?;
-                write(&target, &draw(view)?)?;
-            }
-            return Ok(());
+            let target = |view: SurfaceView| {
+                let file = args.output.join(view.name()).with_extension("png");
+                Ok((view, OutputFile::new(&file, args.force.export(reads.clone()))?))
+            };
+            // All are possible, or none is drawn.
+            let targets: Vec<_> = view::available(&document, layer).into_iter().map(target).collect::<Result<_>>()?;
+            return targets.into_iter().try_for_each(|(view, target)| write(&target, &draw(view)?));
         }
-        let target = OutputFile::new(&args.output, &inputs)?;
+        let target = OutputFile::new(&args.output, args.force.export(reads.clone()))?;
         match args.show {
             ShowArg::One(view) => write(&target, &draw(view)?),
             ShowArg::Sheet => {

@@ -8,7 +8,7 @@ use crate::document::Document;
 use crate::io::Budget;
 use crate::io::fs::{Disk, Fs};
 use crate::io::recovery::{self, RecoveryLog};
-use crate::io::save::FileStamp;
+use crate::io::replace::FileStamp;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

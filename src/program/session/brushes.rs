@@ -4,7 +4,7 @@
 use super::Session;
 use crate::io::brush::{self, ImportedBrush, plain};
 use crate::io::recipe::{Preset, PresetGroup, load_preset};
-use crate::io::{Budget, files::read_file, picture};
+use crate::io::{Budget, Overwrite, Terms, files::read_file, picture};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, PictureSource, Tip};
 use crate::surface::Operator;
@@ -49,6 +49,7 @@ pub fn import(session: &mut Session, file: &Path) -> Result<()> {
     if let Some(key) = first {
         session.take_preset(&key);
     }
+    session.brush_files.push(file.into());
     Ok(())
 }
 
@@ -69,7 +70,10 @@ fn add(session: &mut Session, mut preset: Preset) -> Result<String> {
     preset.group = PresetGroup::Imported;
     if let Some(folder) = &session.brush_folder {
         std::fs::create_dir_all(folder).map_err(|error| Error::io(folder, error))?;
-        preset = brush::write(&file_of(folder, &preset.key), &preset)?;
+        let encoded = brush::encode(&file_of(folder, &preset.key), &preset)?;
+        // The name is free, or so it was a moment ago.
+        encoded.write(&Terms::export(Overwrite::Nothing, Vec::new()))?;
+        preset = encoded.preset;
     }
     let key = preset.key.clone();
     session.presets.push(preset);
@@ -110,7 +114,7 @@ pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
 /// Adds the brushes of the folder to the list, each under the name of its file.
 pub fn adopt(session: &mut Session, presets: Vec<Preset>) {
     for preset in presets {
-        if free_key(session, &preset.key) == preset.key {
+        if !session.presets.iter().any(|known| known.key == preset.key) {
             session.presets.push(preset);
         } else {
             let key = &preset.key;
@@ -130,9 +134,13 @@ fn picture_tip(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Preset> {
     Ok(preset_of(file, imported).0)
 }
 
-/// A key that no other brush has.
+/// A key that no other brush has, nor a file of the folder, such as one that could not be read.
 fn free_key(session: &Session, key: &str) -> String {
-    let is_taken = |key: &str| session.presets.iter().any(|preset| preset.key == key);
+    let entries = session.brush_folder.iter().flat_map(std::fs::read_dir).flatten().flatten();
+    let stem = |name: std::ffi::OsString| name.to_string_lossy().split('.').next().map(str::to_owned);
+    let files: Vec<String> = entries.filter_map(|entry| stem(entry.file_name())).collect();
+    let is_known = |key: &str| session.presets.iter().any(|preset| preset.key == key);
+    let is_taken = |key: &str| is_known(key) || files.iter().any(|file| file == key);
     let mut free = key.to_owned();
     for i in 2.. {
         if !is_taken(&free) {

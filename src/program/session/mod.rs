@@ -21,7 +21,10 @@ pub use view::CanvasView;
 
 use crate::Result;
 use crate::document::{Document, Layer};
+use crate::io::fs::Disk;
 use crate::io::recipe::{Preset, presets};
+use crate::io::replace::is_same_file;
+use crate::io::{Overwrite, Terms};
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
@@ -65,6 +68,10 @@ pub struct Session {
     pub autosave: Option<Autosave>,
     /// The folder of the user's own brushes, if there is one.
     pub brush_folder: Option<PathBuf>,
+    /// The files that brushes in hand or in the list came from.
+    brush_files: Vec<PathBuf>,
+    /// Files that are there are replaced by saving and exporting, as the user said beforehand.
+    pub replaces_unasked: bool,
     /// Sentences for the user, not shown yet.
     pub notes: Vec<String>,
     untitled: usize,
@@ -95,6 +102,8 @@ impl Default for Session {
             last_pen: None,
             autosave: None,
             brush_folder: None,
+            brush_files: Vec::new(),
+            replaces_unasked: false,
             notes: Vec::new(),
             untitled: 0,
         }
@@ -140,6 +149,35 @@ impl Session {
         }
         self.add_document(tab);
         self.notes.extend(notes);
+    }
+    /// A file went into the document in front.
+    pub fn note_read(&mut self, file: &Path) {
+        if let Some(tab) = self.active_mut() {
+            tab.reads.push(file.into());
+        }
+    }
+    /// Every file that an open document or a brush was made from: none of them may be written over.
+    pub fn reads(&self) -> Vec<PathBuf> {
+        self.open_documents.iter().flat_map(|tab| &tab.reads).chain(&self.brush_files).cloned().collect()
+    }
+    /// On what terms the document in front is saved to a file. `elsewhere`: where that is not its own.
+    pub fn saving(&self, file: &Path, elsewhere: Overwrite) -> Terms {
+        let own = self.active().and_then(|tab| Some((tab, tab.file.as_deref()?)));
+        let own = own.filter(|(_, own)| is_same_file(&Disk, own, file));
+        let mut reads = self.reads();
+        let over = match own {
+            Some((tab, own)) => {
+                reads.retain(|read| !is_same_file(&Disk, read, own));
+                // What was not whole when it was opened must not replace its file unasked.
+                if elsewhere == Overwrite::Forced {
+                    elsewhere
+                } else {
+                    tab.stamp.map_or(Overwrite::Nothing, Overwrite::This)
+                }
+            }
+            None => elsewhere,
+        };
+        Terms { reads, ..over.into() }
     }
     pub fn close_document(&mut self, index: usize) {
         if index < self.open_documents.len() {

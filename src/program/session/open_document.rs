@@ -3,7 +3,7 @@
 
 use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind};
-use crate::io::save::FileStamp;
+use crate::io::replace::FileStamp;
 use crate::math::Vec2;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -33,7 +33,11 @@ pub struct OpenDocument {
     pub name: String,
     /// The stamp of that file when it was last read or written here.
     pub stamp: Option<FileStamp>,
-    /// The document as saved in the file.
+    /// The files that it was made from: none of them may be written over.
+    pub reads: Vec<PathBuf>,
+    /// The user was told what the format of that file cannot hold.
+    pub knows_losses: bool,
+    /// As the file holds it.
     saved: Document,
     /// `None` until the window has shown it.
     pub view: Option<CanvasView>,
@@ -75,6 +79,8 @@ impl OpenDocument {
             selected,
             file,
             stamp: None,
+            reads: Vec::new(),
+            knows_losses: false,
             name: name.into(),
             view: None,
             on_mask: false,
@@ -108,6 +114,9 @@ impl OpenDocument {
     }
     pub fn mark_saved(&mut self, document: Document, file: PathBuf, stamp: FileStamp) {
         self.saved = document;
+        // The file that it was saved to before is one like any other now.
+        self.reads.retain(|read| Some(read) != self.file.as_ref() && *read != file);
+        self.reads.push(file.clone());
         (self.file, self.stamp) = (Some(file), Some(stamp));
     }
     /// Marks a document that did not come from its own file, such as a recovered one, as unsaved.

@@ -5,9 +5,10 @@ use super::OpenDocument;
 use crate::Result;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::document::{Content, Document, Layer, Live, Progress};
+use crate::io::export::ExportFormat;
 use crate::io::maps::pairs::{self, MapPart};
-use crate::io::save::FileStamp;
-use crate::io::{self, Budget, Overwrite, UserFiles, files::read_file, inspect, maps};
+use crate::io::replace::{FileStamp, Terms};
+use crate::io::{self, Budget, UserFiles, files::read_file, inspect, maps};
 use crate::math::{Size, Vec2, srgb::Color};
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::surface::Operator;
@@ -15,7 +16,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Endings of the files that hold documents.
-pub const DOCUMENTS: [&str; 2] = ["ora", "json"];
+pub const DOCUMENTS: [&str; 4] = ["ora", "psd", "psb", "json"];
+/// Endings of the files that documents are saved to, the first being this program's own.
+pub const SAVED: [&str; 2] = ["ora", "psd"];
 /// Endings of the files that hold pictures.
 pub const PICTURES: [&str; 10] = ["png", "jpg", "jpeg", "webp", "tif", "tiff", "bmp", "tga", "hdr", "exr"];
 
@@ -40,6 +43,21 @@ pub struct OpenedTab {
 
 pub fn is_document(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS)
+}
+
+/// A document can be saved to a file of this name.
+pub fn is_saved_to(file: &Path) -> bool {
+    ends_in(file, &SAVED)
+}
+
+/// A file of this name holds a document with all that it is, for every program that opens it.
+pub fn holds_everything(file: &Path) -> bool {
+    !ends_in(file, &SAVED[1..])
+}
+
+/// Endings of the files that a picture is exported to, or the whole document for Photoshop.
+pub fn exported() -> impl Iterator<Item = &'static str> {
+    ExportFormat::ALL.iter().map(|(_, extension)| *extension).chain([SAVED[1]])
 }
 
 fn ends_in(file: &Path, extensions: &[&str]) -> bool {
@@ -70,12 +88,16 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
     match kind_of(file)? {
         FileUse::Document | FileUse::Picture => {
             io::save::tidy(file);
-            let io::OpenedDocument { document, notes, is_whole, kind, stamp } = io::open(file, &Budget::default())?;
+            let io::OpenedDocument { document, notes, is_whole, kind, stamp, reads } =
+                io::open(file, &Budget::default())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let is_project = kind == io::open::FileKind::Project;
+            // A Photoshop file that is taken over with all it has is saved to as well.
+            let is_taken_over = kind == io::open::FileKind::Psd && is_whole && notes.is_empty() && is_saved_to(file);
+            let is_project = kind == io::open::FileKind::Project || is_taken_over;
             let mut tab = OpenDocument::new(name, document, is_project.then(|| file.into()));
             // A document that is not whole must not overwrite its file without asking.
             tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
+            tab.reads = reads;
             Ok(OpenedTab { tab, notes })
         }
         FileUse::Normals => open_maps(&maps_of(Some(file), None)),
@@ -186,7 +208,19 @@ pub fn of_import(source: &SurfaceSource, import: maps::ImportedSurface) -> Opene
     };
     let file = source.normal.as_ref().map(|map| &map.file).or(source.depth.as_ref().map(|map| &map.file));
     let stem = file.map(|file| Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned());
-    OpenedTab { tab: OpenDocument::new(stem.unwrap_or_default(), document, None), notes: findings.notes }
+    let mut tab = OpenDocument::new(stem.unwrap_or_default(), document, None);
+    tab.reads = map_files(source);
+    OpenedTab { tab, notes: findings.notes }
+}
+
+/// The user's own files that a surface is made of.
+pub fn map_files(source: &SurfaceSource) -> Vec<PathBuf> {
+    let mask = source.mask.as_ref().and_then(|mask| match mask {
+        MaskSource::File { file, .. } => Some(file),
+        _ => None,
+    });
+    let maps = [source.normal.as_ref().map(|map| &map.file), source.depth.as_ref().map(|map| &map.file), mask];
+    maps.into_iter().flatten().map(PathBuf::from).collect()
 }
 
 const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
@@ -205,16 +239,14 @@ fn clay(size: Size) -> Gradient {
     }
 }
 
-/// Saves a document as a project. `stamp`: of the file as it was last read or written here, if it was.
-/// `None` if it was cancelled.
+/// Saves a document; `None` if it was given up.
 pub fn save(
     file: &Path,
     document: &Document,
-    stamp: Option<FileStamp>,
+    terms: impl Into<Terms>,
     progress: &Progress,
 ) -> Result<Option<FileStamp>> {
-    let over = stamp.map_or(Overwrite::Anything, Overwrite::This);
-    Ok(io::save(document, file, over, progress)?.map(|saved| saved.stamp))
+    Ok(io::save(document, file, terms, progress)?.map(|saved| saved.stamp))
 }
 
 /// The files of a folder that a document could be opened from, for a picker.
@@ -222,7 +254,56 @@ pub fn is_openable(file: &Path) -> bool {
     ends_in(file, &DOCUMENTS) || ends_in(file, &PICTURES)
 }
 
-/// The file name with the extension of projects.
-pub fn with_document_extension(file: PathBuf) -> PathBuf {
-    if ends_in(&file, &DOCUMENTS[..1]) { file } else { file.with_extension(DOCUMENTS[0]) }
+/// With an ending of these, else with this one: added, for what stands after a name's last point may be a part of the
+/// name.
+pub fn with_document_extension(file: PathBuf, extension: &str, extensions: &[&str]) -> PathBuf {
+    if ends_in(&file, extensions) { file } else { file.with_added_extension(extension) }
+}
+
+/// A name without the ending of a file that can be opened or written; all of it where it has none.
+pub fn without_ending(name: &str) -> &str {
+    let known = |(stem, extension): &(&str, &str)| {
+        let extension = extension.to_lowercase();
+        !stem.is_empty() && DOCUMENTS.iter().chain(&PICTURES).any(|known| *known == extension)
+    };
+    name.rsplit_once('.').filter(known).map_or(name, |(stem, _)| stem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_are_added_and_never_take_a_part_of_the_name() {
+        let named = |name: &str| with_document_extension(name.into(), "ora", &SAVED).to_string_lossy().into_owned();
+        for (name, file) in [
+            ("robot v1.2", "robot v1.2.ora"),
+            ("robot", "robot.ora"),
+            ("robot.ora", "robot.ora"),
+            ("ROBOT.ORA", "ROBOT.ORA"),
+            ("s.psd", "s.psd"),
+            ("photo.png", "photo.png.ora"),
+            ("a/b.c/robot", "a/b.c/robot.ora"),
+            (".hidden", ".hidden.ora"),
+        ] {
+            assert_eq!(named(name), file);
+        }
+        let extensions: Vec<&str> = exported().collect();
+        let exported =
+            |name: &str| with_document_extension(name.into(), "png", &extensions).to_string_lossy().into_owned();
+        assert_eq!(exported("final v1.2"), "final v1.2.png");
+        assert_eq!((exported("a.jpg"), exported("a.psd")), ("a.jpg".into(), "a.psd".into()));
+    }
+    #[test]
+    fn only_what_is_known_to_be_an_ending_is_taken_from_a_name() {
+        for (name, stem) in [
+            ("robot v1.2", "robot v1.2"),
+            ("robot v1.2.ora", "robot v1.2"),
+            ("photo.PNG", "photo"),
+            ("Untitled 1", "Untitled 1"),
+            (".png", ".png"),
+        ] {
+            assert_eq!(without_ending(name), stem);
+        }
+    }
 }

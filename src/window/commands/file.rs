@@ -38,9 +38,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| requests.request(WindowRequest::SaveAs),
     ),
-    row("Export…", &[ctrl(Key::E)], "The finished picture as PNG, EXR, JPEG or WebP", has_document, |_, requests| {
-        requests.request(WindowRequest::ExportDialog)
-    }),
+    row(
+        "Export…",
+        &[ctrl(Key::E)],
+        "The finished picture as PNG, EXR, JPEG or WebP, or the layers for Photoshop",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ExportDialog),
+    ),
     LINE,
     row(
         "Place image…",

@@ -22,11 +22,12 @@ impl Default for ExportDialog {
     }
 }
 
-const FORMATS: [(&str, &str); 4] = [
+const FORMATS: [(&str, &str); 5] = [
     ("png", "PNG: 8 bits, keeps transparency"),
     ("exr", "EXR: linear light, half floats"),
     ("jpg", "JPEG: small, opaque"),
     ("webp", "WebP: lossless, small"),
+    ("psd", "PSD: the layers for Photoshop, live ones as pixels"),
 ];
 
 impl ExportDialog {
@@ -44,7 +45,8 @@ impl ExportDialog {
             ui.radio_value(&mut self.extension, extension, about);
         }
         let mut opaque = self.background.is_some() || self.extension == "jpg";
-        ui.add_enabled_ui(self.extension != "jpg", |ui| ui.checkbox(&mut opaque, "Lay it on white"));
+        let can_choose = !["jpg", "psd"].contains(&self.extension);
+        ui.add_enabled_ui(can_choose, |ui| ui.checkbox(&mut opaque, "Lay it on white"));
         self.background = opaque.then_some(Color::WHITE);
         ui.add_enabled_ui(self.extension == "jpg", |ui| {
             ui.add(Slider::new(&mut self.quality, 1..=100).text("Quality"));

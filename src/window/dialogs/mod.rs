@@ -4,16 +4,19 @@
 pub mod export;
 pub mod help;
 pub mod import;
+pub mod losses;
 pub mod new;
 pub mod palette;
 pub mod path;
 pub mod recovery;
+pub mod replace;
 pub mod shortcuts;
 pub mod unsaved;
 
 use super::files::FilePurpose;
 use super::keymap::Keymap;
 use super::requests::{UiRequests, WindowRequest};
+use super::saving::{Pending, Saving};
 use crate::document::SurfaceSource;
 use crate::io::maps;
 use crate::io::recovery::LostSession;
@@ -29,6 +32,8 @@ pub enum Dialog {
     Path(path::PathDialog),
     Recovery(recovery::RecoveryDialog),
     Unsaved(unsaved::UnsavedDialog),
+    Replace(replace::Replace),
+    Losses(losses::Losses),
     Palette(palette::CommandPalette),
     Shortcuts(shortcuts::ShortcutsDialog),
     About,
@@ -50,6 +55,10 @@ pub enum DialogAnswer {
     Discard(AfterUnsaved),
     /// Save first, then do this.
     SaveThen(AfterUnsaved),
+    /// Replace what stands there.
+    Replace(Pending),
+    /// Save, whatever the format cannot hold.
+    Lose(Box<Saving>),
     Ask(WindowRequest),
     /// Recover these drawings.
     Recover(Vec<LostSession>),
@@ -83,6 +92,8 @@ impl Dialog {
                 Dialog::Path(path) => path.show(ui),
                 Dialog::Recovery(recovery) => recovery.show(ui),
                 Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
+                Dialog::Replace(replace) => replace.show(ui),
+                Dialog::Losses(losses) => losses.show(ui),
                 Dialog::Palette(palette) => palette.show(ui, session, keymap, requests),
                 Dialog::Shortcuts(shortcuts) => shortcuts.show(ui, keymap),
                 Dialog::About => help::about(ui),

@@ -3,7 +3,6 @@
 
 use super::{DialogAnswer, buttons};
 use crate::files::FilePurpose;
-use crate::session::storage;
 use crate::widgets::{list, named};
 use eframe::egui::{Button, TextEdit, Ui};
 use std::fs;
@@ -19,6 +18,8 @@ pub struct PathDialog {
     is_begun: bool,
     /// The existing file that the user was warned about.
     replaces: Option<PathBuf>,
+    /// Of exports that are given none.
+    extension: &'static str,
 }
 
 /// The contents of the shown folder.
@@ -30,8 +31,17 @@ struct FolderListing {
 }
 
 impl PathDialog {
-    pub fn new(purpose: FilePurpose, folder: PathBuf, name: &str) -> Self {
-        Self { purpose, folder, name: name.into(), listed: FolderListing::default(), is_begun: false, replaces: None }
+    /// `extension`: of exports that are given none.
+    pub fn new(purpose: FilePurpose, folder: PathBuf, name: &str, extension: &'static str) -> Self {
+        Self {
+            purpose,
+            folder,
+            name: name.into(),
+            listed: FolderListing::default(),
+            is_begun: false,
+            replaces: None,
+            extension,
+        }
     }
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(460.0);
@@ -92,12 +102,9 @@ impl PathDialog {
     }
     /// Overwriting a file needs a second confirmation.
     fn choose(&mut self, file: PathBuf) -> DialogAnswer {
-        let named = if self.purpose == FilePurpose::Save {
-            storage::with_document_extension(file.clone())
-        } else {
-            file.clone()
-        };
-        if self.purpose.is_saving() && named.is_file() && self.replaces.as_ref() != Some(&file) {
+        // As it will be called, so that the question is about the file that would be lost.
+        let file = self.purpose.named(file, self.extension);
+        if self.purpose.is_saving() && file.is_file() && self.replaces.as_ref() != Some(&file) {
             self.name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             self.folder = file.parent().map_or_else(|| self.folder.clone(), Path::to_owned);
             self.replaces = Some(file);

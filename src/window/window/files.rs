@@ -3,8 +3,9 @@
 
 use super::MainWindow;
 use crate::clipboard::PastedContent;
-use crate::dialogs::{Dialog, import, path};
+use crate::dialogs::{Dialog, import, losses, path, replace};
 use crate::files::{self, FilePurpose};
+use crate::io::Overwrite;
 use crate::jobs::{JobKind, JobResult, PartResult, PinPosition, short};
 use crate::math::Vec2;
 use crate::raster::Picture;
@@ -50,7 +51,8 @@ impl MainWindow {
             JobResult::Chosen(purpose, None) => {
                 let folder = self.folder();
                 let name = if purpose.is_saving() { self.proposed(purpose) } else { String::new() };
-                self.dialogs.push(Dialog::Path(path::PathDialog::new(purpose, folder, &name)));
+                let dialog = path::PathDialog::new(purpose, folder, &name, self.export.extension);
+                self.dialogs.push(Dialog::Path(dialog));
             }
             JobResult::Lost(lost) => self.offer(lost),
             JobResult::Recovered(found) => self.take_recovered(*found),
@@ -60,26 +62,32 @@ impl MainWindow {
             }
             JobResult::Pictured(file, name, picture, at) => {
                 let at = self.pictured(&name, picture, at);
+                self.session.note_read(&file);
                 self.did(|| Action::File(FileAction::Place { file, at }));
             }
             JobResult::Part(read) => {
                 let PartResult { tab, layer, part, file, read } = *read;
                 if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
                     pictures::put(tab, layer, read);
+                    tab.reads.push(file.clone());
                     self.did(|| Action::File(FileAction::Use { part, file }));
                 }
             }
-            JobResult::Saved(saved) => self.saved(ctx, *saved),
+            JobResult::Saved(saving, stamp) => self.saved(ctx, *saving, stamp),
+            JobResult::Loses(saving) => self.dialogs.push(Dialog::Losses(losses::Losses::new(saving))),
+            JobResult::Exported(file, notes) => self.exported(&file, notes),
+            JobResult::Refused(pending, reason) => {
+                self.dialogs.push(Dialog::Replace(replace::Replace::new(pending, reason)));
+            }
             JobResult::Edited(edited) => self.edited(*edited),
             JobResult::Pasted(PastedContent::Picture(picture)) => {
-                drop(self.pictured("pasted.png", picture, PinPosition::Pointer))
+                self.pictured("pasted.png", picture, PinPosition::Pointer);
             }
             JobResult::Pasted(PastedContent::Files(files)) => self.take_files(files),
             JobResult::Copied(clipboard) => {
                 self.clipboard = Some(clipboard);
                 self.jobs.say("The picture is in the clipboard".into());
             }
-            JobResult::Said(sentence) => self.jobs.say(sentence),
             JobResult::Failed(error) => self.messages.push(error.to_string()),
             JobResult::Nothing => {}
         }
@@ -126,12 +134,19 @@ impl MainWindow {
                     import.take_file(purpose, file);
                 }
             }
-            FilePurpose::Save => self.save_to(storage::with_document_extension(file)),
-            FilePurpose::Export => {
-                let file =
-                    if file.extension().is_some() { file } else { file.with_added_extension(self.export.extension) };
-                self.export_to(file);
-            }
+            FilePurpose::Save | FilePurpose::Export => self.chosen_to_write(purpose, file),
+        }
+    }
+    /// A file was chosen to be written. Where it is there the dialog asked about it, unless it gets another name here.
+    fn chosen_to_write(&mut self, purpose: FilePurpose, file: PathBuf) {
+        let named = purpose.named(file.clone(), self.export.extension);
+        let was_asked = named == file && named.exists();
+        let over = if was_asked { Overwrite::Anything } else { Overwrite::Nothing };
+        if purpose == FilePurpose::Save {
+            let then = self.after_saving.take();
+            self.save_to(named, over, false, then);
+        } else {
+            self.export_to(named, over);
         }
     }
     /// The import dialog, where it is open.
@@ -151,8 +166,9 @@ impl MainWindow {
     /// The name a file is proposed to have.
     pub(super) fn proposed(&self, purpose: FilePurpose) -> String {
         let title = self.session.active().map_or_else(String::new, |tab| tab.title());
-        let extension = if purpose == FilePurpose::Export { self.export.extension } else { storage::DOCUMENTS[0] };
-        Path::new(&title).with_extension(extension).to_string_lossy().into_owned()
+        let stem = storage::without_ending(&title);
+        let extension = if purpose == FilePurpose::Export { self.export.extension } else { storage::SAVED[0] };
+        format!("{stem}.{extension}")
     }
     /// The folder to begin in.
     pub(super) fn folder(&self) -> PathBuf {

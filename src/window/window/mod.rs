@@ -16,6 +16,7 @@ use super::jobs::{JobKind, JobResult, Jobs};
 use super::memory::MemoryMeter;
 use super::pen::SharedTablet;
 use super::requests::{UiRequests, WindowRequest};
+use super::saving::{Pending, Saving};
 use super::settings::{PanelSide, Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
@@ -51,7 +52,7 @@ pub struct MainWindow {
     is_dressed: bool,
     /// The user agreed to leave.
     leaving: bool,
-    /// What to do once the document is saved.
+    /// What is to be done once the document is saved, while it is asked where to.
     after_saving: Option<AfterUnsaved>,
     memory: MemoryMeter,
     /// What was copied last; kept, so that it stays in the system's clipboard.
@@ -185,10 +186,9 @@ impl MainWindow {
                 self.messages.append(&mut self.session.notes);
             }
             DialogAnswer::Discard(then) => self.proceed(ctx, then, true),
-            DialogAnswer::SaveThen(then) => {
-                self.after_saving = Some(then);
-                self.save();
-            }
+            DialogAnswer::SaveThen(then) => self.save(Some(then)),
+            DialogAnswer::Replace(pending) => self.put(pending.forced()),
+            DialogAnswer::Lose(saving) => self.put(Pending::Save(Box::new(Saving { knows_losses: true, ..*saving }))),
             DialogAnswer::Ask(ask) => requests.request(ask),
             DialogAnswer::Open
             | DialogAnswer::Close
@@ -226,8 +226,8 @@ impl MainWindow {
             WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
             WindowRequest::Open(file) => self.jobs.open(vec![file], None),
             WindowRequest::OpenSample => self.open_sample(),
-            WindowRequest::Save => self.save(),
-            WindowRequest::SaveAs => self.ask_where(FilePurpose::Save),
+            WindowRequest::Save => self.save(None),
+            WindowRequest::SaveAs => self.save_as(None),
             WindowRequest::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
             WindowRequest::Export(extension) => {
                 self.export.extension = extension;

@@ -3,66 +3,83 @@
 
 use super::MainWindow;
 use crate::clipboard;
+use crate::dialogs::AfterUnsaved;
 use crate::document::flatten;
 use crate::files::FilePurpose;
 use crate::io::export::ExportOptions;
-use crate::jobs::{EditResult, JobKind, JobResult, SaveResult, short};
-use crate::session::actions::{LayerAction, files};
+use crate::io::replace::FileStamp;
+use crate::io::{Overwrite, Terms};
+use crate::jobs::{EditResult, JobKind, JobResult, short};
+use crate::saving::{Exporting, Pending, Saving};
+use crate::session::actions::LayerAction;
 use crate::session::{Action, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 impl MainWindow {
-    /// Saves the document in front to its file, or asks where to.
-    pub(super) fn save(&mut self) {
-        match self.session.active().and_then(|tab| tab.file.clone()).filter(|file| storage::is_document(file)) {
-            Some(file) => self.save_to(file),
-            None => self.ask_where(FilePurpose::Save),
+    /// Saves the document in front to its file, or asks where to. `then` is done once it is saved.
+    pub(super) fn save(&mut self, then: Option<AfterUnsaved>) {
+        match self.session.active().and_then(|tab| tab.file.clone()).filter(|file| storage::is_saved_to(file)) {
+            Some(file) => {
+                let knows_losses = self.session.active().is_some_and(|tab| tab.knows_losses);
+                self.save_to(file, Overwrite::Nothing, knows_losses, then);
+            }
+            None => self.save_as(then),
         }
     }
-    pub(super) fn save_to(&mut self, file: PathBuf) {
+    /// Asks where to.
+    pub(super) fn save_as(&mut self, then: Option<AfterUnsaved>) {
+        self.after_saving = then;
+        self.ask_where(FilePurpose::Save);
+    }
+    /// `over`: what may be replaced where that is not the document's own file.
+    pub(super) fn save_to(&mut self, file: PathBuf, over: Overwrite, knows_losses: bool, then: Option<AfterUnsaved>) {
         self.session.drop_gesture();
         let Some(tab) = self.session.active() else { return };
-        let (key, document) = (tab.key, tab.document().clone());
-        let stamp = tab.stamp.filter(|_| tab.file.as_ref() == Some(&file));
-        self.jobs.start(format!("Saving {}", short(&file)), JobKind::Working, move |progress| {
-            let stamp = storage::save(&file, &document, stamp, progress);
-            JobResult::Saved(Box::new(SaveResult { tab: key, file, document, stamp }))
-        });
+        let (tab, document) = (tab.key, tab.document().clone());
+        let knows_losses = knows_losses || storage::holds_everything(&file);
+        let terms = self.session.saving(&file, over);
+        self.put(Pending::Save(Box::new(Saving { tab, file, document, terms, knows_losses, then, encoded: None })));
     }
-    pub(super) fn saved(&mut self, ctx: &egui::Context, saved: SaveResult) {
-        let SaveResult { tab, file, document, stamp } = saved;
-        let then = self.after_saving.take();
-        match stamp {
-            Ok(Some(stamp)) => {
-                if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
-                    tab.mark_saved(document, file.clone(), stamp);
-                }
-                self.jobs.say(format!("Saved {}", file.display()));
-                self.recent_is(Some(file));
-                if let Some(then) = then {
-                    self.proceed(ctx, then, false);
-                }
+    /// Writes it, on a thread.
+    pub(super) fn put(&mut self, pending: Pending) {
+        let name = short(pending.file());
+        match pending {
+            Pending::Save(saving) => {
+                self.jobs.start(format!("Saving {name}"), JobKind::Working, move |progress| saving.run(progress));
             }
-            Ok(None) => {}
-            Err(error) => self.messages.push(error.to_string()),
+            Pending::Export(exporting) => {
+                self.jobs.start(format!("Exporting {name}"), JobKind::Working, move |progress| exporting.run(progress));
+            }
         }
     }
-    pub(super) fn export_to(&mut self, file: PathBuf) {
+    pub(super) fn saved(&mut self, ctx: &egui::Context, saving: Saving, stamp: FileStamp) {
+        let Saving { tab, file, document, then, .. } = saving;
+        if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
+            tab.mark_saved(document, file.clone(), stamp);
+            tab.knows_losses = true;
+        }
+        self.jobs.say(format!("Saved {}", file.display()));
+        self.recent_is(Some(file));
+        if let Some(then) = then {
+            self.proceed(ctx, then, false);
+        }
+    }
+    /// `over`: what may be replaced.
+    pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite) {
         let Some(document) = self.session.active().map(|tab| tab.document().clone()) else { return };
         let options = ExportOptions {
             background: self.export.background,
             quality: self.export.quality,
             ..ExportOptions::default()
         };
-        self.jobs.start(format!("Exporting {}", short(&file)), JobKind::Working, move |progress| {
-            match files::export(&document, &file, &options, progress) {
-                Ok(()) if progress.is_cancelled() => JobResult::Nothing,
-                Ok(()) => JobResult::Said(format!("Exported {}", file.display())),
-                Err(error) => JobResult::Failed(error),
-            }
-        });
+        let terms = Terms::export(over, self.session.reads());
+        self.put(Pending::Export(Box::new(Exporting { document, file, options, terms })));
+    }
+    pub(super) fn exported(&mut self, file: &Path, notes: Vec<String>) {
+        self.jobs.say(format!("Exported {}", file.display()));
+        self.messages.extend(notes);
     }
     pub(super) fn copy_merged(&mut self) {
         let Some(document) = self.session.shown().cloned() else { return };

@@ -1,8 +1,8 @@
 //! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
 
 use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource, flatten};
-use crate::io::export::{ExportOptions, OutputFile};
-use crate::io::{Budget, files::read_file, maps, picture};
+use crate::io::export::{ExportOptions, Output, OutputFile};
+use crate::io::{Budget, Overwrite, Terms, files::read_file, maps, picture, save};
 use crate::math::{Size, Vec2, srgb::Color};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
@@ -65,6 +65,7 @@ impl FileAction {
             FileAction::Place { file, at } => {
                 let (name, picture) = read_picture(file)?;
                 place(session, &name, picture, *at);
+                session.note_read(file);
             }
             FileAction::ImportBrush { file } => brushes::import(session, file)?,
             FileAction::KeepBrush { name } => brushes::keep(session, name)?,
@@ -72,22 +73,21 @@ impl FileAction {
             FileAction::Save { file } => {
                 let Some(tab) = session.active() else { return Ok(()) };
                 let document = tab.document().clone();
-                let stamp = tab.stamp.filter(|_| tab.file.as_ref() == Some(file));
+                // Where that is another document's file, its previous version is kept.
+                let terms = session.saving(file, unless_forced(session, Overwrite::Anything));
                 // Nothing here gives up, so it is saved.
                 if let (Some(stamp), Some(tab)) =
-                    (storage::save(file, &document, stamp, &Progress::default())?, session.active_mut())
+                    (storage::save(file, &document, terms, &Progress::default())?, session.active_mut())
                 {
                     tab.mark_saved(document, file.clone(), stamp);
                 }
             }
             FileAction::Export { file, background, quality } => {
                 let Some(tab) = session.active() else { return Ok(()) };
-                export(
-                    tab.document(),
-                    file,
-                    &ExportOptions { background: *background, quality: *quality, ..ExportOptions::default() },
-                    &Progress::default(),
-                )?;
+                let options = ExportOptions { background: *background, quality: *quality, ..ExportOptions::default() };
+                let terms = Terms::export(unless_forced(session, Overwrite::Nothing), session.reads());
+                let notes = export(tab.document(), file, &options, terms, &Progress::default())?;
+                session.notes.extend(notes);
             }
             FileAction::Use { part, file } => {
                 let read = pictures::read(*part, file)?;
@@ -95,6 +95,7 @@ impl FileAction {
                     && let Some(layer) = tab.selected
                 {
                     pictures::put(tab, layer, read);
+                    tab.reads.push(file.clone());
                 }
             }
             FileAction::ReplaceMaps { normal, depth } => {
@@ -115,13 +116,30 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
     Document { layers: fill.into_iter().collect(), ..Document::empty(size) }
 }
 
-/// Writes the flattened picture to a file; nothing is written if it is cancelled.
-pub fn export(document: &Document, file: &Path, options: &ExportOptions, progress: &Progress) -> Result<()> {
-    let target = OutputFile::new(file, &[])?;
-    match flatten(document, progress) {
-        Some(pixels) => target.write(&pixels, document.size, options),
-        None => Ok(()),
+/// What saving and exporting may replace: what is usual, or all where the user said so beforehand.
+fn unless_forced(session: &Session, usual: Overwrite) -> Overwrite {
+    if session.replaces_unasked { Overwrite::Forced } else { usual }
+}
+
+/// The flattened picture as a file, or the document as a Photoshop file; none is written if that is given up. What the
+/// format cannot hold.
+pub fn export(
+    document: &Document,
+    file: &Path,
+    options: &ExportOptions,
+    terms: Terms,
+    progress: &Progress,
+) -> Result<Vec<String>> {
+    let target = OutputFile::new(file, terms)?;
+    if let Output::Picture(_) = Output::of(file)? {
+        if let Some(pixels) = flatten(document, progress) {
+            target.write(&pixels, document.size, options)?;
+        }
+        return Ok(Vec::new());
     }
+    let Some(encoded) = save::encode(document, file, progress)? else { return Ok(Vec::new()) };
+    target.replace(&encoded.bytes)?;
+    Ok(encoded.notes.into_iter().map(|note| format!("{}: {note}", file.display())).collect())
 }
 
 /// A picture of the user's own, with the name it goes by.
@@ -181,6 +199,7 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
         ..tab.document().clone()
     };
     tab.commit("Replace maps", next);
+    tab.reads.extend(storage::map_files(source));
     session.notes.extend(notes);
     Ok(())
 }

@@ -1,0 +1,32 @@
+//! What a Photoshop file cannot hold, before a document is saved as one.
+//! Floor 7. What it is that gets lost, the format itself tells (`io::psd`).
+
+use super::{DialogAnswer, buttons};
+use crate::saving::Saving;
+use crate::widgets::list;
+use eframe::egui::Ui;
+
+pub struct Losses {
+    /// Absent once it was answered.
+    saving: Option<Box<Saving>>,
+}
+
+impl Losses {
+    pub fn new(saving: Box<Saving>) -> Self {
+        Self { saving: Some(saving) }
+    }
+    pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
+        let Some(saving) = &self.saving else { return DialogAnswer::Close };
+        ui.set_width(420.0);
+        ui.heading("Save as a Photoshop file?");
+        ui.label("Other programs see pixels where layers are live here. A project (.ora) keeps everything.");
+        ui.label("Opened here again everything is live, unless another program saved the file in between.");
+        let notes = saving.encoded.iter().flat_map(|encoded| &encoded.notes);
+        list(ui, 160.0).show(ui, |ui| notes.for_each(|note| drop(ui.label(note))));
+        match buttons(ui, "Save", true) {
+            Some(true) => self.saving.take().map_or(DialogAnswer::Close, DialogAnswer::Lose),
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! “Replace?”, before a file is lost that nobody asked about yet.
+//! Floor 7.
+
+use super::{DialogAnswer, buttons};
+use crate::jobs::short;
+use crate::saving::Pending;
+use eframe::egui::Ui;
+
+pub struct Replace {
+    /// Absent once it was answered.
+    pending: Option<Pending>,
+    /// Why it was not replaced unasked.
+    reason: String,
+}
+
+impl Replace {
+    pub fn new(pending: Pending, reason: String) -> Self {
+        Self { pending: Some(pending), reason }
+    }
+    pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
+        let Some(pending) = &self.pending else { return DialogAnswer::Close };
+        ui.set_width(380.0);
+        let name = short(pending.file());
+        ui.heading(format!("Replace “{name}”?"));
+        ui.label(format!("{}: {}.", pending.file().display(), self.reason));
+        if matches!(pending, Pending::Save(_)) {
+            ui.weak(format!("What it holds now is kept as “{name}~”."));
+        }
+        match buttons(ui, "Replace", true) {
+            Some(true) => self.pending.take().map_or(DialogAnswer::Close, DialogAnswer::Replace),
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
+        }
+    }
+}
