@@ -3,7 +3,7 @@
 
 mod light;
 
-pub use light::{LightLayer, layers};
+pub use light::{LightLayer, finished, layers};
 
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};

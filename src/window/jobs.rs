@@ -35,7 +35,7 @@ pub enum JobResult {
     /// Several results.
     Several(Vec<JobResult>),
     /// Maps were read, for the import dialog.
-    Read(Box<Result<maps::ImportedSurface>>),
+    Read(Box<MapsRead>),
     /// Drawings that can be recovered.
     Lost(Vec<recovery::LostSession>),
     /// One of them was recovered.
@@ -64,6 +64,15 @@ pub enum JobResult {
     Failed(Error),
     /// The answer of a file dialog; `None` if the system has no dialog.
     Chosen(FilePurpose, Option<PathBuf>),
+}
+
+/// Maps as they were read.
+pub struct MapsRead {
+    /// What was asked for: a dialog that wants other maps by now leaves it alone.
+    pub source: SurfaceSource,
+    pub found: Result<maps::ImportedSurface>,
+    /// The finished picture that the same file holds, and the name of its layer.
+    pub picture: Option<(String, Picture)>,
 }
 
 pub struct PartResult {

@@ -94,7 +94,8 @@ fn report(overrides: &NormalConvention, reading: &TexelReading, confidence: f32,
     if reading.srgb && overrides.srgb.is_none() {
         findings.note("the normals went through the sRGB curve by mistake; it was undone");
     }
-    if error > 0.1 {
+    findings.length_error = error;
+    if findings.is_doubtful() {
         findings
             .note(format!("the normals are not of length 1 (off by {error:.2} on average); they were renormalised"));
     }

@@ -3,7 +3,10 @@
 
 use crate::document::source::{DepthConvention, NormalConvention};
 
-/// The origin of a choice.
+/// Normal maps are nearer to length 1 than this, in the mean; colours of drawings and photos are not.
+const MOST_LENGTH_ERROR: f32 = 0.1;
+
+/// How a choice was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChoiceOrigin {
     /// The document says so.
@@ -46,11 +49,17 @@ pub struct Findings {
     pub depth: Option<DepthConvention>,
     /// Planar depth (in the file's unit) at z = 0 and z = 1, so that anchors keep their meaning when maps are replaced.
     pub depth_range: Option<(f32, f32)>,
-    /// The share of pixels, connected to the border, that look like background but count as surface.
+    /// How far the vectors that were read as normals are from length 1, in the mean, each at most 1.
+    pub length_error: f32,
+    /// The share of pixels, joined to the border, that look like background and are taken for surface.
     pub flat_border: f32,
 }
 
 impl Findings {
+    /// Whether the file that was read as normals looks like something else, such as a drawing.
+    pub fn is_doubtful(&self) -> bool {
+        self.length_error > MOST_LENGTH_ERROR
+    }
     pub fn note(&mut self, sentence: impl Into<String>) {
         self.notes.push(sentence.into());
     }

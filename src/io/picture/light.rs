@@ -53,6 +53,20 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLay
     passes.iter().enumerate().map(one).collect()
 }
 
+/// The finished picture that a renderer stored beside its maps, `None` where there is none.
+///
+/// * `maps`: the layer that was read as normals, which is no picture.
+pub fn finished(file: &Path, bytes: &[u8], maps: &str, budget: &Budget) -> Result<Option<LightLayer>> {
+    if !ExrFile::is_exr(bytes) {
+        return Ok(None);
+    }
+    let exr = ExrFile::open(file, bytes, budget)?;
+    let is_finished = |pass: &&ExrPass| pass.letters("rgb").is_some() && rank(pass) < WHOLE.len() && pass.name != maps;
+    let Some(pass) = exr.passes().iter().filter(is_finished).min_by_key(|pass| rank(pass)) else { return Ok(None) };
+    let picture = picture(file, &exr, texels_of(&exr, pass)?)?;
+    Ok(Some(LightLayer { name: pass.name.clone(), picture, is_whole: true }))
+}
+
 /// EXR's alpha is associated: colours are stored multiplied by it.
 fn picture(file: &Path, exr: &ExrFile, mut texels: Vec<[f32; 4]>) -> Result<Picture> {
     for [r, g, b, a] in &mut texels {

@@ -8,10 +8,11 @@ use crate::document::{Content, Document, Layer, Live, Progress};
 use crate::io::export::ExportFormat;
 use crate::io::maps::pairs::{self, MapPart};
 use crate::io::replace::{FileStamp, Terms};
-use crate::io::{self, Budget, UserFiles, files::read_file, inspect, maps};
+use crate::io::{self, Budget, UserFiles, files::read_file, inspect, maps, picture};
 use crate::math::{Size, Vec2, srgb::Color};
-use crate::paint::{Gradient, GradientStop, ImageFilter};
-use crate::surface::Operator;
+use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
+use crate::raster::{Outside, Picture};
+use crate::surface::{Bend, Operator};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -100,9 +101,14 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
             tab.reads = reads;
             Ok(OpenedTab { tab, notes })
         }
-        FileUse::Normals => open_maps(&maps_of(Some(file), None)),
+        FileUse::Normals => open_maps(&with_own_depth(file)),
         FileUse::Depth => open_maps(&maps_of(None, Some(file))),
     }
+}
+
+/// The normals of a file, and its depth where it holds both.
+fn with_own_depth(file: &Path) -> SurfaceSource {
+    maps_of(Some(file), Some(file).filter(|file| holds_depth(file)))
 }
 
 /// A surface made of these files, every convention to be found.
@@ -120,11 +126,31 @@ pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
     maps::import(source, &UserFiles::default(), &Budget::default())
 }
 
-/// The maps that belong to a file by their names: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its
-/// folder.
+/// Whether an EXR of normals holds depth too, as renderers write them.
+fn holds_depth(file: &Path) -> bool {
+    let budget = Budget::default();
+    ends_in(file, &["exr"])
+        && read_file(file, budget.file_bytes)
+            .and_then(|bytes| inspect::describe(file, &bytes, &budget))
+            .is_ok_and(|found| !found.depths.is_empty())
+}
+
+/// The finished picture in the file of the normals, where a renderer put it there, and the name of its layer.
+pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
+    let map = source.normal.as_ref()?;
+    let (file, budget) = (Path::new(&map.file), Budget::default());
+    let bytes = read_file(file, budget.file_bytes).ok()?;
+    let normals = inspect::describe(file, &bytes, &budget).ok()?.normals;
+    let normals = map.channel.as_ref().or(normals.first()).map_or("", String::as_str);
+    let layer = picture::finished(file, &bytes, normals, &budget).ok()??;
+    let name = layer.name.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("Picture").to_owned();
+    Some((name, layer.picture))
+}
+
+/// The maps that belong to a file by their names, or stand in the same EXR: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its folder.
 pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     let part = pairs::part_of(file);
-    let mut source = if kind == FileUse::Depth { maps_of(None, Some(file)) } else { maps_of(Some(file), None) };
+    let mut source = if kind == FileUse::Depth { maps_of(None, Some(file)) } else { with_own_depth(file) };
     let Some((name, _)) = part else { return source };
     let beside = file.parent().and_then(|folder| std::fs::read_dir(folder).ok()).into_iter().flatten().flatten();
     let mut others: Vec<PathBuf> =
@@ -223,6 +249,28 @@ pub fn map_files(source: &SurfaceSource) -> Vec<PathBuf> {
     maps.into_iter().flatten().map(PathBuf::from).collect()
 }
 
+/// A picture that covers the canvas, unbent. `file`: what the document calls it.
+pub fn flat_image(name: &str, file: &str, picture: Picture, canvas: Size) -> Layer {
+    let image = PlacedImage {
+        source: PictureSource::new(file.into(), picture, Adjust::default()),
+        placement: Placement::covering(canvas),
+        outside: Outside::Mirror,
+        bend: Bend::default(),
+        filter: ImageFilter::Antialias,
+    };
+    Layer::new(name, Content::Image(Live::new(image)))
+}
+
+/// A picture that covers the canvas, flat, as a layer at the top: a renderer's, to be painted over.
+pub fn with_picture(mut opened: OpenedTab, name: &str, picture: Picture) -> OpenedTab {
+    let document = opened.tab.document();
+    let mut layers = document.layers.clone();
+    layers.push(Arc::new(flat_image(name, &format!("{name}.exr"), picture, document.size)));
+    let mut tab = OpenDocument::new(opened.tab.name.clone(), Document { layers, ..document.clone() }, None);
+    tab.reads = std::mem::take(&mut opened.tab.reads);
+    OpenedTab { tab, ..opened }
+}
+
 const BACKGROUND: Color = Color { r: 0x26, g: 0x28, b: 0x2c, a: 255 };
 
 /// The fill of a new surface: a gradient from light to dark, bent by the normals, so that the shape is visible before
@@ -233,7 +281,7 @@ fn clay(size: Size) -> Gradient {
     Gradient {
         from: side * Vec2::new(0.30, 0.22),
         to: side * Vec2::new(0.66, 0.78),
-        stops: vec![stop(0.0, [0xc9, 0xc3, 0xbb]), stop(0.55, [0x84, 0x7d, 0x76]), stop(1.0, [0x3a, 0x36, 0x34])],
+        stops: vec![stop(0.0, [0xee, 0xe9, 0xe2]), stop(0.55, [0xb4, 0xad, 0xa5]), stop(1.0, [0x6a, 0x65, 0x61])],
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Antialias,
     }

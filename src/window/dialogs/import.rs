@@ -8,6 +8,7 @@ use crate::document::SurfaceSource;
 use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
 use crate::files::FilePurpose;
 use crate::io::maps;
+use crate::jobs::MapsRead;
 use crate::math::{Size, srgb::quantise, vec3};
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedTab};
@@ -24,8 +25,15 @@ pub struct ImportDialog {
     read: Option<SurfaceSource>,
     is_reading: bool,
     found: Option<Result<maps::ImportedSurface>>,
-    /// Lit as detected, with red, green, and both flipped.
+    /// The finished picture beside the maps, the name of its layer, and whether the document begins with it.
+    picture: Option<(String, Picture)>,
+    takes_picture: bool,
+    /// The user knows that a file which looks like no normal map is one.
+    is_sure: bool,
+    /// Lit as found, with red, green, and both flipped.
     lit: Vec<TextureHandle>,
+    /// Which of them was clicked: it is the one chosen while the maps are read anew.
+    clicked: usize,
     /// For the document in front, not for a new one.
     replaces: bool,
 }
@@ -52,6 +60,7 @@ impl ImportDialog {
     /// A file was chosen for one of the maps.
     pub fn take_file(&mut self, purpose: FilePurpose, file: PathBuf) {
         let file = file.to_string_lossy().into_owned();
+        self.is_sure &= matches!(purpose, FilePurpose::DepthMap | FilePurpose::MaskMap);
         match purpose {
             FilePurpose::DepthMap => self.source.depth = Some(MapSource { file, ..MapSource::default() }),
             FilePurpose::MaskMap => self.source.mask = Some(MaskSource::File { file, channel: None, invert: false }),
@@ -62,14 +71,20 @@ impl ImportDialog {
             _ => self.source.normal = Some(MapSource { file, ..MapSource::default() }),
         }
     }
-    /// Takes the maps that were read.
-    pub fn take(&mut self, ctx: &Context, found: Result<maps::ImportedSurface>) {
-        self.is_reading = false;
+    /// Maps were read; those that another dialog asked for, or that were chosen anew since, are passed over.
+    pub fn take(&mut self, ctx: &Context, read: MapsRead) {
+        let MapsRead { source, found, picture } = read;
+        if self.read.as_ref() != Some(&source) {
+            return;
+        }
+        (self.is_reading, self.takes_picture) = (false, picture.is_some());
+        self.picture = picture;
         // A flat border counts as background unless the user decides otherwise; then everything is read again.
         let is_first = self.found.is_none() && self.source.mask.is_none();
         if is_first && found.as_ref().is_ok_and(|import| import.findings.flat_border > 0.0) {
             self.source.mask = Some(MaskSource::Flat);
         }
+        self.clicked = 0;
         self.lit.clear();
         if let Ok(import) = &found {
             let pictures = FLIPS.iter().filter_map(|&(name, x, y)| loaded(ctx, name, &lit(&import.surface, x, y)?));
@@ -86,7 +101,11 @@ impl ImportDialog {
             return DialogAnswer::Ask(crate::requests::WindowRequest::Choose(purpose));
         }
         let is_some = self.source.normal.is_some() || self.source.depth.is_some();
-        if is_some && !self.is_reading && self.read.as_ref() != Some(&self.source) {
+        if self.read.as_ref().is_some_and(|read| *read != self.source) {
+            // What was said of other files no longer holds; what was found of them stays to be looked at.
+            self.found = self.found.take().filter(|found| found.is_ok() && is_some);
+        }
+        if is_some && self.read.as_ref() != Some(&self.source) {
             (self.read, self.is_reading) = (Some(self.source.clone()), true);
             return DialogAnswer::Import(Box::new(self.source.clone()));
         }
@@ -101,7 +120,21 @@ impl ImportDialog {
             Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error.to_string())),
             Some(Ok(_)) => self.understood(ui),
         }
-        let is_ready = !self.is_reading && matches!(self.found, Some(Ok(_)));
+        let is_doubtful = matches!(&self.found, Some(Ok(import)) if import.findings.is_doubtful());
+        if is_doubtful {
+            ui.colored_label(
+                ui.visuals().warn_fg_color,
+                "This does not look like a normal map: its colours are no directions.",
+            );
+            ui.checkbox(&mut self.is_sure, "Use it as a normal map all the same");
+        }
+        if let Some((name, _)) = &self.picture
+            && !self.replaces
+        {
+            let text = format!("Begin with the picture in the file, “{name}”");
+            ui.checkbox(&mut self.takes_picture, text);
+        }
+        let is_ready = !self.is_reading && matches!(self.found, Some(Ok(_))) && (!is_doubtful || self.is_sure);
         match buttons(ui, if self.replaces { "Replace" } else { "Create" }, is_ready) {
             Some(true) => self.create(),
             Some(false) => DialogAnswer::Close,
@@ -199,20 +232,21 @@ impl ImportDialog {
             for (i, (texture, (name, _, _))) in self.lit.iter().zip(FLIPS).enumerate() {
                 ui.vertical(|ui| {
                     let (rect, response) = ui.allocate_exact_size(vec2(124.0, 124.0), Sense::click());
-                    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, i == 0, name));
+                    let is_chosen = i == self.clicked;
+                    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, name));
                     let side = texture.size_vec2();
                     let scale = (rect.width() / side.x).min(rect.height() / side.y);
                     let at = egui::Rect::from_center_size(rect.center(), side * scale);
                     ui.painter().rect_filled(rect, 4.0, Color32::from_gray(0x20));
                     let uv = egui::Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                     ui.painter().image(texture.id(), at, uv, Color32::WHITE);
-                    let rim = if i == 0 { ui.visuals().selection.stroke } else { ui.visuals().window_stroke };
+                    let rim = if is_chosen { ui.visuals().selection.stroke } else { ui.visuals().window_stroke };
                     ui.painter().rect_stroke(rect, 4.0, rim, StrokeKind::Inside);
-                    if response.hovered() {
-                        ui.painter().rect_stroke(rect, 4.0, ui.visuals().widgets.hovered.fg_stroke, StrokeKind::Inside);
+                    if response.hovered() && !is_chosen {
+                        ui.painter().rect_stroke(rect, 4.0, ui.visuals().widgets.hovered.bg_stroke, StrokeKind::Inside);
                     }
                     let text = RichText::new(sentence(name));
-                    ui.label(if i == 0 { text.strong() } else { text });
+                    ui.label(if is_chosen { text.strong() } else { text });
                     if response.clicked() {
                         chosen = Some(i);
                     }
@@ -220,6 +254,7 @@ impl ImportDialog {
             }
         });
         let (Some(i), Some(Ok(found))) = (chosen, &self.found) else { return };
+        self.clicked = i;
         let (_, x, y) = FLIPS[i];
         if let Some(map) = &mut self.source.normal {
             let now = found.findings.normal.clone().unwrap_or_default();
@@ -230,7 +265,13 @@ impl ImportDialog {
     fn create(&mut self) -> DialogAnswer {
         match self.found.take() {
             Some(Ok(import)) if self.replaces => DialogAnswer::Replaced(Box::new((self.source.clone(), import))),
-            Some(Ok(import)) => DialogAnswer::Imported(Box::new(storage::of_import(&self.source, import))),
+            Some(Ok(import)) => {
+                let opened = storage::of_import(&self.source, import);
+                DialogAnswer::Imported(Box::new(match self.picture.take().filter(|_| self.takes_picture) {
+                    Some((name, picture)) => storage::with_picture(opened, &name, picture),
+                    None => opened,
+                }))
+            }
             _ => DialogAnswer::Open,
         }
     }

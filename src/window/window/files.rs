@@ -42,9 +42,9 @@ impl MainWindow {
             JobResult::AreMaps(source) => {
                 self.dialogs.push(Dialog::Import(Box::new(import::ImportDialog::of(*source))))
             }
-            JobResult::Read(found) => {
+            JobResult::Read(read) => {
                 if let Some(import) = self.import() {
-                    import.take(ctx, *found);
+                    import.take(ctx, *read);
                 }
             }
             JobResult::Chosen(purpose, Some(file)) => self.chosen(purpose, file),

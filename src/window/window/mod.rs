@@ -12,7 +12,7 @@ use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
 use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, export, import, new, palette, shortcuts};
 use super::files::FilePurpose;
-use super::jobs::{JobKind, JobResult, Jobs};
+use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
 use super::memory::MemoryMeter;
 use super::pen::SharedTablet;
 use super::requests::{UiRequests, WindowRequest};
@@ -169,7 +169,10 @@ impl MainWindow {
             // The dialog stays while a file is chosen for it.
             DialogAnswer::Ask(ask @ WindowRequest::Choose(_)) => return requests.request(ask),
             DialogAnswer::Import(source) => {
-                let read = move |_: &Progress| JobResult::Read(Box::new(storage::import(&source)));
+                let read = move |_: &Progress| {
+                    let (found, picture) = (storage::import(&source), storage::finished_picture(&source));
+                    JobResult::Read(Box::new(MapsRead { source: *source, found, picture }))
+                };
                 return self.jobs.start("Reading maps".into(), JobKind::Working, read);
             }
             // The dialog stays while there are drawings in it.

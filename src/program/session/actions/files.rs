@@ -210,15 +210,8 @@ const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 
 /// A picture as a document of its own size.
 pub fn of_picture(name: &str, picture: Picture) -> Document {
     let size = picture.size;
-    let image = PlacedImage {
-        source: PictureSource::new(name.into(), picture, Adjust::default()),
-        placement: Placement::covering(size),
-        outside: Outside::Mirror,
-        bend: Bend::default(),
-        filter: ImageFilter::Antialias,
-    };
-    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Document { layers: vec![Arc::new(Layer::new(stem, Content::Image(Live::new(image))))], ..Document::empty(size) }
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    Document { layers: vec![Arc::new(storage::flat_image(&stem, name, picture, size))], ..Document::empty(size) }
 }
 
 /// A file name that no other picture of the document has.
