@@ -83,6 +83,8 @@ fn dress(style: &mut Style, mut visuals: Visuals, greys: &Greys) {
     }
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, grey(greys.line));
     style.visuals = visuals;
+    // A drag that misses a slider would mark the text beside it.
+    style.interaction.selectable_labels = false;
     style.spacing.item_spacing = vec2(6.0, 5.0);
     style.spacing.button_padding = vec2(7.0, 3.0);
     style.spacing.interact_size = vec2(36.0, 21.0);

@@ -95,7 +95,7 @@ impl Canvas {
     pub fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
-        self.area_pt = vec2(rect.width(), rect.height());
+        let area_before_pt = std::mem::replace(&mut self.area_pt, vec2(rect.width(), rect.height()));
         let dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(rect, 0.0, theme::SURROUND[usize::from(!dark)]);
         let Some(tab) = session.active() else { return invite(ui, rect) };
@@ -105,6 +105,11 @@ impl Canvas {
             ui.ctx().request_repaint();
             return;
         };
+        // A canvas that is seen whole is seen whole in a window of another size too.
+        if area_before_pt != self.area_pt && view == CanvasView::fitting(tab.document().size, area_before_pt) {
+            actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
+            ui.ctx().request_repaint();
+        }
         let middle = rect.center();
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();

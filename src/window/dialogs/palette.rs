@@ -41,6 +41,9 @@ impl CommandPalette {
         }
         self.at = self.at.min(found.len().saturating_sub(1));
         let mut chosen = enter.then(|| found.get(self.at)).flatten().copied();
+        if found.is_empty() {
+            ui.weak(format!("No command is called “{}”", self.typed.trim()));
+        }
         list(ui, 360.0).auto_shrink([false, true]).show(ui, |ui| {
             for (i, command) in found.iter().enumerate() {
                 let mut button = Button::selectable(i == self.at, command.name);

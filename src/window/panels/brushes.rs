@@ -1,7 +1,7 @@
 //! The brushes: presets in groups, each with a picture of its stroke on a ball, and the sliders of the current one.
 //! Floor 7.
 
-use super::brush;
+use super::{brush, colors};
 use crate::files::FilePurpose;
 use crate::io::recipe::{Preset, PresetGroup};
 use crate::paint::Property;
@@ -13,9 +13,10 @@ use crate::session::{Action, Session};
 use crate::swatches::Swatches;
 use crate::widgets::{NumberField, named, title};
 use eframe::egui::text::{LayoutJob, TextWrapping};
-use eframe::egui::{self, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
+use eframe::egui::{self, Align, Color32, Id, Rect, Response, Sense, StrokeKind, TextEdit, Ui, pos2, vec2};
 
 pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
+    colors::strip(ui, session, requests);
     let id = Id::unique("brush in hand");
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
@@ -34,6 +35,9 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
 
 fn presets(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &mut UiRequests) {
     let search = search(ui, requests);
+    if !session.presets.iter().any(|preset| is_found(preset, &search)) {
+        ui.weak(format!("No brush is called “{}”", search.trim()));
+    }
     for (group, name) in PresetGroup::ALL {
         let presets = session.presets.iter().filter(|preset| preset.group == group && is_found(preset, &search));
         let presets: Vec<&Preset> = presets.collect();
@@ -101,9 +105,13 @@ fn search(ui: &mut Ui, requests: &mut UiRequests) -> String {
     search
 }
 
+/// Of one preset in the list: its picture above its name.
+const CELL_PT: eframe::egui::Vec2 = vec2(58.0, 74.0);
+const SWATCH_PT: f32 = 44.0;
+
 /// One preset.
 fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(72.0, 84.0), Sense::click());
+    let (rect, response) = ui.allocate_exact_size(CELL_PT, Sense::click());
     let label = &preset.name;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, format!("Brush {label}")));
     if !ui.is_rect_visible(rect) {
@@ -111,17 +119,18 @@ fn preset(ui: &mut Ui, preset: &Preset, is_on: bool, swatches: &mut Swatches) ->
     }
     let look = ui.style().interact_selectable(&response, is_on);
     ui.painter().rect(rect, 5.0, look.weak_bg_fill, look.bg_stroke, StrokeKind::Inside);
-    let at = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(64.0, 62.0));
+    let at = Rect::from_min_size(rect.min + vec2(0.5 * (CELL_PT.x - SWATCH_PT), 3.0), vec2(SWATCH_PT, SWATCH_PT));
     if let Some(texture) = swatches.of(ui.ctx(), preset) {
         ui.painter().image(texture, at, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
-    let mut job = LayoutJob::simple_singleline(label.clone(), font, look.text_color());
-    // A long name ends in an ellipsis; the tooltip has all of it.
-    job.wrap = TextWrapping::truncate_at_width(rect.width() - 4.0);
+    let mut job = LayoutJob::simple(label.clone(), font, look.text_color(), rect.width() - 4.0);
+    // A name takes two lines; a longer one ends in an ellipsis, and the tooltip has it whole.
+    job.wrap = TextWrapping { max_rows: 2, break_anywhere: false, ..TextWrapping::wrap_at_width(rect.width() - 4.0) };
+    job.halign = Align::Center;
     let text = ui.fonts_mut(|fonts| fonts.layout_job(job));
-    let place = pos2(rect.center().x - 0.5 * text.size().x, rect.bottom() - 3.0 - text.size().y);
-    ui.painter().galley(place, text, look.text_color());
+    let middle = 0.5 * (at.bottom() + rect.bottom());
+    ui.painter().galley(pos2(rect.center().x, middle - 0.5 * text.size().y), text, look.text_color());
     response.on_hover_text(format!("{label}\n{}", preset.about))
 }
 

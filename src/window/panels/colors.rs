@@ -19,7 +19,24 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     swatches(ui, "Palette", palette, requests);
 }
 
-/// Colours that a click selects.
+/// The colour in hand and the last ones, in one row: for panels beside which the picker is not in sight.
+pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    /// As many as a narrow panel has room for.
+    const RECENT: usize = 8;
+    ui.horizontal(|ui| {
+        if let Some(changed) = button(ui, "Change the colour in hand", session.color) {
+            requests.act(Action::Hand(HandAction::Color { color: changed.to }));
+        }
+        ui.spacing_mut().item_spacing.x = 3.0;
+        for (i, &color) in session.recent_colors.iter().take(RECENT).enumerate() {
+            if swatch(ui, &format!("Paint with recent colour {}", i + 1), color, vec2(18.0, 18.0)).clicked() {
+                requests.act(Action::Hand(HandAction::Color { color }));
+            }
+        }
+    });
+}
+
+/// Colours to be taken to hand by a click.
 fn swatches(
     ui: &mut Ui,
     name: &str,

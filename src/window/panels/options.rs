@@ -11,7 +11,8 @@ use crate::session::{Action, LayerPath, Property, Session};
 use crate::surface::Operator;
 use crate::tools::{Symmetry, ToolKind};
 use crate::widgets::{NumberField, ValueChange};
-use eframe::egui::{Button, RichText, Ui};
+use eframe::egui::scroll_area::ScrollBarVisibility;
+use eframe::egui::{Button, RichText, ScrollArea, Ui};
 
 /// Whose operator the bar shows: that of the selected image or gradient for the tools that edit it, else the current
 /// one.
@@ -53,30 +54,57 @@ fn set(requests: &mut UiRequests, whose: &OperatorOwner, operator: ValueChange<O
     });
 }
 
+/// Rows of the bar: how marks bend, and the options of the tool. It has both always.
+pub const ROWS: f32 = 2.0;
+
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    ui.horizontal_wrapped(|ui| {
-        // Its pixels stay where they are: nothing is bent.
-        if session.tool == ToolKind::Fill {
-            return fill::options(ui, session.fill, requests);
+    row(ui, "operator", |ui| bending(ui, session, requests));
+    row(ui, "tool", |ui| of_tool(ui, session, requests));
+}
+
+/// One row, which a narrow window scrolls sideways.
+fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
+    let area = ScrollArea::horizontal().id_salt(name).scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+    area.show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.set_min_height(ui.spacing().interact_size.y);
+            show(ui);
+        })
+    });
+}
+
+/// The operator and its numbers.
+fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    if session.tool == ToolKind::Fill {
+        return drop(ui.weak("Fills lie flat: they colour the pixels that they cover"));
+    }
+    let (whose, operator) = whose(session);
+    let about = match whose {
+        OperatorOwner::Hand => "New marks",
+        OperatorOwner::Layer(_) => "Selected layer",
+    };
+    ui.label(RichText::new(about).weak());
+    for (label, begins, hint) in operators() {
+        let is_on = has(session, begins);
+        if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
+            give(session, requests, begins);
         }
-        let (whose, operator) = whose(session);
-        let about = match whose {
-            OperatorOwner::Hand => "New marks",
-            OperatorOwner::Layer(_) => "Selected layer",
-        };
-        ui.label(RichText::new(about).weak());
-        for (label, begins, hint) in operators() {
-            let is_on = has(session, begins);
-            if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
-                give(session, requests, begins);
-            }
-        }
-        ui.add_space(6.0);
-        if let Some(changed) = numbers(ui, operator) {
-            set(requests, &whose, changed);
-        }
-        if matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) {
-            ui.separator();
+    }
+    ui.add_space(6.0);
+    if let Some(changed) = numbers(ui, operator) {
+        set(requests, &whose, changed);
+    }
+    let has_surface = session.shown().is_none_or(|document| document.surface.is_some());
+    if !has_surface && operator != Operator::None {
+        ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks lie flat");
+    }
+}
+
+/// The options of the tool in hand.
+fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    match session.tool {
+        ToolKind::Fill => fill::options(ui, session.fill, requests),
+        ToolKind::Brush | ToolKind::Eraser => {
             brush(ui, session, requests);
             symmetry(ui, session, requests);
             let mut by_speed = session.presses_by_speed;
@@ -85,7 +113,8 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                 requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
             }
         }
-    });
+        tool => drop(ui.weak(tool.row().hint)),
+    }
 }
 
 /// How strokes repeat, as a menu.

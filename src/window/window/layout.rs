@@ -18,7 +18,13 @@ impl MainWindow {
         let settings = &self.settings;
         Panel::top("menu").frame(bar(ui)).show(ui, |ui| panels::menu::show(ui, &self.session, settings, requests));
         if !self.settings.layout.is_hidden {
-            Panel::top("options").frame(bar(ui)).show(ui, |ui| panels::options::show(ui, &self.session, requests));
+            // Always as tall as its two rows, so that nothing below it moves when other numbers are in it.
+            let rows_pt = panels::options::ROWS * ui.spacing().interact_size.y
+                + (panels::options::ROWS - 1.0) * ui.spacing().item_spacing.y;
+            Panel::top("options")
+                .exact_size(rows_pt + 6.0)
+                .frame(bar(ui))
+                .show(ui, |ui| panels::options::show(ui, &self.session, requests));
             Panel::bottom("status").frame(bar(ui)).show(ui, |ui| {
                 panels::status::show(ui, &self.session, &self.canvas, &self.jobs, &mut self.memory, requests)
             });
@@ -34,11 +40,11 @@ impl MainWindow {
         if !self.session.open_documents.is_empty() {
             Panel::top("tabs").frame(bar(ui)).show(ui, |ui| panels::menu::tabs(ui, &self.session, requests));
         }
-        self.show_messages(ui);
         CentralPanel::no_frame().show(ui, |ui| {
             let area = ui.max_rect();
             self.canvas.show(ui, &self.session, &mut requests.actions);
             self.show_steps(ui);
+            self.show_messages(ui.ctx(), area);
             show_hovered(ui, area, self.session.active().is_some());
         });
     }
@@ -140,24 +146,29 @@ impl MainWindow {
             }
         }
     }
-    pub(super) fn show_messages(&mut self, ui: &mut Ui) {
+    /// What went wrong, over the top of the canvas, which stays where it is.
+    fn show_messages(&mut self, ctx: &egui::Context, canvas: egui::Rect) {
         if self.messages.is_empty() {
             return;
         }
         let (mut read, mut all_read) = (None, false);
-        let room = ui.ctx().content_rect().height() * 0.25;
-        Panel::top("messages").show(ui, |ui| {
-            egui::ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
-                for (i, message) in self.messages.iter().enumerate() {
-                    ui.horizontal_wrapped(|ui| {
-                        if ui.button("Dismiss").clicked() {
-                            read = Some(i);
-                        }
-                        ui.label(RichText::new(message).color(ui.visuals().warn_fg_color));
-                    });
-                }
+        let area = egui::Area::new(Id::unique("messages")).order(egui::Order::Foreground).fixed_pos(canvas.left_top());
+        area.show(ctx, |ui| {
+            Frame::popup(ui.style()).corner_radius(0).show(ui, |ui| {
+                ui.set_width(canvas.width() - 14.0);
+                let area = egui::ScrollArea::vertical().max_height(canvas.height() * 0.25);
+                area.auto_shrink([false, true]).show(ui, |ui| {
+                    for (i, message) in self.messages.iter().enumerate() {
+                        ui.horizontal_wrapped(|ui| {
+                            if ui.button("Dismiss").clicked() {
+                                read = Some(i);
+                            }
+                            ui.label(RichText::new(message).color(ui.visuals().warn_fg_color));
+                        });
+                    }
+                });
+                all_read = self.messages.len() > 2 && ui.button("Dismiss all").clicked();
             });
-            all_read = self.messages.len() > 2 && ui.button("All read").clicked();
         });
         read.map(|i| self.messages.remove(i));
         if all_read {
