@@ -12,6 +12,8 @@ mod jobs;
 mod keymap;
 mod keys;
 mod memory;
+mod operators;
+mod panel_layout;
 mod panels;
 mod pen;
 mod recovery;

@@ -4,6 +4,7 @@
 
 use super::jobs;
 use super::keymap::Keymap;
+use super::panel_layout::{PanelLayout, SIDES};
 use super::panels::PanelKind;
 use crate::document::Progress;
 use crate::io::fs::Disk;
@@ -198,6 +199,7 @@ impl SettingsFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panel_layout::PanelSide;
 
     #[test]
     fn settings_come_back_as_they_were_written() {

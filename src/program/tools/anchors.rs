@@ -32,10 +32,11 @@ pub fn handles(layer: &Layer, canvas: Size) -> Vec<Vec2> {
     }
 }
 
-/// The handle under the pen.
+/// The handle that the pen takes hold of: from twice as far as other handles, since a near miss would add an anchor,
+/// which bends the whole image anew.
 pub fn handle_at(layer: &Layer, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<usize> {
     let near = handles(layer, canvas).into_iter().map(|handle| handle.distance(at)).enumerate();
-    near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= GRAB_PT * px_per_pt).map(|(i, _)| i)
+    near.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, d)| *d <= 2.0 * GRAB_PT * px_per_pt).map(|(i, _)| i)
 }
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
@@ -78,7 +79,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
             let (layer, shading) = (layer.id, live.params().clone());
             (Some(Box::new(lights::LightGesture { document, layer, shading, index, moved: false })), Outcome::Idle)
         }
-        _ => (None, Outcome::Idle),
+        (Content::Image(_) | Content::Gradient(_), None) => (None, Outcome::Idle),
+        (Content::Strokes(_), _) => (None, Outcome::Refused("Strokes have no anchors: the Strokes tool moves them")),
+        _ => (None, Outcome::Refused("This layer has no anchors: images, gradients and lights do")),
     }
 }
 
@@ -173,7 +176,7 @@ impl Gesture for AnchorGesture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, vec2};
+    use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::{Adjust, Brush, ImageFilter, PictureSource, Placement};
     use crate::raster::{Outside, Picture};
     use crate::surface::{Bend, Operator, Weights};
@@ -208,6 +211,21 @@ mod tests {
         Some(live.params().bend.anchors.clone())
     }
 
+    #[test]
+    fn a_near_miss_takes_the_anchor_and_adds_none() {
+        let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);
+        let anchors = dragged(&pinned, ModifierKeys::default(), vec2(46.0, 30.0), vec2(56.0, 40.0)).unwrap();
+        assert_eq!(anchors, [Anchor { at: vec2(40.0, 40.0), source: vec2(30.0, 30.0) }]);
+    }
+    #[test]
+    fn a_layer_without_anchors_says_so() {
+        let document =
+            Document { layers: vec![Arc::new(Layer::new("a", Content::Fill(Color::BLACK)))], ..document(vec![]) };
+        let brush = Brush::default();
+        let layer = Some(document.layers[0].id);
+        let context = ToolContext { layer, ..ToolContext::new(&document, &brush) };
+        assert!(matches!(press(&context, PenSample::at(vec2(30.0, 30.0))).1, Outcome::Refused(_)));
+    }
     #[test]
     fn dragging_an_anchor_takes_its_content_along() {
         let pinned = document(vec![Anchor::fixed(vec2(30.0, 30.0))]);

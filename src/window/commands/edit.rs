@@ -1,7 +1,7 @@
 //! The Edit menu.
 //! Floor 7.
 
-use super::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
 use crate::document::Content;
 use crate::requests::WindowRequest;
 use crate::session::Action;

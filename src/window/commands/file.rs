@@ -1,7 +1,7 @@
 //! The File menu.
 //! Floor 7.
 
-use super::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, row};
 use crate::requests::WindowRequest;
 use eframe::egui::Key;
 

@@ -1,7 +1,7 @@
 //! The Help menu.
 //! Floor 7.
 
-use super::{LINE, MenuCommand, always, row};
+use super::row::{LINE, MenuCommand, always, row};
 use crate::requests::WindowRequest;
 
 pub const COMMANDS: &[MenuCommand] = &[

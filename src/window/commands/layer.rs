@@ -1,7 +1,7 @@
 //! The Layer menu.
 //! Floor 7.
 
-use super::{LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift};
+use super::row::{LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift};
 use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
 use crate::files::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};

@@ -6,51 +6,11 @@ mod file;
 mod help;
 mod layer;
 mod paint;
+mod row;
 mod shading;
 mod view;
 
-use super::requests::UiRequests;
-use super::settings::Settings;
-use crate::session::Session;
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
-
-/// A command.
-pub struct MenuCommand {
-    /// The label in menus; `…` where a dialog follows. An empty name is a separator.
-    pub name: &'static str,
-    /// The first is shown.
-    pub keys: &'static [KeyboardShortcut],
-    /// What it does, in a sentence.
-    pub hint: &'static str,
-    pub can: fn(&Session) -> bool,
-    pub run: fn(&Session, &mut UiRequests),
-    /// For a toggle: whether it is on.
-    pub is_on: Option<fn(&Session, &Settings) -> bool>,
-}
-
-/// A command: name, keys, hint, when it is available, what it does.
-const fn row(
-    name: &'static str,
-    keys: &'static [KeyboardShortcut],
-    hint: &'static str,
-    can: fn(&Session) -> bool,
-    run: fn(&Session, &mut UiRequests),
-) -> MenuCommand {
-    MenuCommand { name, keys, hint, can, run, is_on: None }
-}
-
-impl MenuCommand {
-    /// Shows a tick in the menu while this is true.
-    const fn ticked(self, is_on: fn(&Session, &Settings) -> bool) -> Self {
-        Self { is_on: Some(is_on), ..self }
-    }
-    pub const fn is_line(&self) -> bool {
-        self.name.is_empty()
-    }
-}
-
-/// A separator between two commands of a menu.
-const LINE: MenuCommand = row("", &[], "", always, |_, _| {});
+pub use row::MenuCommand;
 
 /// The menus and what is in them.
 pub const MENUS: [(&str, &[MenuCommand]); 6] = [
@@ -109,7 +69,9 @@ fn has_layer(session: &Session) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::row::key;
     use super::*;
+    use eframe::egui::Key;
     use std::collections::HashMap;
 
     #[test]

@@ -1,29 +1,12 @@
 //! The Paint menu: the current brush, colours and operator.
 //! Floor 7.
 
-use super::{LINE, MenuCommand, always, key, row, shift};
-use crate::panels::options;
+use super::row::{LINE, MenuCommand, always, key, row, shift};
+use crate::operators::{self, OPERATORS};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use crate::surface::Operator;
 use eframe::egui::Key;
-
-/// The operators as the tool bar offers them, each with the numbers it begins with.
-pub const OPERATORS: [(&str, Operator, &str); 4] = [
-    ("Flat", Operator::None, "Marks lie on the canvas as they are"),
-    ("Texture", Operator::Depth { gamma: 1.0 }, "Marks follow the depth, like a print on the surface"),
-    (
-        "Shading",
-        Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 },
-        "Marks follow the normals, like shading and highlights: mirror for α above 0, glass below",
-    ),
-    (
-        "Reflection",
-        Operator::Reflection { alpha: 1.0, detail: 0.0 },
-        "Marks follow the mirrored view, like an image in polished metal",
-    ),
-];
 
 fn hand(requests: &mut UiRequests, action: HandAction) {
     requests.act(Action::Hand(action));
@@ -64,19 +47,19 @@ pub const COMMANDS: &[MenuCommand] = &[
     }),
     LINE,
     row("Operator: flat", &[key(Key::F1)], OPERATORS[0].2, always, |session, requests| {
-        options::give(session, requests, OPERATORS[0].1)
+        operators::give(session, requests, OPERATORS[0].1)
     })
-    .ticked(|session, _| options::has(session, OPERATORS[0].1)),
+    .ticked(|session, _| operators::has(session, OPERATORS[0].1)),
     row("Operator: texture", &[key(Key::F2)], OPERATORS[1].2, always, |session, requests| {
-        options::give(session, requests, OPERATORS[1].1)
+        operators::give(session, requests, OPERATORS[1].1)
     })
-    .ticked(|session, _| options::has(session, OPERATORS[1].1)),
+    .ticked(|session, _| operators::has(session, OPERATORS[1].1)),
     row("Operator: shading", &[key(Key::F3)], OPERATORS[2].2, always, |session, requests| {
-        options::give(session, requests, OPERATORS[2].1)
+        operators::give(session, requests, OPERATORS[2].1)
     })
-    .ticked(|session, _| options::has(session, OPERATORS[2].1)),
+    .ticked(|session, _| operators::has(session, OPERATORS[2].1)),
     row("Operator: reflection", &[key(Key::F4)], OPERATORS[3].2, always, |session, requests| {
-        options::give(session, requests, OPERATORS[3].1)
+        operators::give(session, requests, OPERATORS[3].1)
     })
-    .ticked(|session, _| options::has(session, OPERATORS[3].1)),
+    .ticked(|session, _| operators::has(session, OPERATORS[3].1)),
 ];

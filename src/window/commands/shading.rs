@@ -1,7 +1,7 @@
 //! New shading layers, one for each model.
 //! Floor 7.
 
-use super::{MenuCommand, has_document, row};
+use super::row::{MenuCommand, has_document, row};
 use crate::requests::UiRequests;
 use crate::session::Action;
 use crate::session::actions::LayerAction;

@@ -1,13 +1,13 @@
 //! The View menu.
 //! Floor 7.
 
-use super::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, key, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, key, row};
 use crate::math::Vec2;
+use crate::panel_layout::PanelSide;
 use crate::panels::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session};
-use crate::settings::PanelSide;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 fn view(requests: &mut UiRequests, action: ViewAction) {
@@ -119,7 +119,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("Hide panels", &[key(Key::Tab)], "Only the canvas, or all panels again", always, |_, requests| {
         requests.request(WindowRequest::TogglePanels)
     })
-    .ticked(|_, settings| settings.layout.is_hidden),
+    .ticked(|_, layout| layout.is_hidden),
     row("Panels on the other side", &[], "To the left of the canvas, or to the right", always, |_, requests| {
         requests.request(WindowRequest::OtherSide)
     }),
@@ -130,7 +130,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::PanelsApart),
     )
-    .ticked(|_, settings| settings.layout.side == PanelSide::Apart),
+    .ticked(|_, layout| layout.side == PanelSide::Apart),
     row(
         "Layers in a window",
         &[],
@@ -138,7 +138,7 @@ pub const COMMANDS: &[MenuCommand] = &[
         always,
         |_, requests| requests.request(WindowRequest::Float(PanelKind::Layers)),
     )
-    .ticked(|_, settings| settings.layout.apart.contains(&PanelKind::Layers)),
+    .ticked(|_, layout| layout.apart.contains(&PanelKind::Layers)),
     row("Full screen", &[key(Key::F11)], "Or back", always, |_, requests| requests.request(WindowRequest::FullScreen)),
     row(
         "Larger interface",

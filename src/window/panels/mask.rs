@@ -1,7 +1,7 @@
 //! The mask of the selected layer.
 //! Floor 7.
 
-use super::properties::LayerSetter;
+use super::setter::LayerSetter;
 use crate::document::{Layer, MaskKind};
 use crate::session::Property;
 use crate::session::actions::LayerAction;

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::colors;
-use super::properties::LayerSetter;
+use super::setter::LayerSetter;
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::session::Property;
 use crate::session::actions::pictures::PicturePart;

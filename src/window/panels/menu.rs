@@ -46,7 +46,7 @@ fn entry(
     if command.is_line() {
         return drop(ui.separator());
     }
-    let is_on = command.is_on.is_some_and(|is_on| is_on(session, settings));
+    let is_on = command.is_on.is_some_and(|is_on| is_on(session, &settings.layout));
     let mut button = Button::selectable(is_on, command.name);
     if let Some(keys) = settings.keymap.first(command) {
         button = button.shortcut_text(shown(ui.ctx(), keys));

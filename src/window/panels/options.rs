@@ -2,12 +2,11 @@
 //! Floor 7.
 
 use super::{brush_mode, fill};
-use crate::commands::operators;
-use crate::document::Content;
+use crate::operators::{OPERATORS, OperatorOwner, give, has, set, whose};
 use crate::requests::UiRequests;
+use crate::session::actions::HandAction;
 use crate::session::actions::hand::SIZES;
-use crate::session::actions::{HandAction, LayerAction};
-use crate::session::{Action, LayerPath, Property, Session};
+use crate::session::{Action, Session};
 use crate::surface::Operator;
 use crate::tools::{Symmetry, ToolKind};
 use crate::widgets::{NumberField, ValueChange};
@@ -84,7 +83,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         OperatorOwner::Layer(_) => "Selected layer",
     };
     ui.label(RichText::new(about).weak());
-    for (label, begins, hint) in operators() {
+    for (label, begins, hint) in OPERATORS {
         let is_on = has(session, begins);
         if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
             give(session, requests, begins);

@@ -1,18 +1,17 @@
 //! Properties of the selected layer: its content, placement and bending. Floor 7. Materials and lights are in
 //! `material`.
 
+use super::setter::LayerSetter;
 use super::{colors, mask, material, options, strokes};
 use crate::document::{Content, DetailSource, Layer, NormalLayer};
-use crate::files::FilePurpose;
 use crate::math::{Vec2, vec2};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PlacedImage, Placement};
 use crate::raster::Outside;
-use crate::requests::{UiRequests, WindowRequest};
-use crate::session::actions::LayerAction;
+use crate::requests::UiRequests;
 use crate::session::actions::pictures::PicturePart;
-use crate::session::{Action, LayerPath, Property, Session};
+use crate::session::{Property, Session};
 use crate::surface::{NoiseRelief, Weights};
-use crate::widgets::{NumberField, ValueChange, check, choice_row, named, title};
+use crate::widgets::{NumberField, check, choice_row, title};
 use eframe::egui::Ui;
 
 /// Requests changes of one layer.
@@ -159,7 +158,7 @@ fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
 
 fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut LayerSetter) {
     ui.horizontal_wrapped(|ui| {
-        for (label, begins, hint) in crate::commands::operators() {
+        for (label, begins, hint) in crate::operators::OPERATORS {
             let is_on = std::mem::discriminant(&operator) == std::mem::discriminant(&begins);
             if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
                 setter.set(Property::Bend { operator: begins }, true);

@@ -2,9 +2,9 @@
 //! themselves are in `panels`.
 
 use super::MainWindow;
+use crate::panel_layout::PanelSide;
 use crate::panels::{self, PanelKind};
 use crate::requests::UiRequests;
-use crate::settings::PanelSide;
 use crate::theme::ACCENT;
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{self, CentralPanel, Frame, Id, Margin, Panel, RichText, Ui};

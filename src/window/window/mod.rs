@@ -14,10 +14,10 @@ use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, export, import, new, pa
 use super::files::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
 use super::memory::MemoryMeter;
+use super::panel_layout::PanelSide;
 use super::pen::SharedTablet;
 use super::requests::{UiRequests, WindowRequest};
-use super::saving::{Pending, Saving};
-use super::settings::{PanelSide, Settings, SettingsFile};
+use super::settings::{Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
@@ -45,6 +45,8 @@ pub struct MainWindow {
     asks_itself: bool,
     /// Whether the program was started without a file, so that the sample is open.
     is_first_start: bool,
+    /// Which of the steps of a first start were done, in any document.
+    steps_done: [bool; 3],
     export: export::ExportDialog,
     /// The purpose of the open system dialog.
     title: String,
@@ -82,6 +84,7 @@ impl MainWindow {
             keeper,
             asks_itself: false,
             is_first_start: false,
+            steps_done: [false; 3],
             export: export::ExportDialog::default(),
             title: String::new(),
             is_dressed: false,

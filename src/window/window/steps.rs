@@ -39,7 +39,11 @@ impl MainWindow {
         if is_over || !self.is_first_start {
             return;
         }
-        let done = STEPS.map(|(_, _, is_done)| is_done(&self.session));
+        // What was done once in any document is done.
+        for (was_done, (_, _, is_done)) in self.steps_done.iter_mut().zip(STEPS) {
+            *was_done |= is_done(&self.session);
+        }
+        let done = self.steps_done;
         let corner = ui.max_rect().left_top() + vec2(14.0, 14.0);
         let area = Area::new(Id::unique("first steps")).fixed_pos(corner).pivot(Align2::LEFT_TOP);
         area.show(ui.ctx(), |ui| {

@@ -1,0 +1,71 @@
+//! One row of the menus: a command with its keys, and the small words that rows are written in.
+//! Floor 7.
+
+use crate::panel_layout::PanelLayout;
+use crate::requests::UiRequests;
+use crate::session::Session;
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+/// A command.
+pub struct MenuCommand {
+    /// As menus show it; `…` where a dialog follows. Empty is a line between two.
+    pub name: &'static str,
+    /// The first is shown.
+    pub keys: &'static [KeyboardShortcut],
+    /// What it does, in a sentence.
+    pub hint: &'static str,
+    pub can: fn(&Session) -> bool,
+    pub run: fn(&Session, &mut UiRequests),
+    /// Of one that switches something on and off: whether it is on.
+    pub is_on: Option<fn(&Session, &PanelLayout) -> bool>,
+}
+
+/// A command by all that it always has: name, keys, hint, when it can be done, what it does.
+pub const fn row(
+    name: &'static str,
+    keys: &'static [KeyboardShortcut],
+    hint: &'static str,
+    can: fn(&Session) -> bool,
+    run: fn(&Session, &mut UiRequests),
+) -> MenuCommand {
+    MenuCommand { name, keys, hint, can, run, is_on: None }
+}
+
+impl MenuCommand {
+    /// Marked in the menu while this is so.
+    pub const fn ticked(self, is_on: fn(&Session, &PanelLayout) -> bool) -> Self {
+        Self { is_on: Some(is_on), ..self }
+    }
+    pub const fn is_line(&self) -> bool {
+        self.name.is_empty()
+    }
+}
+
+/// A line between two commands of a menu.
+pub const LINE: MenuCommand = row("", &[], "", always, |_, _| {});
+
+pub const fn key(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+pub const fn ctrl(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+pub const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+pub const fn ctrl_alt(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::ALT), key)
+}
+pub const fn ctrl_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+pub fn always(_: &Session) -> bool {
+    true
+}
+pub fn has_document(session: &Session) -> bool {
+    session.active().is_some()
+}
+pub fn has_layer(session: &Session) -> bool {
+    session.layer().is_some()
+}

@@ -1,0 +1,41 @@
+//! Where the panels stand: at which side, which in front, which in windows of their own.
+//! Floor 7. Keeping it from run to run is `settings`'.
+
+use crate::panels::PanelKind;
+
+/// Where the panels stand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PanelLayout {
+    pub side: PanelSide,
+    pub is_hidden: bool,
+    /// Which panel is in front above the layers.
+    pub front: PanelKind,
+    /// Panels in windows of their own.
+    pub apart: Vec<PanelKind>,
+    pub width_pt: f32,
+}
+
+/// On which side of the canvas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PanelSide {
+    Left,
+    Right,
+    /// In a window of their own.
+    Apart,
+}
+
+impl PanelSide {
+    pub fn other(self) -> Self {
+        if self == PanelSide::Right { PanelSide::Left } else { PanelSide::Right }
+    }
+}
+
+/// Each side with its name in settings.
+pub const SIDES: [(PanelSide, &str); 3] =
+    [(PanelSide::Left, "left"), (PanelSide::Right, "right"), (PanelSide::Apart, "apart")];
+
+impl Default for PanelLayout {
+    fn default() -> Self {
+        Self { side: PanelSide::Right, is_hidden: false, front: PanelKind::Color, apart: Vec::new(), width_pt: 268.0 }
+    }
+}

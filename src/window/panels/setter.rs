@@ -1,0 +1,39 @@
+//! What panels of one layer change it by.
+//! Floor 7.
+
+use crate::files::FilePurpose;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::LayerAction;
+use crate::session::actions::pictures::PicturePart;
+use crate::session::{Action, LayerPath, Property};
+use crate::widgets::{ValueChange, named};
+use eframe::egui::Ui;
+
+/// Pushes changes of one layer.
+pub struct LayerSetter<'a> {
+    pub layer: LayerPath,
+    pub requests: &'a mut UiRequests,
+}
+
+impl LayerSetter<'_> {
+    pub fn set(&mut self, to: Property, done: bool) {
+        self.requests.act(Action::Layer(LayerAction::Set { layer: self.layer.clone(), to, done }));
+    }
+    /// Does something else to the layer.
+    pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
+        self.requests.act(Action::Layer(action(self.layer.clone())));
+    }
+    /// A button that asks for a picture of the layer's.
+    pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
+        let response = ui.button(text);
+        named(&response, &format!("Choose {}", part.title().to_lowercase()));
+        if response.clicked() {
+            self.requests.request(WindowRequest::Choose(FilePurpose::Part(part)));
+        }
+    }
+    pub fn take(&mut self, changed: Option<ValueChange<Property>>) {
+        if let Some(ValueChange { to, done }) = changed {
+            self.set(to, done);
+        }
+    }
+}
