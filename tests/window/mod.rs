@@ -73,7 +73,8 @@ fn key(harness: &mut Story, modifiers: Modifiers, key: Key) {
 /// By its name, typed into the palette of commands.
 fn command(harness: &mut Story, name: &str) {
     // While an edit is under way there is no palette.
-    for _ in 0..600 {
+    for tries in 0..1500 {
+        assert!(tries < 1499, "there is no palette to type “{name}” into");
         key(harness, Modifiers::COMMAND, Key::K);
         if harness.query_by_label("Command").is_some() {
             break;

@@ -39,7 +39,9 @@ pub struct Brush {
     pub keeps_alpha: bool,
     /// Where the stroke may paint.
     pub bounded: PaintLimit,
-    /// What the brush does where its footprint lands. Strokes of a stroke layer always paint.
+    /// How far from the pen a bent mark may land, a ratio of the dab's diameter, in [`Brush::REACHES`]; 0 is anywhere.
+    pub reach: f32,
+    /// What the brush does where its footprint lands. Strokes of a stroke layer paint, whatever it says.
     pub mode: BrushMode,
     pub tip: Tip,
     pub grain: Option<BrushGrain>,
@@ -159,7 +161,12 @@ pub enum Tip {
 }
 
 impl Brush {
-    /// The pictures that it uses: first those of the tip, then that of the grain.
+    /// What a reach may be.
+    pub const REACHES: std::ops::RangeInclusive<f32> = 0.0..=100.0;
+    /// The reach of the brushes that come with the program: on a rugged surface their marks stay near the pen.
+    pub const NEAR: f32 = 3.0;
+
+    /// The pictures that it is made of: its tip's, then its grain's.
     pub fn pictures(&self) -> impl Iterator<Item = &PictureSource> {
         let tip = match &self.tip {
             Tip::Picture(source) => std::slice::from_ref(source),
@@ -210,6 +217,7 @@ impl Default for Brush {
             erases: false,
             keeps_alpha: false,
             bounded: PaintLimit::Free,
+            reach: 0.0,
             mode: BrushMode::Paint,
             tip: Tip::Round,
             grain: None,

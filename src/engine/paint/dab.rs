@@ -18,9 +18,9 @@ use super::stroke_tile::{DabPaint, StrokeTile};
 use crate::math::{Rect, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
-use crate::surface::Surface;
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TileBlocks};
+use crate::surface::{DabReach, Surface};
 use round::{RoundTip, RowZones, bent_row, flat_row};
 use std::ops::Range;
 
@@ -37,7 +37,10 @@ pub struct PlacedDab<'s> {
 /// Half a pixel's width on either side: the box of the round tip's filter.
 const ROUND_FILTER_PX: f32 = 0.5;
 
-/// The extent of a round dab.
+/// Radii within which every footprint lies: the softest rim at 2, a square picture's corner at √2.
+const PUSH_RADII: f32 = 3.0;
+
+/// How far a round dab reaches.
 pub fn round_extent(dab: &Dab) -> DabExtent {
     let profile = RoundProfile::new(dab.hardness, dab.softness);
     DabExtent { radius_px: dab.radius * profile.outer_radius(), filter_px: ROUND_FILTER_PX }
@@ -68,9 +71,10 @@ impl<'s> PlacedDab<'s> {
     /// `extent`: of the tip's footprint.
     pub fn new(dab: Dab, scene: &'s Scene, extent: DabExtent) -> Self {
         let surface = scene.surface.as_deref();
-        let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at);
+        let reach = DabReach::new(dab.at, dab.reach_px, PUSH_RADII * dab.radius);
+        let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at).within(reach);
         let bent_over = surface.filter(|_| !deformation.is_identity());
-        let support = SupportBounds::new(surface, scene.size, dab.operator, dab.at, extent);
+        let support = SupportBounds::new(surface, scene.size, dab.operator, dab.at, extent).within(reach);
         Self { dab, scene, deformation, bent_over, support }
     }
     pub fn dab(&self) -> &Dab {

@@ -51,7 +51,9 @@ pub struct Dab {
     /// Of one-colour tips where the brush's colours vary; else the stroke's.
     pub color: Color,
     pub operator: Operator,
-    /// Its number in the stroke, from 0; invisible dabs count too.
+    /// How far from its centre it may land, px; 0 is anywhere.
+    pub reach_px: f32,
+    /// Which of the stroke it is, counted from 0; those that cannot be seen count too.
     pub number: u32,
     /// The inputs that drove it; the seed belongs to this dab alone.
     pub inputs: DabInputs,
@@ -72,6 +74,7 @@ impl Dab {
             ceiling: 1.0,
             color: Color::BLACK,
             operator: Operator::None,
+            reach_px: 0.0,
             number: 0,
             inputs: DabInputs::default(),
         }
@@ -205,6 +208,7 @@ impl DabRules {
             ceiling,
             color: if self.varies_in_color { tint::of(brush, self.color, &inputs) } else { self.color },
             operator: self.operator(&inputs),
+            reach_px: 2.0 * radius * brush.reach,
             number,
             inputs,
         })

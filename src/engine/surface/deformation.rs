@@ -5,7 +5,7 @@
 mod fill;
 
 use super::operator::{MapSlopes, MapValues, Operator, outer};
-use super::{Anchor, Bend, Curvature, Surface, Weights, links};
+use super::{Anchor, Bend, Curvature, DabReach, Surface, Weights, links};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,6 +23,8 @@ pub struct Deformation<'a> {
     pins: Vec<Pin>,
     /// Where the operator asks for detail.
     curvature: Option<Arc<Curvature>>,
+    /// Of a dab that must stay near the pen.
+    reach: Option<DabReach>,
 }
 
 /// An anchor and what the maps hold there.
@@ -82,7 +84,11 @@ impl<'a> Deformation<'a> {
         let operator = bend.operator.finite();
         let curvature = surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
         let weights = sane(bend.weights);
-        Self { surface, unit_px: size.longer_side(), operator, weights, pins, curvature }
+        Self { surface, unit_px: size.longer_side(), operator, weights, pins, curvature, reach: None }
+    }
+    /// The same, of a dab that lands within a reach; where D is the identity it does so anyway.
+    pub fn within(self, reach: Option<DabReach>) -> Self {
+        Self { reach: reach.filter(|_| !self.is_identity()), ..self }
     }
     /// D(q) = q for every q: nothing is moved anywhere.
     pub fn is_identity(&self) -> bool {
@@ -101,7 +107,7 @@ impl<'a> Deformation<'a> {
             .zip(weights)
             .map(|(pin, w)| w * (self.offset(pin, q, x, y) + (pin.anchor.source - pin.anchor.at)))
             .sum();
-        q + moved
+        self.reach.map_or(q + moved, |reach| reach.limit(q, q + moved))
     }
     /// ∂D/∂q at the centre of a pixel, columns along x and y; a plain ratio. The maps are differenced within the piece
     /// of surface that holds the pixel, the weights analytically.
@@ -130,7 +136,16 @@ impl<'a> Deformation<'a> {
         out.rect = Some(rect);
         out.x.resize(n, 0.0);
         out.y.resize(n, 0.0);
-        fill::fill(self, rect, columns, &mut out.x, &mut out.y);
+        fill::fill(self, rect, &columns, &mut out.x, &mut out.y);
+        if let Some(reach) = self.reach.filter(|reach| reach.is_near(rect)) {
+            for (y, row) in (rect.y0..rect.y1).enumerate() {
+                for x in columns(row).start.max(rect.x0)..columns(row).end.min(rect.x1) {
+                    let i = y * rect.width() + (x - rect.x0) as usize;
+                    let q = vec2(x as f32, row as f32) + 0.5;
+                    (out.x[i], out.y[i]) = reach.limit(q, vec2(out.x[i], out.y[i])).into();
+                }
+            }
+        }
     }
 
     fn anchors(&self) -> Vec<Anchor> {

@@ -21,6 +21,7 @@ pub mod objects;
 mod occlusion;
 pub mod operator;
 mod pyramid;
+pub mod reach;
 pub mod scene;
 pub mod support;
 
@@ -33,5 +34,6 @@ pub use grain::NoiseRelief;
 pub use maps::{Maps, Surface, SurfaceError};
 pub use objects::{Objects, PaintLimit};
 pub use operator::Operator;
+pub use reach::DabReach;
 pub use scene::Scene;
 pub use support::SupportBounds;

@@ -4,10 +4,10 @@
 
 mod blocks;
 
-use super::Surface;
 use super::operator::{Operator, first_order, reflection, second_order};
 pub use super::pyramid::{BLOCK, TILE_BLOCKS};
 use super::pyramid::{BlockCover, DepthSpan, Pyramid, PyramidBlock, TILE_LEVEL, TurnSpan, block_rect, level_size};
+use super::{DabReach, Surface};
 use crate::math::{Size, Vec2, vec2};
 use crate::raster::TileAt;
 
@@ -45,6 +45,8 @@ pub struct SupportBounds<'s> {
     extent: DabExtent,
     cover: Option<&'s Pyramid<BlockCover>>,
     flow: OperatorBounds<'s>,
+    /// Nothing lands farther from the anchor than this; infinite where anything may.
+    border_px: f32,
 }
 
 /// The operator on the surface, its maps read at the anchor.
@@ -115,7 +117,11 @@ impl<'s> SupportBounds<'s> {
             .filter(|_| !operator.is_identity())
             .map_or(OperatorBounds::Still, |s| OperatorBounds::new(s, operator, at));
         let cover = surface.map(|s| s.bounds().cover(s));
-        Self { size, at, extent, cover, flow }
+        Self { size, at, extent, cover, flow, border_px: f32::INFINITY }
+    }
+    /// The same, of a mark that stays within a reach.
+    pub fn within(self, reach: Option<DabReach>) -> Self {
+        Self { border_px: reach.map_or(f32::INFINITY, |reach| reach.border_px()), ..self }
     }
     /// Visits every tile of the canvas that may be touched.
     pub fn for_each_tile(&self, mut visit: impl FnMut(TileAt)) {
@@ -166,6 +172,9 @@ impl<'s> SupportBounds<'s> {
         let low = vec2(rect.x0 as f32, rect.y0 as f32) + 0.5 - self.at;
         let high = vec2(rect.x1 as f32, rect.y1 as f32) - 0.5 - self.at;
         let flat = BlockImage::flat(low, high);
+        if flat.near > self.border_px {
+            return BlockOverlap::Nowhere;
+        }
         let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(BlockCover { some: false, all: false });
         let outside = if cover.all { None } else { Some(flat) };
         let inside = if cover.some { Some(self.flow.image(block, (low, high), flat)) } else { None };

@@ -30,6 +30,7 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         erases: fields.boolean("erases", base.erases)?,
         keeps_alpha: fields.boolean("keeps_alpha", base.keeps_alpha)?,
         bounded: fields.one_of("bounded", &PaintLimit::ALL, base.bounded)?,
+        reach: fields.number("reach", base.reach, Brush::REACHES)?,
         mode: fields.get("mark").map_or(Ok(base.mode), |node| mode(&node))?,
         stabilizer: fields.get("stabilizer").map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
         dynamics: fields.get("dynamics").map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics))?,
@@ -167,6 +168,7 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
     out.flag("erases", brush.erases, plain.erases);
     out.flag("keeps_alpha", brush.keeps_alpha, plain.keeps_alpha);
     out.word("bounded", &PaintLimit::ALL, brush.bounded, plain.bounded);
+    out.number("reach", brush.reach, plain.reach);
     out.object("mark", write_mode(brush.mode));
     tips::write_tip(&mut out, &brush.tip);
     tips::write_grain(&mut out, brush.grain.as_ref());
@@ -223,8 +225,8 @@ mod tests {
         let text = json!({
             "size": 20, "hardness": 0.25, "opacity": 0.5, "flow": 0.75, "spacing": 0.3, "rotation": 30, "softness": 0.1,
             "scatter": 2, "jitter": { "hue": 20, "saturation": 0.1, "value": 0.2 }, "blend": "multiply", "erases": true,
-            "keeps_alpha": true, "bounded": "object", "mark": { "kind": "smudge", "length": 0.5 },
-              "stabilizer": { "string": 25 },
+            "keeps_alpha": true, "bounded": "object", "reach": 2.5,
+            "mark": { "kind": "smudge", "length": 0.5 }, "stabilizer": { "string": 25 },
             "dynamics": {
                 "size": { "pressure": 0.1, "speed": [[0, 1], [1, 0.3]] },
                 "flow": { "pressure": 0, "curvature": [[0, 0], [0.5, 1]] },

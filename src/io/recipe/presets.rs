@@ -77,10 +77,13 @@ pub fn presets() -> impl Iterator<Item = Preset> {
     preset_names().filter_map(preset)
 }
 
-/// A brush that comes with the program.
+/// A brush that comes with the program, as a hand takes it: its marks stay near the pen. A recipe that names it says so itself
+/// ([`Brush::reach`]), so that older ones paint as they did.
 pub fn preset(key: &str) -> Option<Preset> {
     let (_, text) = BRUSHES.iter().find(|(known, _)| *known == key)?;
-    built_in(key, text).ok()
+    let mut preset = built_in(key, text).ok()?;
+    preset.brush.reach = Brush::NEAR;
+    Some(preset)
 }
 
 /// A brush that comes with the program, and the operator it is meant for.

@@ -5,22 +5,25 @@ use crate::document::Document;
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::{Scene, Stroke};
 use crate::surface::support::{DabExtent, SupportBounds};
-use crate::surface::{Deformation, Operator};
+use crate::surface::{DabReach, Deformation, Operator};
 use std::sync::Arc;
 
 /// Cells along the longer side of the grid: fine enough for a cursor, and fast enough for every frame.
 const CELLS: i32 = 72;
 
-/// The outline of a dab of `radius_px` at `at`, as pairs of points to be joined by lines; canvas px.
-pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32) -> Vec<[Vec2; 2]> {
+/// The outline of a dab of `radius_px` at `at` that lands within `reach_px` (0: anywhere), as pairs of points to be joined by
+/// lines; canvas px.
+pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32, reach_px: f32) -> Vec<[Vec2; 2]> {
     let surface = document.surface.as_deref();
-    let deformation = Deformation::of_dab(surface, document.size, operator, at);
+    let reach = DabReach::new(at, reach_px, 2.0 * radius_px);
+    let deformation = Deformation::of_dab(surface, document.size, operator, at).within(reach);
     if deformation.is_identity() || !at.is_finite() {
         return circle(at, radius_px);
     }
     let extent = DabExtent { radius_px, filter_px: 0.0 };
     let mut touched = Rect::EMPTY;
     SupportBounds::new(surface, document.size, operator, at, extent)
+        .within(reach)
         .for_each_tile(|tile| touched = touched.union(tile.rect()));
     let area = touched.intersect(document.size.rect()).grown(1);
     if area.is_empty() {
@@ -178,14 +181,14 @@ mod tests {
     #[test]
     fn without_a_surface_the_footprint_is_a_circle() {
         let flat = Document::empty(Size::new(100, 100));
-        let lines = outline(&flat, Operator::Depth { gamma: 2.0 }, vec2(50.0, 40.0), 12.0);
+        let lines = outline(&flat, Operator::Depth { gamma: 2.0 }, vec2(50.0, 40.0), 12.0, 0.0);
         assert!(lines.iter().flatten().all(|p| (p.distance(vec2(50.0, 40.0)) - 12.0).abs() < 1e-3));
     }
     #[test]
     fn on_a_ball_a_reflecting_dab_is_smaller_and_its_outline_is_where_d_is_its_radius() {
         let (ball, at) = (ball(), vec2(64.0, 64.0));
         let operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
-        let lines = outline(&ball, operator, at, 20.0);
+        let lines = outline(&ball, operator, at, 20.0, 0.0);
         assert!(lines.len() > 8);
         // n̄ = (q − q_0) / 60 on the ball and f_n(u) = α u at β = 0: a point r px away is brought r + α L (r / 60)²
         // away.

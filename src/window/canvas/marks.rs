@@ -28,7 +28,8 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     match tool {
         ToolKind::Brush | ToolKind::Eraser => {
             let radius = (0.5 * session.brush.size).max(0.5);
-            let lines = outline::outline(document, session.operator, at, radius);
+            let reach_px = 2.0 * radius * session.brush.reach;
+            let lines = outline::outline(document, session.operator, at, radius, reach_px);
             let lines: Vec<[Pos2; 2]> = lines.into_iter().map(|line| line.map(to_screen)).collect();
             // Dark beneath light, so that it is visible on any picture.
             for stroke in

@@ -62,6 +62,9 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             give(check(ui, "From the picture", hint, picture).map(|picture| BrushMode::Clone { aligned, picture }));
         }
     }
+    let hint = "How far from the pen a bent mark may land, in diameters; 0 is anywhere. The cursor shows it";
+    let reach = NumberField::new("Reach", 0.0..=20.0, hint).decimals(1).inline(ui, session.brush.reach, 60.0);
+    requests.actions.extend(reach.map(|c| Action::Hand(HandAction::Reach { to: c.to })));
     let bounded = choice(ui, "Brush where", session.brush.bounded, &BOUNDS);
     requests.actions.extend(bounded.map(|bounded| Action::Hand(HandAction::Bounded { bounded })));
 }

@@ -4,7 +4,7 @@
 use crate::io::recipe::read_brush;
 use crate::math::srgb::Color;
 use crate::paint::Property;
-use crate::paint::{BrushMode, Fill};
+use crate::paint::{Brush, BrushMode, Fill};
 use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, field, names, record};
 use crate::surface::{Operator, PaintLimit};
@@ -91,6 +91,8 @@ actions! {
         "mark" Mark { mark: BrushMode }
         /// Where the brush may paint.
         "bounded" Bounded { bounded: PaintLimit }
+        /// How far from the pen its marks may land, in diameters; 0 is anywhere.
+        "reach" Reach { to: f32 }
     }
 }
 
@@ -132,6 +134,7 @@ impl HandAction {
             HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = *mode,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
+            HandAction::Reach { to } => brush.reach = to.max(*Brush::REACHES.start()).min(*Brush::REACHES.end()),
         }
     }
 }
