@@ -35,42 +35,6 @@ pub struct Settings {
     pub is_hint_done: bool,
 }
 
-/// The layout of the panels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PanelLayout {
-    pub side: PanelSide,
-    pub is_hidden: bool,
-    /// The panel in front above the layers.
-    pub front: PanelKind,
-    /// Panels in windows of their own.
-    pub apart: Vec<PanelKind>,
-    pub width_pt: f32,
-}
-
-/// On which side of the canvas.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PanelSide {
-    Left,
-    Right,
-    /// In a window of their own.
-    Apart,
-}
-
-impl PanelSide {
-    pub fn other(self) -> Self {
-        if self == PanelSide::Right { PanelSide::Left } else { PanelSide::Right }
-    }
-}
-
-const SIDES: [(PanelSide, &str); 3] =
-    [(PanelSide::Left, "left"), (PanelSide::Right, "right"), (PanelSide::Apart, "apart")];
-
-impl Default for PanelLayout {
-    fn default() -> Self {
-        Self { side: PanelSide::Right, is_hidden: false, front: PanelKind::Color, apart: Vec::new(), width_pt: 268.0 }
-    }
-}
-
 impl Settings {
     pub fn recent_is(&mut self, file: PathBuf) {
         self.recent.retain(|known| *known != file);

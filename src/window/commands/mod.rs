@@ -36,37 +36,6 @@ pub fn named(name: &str) -> Option<&'static MenuCommand> {
     all().find(|command| command.name == name)
 }
 
-/// The operators of the options bar: name, default values, purpose.
-pub fn operators() -> [(&'static str, crate::surface::Operator, &'static str); 4] {
-    paint::OPERATORS
-}
-
-const fn key(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::NONE, key)
-}
-const fn ctrl(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::COMMAND, key)
-}
-const fn shift(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::SHIFT, key)
-}
-const fn ctrl_alt(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::ALT), key)
-}
-const fn ctrl_shift(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
-}
-
-fn always(_: &Session) -> bool {
-    true
-}
-fn has_document(session: &Session) -> bool {
-    session.active().is_some()
-}
-fn has_layer(session: &Session) -> bool {
-    session.layer().is_some()
-}
-
 #[cfg(test)]
 mod tests {
     use super::row::key;

@@ -8,7 +8,7 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A command.
 pub struct MenuCommand {
-    /// As menus show it; `…` where a dialog follows. Empty is a line between two.
+    /// The label in menus; `…` where a dialog follows. An empty name is a separator.
     pub name: &'static str,
     /// The first is shown.
     pub keys: &'static [KeyboardShortcut],
@@ -16,11 +16,11 @@ pub struct MenuCommand {
     pub hint: &'static str,
     pub can: fn(&Session) -> bool,
     pub run: fn(&Session, &mut UiRequests),
-    /// Of one that switches something on and off: whether it is on.
+    /// For a toggle: whether it is on.
     pub is_on: Option<fn(&Session, &PanelLayout) -> bool>,
 }
 
-/// A command by all that it always has: name, keys, hint, when it can be done, what it does.
+/// A command: name, keys, hint, when it is available, what it does.
 pub const fn row(
     name: &'static str,
     keys: &'static [KeyboardShortcut],
@@ -32,7 +32,7 @@ pub const fn row(
 }
 
 impl MenuCommand {
-    /// Marked in the menu while this is so.
+    /// Shows a tick in the menu while this is true.
     pub const fn ticked(self, is_on: fn(&Session, &PanelLayout) -> bool) -> Self {
         Self { is_on: Some(is_on), ..self }
     }
@@ -41,7 +41,7 @@ impl MenuCommand {
     }
 }
 
-/// A line between two commands of a menu.
+/// A separator between two commands of a menu.
 pub const LINE: MenuCommand = row("", &[], "", always, |_, _| {});
 
 pub const fn key(key: Key) -> KeyboardShortcut {

@@ -13,46 +13,6 @@ use crate::widgets::{NumberField, ValueChange};
 use eframe::egui::scroll_area::ScrollBarVisibility;
 use eframe::egui::{Button, RichText, ScrollArea, Ui};
 
-/// Whose operator the bar shows: that of the selected image or gradient for the tools that edit it, else the current
-/// one.
-enum OperatorOwner {
-    Hand,
-    Layer(LayerPath),
-}
-
-fn whose(session: &Session) -> (OperatorOwner, Operator) {
-    let of_layer = matches!(session.tool, ToolKind::Image | ToolKind::Anchors | ToolKind::Move | ToolKind::Gradient);
-    let operator = session.layer().filter(|_| of_layer).and_then(|layer| match &layer.content {
-        Content::Image(live) => Some(live.params().bend.operator),
-        Content::Gradient(live) => Some(live.params().operator),
-        _ => None,
-    });
-    match (operator, session.layer_path()) {
-        (Some(operator), Some(path)) => (OperatorOwner::Layer(path), operator),
-        _ => (OperatorOwner::Hand, session.operator),
-    }
-}
-
-/// Whether the bar shows this operator, whatever its values.
-pub fn has(session: &Session, operator: Operator) -> bool {
-    std::mem::discriminant(&whose(session).1) == std::mem::discriminant(&operator)
-}
-
-/// Changes the operator that the bar shows.
-pub fn give(session: &Session, requests: &mut UiRequests, operator: Operator) {
-    set(requests, &whose(session).0, ValueChange { to: operator, done: true });
-}
-
-fn set(requests: &mut UiRequests, whose: &OperatorOwner, operator: ValueChange<Operator>) {
-    let ValueChange { to, done } = operator;
-    requests.act(match whose {
-        OperatorOwner::Hand => Action::Hand(HandAction::Operator { operator: to }),
-        OperatorOwner::Layer(layer) => {
-            Action::Layer(LayerAction::Set { layer: layer.clone(), to: Property::Bend { operator: to }, done })
-        }
-    });
-}
-
 /// Rows of the bar: how marks bend, and the options of the tool. It has both always.
 pub const ROWS: f32 = 2.0;
 

@@ -14,35 +14,6 @@ use crate::surface::{NoiseRelief, Weights};
 use crate::widgets::{NumberField, check, choice_row, title};
 use eframe::egui::Ui;
 
-/// Requests changes of one layer.
-pub struct LayerSetter<'a> {
-    layer: LayerPath,
-    requests: &'a mut UiRequests,
-}
-
-impl LayerSetter<'_> {
-    pub fn set(&mut self, to: Property, done: bool) {
-        self.requests.act(Action::Layer(LayerAction::Set { layer: self.layer.clone(), to, done }));
-    }
-    /// Does something else to the layer.
-    pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {
-        self.requests.act(Action::Layer(action(self.layer.clone())));
-    }
-    /// A button to choose a picture of the layer.
-    pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
-        let response = ui.button(text);
-        named(&response, &format!("Choose {}", part.title().to_lowercase()));
-        if response.clicked() {
-            self.requests.request(WindowRequest::Choose(FilePurpose::Part(part)));
-        }
-    }
-    pub fn take(&mut self, changed: Option<ValueChange<Property>>) {
-        if let Some(ValueChange { to, done }) = changed {
-            self.set(to, done);
-        }
-    }
-}
-
 pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else {
         ui.weak("No layer is selected.");

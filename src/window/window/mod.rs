@@ -17,6 +17,7 @@ use super::memory::MemoryMeter;
 use super::panel_layout::PanelSide;
 use super::pen::SharedTablet;
 use super::requests::{UiRequests, WindowRequest};
+use super::saving::{Pending, Saving};
 use super::settings::{Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
