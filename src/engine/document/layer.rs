@@ -2,7 +2,7 @@
 //! Floor 4.
 
 use super::{cache::LayerCache, live::Live, mask::LayerMask, normals::NormalLayer};
-use crate::math::srgb::Color;
+use crate::math::{Range, UNIT, srgb::Color};
 use crate::paint::{Gradient, PlacedImage, Stroke};
 use crate::raster::{BlendMode, TileGrid};
 use crate::shading::{RadianceScaling, Shading};
@@ -44,6 +44,10 @@ pub struct Layer {
 }
 
 impl Layer {
+    pub const OPACITY: Range = UNIT;
+    /// Letters of a name that the hand gives; one that a file brings may be longer.
+    pub const LONGEST_NAME: usize = 1_000;
+
     /// A visible, opaque, unmasked layer that blends normally, under a fresh id.
     pub fn new(name: impl Into<String>, content: Content) -> Self {
         Self {

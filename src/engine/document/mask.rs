@@ -2,6 +2,7 @@
 //! Floor 4.
 
 use super::{Content, Layer, prepare, prepare::PreparedLayer};
+use crate::math::{Range, UNIT};
 use crate::paint::Scene;
 use crate::raster::{Plane, TileAt, TileCoverage};
 use crate::surface::{Curvature, Surface};
@@ -89,6 +90,13 @@ fn pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) 
 }
 
 impl LayerMask {
+    pub const F0: Range = UNIT;
+    pub const POWER: Range = 0.0..=64.0;
+    /// Curvatures at which the mask is 0 or 1.
+    pub const KAPPA: Range = -1.0..=1.0;
+    /// Depths at which the mask is 0 or 1.
+    pub const DEPTH: Range = UNIT;
+
     /// An enabled mask that is not inverted.
     pub fn new(kind: MaskKind) -> Self {
         Self { kind, invert: false, disabled: false }

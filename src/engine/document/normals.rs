@@ -2,7 +2,7 @@
 //! equation is in `surface::combine`.
 
 use super::{Layer, LayerMask, prepare, source::NormalConvention};
-use crate::math::{Affine2, Vec2, Vec3, vec2};
+use crate::math::{Affine2, Range, Vec2, Vec3, vec2};
 use crate::paint::{PictureSource, Placement, Scene};
 use crate::raster::Outside;
 use crate::surface::{Curvature, DetailMap, NoiseRelief, Surface};
@@ -17,6 +17,10 @@ pub struct NormalLayer {
     pub outside: Outside,
     /// Multiplies the detail's slopes, `≥ 0`; 1 is the map as it is.
     pub strength: f32,
+}
+
+impl NormalLayer {
+    pub const STRENGTH: Range = 0.0..=100.0;
 }
 
 /// Where detail comes from.

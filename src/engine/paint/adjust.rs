@@ -24,6 +24,12 @@ pub struct Adjust {
     pub contrast: f32,
 }
 
+impl Adjust {
+    pub const BLUR: crate::math::Range = 0.0..=4096.0;
+    /// Of saturation, brightness and contrast.
+    pub const FACTOR: crate::math::Range = 0.0..=100.0;
+}
+
 impl Default for Adjust {
     fn default() -> Self {
         Self { blur: 0.0, exposure: 0.0, hue: 0.0, saturation: 1.0, brightness: 1.0, contrast: 1.0 }

@@ -5,12 +5,12 @@ use super::dynamics::{Dynamics, Input};
 use super::grain::{BrushGrain, GrainSource};
 use super::image::PictureSource;
 use super::tip::{Bristles, Hose, Noise};
-use crate::math::{Mat2, Vec2};
+use crate::math::{Mat2, Range, UNIT, Vec2, range::held};
 use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
 
 /// The settings of a brush. Lengths are canvas px, ratios plain numbers.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct Brush {
     /// Diameter of a dab, px, `> 0`.
     pub size: f32,
@@ -108,7 +108,16 @@ impl BrushMode {
     /// The defaults of a smudge's length and a blur's width.
     pub const SMUDGE_LENGTH: f32 = 0.8;
     pub const BLUR_WIDTH: f32 = 0.3;
+    pub const SHARE: Range = UNIT;
 
+    /// With the nearest numbers that it may have.
+    pub fn held(self) -> Self {
+        match self {
+            BrushMode::Paint | BrushMode::Clone { .. } => self,
+            BrushMode::Smudge { length } => BrushMode::Smudge { length: held(length, &Self::SHARE) },
+            BrushMode::Blur { width } => BrushMode::Blur { width: held(width, &Self::SHARE) },
+        }
+    }
     /// Whether it changes existing paint.
     pub fn is_retouching(self) -> bool {
         self != BrushMode::Paint
@@ -128,6 +137,10 @@ pub struct ColorJitter {
     pub value: f32,
 }
 
+impl ColorJitter {
+    pub const HUE_DEGREES: Range = 0.0..=180.0;
+}
+
 /// How the tool smooths the pen's path before it becomes a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Stabilizer {
@@ -140,8 +153,13 @@ pub enum Stabilizer {
     String { length_px: f32 },
 }
 
+impl Stabilizer {
+    pub const WEIGHT: Range = UNIT;
+    pub const LENGTH_PX: Range = 0.0..=10_000.0;
+}
+
 /// What a dab looks like before it is bent.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub enum Tip {
     Round,
     /// `ratio`: of the shorter axis to the longer one, which is the diameter and lies along x; `(0, 1]`.
@@ -160,7 +178,15 @@ pub enum Tip {
     Hose(Hose),
 }
 
+impl Tip {
+    pub const RATIO: Range = 0.01..=1.0;
+}
+
 impl Brush {
+    pub const SIZE: Range = 0.1..=20_000.0;
+    /// A hundredth of the diameter is as good as a line; less only costs time.
+    pub const SPACING: Range = 0.01..=100.0;
+    pub const SCATTER: Range = 0.0..=10.0;
     /// What a reach may be.
     pub const REACHES: std::ops::RangeInclusive<f32> = 0.0..=100.0;
     /// The reach of the brushes that come with the program: on a rugged surface their marks stay near the pen.
@@ -229,6 +255,10 @@ impl Default for Brush {
 }
 
 impl Brush {
+    /// Whether both are one brush: at most what each stroke has of its own differs, its seed and its facing.
+    pub fn is_alike(&self, other: &Brush) -> bool {
+        self.size == other.size && *self == Brush { seed: self.seed, facing: self.facing, ..other.clone() }
+    }
     /// Whether its strokes have random properties and so need a seed of their own.
     pub fn is_random(&self) -> bool {
         let ColorJitter { hue_degrees, saturation, value } = self.jitter;

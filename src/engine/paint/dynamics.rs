@@ -199,6 +199,10 @@ impl Curve {
             }
         }
     }
+    /// How many points it has; a share has none.
+    pub fn points(&self) -> usize {
+        if let Curve::Points(points) = self { points.len() } else { 0 }
+    }
     /// Whether it is 1 everywhere.
     fn is_idle(&self) -> bool {
         match self {
@@ -242,12 +246,10 @@ impl Dynamics {
         let is_row = |drive: &&Drive| drive.property == property && drive.input == input;
         let is_idle = if property.adds() { curve == Curve::Share(0.0) } else { curve.is_idle() };
         let row = (!is_idle).then_some(Drive { property, input, curve });
-        let mut drives: Vec<Drive> = self.drives.to_vec();
-        match (self.drives.iter().position(|drive| is_row(&drive)), row) {
-            (Some(at), Some(row)) => drives[at] = row,
-            (Some(at), None) => drop(drives.remove(at)),
-            (None, row) => drives.extend(row),
-        }
+        // In one order, whatever came first: factors multiply to the same bits.
+        let others = self.drives.iter().filter(|drive| !is_row(drive)).cloned();
+        let mut drives: Vec<Drive> = others.chain(row).collect();
+        drives.sort_by_key(|drive| (drive.property as u8, drive.input as u8));
         Self { drives: drives.into() }
     }
     pub fn curve(&self, property: Property, input: Input) -> Option<&Curve> {

@@ -29,6 +29,8 @@ pub struct Gradient {
 }
 
 impl Gradient {
+    pub const MOST_STOPS: usize = 1_000;
+
     /// The *where*: both ends are anchors, and their weights change along the segment (MATH 2).
     pub fn bend(&self) -> Bend {
         let anchors = vec![Anchor::fixed(self.from), Anchor::fixed(self.to)];

@@ -15,6 +15,7 @@ use super::patches::Patches;
 use super::pattern::Pattern;
 use super::scene::Scene;
 use super::tip::texture::grey;
+use crate::math::Range;
 use crate::math::{Affine2, Vec2};
 use crate::raster::sampler::Antialias;
 use crate::raster::tile::TILE_AREA;
@@ -24,7 +25,7 @@ use crate::surface::deformation::{Deformation, DeformedRect};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A brush's grain.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct BrushGrain {
     pub source: GrainSource,
     /// Size of one feature of a pattern, or of a picture's longer side; canvas px, `> 0`.
@@ -40,7 +41,7 @@ pub struct BrushGrain {
 }
 
 /// What the grain is.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub enum GrainSource {
     Pattern {
         pattern: Pattern,
@@ -58,6 +59,12 @@ pub enum GrainSpace {
     Canvas,
     /// The surface, through D_p.
     Surface { gamma: f32 },
+}
+
+impl BrushGrain {
+    pub const SIZE_PX: Range = 0.5..=20_000.0;
+    pub const LEVEL: Range = -4.0..=4.0;
+    pub const GAMMA: Range = 0.0..=8.0;
 }
 
 impl Default for BrushGrain {

@@ -25,6 +25,8 @@ pub struct Placement {
 }
 
 impl Placement {
+    pub const SCALE: crate::math::Range = 1e-4..=1e4;
+
     /// Covers the canvas, centred.
     pub fn covering(canvas: Size) -> Self {
         Self { center: canvas.center(), scale: 1.0, rotation: 0.0 }
@@ -52,6 +54,13 @@ pub struct PictureSource {
     stamps: Arc<StampCache>,
 }
 
+impl PartialEq for PictureSource {
+    /// The same picture, adjusted alike, by whatever name it goes.
+    fn eq(&self, other: &Self) -> bool {
+        self.adjust == other.adjust && self.picture == other.picture
+    }
+}
+
 impl PictureSource {
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
         Self { file, picture, adjust, texture: Arc::default(), stamps: Arc::default() }
@@ -69,7 +78,7 @@ impl PictureSource {
 }
 
 /// I(P⁻¹(D(q))).
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct PlacedImage {
     pub source: PictureSource,
     pub placement: Placement,

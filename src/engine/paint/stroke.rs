@@ -10,7 +10,7 @@ use super::brush::Brush;
 use super::dab::DabScratch;
 use super::scene::Scene;
 use super::stroke_tile::StrokeBlend;
-use crate::math::{Rect, Vec2, srgb::Color};
+use crate::math::{COORDINATE, Range, Rect, UNIT, Vec2, range, srgb::Color, vec2};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
 use crate::surface::objects::CanvasPart;
@@ -35,6 +35,28 @@ impl Sample {
     pub fn at(at: Vec2) -> Self {
         Self { at, pressure: 1.0, tilt: Vec2::ZERO, time_secs: 0.0 }
     }
+    pub const PRESSURE: Range = UNIT;
+    /// Degrees, each way.
+    pub const TILT: Range = -90.0..=90.0;
+    /// Ten days.
+    pub const TIME_SECS: Range = 0.0..=1e6;
+    /// The reading as a stroke keeps it: within what a document may hold, and on a grid finer than any pen reports
+    /// (1/256 px, 1/16384 of the pressure, 1/64°, 1/8192 s), so that a file tells each step in a byte or two.
+    pub fn settled(&self) -> Self {
+        let on = |v: f32, per_unit: f32, range: &Range| {
+            // As f64: whatever the range holds stays a whole number of steps.
+            let steps = f64::from(range::held(v, range)) * f64::from(per_unit);
+            (steps.round() / f64::from(per_unit)) as f32
+        };
+        let place = |v: f32| on(v, 256.0, &COORDINATE);
+        let tilt = |v: f32| on(v, 64.0, &Self::TILT);
+        Self {
+            at: vec2(place(self.at.x), place(self.at.y)),
+            pressure: on(self.pressure, 16_384.0, &Self::PRESSURE),
+            tilt: vec2(tilt(self.tilt.x), tilt(self.tilt.y)),
+            time_secs: on(self.time_secs, 8_192.0, &Self::TIME_SECS),
+        }
+    }
 }
 
 /// One stroke of a stroke layer. It is never changed, so its dabs are cached with it.
@@ -56,6 +78,9 @@ struct StrokeCache {
 }
 
 impl Stroke {
+    /// Readings of one stroke: over an hour of a pen that is read 240 times a second.
+    pub const MOST_SAMPLES: usize = 1_000_000;
+
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
         Self { brush, operator, color, samples, found: Arc::default() }
     }

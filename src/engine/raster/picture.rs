@@ -23,7 +23,29 @@ pub enum Texels {
     Linear(Arc<[[f32; 4]]>),
 }
 
+impl PartialEq for Texels {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Texels::Srgb8(a), Texels::Srgb8(b)) => Arc::ptr_eq(a, b) || a == b,
+            (Texels::Linear(a), Texels::Linear(b)) => Arc::ptr_eq(a, b) || a == b,
+            _ => false,
+        }
+    }
+}
+
+impl PartialEq for Picture {
+    /// The same texels, from whatever file.
+    fn eq(&self, other: &Self) -> bool {
+        self.size == other.size && self.texels == other.texels
+    }
+}
+
 impl Picture {
+    /// The longest side that is read unless a command is told otherwise, px.
+    pub const LONGEST_SIDE_PX: u32 = 32_768;
+    /// So are the pixels.
+    pub const MOST_PX: usize = 268_435_456;
+
     /// `None` unless there is one texel per pixel and at least one pixel.
     pub fn srgb8(size: Size, texels: Vec<[u8; 4]>) -> Option<Self> {
         (size.area() > 0 && texels.len() == size.area()).then(|| Self::made(size, Texels::Srgb8(texels.into())))

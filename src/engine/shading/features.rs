@@ -1,7 +1,7 @@
 //! Which features of the surface are enhanced: the scales of curvature, their weights and their direction (RS sec. 4).
 //! Floor 3. Curvature itself is in `surface`; `scaling` applies κ.
 
-use crate::math::{Vec3, fast, simd::prefetch};
+use crate::math::{Range, Vec3, fast, simd::prefetch};
 use crate::surface::{
     Surface,
     curvature::{Curvature, Kappa, KappaScale},
@@ -28,6 +28,13 @@ pub struct FeatureScale {
     pub weight: f32,
 }
 
+impl FeatureScale {
+    /// Of curvature, of a mask too.
+    pub const CURVATURE_PX: Range = 0.0..=1000.0;
+    pub const BLUR_PX: Range = 0.0..=256.0;
+    pub const WEIGHT: Range = 0.0..=1000.0;
+}
+
 impl Default for FeatureScale {
     fn default() -> Self {
         Self { curvature_scale_px: 4.0, blur_px: 0.0, weight: 1.0 }
@@ -41,6 +48,9 @@ impl Default for Features {
 }
 
 impl Features {
+    pub const MOST_SCALES: usize = 16;
+    pub const LAMBDA: Range = -1.0..=1.0;
+
     /// The features of a surface. Its curvature is computed here unless it is cached: call this before going parallel.
     pub fn on(&self, surface: &Surface) -> FeatureMap {
         let total: f32 = self.scales.iter().map(|s| s.weight).sum();

@@ -2,7 +2,7 @@
 //! Floor 3.
 
 use super::surface_row::{LightDirection, RowValues, SurfaceRow};
-use crate::math::{Vec3, fast, srgb::Color, vec3};
+use crate::math::{Range, Vec3, fast, srgb::Color, vec3};
 use crate::raster::TILE;
 
 /// One light. It casts no shadows and does not weaken with distance.
@@ -21,6 +21,15 @@ pub enum LightKind {
     Directional { direction: Vec3 },
     /// At a point of the canvas (px, y down) and a height above the surface's nearest point (px, toward the viewer).
     Point { position: Vec3 },
+}
+
+impl Light {
+    pub const INTENSITY: Range = 0.0..=10_000.0;
+    /// Whether a vector points anywhere: it has a length that numbers resolve.
+    pub fn points(direction: Vec3) -> bool {
+        let longest = direction.abs().max_element();
+        direction.is_finite() && (1e-6..=1e6).contains(&longest)
+    }
 }
 
 impl Default for Light {

@@ -1,7 +1,7 @@
 //! The scaling function σ: how much reflected light is raised or lowered on a feature (RS sec. 4, MATH 5).
 //! Floor 3. Not here: which curvature (`features`), which reflectance (`radiance`, `material`).
 
-use crate::math::fast;
+use crate::math::{Range, fast};
 
 /// How a term is scaled: the scaling-invariant point and the magnitude.
 ///
@@ -40,6 +40,9 @@ fn ratio(e: f32, delta: f32, alpha: f32) -> f32 {
 impl Scaling {
     /// The paper's default α: convexities are mostly brightened (RS fig. 3).
     pub const ALPHA: f32 = 0.2;
+    /// Short of both 0 and 1.
+    pub const INVARIANT: Range = 0.001..=0.999;
+    pub const GAMMA: Range = 0.0..=20.0;
     /// Leaves every term alone.
     pub const NONE: Scaling = Scaling::new(Self::ALPHA, 0.0);
 
@@ -87,6 +90,8 @@ pub enum Reference {
 }
 
 impl Reference {
+    pub const VALUE: Range = 1e-4..=65_504.0;
+
     /// Y*, given the largest luminance there is; never 0.
     pub fn resolve(self, largest: f32) -> f32 {
         let value = match self {

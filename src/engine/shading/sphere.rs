@@ -16,6 +16,13 @@ pub struct LitSphere {
     light: Arc<OnceLock<SphereLight>>,
 }
 
+impl PartialEq for LitSphere {
+    /// The same picture, by whatever name it goes.
+    fn eq(&self, other: &Self) -> bool {
+        self.picture == other.picture
+    }
+}
+
 impl LitSphere {
     pub fn new(file: String, picture: Picture) -> Self {
         Self { file, picture, light: Arc::default() }

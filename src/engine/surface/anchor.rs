@@ -28,6 +28,10 @@ pub enum Weights {
     Segment,
 }
 
+impl Bend {
+    pub const MOST_ANCHORS: usize = 10_000;
+}
+
 impl Default for Weights {
     fn default() -> Self {
         Weights::Shepard { power: 2.0 }
@@ -43,6 +47,8 @@ pub struct Bend {
 }
 
 impl Weights {
+    pub const POWER: crate::math::Range = 0.1..=16.0;
+
     /// w_i(q) of every anchor: `≥ 0`, adding up to 1; empty where there are no anchors.
     pub fn at(self, anchors: &[Anchor], q: Vec2) -> Vec<f32> {
         match self {

@@ -25,6 +25,11 @@ impl Default for NoiseRelief {
 }
 
 impl NoiseRelief {
+    pub const SIZE_PX: crate::math::Range = 0.1..=100_000.0;
+    pub const OCTAVES: std::ops::RangeInclusive<u32> = 1..=12;
+    pub const ROUGHNESS: crate::math::Range = 0.0..=2.0;
+    pub const STRETCH: crate::math::Range = 0.01..=1000.0;
+
     /// The normal of the relief (y up, not of unit length), at a place in px from its origin (y down), seen through a
     /// pixel `px` wide: bumps too small for it fade away.
     pub fn normal(&self, at: Vec2, px: f32) -> Vec3 {

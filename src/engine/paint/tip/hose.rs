@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// A tip of several pictures, in one or more ranks: with ranks of 4 and 2, the first says which four pairs of pictures,
 /// the second which of the pair.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct Hose {
     pictures: Arc<[PictureSource]>,
     ranks: Arc<[HoseRank]>,
@@ -63,6 +63,10 @@ pub struct DabMoment {
 }
 
 impl Hose {
+    pub const MOST_PICTURES: usize = 1024;
+    /// GIMP's own limit.
+    pub const MOST_RANKS: usize = 4;
+
     /// Pictures beyond the product of the ranks are never chosen. Without pictures nothing is painted.
     pub fn new(pictures: Vec<PictureSource>, ranks: Vec<HoseRank>) -> Self {
         Self { pictures: pictures.into(), ranks: ranks.into() }

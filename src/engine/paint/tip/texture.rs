@@ -33,6 +33,14 @@ pub struct Noise {
     pub seed: u32,
 }
 
+impl Bristles {
+    pub const COUNT: std::ops::RangeInclusive<u32> = 1..=1000;
+}
+
+impl Noise {
+    pub const CELLS: std::ops::RangeInclusive<u32> = 1..=200;
+}
+
 impl Default for Bristles {
     fn default() -> Self {
         Self { count: 60, seed: 0 }

@@ -27,6 +27,14 @@ pub struct Environment {
     cache: Arc<Mutex<Option<PreparedCache>>>,
 }
 
+impl PartialEq for Environment {
+    /// The same picture, placed alike, whatever its name.
+    fn eq(&self, other: &Self) -> bool {
+        let lies = |e: &Self| (e.projection, e.rotation, e.exposure);
+        lies(self) == lies(other) && self.picture == other.picture
+    }
+}
+
 /// The cached preparation of a picture in a projection.
 struct PreparedCache {
     picture: Picture,

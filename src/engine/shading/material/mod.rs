@@ -18,7 +18,7 @@ use super::{
     scaling::{Reference, Scaling},
     sphere::LitSphere,
 };
-use crate::math::srgb::Color;
+use crate::math::{Range, UNIT, srgb::Color};
 
 /// How a material answers light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -72,6 +72,8 @@ pub struct Term {
 }
 
 impl Term {
+    pub const WEIGHT: Range = 0.0..=100.0;
+
     /// Not scaled.
     pub const fn plain(color: Color, weight: f32) -> Self {
         Self { color, weight, scaling: Scaling::NONE }
@@ -89,7 +91,7 @@ impl Term {
 }
 
 /// The parameters of a shading layer.
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub struct Shading {
     pub model: Model,
     pub lights: Vec<Light>,
@@ -123,6 +125,14 @@ pub struct Shading {
 }
 
 impl Shading {
+    pub const MOST_LIGHTS: usize = 256;
+    /// Of the Phong highlight and of both Ashikhmin exponents.
+    pub const SHININESS: Range = 0.0..=100_000.0;
+    pub const BANDS: std::ops::RangeInclusive<u32> = 2..=256;
+    pub const EXPONENT: Range = UNIT;
+    pub const INDEX: Range = 0.1..=10.0;
+    pub const OCCLUSION_RADIUS_PX: Range = 0.0..=crate::surface::Surface::WIDEST_OCCLUSION_PX;
+
     /// Whether its model needs an environment and there is none: it paints black.
     pub fn lacks_environment(&self) -> bool {
         self.model.needs_environment() && self.environment.is_none()

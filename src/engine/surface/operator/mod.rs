@@ -6,7 +6,7 @@ pub mod first_order;
 pub mod reflection;
 pub mod second_order;
 
-use crate::math::{Mat2, Vec2};
+use crate::math::{Mat2, Range, Vec2, range::held};
 
 /// Which surface flow an image follows, and how strongly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -53,6 +53,27 @@ pub struct MapSlopes {
 const MAX_ALPHA: f32 = 1e5;
 
 impl Operator {
+    /// e^20 is half a thousand million: a stronger bend only loses digits.
+    pub const GAMMA: Range = 0.0..=20.0;
+    pub const ALPHA: Range = -100.0..=100.0;
+    pub const BETA: Range = 0.0..=50.0;
+    pub const DETAIL: Range = 0.0..=100.0;
+
+    /// With the nearest numbers that a document may hold.
+    pub fn held(self) -> Self {
+        match self {
+            Operator::None => Operator::None,
+            Operator::Depth { gamma } => Operator::Depth { gamma: held(gamma, &Self::GAMMA) },
+            Operator::Normal { alpha, beta, detail } => Operator::Normal {
+                alpha: held(alpha, &Self::ALPHA),
+                beta: held(beta, &Self::BETA),
+                detail: held(detail, &Self::DETAIL),
+            },
+            Operator::Reflection { alpha, detail } => {
+                Operator::Reflection { alpha: held(alpha, &Self::ALPHA), detail: held(detail, &Self::DETAIL) }
+            }
+        }
+    }
     /// The operator with parameters that are finite and not absurd: what is not a number counts as 0.
     pub fn finite(self) -> Self {
         let number = |v: f32| if v.is_finite() { v.clamp(-MAX_ALPHA, MAX_ALPHA) } else { 0.0 };

@@ -1,0 +1,179 @@
+//! Whether a file can hold a document: every number in its range, and no more of anything than is read back. An edit
+//! that leaves it is refused in the hand, so that whatever can be set can be saved and opened.
+//! Floor 4. The ranges are those of the types that hold the numbers; readers ask the same ones.
+
+mod light;
+mod marks;
+
+use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, PixelLayer};
+use crate::math::range::{at_most, within};
+use crate::math::{COORDINATE, Size};
+use crate::raster::{Picture, TILE};
+use crate::shading::FeatureScale;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Fits, or why not: a sentence without its end.
+type Fit = Result<(), String>;
+
+impl Document {
+    /// Layers, those in groups too.
+    pub const MOST_LAYERS: usize = 10_000;
+    /// Groups around a layer.
+    pub const DEEPEST: usize = 50;
+    /// Readings of the pen: days of painting.
+    pub const MOST_SAMPLES: usize = 32_000_000;
+    /// Values of its description, an object counting as eight; each takes some eighty bytes while it is read.
+    pub const MOST_VALUES: usize = 4_000_000;
+
+    /// Refuses what no file could give back, in a sentence that names the layer. Of the layers that `before` holds
+    /// just so only the number counts: a document that was opened can be edited whatever it was opened with.
+    pub fn fits(&self, before: Option<&Document>) -> Result<(), String> {
+        let mut known = HashSet::new();
+        if let Some(before) = before {
+            each(&before.layers, 0, &mut |layer, _| known.extend([Arc::as_ptr(layer)]));
+        }
+        let mut total = Total::default();
+        let mut fit = Ok(());
+        each(&self.layers, 0, &mut |layer, depth| {
+            total.add(layer, depth);
+            if fit.is_ok() && !known.contains(&Arc::as_ptr(layer)) {
+                let was = before.and_then(|before| before.layer(layer.id));
+                fit = layer_fits(layer, was.map(|was| &**was), self.size).map_err(|why| named(layer, &why));
+            }
+        });
+        fit.and_then(|()| total.fits().map_err(|why| format!("{why}.")))
+    }
+}
+
+/// Every layer with the number of groups around it.
+fn each<'d>(layers: &'d [Arc<Layer>], depth: usize, visit: &mut dyn FnMut(&'d Arc<Layer>, usize)) {
+    for layer in layers {
+        visit(layer, depth);
+        if let Content::Group(group) = &layer.content {
+            each(&group.layers, depth + 1, visit);
+        }
+    }
+}
+
+fn named(layer: &Layer, why: &str) -> String {
+    const SHOWN: usize = 60;
+    let name: String = layer.name.chars().take(SHOWN).collect();
+    format!("“{name}”: {why}.")
+}
+
+/// What counts over all layers.
+#[derive(Default)]
+struct Total {
+    layers: usize,
+    deepest: usize,
+    samples: usize,
+    values: usize,
+}
+
+impl Total {
+    /// More than any layer takes without its lists.
+    const A_LAYER: usize = 200;
+
+    fn add(&mut self, layer: &Layer, depth: usize) {
+        self.layers += 1;
+        // A group that holds nothing stands in no deeper group.
+        self.deepest = self.deepest.max(depth);
+        self.values += Self::A_LAYER;
+        match &layer.content {
+            Content::Image(live) => self.values += marks::AN_ANCHOR * live.params().bend.anchors.len(),
+            Content::Gradient(live) => self.values += marks::A_STOP * live.params().stops.len(),
+            Content::Strokes(live) => {
+                let (samples, values) = marks::measured(&live.params().strokes);
+                (self.samples, self.values) = (self.samples + samples, self.values + values);
+            }
+            Content::Shading(live) => {
+                let shading = live.params();
+                self.values += light::A_LIGHT * shading.lights.len() + light::A_SCALE * shading.features.scales.len();
+            }
+            Content::RadianceScaling(scaling) => self.values += light::A_SCALE * scaling.features.scales.len(),
+            Content::Fill(_) | Content::Pixels(_) | Content::Normals(_) | Content::Group(_) => {}
+        }
+    }
+    fn fits(&self) -> Fit {
+        at_most("Layers", self.layers, Document::MOST_LAYERS)?;
+        at_most("Groups around a layer", self.deepest, Document::DEEPEST)?;
+        at_most("Readings of the pen in the drawing", self.samples, Document::MOST_SAMPLES)?;
+        if self.values > Document::MOST_VALUES {
+            return Err(
+                "The drawing would hold more strokes, anchors and lights than a file gives back: bake some".into()
+            );
+        }
+        Ok(())
+    }
+}
+
+fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
+    if was.is_none_or(|was| was.name != layer.name) {
+        at_most("letters of the name", layer.name.chars().count(), Layer::LONGEST_NAME)?;
+    }
+    within("opacity", layer.opacity, &Layer::OPACITY)?;
+    layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
+    match &layer.content {
+        Content::Fill(_) | Content::Group(_) => Ok(()),
+        Content::Pixels(pixels) => pixels_fit(pixels, canvas),
+        Content::Image(live) => marks::image(live.params()),
+        Content::Gradient(live) => marks::gradient(live.params()),
+        Content::Strokes(live) => {
+            let old = was.map(|was| &was.content);
+            let old = if let Some(Content::Strokes(old)) = old { &old.params().strokes[..] } else { &[] };
+            marks::strokes(old, &live.params().strokes)
+        }
+        Content::Shading(live) => light::shading(live.params()),
+        Content::RadianceScaling(scaling) => light::radiance_scaling(scaling),
+        Content::Normals(normals) => {
+            within("the strength", normals.strength, &super::NormalLayer::STRENGTH)?;
+            marks::placement(&normals.placement)?;
+            match &normals.source {
+                DetailSource::Map { picture, .. } => marks::adjust(&picture.adjust),
+                DetailSource::Grain(grain) => marks::relief(grain),
+            }
+        }
+    }
+}
+
+fn mask_fits(mask: &LayerMask, canvas: Size) -> Fit {
+    let ramp =
+        |from, to, range| within("where the mask is 0", from, range).and(within("where the mask is 1", to, range));
+    match &mask.kind {
+        MaskKind::File { coverage, .. } if coverage.size() != canvas => {
+            Err(format!("the mask has {} pixels, the canvas {canvas}", coverage.size()))
+        }
+        MaskKind::File { .. } => Ok(()),
+        MaskKind::Fresnel { f0, power } => {
+            within("the mask's least", *f0, &LayerMask::F0)?;
+            within("the mask's power", *power, &LayerMask::POWER)
+        }
+        MaskKind::Curvature { scale, blur, from, to } => {
+            within("the mask's width", *scale, &FeatureScale::CURVATURE_PX)?;
+            within("the mask's blur", *blur, &FeatureScale::BLUR_PX)?;
+            ramp(*from, *to, &LayerMask::KAPPA)
+        }
+        MaskKind::Depth { from, to } => ramp(*from, *to, &LayerMask::DEPTH),
+    }
+}
+
+/// A file holds the rectangle around all pixels.
+fn pixels_fit(pixels: &PixelLayer, canvas: Size) -> Fit {
+    let rect = pixels.tiles.bounds();
+    if rect.is_empty() {
+        return Ok(());
+    }
+    [rect.x0, rect.y0, rect.x1, rect.y1].iter().try_for_each(|v| within("a pixel's place", *v as f32, &COORDINATE))?;
+    // The rectangle is that of whole tiles: the pixels' own is smaller by less than one on each side.
+    let inner = |long: usize| long.saturating_sub(2 * (TILE - 1)).max(1);
+    let (width, height) = (inner(rect.width()), inner(rect.height()));
+    let side = (Picture::LONGEST_SIDE_PX).max(canvas.width).max(canvas.height) as usize;
+    if width.max(height) > side || width * height > Picture::MOST_PX.max(canvas.area()) {
+        return Err(format!("its pixels would lie {width} × {height} px apart, more than a picture holds"));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

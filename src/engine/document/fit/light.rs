@@ -1,0 +1,85 @@
+//! Shading and radiance scaling that a file can hold.
+//! Floor 4.
+
+use super::Fit;
+use crate::math::range::{STOPS, at_most, within};
+use crate::math::{COORDINATE, TURNS};
+use crate::shading::{
+    Environment, FeatureScale, Features, Light, LightKind, RadianceScaling, Reference, Scaling, Shading, Term,
+};
+
+/// Values that things take in a description, at most.
+pub const A_LIGHT: usize = 18;
+pub const A_SCALE: usize = 12;
+
+pub fn shading(shading: &Shading) -> Fit {
+    at_most("lights", shading.lights.len(), Shading::MOST_LIGHTS)?;
+    shading.lights.iter().try_for_each(light)?;
+    [shading.ambient, shading.diffuse, shading.specular].iter().try_for_each(term)?;
+    within("the shininess", shading.shininess, &Shading::SHININESS)?;
+    features(&shading.features)?;
+    reference(shading.reference)?;
+    if !Shading::BANDS.contains(&shading.bands) {
+        return Err(format!("the tones are {}; there may be 2 to {}", shading.bands, Shading::BANDS.end()));
+    }
+    within("the flatness", shading.exponent, &Shading::EXPONENT)?;
+    within("the highlight along x", shading.nu, &Shading::SHININESS)?;
+    within("the highlight along y", shading.nv, &Shading::SHININESS)?;
+    within("the refractive index", shading.index, &Shading::INDEX)?;
+    within("the reach of occlusion", shading.occlusion_radius_px, &Shading::OCCLUSION_RADIUS_PX)?;
+    shading.environment.as_ref().map_or(Ok(()), environment)
+}
+
+fn environment(environment: &Environment) -> Fit {
+    within("the turn of the environment", environment.rotation, &TURNS)?;
+    within("the exposure of the environment", environment.exposure, &STOPS)
+}
+
+pub fn radiance_scaling(radiance: &RadianceScaling) -> Fit {
+    scaling(&radiance.scaling)?;
+    features(&radiance.features)?;
+    reference(radiance.reference)?;
+    if Light::points(radiance.light) { Ok(()) } else { Err("the light points nowhere".into()) }
+}
+
+fn scaling(scaling: &Scaling) -> Fit {
+    within("the still tone", scaling.alpha, &Scaling::INVARIANT)?;
+    within("the strength", scaling.gamma_convex, &Scaling::GAMMA)?;
+    within("the strength in hollows", scaling.gamma_concave, &Scaling::GAMMA)
+}
+
+fn features(features: &Features) -> Fit {
+    within("λ", features.lambda, &Features::LAMBDA)?;
+    at_most("scales", features.scales.len(), Features::MOST_SCALES)?;
+    if features.scales.is_empty() {
+        return Err("at least one scale is needed".into());
+    }
+    features.scales.iter().try_for_each(|scale| {
+        within("the width of features", scale.curvature_scale_px, &FeatureScale::CURVATURE_PX)?;
+        within("the blur of features", scale.blur_px, &FeatureScale::BLUR_PX)?;
+        within("the weight of a scale", scale.weight, &FeatureScale::WEIGHT)
+    })
+}
+
+fn reference(reference: Reference) -> Fit {
+    match reference {
+        Reference::Auto => Ok(()),
+        Reference::Value(value) => within("the full reflectance", value, &Reference::VALUE),
+    }
+}
+
+fn term(term: &Term) -> Fit {
+    within("the weight of a term", term.weight, &Term::WEIGHT)?;
+    scaling(&term.scaling)
+}
+
+fn light(light: &Light) -> Fit {
+    within("the intensity of a light", light.intensity, &Light::INTENSITY)?;
+    match light.kind {
+        LightKind::Directional { direction } if Light::points(direction) => Ok(()),
+        LightKind::Directional { .. } => Err("a light points nowhere".into()),
+        LightKind::Point { position } => {
+            position.to_array().iter().try_for_each(|v| within("the place of a light", *v, &COORDINATE))
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Strokes, brushes, images and gradients that a file can hold.
+//! Floor 4.
+
+use super::Fit;
+use crate::math::range::{STOPS, at_most, within};
+use crate::math::{COORDINATE, TURNS, UNIT, Vec2};
+use crate::paint::grain::{BrushGrain, GrainSpace};
+use crate::paint::tip::{Bristles, Hose, Noise};
+use crate::paint::{
+    Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke, Tip,
+};
+use crate::surface::{Bend, Operator, Weights};
+use std::sync::Arc;
+
+/// Values that things take in a description, at most.
+pub const AN_ANCHOR: usize = 14;
+pub const A_STOP: usize = 4;
+const A_STROKE: usize = 60;
+/// Without its curves and pictures.
+const A_BRUSH: usize = 240;
+
+/// The readings of strokes, and the values that they take.
+pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
+    let (mut samples, mut values) = (0, 0);
+    let mut before: Option<&Stroke> = None;
+    for stroke in strokes {
+        samples += stroke.samples().len();
+        values += A_STROKE;
+        // What is as it was before is not said again.
+        if !before.is_some_and(|before| before.brush().is_alike(stroke.brush())) {
+            let points: usize = stroke.brush().dynamics.drives().iter().map(|drive| 4 + 3 * drive.curve.points()).sum();
+            let pictures = if let Tip::Hose(hose) = &stroke.brush().tip { hose.pictures().len() } else { 0 };
+            values += A_BRUSH + points + pictures;
+        }
+        before = Some(stroke);
+    }
+    (samples, values)
+}
+
+/// Those of the new strokes that the old ones are not, pointer by pointer.
+pub fn strokes(old: &[Arc<Stroke>], new: &[Arc<Stroke>]) -> Fit {
+    let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
+    let start = old.iter().zip(new).take_while(same).count();
+    let end = old[start..].iter().rev().zip(new[start..].iter().rev()).take_while(same).count();
+    let changed = new.iter().enumerate().take(new.len() - end).skip(start);
+    changed.into_iter().try_for_each(|(i, new)| stroke(new).map_err(|why| format!("stroke {}: {why}", i + 1)))
+}
+
+fn stroke(stroke: &Stroke) -> Fit {
+    if stroke.brush().mode.is_retouching() {
+        return Err("smudge, blur and clone make no strokes of a stroke layer".into());
+    }
+    at_most("readings of the pen", stroke.samples().len(), Stroke::MOST_SAMPLES)?;
+    brush(stroke.brush())?;
+    operator(stroke.operator())?;
+    stroke.samples().iter().try_for_each(|sample| {
+        point("a reading of the pen", sample.at)?;
+        within("the pressure", sample.pressure, &Sample::PRESSURE)?;
+        within("the tilt", sample.tilt.x, &Sample::TILT).and(within("the tilt", sample.tilt.y, &Sample::TILT))?;
+        within("the time", sample.time_secs, &Sample::TIME_SECS)
+    })
+}
+
+pub fn brush(brush: &Brush) -> Fit {
+    within("the size of the brush", brush.size, &Brush::SIZE)?;
+    within("the hardness", brush.hardness, &UNIT)?;
+    within("the opacity of the brush", brush.opacity, &UNIT)?;
+    within("the flow", brush.flow, &UNIT)?;
+    within("the spacing", brush.spacing, &Brush::SPACING)?;
+    within("the rotation of the brush", brush.rotation, &TURNS)?;
+    within("the turn of the stroke", brush.facing.turn, &TURNS)?;
+    within("the softness", brush.softness, &UNIT)?;
+    within("the scatter", brush.scatter, &Brush::SCATTER)?;
+    let ColorJitter { hue_degrees, saturation, value } = brush.jitter;
+    within("the jitter of the hue", hue_degrees, &ColorJitter::HUE_DEGREES)?;
+    within("the jitter of the saturation", saturation, &UNIT)?;
+    within("the jitter of the value", value, &UNIT)?;
+    mode(brush.mode)?;
+    match brush.stabilizer {
+        Stabilizer::None => Ok(()),
+        Stabilizer::Average { weight } => within("the weight of the stabiliser", weight, &Stabilizer::WEIGHT),
+        Stabilizer::String { length_px } => within("the string of the stabiliser", length_px, &Stabilizer::LENGTH_PX),
+    }?;
+    tip(&brush.tip)?;
+    brush.grain.as_ref().map_or(Ok(()), grain)
+}
+
+fn mode(mode: BrushMode) -> Fit {
+    match mode {
+        BrushMode::Paint | BrushMode::Clone { .. } => Ok(()),
+        BrushMode::Smudge { length } => within("the length of the smudge", length, &BrushMode::SHARE),
+        BrushMode::Blur { width } => within("the width of the blur", width, &BrushMode::SHARE),
+    }
+}
+
+fn tip(tip: &Tip) -> Fit {
+    let whole = |what: &str, n: u32, range: &std::ops::RangeInclusive<u32>| {
+        within(what, n as f32, &(*range.start() as f32..=*range.end() as f32))
+    };
+    match tip {
+        Tip::Round | Tip::Picture(_) => Ok(()),
+        Tip::Ellipse { ratio } | Tip::Square { ratio } => within("the ratio of the tip", *ratio, &Tip::RATIO),
+        Tip::Bristles(bristles) => whole("the number of hairs", bristles.count, &Bristles::COUNT),
+        Tip::Noise(noise) => {
+            whole("the number of specks", noise.cells, &Noise::CELLS)?;
+            within("the density of the tip", noise.density, &UNIT)
+        }
+        Tip::Hose(hose) => {
+            let (pictures, ranks) = (hose.pictures().len(), hose.ranks());
+            at_most("pictures of the tip", pictures, Hose::MOST_PICTURES)?;
+            at_most("ranks of the tip", ranks.len(), Hose::MOST_RANKS)?;
+            let is_rank = |count: u32| (1..=Hose::MOST_PICTURES as u32).contains(&count);
+            if pictures == 0 || !ranks.iter().all(|rank| is_rank(rank.count)) {
+                return Err("the tip has no pictures, or a rank without any".into());
+            }
+            Ok(())
+        }
+    }
+}
+
+fn grain(grain: &BrushGrain) -> Fit {
+    within("the size of the grain", grain.size_px, &BrushGrain::SIZE_PX)?;
+    within("the rotation of the grain", grain.rotation, &TURNS)?;
+    within("the strength of the grain", grain.strength, &UNIT)?;
+    let [low, high] = grain.levels;
+    within("a level of the grain", low, &BrushGrain::LEVEL).and(within(
+        "a level of the grain",
+        high,
+        &BrushGrain::LEVEL,
+    ))?;
+    if low >= high {
+        return Err("the lower level of the grain is not below the upper one".into());
+    }
+    match grain.lies {
+        GrainSpace::Canvas => Ok(()),
+        GrainSpace::Surface { gamma } => within("γ of the grain", gamma, &BrushGrain::GAMMA),
+    }
+}
+
+pub fn operator(operator: Operator) -> Fit {
+    match operator {
+        Operator::None => Ok(()),
+        Operator::Depth { gamma } => within("γ", gamma, &Operator::GAMMA),
+        Operator::Normal { alpha, beta, detail } => {
+            within("α", alpha, &Operator::ALPHA)?;
+            within("β", beta, &Operator::BETA)?;
+            within("the detail", detail, &Operator::DETAIL)
+        }
+        Operator::Reflection { alpha, detail } => {
+            within("α", alpha, &Operator::ALPHA)?;
+            within("the detail", detail, &Operator::DETAIL)
+        }
+    }
+}
+
+pub fn image(image: &PlacedImage) -> Fit {
+    adjust(&image.source.adjust)?;
+    placement(&image.placement)?;
+    operator(image.bend.operator)?;
+    at_most("anchors", image.bend.anchors.len(), Bend::MOST_ANCHORS)?;
+    image
+        .bend
+        .anchors
+        .iter()
+        .try_for_each(|anchor| point("an anchor", anchor.at).and(point("an anchor", anchor.source)))?;
+    match image.bend.weights {
+        Weights::Shepard { power } => within("the sharpness of the anchors", power, &Weights::POWER),
+        Weights::Segment => Err("the anchors of an image share by their distances".into()),
+    }
+}
+
+pub fn gradient(gradient: &Gradient) -> Fit {
+    point("an end of the gradient", gradient.from).and(point("an end of the gradient", gradient.to))?;
+    operator(gradient.operator)?;
+    at_most("stops of the gradient", gradient.stops.len(), Gradient::MOST_STOPS)?;
+    gradient.stops.iter().try_for_each(|stop| within("a stop of the gradient", stop.t, &UNIT))?;
+    if gradient.stops.is_empty() || !gradient.stops.is_sorted_by(|a, b| a.t <= b.t) {
+        return Err("the stops of the gradient must go from 0 to 1, at least one".into());
+    }
+    Ok(())
+}
+
+pub fn placement(placement: &Placement) -> Fit {
+    point("the centre", placement.center)?;
+    within("the scale", placement.scale, &Placement::SCALE)?;
+    within("the rotation", placement.rotation, &TURNS)
+}
+
+pub fn adjust(adjust: &Adjust) -> Fit {
+    within("the blur", adjust.blur, &Adjust::BLUR)?;
+    within("the exposure", adjust.exposure, &STOPS)?;
+    within("the hue", adjust.hue, &TURNS)?;
+    within("the saturation", adjust.saturation, &Adjust::FACTOR)?;
+    within("the brightness", adjust.brightness, &Adjust::FACTOR)?;
+    within("the contrast", adjust.contrast, &Adjust::FACTOR)
+}
+
+/// Of a normal layer without a map.
+pub fn relief(grain: &crate::surface::NoiseRelief) -> Fit {
+    use crate::surface::NoiseRelief;
+    within("the size of the bumps", grain.size_px, &NoiseRelief::SIZE_PX)?;
+    within("the roughness", grain.roughness, &NoiseRelief::ROUGHNESS)?;
+    within("the stretch", grain.stretch, &NoiseRelief::STRETCH)?;
+    if !NoiseRelief::OCTAVES.contains(&grain.octaves) {
+        return Err(format!("the octaves are {}; there may be {}", grain.octaves, NoiseRelief::OCTAVES.end()));
+    }
+    Ok(())
+}
+
+fn point(what: &str, at: Vec2) -> Fit {
+    within(what, at.x, &COORDINATE).and(within(what, at.y, &COORDINATE))
+}

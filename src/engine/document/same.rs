@@ -1,0 +1,162 @@
+//! Whether two documents are equal in what they hold, however it came about and wherever it lies in memory: what a
+//! save is compared with.
+//! Floor 4. Names of files are not part of it: a project gives them its own. What must be redrawn is `diff`'s.
+
+use super::source::{MaskSource, SurfaceSource};
+use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, StrokeList};
+use crate::paint::Stroke;
+use crate::raster::TileGrid;
+use crate::surface::Surface;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+impl Document {
+    /// What of the other document is not as it is here, in a few words; `None` where the two are equal.
+    pub fn difference(&self, other: &Document) -> Option<String> {
+        if self.size != other.size {
+            return Some("the size of the canvas".into());
+        }
+        surface(self, other).or_else(|| layers(&self.layers, &other.layers))
+    }
+}
+
+fn surface(a: &Document, b: &Document) -> Option<String> {
+    let is_same = match (&a.surface, &b.surface) {
+        (None, None) => true,
+        (Some(x), Some(y)) => {
+            let sources = (a.surface_source.as_deref(), b.surface_source.as_deref());
+            let same_source = match sources {
+                (Some(x), Some(y)) => without_names(x) == without_names(y),
+                // One that came from no file was given maps by the file.
+                (x, _) => x.is_none(),
+            };
+            same_source && same_surface(x, y)
+        }
+        _ => false,
+    };
+    (!is_same).then(|| "the surface".into())
+}
+
+/// How far the maps may be off: those of a surface that came from no file are made unit and planar once more when read.
+const TOLERANCE: f32 = 1e-4;
+
+fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
+    if Arc::ptr_eq(a, b) {
+        return true;
+    }
+    let near = |a: &[f32], b: &[f32]| {
+        a.len() == b.len() && a.par_iter().zip(b).all(|(a, b)| a == b || (a - b).abs() <= TOLERANCE)
+    };
+    let normals = || a.normal_planes().into_iter().zip(b.normal_planes()).all(|(a, b)| near(a.values(), b.values()));
+    a.size() == b.size()
+        && a.coverage_plane() == b.coverage_plane()
+        && near(a.depth_plane().values(), b.depth_plane().values())
+        && normals()
+}
+
+fn without_names(source: &SurfaceSource) -> SurfaceSource {
+    let mut bare = source.clone();
+    bare.normal.iter_mut().for_each(|map| map.file.clear());
+    bare.depth.iter_mut().for_each(|map| map.file.clear());
+    if let Some(MaskSource::File { file, .. }) = &mut bare.mask {
+        file.clear();
+    }
+    bare
+}
+
+fn layers(a: &[Arc<Layer>], b: &[Arc<Layer>]) -> Option<String> {
+    if a.len() != b.len() {
+        return Some(format!("the number of layers, {} and not {}", b.len(), a.len()));
+    }
+    a.iter().zip(b).find_map(|(a, b)| if Arc::ptr_eq(a, b) { None } else { layer(a, b) })
+}
+
+fn layer(a: &Layer, b: &Layer) -> Option<String> {
+    if let (Content::Group(a), Content::Group(b)) = (&a.content, &b.content)
+        && let Some(inner) = layers(&a.layers, &b.layers)
+    {
+        return Some(inner);
+    }
+    let what = if a.name != b.name {
+        "name"
+    } else if !meets_alike(a, b) {
+        "opacity, blend mode, clipping or lock"
+    } else if !same_mask(a.mask.as_ref(), b.mask.as_ref()) {
+        "mask"
+    } else {
+        content(&a.content, &b.content)?
+    };
+    Some(format!("“{}”: its {what}", a.name))
+}
+
+fn meets_alike(a: &Layer, b: &Layer) -> bool {
+    let meets = |l: &Layer| (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below, l.lock, l.clip_to_surface);
+    meets(a) == meets(b)
+}
+
+fn same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => match (&a.kind, &b.kind) {
+            (MaskKind::File { coverage: x, .. }, MaskKind::File { coverage: y, .. }) => {
+                (a.invert, a.disabled) == (b.invert, b.disabled) && (Arc::ptr_eq(x, y) || x == y)
+            }
+            _ => a.is_same(b),
+        },
+        (a, b) => a.is_none() && b.is_none(),
+    }
+}
+
+/// What of two layers' contents differs; `None` where nothing does.
+fn content(a: &Content, b: &Content) -> Option<&'static str> {
+    let (what, is_same) = match (a, b) {
+        (Content::Fill(a), Content::Fill(b)) => ("colour", a == b),
+        (Content::Pixels(a), Content::Pixels(b)) => ("pixels", same_pixels(&a.tiles, &b.tiles)),
+        (Content::Image(a), Content::Image(b)) => ("picture or how it lies", a.ptr_eq(b) || a.params() == b.params()),
+        (Content::Gradient(a), Content::Gradient(b)) => ("gradient", a.ptr_eq(b) || a.params() == b.params()),
+        (Content::Strokes(a), Content::Strokes(b)) => ("strokes", a.ptr_eq(b) || same_strokes(a.params(), b.params())),
+        (Content::Shading(a), Content::Shading(b)) => ("material", a.ptr_eq(b) || a.params() == b.params()),
+        (Content::RadianceScaling(a), Content::RadianceScaling(b)) => ("scaling", a == b),
+        (Content::Normals(a), Content::Normals(b)) => {
+            let alike = (a.placement, a.outside, a.strength) == (b.placement, b.outside, b.strength);
+            ("detail", alike && same_detail(&a.source, &b.source))
+        }
+        (Content::Group(a), Content::Group(b)) => ("passing through", a.pass_through == b.pass_through),
+        _ => ("kind", false),
+    };
+    (!is_same).then_some(what)
+}
+
+fn same_detail(a: &DetailSource, b: &DetailSource) -> bool {
+    match (a, b) {
+        (DetailSource::Grain(a), DetailSource::Grain(b)) => a == b,
+        // The map itself follows from these.
+        (DetailSource::Map { picture: a, convention: x, .. }, DetailSource::Map { picture: b, convention: y, .. }) => {
+            a == b && x == y
+        }
+        _ => false,
+    }
+}
+
+fn same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
+    let same = |(a, b): (&Arc<Stroke>, &Arc<Stroke>)| {
+        Arc::ptr_eq(a, b)
+            || (a.operator(), a.color()) == (b.operator(), b.color())
+                && a.samples() == b.samples()
+                && a.brush() == b.brush()
+    };
+    a.strokes.len() == b.strokes.len() && a.strokes.iter().zip(&b.strokes).all(same)
+}
+
+/// Every pixel is the same; a tile that is wholly transparent is none.
+fn same_pixels(a: &TileGrid, b: &TileGrid) -> bool {
+    if a.ptr_eq(b) {
+        return true;
+    }
+    let holds = |a: &TileGrid, b: &TileGrid| {
+        a.iter().all(|(at, tile)| match b.tile(at) {
+            Some(other) => Arc::ptr_eq(tile, other) || tile.bytes() == other.bytes(),
+            None => tile.bytes().iter().all(|byte| *byte == 0),
+        })
+    };
+    holds(a, b) && holds(b, a)
+}
