@@ -1,7 +1,12 @@
 //! The budget of every reader: no allocation is sized by a file's own numbers without a check against it.
 //! Floor 5.
 
-use crate::{Error, Result, math::Size};
+use crate::document::Document;
+use crate::math::Size;
+use crate::paint::Stroke;
+use crate::raster::Picture;
+use crate::surface::Bend;
+use crate::{Error, Result};
 use std::path::Path;
 
 /// Limits for what one file may request. The command line raises them with `--max-pixels` and `--max-side`.
@@ -29,33 +34,52 @@ pub struct Budget {
     pub group_depth: usize,
     /// Anchors a layer.
     pub anchors: usize,
-    /// Samples a stroke.
+    /// Readings of the pen a stroke.
     pub samples: usize,
+    /// Readings of the pen of all strokes together.
+    pub document_samples: usize,
 }
 
 impl Default for Budget {
+    /// What a document holds is counted by the constants that edits are held to: whatever was saved is read.
     fn default() -> Self {
         Self {
-            side_px: 32_768,
-            area_px: 268_435_456,
+            side_px: Picture::LONGEST_SIDE_PX,
+            area_px: Picture::MOST_PX as u64,
             document_px: 1 << 30,
             file_bytes: 2 << 30,
             unpacked_bytes: 8 << 30,
-            entries: 4_096,
-            json_bytes: 16 << 20,
-            json_values: 4_000_000,
-            // 32 groups take two levels each; the content of the innermost takes the rest.
-            json_depth: 80,
-            layers: 2_000,
-            group_depth: 32,
-            anchors: 10_000,
-            samples: 1_000_000,
+            // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes some hundred bytes.
+            entries: 1 << 18,
+            // The values count: a text is bound by them, but for readings of the pen, which are packed before it is
+            // parsed.
+            json_bytes: 256 << 20,
+            json_values: Document::MOST_VALUES,
+            // A group takes two levels; what stands in the innermost takes the rest. The parser goes no deeper than
+            // 127.
+            json_depth: 2 * Document::DEEPEST + 20,
+            layers: Document::MOST_LAYERS,
+            group_depth: Document::DEEPEST,
+            anchors: Bend::MOST_ANCHORS,
+            samples: Stroke::MOST_SAMPLES,
+            document_samples: Document::MOST_SAMPLES,
         }
     }
 }
 
 impl Budget {
-    /// The size, or an error that names the limit it exceeds. A side of 0 is not a picture.
+    /// The usual one, and a canvas of a document that is larger: whoever reads it says so again.
+    pub fn holding(document: &Document) -> Self {
+        let (usual, size) = (Self::default(), document.size);
+        let area_px = usual.area_px.max(size.area() as u64);
+        Self {
+            side_px: usual.side_px.max(size.width).max(size.height),
+            area_px,
+            document_px: usual.document_px.max(area_px.saturating_mul(4)),
+            ..usual
+        }
+    }
+    /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.
     pub fn size(&self, file: &Path, width: u64, height: u64) -> Result<Size> {
         if width == 0 || height == 0 {
             return Err(Error::decode(file, format!("a picture of {width} × {height} pixels has no pixels")));

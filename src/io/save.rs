@@ -4,7 +4,7 @@
 use super::export::Output;
 use super::fs::Disk;
 use super::replace::{FileStamp, Terms, folder_of, replace, sweep};
-use super::{project, psd};
+use super::{Budget, project, psd};
 use crate::document::{Document, Progress};
 use crate::{Error, Result};
 use std::io;
@@ -24,14 +24,19 @@ pub struct EncodedDocument {
     pub notes: Vec<String>,
 }
 
-/// The bytes that a document is saved as under this name; `None` if cancelled.
+/// The bytes that a document is saved as under this name; `None` if cancelled. A project is read back as a file is opened
+/// and compared with the document: it fails where the two differ.
 pub fn encode(document: &Document, file: &Path, progress: &Progress) -> Result<Option<EncodedDocument>> {
     in_own_threads(file, || match Output::of(file) {
         Ok(Output::Psd) => {
             let written = psd::write(file, document, progress)?;
             Ok(written.map(|written| EncodedDocument { bytes: written.bytes, notes: written.notes }))
         }
-        _ => Ok(project::write(file, document, progress)?.map(|bytes| EncodedDocument { bytes, notes: Vec::new() })),
+        _ => {
+            let Some(bytes) = project::write(file, document, progress)? else { return Ok(None) };
+            project::read_back(file, &bytes, document, &Budget::holding(document))?;
+            Ok(Some(EncodedDocument { bytes, notes: Vec::new() }))
+        }
     })?
 }
 
@@ -76,7 +81,7 @@ fn in_own_threads<T: Send>(file: &Path, work: impl FnOnce() -> T + Send) -> Resu
 mod tests {
     use super::*;
     use crate::replace::Overwrite;
-    use crate::{Budget, open, project::sample};
+    use crate::{open, project::sample};
 
     #[test]
     fn a_document_is_saved_opened_and_saved_over_itself() {

@@ -1,13 +1,10 @@
 //! Reading values out of JSON: every value knows its path, so that every refusal can name it.
 //! Floor 5. Ranges are checked here, so that everything that was read is valid.
 
-use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
+use crate::math::{COORDINATE, Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
 use serde_json::{Map, Value};
 use std::{ops::RangeInclusive, path::Path};
-
-/// Coordinates in canvas px: far beyond every canvas, well within what f32 resolves.
-pub const COORDINATE: RangeInclusive<f32> = -1e6..=1e6;
 
 /// The path of a key below another: `layers[2]` and `operator` make `layers[2].operator`.
 pub fn below(path: &str, key: &str) -> String {
@@ -38,7 +35,15 @@ impl<'a> JsonNode<'a> {
         let field = if self.path.is_empty() { "the document" } else { &self.path };
         Error::invalid(self.file, field, reason)
     }
-    /// Names this value in a failure that it caused.
+    /// A refusal of more than there may be.
+    pub fn too_large(&self, reason: impl ToString) -> Error {
+        Error::too_large(self.file, format!("{} {}", self.path, reason.to_string()))
+    }
+    /// Where an item of this list would stand that is told otherwise than as a value.
+    pub fn item(&self, i: usize) -> JsonNode<'a> {
+        JsonNode { file: self.file, path: format!("{}[{i}]", self.path), value: &Value::Null }
+    }
+    /// Names this value in a failure that it led to.
     pub fn led_to(&self, error: Error) -> Error {
         Error::At { file: self.file.into(), field: self.path.clone(), error: Box::new(error) }
     }
@@ -101,6 +106,10 @@ impl<'a> JsonNode<'a> {
             return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
         }
         Ok(whole)
+    }
+    /// A whole number from 0.
+    pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32> {
+        self.integer(i64::from(*range.start())..=i64::from(*range.end())).map(|n| n as u32)
     }
     pub fn boolean(&self) -> Result<bool> {
         self.value.as_bool().ok_or_else(|| self.wrong_kind("true or false"))

@@ -4,8 +4,10 @@
 
 pub mod fields;
 pub mod object;
+pub mod print;
 pub mod text;
 
 pub use fields::{Fields, JsonNode};
 pub use object::JsonObject;
+pub use print::Printer;
 pub use text::{is_utf16, parse};

@@ -4,7 +4,7 @@ use crate::math::{Vec2, Vec3, srgb::Color};
 use serde_json::{Map, Value};
 
 /// A JSON object being written, its fields in the order they are set.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct JsonObject(Map<String, Value>);
 
 impl JsonObject {
@@ -51,6 +51,12 @@ impl JsonObject {
         if !value.0.is_empty() {
             self.set(name, value.done());
         }
+    }
+    pub fn fields(&self) -> &Map<String, Value> {
+        &self.0
+    }
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
     pub fn done(self) -> Value {
         Value::Object(self.0)

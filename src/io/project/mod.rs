@@ -29,7 +29,7 @@ mod tests;
 
 pub use archive::Archive;
 pub use look::Cancellable;
-pub use open::{ProjectContents, read};
+pub use open::{ProjectContents, read, read_back};
 
 use super::recipe;
 use crate::document::cache::EncodedPixels;
@@ -112,9 +112,11 @@ pub fn documents(
     let shared = shared.map(|(id, (name, _))| (*id, name.clone())).collect();
     let mut assets = AssetList::default();
     let renamed = assets.rename(file, document, &StoredPixels { pixels: paint, shared: &shared })?;
-    let json = |name, value: serde_json::Value| ZipEntry::text(name, format!("{value:#}\n").into_bytes());
-    let manifest = Manifest::new(document, stack, shown);
-    let mut entries = vec![json(DOCUMENT, recipe::write(&renamed)), json(MANIFEST, manifest.write())];
+    let manifest = format!("{:#}\n", Manifest::new(document, stack, shown).write());
+    let mut entries = vec![
+        ZipEntry::text(DOCUMENT, recipe::print(&renamed).into_bytes()),
+        ZipEntry::text(MANIFEST, manifest.into_bytes()),
+    ];
     entries.extend(assets.files().iter().map(|(name, asset)| ZipEntry::bytes(name, asset.clone())));
     Ok(entries)
 }

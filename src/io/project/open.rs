@@ -1,15 +1,16 @@
 //! Reads a project: as it was saved, as far as it is intact, or as another program changed it.
 //! Floor 5.
 
-use super::look::remember;
+use super::look::{paint, remember};
 use super::manifest::{Manifest, ManifestPicture};
 use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, pixels, repair, stack};
 use crate::document::cache::EncodedPixels;
-use crate::document::{Document, LayerId};
+use crate::document::{Content, Document, LayerId};
 use crate::math::Size;
-use crate::raster::Asset;
+use crate::raster::tile::TILE_AREA;
+use crate::raster::{Asset, TileGrid};
 use crate::recipe::{self, RecipeSource, TileGrids};
-use crate::{Budget, json, picture};
+use crate::{Budget, picture};
 use crate::{Error, Result};
 use rayon::prelude::*;
 use serde_json::Value;
@@ -29,7 +30,8 @@ pub struct ProjectContents {
 /// Reads a project of ours, or any OpenRaster file. Fails only if nothing can be recovered.
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents> {
     let archive = Archive::open(file, bytes, budget)?;
-    let mut reading = ProjectReader { file, archive: &archive, budget, notes: Vec::new(), is_whole: true };
+    let (notes, known) = (Vec::new(), Vec::new());
+    let mut reading = ProjectReader { file, archive: &archive, budget, notes, is_whole: true, known };
     if archive.is_damaged() {
         reading.lost("the file's table of contents is damaged; its entries were found without it");
     }
@@ -37,13 +39,38 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     Ok(ProjectContents { document, notes: reading.notes, is_whole: reading.is_whole })
 }
 
-/// A project being read, and the notes on it.
+/// Reads a project that was just made of a document, and compares the two; nothing that was saved may come back
+/// otherwise.
+///
+/// Pixels whose very bytes were decoded and compared when they were encoded are not decoded once more. Fails with a
+/// sentence that says what would not come back.
+pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget) -> Result<()> {
+    let lost =
+        |what: String| Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")));
+    let archive = Archive::open(file, bytes, budget)?;
+    let paint = paint(file, document)?;
+    let known = document.walk().into_iter().filter_map(|(_, layer)| match &layer.content {
+        Content::Pixels(pixels) => Some((paint.get(&layer.id)?.clone(), pixels.tiles.clone())),
+        _ => None,
+    });
+    let known = known.collect();
+    let mut reading = ProjectReader { file, archive: &archive, budget, notes: Vec::new(), is_whole: true, known };
+    match reading.document() {
+        Err(error) => lost(error.to_string()),
+        Ok(_) if !reading.notes.is_empty() => lost(reading.notes.join("; ")),
+        Ok(read) => document.difference(&read).map_or(Ok(()), lost),
+    }
+}
+
+/// A project being read, and what there is to say of it.
 pub struct ProjectReader<'a> {
     pub file: &'a Path,
     pub archive: &'a Archive<'a>,
     pub budget: &'a Budget,
     pub notes: Vec<String>,
     pub is_whole: bool,
+    /// Pixels that are known to be those of these files.
+    known: Vec<(EncodedPixels, TileGrid)>,
 }
 
 impl ProjectReader<'_> {
@@ -84,7 +111,7 @@ impl ProjectReader<'_> {
     }
     fn value(&self, name: &str) -> Result<Value> {
         let text = self.archive.bytes(name, self.budget.json_bytes)?;
-        json::parse(&self.archive_path(name), &text, self.budget)
+        recipe::parse(&self.archive_path(name), &text, self.budget)
     }
     pub fn archive_path(&self, name: &str) -> std::path::PathBuf {
         use crate::Files;
@@ -131,15 +158,22 @@ impl ProjectReader<'_> {
         let left_px = AtomicU64::new(self.budget.document_px);
         let one = |key: (String, i32, i32)| {
             let bytes = self.archive.bytes(&key.0, self.budget.file_bytes).ok()?;
-            let area = repair::png_size(&bytes)?.area() as u64;
-            let less = |left: u64| left.checked_sub(area);
-            left_px.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).ok()?;
-            let quick = pixels::decode_tiles(&bytes, key.1, key.2, self.budget);
+            let size = repair::png_size(&bytes)?;
+            self.budget.size(self.file, size.width.into(), size.height.into()).ok()?;
+            let known = self.known.iter().find(|(known, _)| {
+                (known.x, known.y, known.size) == (key.1, key.2, size) && known.file.bytes() == bytes
+            });
+            let known = known.map(|(_, tiles)| tiles.clone());
+            let quick = || pixels::decode_tiles(&bytes, key.1, key.2, self.budget);
             let slow = || {
                 let picture = picture::decode(Path::new(&key.0), &bytes, self.budget).ok()?;
                 Some(picture::to_tiles(&picture, key.1, key.2))
             };
-            Some((key.clone(), quick.or_else(slow)?))
+            let tiles = known.or_else(quick).or_else(slow)?;
+            // What is in memory counts, not the rectangle around it.
+            let px = (tiles.iter().count() * TILE_AREA) as u64;
+            left_px.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| left.checked_sub(px)).ok()?;
+            Some((key.clone(), tiles))
         };
         wanted.into_par_iter().filter_map(one).collect()
     }

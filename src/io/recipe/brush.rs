@@ -1,11 +1,10 @@
 //! The settings of a brush. Read and written.
 //! Floor 5. Not here: strokes and presets (`strokes`).
 
-use super::images::TURNS;
 use super::tips;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
-use crate::math::vec2;
+use crate::math::{TURNS, UNIT, vec2};
 use crate::paint::dynamics::MAX_POINTS;
 use crate::paint::{Brush, BrushMode, ColorJitter, Curve, Dynamics, Input, Property, Stabilizer, StrokeFrame};
 use crate::raster::BlendMode;
@@ -15,16 +14,15 @@ use serde_json::{Value, json};
 /// The fields of a brush; missing ones are taken from `base`.
 pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
     Ok(Brush {
-        size: fields.number("size", base.size, 0.1..=20_000.0)?,
-        hardness: fields.number("hardness", base.hardness, 0.0..=1.0)?,
-        opacity: fields.number("opacity", base.opacity, 0.0..=1.0)?,
-        flow: fields.number("flow", base.flow, 0.0..=1.0)?,
-        // A hundredth of the diameter already gives a solid line; less only costs time.
-        spacing: fields.number("spacing", base.spacing, 0.01..=100.0)?,
+        size: fields.number("size", base.size, Brush::SIZE)?,
+        hardness: fields.number("hardness", base.hardness, UNIT)?,
+        opacity: fields.number("opacity", base.opacity, UNIT)?,
+        flow: fields.number("flow", base.flow, UNIT)?,
+        spacing: fields.number("spacing", base.spacing, Brush::SPACING)?,
         rotation: fields.number("rotation", base.rotation, TURNS)?,
         facing: fields.get("facing").map_or(Ok(base.facing), |node| facing(&node))?,
-        softness: fields.number("softness", base.softness, 0.0..=1.0)?,
-        scatter: fields.number("scatter", base.scatter, 0.0..=10.0)?,
+        softness: fields.number("softness", base.softness, UNIT)?,
+        scatter: fields.number("scatter", base.scatter, Brush::SCATTER)?,
         jitter: fields.get("jitter").map_or(Ok(base.jitter), |node| jitter(&node, base.jitter))?,
         blend: fields.one_of("blend", &BlendMode::ALL, base.blend)?,
         erases: fields.boolean("erases", base.erases)?,
@@ -53,9 +51,9 @@ fn facing(node: &JsonNode) -> Result<StrokeFrame> {
 fn jitter(node: &JsonNode, base: ColorJitter) -> Result<ColorJitter> {
     let mut fields = node.fields()?;
     let jitter = ColorJitter {
-        hue_degrees: fields.number("hue", base.hue_degrees, 0.0..=180.0)?,
-        saturation: fields.number("saturation", base.saturation, 0.0..=1.0)?,
-        value: fields.number("value", base.value, 0.0..=1.0)?,
+        hue_degrees: fields.number("hue", base.hue_degrees, ColorJitter::HUE_DEGREES)?,
+        saturation: fields.number("saturation", base.saturation, UNIT)?,
+        value: fields.number("value", base.value, UNIT)?,
     };
     fields.finish()?;
     Ok(jitter)
@@ -68,8 +66,8 @@ fn mode(node: &JsonNode) -> Result<BrushMode> {
     let mut fields = node.fields()?;
     let mode = match fields.one_of("kind", &KINDS, 0)? {
         0 => BrushMode::Paint,
-        1 => BrushMode::Smudge { length: fields.number("length", BrushMode::SMUDGE_LENGTH, 0.0..=1.0)? },
-        2 => BrushMode::Blur { width: fields.number("width", BrushMode::BLUR_WIDTH, 0.0..=1.0)? },
+        1 => BrushMode::Smudge { length: fields.number("length", BrushMode::SMUDGE_LENGTH, BrushMode::SHARE)? },
+        2 => BrushMode::Blur { width: fields.number("width", BrushMode::BLUR_WIDTH, BrushMode::SHARE)? },
         _ => BrushMode::Clone { aligned: fields.boolean("aligned", true)?, picture: fields.boolean("picture", false)? },
     };
     fields.finish()?;
@@ -100,8 +98,8 @@ fn write_mode(mode: BrushMode) -> JsonObject {
 /// `{ "average": 0.8 }`, `{ "string": 20 }`, or `{}` for none.
 fn stabilizer(node: &JsonNode) -> Result<Stabilizer> {
     let mut fields = node.fields()?;
-    let average = fields.get("average").map(|weight| weight.number(0.0..=1.0)).transpose()?;
-    let string = fields.get("string").map(|length| length.number(0.0..=10_000.0)).transpose()?;
+    let average = fields.get("average").map(|weight| weight.number(Stabilizer::WEIGHT)).transpose()?;
+    let string = fields.get("string").map(|length| length.number(Stabilizer::LENGTH_PX)).transpose()?;
     fields.finish()?;
     match (average, string) {
         (Some(_), Some(_)) => Err(node.refused("is both an average and a string; it must be one of them")),
@@ -136,10 +134,10 @@ fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
 
 fn curve(node: &JsonNode) -> Result<Curve> {
     if node.value().is_number() {
-        return node.number(0.0..=1.0).map(Curve::Share);
+        return node.number(UNIT).map(Curve::Share);
     }
     let points = node.list(MAX_POINTS)?;
-    let points = points.iter().map(|point| point.numbers(2, 2, 0.0..=1.0).map(|p| vec2(p[0], p[1])));
+    let points = points.iter().map(|point| point.numbers(2, 2, UNIT).map(|p| vec2(p[0], p[1])));
     let curve = Curve::through(points.collect::<Result<_>>()?);
     curve.ok_or_else(|| node.refused("is no curve; it must have points whose first numbers do not fall"))
 }

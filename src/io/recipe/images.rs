@@ -5,16 +5,12 @@ use super::LayerReader;
 use super::names::{FILTERS, OUTSIDES};
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
-use crate::math::{Size, Vec2, srgb::Color, vec2};
+use crate::math::range::STOPS;
+use crate::math::{Size, TURNS, UNIT, Vec2, srgb::Color, vec2};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::Outside;
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use serde_json::Value;
-
-/// Stops of a ramp.
-const MOST_STOPS: usize = 1_000;
-/// Turns either way, degrees.
-pub const TURNS: std::ops::RangeInclusive<f32> = -36_000.0..=36_000.0;
 
 impl LayerReader<'_> {
     pub fn image(&mut self, fields: &mut Fields) -> Result<PlacedImage> {
@@ -58,7 +54,7 @@ impl LayerReader<'_> {
         let mut fields = node.fields()?;
         let placement = Placement {
             center: fields.point("center", covering.center)?,
-            scale: fields.number("scale", covering.scale, 1e-4..=1e4)?,
+            scale: fields.number("scale", covering.scale, Placement::SCALE)?,
             rotation: fields.number("rotation", covering.rotation, TURNS)?,
         };
         fields.finish()?;
@@ -69,12 +65,12 @@ impl LayerReader<'_> {
         let file = fields.required("file")?;
         let plain = Adjust::default();
         let adjust = Adjust {
-            blur: fields.number("blur", plain.blur, 0.0..=4096.0)?,
-            exposure: fields.number("exposure", plain.exposure, -32.0..=32.0)?,
+            blur: fields.number("blur", plain.blur, Adjust::BLUR)?,
+            exposure: fields.number("exposure", plain.exposure, STOPS)?,
             hue: fields.number("hue", plain.hue, TURNS)?,
-            saturation: fields.number("saturation", plain.saturation, 0.0..=100.0)?,
-            brightness: fields.number("brightness", plain.brightness, 0.0..=100.0)?,
-            contrast: fields.number("contrast", plain.contrast, 0.0..=100.0)?,
+            saturation: fields.number("saturation", plain.saturation, Adjust::FACTOR)?,
+            brightness: fields.number("brightness", plain.brightness, Adjust::FACTOR)?,
+            contrast: fields.number("contrast", plain.contrast, Adjust::FACTOR)?,
         };
         fields.finish()?;
         self.pictures.source(self.source, &file, adjust)
@@ -110,16 +106,15 @@ pub fn operator(fields: &mut Fields) -> Result<Option<Operator>> {
     let mut fields = node.fields()?;
     let operator = match fields.one_of("kind", &OPERATORS, RecipeOperator::None)? {
         RecipeOperator::None => Operator::None,
-        // e^20 is about 5 · 10⁸: a stronger bend only loses precision.
-        RecipeOperator::Depth => Operator::Depth { gamma: fields.number("gamma", 1.0, 0.0..=20.0)? },
+        RecipeOperator::Depth => Operator::Depth { gamma: fields.number("gamma", 1.0, Operator::GAMMA)? },
         RecipeOperator::Normal => Operator::Normal {
-            alpha: fields.number("alpha", 0.5, -100.0..=100.0)?,
-            beta: fields.number("beta", 1.5, 0.0..=50.0)?,
-            detail: fields.number("detail", 0.0, 0.0..=100.0)?,
+            alpha: fields.number("alpha", 0.5, Operator::ALPHA)?,
+            beta: fields.number("beta", 1.5, Operator::BETA)?,
+            detail: fields.number("detail", 0.0, Operator::DETAIL)?,
         },
         RecipeOperator::Reflection => Operator::Reflection {
-            alpha: fields.number("alpha", 0.5, -100.0..=100.0)?,
-            detail: fields.number("detail", 0.0, 0.0..=100.0)?,
+            alpha: fields.number("alpha", 0.5, Operator::ALPHA)?,
+            detail: fields.number("detail", 0.0, Operator::DETAIL)?,
         },
     };
     fields.finish()?;
@@ -136,20 +131,20 @@ fn anchor(node: &JsonNode) -> Result<Anchor> {
 
 fn weights(node: &JsonNode) -> Result<Weights> {
     let mut fields = node.fields()?;
-    let power = fields.number("power", 2.0, 0.1..=16.0)?;
+    let power = fields.number("power", 2.0, Weights::POWER)?;
     fields.finish()?;
     Ok(Weights::Shepard { power })
 }
 
 fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
-    let items = node.list(MOST_STOPS)?;
+    let items = node.list(Gradient::MOST_STOPS)?;
     if items.is_empty() {
         return Err(node.refused("is empty; a gradient needs at least one stop"));
     }
     let mut stops: Vec<GradientStop> = Vec::with_capacity(items.len());
     for item in &items {
         let [t, color] = &item.list(2)?[..] else { return Err(item.refused("must be [t, colour]")) };
-        let stop = GradientStop { t: t.number(0.0..=1.0)?, color: color.color()? };
+        let stop = GradientStop { t: t.number(UNIT)?, color: color.color()? };
         if stops.last().is_some_and(|before| before.t > stop.t) {
             return Err(t.refused("is less than the stop before it; stops go from 0 to 1"));
         }

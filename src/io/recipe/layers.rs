@@ -5,7 +5,7 @@ use super::LayerReader;
 use super::names::{BLEND_SPACES, LOCKS, name_of};
 use super::{images, masks, normals, shading, strokes};
 use crate::document::{Content, Group, Layer, LayerLock, Live, PixelLayer};
-use crate::json::{Fields, JsonNode, JsonObject, object};
+use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
 use crate::raster::{BlendMode, TileGrid};
@@ -51,7 +51,7 @@ impl LayerReader<'_> {
         let kind = fields.required("kind")?.one_of(&KINDS)?;
         let name = fields.get("name").map_or(Ok(""), |name| name.text())?.to_owned();
         let visible = fields.boolean("visible", true)?;
-        let opacity = fields.number("opacity", 1.0, 0.0..=1.0)?;
+        let opacity = fields.number("opacity", 1.0, Layer::OPACITY)?;
         let blend = fields.one_of("blend", &BlendMode::ALL, BlendMode::Normal)?;
         let blend_linear = fields.one_of("blend_space", &BLEND_SPACES, false)?;
         let clip_below = fields.boolean("clip_below", false)?;
@@ -99,10 +99,40 @@ impl LayerReader<'_> {
 
 /// Layers as JSON; `canvas` determines the default placements.
 pub fn write(layers: &[Arc<Layer>], canvas: Size) -> Value {
-    layers.iter().map(|layer| write_layer(layer, canvas)).collect()
+    let one = |layer: &Arc<Layer>| {
+        let mut out = bare(layer, canvas);
+        match &layer.content {
+            Content::Group(group) => out.set("layers", write(&group.layers, canvas)),
+            Content::Strokes(live) => out.set("strokes", strokes::written(live.params()).collect()),
+            _ => {}
+        }
+        out.done()
+    };
+    layers.iter().map(one).collect()
 }
 
-fn write_layer(layer: &Layer, canvas: Size) -> Value {
+/// The same as text, a stroke at a time.
+pub fn print(layers: &[Arc<Layer>], canvas: Size, out: &mut Printer) {
+    out.open_list(Some("layers"));
+    for layer in layers {
+        out.open_object(None);
+        bare(layer, canvas).fields().iter().for_each(|(key, value)| out.value(Some(key), value));
+        match &layer.content {
+            Content::Group(group) => print(&group.layers, canvas, out),
+            Content::Strokes(live) => {
+                out.open_list(Some("strokes"));
+                strokes::written(live.params()).for_each(|stroke| out.value(None, &stroke));
+                out.close_list();
+            }
+            _ => {}
+        }
+        out.close_object();
+    }
+    out.close_list();
+}
+
+/// A layer without what it holds in lists: strokes, or layers of a group.
+fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     let mut out = JsonObject::default();
     out.text("name", &layer.name, "");
     out.set("kind", name_of(&KINDS, kind_of(&layer.content)).into());
@@ -117,7 +147,7 @@ fn write_layer(layer: &Layer, canvas: Size) -> Value {
         out.set("mask", masks::write(mask));
     }
     write_content(&mut out, &layer.content, canvas);
-    out.done()
+    out
 }
 
 fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
@@ -130,14 +160,11 @@ fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
         }
         Content::Image(live) => images::write_image(out, live.params(), canvas),
         Content::Gradient(live) => images::write_gradient(out, live.params()),
-        Content::Strokes(live) => strokes::write(out, live.params()),
+        Content::Strokes(_) => {}
         Content::Shading(live) => shading::write(out, live.params()),
         Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
         Content::Normals(layer) => normals::write(out, layer, canvas),
-        Content::Group(group) => {
-            out.flag("pass_through", group.pass_through, false);
-            out.set("layers", write(&group.layers, canvas));
-        }
+        Content::Group(group) => out.flag("pass_through", group.pass_through, false),
     }
 }
 

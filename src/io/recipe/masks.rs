@@ -5,6 +5,8 @@ use super::LayerReader;
 use crate::Result;
 use crate::document::{LayerMask, MaskKind};
 use crate::json::{Fields, JsonNode, JsonObject};
+use crate::math::Range;
+use crate::shading::FeatureScale;
 use serde_json::Value;
 
 #[derive(Clone, Copy)]
@@ -39,29 +41,28 @@ impl LayerReader<'_> {
 fn derived(kind: DerivedMaskKind, fields: &mut Fields) -> Result<MaskKind> {
     Ok(match kind {
         DerivedMaskKind::Fresnel => MaskKind::Fresnel {
-            f0: fields.number("f0", 0.04, 0.0..=1.0)?,
-            power: fields.number("power", 5.0, 0.0..=64.0)?,
+            f0: fields.number("f0", 0.04, LayerMask::F0)?,
+            power: fields.number("power", 5.0, LayerMask::POWER)?,
         },
         DerivedMaskKind::Curvature => {
-            let (scale, blur) = (fields.number("scale", 4.0, 0.0..=1000.0)?, fields.number("blur", 0.0, 0.0..=256.0)?);
-            let (from, to) = ramp(fields, -1.0, 1.0)?;
+            let (scale, blur) = (
+                fields.number("scale", 4.0, FeatureScale::CURVATURE_PX)?,
+                fields.number("blur", 0.0, FeatureScale::BLUR_PX)?,
+            );
+            let (from, to) = ramp(fields, LayerMask::KAPPA)?;
             MaskKind::Curvature { scale, blur, from, to }
         }
         DerivedMaskKind::Depth => {
-            let (from, to) = ramp(fields, 0.0, 1.0)?;
+            let (from, to) = ramp(fields, LayerMask::DEPTH)?;
             MaskKind::Depth { from, to }
         }
     })
 }
 
-/// Where the mask is 0 and where it is 1; the two may stand either way round, but apart.
-fn ramp(fields: &mut Fields, from: f32, to: f32) -> Result<(f32, f32)> {
-    let range = from.min(to)..=from.max(to);
-    let (from, to) = (fields.number("from", from, range.clone())?, fields.number("to", to, range)?);
-    if from == to {
-        return Err(fields.node().refused("“from” and “to” are the same"));
-    }
-    Ok((from, to))
+/// Where the mask is 0 and where it is 1, either way round; a step where the two are the same.
+fn ramp(fields: &mut Fields, range: Range) -> Result<(f32, f32)> {
+    let (from, to) = (*range.start(), *range.end());
+    Ok((fields.number("from", from, range.clone())?, fields.number("to", to, range)?))
 }
 
 pub fn write(mask: &LayerMask) -> Value {

@@ -8,6 +8,7 @@
 //! | `layers` | what every layer has, and fills, pixels and groups |
 //! | `images` | placed images, gradients, normal layers: operator, anchors, placement |
 //! | `strokes` | strokes |
+//! | `samples` | readings of the pen |
 //! | `brush` | the numbers of a brush, its dynamics |
 //! | `tips` | a brush's tip and its grain |
 //! | `presets` | the brushes that come with the program, and those in files of their own |
@@ -23,6 +24,7 @@ mod names;
 mod normals;
 mod pictures;
 mod presets;
+mod samples;
 mod shading;
 mod strokes;
 pub mod surface;
@@ -32,9 +34,10 @@ pub use presets::{
     Preset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,
     written_brush,
 };
+pub use samples::parse;
 pub use strokes::write_stroke;
 
-use super::json::{self, Fields, JsonNode, JsonObject};
+use super::json::{Fields, JsonNode, JsonObject, Printer};
 use super::{Budget, Files, RecipeFolder, files, maps};
 use crate::document::{Document, SurfaceSource};
 use crate::math::Size;
@@ -81,12 +84,12 @@ pub fn load_onto(file: &Path, budget: &Budget, onto: Option<OtherSurface>) -> Re
 
 /// Reads a document from its JSON.
 pub fn read(text: &[u8], source: RecipeSource) -> Result<Document> {
-    read_value(&json::parse(source.file, text, source.budget)?, source)
+    read_value(&parse(source.file, text, source.budget)?, source)
 }
 
 /// The same, with what was found in its maps and could not be carried over, a sentence each.
 pub fn read_noting(text: &[u8], source: RecipeSource) -> Result<(Document, Vec<String>)> {
-    read_parts(&json::parse(source.file, text, source.budget)?, source, TileGrids::new())
+    read_parts(&parse(source.file, text, source.budget)?, source, TileGrids::new())
 }
 
 /// Reads a document from JSON that is parsed already.
@@ -109,8 +112,8 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
 
     let CanvasAndSurface { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
-    let mut reader =
-        LayerReader { source, size, layers_left: source.budget.layers, pictures: PictureCache::knowing(tiles) };
+    let Budget { layers: layers_left, document_samples: samples_left, .. } = *source.budget;
+    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures: PictureCache::knowing(tiles) };
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
     Ok((Document { size, surface, surface_source, surface_files: Arc::new(files), layers }, notes))
 }
@@ -194,17 +197,35 @@ struct LayerReader<'a> {
     size: Size,
     /// How many more layers the budget allows.
     layers_left: usize,
+    /// And readings of the pen.
+    samples_left: usize,
     pictures: PictureCache,
 }
 
 /// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project puts its pixels
 /// beside it under the same names.
 pub fn write(document: &Document) -> Value {
+    let mut out = head(document);
+    out.set("layers", layers::write(&document.layers, document.size));
+    out.done()
+}
+
+/// The same as text. However many strokes there are, no more than one of them stands in memory as values.
+pub fn print(document: &Document) -> String {
+    let mut out = Printer::default();
+    out.open_object(None);
+    head(document).fields().iter().for_each(|(key, value)| out.value(Some(key), value));
+    layers::print(&document.layers, document.size, &mut out);
+    out.close_object();
+    out.done()
+}
+
+/// All but the layers.
+fn head(document: &Document) -> JsonObject {
     let mut out = JsonObject::default();
     out.set("format", "rilievo".into());
     out.set("version", VERSION.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     out.said("surface", document.surface_source.as_deref(), surface::write);
-    out.set("layers", layers::write(&document.layers, document.size));
-    out.done()
+    out
 }

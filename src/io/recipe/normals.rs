@@ -28,7 +28,7 @@ impl LayerReader<'_> {
             source,
             placement: self.placement(fields)?,
             outside: fields.one_of("outside", &OUTSIDES, Outside::Repeat)?,
-            strength: fields.number("strength", 1.0, 0.0..=100.0)?,
+            strength: fields.number("strength", 1.0, NormalLayer::STRENGTH)?,
         })
     }
     fn detail_map(&mut self, node: &JsonNode, convention: NormalConvention) -> Result<DetailSource> {
@@ -42,10 +42,10 @@ impl LayerReader<'_> {
 fn grain(node: &JsonNode) -> Result<NoiseRelief> {
     let (mut fields, base) = (node.fields()?, NoiseRelief::default());
     let grain = NoiseRelief {
-        size_px: fields.number("size", base.size_px, 0.1..=100_000.0)?,
-        octaves: fields.get("octaves").map_or(Ok(base.octaves as i64), |node| node.integer(1..=12))? as u32,
-        roughness: fields.number("roughness", base.roughness, 0.0..=2.0)?,
-        stretch: fields.number("stretch", base.stretch, 0.01..=1000.0)?,
+        size_px: fields.number("size", base.size_px, NoiseRelief::SIZE_PX)?,
+        octaves: fields.get("octaves").map_or(Ok(base.octaves), |node| node.whole(NoiseRelief::OCTAVES))?,
+        roughness: fields.number("roughness", base.roughness, NoiseRelief::ROUGHNESS)?,
+        stretch: fields.number("stretch", base.stretch, NoiseRelief::STRETCH)?,
         seed: fields.get("seed").map_or(Ok(0), |node| node.integer(0..=i64::from(u32::MAX)))? as u32,
     };
     fields.finish()?;

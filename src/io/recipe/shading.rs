@@ -2,24 +2,15 @@
 //! Floor 5.
 
 use super::LayerReader;
-use super::images::TURNS;
 use crate::Result;
-use crate::json::{Fields, JsonNode, JsonObject, fields::COORDINATE, object};
-use crate::math::Vec3;
+use crate::json::{Fields, JsonNode, JsonObject, object};
+use crate::math::range::STOPS;
+use crate::math::{COORDINATE, TURNS, Vec3};
 use crate::shading::{
     Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection, RadianceScaling, Reference,
     Scaling, Shading, Term,
 };
-use crate::surface::Surface;
 use serde_json::{Value, json};
-use std::ops::RangeInclusive;
-
-const MOST_LIGHTS: usize = 256;
-const MOST_SCALES: usize = 16;
-/// α of a scaling lies between 0 and 1, short of both.
-const INVARIANT: RangeInclusive<f32> = 0.001..=0.999;
-/// Factors of light.
-const FACTOR: RangeInclusive<f32> = 0.0..=10_000.0;
 
 impl LayerReader<'_> {
     /// Missing fields have the defaults of the model ([`Shading::new`]).
@@ -27,10 +18,8 @@ impl LayerReader<'_> {
         let base = Shading::new(fields.one_of("model", &Model::ALL, Model::Phong)?);
         let environment = fields.get("environment").map(|node| self.environment(&node)).transpose()?;
         let lights = match fields.get("lights") {
-            Some(node) => node.list(MOST_LIGHTS)?.iter().map(light).collect::<Result<_>>()?,
-            // A material lit by its environment needs no light; named lights are added.
-            None if base.model == Model::Ashikhmin && environment.is_some() => Vec::new(),
-            None => base.lights.clone(),
+            Some(node) => node.list(Shading::MOST_LIGHTS)?.iter().map(light).collect::<Result<_>>()?,
+            None => lights_unsaid(&base, environment.as_ref()),
         };
         let (specular, shininess) = specular(fields, &base)?;
         Ok(Shading {
@@ -42,18 +31,18 @@ impl LayerReader<'_> {
             shininess,
             features: features(fields)?,
             reference: reference(fields)?,
-            bands: fields.get("bands").map_or(Ok(i64::from(base.bands)), |node| node.integer(2..=256))? as u32,
-            exponent: fields.number("exponent", base.exponent, 0.0..=1.0)?,
-            nu: fields.number("nu", base.nu, 0.0..=100_000.0)?,
-            nv: fields.number("nv", base.nv, 0.0..=100_000.0)?,
+            bands: fields.get("bands").map_or(Ok(base.bands), |node| node.whole(Shading::BANDS))?,
+            exponent: fields.number("exponent", base.exponent, Shading::EXPONENT)?,
+            nu: fields.number("nu", base.nu, Shading::SHININESS)?,
+            nv: fields.number("nv", base.nv, Shading::SHININESS)?,
             environment,
             sphere: self.sphere(fields, "sphere")?,
             sphere_concave: self.sphere(fields, "sphere_concave")?,
-            index: fields.number("index", base.index, 0.1..=10.0)?,
+            index: fields.number("index", base.index, Shading::INDEX)?,
             occlusion_radius_px: fields.number(
                 "occlusion_radius",
                 base.occlusion_radius_px,
-                0.0..=Surface::WIDEST_OCCLUSION_PX,
+                Shading::OCCLUSION_RADIUS_PX,
             )?,
         })
     }
@@ -63,7 +52,7 @@ impl LayerReader<'_> {
         let mut environment = Environment::new(file.text()?.to_owned(), self.pictures.picture(self.source, &file)?);
         environment.projection = fields.one_of("projection", &Projection::ALL, environment.projection)?;
         environment.rotation = fields.number("rotation", environment.rotation, TURNS)?;
-        environment.exposure = fields.number("exposure", environment.exposure, -32.0..=32.0)?;
+        environment.exposure = fields.number("exposure", environment.exposure, STOPS)?;
         fields.finish()?;
         Ok(environment)
     }
@@ -92,29 +81,29 @@ pub fn radiance_scaling(fields: &mut Fields) -> Result<RadianceScaling> {
 
 /// `alpha` and `gamma`, or `gamma_convex` and `gamma_concave` where the two differ.
 fn scaling(fields: &mut Fields, base: Scaling) -> Result<Scaling> {
-    let alpha = fields.number("alpha", base.alpha, INVARIANT)?;
-    let gamma = fields.get("gamma").map(|node| node.number(0.0..=20.0)).transpose()?;
+    let alpha = fields.number("alpha", base.alpha, Scaling::INVARIANT)?;
+    let gamma = fields.get("gamma").map(|node| node.number(Scaling::GAMMA)).transpose()?;
     Ok(Scaling {
         alpha,
-        gamma_convex: fields.number("gamma_convex", gamma.unwrap_or(base.gamma_convex), 0.0..=20.0)?,
-        gamma_concave: fields.number("gamma_concave", gamma.unwrap_or(base.gamma_concave), 0.0..=20.0)?,
+        gamma_convex: fields.number("gamma_convex", gamma.unwrap_or(base.gamma_convex), Scaling::GAMMA)?,
+        gamma_concave: fields.number("gamma_concave", gamma.unwrap_or(base.gamma_concave), Scaling::GAMMA)?,
     })
 }
 
 /// `curvature_scale`, `blur` and `lambda`; or `lambda` and a list of `scales`, each with its `weight`.
 fn features(fields: &mut Fields) -> Result<Features> {
-    let lambda = fields.number("lambda", 0.0, -1.0..=1.0)?;
+    let lambda = fields.number("lambda", 0.0, Features::LAMBDA)?;
     let Some(node) = fields.get("scales") else {
         return Ok(Features { scales: vec![feature_scale(fields)?], lambda });
     };
-    let items = node.list(MOST_SCALES)?;
+    let items = node.list(Features::MOST_SCALES)?;
     if items.is_empty() {
         return Err(node.refused("is empty; at least one scale is needed"));
     }
     let one = |item: &JsonNode| {
         let mut fields = item.fields()?;
         let scale = feature_scale(&mut fields)?;
-        let weight = fields.number("weight", scale.weight, 0.0..=1000.0)?;
+        let weight = fields.number("weight", scale.weight, FeatureScale::WEIGHT)?;
         fields.finish()?;
         Ok(FeatureScale { weight, ..scale })
     };
@@ -124,8 +113,8 @@ fn features(fields: &mut Fields) -> Result<Features> {
 fn feature_scale(fields: &mut Fields) -> Result<FeatureScale> {
     let base = FeatureScale::default();
     Ok(FeatureScale {
-        curvature_scale_px: fields.number("curvature_scale", base.curvature_scale_px, 0.0..=1000.0)?,
-        blur_px: fields.number("blur", base.blur_px, 0.0..=256.0)?,
+        curvature_scale_px: fields.number("curvature_scale", base.curvature_scale_px, FeatureScale::CURVATURE_PX)?,
+        blur_px: fields.number("blur", base.blur_px, FeatureScale::BLUR_PX)?,
         weight: base.weight,
     })
 }
@@ -136,7 +125,7 @@ fn reference(fields: &mut Fields) -> Result<Reference> {
     if node.value().is_string() {
         return node.one_of(&[(Reference::Auto, "auto")]);
     }
-    Ok(Reference::Value(node.number(1e-4..=65_504.0)?))
+    Ok(Reference::Value(node.number(Reference::VALUE)?))
 }
 
 /// The object of one term, if present; `more` reads its own fields.
@@ -149,7 +138,7 @@ fn term_and<T>(
     let Some(node) = fields.get(name) else { return Ok(None) };
     let mut fields = node.fields()?;
     let color = fields.color("color", base.color)?;
-    let weight = fields.number("weight", base.weight, 0.0..=100.0)?;
+    let weight = fields.number("weight", base.weight, Term::WEIGHT)?;
     let scaling = match fields.get("scaling") {
         Some(node) => {
             let mut fields = node.fields()?;
@@ -170,8 +159,13 @@ fn term(fields: &mut Fields, name: &'static str, base: Term) -> Result<Term> {
 
 /// The glossy term and its shininess.
 fn specular(fields: &mut Fields, base: &Shading) -> Result<(Term, f32)> {
-    let shininess = |fields: &mut Fields| fields.number("shininess", base.shininess, 0.0..=100_000.0);
+    let shininess = |fields: &mut Fields| fields.number("shininess", base.shininess, Shading::SHININESS);
     Ok(term_and(fields, "specular", base.specular, shininess)?.unwrap_or((base.specular, base.shininess)))
+}
+
+/// The lights where none are named. Lit by its environment, such a material needs none; those that are named are added.
+fn lights_unsaid(base: &Shading, environment: Option<&Environment>) -> Vec<Light> {
+    if base.model == Model::Ashikhmin && environment.is_some() { Vec::new() } else { base.lights.clone() }
 }
 
 #[derive(Clone, Copy)]
@@ -192,7 +186,7 @@ fn light(node: &JsonNode) -> Result<Light> {
         RecipeLightKind::Here => LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? },
     };
     let color = fields.color("color", base.color)?;
-    let intensity = fields.number("intensity", base.intensity, FACTOR)?;
+    let intensity = fields.number("intensity", base.intensity, Light::INTENSITY)?;
     fields.finish()?;
     Ok(Light { kind, color, intensity })
 }
@@ -200,7 +194,7 @@ fn light(node: &JsonNode) -> Result<Light> {
 /// A direction of any length but 0.
 fn direction(node: &JsonNode) -> Result<Vec3> {
     let v = node.vector(-1e6..=1e6)?;
-    if v.abs().max_element() < 1e-6 {
+    if !Light::points(v) {
         return Err(node.refused("has no length, so it points nowhere"));
     }
     Ok(v)
@@ -209,7 +203,7 @@ fn direction(node: &JsonNode) -> Result<Vec3> {
 pub fn write(out: &mut JsonObject, shading: &Shading) {
     let base = Shading::new(shading.model);
     out.set("model", shading.model.name().into());
-    if shading.lights != base.lights {
+    if shading.lights != lights_unsaid(&base, shading.environment.as_ref()) {
         out.set("lights", shading.lights.iter().map(write_light).collect());
     }
     out.object("ambient", write_term(&shading.ambient, &base.ambient));

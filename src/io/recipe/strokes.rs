@@ -1,32 +1,37 @@
-//! Reads and writes strokes: the samples of the pen, with brush, operator and colour.
-//! Floor 5. Not here: brushes (`brush`, `tips`), the ones that come with the program (`presets`).
+//! Strokes: readings of the pen, each stroke with its brush, operator and colour. Read and written.
+//! Floor 5. Not here: the readings (`samples`), brushes (`brush`, `tips`), the ones that come with the program
+//! (`presets`).
 
 use super::LayerReader;
 use super::brush::{settings, write_brush};
 use super::images::{operator, write_operator};
-use super::{presets, tips};
+use super::{presets, samples, tips};
 use crate::Result;
 use crate::document::StrokeList;
-use crate::json::{Fields, JsonNode, JsonObject, fields::COORDINATE, object};
-use crate::math::{srgb::Color, vec2};
-use crate::paint::{Adjust, Brush, Sample, Stroke};
+use crate::json::{Fields, JsonNode, JsonObject, object};
+use crate::math::srgb::Color;
+use crate::paint::{Adjust, Brush, Stroke};
 use crate::surface::Operator;
 use serde_json::Value;
 use std::sync::Arc;
 
-/// A sample whose last fields are absent.
-const UNSAID: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
+/// What a stroke may have of its own though its brush is that of the stroke before.
+const OWN: [&str; 2] = ["facing", "seed"];
 
 impl LayerReader<'_> {
     pub fn strokes(&mut self, fields: &mut Fields) -> Result<StrokeList> {
         let Some(node) = fields.get("strokes") else { return Ok(StrokeList::default()) };
-        let items = node.list(usize::MAX)?;
-        let strokes = items.iter().map(|item| self.stroke(item).map(Arc::new)).collect::<Result<_>>()?;
+        let mut strokes: Vec<Arc<Stroke>> = Vec::new();
+        for item in node.list(usize::MAX)? {
+            let before = strokes.last().map(|stroke| stroke.brush().clone());
+            strokes.push(Arc::new(self.stroke(&item, before)?));
+        }
         Ok(StrokeList { strokes })
     }
-    fn stroke(&mut self, node: &JsonNode) -> Result<Stroke> {
+    fn stroke(&mut self, node: &JsonNode, before: Option<Brush>) -> Result<Stroke> {
         let mut fields = node.fields()?;
-        let (brush, preset) = fields.get("brush").map_or(Ok(Default::default()), |brush| self.brush(&brush))?;
+        let brush = fields.get("brush").map(|brush| self.brush(&brush, before)).transpose()?;
+        let (brush, preset) = brush.unwrap_or_default();
         if brush.mode.is_retouching() {
             return Err(node.refused("has a brush that smudges, blurs or clones; strokes of a stroke layer paint"));
         }
@@ -34,16 +39,23 @@ impl LayerReader<'_> {
         let color = fields.color("color", Color::BLACK)?;
         let most = self.source.budget.samples;
         let samples = match fields.get("samples") {
-            Some(node) => node.list(most)?.iter().map(sample).collect::<Result<_>>()?,
+            Some(node) => samples::read(&node, most, &mut self.samples_left)?,
             None => Vec::new(),
         };
         fields.finish()?;
         Ok(Stroke::new(brush, operator, color, samples))
     }
-    /// A preset, an inline brush, or a preset with some of its fields changed.
-    fn brush(&mut self, node: &JsonNode) -> Result<(Brush, Operator)> {
+    /// A preset, an inline brush, or a preset or the brush of the stroke before with some of its fields changed.
+    fn brush(&mut self, node: &JsonNode, before: Option<Brush>) -> Result<(Brush, Operator)> {
         let mut fields = node.fields()?;
-        let (base, operator) = fields.get("preset").map_or(Ok(Default::default()), |name| presets::named(&name))?;
+        let (base, operator) = match fields.get("preset") {
+            Some(name) => presets::named(&name)?,
+            None if fields.boolean("same", false)? => match before {
+                Some(before) => (before, Operator::None),
+                None => return Err(node.refused("is the same as before, but there is no stroke before it")),
+            },
+            None => Default::default(),
+        };
         let mut brush = settings(&mut fields, base)?;
         let mut picture = |node: &JsonNode| self.pictures.source(self.source, node, Adjust::default());
         tips::read(&mut fields, &mut brush, &mut picture)?;
@@ -52,46 +64,107 @@ impl LayerReader<'_> {
     }
 }
 
-/// [x, y, pressure 1, tilt_x 0, tilt_y 0, time_secs 0]; the last four may be absent.
-fn sample(node: &JsonNode) -> Result<Sample> {
-    let values = node.numbers(2, 6, COORDINATE)?;
-    let value = |i: usize| values.get(i).copied().unwrap_or(UNSAID[i - 2]);
-    let (pressure, tilt, time_secs) = (value(2), vec2(value(3), value(4)), value(5));
-    if !(0.0..=1.0).contains(&pressure) {
-        return Err(node.refused(format!("has the pressure {pressure}; it must be between 0 and 1")));
-    }
-    if tilt.abs().max_element() > 90.0 {
-        return Err(node.refused("is tilted by more than 90 degrees"));
-    }
-    if time_secs < 0.0 {
-        return Err(node.refused("has a time before the stroke began"));
-    }
-    Ok(Sample { at: vec2(values[0], values[1]), pressure, tilt, time_secs })
+/// The strokes of a layer as they stand in its `strokes`, one after the other.
+pub fn written(list: &StrokeList) -> impl Iterator<Item = Value> {
+    let mut before: Option<JsonObject> = None;
+    list.strokes.iter().map(move |stroke| {
+        let brush = write_brush(stroke.brush());
+        let told = before.as_ref().and_then(|before| as_before(&brush, before));
+        let value = write(stroke, told.as_ref().unwrap_or(&brush));
+        before = Some(brush);
+        value
+    })
 }
 
-pub fn write(out: &mut JsonObject, list: &StrokeList) {
-    out.set("strokes", list.strokes.iter().map(|stroke| write_stroke(stroke)).collect());
-}
-
-/// One stroke, as it stands in a layer's `strokes`.
+/// One stroke by itself.
 pub fn write_stroke(stroke: &Stroke) -> Value {
+    write(stroke, &write_brush(stroke.brush()))
+}
+
+fn write(stroke: &Stroke, brush: &JsonObject) -> Value {
     let mut out = JsonObject::default();
-    out.object("brush", write_brush(stroke.brush()));
+    out.object("brush", brush.clone());
     out.object("operator", write_operator(stroke.operator()));
     out.set("color", object::color(stroke.color()));
-    out.set("samples", stroke.samples().iter().map(write_sample).collect());
+    out.set("samples", samples::write(stroke.samples()));
     out.done()
 }
 
-/// As few numbers as possible.
-fn write_sample(sample: &Sample) -> Value {
-    let Sample { at, pressure, tilt, time_secs } = *sample;
-    let mut values = vec![at.x, at.y, pressure, tilt.x, tilt.y, time_secs];
-    for unsaid in UNSAID.iter().rev() {
-        if values.last() != Some(unsaid) {
-            break;
-        }
-        values.pop();
+/// What a brush has of its own beside the one before it, where that is all; a plain brush needs no words.
+fn as_before(brush: &JsonObject, before: &JsonObject) -> Option<JsonObject> {
+    let shared = |brush: &JsonObject| -> Vec<(String, Value)> {
+        let fields = brush.fields().iter().filter(|(name, _)| !OWN.contains(&name.as_str()));
+        fields.map(|(name, value)| (name.clone(), value.clone())).collect()
+    };
+    if brush.is_empty() || shared(brush) != shared(before) {
+        return None;
     }
-    values.into_iter().map(object::number).collect()
+    let mut out = JsonObject::default();
+    out.set("same", true.into());
+    for (name, unsaid) in OWN.into_iter().zip([Value::Object(Default::default()), 0.into()]) {
+        let (own, before) = (brush.fields().get(name), before.fields().get(name));
+        if own != before {
+            out.set(name, own.unwrap_or(&unsaid).clone());
+        }
+    }
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paint::{Sample, StrokeFrame, Tip};
+
+    #[test]
+    fn a_brush_that_stays_is_said_once() {
+        let brush = Brush { size: 30.0, tip: Tip::Square { ratio: 0.5 }, seed: 7, ..Brush::default() };
+        let turned = StrokeFrame { turn: 90.0, is_mirrored: true };
+        let brushes = [
+            brush.clone(),
+            brush.clone(),
+            Brush { seed: 0, facing: turned, ..brush.clone() },
+            Brush { seed: 9, ..brush.clone() },
+            Brush { size: 31.0, ..brush.clone() },
+            Brush::default(),
+            brush.clone(),
+        ];
+        let stroke = |brush: &Brush| {
+            let samples = vec![Sample::at(crate::math::vec2(1.0, 2.0))];
+            Arc::new(Stroke::new(brush.clone(), Operator::None, Color::BLACK, samples))
+        };
+        let list = StrokeList { strokes: brushes.iter().map(stroke).collect() };
+        let told: Vec<Value> = written(&list).map(|stroke| stroke["brush"].clone()).collect();
+        assert_eq!(
+            told[1..3],
+            [
+                serde_json::json!({ "same": true }),
+                serde_json::json!({ "same": true, "facing": { "turn": 90, "mirrored": true }, "seed": 0 }),
+            ]
+        );
+        assert_eq!(told[3], serde_json::json!({ "same": true, "facing": {}, "seed": 9 }));
+        assert_eq!((&told[4]["size"], &told[5]), (&31.into(), &Value::Null));
+        assert_eq!(told[6], told[0]);
+        let text = serde_json::json!({
+            "canvas": { "width": 4, "height": 4 },
+            "layers": [{ "kind": "strokes", "strokes": written(&list).collect::<Value>() }],
+        });
+        let read = crate::project::sample::read(&text, &crate::UserFiles::default());
+        for (stroke, brush) in read.strokes(read.layers[0].id).iter().zip(&brushes) {
+            assert!(stroke.brush() == brush);
+        }
+    }
+    #[test]
+    fn the_same_as_nothing_is_refused() {
+        let text = r#"{ "canvas": { "width": 4, "height": 4 },
+            "layers": [{ "kind": "strokes", "strokes": [{ "brush": { "same": true } }] }] }"#;
+        let budget = crate::Budget::default();
+        let source = super::super::RecipeSource {
+            file: std::path::Path::new("r.json"),
+            files: &crate::UserFiles::default(),
+            budget: &budget,
+            onto: None,
+        };
+        let said = super::super::read(text.as_bytes(), source).err().map(|e| e.to_string()).unwrap_or_default();
+        assert!(said.contains("layers[0].strokes[0].brush: is the same as before"), "{said}");
+    }
 }

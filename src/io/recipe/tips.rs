@@ -1,19 +1,14 @@
 //! A brush's tip and its grain. Read and written.
 //! Floor 5. Not here: the numbers of a brush (`brush`).
 
-use super::images::TURNS;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
+use crate::math::{TURNS, UNIT};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
 use crate::paint::pattern::Pattern;
 use crate::paint::tip::{Bristles, Hose, HoseRank, Noise, RankSelect};
 use crate::paint::{Brush, PictureSource, Tip};
 use serde_json::{Value, json};
-
-/// Pictures of one hose.
-const MAX_PICTURES: usize = 1024;
-/// Ranks of one hose, GIMP's own ceiling.
-const MAX_RANKS: usize = 4;
 
 /// Reads the picture that a field names.
 pub type ReadPicture<'a> = dyn FnMut(&JsonNode) -> Result<PictureSource> + 'a;
@@ -62,18 +57,18 @@ fn tip(node: &JsonNode, picture: &mut ReadPicture) -> Result<Tip> {
     };
     let tip = match kind {
         TipKind::Round => Tip::Round,
-        TipKind::Ellipse => Tip::Ellipse { ratio: fields.number("ratio", 0.5, 0.01..=1.0)? },
-        TipKind::Square => Tip::Square { ratio: fields.number("ratio", 1.0, 0.01..=1.0)? },
+        TipKind::Ellipse => Tip::Ellipse { ratio: fields.number("ratio", 0.5, Tip::RATIO)? },
+        TipKind::Square => Tip::Square { ratio: fields.number("ratio", 1.0, Tip::RATIO)? },
         TipKind::Bristles => {
             let plain = Bristles::default();
-            let count = whole(&mut fields, "count", plain.count, 1..=1000)?;
-            Tip::Bristles(Bristles { count, seed: whole(&mut fields, "seed", plain.seed, 0..=i64::from(u32::MAX))? })
+            let count = whole(&mut fields, "count", plain.count, Bristles::COUNT)?;
+            Tip::Bristles(Bristles { count, seed: whole(&mut fields, "seed", plain.seed, 0..=u32::MAX)? })
         }
         TipKind::Noise => {
             let plain = Noise::default();
-            let cells = whole(&mut fields, "cells", plain.cells, 1..=200)?;
-            let density = fields.number("density", plain.density, 0.0..=1.0)?;
-            let seed = whole(&mut fields, "seed", plain.seed, 0..=i64::from(u32::MAX))?;
+            let cells = whole(&mut fields, "cells", plain.cells, Noise::CELLS)?;
+            let density = fields.number("density", plain.density, UNIT)?;
+            let seed = whole(&mut fields, "seed", plain.seed, 0..=u32::MAX)?;
             Tip::Noise(Noise { cells, density, seed })
         }
         TipKind::Picture => Tip::Picture(picture(&fields.required("file")?)?),
@@ -83,18 +78,18 @@ fn tip(node: &JsonNode, picture: &mut ReadPicture) -> Result<Tip> {
     Ok(tip)
 }
 
-fn whole(fields: &mut Fields, name: &'static str, default: u32, range: std::ops::RangeInclusive<i64>) -> Result<u32> {
-    fields.get(name).map_or(Ok(default), |node| node.integer(range).map(|n| n as u32))
+fn whole(fields: &mut Fields, name: &'static str, default: u32, range: std::ops::RangeInclusive<u32>) -> Result<u32> {
+    fields.get(name).map_or(Ok(default), |node| node.whole(range))
 }
 
 fn hose(fields: &mut Fields, picture: &mut ReadPicture) -> Result<Hose> {
     let files = fields.required("files")?;
-    let pictures = files.list(MAX_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
+    let pictures = files.list(Hose::MOST_PICTURES)?.iter().map(picture).collect::<Result<Vec<_>>>()?;
     if pictures.is_empty() {
         return Err(files.refused("is empty; a hose has at least one picture"));
     }
     let ranks = match fields.get("ranks") {
-        Some(node) => node.list(MAX_RANKS)?.iter().map(rank).collect::<Result<_>>()?,
+        Some(node) => node.list(Hose::MOST_RANKS)?.iter().map(rank).collect::<Result<_>>()?,
         None => vec![HoseRank { count: pictures.len() as u32, select: RankSelect::default() }],
     };
     Ok(Hose::new(pictures, ranks))
@@ -102,7 +97,7 @@ fn hose(fields: &mut Fields, picture: &mut ReadPicture) -> Result<Hose> {
 
 fn rank(node: &JsonNode) -> Result<HoseRank> {
     let mut fields = node.fields()?;
-    let count = fields.required("count")?.integer(1..=MAX_PICTURES as i64)? as u32;
+    let count = fields.required("count")?.integer(1..=Hose::MOST_PICTURES as i64)? as u32;
     let select = fields.one_of("select", &RankSelect::ALL, RankSelect::default())?;
     fields.finish()?;
     Ok(HoseRank { count, select })
@@ -112,26 +107,26 @@ fn rank(node: &JsonNode) -> Result<HoseRank> {
 fn grain(node: &JsonNode, picture: &mut ReadPicture) -> Result<BrushGrain> {
     let plain = BrushGrain::default();
     let mut fields = node.fields()?;
-    let seed = whole(&mut fields, "seed", 0, 0..=i64::from(u32::MAX))?;
+    let seed = whole(&mut fields, "seed", 0, 0..=u32::MAX)?;
     let pattern = fields.one_of("kind", &Pattern::ALL, Pattern::default())?;
     let source = match fields.get("file") {
         Some(file) => GrainSource::Picture(picture(&file)?),
         None => GrainSource::Pattern { pattern, seed },
     };
     let levels = fields.get("levels").map_or(Ok(plain.levels), |node| {
-        let levels = node.numbers(2, 2, -4.0..=4.0)?;
+        let levels = node.numbers(2, 2, BrushGrain::LEVEL)?;
         if levels[0] >= levels[1] {
             return Err(node.refused("must hold the lower level first"));
         }
         Ok([levels[0], levels[1]])
     })?;
-    let gamma = fields.number("gamma", 1.0, 0.0..=8.0)?;
+    let gamma = fields.number("gamma", 1.0, BrushGrain::GAMMA)?;
     let on_surface = fields.one_of("lies", &LIES, false)?;
     let grain = BrushGrain {
         source,
-        size_px: fields.number("size", plain.size_px, 0.5..=20_000.0)?,
+        size_px: fields.number("size", plain.size_px, BrushGrain::SIZE_PX)?,
         rotation: fields.number("rotation", plain.rotation, TURNS)?,
-        strength: fields.number("strength", plain.strength, 0.0..=1.0)?,
+        strength: fields.number("strength", plain.strength, UNIT)?,
         levels,
         lies: if on_surface { GrainSpace::Surface { gamma } } else { GrainSpace::Canvas },
     };

@@ -180,7 +180,7 @@ impl<'a> LastState<'a> {
         let Some(state) = self.state else { return Ok(None) };
         let mut state = crate::json::parse(file, state, budget)?;
         let mut tiles = Vec::new();
-        self.fill_in(file, &mut state["document"], "", &mut tiles)?;
+        self.fill_in(file, budget, &mut state["document"], ("", &mut tiles))?;
         let document = state["document"].take();
         let blobs = BlobFiles { file, names: &state["files"], last: self };
         let mut document = recipe::read_value(&document, RecipeSource { file, files: &blobs, budget, onto: None })?;
@@ -196,15 +196,21 @@ impl<'a> LastState<'a> {
         Ok(Some(document))
     }
     /// Puts strokes back in the places of their keys, and takes the tiles out, by the paths of their layers.
-    fn fill_in(&self, file: &Path, value: &mut Value, prefix: &str, out: &mut Vec<(String, TileGrid)>) -> Result<()> {
+    fn fill_in(
+        &self,
+        file: &Path,
+        budget: &Budget,
+        value: &mut Value,
+        (prefix, out): (&str, &mut Vec<(String, TileGrid)>),
+    ) -> Result<()> {
         for (i, layer) in value["layers"].as_array_mut().into_iter().flatten().enumerate() {
             let path = format!("{prefix}layers[{i}]");
             if layer.get("layers").is_some() {
-                self.fill_in(file, layer, &format!("{path}."), out)?;
+                self.fill_in(file, budget, layer, (&format!("{path}."), &mut *out))?;
             }
             if let Some(keys) = layer.get_mut("strokes").and_then(Value::as_array_mut) {
                 for key in keys {
-                    *key = serde_json::from_slice(self.blob(file, key)?).map_err(|e| Error::decode(file, e))?;
+                    *key = recipe::parse(file, self.blob(file, key)?, budget)?;
                 }
             }
             let tiles = layer.as_object_mut().and_then(|layer| layer.shift_remove("tiles"));

@@ -43,6 +43,46 @@ fn every_kind_of_layer_comes_back() {
     assert_eq!(states, 1);
     assert_same(&document, &back.unwrap());
 }
+/// A line of so many readings of the pen.
+fn drawn(count: usize) -> Arc<crate::paint::Stroke> {
+    use crate::paint::{Brush, Sample, Stroke};
+    let one = |i: usize| {
+        let t = i as f32 / 240.0;
+        let at = crate::math::vec2(24.0 + 18.0 * t.sin(), 20.0 + 15.0 * (0.3 * t).cos());
+        Sample { pressure: 0.5 + 0.4 * t.sin(), time_secs: t, ..Sample::at(at) }.settled()
+    };
+    Arc::new(Stroke::new(Brush::default(), Default::default(), Color::BLACK, (0..count).map(one).collect()))
+}
+#[test]
+fn strokes_of_an_hour_come_back_and_take_little() {
+    use crate::document::{Live, StrokeList};
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    let strokes = vec![drawn(400_000), drawn(20), drawn(500_000)];
+    let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
+    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(Size::new(48, 40)) };
+    journal.record(&document).unwrap();
+    let log = fs.file(LOG).unwrap();
+    assert!(log.len() < 900_000 * 14, "{} bytes", log.len());
+    assert_eq!(document.difference(&read(&log).1.unwrap()), None);
+}
+#[test]
+fn a_log_of_an_older_version_with_a_number_a_value_opens() {
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    journal.record(&everything(64)).unwrap();
+    let rows: Vec<[f32; 3]> = (0..200_000).map(|i| [i as f32 / 8.0, 7.0, 0.5]).collect();
+    let mut log = fs.file(LOG).unwrap();
+    let blob = serde_json::json!({ "color": "#102030", "samples": rows }).to_string();
+    assert!(super::log::push(&mut log, super::log::RecordKind::Blob, &[&99_999u64.to_le_bytes(), blob.as_bytes()]));
+    let state = serde_json::json!({
+        "document": { "canvas": { "width": 8, "height": 8 }, "layers": [{ "kind": "strokes", "strokes": [99_999] }] },
+        "files": {},
+    });
+    assert!(super::log::push(&mut log, super::log::RecordKind::State, &[state.to_string().as_bytes()]));
+    let back = read(&log).1.unwrap();
+    assert_eq!(back.strokes(back.layers[0].id)[0].samples().len(), 200_000);
+}
 #[test]
 fn an_edit_adds_what_it_changed_and_no_more() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);

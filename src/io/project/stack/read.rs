@@ -269,10 +269,10 @@ mod tests {
         assert!(said("<image w='1' h='1'><stack><layer").contains("damaged"));
         assert!(said("<image w='1' h='1'>").contains("no <stack>"));
         assert!(said("<image w='99999' h='1'><stack/></image>").contains("99999"));
-        let deep = format!("<image w='1' h='1'><stack>{}", "<stack>".repeat(40));
+        let deep = format!("<image w='1' h='1'><stack>{}", "<stack>".repeat(60));
         assert!(said(&deep).contains("nests more than"));
-        let many = format!("<image w='1' h='1'><stack>{}</stack></image>", "<layer/>".repeat(2001));
-        assert!(said(&many).contains("more than 2000 layers"));
+        let many = format!("<image w='1' h='1'><stack>{}</stack></image>", "<layer/>".repeat(10_001));
+        assert!(said(&many).contains("more than 10000 layers"));
     }
     #[test]
     fn operations_of_other_programs_are_known_by_their_names() {
