@@ -44,5 +44,7 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
         Ok(())
     })?;
     session.close();
+    // What was refused, and what was found out about files.
+    super::convert::tell(&args.file, &session.notes);
     Ok(())
 }

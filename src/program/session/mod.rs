@@ -217,8 +217,13 @@ impl Session {
         self.recent_colors.insert(0, color);
         self.recent_colors.truncate(RECENT);
     }
+    /// Why edits were not kept goes to the notes.
+    fn tell_refusals(&mut self) {
+        self.notes.extend(self.open_documents.iter_mut().filter_map(|tab| tab.refused.take()));
+    }
     /// Brings the recovery logs up to the documents; called after whatever may have changed them.
     pub fn keep(&mut self) {
+        self.tell_refusals();
         let trouble = self.autosave.as_mut().and_then(|autosave| autosave.follow(&self.open_documents));
         self.notes.extend(trouble);
     }

@@ -49,7 +49,9 @@ pub struct OpenDocument {
     pub last_end: Option<Vec2>,
     /// Where clone brushes copy from.
     pub clone_source: Option<CloneSource>,
-    /// The indices of the selected strokes in the layer.
+    /// Why the last edit was not kept, until that is told.
+    pub refused: Option<String>,
+    /// The strokes chosen, by their places in the layer.
     chosen: Option<(LayerId, Vec<usize>)>,
 }
 
@@ -87,6 +89,7 @@ impl OpenDocument {
             solo: None,
             last_end: None,
             clone_source: None,
+            refused: None,
             chosen: None,
         }
     }
@@ -130,19 +133,28 @@ impl OpenDocument {
     pub fn show(&mut self, label: impl Into<String>, document: Document) {
         self.preview = Some(Preview { label: label.into(), document });
     }
-    /// Adds a document as a step.
-    pub fn commit(&mut self, label: impl Into<String>, document: Document) {
+    /// Keeps a document as a step; whether it was. What no file could give back is not: why stands in `refused`.
+    pub fn commit(&mut self, label: impl Into<String>, document: Document) -> bool {
         self.preview = None;
+        let mut is_kept = true;
         if !is_same(self.document(), &document) {
-            self.history.commit(label, document);
+            match document.fits(Some(self.document())) {
+                Ok(()) => self.history.commit(label, document),
+                Err(why) => {
+                    is_kept = false;
+                    self.refused = Some(format!("{why} Nothing was changed."));
+                }
+            }
         }
         self.repair();
+        is_kept
     }
     /// Adds an edit as a step.
     pub fn take(&mut self, edit: Edit) {
         let Edit { label, document, select } = edit;
-        self.commit(label, document);
-        self.selected = select.or(self.selected);
+        if self.commit(label, document) {
+            self.selected = select.or(self.selected);
+        }
     }
     /// Adds the preview as a step.
     pub fn keep_preview(&mut self) {

@@ -1,5 +1,6 @@
 //! Stories: what a user does, told as the lines of a replay.
 
+mod held;
 mod steps;
 
 use super::actions::{Action, LayerAction};

@@ -73,6 +73,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         lead: line.map(|at| Sample { at, ..pen.sample }).collect(),
         active: Some(work.unwrap_or_else(|| ActiveWork::Strokes(ActiveStrokes::new(&strokes, backdrop, &scene)))),
         stabilized: StabilizedPen::new(brush.stabilizer),
+        room: Some(Stroke::MOST_SAMPLES),
         label: if is_eraser { "Erase" } else { "Brush stroke" },
         document,
         layer: id,
@@ -149,14 +150,19 @@ struct StrokeGesture {
     stabilized: StabilizedPen,
     /// Samples before the pen's first.
     lead: Vec<Sample>,
+    /// How many more a stroke may have; `None` once it was told that there are none.
+    room: Option<usize>,
     label: &'static str,
 }
 
 impl StrokeGesture {
-    /// Draws more samples; returns the tiles that changed.
-    fn draw(&mut self, samples: Vec<Sample>) -> Vec<(TileAt, Option<Arc<Tile>>)> {
+    /// Draws on to more samples; the tiles that changed.
+    fn draw(&mut self, mut samples: Vec<Sample>) -> Vec<(TileAt, Option<Arc<Tile>>)> {
         let Some(active) = &mut self.active else { return Vec::new() };
-        let of_image = |image: &SymmetryImage| samples.iter().map(|sample| image.sample(sample)).collect();
+        // What a file could not give back is not drawn.
+        samples.truncate(self.room.unwrap_or_default());
+        self.room = self.room.map(|room| room - samples.len());
+        let of_image = |image: &SymmetryImage| samples.iter().map(|sample| image.sample(sample).settled()).collect();
         let samples: Vec<Vec<Sample>> = self.images.iter().map(of_image).collect();
         let tiles = active.draw(&samples);
         if let StrokeTarget::Pixels { shown, .. } = &mut self.target {
@@ -183,6 +189,14 @@ impl StrokeGesture {
 
 impl Gesture for StrokeGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        match self.room {
+            Some(0) => {
+                self.room = None;
+                return Outcome::Refused("A stroke can be no longer than this. Lift the pen to begin another.");
+            }
+            None => return Outcome::Idle,
+            Some(_) => {}
+        }
         let mut samples = std::mem::take(&mut self.lead);
         samples.extend(pens.iter().filter_map(|pen| self.stabilized.push(pen.sample)));
         let tiles = self.draw(samples);

@@ -173,8 +173,8 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));
     let id = layer.id;
-    if let Some(next) = document.with_inserted(layer, above(tab)) {
-        tab.commit("Place image", next);
+    let next = document.with_inserted(layer, above(tab));
+    if next.is_some_and(|next| tab.commit("Place image", next)) {
         tab.selected = Some(id);
     }
 }
@@ -198,9 +198,10 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
         surface_files: Arc::new(if found == canvas { files } else { Default::default() }),
         ..tab.document().clone()
     };
-    tab.commit("Replace maps", next);
-    tab.reads.extend(storage::map_files(source));
-    session.notes.extend(notes);
+    if tab.commit("Replace maps", next) {
+        tab.reads.extend(storage::map_files(source));
+        session.notes.extend(notes);
+    }
     Ok(())
 }
 

@@ -2,9 +2,9 @@
 //! Floor 6.
 
 use crate::io::recipe::read_brush;
-use crate::math::srgb::Color;
-use crate::paint::Property;
-use crate::paint::{Brush, BrushMode, Fill};
+use crate::math::range::held;
+use crate::math::{TURNS, UNIT, srgb::Color};
+use crate::paint::{Brush, BrushMode, Fill, Property};
 use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, field, names, record};
 use crate::surface::{Operator, PaintLimit};
@@ -101,7 +101,7 @@ pub const SIZES: [f32; 2] = [1.0, 2000.0];
 
 impl HandAction {
     pub fn apply(&self, session: &mut Session) {
-        let unit = |v: f32| v.max(0.0).min(1.0);
+        let unit = |v: f32| held(v, &UNIT);
         let brush = &mut session.brush;
         match self {
             HandAction::Tool { tool } => {
@@ -117,9 +117,9 @@ impl HandAction {
             HandAction::Hardness { to } => brush.hardness = unit(*to),
             HandAction::Opacity { to } => brush.opacity = unit(*to),
             HandAction::Flow { to } => brush.flow = unit(*to),
-            HandAction::Spacing { to } => brush.spacing = to.max(0.01).min(10.0),
+            HandAction::Spacing { to } => brush.spacing = held(*to, &Brush::SPACING),
             HandAction::Softness { to } => brush.softness = unit(*to),
-            HandAction::Rotation { to } => brush.rotation = *to,
+            HandAction::Rotation { to } => brush.rotation = held(*to, &TURNS),
             HandAction::Pressure { size, flow } => {
                 let dynamics = brush.dynamics.with_pressure(Property::Size, *size);
                 brush.dynamics = dynamics.with_pressure(Property::Flow, *flow);
@@ -128,11 +128,11 @@ impl HandAction {
             HandAction::SecondColor { color } => session.second_color = *color,
             HandAction::SwapColors {} => std::mem::swap(&mut session.color, &mut session.second_color),
             HandAction::DefaultColors {} => (session.color, session.second_color) = (Color::BLACK, Color::WHITE),
-            HandAction::Operator { operator } => session.operator = *operator,
+            HandAction::Operator { operator } => session.operator = operator.held(),
             HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
             HandAction::Fill { fill } => session.fill = *fill,
             HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
-            HandAction::Mark { mark: mode } => brush.mode = *mode,
+            HandAction::Mark { mark: mode } => brush.mode = mode.held(),
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
             HandAction::Reach { to } => brush.reach = to.max(*Brush::REACHES.start()).min(*Brush::REACHES.end()),
         }

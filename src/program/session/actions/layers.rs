@@ -222,7 +222,11 @@ impl LayerAction {
 fn set(tab: &mut OpenDocument, layer: &LayerPath, to: &Property, done: bool) {
     let Some(id) = layer.find(tab.document()).map(|layer| layer.id) else { return tab.forget_preview() };
     let Some(document) = tab.document().with_layer(id, |layer| to.apply(layer)) else { return };
-    if done { tab.commit(to.label(), document) } else { tab.show(to.label(), document) }
+    if done {
+        tab.commit(to.label(), document);
+    } else {
+        tab.show(to.label(), document);
+    }
 }
 
 /// Where a new layer goes: above the selected one; into it, on top, if it is a group.

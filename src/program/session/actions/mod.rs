@@ -37,18 +37,21 @@ pub enum Action {
 }
 
 impl Action {
-    /// Performs it. An impossible action changes nothing; only file access can fail.
+    /// Does it. What cannot be done changes nothing; only files fail. An edit that no file could hold is refused in a
+    /// note.
     pub fn apply(&self, session: &mut Session) -> Result<()> {
+        let mut done = Ok(());
         match self {
             Action::Edit(action) => action.apply(session),
-            Action::File(action) => return action.apply(session),
+            Action::File(action) => done = action.apply(session),
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),
             Action::Stroke(action) => action.apply(session),
             Action::View(action) => action.apply(session),
         }
-        Ok(())
+        session.tell_refusals();
+        done
     }
 }
 

@@ -111,9 +111,10 @@ fn take(session: &mut Session, outcome: Outcome) {
         Outcome::Idle => {}
         Outcome::Preview(document) => tab.show("", document),
         Outcome::Commit { label, document, select } => {
-            tab.commit(label, document);
-            tab.selected = select.or(tab.selected);
-            tab.last_end = end;
+            if tab.commit(label, document) {
+                tab.selected = select.or(tab.selected);
+                tab.last_end = end;
+            }
         }
         Outcome::CloneFrom(at) => tab.clone_source = Some(CloneSource { at, offset: None }),
         Outcome::Refused(why) => session.notes.push(why.into()),

@@ -2,7 +2,8 @@
 //! themselves are in `document::strokes`.
 
 use crate::document::{Document, LayerId};
-use crate::math::{Vec2, srgb::Color, vec2};
+use crate::math::range::held;
+use crate::math::{TURNS, UNIT, Vec2, srgb::Color, vec2};
 use crate::paint::{Brush, BrushMode, Stroke};
 use crate::session::replay::actions;
 use crate::session::{LayerPath, Session};
@@ -74,15 +75,16 @@ impl StrokeAction {
                 let Some(id) = id(layer) else { return };
                 let next = document.with_each_stroke(id, strokes, |stroke| to.given_to(stroke, &current_brush));
                 match next {
-                    Some(next) if *done => tab.commit("Restyle stroke", next),
+                    Some(next) if *done => drop(tab.commit("Restyle stroke", next)),
                     Some(next) => tab.show("Restyle stroke", next),
                     None => {}
                 }
             }
             _ => {
                 if let Some((label, next, layer, chosen)) = self.edit(document) {
-                    tab.commit(label, next);
-                    tab.choose_strokes(layer, chosen);
+                    if tab.commit(label, next) {
+                        tab.choose_strokes(layer, chosen);
+                    }
                 }
             }
         }
@@ -122,7 +124,7 @@ impl StrokeAction {
 impl Style {
     /// The stroke painted in this way; `current_brush`: the brush that [`Style::Brush`] gives.
     fn given_to(&self, stroke: &Stroke, current_brush: &Brush) -> Stroke {
-        let unit = |v: f32| v.max(0.0).min(1.0);
+        let unit = |v: f32| held(v, &UNIT);
         let mut brush = stroke.brush().clone();
         let (mut operator, mut color) = (stroke.operator(), stroke.color());
         match self {
@@ -136,8 +138,8 @@ impl Style {
             Style::Opacity { to } => brush.opacity = unit(*to),
             Style::Flow { to } => brush.flow = unit(*to),
             Style::Softness { to } => brush.softness = unit(*to),
-            Style::Spacing { to } => brush.spacing = to.max(0.01).min(10.0),
-            Style::Rotation { to } => brush.rotation = *to,
+            Style::Spacing { to } => brush.spacing = held(*to, &Brush::SPACING),
+            Style::Rotation { to } => brush.rotation = held(*to, &TURNS),
             Style::Brush {} => brush = Brush { mode: BrushMode::Paint, ..current_brush.clone() },
         }
         Stroke::new(brush, operator, color, stroke.samples().to_vec())

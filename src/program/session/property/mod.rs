@@ -7,8 +7,9 @@ pub use values::{DerivedMask, DerivedMaskNumbers};
 
 use super::actions::pictures::PicturePart;
 use super::replay::actions;
-use crate::document::{Content, DetailSource, Layer, LayerLock, Live};
-use crate::math::{Vec2, Vec3, srgb::Color};
+use crate::document::{Content, DetailSource, Layer, LayerLock, Live, NormalLayer};
+use crate::math::range::{STOPS, held};
+use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{BlendMode, Outside};
 use crate::shading::scaling::Reference;
@@ -116,7 +117,7 @@ impl Property {
         match self {
             Property::Name { name } => layer.name.clone_from(name),
             Property::Visible { on } => layer.visible = *on,
-            Property::Opacity { to } => layer.opacity = to.max(0.0).min(1.0),
+            Property::Opacity { to } => layer.opacity = held(*to, &Layer::OPACITY),
             Property::Blend { mode } => layer.blend = *mode,
             Property::BlendLinear { on } => layer.blend_linear = *on,
             Property::ClipBelow { on } => layer.clip_below = *on,
@@ -149,7 +150,7 @@ impl Property {
                 }
             }
             Content::Normals(normals) => match self {
-                Property::Strength { to } => normals.strength = to.max(0.0),
+                Property::Strength { to } => normals.strength = held(*to, &NormalLayer::STRENGTH),
                 Property::Place { placement } => normals.placement = *placement,
                 Property::Beyond { outside } => normals.outside = *outside,
                 Property::Grained { grain } => normals.source = DetailSource::Grain(finite(*grain)),
@@ -218,17 +219,21 @@ impl Property {
             Property::Ambient { term } => next.ambient = *term,
             Property::Diffuse { term } => next.diffuse = *term,
             Property::Specular { term } => next.specular = *term,
-            Property::Shininess { to } => next.shininess = to.max(0.0),
-            Property::Bands { to } => next.bands = (*to).max(2),
-            Property::Exponent { to } => next.exponent = to.max(0.0).min(1.0),
-            Property::Anisotropy { nu, nv } => (next.nu, next.nv) = (nu.max(0.0), nv.max(0.0)),
-            Property::RefractiveIndex { to } => next.index = to.max(0.01),
+            Property::Shininess { to } => next.shininess = held(*to, &Shading::SHININESS),
+            Property::Bands { to } => next.bands = (*to).clamp(*Shading::BANDS.start(), *Shading::BANDS.end()),
+            Property::Exponent { to } => next.exponent = held(*to, &Shading::EXPONENT),
+            Property::Anisotropy { nu, nv } => {
+                (next.nu, next.nv) = (held(*nu, &Shading::SHININESS), held(*nv, &Shading::SHININESS));
+            }
+            Property::RefractiveIndex { to } => next.index = held(*to, &Shading::INDEX),
             Property::Features { features } => next.features = features.clone(),
-            Property::Occlusion { to } => next.occlusion_radius_px = to.max(0.0).min(2000.0),
+            Property::Occlusion { to } => {
+                next.occlusion_radius_px = held(*to, &Shading::OCCLUSION_RADIUS_PX);
+            }
             Property::Surrounded { projection, rotation, exposure } => {
                 let environment = next.environment.as_mut()?;
                 environment.projection = *projection;
-                (environment.rotation, environment.exposure) = (*rotation, exposure.max(-20.0).min(20.0));
+                (environment.rotation, environment.exposure) = (held(*rotation, &TURNS), held(*exposure, &STOPS));
             }
             Property::Without { part: PicturePart::Environment } => next.environment = None,
             Property::Without { part: PicturePart::Sphere } => next.sphere = None,
@@ -252,10 +257,10 @@ impl Property {
 /// A grain whose numbers are those that a document may hold.
 fn finite(grain: NoiseRelief) -> NoiseRelief {
     NoiseRelief {
-        size_px: grain.size_px.max(0.1).min(100_000.0),
-        octaves: grain.octaves.clamp(1, 12),
-        roughness: grain.roughness.max(0.0).min(2.0),
-        stretch: grain.stretch.max(0.01).min(1000.0),
+        size_px: held(grain.size_px, &NoiseRelief::SIZE_PX),
+        octaves: grain.octaves.clamp(*NoiseRelief::OCTAVES.start(), *NoiseRelief::OCTAVES.end()),
+        roughness: held(grain.roughness, &NoiseRelief::ROUGHNESS),
+        stretch: held(grain.stretch, &NoiseRelief::STRETCH),
         seed: grain.seed,
     }
 }
