@@ -71,6 +71,7 @@ pub fn brush(brush: &Brush) -> Fit {
     within("the turn of the stroke", brush.facing.turn, &TURNS)?;
     within("the softness", brush.softness, &UNIT)?;
     within("the scatter", brush.scatter, &Brush::SCATTER)?;
+    within("the reach", brush.reach, &Brush::REACHES)?;
     let ColorJitter { hue_degrees, saturation, value } = brush.jitter;
     within("the jitter of the hue", hue_degrees, &ColorJitter::HUE_DEGREES)?;
     within("the jitter of the saturation", saturation, &UNIT)?;
