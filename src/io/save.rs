@@ -24,8 +24,8 @@ pub struct EncodedDocument {
     pub notes: Vec<String>,
 }
 
-/// The bytes that a document is saved as under this name; `None` if cancelled. A project is read back as a file is opened
-/// and compared with the document: it fails where the two differ.
+/// The bytes that a document is saved as under this name; `None` if cancelled. A project is read back as a file is
+/// opened, and compared with the document: it fails where the two differ.
 pub fn encode(document: &Document, file: &Path, progress: &Progress) -> Result<Option<EncodedDocument>> {
     in_own_threads(file, || match Output::of(file) {
         Ok(Output::Psd) => {
