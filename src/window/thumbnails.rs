@@ -3,7 +3,7 @@
 
 use super::jobs;
 use crate::Error;
-use crate::document::{Content, Document, Layer, LayerId, LayerMask, MaskKind, Progress, flatten_layer};
+use crate::document::{Document, Layer, LayerId, LayerMask, MaskKind, Progress, flatten_layer};
 use crate::raster::{Plane, TileGrid};
 use crate::surface::Surface;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2, vec2};
@@ -72,7 +72,7 @@ impl Thumbnails {
     }
     /// The thumbnail of a layer, updated to the latest version as soon as possible. Adjustments have none.
     pub fn of(&mut self, _ctx: &egui::Context, document: &Document, layer: &Arc<Layer>) -> Option<(TextureId, Vec2)> {
-        if matches!(layer.content, Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_)) {
+        if !layer.content.paints() {
             return None;
         }
         let is_ordered = self.ordered.get(&layer.id).is_some_and(|known| known.as_ptr() == Arc::as_ptr(layer));

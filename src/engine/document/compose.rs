@@ -1,9 +1,9 @@
 //! Composes one tile of a document: its layers from bottom to top, in f32. Floor 4. `prepare` selects the layers,
 //! `content` renders them, `raster::blend` mixes the pixels.
 
-use super::content::{self, TileContent};
+use super::content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
-use super::{Content, mask};
+use super::{Role, mask};
 use crate::raster::{BlendMode, Mix, PlanarTile, TileAt, TileCoverage, TilePaint};
 use std::ops::ControlFlow;
 
@@ -35,10 +35,10 @@ impl Composer<'_> {
         if coverage.is_none() && !self.is_sought_in(node) {
             return ComposeFlow::Continue(());
         }
-        match &node.layer.content {
-            Content::RadianceScaling(_) => self.adjustment(node, onto, &coverage),
+        match node.layer.content.role() {
+            Role::Adjusts(_) => self.adjustment(node, onto, &coverage),
             // Clipped to something, or with something clipped to it, a group needs pixels of its own.
-            Content::Group(group) if group.pass_through && !atop && node.clipped.is_empty() => {
+            Role::Groups(group) if group.pass_through && !atop && node.clipped.is_empty() => {
                 self.pass_through(node, onto, &coverage)
             }
             _ => self.paint(node, onto, &coverage, atop),
@@ -67,12 +67,12 @@ impl Composer<'_> {
         ComposeFlow::Continue(())
     }
     fn content(&self, node: &PreparedLayer) -> ComposeFlow<TileContent> {
-        if let Content::Group(_) = &node.layer.content {
+        if let Role::Groups(_) = node.layer.content.role() {
             let mut pixels = PlanarTile::transparent();
             self.stack(&node.children, &mut pixels)?;
             return ComposeFlow::Continue(TileContent::Group(pixels));
         }
-        ComposeFlow::Continue(content::render(&node.layer.content, &node.scene, self.at))
+        ComposeFlow::Continue(node.layer.content.painted(&node.scene, self.at))
     }
     fn clipped(&self, base: &PreparedLayer, own: &mut PlanarTile) -> ComposeFlow {
         base.clipped.iter().try_for_each(|node| self.node(node, own, true))
@@ -93,8 +93,7 @@ impl Composer<'_> {
         if self.sought == Some(index) {
             return ComposeFlow::Break(std::mem::replace(onto, PlanarTile::transparent()));
         }
-        let (Content::RadianceScaling(scaling), Some(&beneath)) =
-            (&node.layer.content, self.prepared.beneath.get(index))
+        let (Role::Adjusts(scaling), Some(&beneath)) = (node.layer.content.role(), self.prepared.beneath.get(index))
         else {
             return ComposeFlow::Continue(());
         };
@@ -116,8 +115,6 @@ impl Composer<'_> {
         let layer = &node.layer;
         let may_hide = layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
         // Groups and adjustments are never known to hide before they are composed.
-        may_hide
-            && mask::is_whole_on_surface(node, self.at)
-            && content::render(&layer.content, &node.scene, self.at).is_opaque()
+        may_hide && mask::is_whole_on_surface(node, self.at) && layer.content.painted(&node.scene, self.at).is_opaque()
     }
 }

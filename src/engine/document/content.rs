@@ -1,10 +1,230 @@
-//! Renders the content of a layer for one tile. Floor 4. The rendering of marks is in `paint` and `shading`.
+//! What a layer holds, and what every kind of it can be asked.
+//! Floor 4. Each kind has a file that answers [`LayerKind`], so that composing, walking and comparing layers name no
+//! kinds. The rendering of marks is in `paint` and `shading`.
 
-use super::Content;
-use crate::paint::{Scene, stroke};
-use crate::raster::{PlanarTile, Tile, TileAt, TilePaint};
-use crate::surface::{Bend, Deformation};
+mod fill;
+mod gradient;
+mod group;
+mod image;
+mod normals;
+mod pixels;
+mod radiance_scaling;
+mod shading;
+mod strokes;
+
+pub use group::Group;
+pub use pixels::PixelLayer;
+pub use strokes::StrokeList;
+
+use super::scale::CanvasScale;
+use super::{Live, NormalLayer};
+use crate::Result;
+use crate::math::{Rect, Vec2, srgb::Color};
+use crate::paint::{Gradient, PlacedImage, Scene};
+use crate::raster::{Picture, PlanarTile, Tile, TileAt, TilePaint};
+use crate::shading::{RadianceScaling, Shading};
+use crate::surface::Bend;
 use std::sync::Arc;
+
+/// What a layer holds. Live content keeps its parameters and, beside them, the tiles rendered from them.
+#[derive(Clone)]
+pub enum Content {
+    Fill(Color),
+    Pixels(PixelLayer),
+    Image(Live<PlacedImage>),
+    Gradient(Live<Gradient>),
+    Strokes(Live<StrokeList>),
+    Shading(Live<Shading>),
+    RadianceScaling(RadianceScaling),
+    Normals(NormalLayer),
+    Group(Group),
+}
+
+/// What a layer is in its stack: all that composing, planning and walking need to know of a kind.
+#[derive(Clone, Copy)]
+pub enum Role<'a> {
+    /// It has pixels of its own.
+    Paints,
+    /// It changes what is painted beneath it.
+    Adjusts(&'a RadianceScaling),
+    /// It changes the surface that what stands above it sees.
+    Shapes(&'a NormalLayer),
+    /// It holds layers.
+    Groups(&'a Group),
+}
+
+/// Gives a file its name in another place: called with the name that a picture goes by, and the picture.
+pub type NameFile<'a> = dyn FnMut(&str, &Picture) -> Result<String> + 'a;
+
+/// What a kind of layer is asked. What is not answered is as a live mark has it that covers the canvas.
+trait LayerKind {
+    /// As documents call it.
+    fn name(&self) -> &'static str;
+    /// As the window calls it.
+    fn label(&self) -> &'static str;
+    fn role(&self) -> Role<'_> {
+        Role::Paints
+    }
+    /// Renders one tile, or finds it rendered.
+    fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
+        TileContent::Nothing
+    }
+    /// Computes now what many tiles would otherwise compute at the same time.
+    fn warm(&self, _scene: &Scene) {}
+    /// On a canvas of another size.
+    fn scaled(&self, scale: &CanvasScale) -> Content;
+    /// Elsewhere on the canvas; `None` of what has no place.
+    fn moved(&self, _by: Vec2) -> Option<Content> {
+        None
+    }
+    /// Without what was painted; `None` of what is not painted on.
+    fn emptied(&self) -> Option<Content> {
+        None
+    }
+    /// Operator, anchors and weights, of what is bent as a whole.
+    fn bend(&self) -> Option<Bend> {
+        None
+    }
+    /// The files that it names.
+    fn files(&self) -> Vec<&str> {
+        Vec::new()
+    }
+    /// With its pictures under other names; `None` if it names none. A paint layer's pixels are not among them.
+    fn with_files(&self, _name: &mut NameFile) -> Result<Option<Content>> {
+        Ok(None)
+    }
+    /// What it cannot be painted without and lacks: the field, and why.
+    fn lacks(&self) -> Option<(&'static str, String)> {
+        None
+    }
+    /// Where it can be seen; `scene`: what it sees, if that is the same before and after an edit.
+    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+        Touched::Canvas
+    }
+    /// Where it may look different from `old`, a kind of the same name; `scene`: what both see.
+    fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed;
+    /// Its looks depend on the whole picture beneath it.
+    fn measures_beneath(&self) -> bool {
+        false
+    }
+}
+
+/// Where a layer can be seen.
+pub(super) enum Touched {
+    Nowhere,
+    Canvas,
+    Rects(Vec<Rect>),
+    Tiles(Vec<TileAt>),
+}
+
+/// Where two versions of a layer may differ.
+pub(super) enum Changed {
+    Nowhere,
+    /// Wherever either can be seen.
+    Wholly,
+    Tiles(Vec<TileAt>),
+}
+
+impl Changed {
+    fn wholly_if(is_other: bool) -> Self {
+        if is_other { Changed::Wholly } else { Changed::Nowhere }
+    }
+    /// Of live content that is either the very same or another.
+    fn of_live<T>(new: &Live<T>, old: Option<&Live<T>>) -> Self {
+        Self::wholly_if(old.is_none_or(|old| !new.ptr_eq(old)))
+    }
+}
+
+impl Content {
+    fn kind(&self) -> &dyn LayerKind {
+        match self {
+            Content::Fill(fill) => fill,
+            Content::Pixels(pixels) => pixels,
+            Content::Image(image) => image,
+            Content::Gradient(gradient) => gradient,
+            Content::Strokes(strokes) => strokes,
+            Content::Shading(shading) => shading,
+            Content::RadianceScaling(scaling) => scaling,
+            Content::Normals(normals) => normals,
+            Content::Group(group) => group,
+        }
+    }
+    /// The kind of layer, as documents call it.
+    pub fn kind_name(&self) -> &'static str {
+        self.kind().name()
+    }
+    /// The kind of layer, as the window calls it.
+    pub fn label(&self) -> &'static str {
+        self.kind().label()
+    }
+    pub fn role(&self) -> Role<'_> {
+        self.kind().role()
+    }
+    /// It has pixels of its own.
+    pub fn paints(&self) -> bool {
+        matches!(self.role(), Role::Paints)
+    }
+    /// It changes the surface for what stands above.
+    pub fn shapes(&self) -> bool {
+        matches!(self.role(), Role::Shapes(_))
+    }
+    /// The group that it is, if it is one.
+    pub fn group(&self) -> Option<&Group> {
+        match self {
+            Content::Group(group) => Some(group),
+            _ => None,
+        }
+    }
+    /// As [`Content::group`], to change it.
+    pub fn group_mut(&mut self) -> Option<&mut Group> {
+        match self {
+            Content::Group(group) => Some(group),
+            _ => None,
+        }
+    }
+    /// The same content elsewhere on the canvas; what has no place stays as it is.
+    pub fn moved(&self, by: Vec2) -> Content {
+        self.kind().moved(by).unwrap_or_else(|| self.clone())
+    }
+    /// The same kind without what was painted; `None` of what is not painted on.
+    pub fn emptied(&self) -> Option<Content> {
+        self.kind().emptied()
+    }
+    /// Operator, anchors and weights, of what is bent as a whole.
+    pub fn bend(&self) -> Option<Bend> {
+        self.kind().bend()
+    }
+    /// The files that it names.
+    pub fn files(&self) -> Vec<&str> {
+        self.kind().files()
+    }
+    /// The same content with its pictures under other names.
+    pub fn with_files(&self, name: &mut NameFile) -> Result<Content> {
+        Ok(self.kind().with_files(name)?.unwrap_or_else(|| self.clone()))
+    }
+    /// What it cannot be painted without and lacks: the field, and why.
+    pub fn lacks(&self) -> Option<(&'static str, String)> {
+        self.kind().lacks()
+    }
+    pub(super) fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+        self.kind().painted(scene, at)
+    }
+    pub(super) fn warm(&self, scene: &Scene) {
+        self.kind().warm(scene);
+    }
+    pub(super) fn scaled(&self, scale: &CanvasScale) -> Content {
+        self.kind().scaled(scale)
+    }
+    pub(super) fn touched(&self, scene: Option<&Scene>) -> Touched {
+        self.kind().touched(scene)
+    }
+    pub(super) fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
+        self.kind().changed_from(old, scene)
+    }
+    pub(super) fn measures_beneath(&self) -> bool {
+        self.kind().measures_beneath()
+    }
+}
 
 /// The pixels of a layer in one tile.
 pub(super) enum TileContent {
@@ -34,43 +254,5 @@ impl TileContent {
             TileContent::Tile(tile) => tile.is_opaque(),
             TileContent::Nothing | TileContent::Group(_) => false,
         }
-    }
-}
-
-/// Renders one tile of a layer's content, or takes it from the cache. Groups, adjustments and normals have no pixels of
-/// their own.
-pub(super) fn render(content: &Content, scene: &Scene, at: TileAt) -> TileContent {
-    match content {
-        Content::Fill(color) => TileContent::Solid(color.premultiplied()),
-        Content::Pixels(pixels) => TileContent::of_tile(pixels.tiles.tile(at).cloned()),
-        Content::Gradient(live) => TileContent::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
-        Content::Strokes(live) => {
-            TileContent::of_tile(live.tile(scene, at, || stroke::render_tile(&live.params().strokes, scene, at)))
-        }
-        Content::Image(live) => TileContent::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
-        Content::Shading(live) => TileContent::of_tile(live.tile(scene, at, || live.params().render_tile(scene, at))),
-        Content::RadianceScaling(_) | Content::Normals(_) | Content::Group(_) => TileContent::Nothing,
-    }
-}
-
-/// Fills the caches that many tiles would otherwise compute at the same time.
-pub(super) fn warm_caches(content: &Content, scene: &Scene) {
-    let bend = |bend: &Bend| drop(Deformation::new(scene.surface.as_deref(), scene.size, bend));
-    match content {
-        Content::Image(live) => {
-            live.params().source.texture();
-            bend(&live.params().bend);
-        }
-        Content::Gradient(live) => bend(&Bend { operator: live.params().operator, ..Bend::default() }),
-        Content::Strokes(live) => {
-            for stroke in &live.params().strokes {
-                bend(&Bend { operator: stroke.operator(), ..Bend::default() });
-            }
-        }
-        Content::RadianceScaling(scaling) => {
-            let _ = scene.surface.as_deref().map(|surface| scaling.features.on(surface));
-        }
-        Content::Shading(live) => live.params().warm(scene),
-        Content::Fill(_) | Content::Pixels(_) | Content::Normals(_) | Content::Group(_) => {}
     }
 }

@@ -2,11 +2,11 @@
 //! pointers and parameters, never pixels. Floor 4. It is conservative: a tile that is not reported is the same; a
 //! reported one may be.
 
-use super::{Content, Document, Layer, LayerId, Live, StrokeList, mask};
+use super::content::{Changed, Touched};
+use super::{Document, Layer, LayerId, mask};
 use crate::math::Rect;
-use crate::paint::{Scene, Stroke};
+use crate::paint::Scene;
 use crate::raster::TileAt;
-use crate::shading::Reference;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ fn contexts(document: &Document) -> BTreeMap<LayerId, LayerContext> {
 fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTreeMap<LayerId, LayerContext>) {
     let (mut base, mut base_shows) = (None, false);
     for layer in layers {
-        if let Content::Normals(_) = layer.content {
+        if layer.content.shapes() {
             if layer.visible {
                 normals.push(Arc::as_ptr(layer));
             }
@@ -57,7 +57,7 @@ fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTre
         } else {
             (base, base_shows) = (Some(layer.id), layer.visible);
         }
-        if let Content::Group(group) = &layer.content {
+        if let Some(group) = layer.content.group() {
             match group.pass_through && layer.visible && base_shows {
                 true => survey(&group.layers, normals, all),
                 false => survey(&group.layers, &mut normals.clone(), all),
@@ -119,37 +119,28 @@ impl Diff<'_> {
             let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
             return self.tiles(tiles) | self.layer(old, &unmasked, beneath);
         }
-        match (&old.content, &new.content) {
-            (Content::RadianceScaling(a), Content::RadianceScaling(b)) => {
-                let measures = b.keep_mean || b.reference == Reference::Auto;
-                (a != b || (beneath && measures)) && self.both(old, new)
-            }
-            _ if Arc::ptr_eq(old, new) && !matches!(new.content, Content::Group(_)) => false,
-            (Content::Fill(a), Content::Fill(b)) => a != b && self.both(old, new),
-            (Content::Pixels(a), Content::Pixels(b)) => self.tiles(a.tiles.changed_tiles(&b.tiles)),
-            (Content::Image(a), Content::Image(b)) => !a.ptr_eq(b) && self.both(old, new),
-            (Content::Gradient(a), Content::Gradient(b)) => !a.ptr_eq(b) && self.both(old, new),
-            (Content::Shading(a), Content::Shading(b)) => !a.ptr_eq(b) && self.both(old, new),
-            (Content::Strokes(a), Content::Strokes(b)) => !a.ptr_eq(b) && self.drawn(new.id, a, b),
+        if let (Some(a), Some(b)) = (old.content.group(), new.content.group())
+            && a.pass_through == b.pass_through
+        {
             // Children of an isolated group have a scope of their own.
-            (Content::Group(a), Content::Group(b)) if a.pass_through == b.pass_through => {
-                self.stack(&a.layers, &b.layers, beneath && b.pass_through)
-            }
-            _ => self.both(old, new),
+            return self.stack(&a.layers, &b.layers, beneath && b.pass_through);
+        }
+        if beneath && new.content.measures_beneath() {
+            return self.both(old, new);
+        }
+        if Arc::ptr_eq(old, new) {
+            return false;
+        }
+        match new.content.changed_from(&old.content, &|| self.seen_by(new.id)) {
+            Changed::Nowhere => false,
+            Changed::Wholly => self.both(old, new),
+            Changed::Tiles(tiles) => self.tiles(tiles),
         }
     }
-    /// Two versions of a stroke layer on the same surface: where both are rendered, their tiles are compared.
-    fn drawn(&mut self, layer: LayerId, old: &Live<StrokeList>, new: &Live<StrokeList>) -> bool {
+    /// What both versions of a layer see.
+    fn seen_by(&self, layer: LayerId) -> Scene {
         let seen = if self.sees_normals(layer) { self.document.scene_of(layer) } else { None };
-        let scene = seen.unwrap_or_else(|| self.scene.clone());
-        let (same, canvas) = (old.same_tiles(new, &scene), self.scene.size.rect());
-        let differing = differing(&old.params().strokes, &new.params().strokes);
-        let tiles = differing.flat_map(|stroke| TileAt::covering(stroke.bounds(&scene).intersect(canvas)));
-        self.tiles(tiles.filter(|&at| !same(at)).collect())
-    }
-    fn stroke_bounds(&self, layer: LayerId, stroke: &Stroke) -> Rect {
-        // Bounds are valid for one surface only, and normal layers replace it.
-        if self.sees_normals(layer) { self.scene.size.rect() } else { stroke.bounds(&self.scene) }
+        seen.unwrap_or_else(|| self.scene.clone())
     }
     fn sees_normals(&self, layer: LayerId) -> bool {
         [&self.old, &self.new].iter().any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()))
@@ -162,24 +153,17 @@ impl Diff<'_> {
         if !layer.visible {
             return false;
         }
-        match &layer.content {
-            Content::Pixels(pixels) => {
-                let tiles = pixels.tiles.iter().map(|(at, _)| at).collect();
-                self.tiles(tiles)
-            }
-            Content::Strokes(live) => {
-                let bounds: Vec<Rect> =
-                    live.params().strokes.iter().map(|stroke| self.stroke_bounds(layer.id, stroke)).collect();
-                bounds.into_iter().fold(false, |changed, rect| self.rect(rect) | changed)
-            }
-            Content::Group(group) => group.layers.iter().fold(false, |changed, layer| self.whole(layer) | changed),
-            // Layers that see them have another context.
-            Content::Normals(_) => false,
-            Content::Fill(_)
-            | Content::Image(_)
-            | Content::Gradient(_)
-            | Content::Shading(_)
-            | Content::RadianceScaling(_) => self.rect(self.scene.size.rect()),
+        if let Some(group) = layer.content.group() {
+            return group.layers.iter().fold(false, |changed, layer| self.whole(layer) | changed);
+        }
+        let canvas = self.scene.size.rect();
+        // Normal layers put another surface in place of the canvas's.
+        let touched = layer.content.touched(Some(&self.scene).filter(|_| !self.sees_normals(layer.id)));
+        match touched {
+            Touched::Nowhere => false,
+            Touched::Canvas => self.rect(canvas),
+            Touched::Rects(rects) => rects.into_iter().fold(false, |changed, rect| self.rect(rect) | changed),
+            Touched::Tiles(tiles) => self.tiles(tiles),
         }
     }
     fn rect(&mut self, rect: Rect) -> bool {
@@ -193,15 +177,6 @@ impl Diff<'_> {
         self.changed.extend(&tiles);
         !tiles.is_empty()
     }
-}
-
-/// Strokes are painted in order, so those between a common beginning and a common end may change what they touch.
-fn differing<'s>(old: &'s [Arc<Stroke>], new: &'s [Arc<Stroke>]) -> impl Iterator<Item = &'s Arc<Stroke>> {
-    let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
-    let start = old.iter().zip(new).take_while(same).count();
-    let (old, new) = (&old[start..], &new[start..]);
-    let end = old.iter().rev().zip(new.iter().rev()).take_while(same).count();
-    old[..old.len() - end].iter().chain(&new[..new.len() - end])
 }
 
 /// Whether all but the content, the name, the lock and the mask's pixels is equal.

@@ -1,7 +1,7 @@
 //! Tree edits: each gives a new document that shares everything it did not touch.
 //! Floor 4. The list of documents that undo walks is `history`.
 
-use super::{Content, Document, Layer, LayerId};
+use super::{Document, Layer, LayerId};
 use std::sync::Arc;
 
 /// A position among layers: the group (`None`: the document itself) and the number of layers beneath it there.
@@ -30,10 +30,10 @@ impl Document {
     /// The slot of a layer.
     pub fn place_of(&self, id: LayerId) -> Option<LayerSlot> {
         fn find(layers: &[Arc<Layer>], group: Option<LayerId>, id: LayerId) -> Option<LayerSlot> {
-            layers.iter().enumerate().find_map(|(index, layer)| match &layer.content {
+            layers.iter().enumerate().find_map(|(index, layer)| match layer.content.group() {
                 _ if layer.id == id => Some(LayerSlot { group, index }),
-                Content::Group(inner) => find(&inner.layers, Some(layer.id), id),
-                _ => None,
+                Some(inner) => find(&inner.layers, Some(layer.id), id),
+                None => None,
             })
         }
         find(&self.layers, None, id)
@@ -93,21 +93,19 @@ fn siblings(layers: &mut Vec<Arc<Layer>>, group: Option<LayerId>) -> Option<&mut
     let holds = |layer: &Arc<Layer>| layer.id == id || holds_layer(layer, id);
     let outer = layers.iter_mut().find(|layer| holds(layer))?;
     let found = outer.id == id;
-    match &mut Arc::make_mut(outer).content {
-        Content::Group(inner) => siblings(&mut inner.layers, if found { None } else { group }),
-        _ => None,
-    }
+    let inner = Arc::make_mut(outer).content.group_mut()?;
+    siblings(&mut inner.layers, if found { None } else { group })
 }
 
 fn holds_layer(layer: &Layer, id: LayerId) -> bool {
-    let Content::Group(group) = &layer.content else { return false };
+    let Some(group) = layer.content.group() else { return false };
     group.layers.iter().any(|layer| layer.id == id || holds_layer(layer, id))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Group;
+    use crate::document::{Content, Group};
     use crate::math::{Size, srgb::Color};
 
     fn fill(name: &str) -> Layer {

@@ -3,7 +3,7 @@
 
 use super::compose::Composer;
 use super::prepare::in_parallel;
-use super::{Content, Document, Layer, LayerId, PreparedDocument, Progress};
+use super::{Document, Layer, LayerId, PreparedDocument, Progress};
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
@@ -51,14 +51,14 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
         let mut next = Layer::clone(layer);
         let is_chosen = ids.contains(&layer.id);
         next.clip_below &= is_chosen && base_is_shown;
-        if !layer.clip_below && !matches!(layer.content, Content::Normals(_)) {
+        if !layer.clip_below && !layer.content.shapes() {
             base_is_shown = is_chosen;
         }
         if is_chosen {
             (next.visible, found) = (true, true);
             return Arc::new(next);
         }
-        if let Content::Group(group) = &mut next.content
+        if let Some(group) = next.content.group_mut()
             && let Some(inner) = alone(&group.layers, ids)
         {
             group.layers = inner;
@@ -66,7 +66,7 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
             (next.visible, next.opacity, next.mask, found) = (true, 1.0, None, true);
             return Arc::new(next);
         }
-        if !matches!(layer.content, Content::Normals(_)) {
+        if !layer.content.shapes() {
             next.visible = false;
         }
         Arc::new(next)

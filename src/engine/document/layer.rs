@@ -1,12 +1,9 @@
 //! A layer: how it meets what lies beneath, and what it holds.
 //! Floor 4.
 
-use super::{cache::LayerCache, live::Live, mask::LayerMask, normals::NormalLayer};
-use crate::math::{Range, UNIT, srgb::Color};
-use crate::paint::{Gradient, PlacedImage, Stroke};
-use crate::raster::{BlendMode, TileGrid};
-use crate::shading::{RadianceScaling, Shading};
-use std::sync::Arc;
+use super::{Content, cache::LayerCache, mask::LayerMask};
+use crate::math::{Range, UNIT};
+use crate::raster::BlendMode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The identity of a layer: it stays the same through every edit, as long as the program runs. Not stored in files.
@@ -74,61 +71,4 @@ pub enum LayerLock {
     None,
     Alpha,
     All,
-}
-
-/// What a layer holds. Live content keeps its parameters and, beside them, the tiles rendered from them.
-#[derive(Clone)]
-pub enum Content {
-    Fill(Color),
-    Pixels(PixelLayer),
-    Image(Live<PlacedImage>),
-    Gradient(Live<Gradient>),
-    Strokes(Live<StrokeList>),
-    Shading(Live<Shading>),
-    RadianceScaling(RadianceScaling),
-    Normals(NormalLayer),
-    Group(Group),
-}
-
-impl Content {
-    /// The kind of layer, as documents call it.
-    pub fn kind_name(&self) -> &'static str {
-        match self {
-            Content::Fill(_) => "fill",
-            Content::Pixels(_) => "pixels",
-            Content::Image(_) => "image",
-            Content::Gradient(_) => "gradient",
-            Content::Strokes(_) => "strokes",
-            Content::Shading(_) => "shading",
-            Content::RadianceScaling(_) => "radiance-scaling",
-            Content::Normals(_) => "normals",
-            Content::Group(_) => "group",
-        }
-    }
-}
-
-/// A paint layer.
-#[derive(Clone)]
-pub struct PixelLayer {
-    /// Where the pixels came from, if a file; empty for pixels painted here.
-    pub file: String,
-    pub x: i32,
-    pub y: i32,
-    /// On the canvas lattice, offset applied.
-    pub tiles: TileGrid,
-}
-
-/// The strokes of a stroke layer, in the order they were painted. Shared, so that adding one copies pointers.
-#[derive(Clone, Default)]
-pub struct StrokeList {
-    pub strokes: Vec<Arc<Stroke>>,
-}
-
-/// Layers flattened together before they meet what lies beneath.
-#[derive(Clone, Default)]
-pub struct Group {
-    /// Bottom first.
-    pub layers: Vec<Arc<Layer>>,
-    /// Whether each layer blends with what lies beneath the group, as if the group did not exist.
-    pub pass_through: bool,
 }

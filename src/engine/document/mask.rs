@@ -1,7 +1,7 @@
 //! A layer's mask: a picture of coverage, or one derived from the surface.
 //! Floor 4.
 
-use super::{Content, Layer, prepare, prepare::PreparedLayer};
+use super::{Layer, Role, prepare, prepare::PreparedLayer};
 use crate::math::{Range, UNIT};
 use crate::paint::Scene;
 use crate::raster::{Plane, TileAt, TileCoverage};
@@ -58,7 +58,7 @@ pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
 /// The surface that a layer is clipped to, if any. A group is not clipped, because its layers clip themselves; clipping
 /// twice would thin their rims. An adjustment changes only what is painted already.
 fn clip(node: &PreparedLayer) -> Option<&Surface> {
-    let paints = !matches!(node.layer.content, Content::Group(_) | Content::RadianceScaling(_));
+    let paints = matches!(node.layer.content.role(), Role::Paints | Role::Shapes(_));
     node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)
 }
 

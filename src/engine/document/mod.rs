@@ -3,7 +3,7 @@
 
 pub mod cache;
 mod compose;
-mod content;
+pub mod content;
 pub mod diff;
 pub mod edit;
 mod fit;
@@ -23,11 +23,12 @@ pub mod source;
 mod strokes;
 pub mod view;
 
+pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers};
 pub use history::History;
-pub use layer::{Content, Group, Layer, LayerId, LayerLock, PixelLayer, StrokeList};
+pub use layer::{Layer, LayerId, LayerLock};
 pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
 pub use normals::{DetailSource, NormalLayer};
@@ -68,7 +69,7 @@ impl Document {
         fn visit<'a>(prefix: &str, layers: &'a [Arc<Layer>], out: &mut Vec<(String, &'a Arc<Layer>)>) {
             for (i, layer) in layers.iter().enumerate() {
                 let path = format!("{prefix}layers[{i}]");
-                if let Content::Group(group) = &layer.content {
+                if let Some(group) = layer.content.group() {
                     visit(&format!("{path}."), &group.layers, out);
                 }
                 out.push((path, layer));

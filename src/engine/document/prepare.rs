@@ -1,7 +1,7 @@
 //! Prepares a document for flattening: finds the visible layers, what each is clipped to, and the surface that each
 //! sees. Floor 4. Done once before the tiles; composing one tile is `compose`.
 
-use super::{Content, Document, Group, Layer, MaskKind, Progress, content, normals};
+use super::{Document, Group, Layer, MaskKind, Progress, Role, normals};
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -100,7 +100,7 @@ impl StackBuilder {
         let mut nodes: Vec<PreparedLayer> = Vec::new();
         let mut base = ClipBase::Nothing;
         for (i, layer) in layers.iter().enumerate() {
-            if let Content::Normals(normals) = &layer.content {
+            if let Role::Shapes(normals) = layer.content.role() {
                 // It paints nothing, so it is no base and does not separate a base from its clipped layers.
                 if layer.visible {
                     *scene = normals::scene_above(layer, normals, scene);
@@ -127,12 +127,12 @@ impl StackBuilder {
     fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, beneath: &[Arc<Layer>]) -> PreparedLayer {
         let first = self.adjustments.len();
         let visible_scene = scene.clone();
-        let children = match &layer.content {
-            Content::Group(group) => self.children(group, scene, beneath),
+        let children = match layer.content.role() {
+            Role::Groups(group) => self.children(group, scene, beneath),
             _ => Vec::new(),
         };
-        content::warm_caches(&layer.content, &visible_scene);
-        if let Content::RadianceScaling(scaling) = &layer.content {
+        layer.content.warm(&visible_scene);
+        if let Role::Adjusts(scaling) = layer.content.role() {
             let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), beneath.to_vec());
             self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
         }

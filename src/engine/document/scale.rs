@@ -6,12 +6,12 @@ mod reducer;
 pub use reducer::DocumentReducer;
 
 use super::cache::LayerCache;
-use super::{Content, DetailSource, Document, Group, Layer, Live, MaskKind, PixelLayer, StrokeList};
+use super::{Document, Layer, MaskKind, PixelLayer};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
 use crate::paint::{Sample, Stabilizer, Stroke};
 use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
-use crate::shading::{Features, LightKind};
-use crate::surface::{Anchor, SurfaceError};
+use crate::shading::Features;
+use crate::surface::SurfaceError;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -28,11 +28,11 @@ impl Document {
 }
 
 /// From one canvas to another.
-struct CanvasScale {
+pub(super) struct CanvasScale {
     /// For coordinates; the two differ only because the canvas is rounded.
-    per_axis: Vec2,
+    pub per_axis: Vec2,
     /// For lengths without a direction.
-    length: f32,
+    pub length: f32,
     from: Size,
     to: Size,
 }
@@ -47,11 +47,11 @@ impl CanvasScale {
         let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
         Some(Self { per_axis, length: factor, from, to })
     }
-    fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
+    pub fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()
     }
     fn layer(&self, layer: &Layer) -> Layer {
-        let mut next = Layer { content: self.content(&layer.content), cache: LayerCache::default(), ..layer.clone() };
+        let mut next = Layer { content: layer.content.scaled(self), cache: LayerCache::default(), ..layer.clone() };
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
             Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
             Some(MaskKind::Curvature { scale, blur, .. }) => {
@@ -61,65 +61,14 @@ impl CanvasScale {
         }
         next
     }
-    fn content(&self, content: &Content) -> Content {
-        match content {
-            Content::Fill(color) => Content::Fill(*color),
-            Content::Pixels(pixels) => Content::Pixels(self.pixels(pixels)),
-            Content::Image(live) => {
-                let mut image = live.params().clone();
-                image.placement.center *= self.per_axis;
-                for Anchor { at, source } in &mut image.bend.anchors {
-                    (*at, *source) = (*at * self.per_axis, *source * self.per_axis);
-                }
-                Content::Image(Live::new(image))
-            }
-            Content::Gradient(live) => {
-                let mut gradient = live.params().clone();
-                gradient.from *= self.per_axis;
-                gradient.to *= self.per_axis;
-                Content::Gradient(Live::new(gradient))
-            }
-            Content::Strokes(live) => {
-                let strokes = live.params().strokes.iter().map(|stroke| Arc::new(self.stroke(stroke))).collect();
-                Content::Strokes(Live::new(StrokeList { strokes }))
-            }
-            Content::Shading(live) => {
-                let mut shading = live.params().clone();
-                self.features(&mut shading.features);
-                shading.occlusion_radius_px *= self.length;
-                for light in &mut shading.lights {
-                    if let LightKind::Point { position } = &mut light.kind {
-                        *position *= self.per_axis.extend(self.length);
-                    }
-                }
-                Content::Shading(Live::new(shading))
-            }
-            Content::RadianceScaling(scaling) => {
-                let mut scaling = scaling.clone();
-                self.features(&mut scaling.features);
-                Content::RadianceScaling(scaling)
-            }
-            Content::Normals(normals) => {
-                let mut normals = normals.clone();
-                normals.placement.center *= self.per_axis;
-                if let DetailSource::Grain(grain) = &mut normals.source {
-                    grain.size_px *= self.length;
-                }
-                Content::Normals(normals)
-            }
-            Content::Group(group) => {
-                Content::Group(Group { layers: self.layers(&group.layers), pass_through: group.pass_through })
-            }
-        }
-    }
     /// Curvature is per pixel, so the factor it is multiplied by is a length.
-    fn features(&self, features: &mut Features) {
+    pub fn features(&self, features: &mut Features) {
         for scale in &mut features.scales {
             scale.curvature_scale_px *= self.length;
             scale.blur_px *= self.length;
         }
     }
-    fn stroke(&self, stroke: &Stroke) -> Stroke {
+    pub fn stroke(&self, stroke: &Stroke) -> Stroke {
         let mut brush = stroke.brush().clone();
         brush.size *= self.length;
         match &mut brush.stabilizer {
@@ -131,7 +80,7 @@ impl CanvasScale {
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
         Stroke::new(brush, stroke.operator(), stroke.color(), samples)
     }
-    fn pixels(&self, pixels: &PixelLayer) -> PixelLayer {
+    pub fn pixels(&self, pixels: &PixelLayer) -> PixelLayer {
         let corner = vec2(pixels.x as f32, pixels.y as f32) * self.per_axis;
         let (x, y) = (corner.x.round() as i32, corner.y.round() as i32);
         PixelLayer { file: pixels.file.clone(), x, y, tiles: self.grid(&pixels.tiles) }

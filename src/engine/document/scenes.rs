@@ -1,7 +1,7 @@
 //! Finds the scene of one layer without preparing the whole document: the canvas and the surface with the normal layers
 //! beneath it. Floor 4.
 
-use super::{Content, Document, Layer, LayerId, normals};
+use super::{Document, Layer, LayerId, Role, normals};
 use crate::paint::Scene;
 use std::sync::Arc;
 
@@ -19,13 +19,13 @@ fn find(layers: &[Arc<Layer>], id: LayerId, scene: &mut Scene) -> Option<Scene> 
         if layer.id == id {
             return Some(scene.clone());
         }
-        let found = match &layer.content {
-            Content::Normals(normals) if layer.visible => {
+        let found = match layer.content.role() {
+            Role::Shapes(normals) if layer.visible => {
                 *scene = normals::scene_above(layer, normals, scene);
                 None
             }
-            Content::Group(group) if group.pass_through && layer.visible => find(&group.layers, id, scene),
-            Content::Group(group) => find(&group.layers, id, &mut scene.clone()),
+            Role::Groups(group) if group.pass_through && layer.visible => find(&group.layers, id, scene),
+            Role::Groups(group) => find(&group.layers, id, &mut scene.clone()),
             _ => None,
         };
         if found.is_some() {

@@ -2,7 +2,7 @@
 //! Floor 5. Names and conventions are those that compositing programs expect: `LAYER.R`, `normal.X`, `depth.Z`.
 
 use super::deep::light;
-use crate::document::{Content, Document, Progress, flatten, flatten_layer};
+use crate::document::{Document, Progress, flatten, flatten_layer};
 use crate::math::Size;
 use crate::project::Cancellable;
 use crate::raster::TileGrid;
@@ -21,9 +21,7 @@ pub fn encode(file: &Path, document: &Document, progress: &Progress) -> Cancella
     push_picture(&mut channels, "", &whole, size);
     let mut taken = BTreeSet::from(["normal".to_owned(), "depth".to_owned()]);
     for (_, layer) in document.walk() {
-        let has_pixels =
-            !matches!(layer.content, Content::Group(_) | Content::Normals(_) | Content::RadianceScaling(_));
-        if layer.visible && has_pixels {
+        if layer.visible && layer.content.paints() {
             let Some(tiles) = flatten_layer(document, layer.id, progress) else { return Ok(None) };
             push_picture(&mut channels, &format!("{}.", free_name(&layer.name, &mut taken)), &tiles, size);
         }

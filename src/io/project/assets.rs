@@ -7,9 +7,8 @@ use crate::document::cache::EncodedPixels;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };
-use crate::document::{Content, DetailSource, Document, Group, Layer, LayerId, Live, MaskKind, StrokeList};
+use crate::document::{Content, Document, Layer, LayerId, MaskKind};
 use crate::exr;
-use crate::paint::{PictureSource, Stroke};
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane};
 use crate::surface::Surface;
@@ -85,50 +84,10 @@ impl AssetList {
                     }
                 };
             }
-            Content::Image(live) => {
-                let mut image = live.params().clone();
-                self.source(file, &mut image.source)?;
-                next.content = Content::Image(Live::new(image));
-            }
-            Content::Normals(normals) => {
-                if let DetailSource::Map { picture, .. } = &mut normals.source {
-                    self.source(file, picture)?;
-                }
-            }
-            Content::Strokes(live) => {
-                let strokes = live.params().strokes.iter().map(|stroke| self.stroke(file, stroke));
-                let strokes = strokes.collect::<Result<_>>()?;
-                next.content = Content::Strokes(Live::new(StrokeList { strokes }));
-            }
-            Content::Shading(live) => {
-                let mut shading = live.params().clone();
-                if let Some(environment) = &mut shading.environment {
-                    environment.file = self.picture(file, &environment.file, &environment.picture)?;
-                }
-                for sphere in [&mut shading.sphere, &mut shading.sphere_concave].into_iter().flatten() {
-                    sphere.file = self.picture(file, &sphere.file, &sphere.picture)?;
-                }
-                next.content = Content::Shading(Live::new(shading));
-            }
-            Content::Group(Group { layers, .. }) => *layers = self.layers(file, layers, painted)?,
-            Content::Fill(_) | Content::Gradient(_) | Content::RadianceScaling(_) => {}
+            Content::Group(group) => group.layers = self.layers(file, &group.layers, painted)?,
+            content => *content = content.with_files(&mut |name, picture| self.picture(file, name, picture))?,
         }
         Ok(next)
-    }
-    fn stroke(&mut self, file: &Path, stroke: &Arc<Stroke>) -> Result<Arc<Stroke>> {
-        if stroke.brush().pictures().next().is_none() {
-            return Ok(stroke.clone());
-        }
-        let brush = stroke.brush().with_pictures(|source| {
-            let mut source = source.clone();
-            self.source(file, &mut source)?;
-            Ok(source)
-        })?;
-        Ok(Arc::new(Stroke::new(brush, stroke.operator(), stroke.color(), stroke.samples().to_vec())))
-    }
-    fn source(&mut self, file: &Path, source: &mut PictureSource) -> Result<()> {
-        source.file = self.picture(file, &source.file, &source.picture)?;
-        Ok(())
     }
     /// The maps as their original files; if any of these is unknown, the surface itself.
     fn surface(&mut self, file: &Path, surface: &Arc<Surface>, document: &Document) -> Result<SurfaceSource> {

@@ -97,7 +97,7 @@ fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a T
 /// What a layer's look depends on besides the scene: the layer itself, and normal layers beneath it.
 fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
     let normals = document.walk().into_iter().map(|(_, layer)| layer);
-    let normals = normals.filter(|layer| matches!(layer.content, Content::Normals(_)));
+    let normals = normals.filter(|layer| layer.content.shapes());
     std::iter::once(layer).chain(normals).cloned().collect()
 }
 

@@ -11,7 +11,7 @@
 //!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
 //!   beneath it in its scope.
 
-use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind};
+use crate::document::{Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind, Role};
 use crate::raster::BlendMode;
 use std::sync::Arc;
 
@@ -95,7 +95,7 @@ impl Planner<'_> {
         let Some((base, rest)) = run.split_first() else { return Vec::new() };
         let is_base = is_base(base);
         let clipped = rest.iter().any(|layer| layer.clip_below && layer.visible);
-        if is_base && self.words.clipping && !matches!(base.content, Content::Group(_)) {
+        if is_base && self.words.clipping && base.content.group().is_none() {
             let item = |layer: &Arc<Layer>| PlanItem { clipped: layer.clip_below, ..self.single(layer) };
             return run.iter().map(item).collect();
         }
@@ -124,10 +124,10 @@ impl Planner<'_> {
         plain.unwrap_or_else(|| self.document.clone())
     }
     fn single(&self, layer: &Arc<Layer>) -> PlanItem {
-        let shows = match &layer.content {
-            Content::RadianceScaling(_) | Content::Normals(_) => ItemContent::Nothing(layer.clone()),
-            Content::Group(group) => return self.group(layer, group),
-            _ => ItemContent::Layer(layer.clone()),
+        let shows = match layer.content.role() {
+            Role::Adjusts(_) | Role::Shapes(_) => ItemContent::Nothing(layer.clone()),
+            Role::Groups(group) => return self.group(layer, group),
+            Role::Paints => ItemContent::Layer(layer.clone()),
         };
         let mask = layer.mask.clone().filter(|mask| self.has_word_for(mask));
         PlanItem { shows, mask, ..item(layer) }
@@ -160,10 +160,10 @@ impl Planner<'_> {
             return false;
         }
         let clips = rest.iter().any(|layer| layer.clip_below && layer.visible);
-        match &base.content {
-            Content::RadianceScaling(_) => true,
-            Content::Normals(_) => false,
-            Content::Group(group) if group.pass_through && !clips => {
+        match base.content.role() {
+            Role::Adjusts(_) => true,
+            Role::Shapes(_) => false,
+            Role::Groups(group) if group.pass_through && !clips => {
                 let is_faded = base.opacity < 1.0 || base.mask.is_some();
                 is_faded || runs(&group.layers).iter().any(|run| self.reads_beneath(run))
             }
@@ -174,7 +174,7 @@ impl Planner<'_> {
 
 /// Whether layers above may be clipped to it; normal layers do not interrupt clipping.
 fn is_base(layer: &Layer) -> bool {
-    !layer.clip_below && !matches!(layer.content, Content::Normals(_))
+    !layer.clip_below && !layer.content.shapes()
 }
 
 /// The layers, split before each base: a layer that is neither clipped nor a normal layer.
@@ -225,6 +225,7 @@ fn hidden_parts(name: &str, items: Vec<PlanItem>) -> PlanItem {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::Content;
     use crate::math::{Size, srgb::Color};
     use crate::shading::RadianceScaling;
 

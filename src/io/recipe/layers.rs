@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use super::LayerReader;
-use super::names::{BLEND_SPACES, LOCKS, name_of};
+use super::names::{BLEND_SPACES, LOCKS};
 use super::{images, masks, normals, shading, strokes};
 use crate::document::{Content, Group, Layer, LayerLock, Live, PixelLayer};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
@@ -13,30 +13,20 @@ use crate::{Error, Result};
 use serde_json::Value;
 use std::sync::Arc;
 
-/// The kinds of layers, as the document calls them.
-#[derive(Clone, Copy, PartialEq)]
-enum LayerKind {
-    Fill,
-    Pixels,
-    Image,
-    Gradient,
-    Strokes,
-    Shading,
-    RadianceScaling,
-    Normals,
-    Group,
-}
+/// Reads what a kind of layer has beside what every layer has; the number says how many groups stand around it.
+type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
 
-const KINDS: [(LayerKind, &str); 9] = [
-    (LayerKind::Fill, "fill"),
-    (LayerKind::Pixels, "pixels"),
-    (LayerKind::Image, "image"),
-    (LayerKind::Gradient, "gradient"),
-    (LayerKind::Strokes, "strokes"),
-    (LayerKind::Shading, "shading"),
-    (LayerKind::RadianceScaling, "radiance-scaling"),
-    (LayerKind::Normals, "normals"),
-    (LayerKind::Group, "group"),
+/// Every kind of layer as it is read, with its name in documents ([`Content::kind_name`]).
+const KINDS: [(ReadContent, &str); 9] = [
+    (|_, fields, _| Ok(Content::Fill(fields.color("color", Color::BLACK)?)), "fill"),
+    (|reader, fields, _| Ok(Content::Pixels(reader.pixels(fields)?)), "pixels"),
+    (|reader, fields, _| Ok(Content::Image(Live::new(reader.image(fields)?))), "image"),
+    (|reader, fields, _| Ok(Content::Gradient(Live::new(reader.gradient(fields)?))), "gradient"),
+    (|reader, fields, _| Ok(Content::Strokes(Live::new(reader.strokes(fields)?))), "strokes"),
+    (|reader, fields, _| Ok(Content::Shading(Live::new(reader.shading(fields)?))), "shading"),
+    (|_, fields, _| Ok(Content::RadianceScaling(shading::radiance_scaling(fields)?)), "radiance-scaling"),
+    (|reader, fields, _| Ok(Content::Normals(reader.normals(fields)?)), "normals"),
+    (|reader, fields, depth| Ok(Content::Group(reader.group(fields, depth)?)), "group"),
 ];
 
 impl LayerReader<'_> {
@@ -48,7 +38,7 @@ impl LayerReader<'_> {
     }
     fn layer(&mut self, node: &JsonNode, depth: usize) -> Result<Layer> {
         let mut fields = node.fields()?;
-        let kind = fields.required("kind")?.one_of(&KINDS)?;
+        let read_content = fields.required("kind")?.one_of(&KINDS)?;
         let name = fields.get("name").map_or(Ok(""), |name| name.text())?.to_owned();
         let visible = fields.boolean("visible", true)?;
         let opacity = fields.number("opacity", 1.0, Layer::OPACITY)?;
@@ -58,23 +48,10 @@ impl LayerReader<'_> {
         let lock = fields.one_of("lock", &LOCKS, LayerLock::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
-        let content = self.content(kind, &mut fields, depth)?;
+        let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);
         Ok(Layer { visible, opacity, blend, blend_linear, clip_below, lock, mask, clip_to_surface, ..layer })
-    }
-    fn content(&mut self, kind: LayerKind, fields: &mut Fields, depth: usize) -> Result<Content> {
-        Ok(match kind {
-            LayerKind::Fill => Content::Fill(fields.color("color", Color::BLACK)?),
-            LayerKind::Pixels => Content::Pixels(self.pixels(fields)?),
-            LayerKind::Image => Content::Image(Live::new(self.image(fields)?)),
-            LayerKind::Gradient => Content::Gradient(Live::new(self.gradient(fields)?)),
-            LayerKind::Strokes => Content::Strokes(Live::new(self.strokes(fields)?)),
-            LayerKind::Normals => Content::Normals(self.normals(fields)?),
-            LayerKind::Group => Content::Group(self.group(fields, depth)?),
-            LayerKind::Shading => Content::Shading(Live::new(self.shading(fields)?)),
-            LayerKind::RadianceScaling => Content::RadianceScaling(shading::radiance_scaling(fields)?),
-        })
     }
     fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
         let mut offset = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
@@ -135,7 +112,7 @@ pub fn print(layers: &[Arc<Layer>], canvas: Size, out: &mut Printer) {
 fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     let mut out = JsonObject::default();
     out.text("name", &layer.name, "");
-    out.set("kind", name_of(&KINDS, kind_of(&layer.content)).into());
+    out.set("kind", layer.content.kind_name().into());
     out.flag("visible", layer.visible, true);
     out.number("opacity", layer.opacity, 1.0);
     out.word("blend", &BlendMode::ALL, layer.blend, BlendMode::Normal);
@@ -165,19 +142,5 @@ fn write_content(out: &mut JsonObject, content: &Content, canvas: Size) {
         Content::RadianceScaling(scaling) => shading::write_radiance_scaling(out, scaling),
         Content::Normals(layer) => normals::write(out, layer, canvas),
         Content::Group(group) => out.flag("pass_through", group.pass_through, false),
-    }
-}
-
-fn kind_of(content: &Content) -> LayerKind {
-    match content {
-        Content::Fill(_) => LayerKind::Fill,
-        Content::Pixels(_) => LayerKind::Pixels,
-        Content::Image(_) => LayerKind::Image,
-        Content::Gradient(_) => LayerKind::Gradient,
-        Content::Strokes(_) => LayerKind::Strokes,
-        Content::Shading(_) => LayerKind::Shading,
-        Content::RadianceScaling(_) => LayerKind::RadianceScaling,
-        Content::Normals(_) => LayerKind::Normals,
-        Content::Group(_) => LayerKind::Group,
     }
 }

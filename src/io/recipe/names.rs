@@ -16,8 +16,3 @@ pub const FILTERS: [(ImageFilter, &str); 2] =
 
 /// Whether a layer blends linear light.
 pub const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
-
-/// The name of a value; the table has all values of the type.
-pub fn name_of<T: PartialEq>(table: &[(T, &'static str)], value: T) -> &'static str {
-    table.iter().find(|(v, _)| *v == value).map_or("", |(_, name)| name)
-}

@@ -4,7 +4,7 @@
 use super::force::Force;
 use super::{LimitArgs, progress, render};
 use crate::Result;
-use crate::document::{Content, Document, flatten, flatten_deep, flatten_layer};
+use crate::document::{Document, flatten, flatten_deep, flatten_layer};
 use crate::io::export::{ExportFormat, ExportOptions, Output, OutputFile, deep, layers};
 use crate::io::fs::Disk;
 use crate::io::replace::{Terms, check};
@@ -131,7 +131,7 @@ fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions, 
     let extension = args.to.extension().unwrap_or_default().to_string_lossy();
     let mut targets = Vec::new();
     for (i, (_, layer)) in document.walk().into_iter().enumerate() {
-        if matches!(layer.content, Content::Group(_) | Content::Normals(_) | Content::RadianceScaling(_)) {
+        if !layer.content.paints() {
             continue;
         }
         let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };

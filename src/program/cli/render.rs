@@ -4,7 +4,7 @@
 use super::force::Force;
 use super::{LimitArgs, convert, progress};
 use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
-use crate::document::{Content, Document, SurfaceSource, flatten, flatten_layer};
+use crate::document::{Document, SurfaceSource, flatten, flatten_layer};
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::open::FileKind;
@@ -140,10 +140,8 @@ fn load(args: &RenderArgs) -> Result<LoadedDocument> {
 /// Refuses layers that would paint black because their picture is missing.
 pub(super) fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> {
     for (path, layer) in document.walk() {
-        let Content::Shading(shading) = &layer.content else { continue };
-        if layer.visible && shading.params().lacks_environment() {
-            let reason = format!("is missing; “{}” shows nothing else", shading.params().model.name());
-            return Err(Error::invalid(file, format!("{path}.environment"), reason));
+        if let Some((field, reason)) = layer.content.lacks().filter(|_| layer.visible) {
+            return Err(Error::invalid(file, format!("{path}.{field}"), reason));
         }
     }
     Ok(())

@@ -223,13 +223,13 @@ pub fn is_same(a: &Document, b: &Document) -> bool {
 
 /// The document with one layer shown alone; `None` if it has no such layer.
 fn alone(document: &Document, id: LayerId) -> Option<Document> {
-    use crate::document::{Content, Layer};
+    use crate::document::Layer;
     fn hide(layers: &[Arc<Layer>], id: LayerId) -> (Vec<Arc<Layer>>, bool) {
         let mut found = false;
         let layers = layers.iter().map(|layer| {
             let mut next = Layer::clone(layer);
-            next.visible = layer.id == id || (layer.visible && matches!(layer.content, Content::Normals(_)));
-            if let Content::Group(group) = &mut next.content
+            next.visible = layer.id == id || (layer.visible && layer.content.shapes());
+            if let Some(group) = next.content.group_mut()
                 && layer.id != id
             {
                 let (inner, inside) = hide(&group.layers, id);

@@ -2,7 +2,7 @@
 //! Floor 6. In memory layers have ids; those are new with every run.
 
 use super::replay::ReplayValue;
-use crate::document::{Content, Document, Layer, LayerId};
+use crate::document::{Document, Layer, LayerId};
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -16,8 +16,7 @@ impl LayerPath {
         fn find(layers: &[Arc<Layer>], id: LayerId, path: &mut Vec<usize>) -> bool {
             layers.iter().enumerate().any(|(index, layer)| {
                 path.push(index);
-                let here =
-                    layer.id == id || matches!(&layer.content, Content::Group(group) if find(&group.layers, id, path));
+                let here = layer.id == id || layer.content.group().is_some_and(|group| find(&group.layers, id, path));
                 if !here {
                     path.pop();
                 }
@@ -30,10 +29,7 @@ impl LayerPath {
     /// The layer at the path.
     pub fn find<'a>(&self, document: &'a Document) -> Option<&'a Arc<Layer>> {
         let (first, rest) = self.0.split_first()?;
-        rest.iter().try_fold(document.layers.get(*first)?, |layer, index| match &layer.content {
-            Content::Group(group) => group.layers.get(*index),
-            _ => None,
-        })
+        rest.iter().try_fold(document.layers.get(*first)?, |layer, index| layer.content.group()?.layers.get(*index))
     }
 }
 
@@ -51,7 +47,7 @@ impl ReplayValue for LayerPath {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Group;
+    use crate::document::{Content, Group};
     use crate::math::{Size, srgb::Color};
 
     #[test]

@@ -2,10 +2,9 @@
 //! Floor 5.
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, Live, PixelLayer, StrokeList};
+use crate::document::{Content, Document, Layer, LayerId, LayerLock};
 use crate::math::Vec2;
-use crate::paint::{Gradient, PlacedImage, Placement, picking};
-use std::sync::Arc;
+use crate::paint::picking;
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
@@ -60,46 +59,18 @@ impl Gesture for MoveGesture {
 
 /// The layer with its content moved; `by` in whole pixels. Content that covers the whole canvas stays as it is.
 pub fn moved(layer: &Layer, by: Vec2) -> Layer {
-    let content = match &layer.content {
-        Content::Pixels(pixels) => Content::Pixels(PixelLayer {
-            x: pixels.x.saturating_add(by.x as i32),
-            y: pixels.y.saturating_add(by.y as i32),
-            tiles: pixels.tiles.translated(by.x as i32, by.y as i32),
-            file: pixels.file.clone(),
-        }),
-        Content::Image(live) => {
-            let image = live.params();
-            let placement = Placement { center: image.placement.center + by, ..image.placement };
-            Content::Image(Live::new(PlacedImage { placement, ..image.clone() }))
-        }
-        Content::Gradient(live) => {
-            let gradient = live.params();
-            Content::Gradient(Live::new(Gradient {
-                from: gradient.from + by,
-                to: gradient.to + by,
-                ..gradient.clone()
-            }))
-        }
-        Content::Strokes(live) => {
-            let strokes = live.params().strokes.iter().map(|stroke| Arc::new(stroke.moved(by))).collect();
-            Content::Strokes(Live::new(StrokeList { strokes }))
-        }
-        Content::Group(group) => {
-            let layers = group.layers.iter().map(|layer| Arc::new(moved(layer, by))).collect();
-            Content::Group(Group { layers, ..group.clone() })
-        }
-        content => content.clone(),
-    };
-    Layer { content, ..layer.clone() }
+    Layer { content: layer.content.moved(by), ..layer.clone() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::{Live, PixelLayer, StrokeList};
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::{Brush, Sample, Stroke};
     use crate::raster::TileGrid;
     use crate::surface::Operator;
+    use std::sync::Arc;
 
     fn dragged(document: &Document, from: Vec2, to: Vec2) -> Document {
         let (brush, layer) = (Brush::default(), Some(document.layers[0].id));

@@ -30,7 +30,7 @@ fn layer_is(session: &Session, is: impl FnOnce(&Layer) -> bool) -> bool {
     session.layer().is_some_and(|layer| is(layer))
 }
 fn is_group(session: &Session) -> bool {
-    layer_is(session, |layer| matches!(layer.content, Content::Group(_)))
+    layer_is(session, |layer| layer.content.group().is_some())
 }
 fn is_live(session: &Session) -> bool {
     layer_is(session, |layer| !matches!(layer.content, Content::Pixels(_) | Content::RadianceScaling(_)))

@@ -1,9 +1,9 @@
 //! Redrawing only what differs must give what drawing everything gives.
 
 use super::*;
-use crate::document::{Group, LayerSlot, Live, PixelLayer, PreparedDocument, Progress, StrokeList, flatten};
+use crate::document::{Content, Group, LayerSlot, Live, PixelLayer, PreparedDocument, Progress, StrokeList, flatten};
 use crate::math::{Size, hash, srgb::Color, vec2, vec3};
-use crate::paint::{Brush, Gradient, GradientStop};
+use crate::paint::{Brush, Gradient, GradientStop, Stroke};
 use crate::raster::{BlendMode, Plane, TileGrid};
 use crate::shading::RadianceScaling;
 use crate::surface::{Maps, Operator, Surface};

@@ -1,7 +1,7 @@
 //! Layers' arithmetic on tiny documents, against values computed by hand.
 
 use super::*;
-use crate::document::{Group, LayerMask, MaskKind, PixelLayer};
+use crate::document::{Content, Group, LayerMask, MaskKind, PixelLayer};
 use crate::math::{Size, Vec3, srgb::Color, vec3};
 use crate::raster::{BlendMode, Plane};
 use crate::surface::{Maps, Surface};

@@ -42,7 +42,7 @@ impl DocumentReducer {
         // Groups cost nothing once their layers are known.
         let is_new = |layer: &&Arc<Layer>| {
             let known = self.layers.get(&layer.id).is_some_and(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
-            !known && !matches!(layer.content, Content::Group(_))
+            !known && layer.content.group().is_none()
         };
         let Some(layer) = document.walk().into_iter().map(|(_, layer)| layer).find(is_new) else { return false };
         self.layers.insert(layer.id, (Arc::downgrade(layer), Arc::new(scale.layer(layer))));
@@ -70,12 +70,10 @@ impl DocumentReducer {
         for layer in layers {
             let known = self.layers.get(&layer.id).filter(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
             // Also if the group itself is known: its layers must stay known.
-            let inner = match &layer.content {
-                Content::Group(group) => {
-                    Some(Group { layers: self.stack(&group.layers, scale, next), ..group.clone() })
-                }
-                _ => None,
-            };
+            let inner = layer.content.group().map(|group| Group {
+                layers: self.stack(&group.layers, scale, next),
+                pass_through: group.pass_through,
+            });
             let made = match (known, inner) {
                 (Some((_, made)), _) => made.clone(),
                 (None, Some(group)) => {

@@ -1,12 +1,12 @@
 //! A document at another size must look like its picture at that size.
 
 use super::*;
-use crate::document::{LayerMask, Progress, flatten};
+use crate::document::{Content, Group, LayerMask, Live, Progress, StrokeList, flatten};
 use crate::math::{srgb::Color, vec3};
 use crate::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{BlendMode, Outside, Picture};
 use crate::shading::RadianceScaling;
-use crate::surface::{Bend, Maps, Operator, Surface, Weights};
+use crate::surface::{Anchor, Bend, Maps, Operator, Surface, Weights};
 
 const SIZE: Size = Size::new(240, 160);
 

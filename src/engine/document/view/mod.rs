@@ -10,7 +10,7 @@ mod weights;
 pub use sheet::sheet;
 pub use weights::color_of as anchor_color;
 
-use super::{Content, Document, Layer};
+use super::{Document, Layer};
 use crate::math::{Size, srgb::quantise};
 use crate::raster::{Picture, Plane};
 use crate::surface::{Bend, Surface};
@@ -148,11 +148,7 @@ pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<SurfaceView>
 
 /// A layer's operator, anchors and weights.
 fn bend(document: &Document, layer: Option<&Layer>) -> Result<Bend, ViewUnavailable> {
-    let of = |layer: &Layer| match &layer.content {
-        Content::Image(image) => Some(image.params().bend.clone()).filter(|bend| !bend.anchors.is_empty()),
-        Content::Gradient(gradient) => Some(gradient.params().bend()),
-        _ => None,
-    };
+    let of = |layer: &Layer| layer.content.bend().filter(|bend| !bend.anchors.is_empty());
     match layer {
         Some(layer) => of(layer).ok_or_else(|| ViewUnavailable::NoAnchors(layer.name.clone())),
         None => {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::document::{Layer, Live};
+use crate::document::{Content, Layer, Live};
 use crate::math::{Size, Vec3, srgb::Color, vec2, vec3};
 use crate::paint::gradient::GradientStop;
 use crate::paint::{Gradient, ImageFilter};

@@ -217,13 +217,7 @@ pub fn of_picture(name: &str, picture: Picture) -> Document {
 
 /// A file name that no other picture of the document has.
 pub(super) fn free_file(document: &Document, name: &str) -> String {
-    let taken = |name: &str| {
-        document.walk().iter().any(|(_, layer)| match &layer.content {
-            Content::Image(live) => live.params().source.file == name,
-            Content::Pixels(pixels) => pixels.file == name,
-            _ => false,
-        })
-    };
+    let taken = |name: &str| document.walk().iter().any(|(_, layer)| layer.content.files().contains(&name));
     let path = Path::new(name);
     let (stem, extension) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
     let mut free = name.to_owned();

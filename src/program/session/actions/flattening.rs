@@ -37,14 +37,9 @@ impl LayerAction {
     }
 }
 
-/// A paint layer's content without paint.
-pub(super) fn no_pixels() -> PixelLayer {
-    PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() }
-}
-
 /// A paint layer that holds these tiles.
 pub fn painted(name: &str, tiles: TileGrid) -> Layer {
-    Layer::new(name, Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
+    Layer::new(name, Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
 }
 
 /// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to the layer.
@@ -53,7 +48,8 @@ fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Docu
         (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
     })?;
     let tiles = flatten_layer(&bare, layer.id, progress)?;
-    document.with_layer(layer.id, |layer| layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() }))
+    document
+        .with_layer(layer.id, |layer| layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
 }
 
 /// A layer and the one beneath it as one paint layer.
@@ -67,7 +63,7 @@ fn merged(document: &Document, layer: &Layer, progress: &Progress) -> Option<Edi
     pair.layers.push(Arc::new(layer.clone()));
     let tiles = flatten(&pair, progress)?;
     let document = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
-        layer.content = Content::Pixels(PixelLayer { tiles, ..no_pixels() });
+        layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
         (layer.opacity, layer.mask) = (1.0, None);
     })?;
     Some(Edit { label: "Merge down", document, select: Some(beneath.id) })

@@ -1,9 +1,8 @@
 //! Actions on the layer tree and its layers. Floor 6. The edits themselves are in `document::edit`.
 
-use super::flattening::no_pixels;
 use crate::document::{
     Content, DetailSource, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, NormalLayer,
-    Progress, StrokeList,
+    PixelLayer, Progress, StrokeList,
 };
 use crate::math::vec2;
 use crate::paint::{Gradient, GradientStop, ImageFilter, Placement};
@@ -193,7 +192,7 @@ impl LayerAction {
             }
             LayerAction::Ungroup { layer: path } => {
                 let layer = layer(path)?;
-                let Content::Group(group) = &layer.content else { return None };
+                let group = layer.content.group()?;
                 let place = document.place_of(layer.id)?;
                 let mut next = document.without_layer(layer.id)?;
                 for (i, inner) in group.layers.iter().enumerate() {
@@ -203,12 +202,8 @@ impl LayerAction {
             }
             LayerAction::Clear { layer: path } => {
                 let layer = layer(path)?;
-                let next = document.with_layer(layer.id, |layer| match &mut layer.content {
-                    Content::Strokes(live) => *live = Live::new(StrokeList::default()),
-                    Content::Pixels(pixels) => *pixels = no_pixels(),
-                    _ => {}
-                })?;
-                ("Clear layer", next, None)
+                let empty = layer.content.emptied()?;
+                ("Clear layer", document.with_layer(layer.id, |layer| layer.content = empty)?, None)
             }
             LayerAction::Select { .. }
             | LayerAction::Solo { .. }
@@ -233,7 +228,7 @@ fn set(tab: &mut OpenDocument, layer: &LayerPath, to: &Property, done: bool) {
 pub fn above(tab: &OpenDocument) -> LayerSlot {
     let document = tab.document();
     let Some(layer) = tab.selected.and_then(|id| document.layer(id)) else { return LayerSlot::top_level(usize::MAX) };
-    if matches!(layer.content, Content::Group(_)) {
+    if layer.content.group().is_some() {
         return LayerSlot::in_group(layer.id, usize::MAX);
     }
     let place = document.place_of(layer.id).unwrap_or(LayerSlot::top_level(usize::MAX));
@@ -244,10 +239,7 @@ pub fn above(tab: &OpenDocument) -> LayerSlot {
 pub(super) fn sibling(document: &Document, place: LayerSlot) -> Option<LayerId> {
     let layers = match place.group {
         None => &document.layers,
-        Some(group) => match &document.layer(group)?.content {
-            Content::Group(group) => &group.layers,
-            _ => return None,
-        },
+        Some(group) => &document.layer(group)?.content.group()?.layers,
     };
     layers.get(place.index).map(|layer| layer.id).or(place.group)
 }
@@ -262,7 +254,7 @@ fn model_name(model: Model) -> String {
 fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> Layer {
     let size = document.size;
     let (name, content) = match kind {
-        NewLayer::Paint => ("Paint", Content::Pixels(no_pixels())),
+        NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),
         NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
         NewLayer::Fill => (
             "Fill",
@@ -293,7 +285,7 @@ fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> La
 /// A copy under fresh ids.
 fn copied(layer: &Layer, name: &str) -> Layer {
     let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
-    if let Content::Group(group) = &mut copy.content {
+    if let Some(group) = copy.content.group_mut() {
         group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
     }
     copy

@@ -1,7 +1,7 @@
 //! Dragging a layer to another position of the list.
 //! Floor 7.
 
-use crate::document::{Content, Document, Layer, LayerId};
+use crate::document::{Document, Layer, LayerId};
 use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPath};
@@ -53,8 +53,8 @@ enum LayerDrop {
 
 fn drop_at(layer: &Layer, rect: Rect, y: f32) -> LayerDrop {
     let along = (y - rect.top()) / rect.height();
-    match &layer.content {
-        Content::Group(_) if (0.25..0.75).contains(&along) => LayerDrop::Into,
+    match layer.content.group() {
+        Some(_) if (0.25..0.75).contains(&along) => LayerDrop::Into,
         _ if along < 0.5 => LayerDrop::Above,
         _ => LayerDrop::Below,
     }

@@ -18,17 +18,17 @@ use eframe::egui::{self, Ui};
 use row::LayerRow;
 use std::sync::Arc;
 
-pub fn kind_icon(content: &Content) -> (Icon, &'static str) {
+pub fn kind_icon(content: &Content) -> Icon {
     match content {
-        Content::Fill(_) => (Icon::Fill, "Fill"),
-        Content::Pixels(_) => (Icon::Pixels, "Paint"),
-        Content::Image(_) => (Icon::Tool(ToolKind::Image), "Image"),
-        Content::Gradient(_) => (Icon::Tool(ToolKind::Gradient), "Gradient"),
-        Content::Strokes(_) => (Icon::Tool(ToolKind::Strokes), "Strokes"),
-        Content::Shading(_) => (Icon::Shading, "Shading"),
-        Content::RadianceScaling(_) => (Icon::Scaling, "Radiance scaling"),
-        Content::Normals(_) => (Icon::Normals, "Normals"),
-        Content::Group(_) => (Icon::Group, "Group"),
+        Content::Fill(_) => Icon::Fill,
+        Content::Pixels(_) => Icon::Pixels,
+        Content::Image(_) => Icon::Tool(ToolKind::Image),
+        Content::Gradient(_) => Icon::Tool(ToolKind::Gradient),
+        Content::Strokes(_) => Icon::Tool(ToolKind::Strokes),
+        Content::Shading(_) => Icon::Shading,
+        Content::RadianceScaling(_) => Icon::Scaling,
+        Content::Normals(_) => Icon::Normals,
+        Content::Group(_) => Icon::Group,
     }
 }
 
@@ -137,7 +137,7 @@ fn rows(
         let Some(path) = LayerPath::of(document, layer.id) else { continue };
         let row = LayerRow { session, document, layer, path, depth };
         row.show(ui, thumbnails, requests);
-        if let Content::Group(Group { layers, .. }) = &layer.content
+        if let Some(Group { layers, .. }) = layer.content.group()
             && !row::is_folded(ui, layer.id)
         {
             rows(ui, session, document, layers, depth + 1, thumbnails, requests);

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::{drag, kind_icon, menu, set};
-use crate::document::{Content, Document, Layer, LayerId, LayerLock, MaskKind};
+use crate::document::{Document, Layer, LayerId, LayerLock, MaskKind};
 use crate::icons::{Icon, sized_button};
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
@@ -72,7 +72,7 @@ impl LayerRow<'_> {
         if eye.on_hover_text("Show or hide").clicked() {
             set(requests, &self.path, Property::Visible { on: !layer.visible }, true);
         }
-        if matches!(layer.content, Content::Group(_)) {
+        if layer.content.group().is_some() {
             let is_folded = is_folded(ui, layer.id);
             let icon = if is_folded { Icon::Closed } else { Icon::Opened };
             if sized_button(ui, icon, &format!("Fold {}", layer.name), false, 18.0).clicked() {
@@ -128,7 +128,7 @@ impl LayerRow<'_> {
 /// The thumbnail, or the kind's icon until there is one.
 fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mut Thumbnails) {
     let (rect, _) = ui.allocate_exact_size(vec2(30.0, 30.0), Sense::hover());
-    let (icon, _) = kind_icon(&layer.content);
+    let icon = kind_icon(&layer.content);
     ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x70));
     if let Some((texture, size)) = thumbnails.of(ui.ctx(), document, layer) {
         let scale = (rect.width() / size.x).min(rect.height() / size.y);
@@ -183,10 +183,9 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
         TextStyle::Body,
     );
     ui.painter().galley(pos2(at.left() + 3.0, at.top() + 4.0), galley, color);
-    let (_, kind) = kind_icon(&layer.content);
     let mode = if layer.blend == BlendMode::Normal { String::new() } else { format!(" · {}", layer.blend.label()) };
     let opacity = if layer.opacity < 1.0 { format!(" · {:.0} %", layer.opacity * 100.0) } else { String::new() };
-    let about = format!("{kind}{mode}{opacity}");
+    let about = format!("{}{mode}{opacity}", layer.content.label());
     let font = TextStyle::Small.resolve(ui.style());
     ui.painter().text(
         pos2(at.left() + 3.0, at.bottom() - 5.0),

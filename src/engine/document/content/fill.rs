@@ -1,0 +1,25 @@
+//! A fill: one colour everywhere.
+//! Floor 4.
+
+use super::{CanvasScale, Changed, Content, LayerKind, TileContent};
+use crate::math::srgb::Color;
+use crate::paint::Scene;
+use crate::raster::TileAt;
+
+impl LayerKind for Color {
+    fn name(&self) -> &'static str {
+        "fill"
+    }
+    fn label(&self) -> &'static str {
+        "Fill"
+    }
+    fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
+        TileContent::Solid(self.premultiplied())
+    }
+    fn scaled(&self, _scale: &CanvasScale) -> Content {
+        Content::Fill(*self)
+    }
+    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+        Changed::wholly_if(!matches!(old, Content::Fill(old) if old == self))
+    }
+}

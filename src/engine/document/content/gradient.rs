@@ -1,0 +1,42 @@
+//! A gradient, kept live.
+//! Floor 4. Its rendering is `paint::gradient`'s.
+
+use super::{CanvasScale, Changed, Content, LayerKind, TileContent};
+use crate::document::Live;
+use crate::math::Vec2;
+use crate::paint::{Gradient, Scene};
+use crate::raster::TileAt;
+use crate::surface::{Bend, Deformation};
+
+impl LayerKind for Live<Gradient> {
+    fn name(&self) -> &'static str {
+        "gradient"
+    }
+    fn label(&self) -> &'static str {
+        "Gradient"
+    }
+    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+        TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
+    }
+    fn warm(&self, scene: &Scene) {
+        let bend = Bend { operator: self.params().operator, ..Bend::default() };
+        Deformation::new(scene.surface.as_deref(), scene.size, &bend);
+    }
+    fn scaled(&self, scale: &CanvasScale) -> Content {
+        let mut gradient = self.params().clone();
+        gradient.from *= scale.per_axis;
+        gradient.to *= scale.per_axis;
+        Content::Gradient(Live::new(gradient))
+    }
+    fn moved(&self, by: Vec2) -> Option<Content> {
+        let gradient = self.params();
+        let (from, to) = (gradient.from + by, gradient.to + by);
+        Some(Content::Gradient(Live::new(Gradient { from, to, ..gradient.clone() })))
+    }
+    fn bend(&self) -> Option<Bend> {
+        Some(self.params().bend())
+    }
+    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+        Changed::of_live(self, if let Content::Gradient(old) = old { Some(old) } else { None })
+    }
+}

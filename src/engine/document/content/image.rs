@@ -1,0 +1,53 @@
+//! A placed image, kept live.
+//! Floor 4. Its rendering is `paint::image`'s.
+
+use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
+use crate::Result;
+use crate::document::Live;
+use crate::math::Vec2;
+use crate::paint::{PlacedImage, Placement, Scene};
+use crate::raster::TileAt;
+use crate::surface::{Anchor, Bend, Deformation};
+
+impl LayerKind for Live<PlacedImage> {
+    fn name(&self) -> &'static str {
+        "image"
+    }
+    fn label(&self) -> &'static str {
+        "Image"
+    }
+    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+        TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
+    }
+    fn warm(&self, scene: &Scene) {
+        self.params().source.texture();
+        Deformation::new(scene.surface.as_deref(), scene.size, &self.params().bend);
+    }
+    fn scaled(&self, scale: &CanvasScale) -> Content {
+        let mut image = self.params().clone();
+        image.placement.center *= scale.per_axis;
+        for Anchor { at, source } in &mut image.bend.anchors {
+            (*at, *source) = (*at * scale.per_axis, *source * scale.per_axis);
+        }
+        Content::Image(Live::new(image))
+    }
+    fn moved(&self, by: Vec2) -> Option<Content> {
+        let image = self.params();
+        let placement = Placement { center: image.placement.center + by, ..image.placement };
+        Some(Content::Image(Live::new(PlacedImage { placement, ..image.clone() })))
+    }
+    fn bend(&self) -> Option<Bend> {
+        Some(self.params().bend.clone())
+    }
+    fn files(&self) -> Vec<&str> {
+        vec![&self.params().source.file]
+    }
+    fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
+        let mut image = self.params().clone();
+        image.source.file = name(&image.source.file, &image.source.picture)?;
+        Ok(Some(Content::Image(Live::new(image))))
+    }
+    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+        Changed::of_live(self, if let Content::Image(old) = old { Some(old) } else { None })
+    }
+}

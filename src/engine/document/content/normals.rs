@@ -1,0 +1,47 @@
+//! Detail laid onto the surface for what stands above.
+//! Floor 4. What it lays is `document::normals`'.
+
+use super::{CanvasScale, Changed, Content, LayerKind, NameFile, Role, Touched};
+use crate::Result;
+use crate::document::{DetailSource, NormalLayer};
+use crate::paint::Scene;
+
+impl LayerKind for NormalLayer {
+    fn name(&self) -> &'static str {
+        "normals"
+    }
+    fn label(&self) -> &'static str {
+        "Normals"
+    }
+    fn role(&self) -> Role<'_> {
+        Role::Shapes(self)
+    }
+    fn scaled(&self, scale: &CanvasScale) -> Content {
+        let mut normals = self.clone();
+        normals.placement.center *= scale.per_axis;
+        if let DetailSource::Grain(grain) = &mut normals.source {
+            grain.size_px *= scale.length;
+        }
+        Content::Normals(normals)
+    }
+    fn files(&self) -> Vec<&str> {
+        match &self.source {
+            DetailSource::Map { picture, .. } => vec![&picture.file],
+            DetailSource::Grain(_) => Vec::new(),
+        }
+    }
+    fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
+        let mut normals = self.clone();
+        if let DetailSource::Map { picture, .. } = &mut normals.source {
+            picture.file = name(&picture.file, &picture.picture)?;
+        }
+        Ok(Some(Content::Normals(normals)))
+    }
+    /// What sees it has other surroundings.
+    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+        Touched::Nowhere
+    }
+    fn changed_from(&self, _old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+        Changed::Wholly
+    }
+}

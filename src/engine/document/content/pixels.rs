@@ -1,0 +1,56 @@
+//! A paint layer: pixels, and where they came from.
+//! Floor 4.
+
+use super::{CanvasScale, Changed, Content, LayerKind, TileContent, Touched};
+use crate::math::Vec2;
+use crate::paint::Scene;
+use crate::raster::{TileAt, TileGrid};
+
+/// A paint layer.
+#[derive(Clone, Default)]
+pub struct PixelLayer {
+    /// Where the pixels came from, if a file; empty for pixels painted here.
+    pub file: String,
+    pub x: i32,
+    pub y: i32,
+    /// On the canvas lattice, offset applied.
+    pub tiles: TileGrid,
+}
+
+impl LayerKind for PixelLayer {
+    fn name(&self) -> &'static str {
+        "pixels"
+    }
+    fn label(&self) -> &'static str {
+        "Paint"
+    }
+    fn painted(&self, _scene: &Scene, at: TileAt) -> TileContent {
+        TileContent::of_tile(self.tiles.tile(at).cloned())
+    }
+    fn scaled(&self, scale: &CanvasScale) -> Content {
+        Content::Pixels(scale.pixels(self))
+    }
+    fn moved(&self, by: Vec2) -> Option<Content> {
+        Some(Content::Pixels(PixelLayer {
+            x: self.x.saturating_add(by.x as i32),
+            y: self.y.saturating_add(by.y as i32),
+            tiles: self.tiles.translated(by.x as i32, by.y as i32),
+            file: self.file.clone(),
+        }))
+    }
+    fn emptied(&self) -> Option<Content> {
+        Some(Content::Pixels(PixelLayer::default()))
+    }
+    fn files(&self) -> Vec<&str> {
+        vec![&self.file]
+    }
+    fn touched(&self, _scene: Option<&Scene>) -> Touched {
+        Touched::Tiles(self.tiles.iter().map(|(at, _)| at).collect())
+    }
+    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+        match old {
+            Content::Pixels(old) => Changed::Tiles(old.tiles.changed_tiles(&self.tiles)),
+            _ => Changed::Wholly,
+        }
+    }
+}

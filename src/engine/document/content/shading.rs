@@ -1,0 +1,62 @@
+//! A material under light, kept live.
+//! Floor 4. Its rendering is `shading::material`'s.
+
+use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
+use crate::Result;
+use crate::document::Live;
+use crate::paint::Scene;
+use crate::raster::TileAt;
+use crate::shading::{LightKind, LitSphere, Shading};
+
+/// The lit spheres of a material.
+fn spheres(shading: &Shading) -> impl Iterator<Item = &LitSphere> {
+    [&shading.sphere, &shading.sphere_concave].into_iter().flatten()
+}
+
+impl LayerKind for Live<Shading> {
+    fn name(&self) -> &'static str {
+        "shading"
+    }
+    fn label(&self) -> &'static str {
+        "Shading"
+    }
+    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+        TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
+    }
+    fn warm(&self, scene: &Scene) {
+        self.params().warm(scene);
+    }
+    fn scaled(&self, scale: &CanvasScale) -> Content {
+        let mut shading = self.params().clone();
+        scale.features(&mut shading.features);
+        shading.occlusion_radius_px *= scale.length;
+        for light in &mut shading.lights {
+            if let LightKind::Point { position } = &mut light.kind {
+                *position *= scale.per_axis.extend(scale.length);
+            }
+        }
+        Content::Shading(Live::new(shading))
+    }
+    fn files(&self) -> Vec<&str> {
+        let environment = self.params().environment.iter().map(|environment| environment.file.as_str());
+        environment.chain(spheres(self.params()).map(|sphere| sphere.file.as_str())).collect()
+    }
+    fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
+        let mut shading = self.params().clone();
+        if let Some(environment) = &mut shading.environment {
+            environment.file = name(&environment.file, &environment.picture)?;
+        }
+        for sphere in [&mut shading.sphere, &mut shading.sphere_concave].into_iter().flatten() {
+            sphere.file = name(&sphere.file, &sphere.picture)?;
+        }
+        Ok(Some(Content::Shading(Live::new(shading))))
+    }
+    fn lacks(&self) -> Option<(&'static str, String)> {
+        let shading = self.params();
+        let reason = || format!("is missing; “{}” shows nothing else", shading.model.name());
+        shading.lacks_environment().then(|| ("environment", reason()))
+    }
+    fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
+        Changed::of_live(self, if let Content::Shading(old) = old { Some(old) } else { None })
+    }
+}

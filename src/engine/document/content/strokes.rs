@@ -1,0 +1,100 @@
+//! Strokes, kept live.
+//! Floor 4. Their rendering is `paint::stroke`'s; edits of single strokes are `document::strokes`'.
+
+use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
+use crate::Result;
+use crate::document::Live;
+use crate::math::Vec2;
+use crate::paint::{Scene, Stroke, stroke};
+use crate::raster::TileAt;
+use crate::surface::{Bend, Deformation};
+use std::sync::Arc;
+
+/// The strokes of a stroke layer, in the order they were painted. Shared, so that adding one copies pointers.
+#[derive(Clone, Default)]
+pub struct StrokeList {
+    pub strokes: Vec<Arc<Stroke>>,
+}
+
+impl LayerKind for Live<StrokeList> {
+    fn name(&self) -> &'static str {
+        "strokes"
+    }
+    fn label(&self) -> &'static str {
+        "Strokes"
+    }
+    fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+        TileContent::of_tile(self.tile(scene, at, || stroke::render_tile(&self.params().strokes, scene, at)))
+    }
+    fn warm(&self, scene: &Scene) {
+        for stroke in &self.params().strokes {
+            let bend = Bend { operator: stroke.operator(), ..Bend::default() };
+            Deformation::new(scene.surface.as_deref(), scene.size, &bend);
+        }
+    }
+    fn scaled(&self, scale: &CanvasScale) -> Content {
+        self.with_each(|stroke| Arc::new(scale.stroke(stroke)))
+    }
+    fn moved(&self, by: Vec2) -> Option<Content> {
+        Some(self.with_each(|stroke| Arc::new(stroke.moved(by))))
+    }
+    fn emptied(&self) -> Option<Content> {
+        Some(Content::Strokes(Live::new(StrokeList::default())))
+    }
+    fn files(&self) -> Vec<&str> {
+        let pictures = self.params().strokes.iter().flat_map(|stroke| stroke.brush().pictures());
+        pictures.map(|source| source.file.as_str()).collect()
+    }
+    fn with_files(&self, name: &mut NameFile) -> Result<Option<Content>> {
+        let mut renamed = |stroke: &Arc<Stroke>| {
+            if stroke.brush().pictures().next().is_none() {
+                return Ok(stroke.clone());
+            }
+            let brush = stroke.brush().with_pictures(|source| {
+                let mut source = source.clone();
+                source.file = name(&source.file, &source.picture)?;
+                Ok::<_, crate::Error>(source)
+            })?;
+            Ok(Arc::new(Stroke::new(brush, stroke.operator(), stroke.color(), stroke.samples().to_vec())))
+        };
+        let strokes = self.params().strokes.iter().map(&mut renamed).collect::<Result<_>>()?;
+        Ok(Some(Content::Strokes(Live::new(StrokeList { strokes }))))
+    }
+    fn touched(&self, scene: Option<&Scene>) -> Touched {
+        let strokes = &self.params().strokes;
+        match scene {
+            Some(scene) => Touched::Rects(strokes.iter().map(|stroke| stroke.bounds(scene)).collect()),
+            None if strokes.is_empty() => Touched::Nowhere,
+            // Bounds hold for one surface.
+            None => Touched::Canvas,
+        }
+    }
+    /// Where both are rendered, their tiles tell.
+    fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
+        let Content::Strokes(old) = old else { return Changed::Wholly };
+        if self.ptr_eq(old) {
+            return Changed::Nowhere;
+        }
+        let scene = scene();
+        let (same, canvas) = (old.same_tiles(self, &scene), scene.size.rect());
+        let differing = differing(&old.params().strokes, &self.params().strokes);
+        let tiles = differing.flat_map(|stroke| TileAt::covering(stroke.bounds(&scene).intersect(canvas)));
+        Changed::Tiles(tiles.filter(|&at| !same(at)).collect())
+    }
+}
+
+impl Live<StrokeList> {
+    fn with_each(&self, change: impl Fn(&Arc<Stroke>) -> Arc<Stroke>) -> Content {
+        let strokes = self.params().strokes.iter().map(change).collect();
+        Content::Strokes(Live::new(StrokeList { strokes }))
+    }
+}
+
+/// Strokes are painted in order, so those between a common beginning and a common end may change what they touch.
+fn differing<'s>(old: &'s [Arc<Stroke>], new: &'s [Arc<Stroke>]) -> impl Iterator<Item = &'s Arc<Stroke>> {
+    let same = |(a, b): &(&Arc<Stroke>, &Arc<Stroke>)| Arc::ptr_eq(a, b);
+    let start = old.iter().zip(new).take_while(same).count();
+    let (old, new) = (&old[start..], &new[start..]);
+    let end = old.iter().rev().zip(new.iter().rev()).take_while(same).count();
+    old[..old.len() - end].iter().chain(&new[..new.len() - end])
+}
