@@ -14,21 +14,32 @@ pub enum Error {
     /// The bytes are not what their format promises.
     #[error("{}: cannot be read: {reason}", file.display())]
     Decode { file: PathBuf, reason: String },
-    /// Well formed, but a feature this program does not have.
+    /// Well formed, but a feature this program or the format does not have.
     #[error("{}: not supported: {reason}", file.display())]
-    Unsupported { file: PathBuf, reason: String },
+    Unsupported { file: PathBuf, reason: String, remedy: Option<Remedy> },
     /// A value out of its range or of the wrong kind; `field` is a path such as `layers[2].operator.gamma`.
     #[error("{}: {field}: {reason}", file.display())]
     Invalid { file: PathBuf, field: String, reason: String },
-    /// Larger than the budget allows; the sentence says which figure and how to raise it.
+    /// Larger than the budget allows; the sentence says which limit it exceeds.
     #[error("{}: too large: {reason}", file.display())]
-    TooLarge { file: PathBuf, reason: String },
+    TooLarge { file: PathBuf, reason: String, remedy: Option<Remedy> },
     /// The file on disk is not the expected one and would be lost; the sentence says what is there instead.
     #[error("{}: not replaced: {reason}", file.display())]
     Changed { file: PathBuf, reason: String },
     /// A file that a field of a document names cannot be read.
     #[error("{}: {field}: {error}", file.display())]
     At { file: PathBuf, field: String, error: Box<Error> },
+}
+
+/// What would make the same call succeed. The command line and the window each say how it is done there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// A higher limit for the sides of a picture.
+    LongerSides,
+    /// A higher limit for the pixels of a picture.
+    MorePixels,
+    /// A background colour behind transparent parts.
+    Background,
 }
 
 impl Error {
@@ -39,12 +50,27 @@ impl Error {
         Self::Decode { file: file.as_ref().into(), reason: reason.to_string() }
     }
     pub fn unsupported(file: impl AsRef<Path>, reason: impl ToString) -> Self {
-        Self::Unsupported { file: file.as_ref().into(), reason: reason.to_string() }
+        Self::Unsupported { file: file.as_ref().into(), reason: reason.to_string(), remedy: None }
     }
     pub fn invalid(file: impl AsRef<Path>, field: impl ToString, reason: impl ToString) -> Self {
         Self::Invalid { file: file.as_ref().into(), field: field.to_string(), reason: reason.to_string() }
     }
     pub fn too_large(file: impl AsRef<Path>, reason: impl ToString) -> Self {
-        Self::TooLarge { file: file.as_ref().into(), reason: reason.to_string() }
+        Self::TooLarge { file: file.as_ref().into(), reason: reason.to_string(), remedy: None }
+    }
+    /// The same error with a remedy, if its kind can have one.
+    pub fn with_remedy(mut self, with: Remedy) -> Self {
+        if let Self::TooLarge { remedy, .. } | Self::Unsupported { remedy, .. } = &mut self {
+            *remedy = Some(with);
+        }
+        self
+    }
+    /// What would make the same call succeed, if that is known.
+    pub fn remedy(&self) -> Option<Remedy> {
+        match self {
+            Self::TooLarge { remedy, .. } | Self::Unsupported { remedy, .. } => *remedy,
+            Self::At { error, .. } => error.remedy(),
+            _ => None,
+        }
     }
 }

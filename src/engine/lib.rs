@@ -26,4 +26,4 @@ pub mod shading;
 
 pub mod document;
 
-pub use error::{Error, Result};
+pub use error::{Error, Remedy, Result};

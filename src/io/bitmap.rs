@@ -4,7 +4,7 @@
 mod tiff;
 
 use super::Budget;
-use crate::{Error, Result, math::Size};
+use crate::{Error, Remedy, Result, math::Size};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
 use std::{
     io::Cursor,
@@ -125,7 +125,7 @@ fn ends(bytes: &[u8]) -> bool {
 fn failure(file: &Path, format: &str, error: &image::ImageError) -> Error {
     use image::ImageError::{Limits, Unsupported};
     match error {
-        Limits(e) => Error::too_large(file, format!("{e} (raise the limits with --max-side and --max-pixels)")),
+        Limits(e) => Error::too_large(file, e).with_remedy(Remedy::MorePixels),
         Unsupported(e) => Error::unsupported(file, e),
         e => Error::decode(file, format!("the {format} data is damaged or cut short ({e})")),
     }

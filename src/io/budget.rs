@@ -6,7 +6,7 @@ use crate::math::Size;
 use crate::paint::Stroke;
 use crate::raster::Picture;
 use crate::surface::Bend;
-use crate::{Error, Result};
+use crate::{Error, Remedy, Result};
 use std::path::Path;
 
 /// Limits for what one file may request. The command line raises them with `--max-pixels` and `--max-side`.
@@ -85,14 +85,12 @@ impl Budget {
             return Err(Error::decode(file, format!("a picture of {width} × {height} pixels has no pixels")));
         }
         if width.max(height) > u64::from(self.side_px) {
-            let reason =
-                format!("{width} × {height} pixels; a side may have {} (raise it with --max-side)", self.side_px);
-            return Err(Error::too_large(file, reason));
+            let reason = format!("{width} × {height} pixels; a side may have {}", self.side_px);
+            return Err(Error::too_large(file, reason).with_remedy(Remedy::LongerSides));
         }
         if width * height > self.area_px {
-            let reason =
-                format!("{width} × {height} pixels; a picture may have {} (raise it with --max-pixels)", self.area_px);
-            return Err(Error::too_large(file, reason));
+            let reason = format!("{width} × {height} pixels; a picture may have {}", self.area_px);
+            return Err(Error::too_large(file, reason).with_remedy(Remedy::MorePixels));
         }
         Ok(Size::new(width as u32, height as u32))
     }

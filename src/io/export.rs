@@ -9,7 +9,7 @@ use crate::fs::Disk;
 use crate::math::{Rect, Size, srgb, srgb::Color};
 use crate::raster::TileGrid;
 use crate::replace::{Terms, check, replace};
-use crate::{Error, Result};
+use crate::{Error, Remedy, Result};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -187,8 +187,8 @@ fn png(rgba: &[u8], size: Size, depth: png::BitDepth, options: &ExportOptions) -
 
 fn jpeg(file: &Path, rgba: &[u8], size: Size, quality: u8) -> Result<Vec<u8>> {
     if rgba.chunks_exact(4).any(|pixel| pixel[3] != 255) {
-        let reason = "the picture is transparent in places, which a JPEG cannot be; give a background (--background)";
-        return Err(Error::unsupported(file, reason));
+        let reason = "the picture has transparent parts, and a JPEG cannot store them";
+        return Err(Error::unsupported(file, reason).with_remedy(Remedy::Background));
     }
     if size.width.max(size.height) > u16::MAX.into() {
         return Err(Error::unsupported(file, format!("a JPEG has at most 65535 pixels a side, not {size}")));
@@ -259,8 +259,8 @@ mod tests {
     }
     #[test]
     fn a_jpeg_of_a_transparent_picture_wants_a_background() {
-        let said = encoded(ExportFormat::Jpeg, ExportOptions::default()).unwrap_err().to_string();
-        assert!(said.contains("--background"), "{said}");
+        let error = encoded(ExportFormat::Jpeg, ExportOptions::default()).unwrap_err();
+        assert_eq!(error.remedy(), Some(Remedy::Background), "{error}");
         let white = ExportOptions { background: Some(Color::WHITE), ..ExportOptions::default() };
         assert!(encoded(ExportFormat::Jpeg, white).is_ok());
     }

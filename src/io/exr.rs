@@ -10,7 +10,7 @@ pub use names::{ExrPass, passes};
 pub use write::{encode_channels, encode_light};
 
 use super::Budget;
-use crate::{Error, Result, math::Size, raster::Plane};
+use crate::{Error, Remedy, Result, math::Size, raster::Plane};
 use exr::meta::{BlockDescription, MetaData, attribute::SampleType, header::Header};
 use std::{
     io::Cursor,
@@ -130,8 +130,8 @@ fn check_part(file: &Path, header: &Header, budget: &Budget) -> Result<()> {
     // channels.
     let bytes = data.area() as u64 * header.channels.bytes_per_pixel as u64;
     if bytes > budget.area_px.saturating_mul(16) {
-        let reason = format!("{data} pixels of {} channels (raise it with --max-pixels)", header.channels.list.len());
-        return Err(Error::too_large(file, reason));
+        let reason = format!("{data} pixels of {} channels", header.channels.list.len());
+        return Err(Error::too_large(file, reason).with_remedy(Remedy::MorePixels));
     }
     if let BlockDescription::Tiles(tiles) = header.blocks {
         let (w, h) = (tiles.tile_size.x() as u64, tiles.tile_size.y() as u64);

@@ -22,7 +22,7 @@ pub mod replace;
 pub mod save;
 
 // The floors beneath, under their own names.
-use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
+use rilievo_engine::{Error, Remedy, Result, document, math, paint, raster, shading, surface};
 
 pub use budget::Budget;
 pub use files::{Files, RecipeFolder, UserFiles};

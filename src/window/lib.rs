@@ -1,6 +1,7 @@
 //! Floor 7: the window. Panels are functions that read the session and request actions; the actions are performed once
 //! per frame. Pixels and equations are not here.
 
+mod advice;
 mod canvas;
 mod clipboard;
 mod commands;
@@ -31,7 +32,7 @@ mod window;
 pub use window::MainWindow;
 
 // The floors beneath, under their own names.
-use rilievo_engine::{Error, Result, document, math, paint, raster, shading, surface};
+use rilievo_engine::{Error, Remedy, Result, document, math, paint, raster, shading, surface};
 use rilievo_io as io;
 use rilievo_program::{session, tools};
 

@@ -4,6 +4,7 @@
 use super::MainWindow;
 use super::dialogs::{Dialog, recovery};
 use super::jobs::{JobKind, JobResult};
+use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::io::recovery::LostSession;
 use crate::session::Autosave;
@@ -48,13 +49,13 @@ impl MainWindow {
                 }
                 self.session.add_document(tab);
             }
-            Err(error) => self.messages.push(error.to_string()),
+            Err(error) => self.messages.push(with_advice(&error)),
         }
     }
     pub(super) fn delete(&mut self, lost: LostSession) {
         self.close_empty_offer();
         if let Err(error) = lost.discard() {
-            self.messages.push(error.to_string());
+            self.messages.push(with_advice(&error));
         }
     }
     fn close_empty_offer(&mut self) {

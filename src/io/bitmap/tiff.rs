@@ -7,7 +7,7 @@ mod sample;
 use super::{Bitmap, plausible};
 use crate::Budget;
 use crate::math::Size;
-use crate::{Error, Result};
+use crate::{Error, Remedy, Result};
 use image::{DynamicImage, metadata::Orientation};
 use sample::TiffSample;
 use std::io::Cursor;
@@ -141,7 +141,7 @@ fn samples(color: ColorType) -> usize {
 fn failure(file: &Path, error: &TiffError) -> Error {
     match error {
         TiffError::LimitsExceeded => {
-            Error::too_large(file, "the TIFF asks for more memory than allowed (raise it with --max-pixels)")
+            Error::too_large(file, "the TIFF needs more memory than allowed").with_remedy(Remedy::MorePixels)
         }
         TiffError::UnsupportedError(e) => Error::unsupported(file, format!("TIFF: {e}")),
         e => Error::decode(file, format!("the TIFF data is damaged or cut short ({e})")),

@@ -154,7 +154,7 @@ impl ForeignReader<'_, '_> {
         let decoded = read.and_then(|bytes| picture::decode(&path, &bytes, self.reading.budget));
         let decoded = match decoded {
             Ok(decoded) => decoded,
-            Err(Error::TooLarge { file, reason }) => return Err(Error::TooLarge { file, reason }),
+            Err(error @ Error::TooLarge { .. }) => return Err(error),
             Err(error) => {
                 self.reading.lost(format!("“{name}” is lost: {error}"));
                 return Ok(PixelLayer { file: String::new(), x, y, tiles: TileGrid::default() });

@@ -16,7 +16,7 @@ pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), Stri
         *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{what}{place}"));
     }));
     match catch_unwind(AssertUnwindSafe(work)) {
-        Ok(done) => done.map_err(|error| error.to_string()),
+        Ok(done) => done.map_err(|error| super::with_advice(&error)),
         Err(_) => {
             let what = LAST.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
             Err(format!("internal error: {what}; this is a defect of Rilievo, please report it"))

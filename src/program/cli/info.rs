@@ -29,7 +29,7 @@
 mod brushes;
 mod documents;
 
-use super::{LimitArgs, print, print_lines};
+use super::{LimitArgs, print, print_lines, with_advice};
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::io::inspect::{FileDescription, describe};
 use crate::io::maps::{self, Findings, ImportedSurface, pairs};
@@ -229,7 +229,7 @@ impl PictureReport {
     fn json(&self) -> Value {
         let d = match &self.described {
             Ok(d) => d,
-            Err(e) => return json!({ "file": self.name, "error": e.to_string() }),
+            Err(e) => return json!({ "file": self.name, "error": with_advice(e) }),
         };
         let mut out = json!({
             "file": self.name, "format": d.format, "width": d.size.width, "height": d.size.height, "bits": d.bits,
@@ -251,7 +251,7 @@ impl PictureReport {
     fn text(&self) -> String {
         let d = match &self.described {
             Ok(d) => d,
-            Err(e) => return format!("{e}\n"),
+            Err(e) => return format!("{}\n", with_advice(e)),
         };
         let kind = match d.compression.as_deref() {
             Some(compression) => compression.to_owned(),
@@ -278,7 +278,7 @@ impl SurfaceReport {
         let import = match &self.import {
             Ok(import) => import,
             Err(e) => {
-                out["error"] = json!(e.to_string());
+                out["error"] = json!(with_advice(e));
                 return out;
             }
         };
@@ -301,7 +301,7 @@ impl SurfaceReport {
         let name = if self.source.name.is_empty() { "surface" } else { &self.source.name };
         let import = match &self.import {
             Ok(import) => import,
-            Err(e) => return format!("\n{name}: {e}\n"),
+            Err(e) => return format!("\n{name}: {}\n", with_advice(e)),
         };
         let mut out = format!(
             "\n{name}: a surface of {} pixels, {:.0} % covered, from {}\n",

@@ -18,7 +18,7 @@ mod view;
 
 pub use limits::LimitArgs;
 
-use crate::{Error, Result};
+use crate::{Error, Remedy, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::{ffi::OsString, path::PathBuf, process::ExitCode};
@@ -100,6 +100,17 @@ pub fn print(text: &str) -> Result<()> {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::io("standard output", e)),
         _ => Ok(()),
     }
+}
+
+/// The sentence of an error, with the option that would help.
+pub fn with_advice(error: &Error) -> String {
+    let option = match error.remedy() {
+        Some(Remedy::LongerSides) => " (raise the limit with --max-side)",
+        Some(Remedy::MorePixels) => " (raise the limit with --max-pixels)",
+        Some(Remedy::Background) => " (choose a background with --background)",
+        None => "",
+    };
+    format!("{error}{option}")
 }
 
 /// Writes lines to standard output, without what would steer the terminal.

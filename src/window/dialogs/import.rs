@@ -3,6 +3,7 @@
 
 use super::{DialogAnswer, buttons};
 use crate::Result;
+use crate::advice::with_advice;
 use crate::canvas::loaded;
 use crate::document::SurfaceSource;
 use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
@@ -117,7 +118,7 @@ impl ImportDialog {
         }
         match &self.found {
             None => {}
-            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, error.to_string())),
+            Some(Err(error)) => drop(ui.colored_label(ui.visuals().error_fg_color, with_advice(error))),
             Some(Ok(_)) => self.understood(ui),
         }
         let is_doubtful = matches!(&self.found, Some(Ok(import)) if import.findings.is_doubtful());

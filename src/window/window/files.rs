@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use super::MainWindow;
+use crate::advice::with_advice;
 use crate::clipboard::PastedContent;
 use crate::dialogs::{Dialog, import, losses, path, replace};
 use crate::files::{self, FilePurpose};
@@ -35,7 +36,7 @@ impl MainWindow {
                     }
                     self.messages.append(&mut self.session.notes);
                 }
-                Err(error) => self.messages.push(error.to_string()),
+                Err(error) => self.messages.push(with_advice(&error)),
             },
             JobResult::IsDocument(file) => self.jobs.read_document(file),
             JobResult::IsPicture(file, at) => self.jobs.read_picture(file, at),
@@ -88,7 +89,7 @@ impl MainWindow {
                 self.clipboard = Some(clipboard);
                 self.jobs.say("The picture is in the clipboard".into());
             }
-            JobResult::Failed(error) => self.messages.push(error.to_string()),
+            JobResult::Failed(error) => self.messages.push(with_advice(&error)),
             JobResult::Nothing => {}
         }
     }

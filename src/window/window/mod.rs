@@ -22,6 +22,7 @@ use super::settings::{Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
+use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::session::actions::ViewAction;
 use crate::session::replay::ReplayValue;
@@ -157,7 +158,7 @@ impl MainWindow {
     /// Collects the errors of the window's threads.
     fn tell_troubles(&mut self) {
         let troubles = [&mut self.canvas.trouble, &mut self.thumbnails.trouble, &mut self.swatches.trouble];
-        self.messages.extend(troubles.into_iter().filter_map(Option::take).map(|error| error.to_string()));
+        self.messages.extend(troubles.into_iter().filter_map(Option::take).map(|error| with_advice(&error)));
     }
     fn show_dialog(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
@@ -189,7 +190,7 @@ impl MainWindow {
             DialogAnswer::Imported(opened) => self.session.adopt(*opened),
             DialogAnswer::Replaced(maps) => {
                 let done = crate::session::actions::files::replace_maps(&mut self.session, &maps.0, maps.1);
-                self.messages.extend(done.err().map(|error| error.to_string()));
+                self.messages.extend(done.err().map(|error| with_advice(&error)));
                 self.messages.append(&mut self.session.notes);
             }
             DialogAnswer::Discard(then) => self.proceed(ctx, then, true),
@@ -273,7 +274,7 @@ impl MainWindow {
     fn apply(&mut self, action: &Action) {
         match action.apply(&mut self.session) {
             Ok(()) => self.did(|| action.clone()),
-            Err(error) => self.messages.push(error.to_string()),
+            Err(error) => self.messages.push(with_advice(&error)),
         }
         self.messages.append(&mut self.session.notes);
     }

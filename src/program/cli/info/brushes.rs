@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::Result;
+use crate::cli::with_advice;
 use crate::io::Budget;
 use crate::io::brush::{self, BrushFormat, ImportedBrush};
 use crate::paint::{Brush, Tip};
@@ -24,7 +25,7 @@ impl BrushReport {
     pub fn json(&self) -> Value {
         let brushes = match &self.read {
             Ok(brushes) => brushes,
-            Err(e) => return json!({ "file": self.name, "error": e.to_string() }),
+            Err(e) => return json!({ "file": self.name, "error": with_advice(e) }),
         };
         let one = |ImportedBrush { name, brush, notes }: &ImportedBrush| {
             json!({
@@ -37,7 +38,7 @@ impl BrushReport {
     pub fn text(&self) -> String {
         let brushes = match &self.read {
             Ok(brushes) => brushes,
-            Err(e) => return format!("{e}\n"),
+            Err(e) => return format!("{}\n", with_advice(e)),
         };
         let mut out = format!("{}: {}, {}\n", self.name, self.kind.name(), counted(brushes.len(), "brush", "brushes"));
         for ImportedBrush { name, brush, notes } in brushes {

@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::Result;
+use crate::cli::with_advice;
 use crate::document::Layer;
 use crate::io::OpenedDocument;
 use serde_json::{Value, json};
@@ -17,7 +18,7 @@ impl DocumentReport {
     pub fn json(&self) -> Value {
         let opened = match &self.opened {
             Ok(opened) => opened,
-            Err(e) => return json!({ "file": self.name, "error": e.to_string() }),
+            Err(e) => return json!({ "file": self.name, "error": with_advice(e) }),
         };
         let layer = |(path, layer): (String, &Arc<Layer>)| {
             json!({
@@ -40,7 +41,7 @@ impl DocumentReport {
     pub fn text(&self) -> String {
         let opened = match &self.opened {
             Ok(opened) => opened,
-            Err(e) => return format!("{e}\n"),
+            Err(e) => return format!("{}\n", with_advice(e)),
         };
         let document = &opened.document;
         let surface = if document.surface.is_some() { ", on a surface" } else { "" };
