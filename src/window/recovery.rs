@@ -68,8 +68,5 @@ impl MainWindow {
 }
 
 fn broken(title: &str) -> Error {
-    Error::decode(
-        title,
-        "its recovery log is broken in a way that this program does not expect; it was left where it is",
-    )
+    Error::decode(title, "its recovery log is damaged in an unexpected way; it was left where it is")
 }

@@ -88,11 +88,13 @@ impl Settings {
         let bytes = match std::fs::metadata(file) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
             Err(error) => return Err(Error::io(file, error)),
-            Ok(found) if found.len() > LARGEST_BYTES => return Err(Error::too_large(file, "it is no settings file")),
+            Ok(found) if found.len() > LARGEST_BYTES => {
+                return Err(Error::too_large(file, "it is not a settings file"));
+            }
             Ok(_) => std::fs::read(file).map_err(|error| Error::io(file, error))?,
         };
         let value: Value = serde_json::from_slice(&bytes).map_err(|error| Error::decode(file, error))?;
-        let object = value.as_object().ok_or_else(|| Error::decode(file, "it holds no object"))?;
+        let object = value.as_object().ok_or_else(|| Error::decode(file, "it does not hold a JSON object"))?;
         Ok(Self::from_json(object))
     }
     /// Replaces the file: all of it or nothing.
@@ -132,9 +134,7 @@ impl SettingsFile {
         let read = file.as_deref().map_or_else(|| Ok(Settings::default()), Settings::read);
         let (settings, trouble) = match read {
             Ok(settings) => (settings, None),
-            Err(error) => {
-                (Settings::default(), Some(format!("{error}; the window starts as it comes with the program")))
-            }
+            Err(error) => (Settings::default(), Some(format!("{error}; the window starts with its default settings"))),
         };
         let keeper = Self { file, written: settings.clone(), looked: Instant::now() };
         (settings, keeper, trouble)

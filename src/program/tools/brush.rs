@@ -245,7 +245,7 @@ impl Gesture for EraseStrokesGesture {
     fn release(&mut self) -> Outcome {
         match self.without() {
             Some(document) if !self.gone.is_empty() => {
-                let label = if self.gone.len() == 1 { "Take a stroke away" } else { "Take strokes away" };
+                let label = if self.gone.len() == 1 { "Delete stroke" } else { "Delete strokes" };
                 Outcome::Commit { label: label.into(), document, select: None }
             }
             _ => Outcome::Cancel,

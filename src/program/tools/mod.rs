@@ -67,21 +67,21 @@ impl ToolKind {
             name: "eraser",
             label: "Eraser",
             key: 'E',
-            hint: "Erase with the brush in hand; on a stroke layer, Ctrl takes away whole strokes that you touch",
+            hint: "Erase with the current brush; on a stroke layer, Ctrl removes whole strokes that you touch",
         },
         ToolRow {
             kind: ToolKind::Fill,
             name: "fill",
             label: "Fill",
             key: 'F',
-            hint: "Click to fill what is joined to the pixel you click; gaps in its border can be closed",
+            hint: "Click to fill the area connected to the pixel you click; gaps in its border can be closed",
         },
         ToolRow {
             kind: ToolKind::Gradient,
             name: "gradient",
             label: "Gradient",
             key: 'G',
-            hint: "Drag to lay a gradient from the first colour to the second, or drag an end of the selected one",
+            hint: "Drag to create a gradient from the first colour to the second, or drag an end of the selected one",
         },
         ToolRow {
             kind: ToolKind::Image,
@@ -102,7 +102,7 @@ impl ToolKind {
             name: "move",
             label: "Move",
             key: 'V',
-            hint: "Drag the selected layer; on a stroke layer, the stroke you take hold of (Shift: all of them)",
+            hint: "Drag the selected layer; on a stroke layer, the stroke under the pen (Shift: all of them)",
         },
         ToolRow {
             kind: ToolKind::Strokes,

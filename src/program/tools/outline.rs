@@ -11,8 +11,8 @@ use std::sync::Arc;
 /// Cells along the longer side of the grid: fine enough for a cursor, and fast enough for every frame.
 const CELLS: i32 = 72;
 
-/// The outline of a dab of `radius_px` at `at` that lands within `reach_px` (0: anywhere), as pairs of points to be joined by
-/// lines; canvas px.
+/// The outline of a dab of `radius_px` at `at` that lands within `reach_px` (0: anywhere), as pairs of points to be
+/// joined by lines; canvas px.
 pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32, reach_px: f32) -> Vec<[Vec2; 2]> {
     let surface = document.surface.as_deref();
     let reach = DabReach::new(at, reach_px, 2.0 * radius_px);
@@ -60,8 +60,8 @@ pub fn outline(document: &Document, operator: Operator, at: Vec2, radius_px: f32
     lines
 }
 
-/// Which nodes of a grid lie in pieces too small to matter: under a twentieth of the largest. On a detailed surface a dab
-/// lands in dozens of specks, and a cursor of dozens of loops shows nothing.
+/// Which nodes of a grid lie in pieces too small to matter: under a twentieth of the largest. On a detailed surface a
+/// dab lands in dozens of specks, and a cursor of dozens of loops shows nothing.
 fn specks(inside: &[bool], cols: usize) -> Vec<bool> {
     const SHARE: usize = 20;
     let mut piece_of: Vec<Option<usize>> = vec![None; inside.len()];

@@ -54,7 +54,7 @@ pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurp
         return Some(Outcome::Refused("Smudge, blur and clone work on paint layers: choose one, or bake this layer."));
     }
     let has_source = !mode.is_clone() || context.clone_offset.is_some();
-    (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush is to copy from, then paint."))
+    (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush should copy from, then paint."))
 }
 
 /// The retouching of a layer's pixels; `None` if the strokes are paint.

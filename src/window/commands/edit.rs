@@ -13,14 +13,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Undo",
         &[ctrl(Key::Z)],
-        "Take the last step back",
+        "Undo the last step",
         |session| session.active().is_some_and(|tab| tab.history.done().is_some()),
         |_, requests| requests.act(Action::Edit(EditAction::Undo {})),
     ),
     row(
         "Redo",
         &[ctrl_shift(Key::Z), ctrl(Key::Y)],
-        "Make the last undone step again",
+        "Redo the last undone step",
         |session| session.active().is_some_and(|tab| tab.history.undone().is_some()),
         |_, requests| requests.act(Action::Edit(EditAction::Redo {})),
     ),
@@ -28,18 +28,22 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Copy merged picture",
         &[ctrl_shift(Key::C)],
-        "The finished picture to the clipboard",
+        "Copies the flattened picture to the clipboard",
         has_document,
         |_, requests| requests.request(WindowRequest::CopyMerged),
     ),
-    row("Paste picture", &[ctrl(Key::V)], "A picture from the clipboard as an image layer", always, |_, requests| {
-        requests.request(WindowRequest::Paste)
-    }),
+    row(
+        "Paste picture",
+        &[ctrl(Key::V)],
+        "Pastes a picture from the clipboard as an image layer",
+        always,
+        |_, requests| requests.request(WindowRequest::Paste),
+    ),
     LINE,
     row(
         "Move, scale and turn",
         &[ctrl(Key::T)],
-        "The image tool for an image: drag moves, Shift scales, Ctrl turns. For all else the move tool",
+        "Selects the image tool for an image layer (drag moves, Shift scales, Ctrl turns), else the move tool",
         has_layer,
         |session, requests| {
             let is_image = session.layer().is_some_and(|layer| matches!(layer.content, Content::Image(_)));
@@ -50,7 +54,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Clear layer",
         &[key(Key::Delete)],
-        "Take the paint or the strokes out of the selected layer",
+        "Removes the paint or the strokes of the selected layer",
         has_layer,
         |session, requests| {
             if let Some(layer) = session.layer_path() {

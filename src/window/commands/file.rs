@@ -23,18 +23,18 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Open maps…",
         &[ctrl_shift(Key::O)],
-        "A canvas on the normal and depth maps of an object, their conventions shown and corrected",
+        "A canvas on the normal and depth maps of an object, with their conventions to check and correct",
         always,
         |_, requests| requests.request(WindowRequest::OpenMapsDialog),
     ),
     LINE,
-    row("Save", &[ctrl(Key::S)], "To the file it came from", has_document, |_, requests| {
+    row("Save", &[ctrl(Key::S)], "Saves to the file it was opened from", has_document, |_, requests| {
         requests.request(WindowRequest::Save)
     }),
     row(
         "Save as…",
         &[ctrl_shift(Key::S)],
-        "To another file, which is its own from then on",
+        "Saves to another file, which the document belongs to from then on",
         has_document,
         |_, requests| requests.request(WindowRequest::SaveAs),
     ),
@@ -57,11 +57,15 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Close",
         &[ctrl(Key::W)],
-        "This document; asks first if it holds unsaved work",
+        "Closes this document; asks first if there are unsaved changes",
         has_document,
         |session, requests| requests.request(WindowRequest::Close(session.current)),
     ),
-    row("Quit", &[ctrl(Key::Q)], "Leave the program; asks first if there is unsaved work", always, |_, requests| {
-        requests.request(WindowRequest::Quit)
-    }),
+    row(
+        "Quit",
+        &[ctrl(Key::Q)],
+        "Quits the program; asks first if there are unsaved changes",
+        always,
+        |_, requests| requests.request(WindowRequest::Quit),
+    ),
 ];

@@ -12,5 +12,5 @@ pub const COMMANDS: &[MenuCommand] = &[
         requests.request(WindowRequest::Shortcuts)
     }),
     LINE,
-    row("About Rilievo…", &[], "What this program is", always, |_, requests| requests.request(WindowRequest::About)),
+    row("About Rilievo…", &[], "About this program", always, |_, requests| requests.request(WindowRequest::About)),
 ];

@@ -72,25 +72,21 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| add(requests, NewLayer::Strokes),
     ),
-    row("New fill layer", &[], "One colour everywhere", has_document, |_, requests| add(requests, NewLayer::Fill)),
+    row("New fill layer", &[], "A layer of one colour", has_document, |_, requests| add(requests, NewLayer::Fill)),
     row(
         "New gradient layer",
         &[],
-        "From the first colour to the second, bent by the operator in hand",
+        "A gradient from the first to the second colour, bent by the current operator",
         has_document,
         |_, requests| add(requests, NewLayer::Gradient),
     ),
-    row(
-        "New radiance scaling",
-        &[],
-        "Brings out the relief of whatever is painted beneath it",
-        has_document,
-        |_, requests| add(requests, NewLayer::RadianceScaling),
-    ),
+    row("New radiance scaling", &[], "Enhances the relief of everything beneath it", has_document, |_, requests| {
+        add(requests, NewLayer::RadianceScaling)
+    }),
     row(
         "New detail normals",
         &[],
-        "Grain or a map of normals laid onto the surface, for everything above it",
+        "Adds grain or a normal map to the surface, for everything above it",
         has_document,
         |_, requests| add(requests, NewLayer::Normals),
     ),
@@ -99,29 +95,29 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("Duplicate layer", &[ctrl(Key::J)], "A copy above it", has_layer, |session, requests| {
         with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
     }),
-    row("Delete layer", &[shift(Key::Delete)], "With all that is in it", has_layer, |session, requests| {
+    row("Delete layer", &[shift(Key::Delete)], "Including its contents", has_layer, |session, requests| {
         with_selected(session, requests, |layer| LayerAction::Delete { layer })
     }),
-    row(
-        "Group layer",
-        &[ctrl(Key::G)],
-        "Put the selected layer into a group of its own",
-        has_layer,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Group { layer }),
-    ),
+    row("Group layer", &[ctrl(Key::G)], "Puts the selected layer into a new group", has_layer, |session, requests| {
+        with_selected(session, requests, |layer| LayerAction::Group { layer })
+    }),
     row(
         "Ungroup",
         &[ctrl_shift(Key::G)],
-        "Take the layers out of the selected group",
+        "Takes the layers out of the selected group",
         is_group,
         |session, requests| with_selected(session, requests, |layer| LayerAction::Ungroup { layer }),
     ),
-    row("Move layer up", &[ctrl(Key::PageUp)], "Above the next one", has_layer, |session, requests| {
+    row("Move layer up", &[ctrl(Key::PageUp)], "Moves the layer above the next one", has_layer, |session, requests| {
         with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: 1 })
     }),
-    row("Move layer down", &[ctrl(Key::PageDown)], "Beneath the next one", has_layer, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 })
-    }),
+    row(
+        "Move layer down",
+        &[ctrl(Key::PageDown)],
+        "Moves the layer below the next one",
+        has_layer,
+        |session, requests| with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
+    ),
     LINE,
     row(
         "Merge down",
@@ -133,14 +129,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Bake layer",
         &[ctrl_shift(Key::B)],
-        "A live layer becomes paint: as it looks now, and no longer bent when the surface changes",
+        "Turns a live layer into paint: it keeps its look and no longer follows the surface",
         is_live,
         |session, requests| with_selected(session, requests, |layer| LayerAction::Bake { layer }),
     ),
     row(
         "Flatten picture",
         &[ctrl_shift(Key::E)],
-        "All that shows becomes one paint layer",
+        "Everything visible becomes one paint layer",
         has_layer,
         |_, requests| requests.act(Action::Layer(LayerAction::Flatten {})),
     ),
@@ -148,7 +144,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Paint on mask",
         &[],
-        "The brush changes the mask of the layer, made if there is none: white shows, black hides. Or the layer again",
+        "Switches the brush between the layer and its mask (white shows, black hides); adds a mask if there is none",
         has_layer,
         |session, requests| {
             let mask = session.layer().and_then(|layer| layer.mask.clone());
@@ -160,28 +156,28 @@ pub const COMMANDS: &[MenuCommand] = &[
         },
     )
     .ticked(|session, _| is_on_mask(session)),
-    row("Mask from a picture…", &[], "Its light parts show the layer", has_layer, |_, requests| {
+    row("Mask from a picture…", &[], "Light parts of the picture show the layer", has_layer, |_, requests| {
         requests.request(WindowRequest::Choose(FilePurpose::Part(PicturePart::Mask)))
     }),
-    row("Invert mask", &[], "Show what it hides, and hide what it shows", has_mask, |session, requests| {
+    row("Invert mask", &[], "Shows what the mask hides, and hides what it shows", has_mask, |session, requests| {
         let on = !mask_is(session, |mask| mask.invert);
         set(session, requests, Property::MaskInverted { on });
     })
     .ticked(|session, _| mask_is(session, |mask| mask.invert)),
-    row("Use mask", &[], "Put the mask aside, or use it again", has_mask, |session, requests| {
+    row("Use mask", &[], "Disables the mask, or enables it again", has_mask, |session, requests| {
         let on = mask_is(session, |mask| !mask.disabled);
         set(session, requests, Property::MaskDisabled { on });
     })
     .ticked(|session, _| mask_is(session, |mask| !mask.disabled)),
-    row("Delete mask", &[], "The layer shows whole again", has_mask, |session, requests| {
+    row("Delete mask", &[], "Removes the mask: the whole layer is visible again", has_mask, |session, requests| {
         set(session, requests, Property::Mask { mask: None })
     }),
     LINE,
-    row("Show or hide layer", &[], "The eye of the selected layer", has_layer, |session, requests| {
+    row("Show or hide layer", &[], "Same as the eye of the selected layer", has_layer, |session, requests| {
         set(session, requests, Property::Visible { on: !is_shown(session) });
     })
     .ticked(|session, _| is_shown(session)),
-    row("Show layer alone", &[], "Hide all others until it is chosen again", has_layer, |session, requests| {
+    row("Show layer alone", &[], "Hides all other layers until it is chosen again", has_layer, |session, requests| {
         with_selected(session, requests, |layer| LayerAction::Solo { layer })
     })
     .ticked(|session, _| is_alone(session)),

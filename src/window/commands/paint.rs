@@ -39,10 +39,10 @@ pub const COMMANDS: &[MenuCommand] = &[
         hand(requests, HandAction::Hardness { to: session.brush.hardness - 0.1 })
     }),
     LINE,
-    row("Swap colours", &[key(Key::X)], "The second colour to the front", always, |_, requests| {
+    row("Swap colours", &[key(Key::X)], "Exchanges the first and the second colour", always, |_, requests| {
         hand(requests, HandAction::SwapColors {})
     }),
-    row("Default colours", &[key(Key::D)], "Black in front of white", always, |_, requests| {
+    row("Default colours", &[key(Key::D)], "Sets black and white", always, |_, requests| {
         hand(requests, HandAction::DefaultColors {})
     }),
     LINE,

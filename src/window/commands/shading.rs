@@ -22,11 +22,11 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "New Ashikhmin layer",
         &[],
-        "Brushed metal: a highlight longer one way than the other",
+        "Brushed metal: a highlight that is longer in one direction",
         has_document,
         |_, requests| add(requests, Model::Ashikhmin),
     ),
-    row("New lit-sphere layer", &[], "A painted ball tells the colour of every normal", has_document, |_, requests| {
+    row("New lit-sphere layer", &[], "A painted ball gives the colour of every normal", has_document, |_, requests| {
         add(requests, Model::LitSphere)
     }),
     row("New mirror layer", &[], "An environment mirrored in the surface", has_document, |_, requests| {
@@ -38,7 +38,11 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("New layer lit by an environment", &[], "Matt, lit from all around", has_document, |_, requests| {
         add(requests, Model::DiffuseEnvironment)
     }),
-    row("New ambient occlusion layer", &[], "Darker where little of the sky is seen", has_document, |_, requests| {
-        add(requests, Model::AmbientOcclusion)
-    }),
+    row(
+        "New ambient occlusion layer",
+        &[],
+        "Darker where little of the sky is visible",
+        has_document,
+        |_, requests| add(requests, Model::AmbientOcclusion),
+    ),
 ];

@@ -48,7 +48,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Actual pixels",
         &[ctrl(Key::Num1), key(Key::Num1)],
-        "A pixel of the canvas to a pixel of the screen",
+        "One pixel of the canvas per pixel of the screen",
         has_document,
         |_, requests| requests.request(WindowRequest::Scale(1.0)),
     ),
@@ -73,7 +73,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Mirror view",
         &[key(Key::M)],
-        "See the picture mirrored, to check the drawing; the document stays as it is",
+        "Mirrors the display to check the drawing; the document does not change",
         has_document,
         |_, requests| view(requests, ViewAction::Mirror {}),
     )
@@ -116,7 +116,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     )
     .ticked(|session, _| is_over(session, "lit")),
     LINE,
-    row("Hide panels", &[key(Key::Tab)], "Only the canvas, or all panels again", always, |_, requests| {
+    row("Hide panels", &[key(Key::Tab)], "Shows only the canvas, or all panels again", always, |_, requests| {
         requests.request(WindowRequest::TogglePanels)
     })
     .ticked(|_, layout| layout.is_hidden),
@@ -126,18 +126,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Panels in a window",
         &[],
-        "Apart from the canvas, to be moved about; or beside it again. A right-click on a panel's name takes one out",
+        "Moves the panels to a window of their own, or back. A right-click on a panel's name detaches that panel",
         always,
         |_, requests| requests.request(WindowRequest::PanelsApart),
     )
     .ticked(|_, layout| layout.side == PanelSide::Apart),
-    row(
-        "Layers in a window",
-        &[],
-        "The layers alone, to be moved about; or beside the canvas again",
-        always,
-        |_, requests| requests.request(WindowRequest::Float(PanelKind::Layers)),
-    )
+    row("Layers in a window", &[], "Moves the layer list to a window of its own, or back", always, |_, requests| {
+        requests.request(WindowRequest::Float(PanelKind::Layers))
+    })
     .ticked(|_, layout| layout.apart.contains(&PanelKind::Layers)),
     row("Full screen", &[key(Key::F11)], "Or back", always, |_, requests| requests.request(WindowRequest::FullScreen)),
     row(
@@ -160,7 +156,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Command palette…",
         &[ctrl_shift(Key::P), ctrl(Key::K)],
-        "Find any command by its name",
+        "Finds any command by its name",
         always,
         |_, requests| requests.request(WindowRequest::Palette),
     ),

@@ -125,9 +125,9 @@ impl ImportDialog {
         if is_doubtful {
             ui.colored_label(
                 ui.visuals().warn_fg_color,
-                "This does not look like a normal map: its colours are no directions.",
+                "This does not look like a normal map: its colours are not directions.",
             );
-            ui.checkbox(&mut self.is_sure, "Use it as a normal map all the same");
+            ui.checkbox(&mut self.is_sure, "Use it as a normal map anyway");
         }
         if let Some((name, _)) = &self.picture
             && !self.replaces

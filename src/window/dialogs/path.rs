@@ -86,7 +86,7 @@ impl PathDialog {
         let can = !self.name.trim().is_empty() && (self.purpose.is_saving() || typed.is_file());
         let is_warned = self.replaces.as_ref() == Some(&typed);
         if is_warned {
-            ui.colored_label(ui.visuals().warn_fg_color, "There is such a file already.");
+            ui.colored_label(ui.visuals().warn_fg_color, "This file already exists.");
         }
         let yes = match self.purpose.is_saving() {
             true if is_warned => "Replace",

@@ -63,7 +63,7 @@ impl ShortcutsDialog {
         let keys = keymap.of(keyed);
         for &one in &keys {
             let text = shown(ui.ctx(), one);
-            let response = ui.button(RichText::new(&text).monospace()).on_hover_text("Click to take it away");
+            let response = ui.button(RichText::new(&text).monospace()).on_hover_text("Click to remove it");
             named(&response, &format!("{text} of {name}"));
             if response.clicked() {
                 keymap.set(keyed, keys.iter().copied().filter(|known| *known != one).collect());
@@ -72,11 +72,11 @@ impl ShortcutsDialog {
         let is_waiting = self.waiting == Some(name);
         let response = ui.selectable_label(is_waiting, if is_waiting { "Press a key…" } else { "+" });
         named(&response, &format!("Add a key to {name}"));
-        if response.on_hover_text("Then press the key; Escape gives up").clicked() {
+        if response.on_hover_text("Then press the key; Escape cancels").clicked() {
             (self.waiting, self.conflict) = (Some(name), None);
         }
         if keymap.is_chosen(keyed) {
-            let response = ui.small_button("Reset").on_hover_text("The keys it comes with");
+            let response = ui.small_button("Reset").on_hover_text("The default keys");
             named(&response, &format!("Reset {name}"));
             if response.clicked() {
                 keymap.reset(keyed);

@@ -67,7 +67,7 @@ fn tip(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         TipChoice::Bristles => Tip::Bristles(Bristles::default()),
         TipChoice::Noise => Tip::Noise(Noise::default()),
     });
-    let ratios = || NumberField::new("Ratio", 0.01..=1.0, "Of the shorter side to the longer one");
+    let ratios = || NumberField::new("Ratio", 0.01..=1.0, "Ratio of the shorter side to the longer one");
     let whole = |v: f32| v.round().max(1.0) as u32;
     let numbers = match &brush.tip {
         Tip::Round => None,
@@ -79,14 +79,14 @@ fn tip(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             count.map(|count| Tip::Bristles(Bristles { count, ..*bristles }))
         }
         Tip::Noise(noise) => {
-            let cells = NumberField::new("Specks", 1.0..=100.0, "How many stand along the diameter").decimals(0);
+            let cells = NumberField::new("Specks", 1.0..=100.0, "Number along the diameter").decimals(0);
             let cells = cells.row(ui, noise.cells as f32).map(|c| Noise { cells: whole(c.to), ..*noise });
             let density = NumberField::new("Density", 0.0..=1.0, "How much of the tip they cover");
             let density = density.row(ui, noise.density).map(|c| Noise { density: c.to, ..*noise });
             cells.or(density).map(Tip::Noise)
         }
         Tip::Picture(_) | Tip::Hose(_) => {
-            ui.weak("Pictures. Import… takes others.");
+            ui.weak("Pictures. Import… adds others.");
             None
         }
     };
@@ -103,15 +103,15 @@ fn spread(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     };
     number(
         ui,
-        NumberField::new("Scatter", 0.0..=4.0, "How far a dab may stand from the stroke, in diameters"),
+        NumberField::new("Scatter", 0.0..=4.0, "Greatest distance of a dab from the stroke, in diameters"),
         &mut to.scatter,
     );
     let jitter = &mut to.jitter;
-    let hues = NumberField::new("Hue ±", 0.0..=180.0, "How far a dab's hue may be from the colour in hand").degrees();
+    let hues = NumberField::new("Hue ±", 0.0..=180.0, "Greatest random difference of a dab's hue").degrees();
     number(ui, hues, &mut jitter.hue_degrees);
     number(
         ui,
-        NumberField::new("Saturation ±", 0.0..=1.0, "How far a dab's saturation may be"),
+        NumberField::new("Saturation ±", 0.0..=1.0, "Greatest random difference of a dab's saturation"),
         &mut jitter.saturation,
     );
     number(ui, NumberField::new("Value ±", 0.0..=1.0, "How much lighter or darker a dab may be"), &mut jitter.value);
@@ -146,11 +146,11 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             (*value, changed) = (c.to, true);
         }
     };
-    number(ui, NumberField::new("Size", 1.0..=400.0, "Of one feature of the pattern").px(), &mut to.size_px);
+    number(ui, NumberField::new("Size", 1.0..=400.0, "Size of one feature of the pattern").px(), &mut to.size_px);
     number(ui, NumberField::new("Strength", 0.0..=1.0, "How much paint its valleys lose"), &mut to.strength);
     number(ui, NumberField::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(), &mut to.rotation);
     let on_surface = matches!(grain.lies, GrainSpace::Surface { .. });
-    let hint = "Carried by the shape as a texture is; else it lies on the flat canvas";
+    let hint = "Bends the grain over the surface like a texture; otherwise it lies on the flat canvas";
     if let Some(on) = check(ui, "On the surface", hint, on_surface) {
         (to.lies, changed) = (if on { GrainSpace::Surface { gamma: 1.0 } } else { GrainSpace::Canvas }, true);
     }
@@ -191,7 +191,7 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let amount = match brush.stabilizer {
         Stabilizer::None => None,
         Stabilizer::Average { weight } => {
-            let number = NumberField::new("Weight", 0.0..=0.98, "How much of the past is left after ten pixels");
+            let number = NumberField::new("Weight", 0.0..=0.98, "Share of the past that is left after ten pixels");
             number.row(ui, weight).map(|c| Stabilizer::Average { weight: c.to })
         }
         Stabilizer::String { length_px } => {
@@ -202,9 +202,9 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
     let blended =
         choice_row(ui, "Blend", brush.blend, &BlendMode::LABELS).map(|blend| Brush { blend, ..brush.clone() });
-    let erases = check(ui, "Erases", "The stroke takes paint away", brush.erases);
+    let erases = check(ui, "Erases", "The stroke erases", brush.erases);
     let erases = erases.map(|erases| Brush { erases, ..brush.clone() });
-    let keeps = check(ui, "Keeps alpha", "The stroke shows only on paint that is there", brush.keeps_alpha);
+    let keeps = check(ui, "Keeps alpha", "The stroke shows only where there is paint", brush.keeps_alpha);
     let keeps = keeps.map(|keeps_alpha| Brush { keeps_alpha, ..brush.clone() });
     calmed.or(blended).or(erases).or(keeps)
 }
@@ -216,7 +216,7 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         ui.horizontal(|ui| {
             ui.label(&label);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let remove = ui.small_button("Remove").on_hover_text("It follows this no more");
+                let remove = ui.small_button("Remove").on_hover_text("Removes this row");
                 named(&remove, &format!("Remove {label}"));
                 if remove.clicked() {
                     to = Some(brush.dynamics.with(*property, *input, Curve::Share(0.0)));

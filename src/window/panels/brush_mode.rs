@@ -47,18 +47,19 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         BrushMode::Paint => {}
         BrushMode::Smudge { length } => {
             let number =
-                NumberField::new("Length", 0.0..=1.0, "How much of the paint is left after a drag of one radius");
+                NumberField::new("Length", 0.0..=1.0, "Share of the paint that is left after a drag of one radius");
             give(number.inline(ui, length, 60.0).map(|c| BrushMode::Smudge { length: c.to }));
         }
         BrushMode::Blur { width } => {
             let number =
-                NumberField::new("Width", 0.0..=1.0, "How soft a stroke leaves an edge, as a share of the radius");
+                NumberField::new("Width", 0.0..=1.0, "How much a stroke softens an edge, as a share of the radius");
             give(number.inline(ui, width, 60.0).map(|c| BrushMode::Blur { width: c.to }));
         }
         BrushMode::Clone { aligned, picture } => {
-            let hint = "Keep the distance to the source from stroke to stroke; else every stroke begins at the source";
+            let hint =
+                "Keeps the offset to the source from stroke to stroke; otherwise every stroke begins at the source";
             give(check(ui, "Aligned", hint, aligned).map(|aligned| BrushMode::Clone { aligned, picture }));
-            let hint = "Copy what the picture shows, not the layer alone";
+            let hint = "Copies from the whole picture, not from the layer alone";
             give(check(ui, "From the picture", hint, picture).map(|picture| BrushMode::Clone { aligned, picture }));
         }
     }

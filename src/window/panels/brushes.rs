@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, session: &Session, swatches: &mut Swatches, requests: &
     let mut edits = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or_default();
     ui.horizontal(|ui| {
         ui.selectable_value(&mut edits, false, "Presets").on_hover_text("Brushes to choose from");
-        ui.selectable_value(&mut edits, true, "Brush in hand").on_hover_text("Change the brush you paint with");
+        ui.selectable_value(&mut edits, true, "Brush in hand").on_hover_text("Settings of the current brush");
     });
     ui.data_mut(|data| data.insert_temp(id, edits));
     if edits {
@@ -79,7 +79,7 @@ fn keep(ui: &mut Ui, requests: &mut UiRequests) {
         let field = TextEdit::singleline(&mut name).hint_text("Name").desired_width(ui.available_width() - 96.0);
         named(&ui.add(field), "Name of the brush to keep");
         let button = ui.add_enabled(!name.trim().is_empty(), egui::Button::new("Keep brush"));
-        if button.on_hover_text("The brush as it is now joins the list").clicked() {
+        if button.on_hover_text("Adds the current brush to the list").clicked() {
             requests.act(Action::File(FileAction::KeepBrush { name: std::mem::take(&mut name) }));
         }
     });

@@ -24,7 +24,7 @@ pub fn strip(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     /// As many as a narrow panel has room for.
     const RECENT: usize = 8;
     ui.horizontal(|ui| {
-        if let Some(changed) = button(ui, "Change the colour in hand", session.color) {
+        if let Some(changed) = button(ui, "Changes the current colour", session.color) {
             requests.act(Action::Hand(HandAction::Color { color: changed.to }));
         }
         ui.spacing_mut().item_spacing.x = 3.0;

@@ -21,11 +21,15 @@ pub fn options(ui: &mut Ui, fill: Fill, requests: &mut UiRequests) {
     push(tolerance.inline(ui, fill.tolerance, 60.0).map(|c| Fill { tolerance: c.to, ..fill }));
     let gap = NumberField::new("Close gaps", 0.0..=WIDEST_GAP_PX, "Gaps in the border up to this wide are closed");
     push(gap.pixels().inline(ui, fill.gap_px, 60.0).map(|c| Fill { gap_px: c.to, ..fill }));
-    let grow = NumberField::new("Grow", -FARTHEST_GROWTH_PX..=FARTHEST_GROWTH_PX, "Under the softened edge of a line");
+    let grow = NumberField::new(
+        "Grow",
+        -FARTHEST_GROWTH_PX..=FARTHEST_GROWTH_PX,
+        "Extends the fill under the softened edge of a line",
+    );
     push(grow.pixels().inline(ui, fill.grow_px, 60.0).map(|c| Fill { grow_px: c.to, ..fill }));
     let hint = "Smooth the edge of the fill";
     push(check(ui, "Smooth edge", hint, fill.antialias).map(|antialias| Fill { antialias, ..fill }));
-    let hint = "Look at the selected layer alone, not at the whole picture";
+    let hint = "Reads the selected layer alone, not the whole picture";
     push(check(ui, "This layer only", hint, fill.layer_alone).map(|layer_alone| Fill { layer_alone, ..fill }));
     push(choice(ui, "Fill where", fill.bounded, &BOUNDS).map(|bounded| Fill { bounded, ..fill }));
 }

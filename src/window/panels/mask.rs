@@ -66,7 +66,7 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
                 }
             }
             Some(_) => {
-                let hint = "Make paint of it, to be changed with the brush; it follows the surface no longer";
+                let hint = "Turns the mask into a picture that the brush can change; it no longer follows the surface";
                 if ui.button("Paint on it").on_hover_text(hint).clicked() {
                     setter.act(|layer| LayerAction::PaintMask { layer, hides: false });
                 }
@@ -84,7 +84,7 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
     if let Some(on) = check(ui, "Invert mask", "Paint where the mask is dark", mask.invert) {
         setter.set(Property::MaskInverted { on }, true);
     }
-    if let Some(on) = check(ui, "Use mask", "Without it the layer shows as if it had none", !mask.disabled) {
+    if let Some(on) = check(ui, "Use mask", "If off, the layer is shown without its mask", !mask.disabled) {
         setter.set(Property::MaskDisabled { on: !on }, true);
     }
 }
@@ -94,23 +94,23 @@ fn mask_numbers(ui: &mut Ui, kind: &MaskKind) -> Option<ValueChange<DerivedMaskN
         MaskKind::File { .. } => None,
         MaskKind::Fresnel { f0, power } => {
             let a = NumberField::new("Facing", 0.0..=1.0, "Coverage where the surface faces you").row(ui, f0);
-            let b = NumberField::new("Power", 0.2..=10.0, "How near the rim it stays").row(ui, power);
+            let b = NumberField::new("Power", 0.2..=10.0, "How closely it follows the rim").row(ui, power);
             a.map(|c| c.map(|f0| DerivedMaskNumbers::Fresnel { f0, power }))
                 .or(b.map(|c| c.map(|power| DerivedMaskNumbers::Fresnel { f0, power })))
         }
         MaskKind::Curvature { scale, blur, from, to } => {
             let a = NumberField::new("Scale", 0.0..=40.0, "Features this wide count in full, px").row(ui, scale);
-            let b = NumberField::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, blur);
-            let c = NumberField::new("From", -1.0..=1.0, "Curvature where nothing is painted").row(ui, from);
-            let d = NumberField::new("To", -1.0..=1.0, "Curvature where all is painted").row(ui, to);
+            let b = NumberField::new("Blur", 0.0..=20.0, "Blur of the normals, px").row(ui, blur);
+            let c = NumberField::new("From", -1.0..=1.0, "Curvature at which nothing is painted").row(ui, from);
+            let d = NumberField::new("To", -1.0..=1.0, "Curvature at which everything is painted").row(ui, to);
             a.map(|v| v.map(|scale| DerivedMaskNumbers::Curvature { scale, blur, from, to }))
                 .or(b.map(|v| v.map(|blur| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
                 .or(c.map(|v| v.map(|from| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
                 .or(d.map(|v| v.map(|to| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
         }
         MaskKind::Depth { from, to } => {
-            let a = NumberField::new("From", 0.0..=1.0, "Depth where nothing is painted").row(ui, from);
-            let b = NumberField::new("To", 0.0..=1.0, "Depth where all is painted").row(ui, to);
+            let a = NumberField::new("From", 0.0..=1.0, "Depth at which nothing is painted").row(ui, from);
+            let b = NumberField::new("To", 0.0..=1.0, "Depth at which everything is painted").row(ui, to);
             a.map(|c| c.map(|from| DerivedMaskNumbers::Depth { from, to }))
                 .or(b.map(|c| c.map(|to| DerivedMaskNumbers::Depth { from, to })))
         }

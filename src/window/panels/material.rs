@@ -48,7 +48,7 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerS
         setter.take(number.row(ui, shading.bands as f32).map(|c| c.map(|to| Property::Bands { to: to as u32 })));
     }
     if matches!(shading.model, Model::AmbientOcclusion | Model::DiffuseEnvironment) {
-        let number = NumberField::new("Reach", 0.0..=400.0, "How far away occluders still count, px").decimals(0);
+        let number = NumberField::new("Reach", 0.0..=400.0, "Distance up to which occluders count, px").decimals(0);
         setter.take(number.row(ui, shading.occlusion_radius_px).map(|c| c.map(|to| Property::Occlusion { to })));
     }
     pictures(ui, shading, setter);
@@ -108,12 +108,11 @@ fn term(ui: &mut Ui, label: &str, term: Term, setter: &mut LayerSetter, put: fn(
     ui.horizontal(|ui| {
         let color = colors::button(ui, &format!("{label} colour"), term.color);
         setter.take(color.map(|c| c.map(|color| put(Term { color, ..term }))));
-        let weight =
-            NumberField::new(label, 0.0..=2.0, "How much of it there is; 0 leaves it out").row(ui, term.weight);
+        let weight = NumberField::new(label, 0.0..=2.0, "Weight of the term; 0 turns it off").row(ui, term.weight);
         setter.take(weight.map(|c| c.map(|weight| put(Term { weight, ..term }))));
     });
     let gamma = format!("{label} relief");
-    let number = NumberField::new(&gamma, 0.0..=8.0, "How strongly features are brought out in this term (γ)");
+    let number = NumberField::new(&gamma, 0.0..=8.0, "How strongly features are enhanced in this term (γ)");
     let changed = number.row(ui, term.scaling.gamma_convex);
     setter.take(changed.map(|c| c.map(|gamma| put(Term { scaling: Scaling::new(term.scaling.alpha, gamma), ..term }))));
 }
@@ -155,7 +154,8 @@ fn lights(ui: &mut Ui, lights: &[Light], canvas: Vec2, setter: &mut LayerSetter)
                 setter.take(number.map(|c| c.map(|intensity| with(i, Light { intensity, ..*light }))));
                 if let LightKind::Point { position } = light.kind {
                     let label = format!("Height {}", i + 1);
-                    let height = NumberField::new(&label, 0.0..=4000.0, "Over the nearest point, px").decimals(0);
+                    let height =
+                        NumberField::new(&label, 0.0..=4000.0, "Height above the nearest point, px").decimals(0);
                     let kind = |z| LightKind::Point { position: vec3(position.x, position.y, z) };
                     let height = height.row(ui, position.z);
                     setter.take(height.map(|c| c.map(|z| with(i, Light { kind: kind(z), ..*light }))));
@@ -219,7 +219,7 @@ fn features(ui: &mut Ui, features: &Features, setter: &mut LayerSetter) {
     let number = NumberField::new("Width", 0.0..=40.0, "Features this many pixels wide count in full");
     let changed = number.row(ui, scale.curvature_scale_px);
     setter.take(changed.map(|c| c.map(|curvature_scale_px| with(FeatureScale { curvature_scale_px, ..scale }))));
-    let changed = NumberField::new("Blur", 0.0..=20.0, "Of the normals before, px").row(ui, scale.blur_px);
+    let changed = NumberField::new("Blur", 0.0..=20.0, "Blur of the normals, px").row(ui, scale.blur_px);
     setter.take(changed.map(|c| c.map(|blur_px| with(FeatureScale { blur_px, ..scale }))));
     let hint = "0 all features, 1 those along the light, −1 those across it";
     let changed = NumberField::new("Direction", -1.0..=1.0, hint).row(ui, features.lambda);
@@ -231,7 +231,7 @@ fn features(ui: &mut Ui, features: &Features, setter: &mut LayerSetter) {
 pub fn radiance_scaling(ui: &mut Ui, scaling: &RadianceScaling, setter: &mut LayerSetter) {
     let now = scaling.scaling;
     let gamma =
-        NumberField::new("Strength", 0.0..=12.0, "How strongly relief is brought out (γ)").row(ui, now.gamma_convex);
+        NumberField::new("Strength", 0.0..=12.0, "How strongly relief is enhanced (γ)").row(ui, now.gamma_convex);
     setter.take(gamma.map(|c| c.map(|gamma| Property::Scaled { scaling: Scaling::new(now.alpha, gamma) })));
     let concave =
         NumberField::new("In hollows", 0.0..=12.0, "The strength on concave features").row(ui, now.gamma_concave);

@@ -47,8 +47,9 @@ pub fn show(ui: &mut Ui, session: &Session, canvas: &mut Canvas, requests: &mut 
     ui.horizontal(|ui| {
         let per_point = ui.ctx().pixels_per_point();
         let [least, most] = ZOOMS.map(|zoom| zoom * 100.0);
-        let zoom =
-            NumberField::new("Zoom", least..=most, "Screen pixels to a hundred of the canvas").percent().logarithmic();
+        let zoom = NumberField::new("Zoom", least..=most, "Screen pixels per hundred pixels of the canvas")
+            .percent()
+            .logarithmic();
         if let Some(changed) = zoom.inline(ui, view.zoom * per_point * 100.0, 90.0) {
             requests.act(Action::View(ViewAction::ZoomTo { zoom: changed.to / (100.0 * per_point) }));
         }

@@ -35,7 +35,7 @@ fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
 /// The operator and its numbers.
 fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool == ToolKind::Fill {
-        return drop(ui.weak("Fills lie flat: they colour the pixels that they cover"));
+        return drop(ui.weak("Fills are not bent: they colour the pixels that they cover"));
     }
     let (whose, operator) = whose(session);
     let about = match whose {
@@ -67,7 +67,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             brush(ui, session, requests);
             symmetry(ui, session, requests);
             let mut by_speed = session.presses_by_speed;
-            let hint = "A mouse or finger without pressure presses less the faster it goes";
+            let hint = "A mouse, or a finger without pressure, presses less the faster it moves";
             if ui.checkbox(&mut by_speed, "Speed presses").on_hover_text(hint).changed() {
                 requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
             }
@@ -97,7 +97,8 @@ fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
     });
-    menu.response.on_hover_text("Repeat every stroke about the middle of the canvas, each bending at its own place");
+    menu.response
+        .on_hover_text("Repeats every stroke about the middle of the canvas; each copy bends at its own place");
 }
 
 /// The live sliders of an operator, in a bar.
@@ -115,7 +116,7 @@ fn numbers_by(
     mut show: impl FnMut(NumberField<'static>, f32) -> Option<ValueChange<f32>>,
 ) -> Option<ValueChange<Operator>> {
     let alphas = || NumberField::new("α", -1.5..=1.5, "Strength: a mirror above 0, flat at 0, glass below");
-    let betas = || NumberField::new("β", 0.0..=5.0, "How much faster the middle of the surface bends than its rim");
+    let betas = || NumberField::new("β", 0.0..=5.0, "How much more the middle of the surface bends than its rim");
     let details = || NumberField::new("Detail", 0.0..=2.0, "How much small bumps bend the image beyond the large form");
     match operator {
         Operator::None => None,

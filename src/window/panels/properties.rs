@@ -92,7 +92,7 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
     if let Weights::Shepard { power } = image.bend.weights
         && n > 1
     {
-        let number = NumberField::new("Sharpness", 0.5..=8.0, "How sharply the anchors divide the surface");
+        let number = NumberField::new("Sharpness", 0.5..=8.0, "How sharply the influence of the anchors is separated");
         setter.take(number.row(ui, power).map(|c| c.map(|to| Property::Power { to })));
     }
     title(ui, "Adjust");
@@ -101,7 +101,7 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
 
 /// Detail: noise, or a map of normals.
 fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
-    ui.label("Normals combined onto the surface: what stands above sees them.");
+    ui.label("Normals combined with the surface, for all layers above.");
     let number = NumberField::new("Strength", 0.0..=4.0, "1 is the map as it is");
     setter.take(number.row(ui, normals.strength).map(|c| c.map(|to| Property::Strength { to })));
     ui.horizontal_wrapped(|ui| {
@@ -119,7 +119,7 @@ fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
         let size = NumberField::new("Bump size", 1.0..=400.0, "Of the largest bumps, px").logarithmic().decimals(0);
         let size = size.row(ui, grain.size_px).map(|c| c.map(|size_px| NoiseRelief { size_px, ..grain }));
         let rough = NumberField::new("Roughness", 0.0..=1.5, "0 is smooth, 1 rough").row(ui, grain.roughness);
-        let stretch = NumberField::new("Stretch", 0.05..=40.0, "How much longer along x: brushed").logarithmic();
+        let stretch = NumberField::new("Stretch", 0.05..=40.0, "How much longer the bumps are along x").logarithmic();
         let stretch = stretch.row(ui, grain.stretch).map(|c| c.map(|stretch| NoiseRelief { stretch, ..grain }));
         let changed = size.or(rough.map(|c| c.map(|roughness| NoiseRelief { roughness, ..grain }))).or(stretch);
         setter.take(changed.map(|c| c.map(|grain| Property::Grained { grain })));
@@ -159,7 +159,7 @@ fn placement(ui: &mut Ui, placement: Placement, setter: &mut LayerSetter) {
 fn adjust(ui: &mut Ui, adjust: Adjust, setter: &mut LayerSetter) {
     type Put = fn(Adjust, f32) -> Adjust;
     let rows: [(&str, f32, std::ops::RangeInclusive<f32>, &str, Put); 6] = [
-        ("Blur", adjust.blur, 0.0..=80.0, "A rougher material, in pixels of the picture", |a, blur| Adjust {
+        ("Blur", adjust.blur, 0.0..=80.0, "Blur in pixels of the picture: a rougher material", |a, blur| Adjust {
             blur,
             ..a
         }),

@@ -67,9 +67,9 @@ pub fn show(
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
             let text = if canvas.is_busy { RichText::new("Painting…").weak() } else { RichText::new(took).weak() };
-            ui.label(text).on_hover_text("How long the last redraw took");
+            ui.label(text).on_hover_text("Time of the last redraw");
             if let Some(bytes) = memory.bytes() {
-                ui.weak(spoken(bytes)).on_hover_text("Memory that the program holds");
+                ui.weak(spoken(bytes)).on_hover_text("Memory used by the program");
             }
             if document.surface.is_none() {
                 ui.weak("No surface: marks lie flat");

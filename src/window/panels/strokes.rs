@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<St
     let chosen = session.active().map(|tab| tab.chosen_strokes()).unwrap_or_default();
     list(ui, layer, strokes, &chosen, requests);
     let Some(first) = chosen.first().and_then(|&index| strokes.get(index)) else {
-        ui.weak("Choose strokes here or, with the stroke tool (S), on the canvas.");
+        ui.weak("Select strokes here or on the canvas with the stroke tool (S).");
         return;
     };
     buttons(ui, layer, n, &chosen, requests);
@@ -79,7 +79,7 @@ fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], reque
             if stroke > 0 && icon_button(ui, Icon::Down, "Stroke down", false).clicked() {
                 act(StrokeAction::Order { layer: layer(), stroke, to: stroke - 1 });
             }
-            let hint = "Its brush, operator and colour come into the hand";
+            let hint = "Takes over its brush, operator and colour";
             if icon_button(ui, Icon::Tool(ToolKind::Eyedropper), "Take its brush", false).on_hover_text(hint).clicked()
             {
                 act(StrokeAction::Take { layer: layer(), stroke });
@@ -88,14 +88,14 @@ fn buttons(ui: &mut Ui, layer: &LayerPath, count: usize, chosen: &[usize], reque
         if icon_button(ui, Icon::Duplicate, "Duplicate strokes", false).on_hover_text("Duplicate").clicked() {
             act(StrokeAction::Duplicate { layer: layer(), strokes: strokes() });
         }
-        let hint = "Bake: they become pixels on a paint layer of their own";
+        let hint = "Bake: turns them into pixels on a paint layer of their own";
         if icon_button(ui, Icon::Bake, "Bake strokes", false).on_hover_text(hint).clicked() {
             act(StrokeAction::Bake { layer: layer(), strokes: strokes() });
         }
         if icon_button(ui, Icon::Delete, "Delete strokes", false).on_hover_text("Delete").clicked() {
             act(StrokeAction::Delete { layer: layer(), strokes: strokes() });
         }
-        let hint = "Paint them with the brush in hand";
+        let hint = "Paints them with the current brush";
         let restyle = StrokeAction::Restyle { layer: layer(), strokes: strokes(), to: Style::Brush {}, done: true };
         if icon_button(ui, Icon::Tool(ToolKind::Brush), "Give brush in hand", false).on_hover_text(hint).clicked() {
             act(restyle);

@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
     ui.weak(format!("{} pixels, {:.0} px deep", surface.size(), surface.depth_range_px()));
     ui.horizontal_wrapped(|ui| {
-        let hint = "What is live bends over the new shape: a painting on another object, or in another pose";
+        let hint = "Live layers bend over the new shape: a painting on another object, or in another pose";
         if ui.button("Replace maps…").on_hover_text(hint).clicked() {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
@@ -67,16 +67,16 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::Normals => "Red to the right, green up, blue toward you",
         SurfaceView::Depth => "Black near, white far",
         SurfaceView::Mask => "White where the surface is",
-        SurfaceView::Objects => "A colour for each object: what depth jumps tear apart",
+        SurfaceView::Objects => "A colour for each object, separated by depth jumps",
         SurfaceView::Curvature => "Convex blue, concave red, flat yellow",
         SurfaceView::CurvatureGrey => "Convex light, concave dark",
         SurfaceView::Directions => "Lines along the direction that curves most",
         SurfaceView::Weights => "How the anchors of the selected layer share the surface",
-        SurfaceView::FlowDepth => "How a texture on the surface is squeezed",
-        SurfaceView::FlowNormals => "How a reflection is squeezed",
-        SurfaceView::FlowOperator => "How the selected layer's operator squeezes its image",
+        SurfaceView::FlowDepth => "How a texture on the surface is compressed",
+        SurfaceView::FlowNormals => "How a reflection is compressed",
+        SurfaceView::FlowOperator => "How the selected layer's operator compresses its image",
         SurfaceView::Scaling => {
-            "Radiance scaling: how much light of each strength is raised on bulges and lowered in hollows"
+            "Radiance scaling: how much light of each brightness is raised on convex and lowered on concave parts"
         }
         SurfaceView::Lit => "The surface and a ball under one light: if they agree, the maps are the right way round",
     }

@@ -182,7 +182,7 @@ fn show_hovered(ui: &Ui, area: egui::Rect, has_document: bool) {
     if ui.input(|i| i.raw.hovered_files.is_empty()) {
         return;
     }
-    let picture = if has_document { "a picture becomes a layer where it falls" } else { "a picture opens" };
+    let picture = if has_document { "a picture becomes a layer at the pointer" } else { "a picture opens" };
     let text = format!("Drop: {picture}, maps become a new document, a project opens");
     let painter = ui.painter_at(area);
     painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(90));

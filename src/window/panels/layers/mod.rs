@@ -67,12 +67,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     });
     ui.horizontal(|ui| {
         let toggles = [
-            (
-                Icon::LockAlpha,
-                "Lock alpha",
-                layer.lock == LayerLock::Alpha,
-                "Paint only where there is paint already (/)",
-            ),
+            (Icon::LockAlpha, "Lock alpha", layer.lock == LayerLock::Alpha, "Paints only where there is paint (/)"),
             (Icon::Lock, "Lock layer", layer.lock == LayerLock::All, "No tool changes it"),
             (Icon::Clip, "Clip to layer below", layer.clip_below, "Paint only where the layer beneath has paint"),
         ];
@@ -88,7 +83,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
         let is_alone = session.active().is_some_and(|tab| tab.solo == Some(layer.id));
-        if icon_button(ui, Icon::Solo, "Show layer alone", is_alone).on_hover_text("Show this layer alone").clicked() {
+        if icon_button(ui, Icon::Solo, "Show layer alone", is_alone).on_hover_text("Shows this layer alone").clicked() {
             requests.act(Action::Layer(LayerAction::Solo { layer: path }));
         }
     });

@@ -109,7 +109,7 @@ impl LayerRow<'_> {
         if is_on {
             ui.painter().rect_stroke(rect, 3.0, Stroke::new(2.0, ACCENT), StrokeKind::Outside);
         }
-        let hint = "Click to paint on the mask; Shift and click to put it aside";
+        let hint = "Click to paint on the mask; Shift-click to disable it";
         if !response.on_hover_text(hint).clicked() {
             return;
         }
