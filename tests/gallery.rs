@@ -1,8 +1,6 @@
-//! The gallery: every sample recipe renders to a picture, and `docs/GALLERY.md` shows every one of them.
+//! The gallery: `docs/GALLERY.md` has the command of every sample recipe and shows every picture. What the pictures
+//! look like is held by `goldens::gallery`.
 
-use rilievo_engine::document::{Progress, flatten};
-use rilievo_io::{Budget, recipe};
-use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -34,20 +32,6 @@ fn recipes() -> Vec<PathBuf> {
 
 fn name(path: &Path) -> String {
     path.file_name().unwrap().to_string_lossy().into_owned()
-}
-
-#[test]
-fn every_recipe_renders_to_a_picture_of_many_colours() {
-    for path in recipes() {
-        let document = recipe::load(&path, &Budget::default()).unwrap_or_else(|e| panic!("{e}"));
-        let document = document.scaled(0.25).unwrap_or_else(|e| panic!("{}: {e}", name(&path)));
-        let picture = flatten(&document, &Progress::default()).unwrap();
-        let rgba = picture.to_straight_rgba(document.size.rect());
-        let colors: BTreeSet<[u8; 3]> =
-            rgba.as_chunks::<4>().0.iter().filter(|p| p[3] == 255).map(|p| [p[0] / 8, p[1] / 8, p[2] / 8]).collect();
-        // The cel painting has four colours and paper; the antialiased steps between them add more.
-        assert!(colors.len() >= 16, "{} shows only {} colours", name(&path), colors.len());
-    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod documents;
 mod equations;
 mod floors;
 mod gallery;
+mod goldens;
 mod info;
 mod interchange;
 #[cfg(target_os = "linux")]

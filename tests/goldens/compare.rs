@@ -1,0 +1,130 @@
+//! Pictures compared with stored ones: the largest difference and where it is, a picture of the fault, and how to
+//! accept it.
+
+use image::{Rgba, RgbaImage};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a fault ends with.
+pub const HOW_TO_ACCEPT: &str = "Look at the pictures named above (found, expected, difference). \
+                                 If the change is meant, accept it: UPDATE_GOLDEN=1 cargo test --test program goldens";
+
+/// Columns between the parts of a fault's picture.
+pub const GAP: u32 = 4;
+/// How much brighter the picture of a difference is than the difference.
+const AMPLIFIED: u8 = 8;
+
+/// How far two pictures are apart, in steps of a byte of premultiplied colour: where nothing is seen nothing differs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    pub largest: u8,
+    /// A pixel that differs so much, the first in reading order.
+    pub at: (u32, u32),
+    /// How many differ by more than the tolerance.
+    pub pixels: usize,
+}
+
+impl Difference {
+    /// Of two pictures of the same size.
+    pub fn of(a: &RgbaImage, b: &RgbaImage, tolerance: u8) -> Self {
+        assert_eq!(a.dimensions(), b.dimensions());
+        let mut difference = Difference { largest: 0, at: (0, 0), pixels: 0 };
+        for ((x, y, p), q) in a.enumerate_pixels().zip(b.pixels()) {
+            let apart = apart(*p, *q).into_iter().max().unwrap_or(0);
+            difference.pixels += usize::from(apart > tolerance);
+            if apart > difference.largest {
+                (difference.largest, difference.at) = (apart, (x, y));
+            }
+        }
+        difference
+    }
+}
+
+/// Of each channel.
+fn apart(p: Rgba<u8>, q: Rgba<u8>) -> [u8; 4] {
+    let (p, q) = (premultiplied(p), premultiplied(q));
+    std::array::from_fn(|c| p[c].abs_diff(q[c]))
+}
+
+fn premultiplied(Rgba([r, g, b, a]): Rgba<u8>) -> [u8; 4] {
+    let by_alpha = |v: u8| ((u32::from(v) * u32::from(a) + 127) / 255) as u8;
+    [by_alpha(r), by_alpha(g), by_alpha(b), a]
+}
+
+/// Where references are, where faults are shown, and whether what differs is accepted.
+pub struct Found<'a> {
+    pub references: &'a Path,
+    pub faults: &'a Path,
+    pub accept: bool,
+}
+
+/// Compares a picture with the one that is stored under its name; `UPDATE_GOLDEN=1` stores it where they differ.
+pub fn check(references: &Path, name: &str, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
+    let faults = faults();
+    let accept = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
+    Found { references, faults: &faults, accept }.check(name, found, tolerance)
+}
+
+/// The folder that faults are shown in, below `target`.
+pub fn faults() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("goldens")
+}
+
+impl Found<'_> {
+    pub fn check(&self, name: &str, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
+        let reference = self.references.join(format!("{name}.png"));
+        let fault = match stored(&reference) {
+            Err(missing) => missing,
+            Ok(expected) if expected.dimensions() != found.dimensions() => {
+                format!("{name}: {:?} pixels, not {:?}", found.dimensions(), expected.dimensions())
+            }
+            Ok(expected) => {
+                let Difference { largest, at, pixels } = Difference::of(found, &expected, tolerance);
+                if largest <= tolerance {
+                    return Ok(());
+                }
+                let shown = self.faults.join(format!("{name}.png"));
+                save(&shown, &side_by_side(found, &expected));
+                let plural = if pixels == 1 { "pixel differs" } else { "pixels differ" };
+                let place = format!("by up to {largest} at {at:?}; {tolerance} is allowed");
+                format!("{name}: {pixels} {plural}, {place}; see {}", shown.display())
+            }
+        };
+        if self.accept {
+            save(&reference, found);
+            println!("accepted: {fault}");
+            return Ok(());
+        }
+        Err(fault)
+    }
+}
+
+/// A stored picture, or a sentence.
+pub fn stored(path: &Path) -> Result<RgbaImage, String> {
+    image::open(path).map(|picture| picture.to_rgba8()).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+fn save(path: &Path, picture: &RgbaImage) {
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    picture.save(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+}
+
+/// Found, expected, and the difference made plain.
+fn side_by_side(found: &RgbaImage, expected: &RgbaImage) -> RgbaImage {
+    let (width, height) = found.dimensions();
+    let mut shown = RgbaImage::new(3 * width + 2 * GAP, height);
+    for ((x, y, &p), &q) in found.enumerate_pixels().zip(expected.pixels()) {
+        let [r, g, b, a] = apart(p, q).map(|v| v.saturating_mul(AMPLIFIED));
+        shown.put_pixel(x, y, p);
+        shown.put_pixel(x + width + GAP, y, q);
+        shown.put_pixel(x + 2 * (width + GAP), y, Rgba([r.max(a), g.max(a), b.max(a), 255]));
+    }
+    shown
+}
+
+/// The picture moved by whole pixels; its edge is repeated.
+pub fn moved(picture: &RgbaImage, dx: i32, dy: i32) -> RgbaImage {
+    let (width, height) = picture.dimensions();
+    let from = |v: u32, by: i32, n: u32| (v as i32 - by).clamp(0, n as i32 - 1) as u32;
+    RgbaImage::from_fn(width, height, |x, y| *picture.get_pixel(from(x, dx, width), from(y, dy, height)))
+}

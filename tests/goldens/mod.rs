@@ -1,0 +1,113 @@
+//! Reference pictures: what each blend mode, operator and filter, shading model, mask and tip looks like, and what the
+//! recipes of the gallery look like. Each is made again and compared, with a tolerance that stands beside its recipe.
+//!
+//! `UPDATE_GOLDEN=1 cargo test --test program goldens` accepts what has changed; `CONTRIBUTING.md` says more.
+//!
+//! The other tests hold this one to its purpose: a shift by a pixel is found, and no picture passes for another.
+
+mod cases;
+mod compare;
+mod gallery;
+mod pictures;
+mod surfaces;
+
+use cases::Case;
+use compare::{Difference, Found};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+/// What all reference pictures may weigh together, and how many there may be: they are read by people.
+const MOST_BYTES: u64 = 600 << 10;
+const MOST_PICTURES: usize = 59;
+
+/// The reference pictures, beside this file.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/goldens")
+}
+
+/// What each case differs by from its picture. Looked at once, before any other test reads the pictures: they may be
+/// accepted.
+static FAULTS: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let check = |case: &Case| compare::check(&folder(), &case.name, &case.rendered(), case.tolerance).err();
+    cases::all().iter().filter_map(check).collect()
+});
+
+fn golden(case: &Case) -> image::RgbaImage {
+    LazyLock::force(&FAULTS);
+    compare::stored(&folder().join(format!("{}.png", case.name))).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn every_case_looks_as_its_reference_picture() {
+    assert!(FAULTS.is_empty(), "{}\n{}", FAULTS.join("\n"), compare::HOW_TO_ACCEPT);
+}
+
+#[test]
+fn every_reference_picture_belongs_to_a_case_and_all_are_light() {
+    LazyLock::force(&FAULTS);
+    let known: BTreeSet<String> = cases::all().into_iter().map(|case| case.name).collect();
+    let (mut bytes, mut stored) = (0, BTreeSet::new());
+    for group in std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+        for picture in std::fs::read_dir(&group).unwrap().map(|entry| entry.unwrap().path()) {
+            bytes += picture.metadata().unwrap().len();
+            let name = picture.strip_prefix(folder()).unwrap().with_extension("");
+            stored.insert(name.to_string_lossy().replace('\\', "/"));
+        }
+    }
+    assert_eq!(stored, known, "one picture a case (UPDATE_GOLDEN=1 makes those that are missing)");
+    assert!(stored.len() <= MOST_PICTURES, "{} pictures", stored.len());
+    assert!(bytes <= MOST_BYTES, "{bytes} bytes");
+}
+
+#[test]
+fn a_shift_by_one_pixel_is_found_in_every_picture() {
+    for case in cases::all() {
+        let golden = golden(&case);
+        for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+            let Difference { largest, pixels, .. } =
+                Difference::of(&compare::moved(&golden, dx, dy), &golden, case.tolerance);
+            assert!(
+                largest > 4 * case.tolerance.max(1) && pixels > 20,
+                "{}, moved by {dx}, {dy}: only {pixels} pixels differ, by {largest} at most",
+                case.name
+            );
+        }
+    }
+}
+
+#[test]
+fn no_two_cases_look_alike() {
+    let with_picture = |case: Case| {
+        let picture = golden(&case);
+        (case, picture)
+    };
+    let goldens: Vec<(Case, image::RgbaImage)> = cases::all().into_iter().map(with_picture).collect();
+    for (i, (a, picture)) in goldens.iter().enumerate() {
+        for (b, other) in goldens[..i].iter().filter(|(_, other)| other.dimensions() == picture.dimensions()) {
+            let Difference { pixels, .. } = Difference::of(picture, other, a.tolerance.max(b.tolerance));
+            assert!(pixels > 20, "{} and {} differ in {pixels} pixels only", a.name, b.name);
+        }
+    }
+}
+
+#[test]
+fn a_fault_is_told_with_its_place_and_a_picture() {
+    let expected = image::RgbaImage::from_pixel(20, 10, image::Rgba([90, 100, 110, 255]));
+    let mut found = expected.clone();
+    found.put_pixel(12, 7, image::Rgba([90, 140, 110, 255]));
+    found.put_pixel(3, 2, image::Rgba([90, 103, 110, 255]));
+    let scratch = tempfile::tempdir().unwrap();
+    let told = |tolerance| {
+        let scratch = Found { references: scratch.path(), faults: &scratch.path().join("faults"), accept: false };
+        scratch.check("a/b", &found, tolerance)
+    };
+    std::fs::create_dir(scratch.path().join("a")).unwrap();
+    expected.save(scratch.path().join("a/b.png")).unwrap();
+    let sentence = told(3).unwrap_err();
+    assert!(sentence.contains("by up to 40 at (12, 7)") && sentence.contains("1 pixel"), "{sentence}");
+    assert!(told(2).unwrap_err().contains("2 pixels"));
+    assert_eq!(told(40), Ok(()));
+    let shown = image::open(scratch.path().join("faults/a/b.png")).unwrap().to_rgba8();
+    assert_eq!(shown.dimensions(), (3 * 20 + 2 * compare::GAP, 10), "found, expected, difference");
+}
