@@ -151,3 +151,19 @@ fn what_leads_nowhere_is_found() {
     assert_eq!(cited("//! MATH 6, docs/NO.md; MATH"), BTreeSet::from(["MATH 6".into(), "docs/NO.md".into()]));
     assert_eq!(prose("a\n```sh\n[x](y)\n```\nb"), "a\n\nb");
 }
+
+/// The lines of a document's examples in Rust.
+fn examples(text: &str) -> Vec<&str> {
+    let blocks = text.split("\n```rust\n").skip(1).filter_map(|rest| rest.split_once("\n```"));
+    blocks.flat_map(|(block, _)| block.lines()).map(str::trim).filter(|line| !line.is_empty()).collect()
+}
+
+#[test]
+fn the_examples_of_good_style_are_taken_from_the_code() {
+    let code: String = files(&root().join("src"), ".rs").iter().map(|file| text(file)).collect();
+    let style = text(&root().join("docs/STYLE.md"));
+    let examples = examples(&style);
+    assert!(examples.len() >= 15, "only {} lines of examples", examples.len());
+    let gone: Vec<_> = examples.into_iter().filter(|line| !code.contains(*line)).collect();
+    assert!(gone.is_empty(), "docs/STYLE.md shows what is no longer in the code:\n{}", gone.join("\n"));
+}
