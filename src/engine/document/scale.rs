@@ -71,11 +71,14 @@ impl CanvasScale {
     pub fn stroke(&self, stroke: &Stroke) -> Stroke {
         let mut brush = stroke.brush().clone();
         brush.size *= self.length;
+        brush.hand.direction_px *= self.length;
         match &mut brush.stabilizer {
             Stabilizer::None => {}
             Stabilizer::String { length_px } => *length_px *= self.length,
             // The same decay over a path that is this much longer.
             Stabilizer::Average { weight } => *weight = weight.max(0.0).powf(1.0 / self.length),
+            // Time is the same on every canvas.
+            Stabilizer::Lag { .. } => {}
         }
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
         Stroke::new(brush, stroke.operator(), stroke.color(), samples)

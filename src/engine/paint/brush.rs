@@ -1,8 +1,9 @@
 //! A brush: the footprint of one dab and how dabs follow each other.
 //! Floor 3. Not here: how pen and surface drive it (`dynamics`), the dabs themselves (`dab_walker`).
 
-use super::dynamics::{Dynamics, Input};
+use super::dynamics::{Dynamics, Input, Property};
 use super::grain::{BrushGrain, GrainSource};
+use super::habits::{Cycle, Falloff, Hand, Offset, Pickup, Rate, Spread};
 use super::image::PictureSource;
 use super::tip::{Bristles, Hose, Noise};
 use crate::math::{Mat2, Range, UNIT, Vec2, range::held};
@@ -20,16 +21,29 @@ pub struct Brush {
     pub opacity: f32,
     /// Coverage that one dab adds, `[0, 1]`.
     pub flow: f32,
-    /// Distance between dabs, a ratio of the diameter, `> 0`.
+    /// Distance between dabs, a ratio of the diameter, `> 0`; of a flat tip, of its width along the stroke.
     pub spacing: f32,
+    /// How many dabs lie over each other, `≥ 1`: each adds 1 − (1 − flow)^(1/overlap), so that together they come to
+    /// the flow.
+    pub overlap: f32,
+    /// How coverage falls off, of round, elliptic and square tips.
+    pub falloff: Falloff,
+    /// Dabs beside those that the spacing asks for.
+    pub rate: Rate,
     /// Counter-clockwise as seen, degrees.
     pub rotation: f32,
     /// How symmetry turned or mirrored the stroke.
     pub facing: StrokeFrame,
     /// Blur of the footprint, `[0, 1]`: a rougher, less glossy mark. Its rim moves out by this share of the radius.
     pub softness: f32,
-    /// The greatest distance of a dab from the stroke, a ratio of its diameter, `[0, 10]`.
+    /// How far a dab may stand from the stroke, a ratio as `spread` says, `[0, 10]`.
     pub scatter: f32,
+    pub spread: Spread,
+    /// How far sizes stray: the standard deviation of their doublings. A dab that grows covers less, its paint is
+    /// spread out.
+    pub size_jitter: f32,
+    /// Where dabs stand beside the stroke.
+    pub offset: Offset,
     pub jitter: ColorJitter,
     /// How the stroke blends with its layer.
     pub blend: BlendMode,
@@ -43,10 +57,16 @@ pub struct Brush {
     pub reach: f32,
     /// What the brush does where its footprint lands. Strokes of a stroke layer paint, whatever it says.
     pub mode: BrushMode,
+    /// Paint that it takes up where it goes.
+    pub pickup: Pickup,
     pub tip: Tip,
     pub grain: Option<BrushGrain>,
     /// How the hand is smoothed. The samples of a stroke are smooth already: rendering it does not use this.
     pub stabilizer: Stabilizer,
+    /// How the hand's ways become readings and dabs.
+    pub hand: Hand,
+    /// What [`Input::Cycle`] goes by.
+    pub cycle: Cycle,
     pub dynamics: Dynamics,
     /// The seed of all randomness: the same seed and samples paint the same pixels.
     pub seed: u32,
@@ -127,7 +147,7 @@ impl BrushMode {
     }
 }
 
-/// The greatest deviation of a dab's colour from the stroke's, either way; random for each dab.
+/// How far a dab's colour may be from the stroke's, either way; each dab at random.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct ColorJitter {
     /// `[0, 180]`.
@@ -151,11 +171,15 @@ pub enum Stabilizer {
     Average { weight: f32 },
     /// The pen pulls the line on a string of this length, px: wiggles shorter than it do not show.
     String { length_px: f32 },
+    /// The line comes after the pen as time passes: e^(−t/secs) of what it lags behind is left. It ends where the pen
+    /// lifts.
+    Lag { secs: f32 },
 }
 
 impl Stabilizer {
     pub const WEIGHT: Range = UNIT;
     pub const LENGTH_PX: Range = 0.0..=10_000.0;
+    pub const SECS: Range = 0.0..=10.0;
 }
 
 /// What a dab looks like before it is bent.
@@ -234,10 +258,16 @@ impl Default for Brush {
             opacity: 1.0,
             flow: 1.0,
             spacing: 0.1,
+            overlap: 1.0,
+            falloff: Falloff::default(),
+            rate: Rate::default(),
             rotation: 0.0,
             facing: StrokeFrame::default(),
             softness: 0.0,
             scatter: 0.0,
+            spread: Spread::default(),
+            size_jitter: 0.0,
+            offset: Offset::default(),
             jitter: ColorJitter::default(),
             blend: BlendMode::Normal,
             erases: false,
@@ -245,9 +275,12 @@ impl Default for Brush {
             bounded: PaintLimit::Free,
             reach: 0.0,
             mode: BrushMode::Paint,
+            pickup: Pickup::default(),
             tip: Tip::Round,
             grain: None,
             stabilizer: Stabilizer::None,
+            hand: Hand::default(),
+            cycle: Cycle::default(),
             dynamics: Dynamics::default(),
             seed: 0,
         }
@@ -262,7 +295,29 @@ impl Brush {
     /// Whether its strokes have random properties and so need a seed of their own.
     pub fn is_random(&self) -> bool {
         let ColorJitter { hue_degrees, saturation, value } = self.jitter;
-        let strays = [self.scatter, hue_degrees, saturation, value].iter().any(|&v| v > 0.0);
-        strays || self.dynamics.follow(Input::Random) || matches!(self.tip, Tip::Hose(_))
+        let strays = [self.scatter, self.hand.tremor, self.size_jitter, hue_degrees, saturation, value];
+        let adds = [Property::Scatter, Property::SizeJitter].into_iter().any(|p| self.dynamics.drive(p));
+        let follows = [Input::Random, Input::Chance].into_iter().any(|input| self.dynamics.follow(input));
+        strays.iter().any(|&v| v > 0.0) || adds || follows || matches!(self.tip, Tip::Hose(_))
+    }
+    /// It works on the paint that is there, dab by dab.
+    pub fn is_wet(&self) -> bool {
+        self.mode.is_retouching() || self.picks_up()
+    }
+    /// It takes paint up where it goes.
+    pub fn picks_up(&self) -> bool {
+        self.mode == BrushMode::Paint && (self.pickup.amount > 0.0 || self.dynamics.drive(Property::Pickup))
+    }
+    /// Without paint to work on it would leave next to nothing: it retouches, or paints with what it takes up more
+    /// than with its own colour.
+    pub fn needs_paint(&self) -> bool {
+        self.mode.is_retouching() || (self.mode == BrushMode::Paint && self.pickup.amount > 0.5)
+    }
+    /// Of the tip's shorter side to its longer one, before anything drives it; `(0, 1]`.
+    pub fn ratio(&self) -> f32 {
+        match self.tip {
+            Tip::Ellipse { ratio } | Tip::Square { ratio } => ratio.max(*Tip::RATIO.start()).min(1.0),
+            _ => 1.0,
+        }
     }
 }

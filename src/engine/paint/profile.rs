@@ -1,6 +1,24 @@
 //! The round tip: coverage as a function of the distance from the dab's centre, blurred in closed form.
 //! Floor 3. Pure functions.
 
+/// How coverage falls off from the middle of a dab, the radius of the undeformed footprint being 1.
+pub trait Profile {
+    /// Beyond this distance coverage is 0 where no pixel's footprint widens it.
+    fn outer_radius(&self) -> f32;
+    /// Mean coverage at distance `r ≥ 0` over a pixel whose width along the radius has this square, both in radii.
+    fn mean(&self, r: f32, width_squared: f32) -> f32;
+}
+
+impl Profile for RoundProfile {
+    fn outer_radius(&self) -> f32 {
+        RoundProfile::outer_radius(self)
+    }
+    #[inline(always)]
+    fn mean(&self, r: f32, width_squared: f32) -> f32 {
+        RoundProfile::mean(self, r, width_squared)
+    }
+}
+
 /// A radial profile, the radius of the undeformed footprint being 1.
 ///
 /// Coverage is 1 up to the hardness and falls to 0 at the rim as a smoothstep. Softness blurs it with two kernels of

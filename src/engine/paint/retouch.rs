@@ -1,9 +1,10 @@
-//! Smudge, blur and clone: brushes that change existing paint. Dabs have the same bent footprint as paint; each works
-//! on the result of the last, in f32, which is rounded to bytes only for display. Floor 3. `drag` finds where smudge
-//! and clone take a pixel's colour from, `soften` computes the blur, `pixels` holds the pixels. Not here: the pen
-//! (`tools`).
+//! Smudge, blur, clone, and brushes that pick paint up: they work on the paint that is there. Dab by dab through the
+//! same bent footprint as paint, each on what the last one left, in f32, rounded to bytes as it is shown. Floor 3.
+//! `drag` says where smudge and clone take a pixel's colour from, `soften` what blur makes of it, `pickup` which
+//! colour a dab paints, `pixels` holds the pixels. Not here: what the pen did (`tools`).
 
 mod drag;
+mod pickup;
 mod pixels;
 mod soften;
 
@@ -17,7 +18,8 @@ use super::scene::Scene;
 use super::stroke::dabs::{StrokeDabs, tiles_of};
 use super::stroke::{Sample, Stroke};
 use super::stroke_tile::StrokeTile;
-use crate::math::{Rect, Vec2};
+use super::tint;
+use crate::math::{Rect, Vec2, srgb::Color};
 use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{PlanarTile, TILE, Tile, TileAt, TileGrid};
@@ -43,6 +45,7 @@ pub struct ActiveRetouching {
 /// One stroke in the making.
 struct RetouchStroke {
     brush: Brush,
+    color: Color,
     stroke_dabs: StrokeDabs,
     walker: DabWalker,
     /// From a pixel to what is cloned onto it, px.
@@ -58,6 +61,8 @@ struct DabQueue {
     /// Dabs that were not applied yet.
     waiting: VecDeque<Dab>,
     before: Option<Dab>,
+    /// Paint that was taken up.
+    held: pickup::Held,
 }
 
 /// A dab on a tile: which pixels, and how much of each.
@@ -78,6 +83,7 @@ impl ActiveRetouching {
         let offsets = offsets.iter().copied().filter(|offset| offset.is_finite()).chain(std::iter::repeat(Vec2::ZERO));
         let stroke = |(stroke, offset): (&Stroke, Vec2)| RetouchStroke {
             brush: stroke.brush().clone(),
+            color: stroke.color(),
             stroke_dabs: StrokeDabs::empty(stroke.brush(), scene),
             walker: DabWalker::new(stroke.brush(), stroke.operator(), stroke.color(), scene),
             offset,
@@ -145,10 +151,20 @@ impl RetouchStroke {
         let Some(dab) = progress.waiting.pop_front() else { return Vec::new() };
         let before = progress.before.replace(dab);
         let placed = self.stroke_dabs.place(dab, scene);
+        let paint = match self.brush.mode {
+            BrushMode::Paint if self.brush.erases => Some([0.0; 4]),
+            BrushMode::Paint => {
+                Some(pickup::mixed(&self.brush, self.own(&dab), &dab, &mut progress.held, retouched, scene))
+            }
+            _ => None,
+        };
         let rubbed = |scratch: &mut DabScratch, at: &TileAt| {
             let touch = self.touch(&placed, *at, scratch, scene)?;
             let colors = match self.brush.mode {
-                BrushMode::Paint => None,
+                BrushMode::Paint => {
+                    let area = touch.area.width() * touch.area.height();
+                    paint.map(|color| vec![color; area])
+                }
                 BrushMode::Smudge { length } => drag::smudged(&touch, &dab, before.as_ref()?, length, retouched, scene),
                 BrushMode::Blur { width } => {
                     Some(soften::blurred(&touch, &dab, before.as_ref(), width, self.limits(), retouched, scene))
@@ -167,6 +183,10 @@ impl RetouchStroke {
         }
         changed
     }
+    /// The brush's own colour, which varies only once it is mixed.
+    fn own(&self, dab: &Dab) -> Color {
+        if tint::varies(&self.brush) { self.color } else { dab.color }
+    }
     fn limits(&self) -> &CanvasPart {
         self.part.as_ref().unwrap_or(&CanvasPart::Whole)
     }
@@ -177,7 +197,8 @@ impl RetouchStroke {
         self.stroke_dabs.add(placed, at, grain.as_deref(), &mut stroke_tile, scratch);
         let mut coverage: Box<[f32; TILE_AREA]> = Box::new([0.0; TILE_AREA]);
         coverage.copy_from_slice(stroke_tile.coverage(0, TILE_AREA));
-        let opacity = self.brush.opacity.max(0.0).min(1.0);
+        let opaque = if self.brush.mode == BrushMode::Paint { f32::from(self.color.a) / 255.0 } else { 1.0 };
+        let opacity = self.brush.opacity.max(0.0).min(1.0) * opaque;
         let (tile, part) = (at.rect(), self.limits());
         let mut area = Rect::EMPTY;
         for (y, row) in (tile.y0..).zip(coverage.as_chunks_mut::<TILE>().0) {

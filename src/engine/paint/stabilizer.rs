@@ -41,6 +41,7 @@ impl StabilizedPen {
             Stabilizer::None => pen.at,
             Stabilizer::Average { weight } => trailed(end, last.at, pen.at, weight),
             Stabilizer::String { length_px } => pulled(end, last.at, pen.at, length_px),
+            Stabilizer::Lag { secs } => delayed(end, &last, &pen, secs),
         };
         // A hostile leap may overflow f32: the line stays.
         let at = if at.is_finite() { at } else { end };
@@ -50,7 +51,9 @@ impl StabilizedPen {
     /// The rest of the way to where the pen lifts; `None` if the line is there already.
     pub fn finish(&mut self) -> Option<Sample> {
         let (end, last) = self.line.take()?;
-        (end != last.at).then_some(last)
+        // A hand that was waited for is waited for no more.
+        let is_done = end == last.at || matches!(self.stabilizer, Stabilizer::Lag { .. });
+        (!is_done).then_some(last)
     }
 }
 
@@ -68,7 +71,19 @@ fn trailed(end: Vec2, from: Vec2, to: Vec2, weight: f32) -> Vec2 {
     to - behind + (end - from + behind) * (-length / lag).exp()
 }
 
-/// The end of a string of this length when its other end is pulled straight from `from` to `to`.
+/// The end of a line that comes after a pen as time passes. Exact for a pen that moves evenly, so that samples
+/// between change nothing.
+fn delayed(end: Vec2, from: &Sample, to: &Sample, secs: f32) -> Vec2 {
+    let elapsed = to.time_secs - from.time_secs;
+    let is_late = secs > 0.0 && elapsed > 0.0;
+    if !is_late {
+        return if secs > 0.0 { end } else { to.at };
+    }
+    let behind = (to.at - from.at) / elapsed * secs;
+    to.at - behind + (end - from.at + behind) * (-elapsed / secs).exp()
+}
+
+/// The end of a string of this length whose other end is pulled straight from `from` to `to`.
 fn pulled(end: Vec2, from: Vec2, to: Vec2, length_px: f32) -> Vec2 {
     let length_px = length_px.max(0.0);
     let steps = (from.distance(to) / PULL_PX).ceil().max(1.0).min(MOST_PULLS) as usize;
@@ -138,6 +153,7 @@ mod tests {
             Stabilizer::Average { weight: 7.0 },
             Stabilizer::String { length_px: f32::NAN },
             Stabilizer::String { length_px: -3.0 },
+            Stabilizer::String { length_px: 0.0 },
         ] {
             let mut stabilized = StabilizedPen::new(stabilizer);
             for at in [Vec2::ZERO, Vec2::NAN, vec2(3e38, -3e38), vec2(f32::INFINITY, 0.0), vec2(9.0, 9.0)] {
@@ -145,5 +161,17 @@ mod tests {
             }
             assert_eq!(stabilized.finish().map_or(vec2(9.0, 9.0), |s| s.at), vec2(9.0, 9.0));
         }
+    }
+    #[test]
+    fn a_line_that_waits_trails_by_the_way_of_its_time_and_ends_there() {
+        let pen = |i: usize| Sample { time_secs: 0.01 * i as f32, ..Sample::at(vec2(5.0 * i as f32, 0.0)) };
+        let drawn = |step: usize| {
+            let mut stabilized = StabilizedPen::new(Stabilizer::Lag { secs: 0.1 });
+            let last = (0..=200).step_by(step).filter_map(|i| stabilized.push(pen(i))).last();
+            (last.map(|sample| sample.at.x).unwrap_or_default(), stabilized.finish())
+        };
+        // 500 px a second, a tenth of one late.
+        assert!((drawn(1).0 - 950.0).abs() < 0.1 && drawn(1).1.is_none(), "{}", drawn(1).0);
+        assert!((drawn(1).0 - drawn(20).0).abs() < 0.01, "however often the pen reports");
     }
 }

@@ -2,7 +2,7 @@
 //! Floor 3.
 
 use super::brush::Brush;
-use super::dynamics::{DabInputs, Property};
+use super::dynamics::{DabInputs, Dynamics, Property};
 use crate::math::{
     hash,
     srgb::{Color, quantise},
@@ -12,7 +12,8 @@ use crate::math::{
 pub fn varies(brush: &Brush) -> bool {
     let jitter = brush.jitter;
     let jitters = [jitter.hue_degrees, jitter.saturation, jitter.value].iter().any(|&v| v > 0.0);
-    jitters || [Property::Hue, Property::Saturation, Property::Value].iter().any(|&p| brush.dynamics.drive(p))
+    let driven = [Property::Hue, Property::Saturation, Property::Value, Property::Lightness];
+    jitters || driven.iter().any(|&property| brush.dynamics.drive(property))
 }
 
 /// The colour of a dab; alpha stays the stroke's.
@@ -22,10 +23,22 @@ pub fn of(brush: &Brush, color: Color, inputs: &DabInputs) -> Color {
     let (jitter, dynamics) = (brush.jitter, &brush.dynamics);
     let [h, s, v] = hsv(color);
     let turns = dynamics.turns(Property::Hue, inputs) + unit(jitter.hue_degrees / 180.0) * 0.5 * either_way(0);
-    let s = s * dynamics.factor(Property::Saturation, inputs) + unit(jitter.saturation) * either_way(1);
-    let v = v * dynamics.factor(Property::Value, inputs) + unit(jitter.value) * either_way(2);
-    let [r, g, b] = rgb([h + turns, unit(s), unit(v)]).map(quantise);
+    let s = dynamics.value(Property::Saturation, s, inputs) + unit(jitter.saturation) * either_way(1);
+    let v = dynamics.value(Property::Value, v, inputs) + unit(jitter.value) * either_way(2);
+    let [h, s, v] = [h + turns, unit(s), unit(v)];
+    let lit = if dynamics.drive(Property::Lightness) { lightened([h, s, v], dynamics, inputs) } else { [h, s, v] };
+    let [r, g, b] = rgb(lit).map(quantise);
     Color { r, g, b, ..color }
+}
+
+/// The same colour at the lightness (HSL) that drives it, of the same HSL saturation.
+fn lightened([h, s, v]: [f32; 3], dynamics: &Dynamics, inputs: &DabInputs) -> [f32; 3] {
+    let share = |part: f32, whole: f32| if whole > 0.0 { part / whole } else { 0.0 };
+    let lightness = v * (1.0 - 0.5 * s);
+    let saturation = share(v - lightness, lightness.min(1.0 - lightness));
+    let to = dynamics.value(Property::Lightness, lightness, inputs).max(0.0).min(1.0);
+    let value = to + saturation * to.min(1.0 - to);
+    [h, share(2.0 * (value - to), value).min(1.0), value.min(1.0)]
 }
 
 /// Hue in turns, saturation, value: each in `[0, 1]`.
@@ -58,6 +71,7 @@ fn rgb([hue, saturation, value]: [f32; 3]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vec2;
     use crate::paint::{ColorJitter, Curve, Dynamics, Input};
 
     #[test]
@@ -88,5 +102,19 @@ mod tests {
             let farthest = all.iter().map(|v| from_middle(v).abs()).fold(0.0, f32::max);
             assert!(farthest > 0.9 * reach && farthest < 1.05 * reach + 0.01, "channel {c}: {farthest}");
         }
+    }
+    #[test]
+    fn lightness_goes_to_white_and_black_by_way_of_the_colour() {
+        let lit = |by: f32| {
+            let added = Curve::added(vec![vec2(0.0, by)]).unwrap();
+            let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, added);
+            of(&Brush { dynamics, ..Brush::default() }, Color::parse("#ff0000").unwrap(), &DabInputs::default())
+                .to_string()
+        };
+        assert_eq!([0.5, 0.25, -0.25, -0.5].map(lit), ["#ffffff", "#ff8080", "#800000", "#000000"]);
+        let grey = Curve::added(vec![vec2(0.0, 0.2)]).unwrap();
+        let dynamics = Dynamics::none().with(Property::Lightness, Input::Pressure, grey);
+        let lit = of(&Brush { dynamics, ..Brush::default() }, Color::BLACK, &DabInputs::default());
+        assert_eq!(lit.to_string(), "#333333");
     }
 }

@@ -5,6 +5,8 @@
 //! |---|---|
 //! | `gbr` | GIMP's brushes: one picture |
 //! | `gih` | GIMP's image hoses: several pictures and the rule that chooses |
+//! | `vbr` | GIMP's parametric brushes: numbers |
+//! | `kpp` | Krita's presets: settings in a picture |
 //! | `myb` | MyPaint's brushes: numbers and curves |
 //! | `abr` | Photoshop's collections: sampled tips |
 //! | `write` | a brush as a preset's file of this program |
@@ -12,9 +14,11 @@
 mod abr;
 mod gbr;
 mod gih;
+mod kpp;
 mod myb;
 #[cfg(test)]
 mod tests;
+mod vbr;
 mod write;
 
 pub use write::{Encoded, encode, pictures_beside, remove};
@@ -42,14 +46,18 @@ pub struct ImportedBrush {
 pub enum BrushFormat {
     GimpBrush,
     GimpHose,
+    GimpParametric,
+    Krita,
     MyPaint,
     Photoshop,
 }
 
-/// File extensions of brushes.
-pub const EXTENSIONS: [(&str, BrushFormat); 4] = [
+/// Endings of the files that hold brushes.
+pub const EXTENSIONS: [(&str, BrushFormat); 6] = [
     ("gbr", BrushFormat::GimpBrush),
     ("gih", BrushFormat::GimpHose),
+    ("vbr", BrushFormat::GimpParametric),
+    ("kpp", BrushFormat::Krita),
     ("myb", BrushFormat::MyPaint),
     ("abr", BrushFormat::Photoshop),
 ];
@@ -61,6 +69,9 @@ impl BrushFormat {
         if gbr::is_gbr(bytes) {
             return Some(BrushFormat::GimpBrush);
         }
+        if vbr::is_vbr(bytes) {
+            return Some(BrushFormat::GimpParametric);
+        }
         let extension = file.extension()?.to_string_lossy().to_lowercase();
         EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|(_, kind)| *kind)
     }
@@ -69,6 +80,8 @@ impl BrushFormat {
         match self {
             BrushFormat::GimpBrush => "GIMP brush",
             BrushFormat::GimpHose => "GIMP image hose",
+            BrushFormat::GimpParametric => "GIMP parametric brush",
+            BrushFormat::Krita => "Krita preset",
             BrushFormat::MyPaint => "MyPaint brush",
             BrushFormat::Photoshop => "Photoshop brushes",
         }
@@ -81,9 +94,11 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
     match BrushFormat::of(file, bytes) {
         Some(BrushFormat::GimpBrush) => gbr::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::GimpHose) => gih::read(file, bytes, budget).map(|brush| vec![brush]),
+        Some(BrushFormat::GimpParametric) => vbr::read(file, bytes).map(|brush| vec![brush]),
+        Some(BrushFormat::Krita) => kpp::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::MyPaint) => myb::read(file, bytes, budget).map(|brush| vec![brush]),
         Some(BrushFormat::Photoshop) => abr::read(file, bytes, budget),
-        None => Err(Error::unsupported(file, "it ends in none of .gbr, .gih, .myb and .abr")),
+        None => Err(Error::unsupported(file, "it ends in none of .gbr, .gih, .vbr, .kpp, .myb and .abr")),
     }
 }
 

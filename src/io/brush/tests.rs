@@ -2,8 +2,10 @@
 
 use super::*;
 use crate::math::hash;
-use crate::paint::dynamics::{Input, Property};
+use crate::paint::dynamics::{DabInputs, Input, Property};
+use crate::paint::habits::SETTINGS;
 use crate::paint::tip::RankSelect;
+use crate::paint::{Falloff, Spread, Stabilizer};
 use crate::raster::picture::Texels;
 
 fn budget() -> Budget {
@@ -105,27 +107,73 @@ const MYB: &str = r#"{ "version": 3, "group": "", "settings": {
     "slow_tracking": { "base_value": 1.5, "inputs": {} },
     "smudge": { "base_value": 0.7, "inputs": {} } } }"#;
 
+/// What inputs make of a property of a brush.
+fn driven(brush: &Brush, property: Property, plain: f32, inputs: DabInputs) -> f32 {
+    brush.dynamics.value(property, plain, &inputs)
+}
+
 #[test]
-fn a_mypaint_brush_becomes_numbers_and_curves_and_tells_what_it_could_not() {
+fn a_mypaint_brush_becomes_numbers_and_what_is_added_to_them() {
     let ImportedBrush { name, brush, notes } = only("ink blot.myb", MYB.as_bytes());
     assert_eq!(name, "ink blot");
-    let size = |pressure: f32| brush.size * brush.dynamics.curve(Property::Size, Input::Pressure).unwrap().at(pressure);
+    let pressed = |pressure: f32| DabInputs { pressure, ..DabInputs::default() };
     for (pressure, log) in [(0.0f32, 1.8f32), (0.5, 2.3), (1.0, 2.8)] {
-        assert!((size(pressure) / (2.0 * log.exp()) - 1.0).abs() < 0.01, "{pressure}: {}", size(pressure));
+        let size = driven(&brush, Property::Size, brush.size, pressed(pressure));
+        assert!((size / (2.0 * log.exp()) - 1.0).abs() < 0.01, "{pressure}: {size}");
     }
-    let flow = |pressure: f32| brush.dynamics.curve(Property::Flow, Input::Pressure).unwrap().at(pressure);
-    assert!((flow(0.5) - 0.1).abs() < 0.01 && flow(1.0) == 1.0 && brush.flow == 1.0);
-    assert_eq!(brush.spacing, 0.1);
-    assert_eq!(brush.scatter, 0.4);
-    assert!((brush.hardness - 0.414).abs() < 0.01);
+    for (pressure, opaque) in [(0.25f32, 0.05f32), (0.5, 0.1), (0.75, 0.55), (1.0, 1.0)] {
+        assert!((driven(&brush, Property::Flow, brush.flow, pressed(pressure)) - opaque).abs() < 0.01);
+    }
+    assert_eq!((brush.spacing, brush.rate.per_diameter), (0.125, 2.0), "4 and 1 in a radius");
+    assert!((brush.overlap - 9.1).abs() < 1e-3, "10 in a diameter, to nine tenths");
+    assert_eq!((brush.scatter, brush.spread), (0.2, Spread::Cloud));
+    assert_eq!((brush.hardness, brush.falloff), (0.5, Falloff::Peaked));
     assert!(matches!(brush.tip, Tip::Ellipse { ratio } if ratio == 0.25));
     assert_eq!(brush.rotation, 270.0, "upright");
-    assert!((brush.jitter.hue_degrees - 36.0).abs() < 0.1);
-    assert_eq!(notes, ["“smudge” has no counterpart"]);
+    assert!((brush.dynamics.added(Property::Hue, Input::Chance).unwrap().at(1.0) - 0.1).abs() < 1e-6);
+    assert_eq!(brush.stabilizer, Stabilizer::Lag { secs: 0.015 });
+    assert_eq!((brush.pickup.amount, brush.pickup.length), (0.7, 0.5));
+    assert!(notes.is_empty(), "{notes:?}");
 }
 #[test]
-fn a_mypaint_brush_of_another_version_is_named() {
-    assert!(said("b.myb", b"radius_logarithmic 1.2\nversion 2\n").contains("versions before 3"));
+fn a_mypaint_brush_that_follows_several_inputs_follows_them_all() {
+    let text = r#"{ "version": 3, "settings": {
+        "opaque": { "base_value": 0.4, "inputs": { "pressure": [[0, 0], [1, 0.5]], "random": [[0, -0.4], [1, 0.1]] } },
+        "elliptical_dab_ratio": { "base_value": 1, "inputs": { "tilt_declination": [[0, 5], [90, 0]] } },
+        "dabs_per_second": { "base_value": 80, "inputs": {} },
+        "stroke_holdtime": { "base_value": 10, "inputs": {} } } }"#;
+    let ImportedBrush { brush, notes, .. } = only("b.myb", text.as_bytes());
+    // Nothing is said of what multiplies it: the pressure does.
+    let inputs = DabInputs { pressure: 0.5, tilt: 1.0, seed: 3, ..DabInputs::default() };
+    let chance = brush.dynamics.added(Property::Flow, Input::Chance).unwrap();
+    let random = (0..=100).map(|i| chance.at(i as f32 / 100.0)).fold(0.0, f32::max);
+    assert!((random - 0.1).abs() < 1e-5);
+    let flow = driven(&brush, Property::Flow, brush.flow, inputs);
+    assert!((0.12..=0.38).contains(&flow), "between 0.5 (0.4 + 0.25 − 0.4) and 0.5 (0.4 + 0.25 + 0.1): {flow}");
+    assert!((driven(&brush, Property::Elongation, 1.0, inputs) - 6.0).abs() < 1e-3);
+    assert_eq!((brush.rate.per_sec, brush.cycle.hold), (80.0, 10.0));
+    assert!(notes.is_empty(), "{notes:?}");
+}
+#[test]
+fn a_mypaint_brush_tells_what_it_uses_and_loses_and_nothing_else() {
+    let text = r#"{ "version": 3, "settings": {
+        "posterize": { "base_value": 0.5, "inputs": {} }, "smudge_length": { "base_value": 0.9, "inputs": {} },
+        "smudge_bucket": { "base_value": 3, "inputs": {} }, "offset_by_speed_slowness": { "base_value": 2, "inputs": {} },
+        "hardness": { "base_value": 0.5, "inputs": { "gridmap_x": [[0, 0], [256, 1]] } } } }"#;
+    let notes = only("b.myb", text.as_bytes()).notes;
+    assert_eq!(notes, ["“hardness” does not follow “gridmap_x”", "“posterize” has no counterpart"]);
+}
+#[test]
+fn a_key_given_twice_counts_as_it_does_in_mypaint() {
+    let text = r#"{ "version": 3, "settings": { "radius_logarithmic": { "base_value": 1, "inputs": {} },
+        "radius_logarithmic": { "base_value": 2, "inputs": {} } } }"#;
+    assert!((only("b.myb", text.as_bytes()).brush.size - 2.0 * 2f32.exp()).abs() < 1e-3);
+}
+#[test]
+fn a_mypaint_brush_of_an_older_version_is_read_and_of_another_is_named() {
+    let old = only("b.myb", b"radius_logarithmic 1.0 | pressure (0.0 0.0), (1.0 1.0)\nversion 2\n");
+    let size = driven(&old.brush, Property::Size, old.brush.size, DabInputs::default());
+    assert!((size - 2.0 * 2f32.exp()).abs() < 1e-3);
     assert!(said("b.myb", br#"{ "version": 4, "settings": {} }"#).contains("version 4"));
     assert!(said("b.myb", br#"{ "version": 3 }"#).contains("no settings"));
 }
@@ -264,6 +312,7 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
         ("a.gbr", gbr("n", 9, 7, 1, 20, &ramp(63))),
         ("a.gih", gih()),
         ("a.myb", MYB.into()),
+        ("b.myb", b"version 2\nopaque 0.5 | pressure (0.0 0.0), (1.0 0.5)\nsmudge 1\ntracking_noise 0.5\n".to_vec()),
         ("a.abr", old_abr()),
         ("b.abr", new_abr(2)),
         ("c.abr", named_abr()),
@@ -287,10 +336,12 @@ fn damaged_files_never_panic_and_what_they_give_is_a_brush_within_its_ranges() {
             }
             for ImportedBrush { name, brush, .. } in read(Path::new(file), &bytes, &small).into_iter().flatten() {
                 assert!(!name.is_empty());
+                let habits = SETTINGS.iter().all(|setting| setting.range.contains(&setting.of(&brush)));
+                assert!(habits, "{file}, round {round}");
                 let numbers = [brush.size, brush.hardness, brush.flow, brush.spacing, brush.rotation, brush.scatter];
                 assert!(numbers.iter().all(|v| v.is_finite()), "{file}, round {round}");
                 assert!(
-                    brush.size > 0.0 && (0.01..=10.0).contains(&brush.spacing) && (0.0..=1.0).contains(&brush.flow)
+                    brush.size > 0.0 && (0.01..=100.0).contains(&brush.spacing) && (0.0..=1.0).contains(&brush.flow)
                 );
             }
         }

@@ -10,4 +10,4 @@ pub mod text;
 pub use fields::{Fields, JsonNode};
 pub use object::JsonObject;
 pub use print::Printer;
-pub use text::{is_utf16, parse};
+pub use text::{is_utf16, parse, parse_foreign};

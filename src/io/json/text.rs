@@ -8,6 +8,19 @@ use std::{collections::HashSet, path::Path};
 
 /// Parses a whole text. The sentence of a failure names line and column, or the path of a key given twice.
 pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
+    let (text, value) = parsed(file, bytes, budget)?;
+    if let Some(path) = first_key_given_twice(text) {
+        return Err(Error::invalid(file, path, "is given twice"));
+    }
+    Ok(value)
+}
+
+/// Parses a text of other programs: of a key given twice the last counts, as it does there.
+pub fn parse_foreign(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
+    parsed(file, bytes, budget).map(|(_, value)| value)
+}
+
+fn parsed<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<(&'a str, Value)> {
     if bytes.len() as u64 > budget.json_bytes {
         let reason = format!("the text has {} bytes; it may have {}", bytes.len(), budget.json_bytes);
         return Err(Error::too_large(file, reason));
@@ -21,10 +34,7 @@ pub fn parse(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Value> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     measure(file, text, budget)?;
     let value = serde_json::from_str(text).map_err(|e| Error::decode(file, format!("it is not JSON: {e}")))?;
-    if let Some(path) = first_key_given_twice(text) {
-        return Err(Error::invalid(file, path, "is given twice"));
-    }
-    Ok(value)
+    Ok((text, value))
 }
 
 /// A text of two bytes a character that begins like an object, with or without a byte-order mark: some editors and

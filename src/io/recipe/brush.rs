@@ -1,11 +1,12 @@
 //! The settings of a brush. Read and written.
 //! Floor 5. Not here: strokes and presets (`strokes`).
 
+use super::habits;
 use super::tips;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
-use crate::math::{TURNS, UNIT, vec2};
-use crate::paint::dynamics::MAX_POINTS;
+use crate::math::{TURNS, UNIT, Vec2, vec2};
+use crate::paint::dynamics::{MAX_POINTS, MOST_ADDED};
 use crate::paint::{Brush, BrushMode, ColorJitter, Curve, Dynamics, Input, Property, Stabilizer, StrokeFrame};
 use crate::raster::BlendMode;
 use crate::surface::PaintLimit;
@@ -13,7 +14,7 @@ use serde_json::{Value, json};
 
 /// The fields of a brush; missing ones are taken from `base`.
 pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
-    Ok(Brush {
+    let brush = Brush {
         size: fields.number("size", base.size, Brush::SIZE)?,
         hardness: fields.number("hardness", base.hardness, UNIT)?,
         opacity: fields.number("opacity", base.opacity, UNIT)?,
@@ -31,11 +32,13 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         reach: fields.number("reach", base.reach, Brush::REACHES)?,
         mode: fields.get("mark").map_or(Ok(base.mode), |node| mode(&node))?,
         stabilizer: fields.get("stabilizer").map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
-        dynamics: fields.get("dynamics").map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics))?,
+        dynamics: fields
+            .get("dynamics")
+            .map_or(Ok(base.dynamics.clone()), |node| dynamics(&node, base.dynamics.clone()))?,
         seed: fields.get("seed").map_or(Ok(base.seed), |node| seed(&node))?,
-        tip: base.tip,
-        grain: base.grain,
-    })
+        ..base
+    };
+    habits::read(fields, brush)
 }
 
 /// `{ "turn": 0, "mirrored": false }`: how symmetry turned the stroke, degrees counter-clockwise as seen.
@@ -95,17 +98,19 @@ fn write_mode(mode: BrushMode) -> JsonObject {
     out
 }
 
-/// `{ "average": 0.8 }`, `{ "string": 20 }`, or `{}` for none.
+/// `{ "average": 0.8 }`, `{ "string": 20 }`, `{ "lag": 0.1 }`, or `{}` for none.
 fn stabilizer(node: &JsonNode) -> Result<Stabilizer> {
     let mut fields = node.fields()?;
     let average = fields.get("average").map(|weight| weight.number(Stabilizer::WEIGHT)).transpose()?;
     let string = fields.get("string").map(|length| length.number(Stabilizer::LENGTH_PX)).transpose()?;
+    let lag = fields.get("lag").map(|secs| secs.number(Stabilizer::SECS)).transpose()?;
     fields.finish()?;
-    match (average, string) {
-        (Some(_), Some(_)) => Err(node.refused("is both an average and a string; it must be one of them")),
-        (Some(weight), None) => Ok(Stabilizer::Average { weight }),
-        (None, Some(length_px)) => Ok(Stabilizer::String { length_px }),
-        (None, None) => Ok(Stabilizer::None),
+    match (average, string, lag) {
+        (Some(weight), None, None) => Ok(Stabilizer::Average { weight }),
+        (None, Some(length_px), None) => Ok(Stabilizer::String { length_px }),
+        (None, None, Some(secs)) => Ok(Stabilizer::Lag { secs }),
+        (None, None, None) => Ok(Stabilizer::None),
+        _ => Err(node.refused("is several of an average, a string and a lag; it must be one of them")),
     }
 }
 
@@ -113,8 +118,8 @@ fn seed(node: &JsonNode) -> Result<u32> {
     node.integer(0..=i64::from(u32::MAX)).map(|seed| seed as u32)
 }
 
-/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]] } }`: what each property follows, and how. A number p is
-/// the line from 1 − p to 1.
+/// `{ "size": { "pressure": 0.5, "speed": [[0, 1], [1, 0.3]], "tilt": { "add": [[0, 0], [1, 2]] } } }`: what each
+/// property follows, and how. A number p is the line from 1 − p to 1.
 fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
     let mut fields = node.fields()?;
     let mut dynamics = base;
@@ -123,7 +128,9 @@ fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
         let mut inputs = node.fields()?;
         for (input, name) in Input::ALL {
             if let Some(node) = inputs.get(name) {
-                dynamics = dynamics.with(property, input, curve(&node)?);
+                for curve in curves(&node)?.into_iter().flatten() {
+                    dynamics = dynamics.with(property, input, curve);
+                }
             }
         }
         inputs.finish()?;
@@ -132,14 +139,33 @@ fn dynamics(node: &JsonNode, base: Dynamics) -> Result<Dynamics> {
     Ok(dynamics)
 }
 
+/// One curve; or `{ "add": …, "times": … }`: what is added first, and the curve beside it.
+fn curves(node: &JsonNode) -> Result<[Option<Curve>; 2]> {
+    if !node.value().is_object() {
+        return Ok([Some(curve(node)?), None]);
+    }
+    let mut fields = node.fields()?;
+    let added = fields.get("add").map(|node| {
+        let refused =
+            || node.refused("is no curve; it must have points whose first numbers lie in 0 to 1 and do not fall");
+        Curve::added(points(&node, -MOST_ADDED..=MOST_ADDED)?).ok_or_else(refused)
+    });
+    let times = fields.get("times").map(|node| curve(&node));
+    fields.finish()?;
+    Ok([added.transpose()?, times.transpose()?])
+}
+
 fn curve(node: &JsonNode) -> Result<Curve> {
     if node.value().is_number() {
         return node.number(UNIT).map(Curve::Share);
     }
-    let points = node.list(MAX_POINTS)?;
-    let points = points.iter().map(|point| point.numbers(2, 2, UNIT).map(|p| vec2(p[0], p[1])));
-    let curve = Curve::through(points.collect::<Result<_>>()?);
+    let curve = Curve::through(points(node, UNIT)?);
     curve.ok_or_else(|| node.refused("is no curve; it must have points whose first numbers do not fall"))
+}
+
+fn points(node: &JsonNode, range: std::ops::RangeInclusive<f32>) -> Result<Vec<Vec2>> {
+    let points = node.list(MAX_POINTS)?;
+    points.iter().map(|point| point.numbers(2, 2, range.clone()).map(|p| vec2(p[0], p[1]))).collect()
 }
 
 pub fn write_brush(brush: &Brush) -> JsonObject {
@@ -174,7 +200,9 @@ pub fn write_brush(brush: &Brush) -> JsonObject {
         Stabilizer::None => {}
         Stabilizer::Average { weight } => out.set("stabilizer", json!({ "average": object::number(weight) })),
         Stabilizer::String { length_px } => out.set("stabilizer", json!({ "string": object::number(length_px) })),
+        Stabilizer::Lag { secs } => out.set("stabilizer", json!({ "lag": object::number(secs) })),
     }
+    habits::write(&mut out, brush);
     out.object("dynamics", write_dynamics(&brush.dynamics));
     if brush.seed != plain.seed {
         out.set("seed", brush.seed.into());
@@ -189,9 +217,17 @@ fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
     for (property, property_name) in Property::ALL {
         let mut inputs = JsonObject::default();
         for (input, name) in Input::ALL {
-            match (dynamics.curve(property, input), plain.curve(property, input)) {
-                (own, plain) if own == plain => {}
-                (own, _) => inputs.set(name, own.map_or(0.into(), write_curve)),
+            let own = dynamics.curve(property, input);
+            let times = (own != plain.curve(property, input)).then(|| own.map_or(0.into(), write_curve));
+            match (dynamics.added(property, input).map(write_curve), times) {
+                (None, None) => {}
+                (None, Some(times)) => inputs.set(name, times),
+                (Some(added), times) => {
+                    let mut both = JsonObject::default();
+                    both.set("add", added);
+                    both.said("times", times, |times| times);
+                    inputs.set(name, both.done());
+                }
             }
         }
         out.object(property_name, inputs);
@@ -202,7 +238,7 @@ fn write_dynamics(dynamics: &Dynamics) -> JsonObject {
 fn write_curve(curve: &Curve) -> Value {
     match curve {
         Curve::Share(p) => object::number(*p),
-        Curve::Points(points) => points.iter().map(|p| object::point(*p)).collect(),
+        Curve::Points(points) | Curve::Added(points) => points.iter().map(|p| object::point(*p)).collect(),
     }
 }
 

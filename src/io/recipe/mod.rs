@@ -17,6 +17,7 @@
 //! | `pictures` | the files that layers name, each decoded once |
 
 mod brush;
+mod habits;
 mod images;
 mod layers;
 mod masks;

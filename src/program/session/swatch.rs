@@ -36,7 +36,7 @@ pub fn painted_on(preset: &Preset, surface: Arc<Surface>) -> Option<Vec<u8>> {
     let side = size.width.min(size.height) as f32;
     let Preset { operator, brush, .. } = preset;
     let background = if is_dark(preset.color) || brush.blend == BlendMode::Multiply { PLASTER } else { SLATE };
-    if brush.mode.is_retouching() {
+    if brush.needs_paint() {
         let drawn = retouched::drawn(preset, surface, side / NATURAL_SIDE, SLATE)?;
         return Some(flatten(&drawn, &Progress::default())?.to_straight_rgba(size.rect()));
     }

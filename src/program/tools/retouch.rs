@@ -1,5 +1,5 @@
-//! The brush as smudge, blur and clone: checks before it starts, and its active strokes. Floor 5. The effect on pixels
-//! is in `paint::retouch`; `brush` passes the samples on.
+//! The brush as smudge, blur, clone, and as one that picks paint up: what it needs before it begins, and what is in
+//! its hand. Floor 5. What it does to pixels is `paint::retouch`'s; the pen's readings become samples in `brush`.
 
 use super::brush::StrokePurpose;
 use super::symmetry::SymmetryImage;
@@ -43,7 +43,7 @@ impl ActiveWork {
 /// start.
 pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> Option<Outcome> {
     let mode = context.brush.mode;
-    if purpose != StrokePurpose::Paint || !mode.is_retouching() {
+    if purpose != StrokePurpose::Paint || !context.brush.needs_paint() {
         return None;
     }
     if mode.is_clone() && pen.keys.alt {
@@ -51,13 +51,17 @@ pub(super) fn refused(context: &ToolContext, pen: PenSample, purpose: StrokePurp
     }
     let layer = context.layer.and_then(|id| context.document.layer(id));
     if !layer.is_some_and(|layer| matches!(layer.content, Content::Pixels(_))) {
-        return Some(Outcome::Refused("Smudge, blur and clone work on paint layers: choose one, or bake this layer."));
+        return Some(Outcome::Refused(if mode.is_retouching() {
+            "Smudge, blur and clone work on paint layers: choose one, or bake this layer."
+        } else {
+            "This brush paints with what it picks up, which only paint layers have: choose one, or bake this layer."
+        }));
     }
     let has_source = !mode.is_clone() || context.clone_offset.is_some();
     (!has_source).then_some(Outcome::Refused("Alt-click where the clone brush should copy from, then paint."))
 }
 
-/// The retouching of a layer's pixels; `None` if the strokes are paint.
+/// What works on the pixels of a layer; `None` where the strokes only add paint.
 ///
 /// * `strokes`: one for each image.
 pub(super) fn begun(
@@ -68,7 +72,7 @@ pub(super) fn begun(
     strokes: &[Stroke],
     scene: &Scene,
 ) -> Option<ActiveWork> {
-    let mode = strokes.first().map(|stroke| stroke.brush().mode).filter(|mode| mode.is_retouching())?;
+    let mode = strokes.first().map(Stroke::brush).filter(|brush| brush.is_wet())?.mode;
     let Content::Pixels(pixels) = &layer.content else { return None };
     let offset = context.clone_offset.unwrap_or(Vec2::ZERO);
     // An image of the stroke copies from the image of its source.
@@ -89,7 +93,7 @@ mod tests {
     use super::*;
     use crate::document::{Document, PixelLayer};
     use crate::math::{Size, srgb::Color, vec2};
-    use crate::paint::Brush;
+    use crate::paint::{Brush, Pickup};
     use crate::tools::{ModifierKeys, Symmetry, ToolKind, press};
 
     /// A red square at the left of a paint layer, over a blue ground.
@@ -151,5 +155,24 @@ mod tests {
         assert!(
             matches!(begun(&on_fill, ModifierKeys::default()), Outcome::Refused(why) if why.contains("paint layers"))
         );
+    }
+    #[test]
+    fn a_brush_that_picks_up_mixes_on_paint_layers_and_says_why_not_elsewhere() {
+        let document = document();
+        let plain = Brush { size: 20.0, hardness: 1.0, ..Brush::default() };
+        let mixing = |amount: f32| Brush { pickup: Pickup { amount, length: 0.9, radius: 1.0 }, ..plain.clone() };
+        let green = Color { r: 0, g: 255, b: 0, a: 255 };
+        let drawn_with = |brush: &Brush| {
+            let context = ToolContext { color: green, ..on_paint(&document, brush) };
+            drawn(&context, vec2(40.0, 60.0), vec2(100.0, 60.0)).pixel(90, 60)
+        };
+        assert_eq!(drawn_with(&plain), [0, 255, 0, 255]);
+        let [r, g, _, a] = drawn_with(&mixing(0.5));
+        assert!(r > 20 && g > 100 && a > 150, "red and green: {r} {g} {a}");
+        let smearing = mixing(1.0);
+        assert_eq!(drawn_with(&smearing)[1], 0, "nothing of its own");
+        let on_fill = ToolContext { layer: Some(document.layers[0].id), ..on_paint(&document, &smearing) };
+        let (_, outcome) = press(ToolKind::Brush, &on_fill, PenSample::at(vec2(30.0, 50.0)));
+        assert!(matches!(outcome, Outcome::Refused(why) if why.contains("picks up")));
     }
 }

@@ -4,6 +4,7 @@
 use super::curve;
 use crate::io::recipe::written_brush;
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
+use crate::paint::habits::{Bearing, Falloff, SETTINGS, Spread};
 use crate::paint::pattern::Pattern;
 use crate::paint::tip::{Bristles, Noise};
 use crate::paint::{Brush, Curve, Drive, Dynamics, Input, Property, Stabilizer, Tip};
@@ -26,6 +27,7 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     part(ui, "Spread and colour", spread);
     part(ui, "Grain", grain);
     part(ui, "Stroke", stroke);
+    part(ui, "Mixing and habits", habits);
     part(ui, "What follows what", dynamics);
     if let Some(brush) = changed {
         requests.act(Action::Hand(HandAction::Brush { brush: written_brush(&brush) }));
@@ -169,12 +171,14 @@ enum StabilizerChoice {
     None,
     Average,
     String,
+    Lag,
 }
 
-const CALMINGS: [(StabilizerChoice, &str); 3] = [
+const CALMINGS: [(StabilizerChoice, &str); 4] = [
     (StabilizerChoice::None, "none"),
     (StabilizerChoice::Average, "trailing average"),
     (StabilizerChoice::String, "pulled string"),
+    (StabilizerChoice::Lag, "late line"),
 ];
 
 fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
@@ -182,11 +186,13 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         Stabilizer::None => StabilizerChoice::None,
         Stabilizer::Average { .. } => StabilizerChoice::Average,
         Stabilizer::String { .. } => StabilizerChoice::String,
+        Stabilizer::Lag { .. } => StabilizerChoice::Lag,
     };
     let chosen = choice_row(ui, "Stabiliser", kind, &CALMINGS).map(|kind| match kind {
         StabilizerChoice::None => Stabilizer::None,
         StabilizerChoice::Average => Stabilizer::Average { weight: 0.7 },
         StabilizerChoice::String => Stabilizer::String { length_px: 30.0 },
+        StabilizerChoice::Lag => Stabilizer::Lag { secs: 0.05 },
     });
     let amount = match brush.stabilizer {
         Stabilizer::None => None,
@@ -197,6 +203,10 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
         Stabilizer::String { length_px } => {
             let number = NumberField::new("Length", 1.0..=300.0, "The pen pulls the line on a string this long").px();
             number.row(ui, length_px).map(|c| Stabilizer::String { length_px: c.to })
+        }
+        Stabilizer::Lag { secs } => {
+            let number = NumberField::new("Seconds", 0.0..=1.0, "How late the line comes after the pen");
+            number.row(ui, secs).map(|c| Stabilizer::Lag { secs: c.to })
         }
     };
     let calmed = chosen.or(amount).map(|stabilizer| Brush { stabilizer, ..brush.clone() });
@@ -209,17 +219,46 @@ fn stroke(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     calmed.or(blended).or(erases).or(keeps)
 }
 
+/// What the habits of a brush say of themselves, in their order.
+fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
+    let mut to = brush.clone();
+    let mut changed = false;
+    let mut took = |is_chosen: bool| changed |= is_chosen;
+    for setting in &SETTINGS {
+        let number = NumberField::new(setting.label, setting.range.clone(), setting.hint);
+        let change = number.row(ui, setting.of(brush));
+        took(change.is_some());
+        if let Some(change) = change {
+            setting.set(&mut to, change.to);
+        }
+    }
+    let chosen = choice_row(ui, "Offset from", to.offset.from, &Bearing::ALL);
+    took(chosen.is_some());
+    to.offset.from = chosen.unwrap_or(to.offset.from);
+    let chosen = check(ui, "Sides take turns", "Every other dab stands on the other side", to.offset.alternates);
+    took(chosen.is_some());
+    to.offset.alternates = chosen.unwrap_or(to.offset.alternates);
+    let chosen = choice_row(ui, "Scatter as", to.spread, &Spread::ALL);
+    took(chosen.is_some());
+    to.spread = chosen.unwrap_or(to.spread);
+    let chosen = choice_row(ui, "Falls off", to.falloff, &Falloff::ALL);
+    took(chosen.is_some());
+    to.falloff = chosen.unwrap_or(to.falloff);
+    changed.then_some(to)
+}
+
 fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let mut to: Option<Dynamics> = None;
     for Drive { property, input, curve: shape } in brush.dynamics.drives() {
-        let label = format!("{} by {}", word(&Property::ALL, property), word(&Input::ALL, input).to_lowercase());
+        let plus = if shape.adds() { " plus" } else { "" };
+        let label = format!("{}{plus} by {}", word(&Property::ALL, property), word(&Input::ALL, input).to_lowercase());
         ui.horizontal(|ui| {
             ui.label(&label);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let remove = ui.small_button("Remove").on_hover_text("Removes this row");
                 named(&remove, &format!("Remove {label}"));
                 if remove.clicked() {
-                    to = Some(brush.dynamics.with(*property, *input, Curve::Share(0.0)));
+                    to = Some(brush.dynamics.without(*property, *input, shape.adds()));
                 }
             });
         });

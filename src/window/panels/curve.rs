@@ -3,7 +3,7 @@
 
 use crate::math::{Vec2, vec2};
 use crate::paint::Curve;
-use crate::paint::dynamics::MAX_POINTS;
+use crate::paint::dynamics::{MAX_POINTS, MOST_ADDED};
 use crate::theme::ACCENT;
 use crate::widgets::named;
 use eframe::egui::{self, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2};
@@ -13,15 +13,36 @@ const NEAR_PT: f32 = 12.0;
 /// The least distance between two points, in the unit square.
 const APART: f32 = 0.01;
 
-/// The points of a curve for editing: a share becomes its line.
-pub fn points(curve: &Curve) -> Vec<Vec2> {
+/// How far the square of a curve that adds goes beyond what it adds, so that a hand can make it add more.
+const ROOM: f32 = 1.25;
+
+/// A curve's points in the square, as a hand moves them: a share is the line that it is; of one that adds the middle
+/// is nothing, and the edges are `span` away.
+pub fn points(curve: &Curve, span: f32) -> Vec<Vec2> {
     match curve {
         Curve::Share(_) => vec![vec2(0.0, curve.at(0.0)), vec2(1.0, curve.at(1.0))],
         Curve::Points(points) => points.to_vec(),
+        Curve::Added(points) => points.iter().map(|p| vec2(p.x, 0.5 + 0.5 * p.y / span)).collect(),
     }
 }
 
-/// Shows a curve and edits it: a click adds a point, a drag moves one, a right click removes one.
+/// The curve through points of the square, of the kind of another.
+fn through(like: &Curve, points: Vec<Vec2>, span: f32) -> Option<Curve> {
+    if like.adds() {
+        Curve::added(points.iter().map(|p| vec2(p.x, (2.0 * p.y - 1.0) * span)).collect())
+    } else {
+        Curve::through(points)
+    }
+}
+
+/// How far the square of a curve goes.
+fn span_of(curve: &Curve) -> f32 {
+    let Curve::Added(points) = curve else { return 1.0 };
+    let most = points.iter().map(|p| p.y.abs()).fold(0.0, f32::max);
+    (ROOM * if most > 0.0 { most } else { 1.0 }).min(MOST_ADDED)
+}
+
+/// Shows a curve and bends it: a click adds a point, a drag moves one, a right click takes one away.
 pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<Curve> {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(ui.available_width(), height_pt), Sense::click_and_drag());
     named(&response, label);
@@ -31,7 +52,12 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<C
         let p = vec2((p.x - inner.left()) / inner.width(), (inner.bottom() - p.y) / inner.height());
         p.max(Vec2::ZERO).min(Vec2::ONE)
     };
-    let mut points = points(curve);
+    // The square stays as it is while a hand pulls at the curve.
+    let spanned = response.id.with("span");
+    let span = ui.data(|data| data.get_temp::<f32>(spanned)).filter(|_| response.dragged());
+    let span = span.unwrap_or_else(|| span_of(curve));
+    ui.data_mut(|data| data.insert_temp(spanned, span));
+    let mut points = points(curve, span);
     paint(ui, rect, inner, &points, on_screen);
     let held = response.id.with("held");
     let nearest = |at: Pos2, points: &[Vec2]| {
@@ -43,7 +69,7 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<C
     if response.secondary_clicked() {
         let gone = at.and_then(|at| nearest(at, &points)).filter(|_| points.len() > 1)?;
         points.remove(gone);
-        return Curve::through(points);
+        return through(curve, points, span);
     }
     if response.drag_started() || response.clicked() {
         let at = ui.input(|i| i.pointer.press_origin()).or(at)?;
@@ -57,7 +83,7 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<C
     let least = i.checked_sub(1).map_or(0.0, |before| points[before].x);
     let most = points.get(i + 1).map_or(1.0, |after| after.x);
     points[i] = vec2(to.x.max(least).min(most), to.y);
-    Curve::through(points)
+    through(curve, points, span)
 }
 
 /// Adds a point in its place; returns its index.
@@ -96,10 +122,18 @@ mod tests {
 
     #[test]
     fn a_point_is_added_in_its_place_and_never_above_another() {
-        let mut line = points(&Curve::Share(1.0));
+        let mut line = points(&Curve::Share(1.0), 1.0);
         assert_eq!(line, [vec2(0.0, 0.0), vec2(1.0, 1.0)]);
         assert_eq!(add(&mut line, vec2(0.4, 0.9)), Some(1));
         assert_eq!(add(&mut line, vec2(0.405, 0.1)), None);
         assert!(Curve::through(line).is_some());
+    }
+    #[test]
+    fn a_curve_that_adds_stands_in_the_square_around_its_middle_and_comes_back() {
+        let curve = Curve::added(vec![vec2(0.0, -2.0), vec2(1.0, 4.0)]).unwrap();
+        let span = span_of(&curve);
+        assert_eq!((span, points(&curve, span)), (5.0, vec![vec2(0.0, 0.3), vec2(1.0, 0.9)]));
+        let Some(Curve::Added(back)) = through(&curve, points(&curve, span), span) else { panic!("it adds") };
+        assert!(back.iter().zip([-2.0f32, 4.0]).all(|(p, y)| (p.y - y).abs() < 1e-5), "{back:?}");
     }
 }

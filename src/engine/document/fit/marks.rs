@@ -5,6 +5,7 @@ use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
 use crate::math::{COORDINATE, TURNS, UNIT, Vec2};
 use crate::paint::grain::{BrushGrain, GrainSpace};
+use crate::paint::habits::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
     Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke, Tip,
@@ -17,7 +18,7 @@ pub const AN_ANCHOR: usize = 14;
 pub const A_STOP: usize = 4;
 const A_STROKE: usize = 60;
 /// Without its curves and pictures.
-const A_BRUSH: usize = 240;
+const A_BRUSH: usize = 480;
 
 /// The readings of strokes, and the values that they take.
 pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
@@ -28,7 +29,8 @@ pub fn measured(strokes: &[Arc<Stroke>]) -> (usize, usize) {
         values += A_STROKE;
         // What is as it was before is not said again.
         if !before.is_some_and(|before| before.brush().is_alike(stroke.brush())) {
-            let points: usize = stroke.brush().dynamics.drives().iter().map(|drive| 4 + 3 * drive.curve.points()).sum();
+            let points: usize =
+                stroke.brush().dynamics.drives().iter().map(|drive| 20 + 3 * drive.curve.points()).sum();
             let pictures = if let Tip::Hose(hose) = &stroke.brush().tip { hose.pictures().len() } else { 0 };
             values += A_BRUSH + points + pictures;
         }
@@ -81,7 +83,11 @@ pub fn brush(brush: &Brush) -> Fit {
         Stabilizer::None => Ok(()),
         Stabilizer::Average { weight } => within("the weight of the stabiliser", weight, &Stabilizer::WEIGHT),
         Stabilizer::String { length_px } => within("the string of the stabiliser", length_px, &Stabilizer::LENGTH_PX),
+        Stabilizer::Lag { secs } => within("the lag of the stabiliser", secs, &Stabilizer::SECS),
     }?;
+    for setting in &SETTINGS {
+        within(&format!("“{}” of the brush", setting.label), setting.of(brush), &setting.range)?;
+    }
     tip(&brush.tip)?;
     brush.grain.as_ref().map_or(Ok(()), grain)
 }

@@ -4,8 +4,8 @@
 use super::round::{RoundTip, bent_row, flat_row};
 use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, spans, touched};
 use crate::math::{Affine2, Mat2, Rect};
+use crate::paint::habits::Falloff;
 use crate::paint::image::transform;
-use crate::paint::profile::RoundProfile;
 use crate::paint::stamp::{SoftenedStamps, TipStamp};
 use crate::paint::stroke_tile::StrokeTile;
 use crate::paint::tip::{GrainTile, TipShape, shape};
@@ -17,7 +17,7 @@ use crate::surface::support::TileBlocks;
 #[derive(Clone, Copy)]
 pub enum Footprint<'t> {
     Round,
-    Shape(TipShape),
+    Shape(TipShape, Falloff),
     /// A round tip times a picture of its own coverage.
     Textured(&'t SoftenedStamps),
 }
@@ -67,7 +67,9 @@ impl PlacedDab<'_> {
         covered.clear();
         covered.resize(part.pixels(), 0.0);
         match footprint {
-            Footprint::Shape(shape) => self.cover_shape(shape, &part, &mut scratch.deformed, &mut covered),
+            Footprint::Shape(shape, falloff) => {
+                self.cover_shape((shape, falloff), &part, &mut scratch.deformed, &mut covered)
+            }
             Footprint::Round => self.cover_round(&part, scratch, &mut covered),
             Footprint::Textured(stamps) => {
                 self.cover_round(&part, scratch, &mut covered);
@@ -127,13 +129,18 @@ impl PlacedDab<'_> {
         }
     }
     /// An ellipse or a square over a part; `deformed` becomes tip space.
-    fn cover_shape(&self, shape: TipShape, part: &TilePart, deformed: &mut DeformedRect, covered: &mut [f32]) {
+    fn cover_shape(
+        &self,
+        (shape, falloff): (TipShape, Falloff),
+        part: &TilePart,
+        deformed: &mut DeformedRect,
+        covered: &mut [f32],
+    ) {
         let tip_from_canvas = shape.tip_from_canvas(&self.dab);
         transform(tip_from_canvas, &mut deformed.x, &mut deformed.y);
-        let profile = RoundProfile::new(self.dab.hardness, self.dab.softness);
         for span in part.spans() {
             let around = self.around(span, part.area.grown(1), deformed, tip_from_canvas.matrix2);
-            shape.row(&profile, around, &mut covered[part.range(span)]);
+            shape.row(falloff, &self.dab, around, &mut covered[part.range(span)]);
         }
     }
     fn around<'f>(

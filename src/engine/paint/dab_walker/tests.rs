@@ -1,12 +1,16 @@
 //! Dabs from samples, against hand-computed positions and inputs.
 
+use super::walk::MAX_STEPS;
 use super::*;
 use crate::math::vec2;
 use crate::math::{Size, vec3};
-use crate::paint::{ColorJitter, Curve, Dynamics};
+use crate::paint::habits::{Bearing, Cycle, Hand, Offset, Rate};
+use crate::paint::{ColorJitter, Curve, Dynamics, Input, Property, Tip};
 use crate::raster::Plane;
 use crate::surface::{Maps, Surface};
 use proptest::prelude::*;
+use std::f32::consts::TAU;
+use std::sync::Arc;
 
 fn flat() -> Scene {
     Scene { size: Size::new(1000, 500), surface: None }
@@ -225,4 +229,100 @@ proptest! {
         laid.extend(walker.tail());
         prop_assert_eq!(laid, whole);
     }
+}
+fn added(points: &[(f32, f32)]) -> Curve {
+    Curve::added(points.iter().map(|&(x, y)| vec2(x, y)).collect()).unwrap()
+}
+/// To the right, 100 px a second.
+fn steady(px: usize) -> Vec<Sample> {
+    (0..=px / 10)
+        .map(|i| Sample { time_secs: 0.1 * i as f32, ..Sample::at(vec2(100.0 + 10.0 * i as f32, 200.0)) })
+        .collect()
+}
+
+#[test]
+fn dabs_of_a_flat_tip_stand_apart_as_it_is_wide_along_the_stroke() {
+    let flat_tip = |rotation| Brush { tip: Tip::Ellipse { ratio: 0.2 }, rotation, ..brush(20.0) };
+    // Lengthwise a quarter of 20 px, broadside a quarter of 4.
+    for (rotation, step) in [(0.0, 5.0), (90.0, 1.0)] {
+        let dabs = dabs(&flat_tip(rotation), &steady(100));
+        assert!(dabs.windows(2).all(|pair| (pair[0].at.distance(pair[1].at) - step).abs() < 1e-2), "{rotation}");
+    }
+}
+#[test]
+fn dabs_follow_the_clock_on_the_way_and_at_rest() {
+    let rate = Rate { per_diameter: 0.0, per_sec: 10.0 };
+    let brush = Brush { spacing: 100.0, rate, ..brush(20.0) };
+    let mut samples = steady(100);
+    assert_eq!(dabs(&brush, &samples).len(), 11, "a second of ten, and the first");
+    let rested = Sample { time_secs: 2.0, ..samples[10] };
+    samples.push(rested);
+    let all = dabs(&brush, &samples);
+    assert_eq!(all.len(), 21);
+    assert!(all[11..].iter().all(|dab| dab.at.distance(rested.at) < 0.01));
+    let both = Brush { rate: Rate { per_diameter: 2.0, per_sec: 0.0 }, ..brush };
+    assert_eq!(dabs(&both, &steady(100)).len(), 11, "100 px are five diameters of two, and 100 spacings are far");
+}
+#[test]
+fn dabs_that_overlap_come_to_the_flow_together() {
+    let dab = dabs(&Brush { flow: 0.75, overlap: 2.0, dynamics: Dynamics::none(), ..brush(20.0) }, &steady(20))[0];
+    assert!((dab.flow - 0.5).abs() < 1e-6);
+}
+#[test]
+fn dabs_stand_aside_to_where_the_offset_says() {
+    let at = |offset: Offset| dabs(&Brush { offset, ..brush(20.0) }, &steady(50)).into_iter().map(|dab| dab.at);
+    let plain = Offset { amount: 0.5, ..Offset::default() };
+    let right: Vec<Vec2> = at(plain).take(1).collect();
+    assert!(right[0].distance(vec2(110.0, 200.0)) < 1e-3);
+    // Upward is to the left of a stroke that goes right.
+    let sides = Offset { turn_degrees: 90.0, from: Bearing::Stroke, alternates: true, ..plain };
+    let sides: Vec<f32> = at(sides).map(|at| at.y).take(3).collect();
+    assert!(sides.iter().zip([190.0, 190.0, 190.0]).all(|(y, up)| (y - up).abs() < 1e-2), "{sides:?}");
+    let straight = Offset { from: Bearing::Stroke, alternates: true, ..plain };
+    let straight: Vec<f32> = at(straight).map(|at| at.x).take(2).collect();
+    assert!((straight[0] - 110.0).abs() < 1e-2 && (straight[1] - 95.0).abs() < 1e-2, "{straight:?}");
+}
+#[test]
+fn a_cycle_rises_is_held_and_begins_again() {
+    let cycle = Cycle { length: 1.0, hold: 1.0, pressure: 0.0 };
+    let dynamics = Dynamics::none().with(Property::Flow, Input::Cycle, added(&[(0.0, -0.9), (1.0, 0.0)]));
+    let dabs = dabs(&Brush { cycle, dynamics, ..brush(20.0) }, &steady(50));
+    let flows: Vec<f32> = dabs.iter().map(|dab| (dab.flow * 1000.0).round()).collect();
+    assert_eq!(flows, [100.0, 325.0, 550.0, 775.0, 1000.0, 1000.0, 1000.0, 1000.0, 100.0, 325.0, 550.0]);
+}
+#[test]
+fn what_drives_the_custom_input_drives_what_follows_it_a_dab_later() {
+    let dynamics = Dynamics::none().with(Property::Custom, Input::Distance, added(&[(0.0, 0.0), (1.0, 1.0)])).with(
+        Property::Hardness,
+        Input::Custom,
+        added(&[(0.0, 0.0), (1.0, 1.0)]),
+    );
+    let dabs = dabs(&Brush { hardness: 0.0, dynamics, ..brush(20.0) }, &steady(50));
+    let hardness: Vec<f32> = dabs.iter().map(|dab| (dab.hardness * 1000.0).round()).take(4).collect();
+    assert_eq!(hardness, [0.0, 0.0, 25.0, 50.0]);
+}
+#[test]
+fn dabs_lag_behind_the_pen_and_lead_it() {
+    let hand = |hand: Hand| dabs(&Brush { hand, ..brush(20.0) }, &steady(300));
+    let at = |dabs: &[Dab]| dabs.iter().map(|dab| dab.at.x).fold(0.0, f32::max);
+    let plain = at(&hand(Hand::default()));
+    let lagging = at(&hand(Hand { lag_dabs: 4.0, ..Hand::default() }));
+    // Steps of 5 px, of which e^(−1/4) is left each time.
+    assert!((plain - lagging - 5.0 / (0.25f32.exp() - 1.0)).abs() < 0.5, "{lagging}");
+    let leading = at(&hand(Hand { lead_secs: 0.2, ..Hand::default() }));
+    assert!((leading - plain - 20.0).abs() < 0.5, "{leading}");
+}
+#[test]
+fn an_elongation_that_is_driven_flattens_the_tip() {
+    let dynamics = Dynamics::none().with(Property::Elongation, Input::Pressure, added(&[(0.0, 0.0), (1.0, 3.0)]));
+    let dab = |tip: Tip| dabs(&Brush { tip, dynamics: dynamics.clone(), ..brush(20.0) }, &steady(20))[0].ratio;
+    assert_eq!([Tip::Round, Tip::Ellipse { ratio: 0.5 }].map(dab), [0.25, 0.2]);
+}
+#[test]
+fn sizes_that_stray_make_large_dabs_fainter() {
+    let dabs = dabs(&Brush { size_jitter: 0.5, flow: 0.5, dynamics: Dynamics::none(), ..brush(20.0) }, &steady(300));
+    let (large, small): (Vec<&Dab>, Vec<&Dab>) = dabs.iter().partition(|dab| dab.radius > 10.0);
+    assert!(large.len() > 15 && small.len() > 15);
+    assert!(large.iter().all(|dab| (dab.flow * dab.radius * dab.radius - 50.0).abs() < 0.1));
+    assert!(small.iter().all(|dab| dab.flow == 0.5));
 }

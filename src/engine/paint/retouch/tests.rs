@@ -224,3 +224,54 @@ fn hostile_samples_and_settings_end_in_finite_pixels() {
         }
     }
 }
+
+/// A brush of one colour that takes paint up.
+fn picking(amount: f32, length: f32) -> Brush {
+    Brush { pickup: crate::paint::Pickup { amount, length, radius: 1.0 }, ..brush(BrushMode::Paint) }
+}
+#[test]
+fn a_brush_carries_paint_along_and_loses_it_as_fast_as_its_length_says() {
+    let halves = layer(|x, _| if x < 100 { [255, 0, 0, 255] } else { [0, 0, 255, 255] });
+    let along = [vec2(40.0, 70.0), vec2(180.0, 70.0)];
+    let at = |length: f32, x: i32| {
+        let after = rubbed(picking(1.0, length), Operator::None, &along, Vec2::ZERO, &halves, &FLAT);
+        after.pixel(x, 70)
+    };
+    assert_eq!(at(0.0, 60), [255, 0, 0, 255]);
+    let (short, long) = (at(0.0, 125), at(0.95, 125));
+    assert!(long[0] > short[0].max(60) && long[3] == 255, "red is carried into blue: {long:?}, not {short:?}");
+    assert_eq!(at(1.0, 170)[0], 0, "what is never taken up is not carried");
+}
+#[test]
+fn a_brush_that_picks_nothing_up_paints_as_plain_paint_does() {
+    let ground = layer(|_, _| [200, 100, 50, 255]);
+    let along = [vec2(40.0, 70.0), vec2(150.0, 90.0)];
+    let plain = rubbed(picking(0.0, 0.5), Operator::None, &along, Vec2::ZERO, &ground, &FLAT);
+    assert_eq!(plain.pixel(90, 79), [0, 0, 0, 255]);
+    let half = rubbed(picking(0.5, 0.0), Operator::None, &[along[0]], Vec2::ZERO, &ground, &FLAT);
+    assert_eq!(half.pixel(40, 70), [100, 50, 25, 255]);
+}
+#[test]
+fn paint_that_is_taken_up_from_nothing_leaves_less_than_paint() {
+    let half = rubbed(picking(0.5, 0.0), Operator::None, &[vec2(40.0, 70.0)], Vec2::ZERO, &TileGrid::default(), &FLAT);
+    let [_, _, _, a] = half.pixel(40, 70);
+    assert!((127..=128).contains(&a), "{a}");
+}
+#[test]
+fn what_is_picked_up_is_the_same_in_every_batch() {
+    let ground = places();
+    let points: Vec<Vec2> =
+        (0..40).map(|i| vec2(20.0 + 4.0 * i as f32, 70.0 + 10.0 * (0.3 * i as f32).sin())).collect();
+    let like = [Stroke::new(picking(0.7, 0.8), BEND, Color::BLACK, Vec::new())];
+    let scene = waves();
+    let drawn = |batch: usize| {
+        let mut active = ActiveRetouching::new(&like, &[], ground.clone(), TileGrid::default(), &scene);
+        let mut grid = ground.clone();
+        for points in points.chunks(batch) {
+            let samples = points.iter().map(|&at| Sample::at(at)).collect();
+            active.draw(&[samples]).into_iter().for_each(|(at, tile)| grid.set(at, tile));
+        }
+        grid.to_straight_rgba(SIZE.rect())
+    };
+    assert!(drawn(1) == drawn(7) && drawn(7) == drawn(40));
+}

@@ -8,6 +8,7 @@ use crate::paint::brush::{Brush, Tip};
 use crate::paint::dab::{DabScratch, Footprint, PlacedDab, round_extent};
 use crate::paint::dab_walker::Dab;
 use crate::paint::dynamics::Property;
+use crate::paint::habits::Falloff;
 use crate::paint::image::PictureSource;
 use crate::paint::scene::Scene;
 use crate::paint::stamp::SoftenedStamps;
@@ -19,7 +20,7 @@ use crate::surface::support::DabExtent;
 /// A prepared tip.
 pub enum PreparedTip {
     Round,
-    Shape(TipShape),
+    Shape(TipShape, Falloff),
     /// A round tip that shines through a picture.
     Textured(SoftenedStamps),
     Stamp(SoftenedStamps),
@@ -36,9 +37,11 @@ impl PreparedTip {
         let softened = |source: &PictureSource| SoftenedStamps::of(source, brush.softness, is_driven);
         let textured = |texture: TipTexture| Self::Textured(softened(&texture.source(brush.size)));
         match &brush.tip {
-            Tip::Round => Self::Round,
-            Tip::Ellipse { ratio } => Self::Shape(TipShape::Ellipse { ratio: *ratio }),
-            Tip::Square { ratio } => Self::Shape(TipShape::Square { ratio: *ratio }),
+            Tip::Round if brush.falloff == Falloff::Smooth && !brush.dynamics.drive(Property::Elongation) => {
+                Self::Round
+            }
+            Tip::Round | Tip::Ellipse { .. } => Self::Shape(TipShape::Ellipse { ratio: brush.ratio() }, brush.falloff),
+            Tip::Square { .. } => Self::Shape(TipShape::Square { ratio: brush.ratio() }, brush.falloff),
             Tip::Bristles(bristles) => textured(TipTexture::Bristles(*bristles)),
             Tip::Noise(noise) => textured(TipTexture::Noise(*noise)),
             Tip::Picture(source) => Self::Stamp(softened(source)),
@@ -49,7 +52,10 @@ impl PreparedTip {
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         let (dab, extent) = match self {
             Self::Round | Self::Textured(_) => (dab, round_extent(&dab)),
-            Self::Shape(shape) => (Dab { flow: dab.flow * shape.thinness(&dab), ..dab }, shape.extent(&dab)),
+            Self::Shape(shape, falloff) => {
+                let shape = shape.of_dab(&dab);
+                (Dab { flow: dab.flow * shape.thinness(&dab), ..dab }, shape.extent(*falloff, &dab))
+            }
             Self::Stamp(stamps) => (dab, stamps.extent(&dab)),
             Self::Hose(hose, stamps) => {
                 let chosen = choice(hose, &dab);
@@ -73,7 +79,10 @@ impl PreparedTip {
         match self {
             Self::Round if grain.is_none() => dab.add_round(at, stroke_tile, scratch),
             Self::Round => dab.add_covered(Footprint::Round, grain, at, stroke_tile, scratch),
-            Self::Shape(shape) => dab.add_covered(Footprint::Shape(*shape), grain, at, stroke_tile, scratch),
+            Self::Shape(shape, falloff) => {
+                let footprint = Footprint::Shape(shape.of_dab(dab.dab()), *falloff);
+                dab.add_covered(footprint, grain, at, stroke_tile, scratch);
+            }
             Self::Textured(stamps) => dab.add_covered(Footprint::Textured(stamps), grain, at, stroke_tile, scratch),
             Self::Stamp(stamps) => dab.add_softened(stamps, grain, at, stroke_tile, scratch),
             Self::Hose(hose, stamps) => {

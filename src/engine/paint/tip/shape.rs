@@ -2,9 +2,12 @@
 //! Floor 3. They are evaluated in *tip space*, where the dab's centre is the origin and its half-axes have length 1.
 
 use crate::math::{Affine2, Mat2, Vec2};
+use crate::paint::brush::Tip;
 use crate::paint::dab::slope;
 use crate::paint::dab_walker::Dab;
-use crate::paint::profile::RoundProfile;
+use crate::paint::habits::Falloff;
+use crate::paint::peaked::PeakedProfile;
+use crate::paint::profile::{Profile, RoundProfile};
 use crate::surface::links;
 use crate::surface::support::DabExtent;
 
@@ -17,17 +20,21 @@ pub enum TipShape {
     Square { ratio: f32 },
 }
 
-/// The least ratio; thinner tips count as this thin.
-const MIN_RATIO: f32 = 0.01;
 /// Half of the least width that a dab has, px: what is thinner is fainter instead.
 const LEAST_HALF_PX: f32 = 0.75;
 
 impl TipShape {
-    /// The shorter half-axis relative to the longer one, as a dab is drawn, and the factor by which it reduces the
-    /// dab's flow.
+    /// As long and as thin as what drives a dab has made it.
+    pub fn of_dab(self, dab: &Dab) -> Self {
+        match self {
+            TipShape::Ellipse { .. } => TipShape::Ellipse { ratio: dab.ratio },
+            TipShape::Square { .. } => TipShape::Square { ratio: dab.ratio },
+        }
+    }
+    /// The shorter half-axis relative to the longer one, as a dab is drawn; and what the dab's flow loses for it.
     fn ratio(self, radius: f32) -> (f32, f32) {
         let (TipShape::Ellipse { ratio } | TipShape::Square { ratio }) = self;
-        let ratio = ratio.max(MIN_RATIO).min(1.0);
+        let ratio = ratio.max(*Tip::RATIO.start()).min(1.0);
         let drawn = ratio.max((LEAST_HALF_PX / radius).min(1.0));
         (drawn, ratio / drawn)
     }
@@ -41,17 +48,20 @@ impl TipShape {
         let per_axis = Vec2::new(1.0, 1.0 / ratio) / dab.radius;
         Affine2::from_scale(per_axis) * Affine2::from_angle(dab.rotation_rad) * Affine2::from_translation(-dab.at)
     }
-    /// The extent of a dab.
-    pub fn extent(self, dab: &Dab) -> DabExtent {
+    /// How far a dab reaches.
+    pub fn extent(self, falloff: Falloff, dab: &Dab) -> DabExtent {
         let (ratio, _) = self.ratio(dab.radius);
         let corner = match self {
             TipShape::Ellipse { .. } => 1.0,
             TipShape::Square { .. } => ratio.hypot(1.0),
         };
-        let profile = RoundProfile::new(dab.hardness, dab.softness);
+        let reach = match falloff {
+            Falloff::Smooth => RoundProfile::new(dab.hardness, dab.softness).outer_radius(),
+            Falloff::Peaked => PeakedProfile::new(dab.hardness, dab.softness).outer_radius(),
+        };
         // A pixel's width along the axis that the tip squeezes most, seen along the other one.
         let filter_px = 0.5 * (0.5 * (ratio + 1.0 / ratio)).max(1.0);
-        DabExtent { radius_px: dab.radius * profile.outer_radius() * corner, filter_px }
+        DabExtent { radius_px: dab.radius * reach * corner, filter_px }
     }
 }
 
@@ -69,8 +79,8 @@ pub struct TipSpanNeighbours<'f> {
 
 /// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a width |Jᵀ p̂|.
 #[inline(always)]
-pub fn ellipse(profile: &RoundProfile, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) -> f32 {
-    // The centre has no direction; any direction gives the width of the pixel well enough.
+pub fn ellipse<P: Profile>(profile: &P, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) -> f32 {
+    // At the very centre there is no direction; the pixel beside it tells how wide this one is as well as any.
     let r2 = x * x + y * y + 1e-12;
     let (a, b) = (across.0 * x + across.1 * y, along.0 * x + along.1 * y);
     profile.mean(r2.sqrt(), (a * a + b * b) / r2)
@@ -78,17 +88,28 @@ pub fn ellipse(profile: &RoundProfile, (x, y): (f32, f32), across: (f32, f32), a
 
 /// Coverage of a square: F(|x|) F(|y|), each over the pixel's width along its own axis.
 #[inline(always)]
-pub fn square(profile: &RoundProfile, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) -> f32 {
+pub fn square<P: Profile>(profile: &P, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) -> f32 {
     let of_x = profile.mean(x.abs(), across.0 * across.0 + along.0 * along.0);
     of_x * profile.mean(y.abs(), across.1 * across.1 + along.1 * along.1)
 }
 
 impl TipShape {
-    /// Coverage of each pixel of a span, in `[0, 1]`; 0 where D is not a number.
-    pub fn row(self, profile: &RoundProfile, d: TipSpanNeighbours, coverage: &mut [f32]) {
-        match self {
-            TipShape::Ellipse { .. } => ellipse_row(d, profile, coverage),
-            TipShape::Square { .. } => square_row(d, profile, coverage),
+    /// Coverage of each pixel of a span, in `[0, 1]`; where D is not a number, none. `d`: in the tip space of this dab.
+    pub fn row(self, falloff: Falloff, dab: &Dab, d: TipSpanNeighbours, coverage: &mut [f32]) {
+        let Dab { hardness, softness, .. } = *dab;
+        match (self, falloff) {
+            (TipShape::Ellipse { .. }, Falloff::Smooth) => {
+                ellipse_row(d, &RoundProfile::new(hardness, softness), coverage)
+            }
+            (TipShape::Square { .. }, Falloff::Smooth) => {
+                square_row(d, &RoundProfile::new(hardness, softness), coverage)
+            }
+            (TipShape::Ellipse { .. }, Falloff::Peaked) => {
+                peaked_ellipse_row(d, &PeakedProfile::new(hardness, softness), coverage);
+            }
+            (TipShape::Square { .. }, Falloff::Peaked) => {
+                peaked_square_row(d, &PeakedProfile::new(hardness, softness), coverage);
+            }
         }
     }
 }
@@ -98,6 +119,12 @@ crate::widest! {
         for_each(d, coverage, |p, across, along| ellipse(profile, p, across, along));
     }
     fn square_row(d: TipSpanNeighbours, profile: &RoundProfile, coverage: &mut [f32]) {
+        for_each(d, coverage, |p, across, along| square(profile, p, across, along));
+    }
+    fn peaked_ellipse_row(d: TipSpanNeighbours, profile: &PeakedProfile, coverage: &mut [f32]) {
+        for_each(d, coverage, |p, across, along| ellipse(profile, p, across, along));
+    }
+    fn peaked_square_row(d: TipSpanNeighbours, profile: &PeakedProfile, coverage: &mut [f32]) {
         for_each(d, coverage, |p, across, along| square(profile, p, across, along));
     }
 }
@@ -139,8 +166,8 @@ mod tests {
         let (p, across, along) = (map.transform_point2(place), map.matrix2.x_axis, map.matrix2.y_axis);
         let profile = RoundProfile::new(dab.hardness, dab.softness);
         let of = match shape {
-            TipShape::Ellipse { .. } => ellipse,
-            TipShape::Square { .. } => square,
+            TipShape::Ellipse { .. } => ellipse::<RoundProfile>,
+            TipShape::Square { .. } => square::<RoundProfile>,
         };
         of(&profile, (p.x, p.y), (across.x, across.y), (along.x, along.y))
     }
@@ -203,7 +230,7 @@ mod tests {
                 assert!(values.windows(2).all(|v| (v[1] - v[0]).abs() < 0.04), "{shape:?} at {place}");
             }
             let dab = dab(16.0, 20.0, 0.8, 0.5);
-            let DabExtent { radius_px, filter_px } = shape.extent(&dab);
+            let DabExtent { radius_px, filter_px } = shape.extent(Falloff::Smooth, &dab);
             let beyond = (0..360).map(|i| dab.at + Vec2::from_angle((i as f32).to_radians()) * (radius_px + filter_px));
             assert!(beyond.map(|place| at(shape, &dab, place)).all(|v| v < 1e-3));
         }

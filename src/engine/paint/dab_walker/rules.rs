@@ -1,0 +1,277 @@
+//! What the dabs of a stroke are made by: the brush, driven by what is read where each stands.
+//! Floor 3. Not here: where they stand (`walk`).
+
+use super::hand::{CurvePoint, gauss};
+use super::{Dab, FAR_PX};
+use crate::math::{Mat2, Vec2, hash, srgb::Color, vec2};
+use crate::paint::brush::{Brush, Tip};
+use crate::paint::dynamics::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, pace_of, turns_of};
+use crate::paint::habits::{Bearing, Spread};
+use crate::paint::scene::Scene;
+use crate::paint::tint;
+use crate::surface::{Curvature, Operator};
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+/// The smallest step between dabs. Below it neighbouring dabs of any size are the same to a byte.
+const MIN_STEP_PX: f32 = 0.1;
+/// The smallest dab, a little wider than a pixel.
+const PIXEL_RADIUS_PX: f32 = 0.75;
+/// *s* of the κ that drives a brush: *L* over this. Relative, so that a larger canvas paints the same.
+const CURVATURE_SCALES: f32 = 32.0;
+/// Blur of the normals under that κ: one pixel quiets the noise of 8-bit maps.
+const CURVATURE_BLUR_PX: f32 = 1.0;
+/// The longest tip, times its width.
+const MOST_ELONGATION: f32 = 1.0 / *Tip::RATIO.start();
+
+#[derive(Clone)]
+pub(super) struct DabRules {
+    pub brush: Brush,
+    operator: Operator,
+    color: Color,
+    scene: Scene,
+    /// Canvas from the frame that the stroke was drawn in.
+    facing: Mat2,
+    /// Where something follows it.
+    curvature: Option<Arc<Curvature>>,
+    reads_surface: bool,
+    varies_in_color: bool,
+}
+
+/// What the walk knows where a dab is due.
+#[derive(Clone, Copy)]
+pub(super) struct Moment {
+    pub place: CurvePoint,
+    /// Of the way; of no length where there is none.
+    pub direction: Vec2,
+    pub travelled_px: f64,
+    /// `[0, 1]`.
+    pub cycle: f32,
+    pub custom: f32,
+    pub number: u32,
+}
+
+/// How densely dabs follow one.
+#[derive(Clone, Copy)]
+pub(super) struct Due {
+    /// Along the tip's longer axis.
+    per_px: f64,
+    pub per_sec: f64,
+    /// Canvas directions in the tip's frame, where its half-axes are as long as each other.
+    tip: Mat2,
+}
+
+impl Due {
+    pub const NEVER: Self = Self { per_px: 0.0, per_sec: 0.0, tip: Mat2::IDENTITY };
+
+    /// Dabs a px on a way.
+    pub fn per_px(&self, way: Vec2) -> f64 {
+        if self.tip == Mat2::IDENTITY {
+            return self.per_px;
+        }
+        let stretch = (self.tip * way.normalize_or_zero()).length();
+        let densest = f64::from(1.0 / MIN_STEP_PX);
+        (self.per_px * f64::from(stretch)).min(densest)
+    }
+}
+
+impl DabRules {
+    pub fn new(brush: &Brush, operator: Operator, color: Color, scene: &Scene) -> Self {
+        let follows = |input| brush.dynamics.follow(input);
+        let curvature = scene.surface.as_ref().filter(|_| follows(Input::Curvature));
+        Self {
+            brush: brush.clone(),
+            operator,
+            color,
+            scene: scene.clone(),
+            facing: brush.facing.map(),
+            curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
+            reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
+            varies_in_color: tint::varies(brush),
+        }
+    }
+    pub fn inputs(&self, moment: &Moment) -> DabInputs {
+        let Moment { place, direction, travelled_px, cycle, custom, number } = *moment;
+        let unit = |v: f32| v.max(0.0).min(1.0);
+        let in_frame = |v: Vec2| self.facing.transpose() * v;
+        let [pace, slow_pace] = place.paces.map(pace_of);
+        let inputs = DabInputs {
+            pressure: place.pressure,
+            tilt: unit(place.tilt.length() / 90.0),
+            tilt_direction: turns_of(in_frame(place.tilt)),
+            direction: turns_of(in_frame(direction)),
+            speed: unit(place.px_per_sec / (FAST_LENGTHS_PER_SEC * self.scene.size.longer_side())),
+            distance: unit(travelled_px as f32 / (FAR_DIAMETERS * self.brush.size)),
+            pace,
+            slow_pace,
+            cycle,
+            attack: (turns_of(in_frame(leaning(&place))) - turns_of(in_frame(direction))).rem_euclid(1.0),
+            custom,
+            seed: hash::mix(self.brush.seed ^ hash::mix(number.wrapping_add(0x9e37_79b9))),
+            ..DabInputs::default()
+        };
+        self.over_surface(place.at, inputs)
+    }
+    /// With what the surface is like at the pixel that a dab's centre lies in.
+    fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {
+        let flat = DabInputs::default();
+        let nowhere = DabInputs { slope: flat.slope, curvature: flat.curvature, depth: flat.depth, ..inputs };
+        let is_over = self.reads_surface && self.scene.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32);
+        let Some(surface) = self.scene.surface.as_deref().filter(|_| is_over) else { return nowhere };
+        let (x, y) = surface.pixel_of(at);
+        if surface.coverage(x, y) == 0 {
+            return nowhere;
+        }
+        let scale_px = surface.size().longer_side() / CURVATURE_SCALES;
+        let kappa = self.curvature.as_ref().map_or(0.0, |curvature| curvature.kappa(x, y, scale_px));
+        let slope = 1.0 - surface.normal(x, y).z.max(0.0).min(1.0);
+        DabInputs { slope, curvature: 0.5 + 0.5 * kappa, depth: surface.depth(x, y).max(0.0).min(1.0), ..inputs }
+    }
+    fn value(&self, property: Property, plain: f32, inputs: &DabInputs) -> f32 {
+        self.brush.dynamics.value(property, plain, inputs)
+    }
+    fn diameter(&self, inputs: &DabInputs) -> f32 {
+        self.value(Property::Size, self.brush.size, inputs)
+    }
+    /// What drives the custom input.
+    pub fn custom(&self, inputs: &DabInputs) -> f32 {
+        self.value(Property::Custom, 0.0, inputs).max(0.0).min(1.0)
+    }
+    /// How densely dabs follow one with these readings. A step that is not a number must not stop the walk.
+    pub fn due(&self, inputs: &DabInputs) -> Due {
+        let spacing = self.value(Property::Spacing, self.brush.spacing, inputs);
+        let step = f64::from((spacing * self.diameter(inputs)).max(MIN_STEP_PX));
+        let sane = |v: f32| if v.is_finite() && v > 0.0 { f64::from(v) } else { 0.0 };
+        let beside = sane(self.brush.rate.per_diameter / self.brush.size);
+        // A brush without other dabs keeps its step to the bit.
+        let per_px = if beside > 0.0 { (1.0 / step + beside).min(1.0 / f64::from(MIN_STEP_PX)) } else { 1.0 / step };
+        let ratio = self.ratio(inputs);
+        let tip = if ratio < 1.0 {
+            Mat2::from_diagonal(vec2(1.0, 1.0 / ratio)) * Mat2::from_angle(self.rotation_rad(inputs))
+        } else {
+            Mat2::IDENTITY
+        };
+        Due { per_px, per_sec: sane(self.brush.rate.per_sec), tip }
+    }
+    /// The tip's shorter side to its longer one.
+    fn ratio(&self, inputs: &DabInputs) -> f32 {
+        let plain = self.brush.ratio();
+        if !self.brush.dynamics.drive(Property::Elongation) {
+            return plain;
+        }
+        1.0 / self.value(Property::Elongation, 1.0 / plain, inputs).max(1.0).min(MOST_ELONGATION)
+    }
+    fn rotation_rad(&self, inputs: &DabInputs) -> f32 {
+        let brush = &self.brush;
+        let rotation_rad = if brush.rotation.is_finite() { brush.rotation.to_radians() } else { 0.0 };
+        brush.facing.rotation_rad(rotation_rad + TAU * brush.dynamics.turns(Property::Rotation, inputs))
+    }
+    /// Where a dab stands that is due at a place.
+    fn strayed(&self, moment: &Moment, inputs: &DabInputs) -> Vec2 {
+        let at = moment.place.at;
+        let away = self.scattered(inputs) + self.offset(moment, inputs) + self.lead(moment, inputs);
+        // Comparisons that NaN fails.
+        if away.length() > 0.0 && away.length() <= FAR_PX { at + away } else { at }
+    }
+    fn scattered(&self, inputs: &DabInputs) -> Vec2 {
+        let ratio = self.value(Property::Scatter, self.brush.scatter, inputs).max(0.0);
+        if ratio.is_nan() || ratio <= 0.0 {
+            return Vec2::ZERO;
+        }
+        let away = match self.brush.spread {
+            Spread::Disc => {
+                let (turn, share) = (hash::unit(inputs.seed, 0, 3), hash::unit(inputs.seed, 1, 3));
+                // The root spreads them evenly over the disc.
+                ratio * self.diameter(inputs) * share.sqrt() * Vec2::from_angle(TAU * turn)
+            }
+            Spread::Cloud => ratio * self.brush.size * vec2(gauss(inputs.seed, 0), gauss(inputs.seed, 1)),
+        };
+        self.facing * away
+    }
+    fn offset(&self, moment: &Moment, inputs: &DabInputs) -> Vec2 {
+        let offset = self.brush.offset;
+        let amount = self.value(Property::Offset, offset.amount, inputs);
+        if amount.is_nan() || amount == 0.0 {
+            return Vec2::ZERO;
+        }
+        let side = if offset.alternates && moment.number % 2 == 1 { -1.0 } else { 1.0 };
+        let from = match offset.from {
+            Bearing::Canvas => Vec2::X,
+            Bearing::Stroke => self.facing.transpose() * moment.direction.normalize_or(Vec2::X),
+            Bearing::Pen => self.facing.transpose() * leaning(&moment.place).normalize_or(Vec2::X),
+        };
+        let turns = offset.turn_degrees / 360.0 + self.brush.dynamics.turns(Property::OffsetTurn, inputs);
+        // Counter-clockwise as seen is clockwise where y goes down.
+        let toward = Vec2::from_angle(-TAU * side * turns).rotate(from);
+        self.facing * (side * amount * self.brush.size * toward)
+    }
+    fn lead(&self, moment: &Moment, inputs: &DabInputs) -> Vec2 {
+        let secs = self.value(Property::Lead, self.brush.hand.lead_secs, inputs);
+        if secs == 0.0 { Vec2::ZERO } else { secs * moment.place.paces[0] * moment.direction.normalize_or_zero() }
+    }
+    /// How much larger a dab is by chance, and how much fainter: what grows spreads its paint.
+    fn chance_of_size(&self, inputs: &DabInputs) -> (f32, f32) {
+        let doublings = self.value(Property::SizeJitter, self.brush.size_jitter, inputs);
+        if doublings.is_nan() || doublings <= 0.0 {
+            return (1.0, 1.0);
+        }
+        let factor = (doublings * gauss(inputs.seed, 2)).exp2();
+        (factor, if factor > 1.0 { 1.0 / (factor * factor) } else { 1.0 })
+    }
+    /// What one of several dabs adds that lie over each other.
+    fn flow(&self, inputs: &DabInputs) -> f32 {
+        let flow = self.value(Property::Flow, self.brush.flow, inputs).max(0.0).min(1.0);
+        let overlap = self.brush.overlap;
+        // A brush whose dabs add for themselves keeps its flow to the bit.
+        if overlap > 1.0 { 1.0 - (1.0 - flow).powf(1.0 / overlap) } else { flow }
+    }
+    /// The dab of a moment; `None` where nothing would be seen.
+    pub fn dab(&self, moment: &Moment, inputs: DabInputs) -> Option<Dab> {
+        let at = self.strayed(moment, &inputs);
+        let inputs = if at == moment.place.at { inputs } else { self.over_surface(at, inputs) };
+        let brush = &self.brush;
+        let unit = |v: f32| v.max(0.0).min(1.0);
+        let (larger, fainter) = self.chance_of_size(&inputs);
+        let radius = 0.5 * self.diameter(&inputs) * larger;
+        let flow = self.flow(&inputs) * fainter;
+        let ceiling = unit(self.value(Property::Opacity, 1.0, &inputs));
+        // Comparisons that NaN fails.
+        let is_visible = radius > 0.01 && radius <= FAR_PX && flow > 0.0 && ceiling > 0.0;
+        // A dab smaller than a pixel is a fainter one of a pixel's size: what it covers is the same.
+        let share = (radius / PIXEL_RADIUS_PX).min(1.0);
+        is_visible.then(|| Dab {
+            at,
+            radius: radius.max(PIXEL_RADIUS_PX),
+            ratio: self.ratio(&inputs),
+            rotation_rad: self.rotation_rad(&inputs),
+            is_mirrored: brush.facing.is_mirrored,
+            hardness: unit(self.value(Property::Hardness, brush.hardness, &inputs)),
+            softness: unit(self.value(Property::Softness, brush.softness, &inputs)),
+            flow: unit(flow * share * share),
+            ceiling,
+            color: if self.varies_in_color { tint::of(brush, self.color, &inputs) } else { self.color },
+            operator: self.operator(&inputs),
+            reach_px: 2.0 * radius * brush.reach,
+            number: moment.number,
+            inputs,
+        })
+    }
+    fn operator(&self, inputs: &DabInputs) -> Operator {
+        let by = |value: f32, property| self.value(property, value, inputs);
+        match self.operator {
+            Operator::None => Operator::None,
+            Operator::Depth { gamma } => Operator::Depth { gamma: by(gamma, Property::Gamma) },
+            Operator::Normal { alpha, beta, detail } => {
+                Operator::Normal { alpha: by(alpha, Property::Alpha), beta, detail: by(detail, Property::Detail) }
+            }
+            Operator::Reflection { alpha, detail } => {
+                Operator::Reflection { alpha: by(alpha, Property::Alpha), detail: by(detail, Property::Detail) }
+            }
+        }
+    }
+}
+
+/// Where a pen leans to; an upright one leans down, toward the hand that holds it.
+fn leaning(place: &CurvePoint) -> Vec2 {
+    if place.tilt == Vec2::ZERO { Vec2::Y } else { place.tilt }
+}

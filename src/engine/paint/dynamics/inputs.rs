@@ -1,0 +1,122 @@
+//! What is known where a dab stands, in the terms that brushes are driven by.
+//! Floor 3. Not here: where it is read (`walker`).
+
+use super::{Input, Property};
+use crate::math::{Vec2, hash};
+use std::f32::consts::TAU;
+
+/// The speed that reads 1, canvas lengths *L* a second.
+pub const FAST_LENGTHS_PER_SEC: f32 = 2.0;
+/// The distance that reads 1, diameters.
+pub const FAR_DIAMETERS: f32 = 10.0;
+/// The paces, px a second, up to which the scale is about even, and that reads 1.
+pub const PACES_PX_PER_SEC: [f32; 2] = [50.0, 5000.0];
+
+/// A speed as a pace, `[0, 1]`: `ln(1 + v / 50) / ln(1 + 5000 / 50)`. Slow hands differ as much as quick ones.
+pub fn pace_of(px_per_sec: f32) -> f32 {
+    let [even, most] = PACES_PX_PER_SEC;
+    ((px_per_sec.max(0.0) / even).ln_1p() / (most / even).ln_1p()).min(1.0)
+}
+
+/// The speed of a pace, px a second: the inverse of [`pace_of`].
+pub fn px_per_sec_of(pace: f32) -> f32 {
+    let [even, most] = PACES_PX_PER_SEC;
+    even * (pace * (most / even).ln_1p()).exp_m1()
+}
+
+/// What is known where a dab stands, each in `[0, 1]` as [`Input`] says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DabInputs {
+    pub pressure: f32,
+    pub tilt: f32,
+    pub tilt_direction: f32,
+    pub direction: f32,
+    pub speed: f32,
+    pub distance: f32,
+    pub slope: f32,
+    pub curvature: f32,
+    pub depth: f32,
+    pub pace: f32,
+    pub slow_pace: f32,
+    pub cycle: f32,
+    pub attack: f32,
+    pub custom: f32,
+    /// Of this dab alone: what is random about it follows.
+    pub seed: u32,
+}
+
+impl Default for DabInputs {
+    /// Full pressure, upright, at rest, off the surface.
+    fn default() -> Self {
+        Self {
+            pressure: 1.0,
+            tilt: 0.0,
+            tilt_direction: 0.0,
+            direction: 0.0,
+            speed: 0.0,
+            distance: 0.0,
+            slope: 0.0,
+            curvature: 0.5,
+            depth: 1.0,
+            pace: 0.0,
+            slow_pace: 0.0,
+            cycle: 1.0,
+            attack: 0.0,
+            custom: 0.0,
+            seed: 0,
+        }
+    }
+}
+
+impl DabInputs {
+    /// What drives a property by an input.
+    pub(super) fn of(&self, input: Input, property: Property) -> f32 {
+        match input {
+            Input::Pressure => self.pressure,
+            Input::Tilt => self.tilt,
+            Input::TiltDirection => self.tilt_direction,
+            Input::Direction => self.direction,
+            Input::Speed => self.speed,
+            Input::Distance => self.distance,
+            Input::Random => hash::unit(self.seed, property as u32, 1),
+            Input::Slope => self.slope,
+            Input::Curvature => self.curvature,
+            Input::Depth => self.depth,
+            Input::Pace => self.pace,
+            Input::SlowPace => self.slow_pace,
+            // A property's number is never as large.
+            Input::Chance => hash::unit(self.seed, u32::MAX, 1),
+            Input::Cycle => self.cycle,
+            Input::Attack => self.attack,
+            Input::Custom => self.custom,
+        }
+    }
+}
+
+/// The direction of a vector in image axes (y down), in turns counter-clockwise as seen, `[0, 1)`; 0 of none.
+pub fn turns_of(v: Vec2) -> f32 {
+    let turns = if v == Vec2::ZERO { 0.0 } else { (-v.y).atan2(v.x) / TAU };
+    // A turn just below 0 rounds up to 1.
+    (turns - turns.floor()) % 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vec2;
+
+    #[test]
+    fn directions_turn_counter_clockwise_as_seen() {
+        let turns = [vec2(1.0, 0.0), vec2(0.0, -2.0), vec2(-1.0, 0.0), vec2(0.0, 3.0), Vec2::ZERO].map(turns_of);
+        assert_eq!(turns, [0.0, 0.25, 0.5, 0.75, 0.0]);
+        assert!(turns_of(vec2(1.0, 1e-9)) < 1.0);
+    }
+    #[test]
+    fn a_pace_tells_slow_hands_apart_and_goes_back() {
+        assert_eq!((pace_of(0.0), pace_of(5000.0), pace_of(1e9), pace_of(f32::NAN)), (0.0, 1.0, 1.0, 0.0));
+        assert!(pace_of(100.0) - pace_of(50.0) > pace_of(1100.0) - pace_of(1050.0));
+        for v in [3.0f32, 80.0, 900.0] {
+            assert!((px_per_sec_of(pace_of(v)) / v - 1.0).abs() < 1e-3, "{v}");
+        }
+    }
+}

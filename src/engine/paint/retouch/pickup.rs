@@ -1,0 +1,93 @@
+//! Paint that a brush takes up where it goes, and the colour that a dab of it has: its own mixed with what it holds.
+//! Floor 3. Colours are premultiplied, so that nothing taken up counts as nothing.
+
+use super::pixels::RetouchPixels;
+use crate::math::srgb::Color;
+use crate::paint::brush::Brush;
+use crate::paint::dab::{DabScratch, PlacedDab, round_extent};
+use crate::paint::dab_walker::Dab;
+use crate::paint::dynamics::Property;
+use crate::paint::scene::Scene;
+use crate::paint::stroke::dabs::tiles_of;
+use crate::paint::stroke_tile::StrokeTile;
+use crate::paint::tint;
+use crate::raster::tile::TILE_AREA;
+use crate::raster::{TILE, TileAt};
+use rayon::prelude::*;
+
+/// Paint is taken up most in the middle: a soft round dab whose weights are half its disc.
+const SOFT: f32 = 0.4;
+/// A dab of fewer pixels than this looks at each of them, a larger one at as many.
+const LOOKS: f32 = 1024.0;
+
+/// What a brush holds of the paint that it took up; `None` before its first dab.
+pub(super) type Held = Option<[f32; 4]>;
+
+/// The colour that a dab paints, premultiplied: less than opaque where it has taken up less than paint. What is held
+/// changes.
+///
+/// With what lay there, c, and the length l: h ← l h + (1 − l) c, at the first dab h ← c. With the amount a and the
+/// brush's own colour b: a h + (1 − a) b.
+pub(super) fn mixed(
+    brush: &Brush,
+    own: Color,
+    dab: &Dab,
+    held: &mut Held,
+    retouched: &RetouchPixels,
+    scene: &Scene,
+) -> [f32; 4] {
+    let unit = |v: f32| v.max(0.0).min(1.0);
+    let value = |property, plain: f32| unit(brush.dynamics.value(property, plain, &dab.inputs));
+    let [r, g, b, _] = own.to_f32();
+    if brush.picks_up() {
+        let length = value(Property::PickupLength, brush.pickup.length);
+        let length = if held.is_none() { 0.0 } else { length };
+        if length < 1.0
+            && let Some(there) = taken_up(brush, dab, retouched, scene)
+        {
+            let before = held.unwrap_or_default();
+            *held = Some(std::array::from_fn(|c| there[c] + (before[c] - there[c]) * length));
+        }
+    }
+    let amount = value(Property::Pickup, brush.pickup.amount);
+    let own = [r, g, b, 1.0];
+    let held = held.unwrap_or(own);
+    let mixed: [f32; 4] = std::array::from_fn(|c| own[c] + (held[c] - own[c]) * amount);
+    if tint::varies(brush) { tinted(brush, mixed, dab) } else { mixed }
+}
+
+/// The mixed colour as far from itself as the brush makes a dab's.
+fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
+    let alpha = mixed[3];
+    let straight = |v: f32| if alpha > 0.0 { (255.0 * (v / alpha).max(0.0).min(1.0) + 0.5) as u8 } else { 0 };
+    let [r, g, b] = [mixed[0], mixed[1], mixed[2]].map(straight);
+    let [r, g, b, _] = tint::of(brush, Color { r, g, b, a: 255 }, &dab.inputs).to_f32();
+    [r * alpha, g * alpha, b * alpha, alpha]
+}
+
+/// The mean of what lies under a dab; `None` where it lies beside the canvas.
+fn taken_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) -> Option<[f32; 4]> {
+    let radius = (dab.radius * brush.pickup.radius).max(1.0);
+    let dab = Dab { radius, ratio: 1.0, hardness: SOFT, softness: 0.0, flow: 1.0, ceiling: 1.0, ..*dab };
+    let placed = PlacedDab::new(dab, scene, round_extent(&dab));
+    let stride = (radius * radius * std::f32::consts::PI / LOOKS).sqrt().max(1.0) as usize;
+    let seen = |scratch: &mut DabScratch, at: &TileAt| {
+        let mut stroke_tile = StrokeTile::one_color();
+        placed.add_round(*at, &mut stroke_tile, scratch);
+        let (coverage, mut reader, corner) = (stroke_tile.coverage(0, TILE_AREA), retouched.reader(), at.rect());
+        let mut sum = [0.0f32; 5];
+        for (y, x) in (0..TILE).step_by(stride).flat_map(|y| (0..TILE).step_by(stride).map(move |x| (y, x))) {
+            let weight = coverage[y * TILE + x];
+            if weight > 0.0 {
+                let [r, g, b, a] = reader.pixel(corner.x0 + x as i32, corner.y0 + y as i32);
+                let add = [r, g, b, a, 1.0];
+                sum = std::array::from_fn(|c| sum[c] + weight * add[c]);
+            }
+        }
+        sum
+    };
+    let sums: Vec<[f32; 5]> = tiles_of(&placed).par_iter().map_init(DabScratch::default, seen).collect();
+    // In the tiles' order, whoever added them up.
+    let sum = sums.iter().fold([0.0f32; 5], |all, sum| std::array::from_fn(|c| all[c] + sum[c]));
+    (sum[4] > 0.0).then(|| [0, 1, 2, 3].map(|c| sum[c] / sum[4]))
+}

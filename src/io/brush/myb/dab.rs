@@ -1,0 +1,142 @@
+//! What a dab of a MyPaint brush looks like: tip, coverage, colour, and paint that is taken up.
+//! Floor 5.
+
+use super::curves::{Added, MyPaintSettings};
+use super::{with, with_constant};
+use crate::paint::dynamics::Property;
+use crate::paint::{Brush, Falloff, Pickup, Tip};
+
+/// A rim as wide as this is every dab's here, px.
+const RIM_PX: f32 = 1.0;
+/// What counts as not round.
+const ROUND: f32 = 1.001;
+
+/// Hardness and the elliptic tip.
+pub fn shape(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
+    let rim_px = settings.added("anti_aliasing", 1.0).base;
+    let hardness = settings.added("hardness", 0.8);
+    let hardness = softened(hardness, rim_px, 0.5 * brush.size).within(0.0, 1.0);
+    let brush = Brush { hardness: hardness.base, falloff: Falloff::Peaked, ..brush };
+    let brush = with(brush, Property::Hardness, &hardness);
+    let elongation = settings.added("elliptical_dab_ratio", 1.0).within(1.0, 1.0 / *Tip::RATIO.start());
+    // Theirs turns clockwise.
+    let angle = settings.added("elliptical_dab_angle", 90.0).times(-1.0);
+    if elongation.base <= ROUND && elongation.rows.is_empty() {
+        return brush;
+    }
+    let brush =
+        Brush { tip: Tip::Ellipse { ratio: 1.0 / elongation.base }, rotation: angle.base.rem_euclid(360.0), ..brush };
+    let brush = with(brush, Property::Elongation, &elongation);
+    with(brush, Property::Rotation, &angle.times(1.0 / 360.0))
+}
+
+/// A rim that is asked to be wider than the hardness makes it, the radius at which it covers one half staying.
+fn softened(hardness: Added, rim_px: f32, radius: f32) -> Added {
+    let h = hardness.base.max(0.0).min(1.0);
+    if rim_px <= RIM_PX || radius * (1.0 - h) >= rim_px {
+        return hardness;
+    }
+    let middle = radius * (1.0 + h) / 2.0;
+    let softer = ((middle - 0.5 * rim_px) / (middle + 0.5 * rim_px)).max(0.0);
+    Added { base: softer, ..hardness }
+}
+
+/// How much one dab covers: MyPaint's opacity is the stroke's where dabs overlap, to the degree of `opaque_linearize`.
+pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
+    let linear = settings.plain("opaque_linearize", 0.9).max(0.0).min(2.0);
+    let per_diameter =
+        2.0 * (settings.base("dabs_per_actual_radius", 2.0) + settings.base("dabs_per_basic_radius", 0.0));
+    let overlap = (1.0 + linear * (per_diameter.max(1.0) - 1.0)).max(1.0).min(100.0);
+    let brush = Brush { overlap, ..brush };
+    let opaque = settings.added("opaque", 1.0);
+    let times = settings.opaque_multiply();
+    match times.rows.as_slice() {
+        // One of them changes: the other is a number.
+        [] => flows(brush, opaque.times(times.base.max(0.0))),
+        _ if opaque.rows.is_empty() => flows(brush, times.times(opaque.base.max(0.0))),
+        [rows @ .., last] => {
+            if !rows.is_empty() {
+                settings.note("“opaque_multiply” follows one of several inputs");
+            }
+            let most = times.range()[1].max(1e-3);
+            let factors = last.factors(|x| times.at(last, x) / most);
+            let brush = flows(brush, opaque.times(most));
+            let dynamics = factors.map(|curve| brush.dynamics.with(Property::Flow, last.input, curve));
+            Brush { dynamics: dynamics.unwrap_or(brush.dynamics.clone()), ..brush }
+        }
+    }
+}
+
+fn flows(brush: Brush, flow: Added) -> Brush {
+    let flow = flow.within(0.0, 1.0);
+    with(Brush { flow: flow.base, ..brush }, Property::Flow, &flow)
+}
+
+/// Colours that change, paint that is taken up or away.
+pub fn paint(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
+    let mut brush = brush;
+    let changes = [
+        ("change_color_h", Property::Hue, 1.0),
+        ("change_color_v", Property::Value, 1.0),
+        ("change_color_l", Property::Lightness, 1.0),
+        // Theirs are ratios of the colour's own saturation; a strong colour's is near 1.
+        ("change_color_hsv_s", Property::Saturation, 1.0),
+        ("change_color_hsl_s", Property::Saturation, 1.0),
+    ];
+    for (name, property, factor) in changes {
+        let change = settings.added(name, 0.0).times(factor);
+        if change.rows.is_empty() {
+            brush = with_constant(brush, property, change.base);
+        } else {
+            brush = with(brush, property, &change.within(0.0, 0.0));
+        }
+    }
+    for name in ["colorize", "posterize"] {
+        settings.plain(name, 0.0);
+        settings.lost(name, 0.0);
+    }
+    if settings.base("posterize", 0.0) == 0.0 {
+        settings.of_no_use(&["posterize_num"]);
+    }
+    let erases = settings.added("eraser", 0.0);
+    if erases.rows.iter().any(|_| true) || (erases.base > 0.0 && erases.base < 1.0) {
+        settings.note("It erases wholly or not at all");
+    }
+    let brush = Brush {
+        erases: 0.5 * (erases.range()[0] + erases.range()[1]) >= 0.5,
+        keeps_alpha: settings.plain("lock_alpha", 0.0) >= 0.5,
+        ..brush
+    };
+    pickup(settings, brush)
+}
+
+fn pickup(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
+    const DETAILS: [&str; 6] =
+        ["smudge_length", "smudge_radius_log", "smudge_length_log", "smudge_bucket", "smudge_transparency", "smudge"];
+    let amount = settings.added("smudge", 0.0).within(0.0, 1.0);
+    settings.of_no_use(&DETAILS);
+    if amount.base == 0.0 && amount.rows.is_empty() {
+        return brush;
+    }
+    let length = settings.added("smudge_length", 0.5).within(0.0, 1.0);
+    let radius = settings.plain("smudge_radius_log", 0.0).exp().max(0.05).min(20.0);
+    for name in ["smudge_length_log", "smudge_bucket", "smudge_transparency"] {
+        settings.lost(name, 0.0);
+    }
+    let brush = Brush { pickup: Pickup { amount: amount.base, length: length.base, radius }, ..brush };
+    let brush = with(brush, Property::Pickup, &amount);
+    with(brush, Property::PickupLength, &length)
+}
+
+impl MyPaintSettings<'_> {
+    /// What `opaque` is multiplied by: the pressure, where a file does not say.
+    fn opaque_multiply(&mut self) -> Added {
+        if self.has("opaque_multiply") { self.added("opaque_multiply", 0.0) } else { self.pressure() }
+    }
+    /// A setting that does nothing here; told of where it does something there.
+    fn lost(&mut self, name: &'static str, idle: f32) {
+        if self.is_driven(name) || self.base(name, idle) != idle {
+            self.note(&format!("“{name}” has no counterpart"));
+        }
+    }
+}
