@@ -6,7 +6,8 @@
 //! Render a recipe to a PNG:
 //!
 //! ```
-//! use rilievo::{Budget, Progress, export, flatten, open};
+//! use rilievo::export::{ExportOptions, OutputFile};
+//! use rilievo::{Budget, Overwrite, Progress, Terms, flatten, open};
 //!
 //! # fn main() -> rilievo::Result<()> {
 //! # let folder = tempfile::tempdir().unwrap();
@@ -20,7 +21,8 @@
 //!     eprintln!("{note}");
 //! }
 //! let pixels = flatten(&opened.document, &Progress::default()).unwrap_or_default();
-//! export::Target::new(&picture, &[recipe])?.write(&pixels, opened.document.size, &export::Options::default())?;
+//! let output = OutputFile::new(&picture, Terms::export(Overwrite::Nothing, vec![recipe]))?;
+//! output.write(&pixels, opened.document.size, &ExportOptions::default())?;
 //! # assert!(picture.exists());
 //! # Ok(())
 //! # }
@@ -29,7 +31,7 @@
 //! Build a document in code and save it as a project that the program opens:
 //!
 //! ```
-//! use rilievo::{BlendMode, Color, Content, Document, Layer, Over, Progress, Size, save};
+//! use rilievo::{BlendMode, Color, Content, Document, Layer, Overwrite, Progress, Size, save};
 //!
 //! # fn main() -> rilievo::Result<()> {
 //! # let folder = tempfile::tempdir().unwrap();
@@ -39,7 +41,7 @@
 //! document.layers.push(Layer::new("Ground", fill(32, 36, 44)).into());
 //! let glow = Layer { blend: BlendMode::Screen, opacity: 0.5, ..Layer::new("Glow", fill(192, 128, 64)) };
 //! document.layers.push(glow.into());
-//! save(&document, &project, Over::Nothing, &Progress::default())?;
+//! save(&document, &project, Overwrite::Nothing, &Progress::default())?;
 //! # assert!(project.exists());
 //! # Ok(())
 //! # }
@@ -56,7 +58,7 @@ pub use rilievo_engine::document::{
 pub use rilievo_engine::math::{Size, srgb::Color};
 pub use rilievo_engine::raster::{BlendMode, TILE, Tile, TileGrid};
 pub use rilievo_engine::surface::Surface;
-pub use rilievo_engine::{Error, Result};
+pub use rilievo_engine::{Error, Remedy, Result};
 pub use rilievo_io::{
-    Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, export, open, recipe, save,
+    Budget, Files, OpenedDocument, Overwrite, RecipeFolder, SavedDocument, Terms, export, open, recipe, save,
 };
