@@ -1,4 +1,4 @@
-//! The stabilizer: turns the pen's samples into a smoother line as they arrive, and completes the line when the pen
+//! The stabiliser: turns the pen's samples into a smoother line as they arrive, and completes the line when the pen
 //! lifts. Floor 3.
 
 use super::brush::Stabilizer;
@@ -14,7 +14,7 @@ const PULL_PX: f32 = 1.0;
 /// The most steps between two samples: a pen that leaps leaves a straighter line.
 const MOST_PULLS: f32 = 4096.0;
 
-/// The stabilized pen: a line that follows the pen.
+/// The stabilised pen: a line that follows the pen.
 #[derive(Clone)]
 pub struct StabilizedPen {
     stabilizer: Stabilizer,
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
     use crate::math::vec2;
 
-    /// The complete stabilized line of a pen.
+    /// The complete stabilised line of a pen.
     fn line(stabilizer: Stabilizer, pens: &[Vec2]) -> Vec<Vec2> {
         let mut stabilized = StabilizedPen::new(stabilizer);
         let mut line: Vec<Vec2> = pens.iter().filter_map(|&at| stabilized.push(Sample::at(at))).map(|s| s.at).collect();

@@ -1,4 +1,4 @@
-//! The editor of the current brush: tip, spread, grain, stabilizer and dynamics. Floor 7. The list of brushes is in
+//! The editor of the current brush: tip, spread, grain, stabiliser and dynamics. Floor 7. The list of brushes is in
 //! `brushes`, the curve widget in `curve`.
 
 use super::curve;
@@ -165,7 +165,7 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     chosen.or(changed.then_some(Some(to))).map(of_grain)
 }
 
-/// The kinds of stabilizer.
+/// The kinds of stabiliser.
 #[derive(Clone, Copy, PartialEq)]
 enum StabilizerChoice {
     None,
