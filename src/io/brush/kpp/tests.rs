@@ -34,7 +34,8 @@ fn a_pixel_preset_is_read_with_what_follows_the_pressure() {
             ("PressureOpacity", "true"),
             (
                 "OpacitySensor",
-                "<params id=\"sensorslist\"><ChildSensor id=\"pressure\"/><ChildSensor id=\"tangentialpressure\"/></params>",
+                "<params id=\"sensorslist\"><ChildSensor id=\"pressure\"/>\
+                    <ChildSensor id=\"tangentialpressure\"/></params>",
             ),
             ("PressureRotation", "false"),
             ("RotationSensor", "<params id=\"fuzzy\"/>"),

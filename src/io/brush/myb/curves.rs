@@ -426,7 +426,8 @@ mod tests {
     #[test]
     fn what_is_known_nowhere_is_told() {
         let value = settings(
-            r#"{ "gloss": { "base_value": 0.5, "inputs": {} }, "idle": { "base_value": 0, "inputs": { "random": [[0, 0], [1, 0]] } },
+            r#"{ "gloss": { "base_value": 0.5, "inputs": {} },
+                 "idle": { "base_value": 0, "inputs": { "random": [[0, 0], [1, 0]] } },
                  "a": { "base_value": 1, "inputs": { "gridmap_x": [[0, 0], [1, 1]] } } }"#,
         );
         let mut settings = MyPaintSettings::new(value.as_object().unwrap());
