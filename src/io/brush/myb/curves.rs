@@ -359,14 +359,19 @@ fn straightened(points: &[Vec2]) -> Vec<Vec2> {
     let (least, most) = points.iter().fold((f32::MAX, f32::MIN), |(least, most), p| (least.min(p.y), most.max(p.y)));
     let near = 0.002 * (most - least).max(1e-6);
     let mut out: Vec<Vec2> = Vec::new();
+    let mut start = 0;
     for (i, &point) in points.iter().enumerate() {
-        let next = points.get(i + 1).copied();
-        let is_between = out.last().zip(next).is_some_and(|(before, next)| {
-            let width = next.x - before.x;
-            width > 0.0 && (before.y + (next.y - before.y) * (point.x - before.x) / width - point.y).abs() <= near
-        });
+        let (before, next) = (points[start], points.get(i + 1).copied());
+        // All that were left out since the last one count: small bends must not add up.
+        let is_between = i > 0
+            && next.is_some_and(|next| {
+                let width = next.x - before.x;
+                let off = |p: &Vec2| before.y + (next.y - before.y) * (p.x - before.x) / width - p.y;
+                width > 0.0 && points[start + 1..=i].iter().all(|p| off(p).abs() <= near)
+            });
         if !is_between {
             out.push(point);
+            start = i;
         }
     }
     out.truncate(MAX_POINTS);
