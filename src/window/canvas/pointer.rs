@@ -281,18 +281,18 @@ struct FrameInput<'a> {
 }
 
 impl FrameInput<'_> {
-    fn from_view_center(&self, pos: Pos2) -> Vec2 {
+    fn about_view_center(&self, pos: Pos2) -> Vec2 {
         vec2(pos.x - self.middle.x, pos.y - self.middle.y)
     }
     fn on_canvas(&self, pos: Pos2) -> Vec2 {
-        self.view.canvas_from_screen().transform_point2(self.from_view_center(pos))
+        self.view.canvas_from_screen().transform_point2(self.about_view_center(pos))
     }
     fn view(&mut self, action: ViewAction) {
         self.actions.push(Action::View(action));
     }
     fn zoom(&mut self, factor: f32, about: Pos2) {
         if factor.is_finite() && factor > 0.0 && factor != 1.0 {
-            let about = self.from_view_center(about);
+            let about = self.about_view_center(about);
             self.view = self.view.zoomed(factor, about);
             self.view(ViewAction::Zoom { factor, about });
         }
