@@ -46,7 +46,7 @@ impl Composer<'_> {
     }
     /// A layer with pixels of its own, or an isolated group.
     fn paint(&self, node: &PreparedLayer, onto: &mut PlanarTile, coverage: &TileCoverage, atop: bool) -> ComposeFlow {
-        let mix = Mix { mode: node.layer.blend, linear: node.layer.blend_linear, atop };
+        let mix = Mix { mode: node.layer.blend, linear: node.layer.blend_linear, atop, ..Mix::default() }.on(self.at);
         let painted = self.content(node)?;
         if node.clipped.is_empty() {
             if let Some(paint) = painted.as_paint() {

@@ -131,7 +131,7 @@ impl Stroke {
             stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, grain.as_deref(), &mut stroke_tile, scratch);
         }
         stroke_tile.limit_to(&self.part(scene), at);
-        stroke_tile.blend_over(pixels, self.manner());
+        stroke_tile.blend_over(pixels, at, self.manner());
     }
     /// The part of the canvas that the stroke may touch.
     fn part(&self, scene: &Scene) -> CanvasPart {

@@ -116,8 +116,8 @@ impl StrokeTile {
             }
         }
     }
-    /// Blends the paint over pixels.
-    pub fn blend_over(&self, pixels: &mut PlanarTile, manner: StrokeBlend) {
+    /// Lays the dried paint on the pixels of a tile.
+    pub fn blend_over(&self, pixels: &mut PlanarTile, at: TileAt, manner: StrokeBlend) {
         if manner.erases {
             // Paint that keeps its coverage cannot be erased.
             if !manner.keeps_alpha {
@@ -128,7 +128,7 @@ impl StrokeTile {
         } else {
             let mut paint = PlanarTile::transparent();
             self.blend_over_normal(&mut paint, manner.color, manner.opacity);
-            let mix = Mix { mode: manner.mode, atop: manner.keeps_alpha, ..Mix::default() };
+            let mix = Mix { mode: manner.mode, atop: manner.keeps_alpha, ..Mix::default() }.on(at);
             pixels.blend(mix, TilePaint::Planar(&paint), &TileCoverage::FULL);
         }
     }

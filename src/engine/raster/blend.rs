@@ -1,4 +1,5 @@
-//! Blend modes: how a layer's colour meets the colour beneath it (W3C Compositing and Blending Level 1). Floor 1.
+//! Blend modes: how a layer's colour meets the colour beneath it (W3C Compositing and Blending Level 1, and what
+//! painting programs share beside it). Floor 1.
 //! `modes` is the table: a mode is one row of it, one formula of `spec` and one picture of `tests/goldens`. `spec`
 //! reads like the specification; `rows` is fast.
 
@@ -7,7 +8,7 @@ mod rows;
 pub mod spec;
 
 use super::planar::PlanarTile;
-use super::tile::{TILE_AREA, Tile};
+use super::tile::{TILE_AREA, Tile, TileAt};
 pub use modes::BlendMode;
 pub use spec::{blend_pixel, sane};
 
@@ -19,6 +20,16 @@ pub struct Mix {
     pub linear: bool,
     /// Only where the backdrop is, and leaving its alpha as it is: a clipped layer.
     pub atop: bool,
+    /// The tile's corner on the canvas: what noise is fixed to.
+    pub corner: [i32; 2],
+}
+
+impl Mix {
+    /// The same on the tile of that place.
+    pub fn on(self, at: TileAt) -> Self {
+        let rect = at.rect();
+        Self { corner: [rect.x0, rect.y0], ..self }
+    }
 }
 
 /// What is painted on a tile.

@@ -1,7 +1,6 @@
 //! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later, and computed round ones.
 //! Floor 5. Only name, spacing, size, rotation and the shape of a computed tip are imported.
 
-mod descriptor;
 mod presets;
 
 use super::{ImportedBrush, TipNames};
@@ -205,19 +204,10 @@ impl AbrReader<'_> {
 fn old_header(record: &mut ByteCursor, version: u16) -> Option<(f32, Option<String>)> {
     record.u32()?;
     let spacing = f32::from(record.u16()?.clamp(1, 1000)) / 100.0;
-    let name = if version == 2 { Some(utf16(record)?) } else { None };
+    let name = if version == 2 { Some(record.unicode()?) } else { None };
     // Antialiasing, and the bounds in 16 bits: they stand again in 32.
     record.take(1 + 8)?;
     Some((spacing, name))
-}
-
-/// A count of letters, then so many of two bytes, the last a NUL.
-fn utf16(record: &mut ByteCursor) -> Option<String> {
-    let count = usize::try_from(record.u32()?).ok()?;
-    let letters = record.take(count.checked_mul(2)?)?;
-    let letters: Vec<u16> = letters.as_chunks().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
-    let text = String::from_utf16_lossy(&letters);
-    Some(text.trim_end_matches('\0').trim().chars().filter(|c| !c.is_control()).collect())
 }
 
 /// The next block and its key.
@@ -237,7 +227,8 @@ fn padded_section<'a>(block: &mut ByteCursor<'a>) -> Option<ByteCursor<'a>> {
 }
 
 fn sampled(record: &mut ByteCursor, size: Size, bits: u16, compression: u8) -> Option<Picture> {
-    let shape = ChannelLayout { width: size.width as usize, height: size.height as usize, bits, large: false };
+    let shape =
+        ChannelLayout { width: size.width as usize, height: size.height as usize, bits, is_colour: true, large: false };
     // Of Photoshop's channels a tip knows only plain rows and run lengths.
     let values = (compression < 2).then(|| decode_as(record, shape, u16::from(compression)))??;
     Picture::srgb8(size, values.into_iter().map(|v| [v, v, v, 255]).collect())

@@ -11,7 +11,7 @@
 //!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
 //!   beneath it in its scope.
 
-use crate::document::{Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind, Role};
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind, Role};
 use crate::raster::BlendMode;
 use std::sync::Arc;
 
@@ -43,7 +43,8 @@ pub struct FormatSupport {
 impl FormatSupport {
     pub const OPENRASTER: FormatSupport =
         FormatSupport { clipping: false, masks: false, says: BlendMode::is_said_by_openraster };
-    pub const PHOTOSHOP: FormatSupport = FormatSupport { clipping: true, masks: true, says: |_| true };
+    pub const PHOTOSHOP: FormatSupport =
+        FormatSupport { clipping: true, masks: true, says: BlendMode::is_said_by_photoshop };
 }
 
 pub enum ItemContent {
@@ -95,7 +96,9 @@ impl Planner<'_> {
         let Some((base, rest)) = run.split_first() else { return Vec::new() };
         let is_base = is_base(base);
         let clipped = rest.iter().any(|layer| layer.clip_below && layer.visible);
-        if is_base && self.words.clipping && base.content.group().is_none() {
+        let is_said = |layer: &Arc<Layer>| !layer.clip_below || !layer.visible || self.says_how_it_meets(layer);
+        let may_clip = self.words.clipping && base.content.group().is_none() && rest.iter().all(is_said);
+        if is_base && may_clip {
             let item = |layer: &Arc<Layer>| PlanItem { clipped: layer.clip_below, ..self.single(layer) };
             return run.iter().map(item).collect();
         }
@@ -167,8 +170,11 @@ impl Planner<'_> {
                 let is_faded = base.opacity < 1.0 || base.mask.is_some();
                 is_faded || runs(&group.layers).iter().any(|run| self.reads_beneath(run))
             }
-            _ => base.blend_linear || !(self.words.says)(base.blend),
+            _ => !self.says_how_it_meets(base),
         }
+    }
+    fn says_how_it_meets(&self, layer: &Layer) -> bool {
+        !layer.blend_linear && (self.words.says)(layer.blend) && !matches!(layer.content, Content::RadianceScaling(_))
     }
 }
 
@@ -225,7 +231,6 @@ fn hidden_parts(name: &str, items: Vec<PlanItem>) -> PlanItem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Content;
     use crate::math::{Size, srgb::Color};
     use crate::shading::RadianceScaling;
 
@@ -269,6 +274,17 @@ mod tests {
         let hidden = Layer { visible: false, ..fill("b") };
         assert_eq!(planned(vec![hidden, clipped.clone()]), "-b -c", "clipped to what is hidden");
         assert_eq!(planned(vec![clipped]), "-c", "clipped to nothing");
+    }
+    #[test]
+    fn where_a_format_says_clipping_only_what_it_cannot_blend_is_composed() {
+        let planned = |blend| {
+            let clipped = Layer { clip_below: true, blend, ..fill("c") };
+            let layers = [fill("a"), fill("b"), clipped].map(Arc::new).to_vec();
+            let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
+            text(&plan(&document, FormatSupport::PHOTOSHOP))
+        };
+        assert_eq!(planned(BlendMode::Screen), "a b c");
+        assert_eq!(planned(BlendMode::Plus), "a b[-b~[b c] b*2]", "a mode without a word");
     }
     #[test]
     fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {

@@ -2,6 +2,7 @@
 //! Floor 5.
 
 use super::cursor::ByteCursor;
+use crate::math::srgb;
 use std::io::Read;
 use zip::ZipReadOptions;
 use zip::read::read_zipfile_from_stream_with_options;
@@ -11,15 +12,17 @@ use zip::read::read_zipfile_from_stream_with_options;
 pub struct ChannelLayout {
     pub width: usize,
     pub height: usize,
-    /// 8 or 16.
+    /// 1, 8, 16 or 32.
     pub bits: u16,
+    /// Colours, not coverage: of 32 bits they are linear light.
+    pub is_colour: bool,
     /// Row lengths take four bytes instead of two.
     pub large: bool,
 }
 
 impl ChannelLayout {
     fn row_bytes(self) -> usize {
-        self.width * usize::from(self.bits / 8)
+        (self.width * usize::from(self.bits)).div_ceil(8)
     }
     fn bytes(self) -> usize {
         self.row_bytes() * self.height
@@ -53,13 +56,19 @@ pub fn decode_as(data: &mut ByteCursor, shape: ChannelLayout, compression: u16) 
     }
 }
 
-/// Several channels in one zlib stream, as a merged picture has them.
-pub fn inflate_planes(zlib: &[u8], shape: ChannelLayout, count: usize, is_predicted: bool) -> Option<Vec<Vec<u8>>> {
-    let mut values = inflate(zlib, shape.bytes().checked_mul(count)?)?;
+/// Several channels in one zlib stream, as a merged picture has them; `shape` tells each one's, all of one size.
+pub fn inflate_planes(
+    zlib: &[u8],
+    count: usize,
+    shape: impl Fn(usize) -> ChannelLayout,
+    is_predicted: bool,
+) -> Option<Vec<Vec<u8>>> {
+    let bytes = shape(0).bytes();
+    let mut values = inflate(zlib, bytes.checked_mul(count)?)?;
     if is_predicted {
-        undo_prediction(&mut values, shape);
+        undo_prediction(&mut values, shape(0));
     }
-    Some(values.chunks_exact(shape.bytes().max(1)).map(|plane| to_bytes(plane, shape)).collect())
+    Some(values.chunks_exact(bytes.max(1)).enumerate().map(|(c, plane)| to_bytes(plane, shape(c))).collect())
 }
 
 /// How long each packed row is.
@@ -84,7 +93,8 @@ pub fn unpack_rows(data: &mut ByteCursor, shape: ChannelLayout, lengths: &[usize
     Some(to_bytes(&values, shape))
 }
 
-/// One row of PackBits; `None` unless it holds exactly `wanted` bytes.
+/// One row of PackBits; `None` where it holds fewer than `wanted` bytes. What runs beyond them is cut off: some
+/// programs write such rows.
 fn unpack(mut packed: &[u8], wanted: usize, out: &mut Vec<u8>) -> Option<()> {
     let end = out.len() + wanted;
     while out.len() < end {
@@ -103,7 +113,8 @@ fn unpack(mut packed: &[u8], wanted: usize, out: &mut Vec<u8>) -> Option<()> {
             }
         }
     }
-    (out.len() == end).then_some(())
+    out.truncate(end);
+    Some(())
 }
 
 /// PackBits: runs of three and more as runs, the rest plain.
@@ -148,7 +159,8 @@ fn inflate(zlib: &[u8], wanted: usize) -> Option<Vec<u8>> {
     (values.len() == wanted).then_some(values)
 }
 
-/// Each value was stored as the difference to its left neighbour.
+/// Each value was stored as what it differs by from its left neighbour. Of floats all first bytes come first, then all
+/// second ones, and it is the bytes that differ.
 fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
     for row in values.chunks_exact_mut(shape.row_bytes().max(1)) {
         if shape.bits == 16 {
@@ -157,21 +169,35 @@ fn undo_prediction(values: &mut [u8], shape: ChannelLayout) {
                 let sum = value(i).wrapping_add(value(i - 2)).to_be_bytes();
                 row[i..i + 2].copy_from_slice(&sum);
             }
-        } else {
-            for i in 1..row.len() {
-                row[i] = row[i].wrapping_add(row[i - 1]);
-            }
+            continue;
+        }
+        for i in 1..row.len() {
+            row[i] = row[i].wrapping_add(row[i - 1]);
+        }
+        if shape.bits == 32 {
+            let planes = row.to_vec();
+            row.iter_mut().enumerate().for_each(|(i, byte)| *byte = planes[i % 4 * shape.width + i / 4]);
         }
     }
 }
 
-/// 16 bits to 8, rounded.
+/// Values of any depth as bytes, rounded. A bit is a drop of ink.
 fn to_bytes(values: &[u8], shape: ChannelLayout) -> Vec<u8> {
-    if shape.bits == 8 {
-        return values.to_vec();
+    let short = |v: &[u8; 2]| ((u32::from(u16::from_be_bytes(*v)) + 128) / 257) as u8;
+    let float = |v: &[u8; 4]| {
+        let value = f32::from_be_bytes(*v);
+        srgb::quantise(if shape.is_colour { srgb::encode(value.max(0.0).min(1.0)) } else { value })
+    };
+    match shape.bits {
+        1 => {
+            let bit = |row: &[u8], x: usize| if row[x / 8] >> (7 - x % 8) & 1 == 0 { 255 } else { 0 };
+            let rows = values.chunks_exact(shape.row_bytes().max(1));
+            rows.flat_map(|row| (0..shape.width).map(move |x| bit(row, x))).collect()
+        }
+        16 => values.as_chunks().0.iter().map(short).collect(),
+        32 => values.as_chunks().0.iter().map(float).collect(),
+        _ => values.to_vec(),
     }
-    let byte = |v: &[u8; 2]| ((u32::from(u16::from_be_bytes(*v)) + 128) / 257) as u8;
-    values.as_chunks().0.iter().map(byte).collect()
 }
 
 #[cfg(test)]
@@ -180,7 +206,7 @@ mod tests {
     use crate::math::hash;
 
     fn shape(width: usize, height: usize, bits: u16) -> ChannelLayout {
-        ChannelLayout { width, height, bits, large: false }
+        ChannelLayout { width, height, bits, is_colour: true, large: false }
     }
 
     #[test]
@@ -216,8 +242,9 @@ mod tests {
     fn damaged_rows_are_refused_before_room_is_made_for_them() {
         let mut out = Vec::new();
         assert_eq!(unpack(&[5, 1, 2], 6, &mut out), None);
-        assert_eq!(unpack(&[129, 7], 3, &mut Vec::new()), None, "a run beyond the row");
-        let huge = ChannelLayout { width: 300_000, height: 300_000, bits: 8, large: true };
+        unpack(&[129, 7], 3, &mut out).unwrap();
+        assert_eq!(out[out.len() - 3..], [7; 3], "a run beyond the row");
+        let huge = ChannelLayout { width: 300_000, height: 300_000, bits: 8, is_colour: true, large: true };
         for compression in 0..5 {
             assert_eq!(decode_as(&mut ByteCursor::new(&[0; 100]), huge, compression), None);
         }

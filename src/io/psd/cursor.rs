@@ -64,4 +64,15 @@ impl<'a> ByteCursor<'a> {
         self.take(filled)?;
         Some(text)
     }
+    /// A number of 16-bit letters, then they; without what ends them, and without what cannot be shown.
+    pub fn unicode(&mut self) -> Option<String> {
+        let count = usize::try_from(self.u32()?).ok()?;
+        let letters = self.take(count.checked_mul(2)?)?;
+        let letters: Vec<u16> = letters.as_chunks().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
+        let text = String::from_utf16_lossy(&letters);
+        Some(text.trim_end_matches('\0').trim().chars().filter(|c| !c.is_control()).collect())
+    }
+    pub fn f64(&mut self) -> Option<f64> {
+        self.array().map(f64::from_be_bytes)
+    }
 }

@@ -1,57 +1,32 @@
 //! Reads the layers of a Photoshop file as records: their fields, the blocks after them, their channels and masks.
 //! Floor 5. `parse` finds their position in the file.
 
-use super::channel::{self, ChannelLayout};
+use super::blocks::{self, block};
+use super::channel;
+use super::colours::Colours;
 use super::cursor::ByteCursor;
-use super::parse::{PsdHeader, interleaved};
-use super::{LayerRecord, RecordMask, RecordSection};
+use super::fill::Fill;
+use super::masks::{MaskData, Softness};
+use super::parse::PsdHeader;
+use super::{LayerRecord, RecordMask};
 use crate::Budget;
-use crate::math::Rect;
+use crate::math::{Rect, Size};
 use crate::{Error, Result};
 use std::path::Path;
 
 /// Coordinates beyond this are invalid.
 const FARTHEST: i32 = 1_000_000;
-/// Blocks that mean something is not imported.
-const LOSSES: [(&[[u8; 4]], &str); 5] = [
-    (&[*b"TySh", *b"tySh"], "its text became pixels"),
-    (&[*b"lfx2", *b"lrFX", *b"lmfx"], "its effects are left out"),
-    (&[*b"vmsk", *b"vsms"], "its vector mask is left out"),
-    (&[*b"SoLd", *b"SoLE", *b"PlLd"], "its smart object became pixels"),
-    (&[*b"SoCo", *b"GdFl", *b"PtFl"], "its fill is left out but for the pixels stored with it"),
-];
-const ADJUSTMENTS: [[u8; 4]; 17] = [
-    *b"levl", *b"curv", *b"brit", *b"hue2", *b"hue ", *b"blnc", *b"blwh", *b"phfl", *b"mixr", *b"clrL", *b"nvrt",
-    *b"post", *b"thrs", *b"selc", *b"grdm", *b"expA", *b"vibA",
-];
-
-/// A block of additional information. Some programs pad them to four bytes, some to two, some not at all.
-pub fn block<'a>(rest: &mut ByteCursor<'a>, large: bool) -> Option<([u8; 4], ByteCursor<'a>)> {
-    const LONG: [[u8; 4]; 13] = [
-        *b"LMsk", *b"Lr16", *b"Lr32", *b"Layr", *b"Mt16", *b"Mt32", *b"Mtrn", *b"Alph", *b"FMsk", *b"lnk2", *b"FEid",
-        *b"FXid", *b"PxSD",
-    ];
-    let is_signature = |key: [u8; 4]| key == *b"8BIM" || key == *b"8B64";
-    for _ in 0..4 {
-        let mut ahead = *rest;
-        if ahead.key().is_some_and(is_signature) {
-            break;
-        }
-        rest.take(1)?;
-    }
-    rest.key().filter(|key| is_signature(*key))?;
-    let key = rest.key()?;
-    let data = rest.section(large && LONG.contains(&key))?;
-    Some((key, data))
-}
+/// Pixels that vector masks may draw together: some seconds.
+const DRAWN_PX: u64 = 1 << 33;
+/// Modes in which a fill's opacity and a layer's differ.
+const FILLED_OTHERWISE: [[u8; 4]; 8] = [*b"idiv", *b"lbrn", *b"div ", *b"lddg", *b"vLit", *b"lLit", *b"hMix", *b"diff"];
 
 /// A record whose channels are still to be read.
 struct PendingRecord {
     record: LayerRecord,
     /// Each channel's number, and how many bytes it has.
     channels: Vec<(i16, usize)>,
-    /// Its rectangle, what is outside, whether it is in use.
-    mask: Option<(Rect, u8, bool)>,
+    masks: Option<MaskData>,
 }
 
 /// The reader of layers' records.
@@ -59,14 +34,16 @@ pub struct RecordReader<'a> {
     file: &'a Path,
     budget: &'a Budget,
     header: &'a PsdHeader,
+    colours: &'a Colours<'a>,
     used_px: u64,
+    drawn_px: u64,
     /// What could not be read.
     pub damage: Vec<String>,
 }
 
 impl<'a> RecordReader<'a> {
-    pub fn new(file: &'a Path, budget: &'a Budget, header: &'a PsdHeader) -> Self {
-        Self { file, budget, header, used_px: 0, damage: Vec::new() }
+    pub fn new(file: &'a Path, budget: &'a Budget, header: &'a PsdHeader, colours: &'a Colours<'a>) -> Self {
+        Self { file, budget, header, colours, used_px: 0, drawn_px: 0, damage: Vec::new() }
     }
     /// All of them, bottom first; unreadable ones are reported.
     pub fn records(&mut self, mut rest: ByteCursor) -> Result<Vec<LayerRecord>> {
@@ -94,8 +71,8 @@ impl<'a> RecordReader<'a> {
         let (blend, opacity, clipping, flags) = (rest.key()?, rest.u8()?, rest.u8()?, rest.u8()?);
         rest.u8()?;
         let mut extra = rest.section(false)?;
-        let mask = mask_data(extra.section(false)?);
-        extra.section(false)?;
+        let masks = MaskData::read(extra.section(false)?);
+        let ranges = extra.section(false)?;
         let name = extra.pascal(4)?;
         let mut record = LayerRecord {
             name: String::from_utf8_lossy(name).into_owned(),
@@ -107,58 +84,124 @@ impl<'a> RecordReader<'a> {
             lock_alpha: flags & 1 == 1,
             ..LayerRecord::default()
         };
-        while let Some((key, data)) = block(&mut extra, large) {
-            note_block(&mut record, key, data);
+        // Black to white of this layer and of those beneath, for all channels and each: what lets everything through.
+        if ranges.rest().chunks(4).any(|range| range != [0, 0, 255, 255]) {
+            record.leave_out("it is blended only where its “blend if” lets it be, which is left out");
         }
-        Some(PendingRecord { record, channels, mask })
+        while let Some((key, data)) = block(&mut extra, large) {
+            blocks::take(&mut record, key, data, self.colours);
+        }
+        if record.effects == Some(true) {
+            record.leave_out("its effects are left out");
+        }
+        if record.fill_opacity < 255 {
+            if FILLED_OTHERWISE.contains(&record.blend) {
+                record.leave_out("its fill's opacity is taken for the layer's");
+            }
+            let both = u32::from(record.opacity) * u32::from(record.fill_opacity);
+            record.opacity = ((both + 127) / 255) as u8;
+        }
+        Some(PendingRecord { record, channels, masks })
     }
     /// Reads a record's channels.
     fn filled(&mut self, pending: PendingRecord, rest: &mut ByteCursor) -> Result<LayerRecord> {
-        let PendingRecord { mut record, channels, mask } = pending;
-        if let Some(rect) = self.affordable(&record.name, record.rect)? {
-            record.rect = rect;
-        } else {
-            record.rect = Rect::EMPTY;
-        }
-        let area = record.rect.width() * record.rect.height();
+        let PendingRecord { mut record, channels, masks } = pending;
+        record.rect = self.affordable(&record.name, record.rect)?.unwrap_or(Rect::EMPTY);
+        let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
         let mut planes: [Option<Vec<u8>>; 4] = [None, None, None, None];
+        let mut alpha = None;
+        let mut drawn = [None, None];
         let mut is_damaged = false;
         for (id, length) in channels {
-            let mut data = ByteCursor::new(match rest.take(length) {
-                Some(data) => data,
-                None => {
-                    is_damaged = true;
-                    break;
-                }
-            });
-            let slot = match id {
-                -1 => 3,
-                -2 => {
-                    if let Some((rect, outside, true)) = mask {
-                        record.mask = self.mask(&record.name, &mut data, rect, outside)?;
-                    }
-                    continue;
-                }
-                0..=2 => id as usize,
-                _ => continue,
+            let Some(data) = rest.take(length) else {
+                is_damaged = true;
+                break;
             };
-            if area == 0 {
+            let mut data = ByteCursor::new(data);
+            if let (-3..=-2, Some(masks)) = (id, &masks) {
+                let placed = if id == -2 { Some(masks.shown) } else { masks.painted };
+                if let Some(placed) = placed {
+                    let read = self.mask(&record.name, &mut data, placed.rect)?;
+                    drawn[(-2 - id) as usize] = read.map(|(rect, values)| placed.with(rect, values));
+                }
                 continue;
             }
-            planes[slot] = channel::decode(&mut data, self.shape(record.rect));
-            is_damaged |= planes[slot].is_none();
-        }
-        if mask.is_some_and(|(_, _, enabled)| !enabled) {
-            record.lost.push("its mask, which is switched off, is left out");
+            let is_colour = (0..self.header.colours() as i16).contains(&id);
+            if size.area() == 0 || !(is_colour || id == -1) {
+                continue;
+            }
+            let plane = channel::decode(&mut data, self.header.shape(size, is_colour));
+            is_damaged |= plane.is_none();
+            *(if is_colour { &mut planes[id as usize] } else { &mut alpha }) = plane;
         }
         if is_damaged {
             self.damage.push(format!("“{}” is damaged or cut short", record.name));
         }
-        record.rgba = interleaved(&planes, area, self.header.is_grey);
+        record.rgba = self.colours.to_srgb(size, &planes, alpha.as_deref());
+        self.masked(&mut record, masks, drawn)?;
+        self.spend_for_canvas(&record)?;
         Ok(record)
     }
-    fn shape(&self, rect: Rect) -> ChannelLayout {
-        ChannelLayout { width: rect.width(), height: rect.height(), bits: self.header.bits, large: self.header.large }
+    /// The mask that a layer's masks are together. `drawn`: channels −2 and −3.
+    fn masked(
+        &mut self,
+        record: &mut LayerRecord,
+        masks: Option<MaskData>,
+        drawn: [Option<RecordMask>; 2],
+    ) -> Result<()> {
+        let size = self.header.size;
+        let [shown, painted] = drawn;
+        // A shape's pixels show its outline already.
+        let is_shape = (record.fill.is_some() || record.stroked || record.is_shape) && !record.rgba.is_empty();
+        let softness = masks.map(|masks| masks.softness);
+        let is_drawn = masks.is_some_and(|masks| masks.shown.is_drawn);
+        let has_both = painted.is_some();
+        record.mask = match (shown, painted) {
+            (_, Some(painted)) if is_shape => Some(painted),
+            (Some(_), None) if is_shape && is_drawn => None,
+            (shown, _) if has_both || is_drawn => shown,
+            (Some(shown), _) => Some(self.softened(shown, softness.map(|[soft, _]| soft))?),
+            (None, _) => None,
+        };
+        let Some(outline) = record.outline.take().filter(|_| !is_shape && !has_both && !is_drawn) else {
+            return Ok(());
+        };
+        if outline.disabled {
+            record.tell("its vector mask, which is switched off, is left out");
+            return Ok(());
+        }
+        self.spend(size.area() as u64 / 4)?;
+        self.drawn_px += size.area() as u64 * outline.shapes() as u64;
+        if self.drawn_px > DRAWN_PX {
+            record.leave_out("its vector mask is left out: it would take too long to draw");
+            return Ok(());
+        }
+        let drawn = RecordMask::of_canvas(size, outline.coverage(size));
+        let drawn = self.softened(drawn, softness.map(|[_, soft]| soft))?;
+        record.mask = Some(match record.mask.take().filter(|mask| !mask.disabled) {
+            Some(mask) => mask.times(size, &drawn),
+            None => drawn,
+        });
+        Ok(())
+    }
+    fn softened(&mut self, mask: RecordMask, softness: Option<Softness>) -> Result<RecordMask> {
+        let Some(softness) = softness else { return Ok(mask) };
+        if softness.feather_px > 0.0 {
+            // The blur works in floats, on two planes of the canvas.
+            self.spend(self.header.size.area() as u64 * 2)?;
+        }
+        Ok(mask.softened(self.header.size, softness))
+    }
+    /// What will be drawn on the whole canvas, however small it is in the file.
+    fn spend_for_canvas(&mut self, record: &LayerRecord) -> Result<()> {
+        let area = self.header.size.area() as u64;
+        if record.rgba.is_empty() && matches!(record.fill, Some(Fill::Gradient(_) | Fill::Pattern(_))) {
+            self.spend(area)?;
+        }
+        if record.ground.is_some() || (record.fill.is_some() && !record.rgba.is_empty()) {
+            self.spend(area / 4)?;
+        }
+        Ok(())
     }
     /// The rectangle if it is valid and within the budget; `None` if it is empty.
     fn affordable(&mut self, name: &str, rect: Rect) -> Result<Option<Rect>> {
@@ -173,7 +216,8 @@ impl<'a> RecordReader<'a> {
         self.spend(size.area() as u64)?;
         Ok(Some(rect))
     }
-    fn spend(&mut self, px: u64) -> Result<()> {
+    /// Counts pixels that will be held.
+    pub fn spend(&mut self, px: u64) -> Result<()> {
         self.used_px += px;
         if self.used_px > self.budget.document_px {
             let reason = format!("its layers hold more than {} pixels together", self.budget.document_px);
@@ -181,63 +225,16 @@ impl<'a> RecordReader<'a> {
         }
         Ok(())
     }
-    fn mask(&mut self, name: &str, data: &mut ByteCursor, rect: Rect, outside: u8) -> Result<Option<RecordMask>> {
-        // In memory it covers the canvas, a byte per pixel, however small it is in the file.
+    /// A mask's rectangle and its values; `None` where they are damaged.
+    fn mask(&mut self, name: &str, data: &mut ByteCursor, rect: Rect) -> Result<Option<(Rect, Vec<u8>)>> {
+        // Here it will cover the canvas, a byte a pixel, however small it is in the file.
         self.spend(self.header.size.area() as u64 / 4)?;
-        let Some(rect) = self.affordable(name, rect)? else {
-            return Ok(Some(RecordMask { rect: Rect::EMPTY, outside, values: Vec::new() }));
-        };
-        let values = channel::decode(data, self.shape(rect));
+        let Some(rect) = self.affordable(name, rect)? else { return Ok(Some((Rect::EMPTY, Vec::new()))) };
+        let size = Size::new(rect.width() as u32, rect.height() as u32);
+        let values = channel::decode(data, self.header.shape(size, false));
         if values.is_none() {
             self.damage.push(format!("the mask of “{name}” is damaged"));
         }
-        Ok(values.map(|values| RecordMask { rect, outside, values }))
-    }
-}
-
-/// Rectangle, what is outside, whether it is in use.
-fn mask_data(mut data: ByteCursor) -> Option<(Rect, u8, bool)> {
-    let (rect, outside, flags) = (data.rect()?, data.u8()?, data.u8()?);
-    Some((rect, outside, flags & 2 == 0))
-}
-
-fn note_block(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
-    match &key {
-        b"luni" => {
-            let count = data.u32().unwrap_or(0) as usize;
-            let units: Vec<u16> = std::iter::from_fn(|| data.u16()).take(count).collect();
-            let name = String::from_utf16_lossy(&units);
-            name.trim_end_matches('\0').clone_into(&mut record.name);
-        }
-        b"lsct" | b"lsdk" => {
-            record.section = match data.u32() {
-                Some(1 | 2) => RecordSection::Group,
-                Some(3) => RecordSection::End,
-                _ => RecordSection::Layer,
-            };
-            if data.key() == Some(*b"8BIM")
-                && let Some(blend) = data.key()
-            {
-                record.blend = blend;
-            }
-        }
-        b"lspf" => {
-            let locks = data.u32().unwrap_or(0);
-            record.lock_all = locks & 0x8000_0002 != 0;
-            record.lock_alpha |= locks & 1 != 0;
-        }
-        b"iOpa" => {
-            let fill = u32::from(data.u8().unwrap_or(255));
-            record.opacity = ((u32::from(record.opacity) * fill + 127) / 255) as u8;
-        }
-        key if ADJUSTMENTS.contains(key) => record.lost.push("its adjustment is left out"),
-        key => {
-            let losses = LOSSES.iter().filter(|(keys, _)| keys.contains(key)).map(|(_, what)| *what);
-            for what in losses {
-                if !record.lost.contains(&what) {
-                    record.lost.push(what);
-                }
-            }
-        }
+        Ok(values.map(|values| (rect, values)))
     }
 }

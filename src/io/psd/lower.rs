@@ -72,7 +72,7 @@ impl RecordBuilder {
                 ..LayerRecord::default()
             });
             self.items(file, items)?;
-            let blend = if *isolated { item.blend.photoshop() } else { PASS_THROUGH };
+            let blend = if *isolated { key(item.blend) } else { PASS_THROUGH };
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
             self.records.push(LayerRecord { blend, mask, section: RecordSection::Group, ..record(item) });
             return Ok(());
@@ -94,9 +94,6 @@ impl RecordBuilder {
             }
             _ => self.notes.push(format!("“{}” is composed of several layers for other programs", item.name)),
         }
-        if item.blend == BlendMode::Plus {
-            self.notes.push(format!("“{}”: “plus” is Linear Dodge for other programs", item.name));
-        }
         self.records.push(LayerRecord { rect, rgba, mask, ..record(item) });
         Ok(())
     }
@@ -107,15 +104,25 @@ impl RecordBuilder {
             return None;
         }
         let way = |v: &u8| if mask.invert { 255 - v } else { *v };
-        Some(RecordMask { rect: self.size.rect(), outside: 0, values: coverage.values().iter().map(way).collect() })
+        Some(RecordMask {
+            rect: self.size.rect(),
+            outside: 0,
+            values: coverage.values().iter().map(way).collect(),
+            disabled: false,
+        })
     }
+}
+
+/// The key of a mode; hidden parts may have one that the format has not.
+fn key(blend: BlendMode) -> [u8; 4] {
+    if blend == BlendMode::Plus { BlendMode::LinearDodge.photoshop() } else { blend.photoshop() }
 }
 
 /// What an item says of itself.
 fn record(item: &PlanItem) -> LayerRecord {
     LayerRecord {
         name: item.name.clone(),
-        blend: item.blend.photoshop(),
+        blend: key(item.blend),
         opacity: (item.opacity * 255.0).round() as u8,
         clipped: item.clipped,
         visible: item.visible,

@@ -1,23 +1,38 @@
-//! Photoshop documents, in and out: the exchange format of illustrators (docs/PROJECTS.md lists what is kept).
-//! Floor 5. 8- and 16-bit RGB and grey in, PSD and PSB; 8-bit RGB out.
+//! Photoshop documents, in and out: the format that illustrators exchange (docs/PROJECTS.md says what is carried).
+//! Floor 5. Every kind of colours in, PSD and PSB; 8-bit RGB out.
 //!
 //! | file | |
 //! |---|---|
-//! | `cursor` | numbers and sections read from bytes, never beyond their end |
+//! | `cursor`, `descriptor` | numbers, sections and named values read from bytes, never beyond their end |
 //! | `channel` | planes of bytes, plain, PackBits or ZIP |
-//! | `parse`, `layers` | a file into its parts and its records |
+//! | `colours` | what planes mean, as sRGB |
+//! | `parse`, `layers`, `blocks` | a file into its parts, its records and what stands behind them |
+//! | `masks`, `outline` | masks that are pictures, and those that are paths |
+//! | `fill`, `pattern`, `filled` | what fill layers are filled with, beside the pixels that show it |
+//! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
+//! | `judge` | whether that looks like the file's own picture, and what is done where it does not |
 //! | `lower` | a document into records |
 //! | `emit` | records into a file |
 //!
 //! Our files hold a private resource with the document itself, so that live layers come back live.
 
+mod blocks;
 pub(super) mod channel;
+mod colours;
 pub(super) mod cursor;
+pub(super) mod descriptor;
 mod emit;
+mod fill;
+mod filled;
+mod judge;
 mod layers;
 mod lower;
+mod masks;
+mod merged;
+mod outline;
 mod parse;
+mod pattern;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -26,6 +41,9 @@ pub use lower::write;
 pub use tree::read;
 
 use crate::math::Rect;
+use blocks::Ground;
+use fill::Fill;
+use outline::Outline;
 
 /// The signature of a file.
 pub const MAGIC: [u8; 4] = *b"8BPS";
@@ -46,16 +64,45 @@ pub struct LayerRecord {
     pub rect: Rect,
     pub blend: [u8; 4],
     pub opacity: u8,
+    /// Of its pixels alone, not of its effects.
+    pub fill_opacity: u8,
     pub clipped: bool,
     pub visible: bool,
     pub lock_alpha: bool,
     pub lock_all: bool,
     pub section: RecordSection,
     pub mask: Option<RecordMask>,
+    pub outline: Option<Outline>,
+    pub fill: Option<Fill>,
+    /// It is an artboard.
+    pub ground: Option<Ground>,
+    /// Whether any of its effects is switched on, where it has some.
+    pub effects: Option<bool>,
+    /// It is a shape, whose pixels show its vector mask.
+    pub is_shape: bool,
+    /// A line is drawn around its shape.
+    pub stroked: bool,
+    /// Its shape is not filled.
+    pub unfilled: bool,
     /// Straight RGBA of `rect`, row by row.
     pub rgba: Vec<u8>,
-    /// Features of the layer that are not imported.
+    /// What is left out of it, and so may be missed in the picture.
     pub lost: Vec<&'static str>,
+    /// What became of it, and is seen as it was.
+    pub told: Vec<&'static str>,
+}
+
+impl LayerRecord {
+    pub fn leave_out(&mut self, what: &'static str) {
+        if !self.lost.contains(&what) {
+            self.lost.push(what);
+        }
+    }
+    pub fn tell(&mut self, what: &'static str) {
+        if !self.told.contains(&what) {
+            self.told.push(what);
+        }
+    }
 }
 
 /// A visible layer without a name, without pixels.
@@ -66,14 +113,23 @@ impl Default for LayerRecord {
             rect: Rect::EMPTY,
             blend: *b"norm",
             opacity: 255,
+            fill_opacity: 255,
             clipped: false,
             visible: true,
             lock_alpha: false,
             lock_all: false,
             section: RecordSection::Layer,
             mask: None,
+            outline: None,
+            fill: None,
+            ground: None,
+            effects: None,
+            is_shape: false,
+            stroked: false,
+            unfilled: false,
             rgba: Vec::new(),
             lost: Vec::new(),
+            told: Vec::new(),
         }
     }
 }
@@ -93,6 +149,8 @@ pub struct RecordMask {
     pub rect: Rect,
     pub outside: u8,
     pub values: Vec<u8>,
+    /// Put aside.
+    pub disabled: bool,
 }
 
 /// A checksum of the layers without their pixels: it shows whether another program changed them.

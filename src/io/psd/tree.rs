@@ -1,16 +1,20 @@
 //! Builds a document from a Photoshop file's records: ours as it was written, others as far as both programs agree.
 //! Floor 5. Parsing is in `parse`.
 
+use super::blocks::Ground;
+use super::colours::Mode;
+use super::judge::judged;
 use super::parse::{ParsedPsd, parse};
-use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, signature};
-use crate::document::{Content, Document, Group, Layer, LayerLock, LayerMask, MaskKind, PixelLayer};
+use super::pattern::Pattern;
+use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, signature};
+use crate::Budget;
+use crate::document::{Content, Document, Group, Layer, LayerLock, LayerMask, MaskKind};
 use crate::math::Size;
 use crate::project::archive::Archive;
 use crate::project::manifest::Manifest;
 use crate::project::packer::ZipPacker;
 use crate::project::{self, ProjectContents, pixels};
-use crate::raster::{BlendMode, Plane, TileGrid};
-use crate::{Budget, picture};
+use crate::raster::BlendMode;
 use crate::{Error, Result};
 use std::path::Path;
 use std::sync::Arc;
@@ -30,18 +34,46 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
             Err(error) => notes.push(format!("live layers became pixels: {error}")),
         }
     }
-    if parsed.is_deep {
-        notes.push("its 16 bits a channel became 8".into());
+    notes.extend(colour_notes(&parsed));
+    let size = parsed.header.size;
+    if parsed.records.is_empty() {
+        flattened(&mut parsed);
     }
-    let records = layers_of(&mut parsed);
-    let mut builder = TreeBuilder { size: parsed.size, deepest: budget.group_depth, open: vec![Vec::new()], notes };
-    records.into_iter().for_each(|record| builder.add(record));
-    let (layers, notes) = builder.done();
-    let document = Document { layers, ..Document::empty(parsed.size) };
+    // One level is kept for the group that the layers may be hidden in.
+    let deepest = budget.group_depth.saturating_sub(1);
+    let mut builder =
+        TreeBuilder { size, deepest, patterns: &parsed.patterns, open: vec![Vec::new()], is_less: false, notes };
+    std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
+    let (layers, is_less, mut notes) = builder.done();
+    let document = Document { layers, ..Document::empty(size) };
+    let document = judged(document, parsed.merged.take(), is_less || !damage.is_empty(), &mut notes);
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty() })
 }
 
-/// The document that our own resource holds, the layers' pixels taken from the file; `None` if the layers were changed.
+/// What became of the file's colours.
+fn colour_notes(parsed: &ParsedPsd) -> Option<String> {
+    let header = &parsed.header;
+    let what = match header.mode {
+        Mode::Cmyk => "its CMYK colours became sRGB; layers blend in those",
+        Mode::Lab => "its Lab colours became sRGB; layers blend in those",
+        Mode::Multichannel => "its inks were taken for cyan, magenta, yellow and black; others are left out",
+        Mode::Duotone => "its inks are left out: it became grey",
+        _ if header.bits == 32 => "its 32 bits a channel became 8, and what is brighter than white is lost",
+        _ if header.bits == 16 => "its 16 bits a channel became 8",
+        _ => return None,
+    };
+    Some(what.into())
+}
+
+/// Of a file without layers its picture becomes one.
+fn flattened(parsed: &mut ParsedPsd) {
+    let rect = parsed.header.size.rect();
+    let rgba = parsed.merged.take().map(|merged| merged.rgba).unwrap_or_default();
+    parsed.records.push(LayerRecord { name: "Background".into(), rect, rgba, ..LayerRecord::default() });
+}
+
+/// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are
+/// others.
 fn restored(file: &Path, ours: &[u8], records: &[LayerRecord], budget: &Budget) -> Result<Option<ProjectContents>> {
     let archive = Archive::open(file, ours, budget)?;
     let damaged = |e: zip::result::ZipError| Error::decode(file, format!("our part of the file is damaged ({e})"));
@@ -73,71 +105,79 @@ fn png(file: &Path, record: &LayerRecord) -> Result<crate::raster::Asset> {
     pixels::encode_texels(file, record.rgba.as_chunks().0, size)
 }
 
-/// The records, in the colours of this program; of a file without layers its picture.
-fn layers_of(parsed: &mut ParsedPsd) -> Vec<LayerRecord> {
-    let mut records = std::mem::take(&mut parsed.records);
-    if let (true, Some(rgba)) = (records.is_empty(), parsed.merged.take()) {
-        let background =
-            LayerRecord { name: "Background".into(), rect: parsed.size.rect(), rgba, ..LayerRecord::default() };
-        records.push(background);
-    }
-    if let Some(icc) = parsed.icc.filter(|icc| !picture::is_own_srgb(icc)) {
-        for record in records.iter_mut().filter(|record| !record.rgba.is_empty()) {
-            let size = Size::new(record.rect.width() as u32, record.rect.height() as u32);
-            record.rgba = picture::to_srgb(size, std::mem::take(&mut record.rgba), parsed.is_grey, icc);
-        }
-    }
-    records
-}
-
-/// Collects layers bottom first, with a list for each open group.
-struct TreeBuilder {
+/// Layers gathered bottom first, each open group a list of its own.
+struct TreeBuilder<'a> {
     size: Size,
     /// The greatest depth of groups.
     deepest: usize,
+    patterns: &'a [Pattern],
     open: Vec<Vec<Arc<Layer>>>,
+    /// Something was left out.
+    is_less: bool,
     notes: Vec<String>,
 }
 
-impl TreeBuilder {
-    fn add(&mut self, record: LayerRecord) {
-        for what in &record.lost {
-            self.notes.push(format!("“{}”: {what}", record.name));
-        }
+impl TreeBuilder<'_> {
+    fn add(&mut self, mut record: LayerRecord) {
         let layer = match record.section {
             RecordSection::End => return self.open.push(Vec::new()),
             RecordSection::Group => {
-                // A group without a beginning is empty.
-                let layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
+                // Without a beginning, a group holds nothing.
+                let mut layers = if self.open.len() > 1 { self.open.pop().unwrap_or_default() } else { Vec::new() };
                 if self.open.len() > self.deepest {
                     self.notes
                         .push(format!("“{}” is nested too deep: its layers stand in the group around it", record.name));
                     return self.open.last_mut().map_or((), |list| list.extend(layers));
                 }
+                if let Some(ground) = record.ground {
+                    self.lay_ground(&mut record, ground, &mut layers);
+                }
                 let group = Group { layers, pass_through: record.blend == PASS_THROUGH };
                 self.layer(record, Content::Group(group))
             }
             RecordSection::Layer => {
-                let (w, h) = (record.rect.width(), record.rect.height());
-                let (x, y) = (record.rect.x0, record.rect.y0);
-                let tiles = match record.rect.is_empty() {
-                    true => TileGrid::default(),
-                    false => TileGrid::from_straight_rgba(&record.rgba, w, h, x, y),
-                };
-                self.layer(record, Content::Pixels(PixelLayer { file: String::new(), x, y, tiles }))
+                let content = filled::content(&mut record, self.size, self.patterns);
+                self.layer(record, content)
             }
         };
         if let Some(list) = self.open.last_mut() {
             list.push(Arc::new(layer));
         }
     }
-    fn layer(&mut self, record: LayerRecord, content: Content) -> Layer {
+    /// An artboard's ground lies beneath its layers, and what lies beyond it is cut off.
+    fn lay_ground(&self, record: &mut LayerRecord, ground: Ground, layers: &mut Vec<Arc<Layer>>) {
+        let rect = ground.rect.intersect(self.size.rect());
+        let values = vec![255; rect.width() * rect.height()];
+        let board = RecordMask { rect, outside: 0, values, disabled: false };
+        if let Some(colour) = ground.colour {
+            let fill = Layer {
+                mask: Some(self.mask(&board)),
+                clip_to_surface: false,
+                ..Layer::new("Artboard", Content::Fill(colour))
+            };
+            layers.insert(0, Arc::new(fill));
+        }
+        record.mask = Some(match record.mask.take().filter(|mask| !mask.disabled) {
+            Some(mask) => mask.times(self.size, &board),
+            None => board,
+        });
+    }
+    fn layer(&mut self, mut record: LayerRecord, content: Content) -> Layer {
         let known = BlendMode::from_photoshop(record.blend);
         if known.is_none() && record.blend != PASS_THROUGH {
             let key = String::from_utf8_lossy(&record.blend).into_owned();
+            let key: String = key.chars().filter(|c| !c.is_control()).collect();
             let reason =
                 format!("“{}” is blended by “{}” elsewhere; here it is blended normally", record.name, key.trim());
             self.notes.push(reason);
+            self.is_less = true;
+        }
+        if known == Some(BlendMode::Dissolve) && record.visible {
+            record.tell("it dissolves in another pattern than elsewhere");
+        }
+        self.is_less |= !record.lost.is_empty();
+        for what in record.lost.iter().chain(&record.told) {
+            self.notes.push(format!("“{}”: {what}", record.name));
         }
         Layer {
             visible: record.visible,
@@ -155,25 +195,17 @@ impl TreeBuilder {
         }
     }
     fn mask(&self, mask: &RecordMask) -> LayerMask {
-        let rect = mask.rect;
-        let value = |x: i32, y: i32| {
-            let at = (y - rect.y0) as usize * rect.width() + (x - rect.x0) as usize;
-            mask.values.get(at).copied().unwrap_or(mask.outside)
-        };
-        let coverage = Plane::from_fn(self.size, |x, y| {
-            let (x, y) = (x as i32, y as i32);
-            if rect.contains(x, y) { value(x, y) } else { mask.outside }
-        });
-        LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(coverage) })
+        let kind = MaskKind::File { file: String::new(), coverage: Arc::new(mask.plane(self.size)) };
+        LayerMask { disabled: mask.disabled, ..LayerMask::new(kind) }
     }
     /// Groups that were never closed end with the file.
-    fn done(mut self) -> (Vec<Arc<Layer>>, Vec<String>) {
+    fn done(mut self) -> (Vec<Arc<Layer>>, bool, Vec<String>) {
         while self.open.len() > 1 {
             let layers = self.open.pop().unwrap_or_default();
             if let Some(list) = self.open.last_mut() {
                 list.extend(layers);
             }
         }
-        (self.open.pop().unwrap_or_default(), self.notes)
+        (self.open.pop().unwrap_or_default(), self.is_less, self.notes)
     }
 }

@@ -80,7 +80,7 @@ impl RandomNumbers {
         layer.clip_below = self.chance(0.3);
         layer.clip_to_surface = self.chance(0.3);
         if self.chance(0.5) {
-            layer.blend = BlendMode::ALL[self.below(17)].0;
+            layer.blend = BlendMode::ALL[self.below(BlendMode::ALL.len())].0;
         }
         layer
     }

@@ -195,7 +195,7 @@ impl ActiveStrokes {
             for ((stroke, fresh), cached) in strokes.iter().zip(&fresh).zip(cached) {
                 if let Some(mut shown) = stroke.shown(fresh, *at, cached, scratch) {
                     shown.limit_to(&stroke.part(scene), *at);
-                    shown.blend_over(&mut pixels, StrokeBlend::of(&stroke.brush, stroke.color));
+                    shown.blend_over(&mut pixels, *at, StrokeBlend::of(&stroke.brush, stroke.color));
                 }
             }
             (*at, pixels.quantised().map(Arc::new))

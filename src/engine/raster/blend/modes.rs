@@ -7,26 +7,38 @@ use super::spec::{self, BlendFunction};
 macro_rules! blend_modes {
     ($with:ident) => {
         $with! {
-            // mode     documents      window          OpenRaster         Photoshop  B(cb, cs)
+            // mode       documents        window            OpenRaster             Photoshop B(cb, cs)
             #[default]
-            Normal,     "normal",      "Normal",       "svg:src-over",    b"norm",   separable(normal);
-            Multiply,   "multiply",    "Multiply",     "svg:multiply",    b"mul ",   separable(multiply);
-            Screen,     "screen",      "Screen",       "svg:screen",      b"scrn",   separable(screen);
-            Overlay,    "overlay",     "Overlay",      "svg:overlay",     b"over",   separable(overlay);
-            Darken,     "darken",      "Darken",       "svg:darken",      b"dark",   separable(darken);
-            Lighten,    "lighten",     "Lighten",      "svg:lighten",     b"lite",   separable(lighten);
-            ColorDodge, "color-dodge", "Colour dodge", "svg:color-dodge", b"div ",   separable(color_dodge);
-            ColorBurn,  "color-burn",  "Colour burn",  "svg:color-burn",  b"idiv",   separable(color_burn);
-            HardLight,  "hard-light",  "Hard light",   "svg:hard-light",  b"hLit",   separable(hard_light);
-            SoftLight,  "soft-light",  "Soft light",   "svg:soft-light",  b"sLit",   separable(soft_light);
-            Difference, "difference",  "Difference",   "svg:difference",  b"diff",   separable(difference);
-            Exclusion,  "exclusion",   "Exclusion",    "krita:exclusion", b"smud",   separable(exclusion);
-            Hue,        "hue",         "Hue",          "svg:hue",         b"hue ",   non_separable(hue);
-            Saturation, "saturation",  "Saturation",   "svg:saturation",  b"sat ",   non_separable(saturation);
-            Color,      "color",       "Colour",       "svg:color",       b"colr",   non_separable(color);
-            Luminosity, "luminosity",  "Luminosity",   "svg:luminosity",  b"lum ",   non_separable(luminosity);
+            Normal,       "normal",        "Normal",         "svg:src-over",        b"norm", separable(normal);
+            Multiply,     "multiply",      "Multiply",       "svg:multiply",        b"mul ", separable(multiply);
+            Screen,       "screen",        "Screen",         "svg:screen",          b"scrn", separable(screen);
+            Overlay,      "overlay",       "Overlay",        "svg:overlay",         b"over", separable(overlay);
+            Darken,       "darken",        "Darken",         "svg:darken",          b"dark", separable(darken);
+            Lighten,      "lighten",       "Lighten",        "svg:lighten",         b"lite", separable(lighten);
+            ColorDodge,   "color-dodge",   "Colour dodge",   "svg:color-dodge",     b"div ", separable(color_dodge);
+            ColorBurn,    "color-burn",    "Colour burn",    "svg:color-burn",      b"idiv", separable(color_burn);
+            HardLight,    "hard-light",    "Hard light",     "svg:hard-light",      b"hLit", separable(hard_light);
+            SoftLight,    "soft-light",    "Soft light",     "svg:soft-light",      b"sLit", separable(soft_light);
+            Difference,   "difference",    "Difference",     "svg:difference",      b"diff", separable(difference);
+            Exclusion,    "exclusion",     "Exclusion",      "krita:exclusion",     b"smud", separable(exclusion);
+            Hue,          "hue",           "Hue",            "svg:hue",             b"hue ", non_separable(hue);
+            Saturation,   "saturation",    "Saturation",     "svg:saturation",      b"sat ", non_separable(saturation);
+            Color,        "color",         "Colour",         "svg:color",           b"colr", non_separable(color);
+            Luminosity,   "luminosity",    "Luminosity",     "svg:luminosity",      b"lum ", non_separable(luminosity);
             /// Sums the premultiplied values, clamped at 1.
-            Plus,       "plus",        "Plus",         "svg:plus",        b"lddg",   sum(plus);
+            Plus,         "plus",          "Plus",           "svg:plus",            b"plus", sum(plus);
+            LinearDodge,  "linear-dodge",  "Linear dodge",   "krita:linear_dodge",  b"lddg", separable(linear_dodge);
+            LinearBurn,   "linear-burn",   "Linear burn",    "krita:linear_burn",   b"lbrn", separable(linear_burn);
+            LinearLight,  "linear-light",  "Linear light",   "krita:linear light",  b"lLit", separable(linear_light);
+            VividLight,   "vivid-light",   "Vivid light",    "krita:vivid_light",   b"vLit", separable(vivid_light);
+            PinLight,     "pin-light",     "Pin light",      "krita:pin_light",     b"pLit", separable(pin_light);
+            HardMix,      "hard-mix",      "Hard mix",       "krita:hard mix",      b"hMix", separable(hard_mix);
+            DarkerColor,  "darker-color",  "Darker colour",  "krita:darker color",  b"dkCl", non_separable(darker);
+            LighterColor, "lighter-color", "Lighter colour", "krita:lighter color", b"lgCl", non_separable(lighter);
+            Subtract,     "subtract",      "Subtract",       "krita:subtract",      b"fsub", separable(subtract);
+            Divide,       "divide",        "Divide",         "krita:divide",        b"fdiv", separable(divide);
+            /// Each pixel wholly or not at all, by noise fixed to the canvas: as many as its alpha says.
+            Dissolve,     "dissolve",      "Dissolve",       "krita:dissolve",      b"diss", separable(normal);
         }
     };
 }
@@ -58,8 +70,8 @@ macro_rules! declare {
         $(#[$meta:meta])*
         $mode:ident, $name:literal, $label:literal, $ora:literal, $psd:literal, $kind:ident($b:ident);
     )+) => {
-        /// How a layer's colour meets the colour beneath: W3C's `B(cb, cs)` mixed source-over, but for
-        /// [`BlendMode::Plus`].
+        /// How a layer's colour meets the colour beneath: a function `B(cb, cs)` mixed source-over as W3C mixes its
+        /// own, but for [`BlendMode::Plus`]; what [`BlendMode::Dissolve`] leaves of a layer is mixed so.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
         pub enum BlendMode {
             $($(#[$meta])* $mode,)+
@@ -102,7 +114,7 @@ impl BlendMode {
     pub fn openraster(self) -> &'static str {
         self.row().openraster
     }
-    /// Photoshop's key.
+    /// Photoshop's key; of a mode that it has not, one that stands in no file.
     pub fn photoshop(self) -> [u8; 4] {
         self.row().photoshop
     }
@@ -123,6 +135,10 @@ impl BlendMode {
     /// alone, whatever the alpha.
     pub fn is_said_by_openraster(self) -> bool {
         self.openraster().starts_with("svg:") && self != BlendMode::Plus
+    }
+    /// Photoshop says it, and dissolves the same pixels.
+    pub fn is_said_by_photoshop(self) -> bool {
+        !matches!(self, BlendMode::Plus | BlendMode::Dissolve)
     }
     fn find(is: impl Fn(&Row) -> bool) -> Option<Self> {
         Self::ALL.into_iter().map(|(mode, _)| mode).find(|mode| is(&mode.row()))

@@ -2,8 +2,8 @@
 //! Floor 1. Tested against `spec` for every mode.
 //!
 //! With S, D the premultiplied source and backdrop, the result is `S (1 − αb) + T + D (1 − αs)`, T = αs αb B(D/αb,
-//! S/αs). For most modes T needs no division. *Atop* leaves out the first term and keeps the backdrop's alpha: a
-//! clipped layer.
+//! S/αs). For most modes T needs no division. Which pixels dissolving paint leaves is decided before it is mixed.
+//! *Atop* leaves out the first term and keeps the backdrop's alpha: a clipped layer.
 
 use super::modes::blend_modes;
 use super::{BlendMode, Mix, TileCoverage, TilePaint, spec};
@@ -25,6 +25,9 @@ crate::widest! {
         for (y, row) in rows.iter_mut().enumerate() {
             let mut source = PixelRow::TRANSPARENT;
             load(&mut source, paint, y, coverage);
+            if mix.mode == BlendMode::Dissolve {
+                dissolve(&mut source, [mix.corner[0], mix.corner[1] + y as i32]);
+            }
             if mix.linear {
                 in_linear_light(row, &mut source, mix);
             } else {
@@ -137,7 +140,24 @@ fn blend_row(d: &mut PixelRow, s: &PixelRow, mix: Mix) {
         BlendMode::Saturation => non_separable(d, s, mix, saturation),
         BlendMode::Color => non_separable(d, s, mix, color),
         BlendMode::Luminosity => non_separable(d, s, mix, luminosity),
+        BlendMode::LinearDodge => separable(d, s, mix, |s, d, as_, ab| least(s * ab + d * as_, as_ * ab)),
+        BlendMode::LinearBurn => separable(d, s, mix, |s, d, as_, ab| greatest(s * ab + d * as_ - as_ * ab, 0.0)),
+        BlendMode::LinearLight => separable(d, s, mix, linear_light),
+        BlendMode::VividLight => separable(d, s, mix, vivid_light),
+        BlendMode::PinLight => separable(d, s, mix, pin_light),
+        BlendMode::Subtract => separable(d, s, mix, |s, d, as_, ab| greatest(d * as_ - s * ab, 0.0)),
+        BlendMode::Dissolve => separable(d, s, mix, |s, _, _, ab| s * ab),
         _ => by_formula(d, s, mix),
+    }
+}
+
+/// Leaves each pixel of the source wholly, or nothing of it; `[x, y]` is the row's place on the canvas.
+#[inline(always)]
+fn dissolve(source: &mut PixelRow, [x, y]: [i32; 2]) {
+    for i in 0..TILE {
+        let kept = spec::dissolved(source.pixel(i), [x + i as i32, y]);
+        let [r, g, b] = &mut source.rgb;
+        [r[i], g[i], b[i], source.a[i]] = kept;
     }
 }
 
@@ -258,6 +278,25 @@ fn color_burn(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
     let full = as_ * ab;
     let burnt = if s > 0.0 { full - least(full, as_ * as_ * (ab - d) / s) } else { 0.0 };
     if d < ab { burnt } else { full }
+}
+#[inline(always)]
+fn linear_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
+    let full = as_ * ab;
+    least(greatest(d * as_ + 2.0 * s * ab - full, 0.0), full)
+}
+#[inline(always)]
+fn vivid_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
+    let tilt = 2.0 * s - as_;
+    let burnt = color_burn(2.0 * s, d, as_, ab);
+    let dodged = color_dodge(tilt, d, as_, ab);
+    if tilt <= 0.0 { burnt } else { dodged }
+}
+#[inline(always)]
+fn pin_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {
+    let tilt = 2.0 * s - as_;
+    let dark = least(d * as_, 2.0 * s * ab);
+    let light = greatest(d * as_, tilt * ab);
+    if tilt <= 0.0 { dark } else { light }
 }
 #[inline(always)]
 fn soft_light(s: f32, d: f32, as_: f32, ab: f32) -> f32 {

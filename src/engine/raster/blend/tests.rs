@@ -2,7 +2,7 @@
 
 use super::spec::BlendFunction;
 use super::*;
-use crate::raster::tile::TileF32;
+use crate::raster::tile::{TILE, TileF32};
 
 /// Straight component values worth trying: ends, edges of the piecewise formulas, and between.
 const VALUES: [f32; 9] = [0.0, 0.1, 0.25, 0.3, 0.5, 0.6, 0.75, 0.9, 1.0];
@@ -53,6 +53,25 @@ fn separable_modes_give_the_values_computed_by_hand() {
         (BlendMode::SoftLight, 0.64, 0.75, 0.72),
         (BlendMode::Difference, 0.4, 0.7, 0.3),
         (BlendMode::Exclusion, 0.4, 0.5, 0.5),
+        (BlendMode::LinearDodge, 0.4, 0.5, 0.9),
+        (BlendMode::LinearDodge, 0.8, 0.5, 1.0),
+        (BlendMode::LinearBurn, 0.8, 0.5, 0.3),
+        (BlendMode::LinearBurn, 0.4, 0.5, 0.0),
+        (BlendMode::LinearLight, 0.5, 0.6, 0.7),
+        (BlendMode::LinearLight, 0.5, 0.2, 0.0),
+        (BlendMode::LinearLight, 0.5, 0.8, 1.0),
+        (BlendMode::VividLight, 0.8, 0.25, 0.6),
+        (BlendMode::VividLight, 0.2, 0.75, 0.4),
+        (BlendMode::PinLight, 0.8, 0.25, 0.5),
+        (BlendMode::PinLight, 0.3, 0.25, 0.3),
+        (BlendMode::PinLight, 0.3, 0.75, 0.5),
+        (BlendMode::HardMix, 0.4, 0.5, 0.0),
+        (BlendMode::HardMix, 0.4, 0.6, 1.0),
+        (BlendMode::Subtract, 0.6, 0.2, 0.4),
+        (BlendMode::Subtract, 0.2, 0.6, 0.0),
+        (BlendMode::Divide, 0.2, 0.5, 0.4),
+        (BlendMode::Divide, 0.6, 0.5, 1.0),
+        (BlendMode::Divide, 0.6, 0.0, 1.0),
     ];
     for (mode, cb, cs, expected) in table {
         let got = separable(mode)(cb, cs);
@@ -76,6 +95,9 @@ fn non_separable_modes_give_the_values_computed_by_hand() {
     for (got, expected) in table {
         assert!(close(&got, &expected, 1e-6), "{got:?}, not {expected:?}");
     }
+    // The darker and the lighter of both as they are.
+    assert_eq!((spec::darker(cb, cs), spec::lighter(cb, cs)), (cs, cb));
+    assert_eq!((spec::darker(cs, cb), spec::lighter(cs, cb)), (cs, cb));
     // Too bright a colour is drawn back toward its grey, which stays.
     let clipped = spec::clip_color([1.2, 0.6, 0.4]);
     assert!((spec::lum(clipped) - spec::lum([1.2, 0.6, 0.4])).abs() < 1e-6 && (clipped[0] - 1.0).abs() < 1e-6);
@@ -97,7 +119,9 @@ fn the_fast_rows_agree_with_the_specification_in_every_mode() {
                     for (j, cs) in VALUES.into_iter().enumerate() {
                         let backdrop = [cb * ab, VALUES[(i + 4) % 9] * ab, VALUES[(i + 7) % 9] * ab, ab];
                         let source = [cs * as_, VALUES[(j + 2) % 9] * as_, VALUES[(j + 5) % 9] * as_, as_];
-                        let expected = blend_pixel(mode, backdrop, source);
+                        // `fast` looks at this place of the tile.
+                        let left = if mode == BlendMode::Dissolve { spec::dissolved(source, [23, 17]) } else { source };
+                        let expected = blend_pixel(mode, backdrop, left);
                         let got = fast(Mix { mode, ..Mix::default() }, backdrop, source);
                         assert!(close(&got, &expected, 2e-6), "{name}: {backdrop:?} {source:?}: {got:?} {expected:?}");
                     }
@@ -128,11 +152,34 @@ fn separable_modes_and_plus_agree_with_tiny_skia_within_two_steps() {
     }
 }
 #[test]
+fn dissolving_leaves_as_many_pixels_as_its_alpha_says_and_the_same_ones_wherever_tiles_begin() {
+    let mix = Mix { mode: BlendMode::Dissolve, ..Mix::default() };
+    let laid = |corner: [i32; 2]| {
+        let mut tile = PlanarTile::transparent();
+        let quarter = TileCoverage::uniform(0.5).times(|_, _| 0.5);
+        tile.blend(Mix { corner, ..mix }, TilePaint::Solid([1.0, 0.5, 0.0, 1.0]), &quarter);
+        tile
+    };
+    let (here, below) = (laid([0, 0]), laid([0, -9]));
+    let mut kept = 0;
+    for (y, row) in here.rows().iter().enumerate() {
+        for x in 0..TILE {
+            let pixel = row.pixel(x);
+            assert!(pixel == [0.0; 4] || close(&pixel, &[1.0, 0.5, 0.0, 1.0], 1e-6), "{pixel:?}");
+            kept += usize::from(pixel[3] > 0.0);
+            if let Some(same) = below.rows().get(y + 9) {
+                assert_eq!(same.pixel(x), pixel, "the same place of the canvas");
+            }
+        }
+    }
+    assert!(kept.abs_diff(TILE_AREA / 4) < TILE_AREA / 50, "{kept} of {TILE_AREA}");
+}
+#[test]
 fn every_mode_leaves_the_backdrop_alone_where_nothing_is_painted() {
     let backdrop = [0.1, 0.4, 0.3, 0.6];
     for (mode, name) in BlendMode::ALL {
         for (atop, linear) in [(false, false), (true, false), (false, true)] {
-            let got = fast(Mix { mode, atop, linear }, backdrop, [0.0; 4]);
+            let got = fast(Mix { mode, atop, linear, ..Mix::default() }, backdrop, [0.0; 4]);
             assert!(close(&got, &backdrop, 1e-6), "{name}: {got:?}");
         }
     }
@@ -140,7 +187,7 @@ fn every_mode_leaves_the_backdrop_alone_where_nothing_is_painted() {
 #[test]
 fn atop_keeps_the_alpha_of_what_it_is_painted_on() {
     for (mode, name) in BlendMode::ALL {
-        let mix = Mix { mode, atop: true, linear: false };
+        let mix = Mix { mode, atop: true, ..Mix::default() };
         let got = fast(mix, [0.2, 0.1, 0.0, 0.4], [0.3, 0.6, 0.0, 0.6]);
         assert_eq!(got[3], 0.4, "{name}");
         assert!(got[..3].iter().all(|&c| (0.0..=0.4 + 1e-6).contains(&c)), "{name}: {got:?}");
@@ -184,9 +231,10 @@ fn nothing_out_of_range_comes_out_of_any_mode() {
             let pick = |i: usize| wild[(k * (i + 2) + i * i) % wild.len()];
             let (backdrop, source) = ([0, 1, 2, 3].map(pick), [4, 5, 6, 7].map(pick));
             for linear in [false, true] {
-                for got in
-                    [blend_pixel(mode, backdrop, source), fast(Mix { mode, linear, atop: false }, backdrop, source)]
-                {
+                for got in [
+                    blend_pixel(mode, backdrop, source),
+                    fast(Mix { mode, linear, ..Mix::default() }, backdrop, source),
+                ] {
                     assert!(
                         got.iter().all(|v| (-1e-5..=1.0 + 1e-5).contains(v)),
                         "{name} {backdrop:?} {source:?} {got:?}"

@@ -1,11 +1,11 @@
 //! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings.
 //! Floor 5.
 
-use super::descriptor::{self, DescriptorObject};
 use super::{MOST, SPACING};
 use crate::brush::ImportedBrush;
 use crate::paint::{Brush, Tip};
 use crate::psd::cursor::ByteCursor;
+use crate::psd::descriptor::{self, DescriptorObject};
 
 /// Settings that are not imported.
 const LEFT_OUT: [(&str, &str); 7] = [

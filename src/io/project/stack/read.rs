@@ -201,10 +201,10 @@ fn with_layers(element: StackElement, inner: Vec<StackElement>) -> StackElement 
 
 /// The blend mode of a composite operation, in OpenRaster's words or in those of programs that add their own.
 fn blend(op: &str) -> Option<BlendMode> {
-    let plain = op.rsplit(':').next().unwrap_or(op).replace('_', "-");
+    let plain = op.rsplit(':').next().unwrap_or(op).replace(['_', ' '], "-");
     BlendMode::from_openraster(op).or_else(|| BlendMode::from_name(&plain)).or(match plain.as_str() {
         "src-over" | "" => Some(BlendMode::Normal),
-        "add" | "linear-dodge" => Some(BlendMode::Plus),
+        "add" => Some(BlendMode::LinearDodge),
         _ => None,
     })
 }
@@ -276,7 +276,8 @@ mod tests {
     }
     #[test]
     fn operations_of_other_programs_are_known_by_their_names() {
-        assert_eq!(blend("krita:linear_dodge"), Some(BlendMode::Plus));
+        assert_eq!(blend("krita:linear_dodge"), Some(BlendMode::LinearDodge));
+        assert_eq!(blend("krita:hard mix"), Some(BlendMode::HardMix));
         assert_eq!(blend("svg:src-over"), Some(BlendMode::Normal));
         assert_eq!(blend("svg:dst-in"), None);
     }

@@ -1,10 +1,9 @@
 //! Photoshop's descriptors: nested lists of named values, of which names, numbers, texts and lists are kept.
-//! Floor 5. What the names mean is `presets`'.
+//! Floor 5. What the names mean is the reader's: brushes' presets, fills, effects.
 
-use super::utf16;
-use crate::psd::cursor::ByteCursor;
+use super::cursor::ByteCursor;
 
-/// The deepest nesting of objects; no brush has more.
+/// Objects within objects; more is nobody's.
 const DEEPEST: u32 = 16;
 /// Values of one descriptor together.
 const MOST: u32 = 1 << 20;
@@ -17,7 +16,9 @@ pub enum DescriptorValue {
     Text(String),
     Object(DescriptorObject),
     List(Vec<DescriptorValue>),
-    /// A value of a kind that brushes do not use.
+    /// One of some named choices.
+    Word(Vec<u8>),
+    /// Of a kind that nothing is read from.
     Else,
 }
 
@@ -39,9 +40,20 @@ impl DescriptorObject {
     pub fn flag(&self, name: &str) -> bool {
         self.get(name) == Some(&DescriptorValue::Flag(true))
     }
+    /// It is there and says no.
+    pub fn is_false(&self, name: &str) -> bool {
+        self.get(name) == Some(&DescriptorValue::Flag(false))
+    }
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.get(name)? {
             DescriptorValue::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+    /// The name of a choice.
+    pub fn word(&self, name: &str) -> Option<&[u8]> {
+        match self.get(name)? {
+            DescriptorValue::Word(word) => Some(word),
             _ => None,
         }
     }
@@ -50,6 +62,17 @@ impl DescriptorObject {
             DescriptorValue::Object(object) => Some(object),
             _ => None,
         }
+    }
+    /// This, or an object anywhere within it, is so.
+    pub fn any(&self, is_so: &impl Fn(&DescriptorObject) -> bool) -> bool {
+        let within = |value: &DescriptorValue| match value {
+            DescriptorValue::Object(object) => object.any(is_so),
+            DescriptorValue::List(list) => {
+                list.iter().any(|value| matches!(value, DescriptorValue::Object(object) if object.any(is_so)))
+            }
+            _ => false,
+        };
+        is_so(self) || self.0.iter().any(|(_, value)| within(value))
     }
     /// The objects of a list.
     pub fn objects(&self, name: &str) -> impl Iterator<Item = &DescriptorObject> {
@@ -71,7 +94,7 @@ pub fn read(cursor: &mut ByteCursor) -> Option<DescriptorObject> {
 }
 
 fn object(cursor: &mut ByteCursor, deeper: u32, left: &mut u32) -> Option<DescriptorObject> {
-    utf16(cursor)?;
+    cursor.unicode()?;
     name(cursor)?;
     let count = cursor.u32()?;
     let mut values = Vec::new();
@@ -104,20 +127,25 @@ fn value(cursor: &mut ByteCursor, deeper: u32, left: &mut u32) -> Option<Descrip
             DescriptorValue::List(list)
         }
         b"doub" => DescriptorValue::Number(double(cursor)?),
+        b"UnFl" => {
+            cursor.key()?;
+            let count = usize::try_from(cursor.u32()?).ok()?;
+            cursor.take(count.checked_mul(8)?)?;
+            DescriptorValue::Else
+        }
         b"UntF" => {
             cursor.key()?;
             DescriptorValue::Number(double(cursor)?)
         }
         b"long" => DescriptorValue::Number(f64::from(cursor.i32()?)),
         b"bool" => DescriptorValue::Flag(cursor.u8()? != 0),
-        b"TEXT" => DescriptorValue::Text(utf16(cursor)?),
+        b"TEXT" => DescriptorValue::Text(cursor.unicode()?),
         b"enum" => {
             name(cursor)?;
-            name(cursor)?;
-            DescriptorValue::Else
+            DescriptorValue::Word(name(cursor)?.to_vec())
         }
         b"type" | b"GlbC" | b"Clss" => {
-            utf16(cursor)?;
+            cursor.unicode()?;
             name(cursor)?;
             DescriptorValue::Else
         }

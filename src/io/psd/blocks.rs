@@ -1,0 +1,143 @@
+//! The blocks of additional information behind a layer's record: what each says of the layer.
+//! Floor 5.
+
+use super::colours::Colours;
+use super::cursor::ByteCursor;
+use super::descriptor::{self, DescriptorObject};
+use super::outline::Outline;
+use super::{LayerRecord, RecordSection, fill};
+use crate::math::Rect;
+use crate::math::srgb::Color;
+
+/// Blocks of a layer that say what is left out, or what only its pixels show.
+const ADJUSTMENTS: [[u8; 4]; 17] = [
+    *b"levl", *b"curv", *b"brit", *b"hue2", *b"hue ", *b"blnc", *b"blwh", *b"phfl", *b"mixr", *b"clrL", *b"nvrt",
+    *b"post", *b"thrs", *b"selc", *b"grdm", *b"expA", *b"vibA",
+];
+
+/// The ground of an artboard, which also cuts off what lies beyond it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    pub rect: Rect,
+    /// `None`: transparent.
+    pub colour: Option<Color>,
+}
+
+/// A block. Some programs pad them to four bytes, some to two, some not at all.
+pub fn block<'a>(rest: &mut ByteCursor<'a>, large: bool) -> Option<([u8; 4], ByteCursor<'a>)> {
+    const LONG: [[u8; 4]; 13] = [
+        *b"LMsk", *b"Lr16", *b"Lr32", *b"Layr", *b"Mt16", *b"Mt32", *b"Mtrn", *b"Alph", *b"FMsk", *b"lnk2", *b"FEid",
+        *b"FXid", *b"PxSD",
+    ];
+    let is_signature = |key: [u8; 4]| key == *b"8BIM" || key == *b"8B64";
+    for _ in 0..4 {
+        let mut ahead = *rest;
+        if ahead.key().is_some_and(is_signature) {
+            break;
+        }
+        rest.take(1)?;
+    }
+    rest.key().filter(|key| is_signature(*key))?;
+    let key = rest.key()?;
+    let data = rest.section(large && LONG.contains(&key))?;
+    Some((key, data))
+}
+
+/// Takes a block's word into a record.
+pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colours: &Colours) {
+    match &key {
+        b"luni" => {
+            let name = data.unicode();
+            record.name = name.unwrap_or_else(|| record.name.clone());
+        }
+        b"lsct" | b"lsdk" => section(record, data),
+        b"lspf" => {
+            let locks = data.u32().unwrap_or(0);
+            record.lock_all = locks & 0x8000_0002 != 0;
+            record.lock_alpha |= locks & 1 != 0;
+        }
+        b"iOpa" => record.fill_opacity = data.u8().unwrap_or(255),
+        b"SoCo" | b"GdFl" | b"PtFl" => record.fill = fill::read(key, data, colours),
+        b"vmsk" | b"vsms" => {
+            record.outline = Outline::read(data);
+            if record.outline.is_none() {
+                record.leave_out("its vector mask is not understood");
+            }
+        }
+        b"artb" | b"artd" | b"abdd" => record.ground = ground(data, colours),
+        b"TySh" | b"tySh" => record.tell("its text became pixels"),
+        b"SoLd" | b"SoLE" | b"PlLd" | b"plLd" => record.tell("its smart object became pixels"),
+        b"lfx2" | b"lmfx" | b"lrFX" => effects(record, key, data),
+        b"vstk" => stroked(record, &mut data),
+        key if ADJUSTMENTS.contains(key) => record.leave_out("its adjustment is left out"),
+        _ => blending(record, key, data),
+    }
+}
+
+/// Where groups begin and end.
+fn section(record: &mut LayerRecord, mut data: ByteCursor) {
+    record.section = match data.u32() {
+        Some(1 | 2) => RecordSection::Group,
+        Some(3) => RecordSection::End,
+        _ => RecordSection::Layer,
+    };
+    if data.key() == Some(*b"8BIM")
+        && let Some(blend) = data.key()
+    {
+        record.blend = blend;
+    }
+}
+
+/// Effects count where one is switched on.
+fn effects(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
+    let said = if key == *b"lrFX" { None } else { data.u32().and_then(|_| descriptor::read(&mut data)) };
+    let is_off = |effects: &DescriptorObject| {
+        let is_there = |object: &DescriptorObject| object.flag("enab");
+        effects.is_false("masterFXSwitch") || !effects.any(&is_there)
+    };
+    // The old block repeats what a new one says, where there is one.
+    match (said, key == *b"lrFX") {
+        (Some(effects), _) => record.effects = Some(!is_off(&effects)),
+        (None, true) => record.effects = record.effects.or(Some(true)),
+        (None, false) => record.effects = Some(true),
+    }
+}
+
+/// The line around a shape, and whether it is filled.
+fn stroked(record: &mut LayerRecord, data: &mut ByteCursor) {
+    record.is_shape = true;
+    let Some(stroke) = descriptor::read(data) else { return };
+    record.stroked = stroke.flag("strokeEnabled");
+    record.unfilled = stroke.is_false("fillEnabled");
+}
+
+/// Ways to blend that this program has not.
+fn blending(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor) {
+    match &key {
+        b"knko" if data.u8().is_some_and(|v| v != 0) => record.leave_out("its knockout is left out"),
+        b"clbl" if data.u8() == Some(0) => {
+            record.leave_out("the layers clipped to it are blended with what lies beneath it elsewhere");
+        }
+        b"brst" if !data.rest().is_empty() => record.leave_out("the channels that it leaves alone are painted too"),
+        b"tsly" if data.u8() == Some(0) => {
+            record.leave_out("its effects and what is clipped to it take no notice of its transparency elsewhere");
+        }
+        _ => {}
+    }
+}
+
+/// An artboard's rectangle and colour.
+fn ground(mut data: ByteCursor, colours: &Colours) -> Option<Ground> {
+    let board = descriptor::read(&mut data)?;
+    let rect = board.object("artboardRect")?;
+    // Within what a canvas can be, so that sums of them stay numbers.
+    let side = |name: &str| rect.number(name).map(|v| v.max(-1e6).min(1e6).round() as i32);
+    let rect = Rect::new(side("Left")?, side("Top ")?, side("Rght")?, side("Btom")?);
+    let colour = match board.number("artboardBackgroundType").map(|kind| kind as i32) {
+        Some(1) => Some(Color::WHITE),
+        Some(2) => Some(Color::BLACK),
+        Some(4) => board.object("Clr ").and_then(|colour| fill::colour(colour, colours)),
+        _ => None,
+    };
+    Some(Ground { rect, colour })
+}

@@ -1,0 +1,219 @@
+//! A file's channels of colour, whatever they mean, as straight sRGB.
+//! Floor 5. Reading the channels is `channel`'s; profiles of RGB and grey are `picture`'s.
+
+use crate::math::{Size, srgb};
+use crate::picture;
+use moxcms::{ColorProfile, DataColorSpace, Layout, RenderingIntent, TransformOptions};
+
+/// What the channels of a file mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    Bitmap,
+    Grey,
+    Indexed,
+    Rgb,
+    Cmyk,
+    Multichannel,
+    Duotone,
+    Lab,
+}
+
+impl Mode {
+    /// By its number in the header.
+    pub fn of(number: u16) -> Option<Self> {
+        let modes = [Mode::Bitmap, Mode::Grey, Mode::Indexed, Mode::Rgb, Mode::Cmyk];
+        match number {
+            7 => Some(Mode::Multichannel),
+            8 => Some(Mode::Duotone),
+            9 => Some(Mode::Lab),
+            _ => modes.get(usize::from(number)).copied(),
+        }
+    }
+    /// Channels of colour, at least.
+    pub fn channels(self) -> u16 {
+        match self {
+            Mode::Bitmap | Mode::Grey | Mode::Indexed | Mode::Duotone | Mode::Multichannel => 1,
+            Mode::Rgb | Mode::Lab => 3,
+            Mode::Cmyk => 4,
+        }
+    }
+}
+
+/// The colours of one file.
+#[derive(Clone, Copy, Debug)]
+pub struct Colours<'a> {
+    pub mode: Mode,
+    /// Channels of colour that the file has, at most four.
+    pub channels: usize,
+    /// 32 bits a channel hold light, which no profile changes.
+    pub is_light: bool,
+    /// All reds, all greens, all blues.
+    pub table: &'a [u8],
+    /// Of the table's colours, the one that stands for nothing.
+    pub nothing: Option<u8>,
+    pub icc: Option<&'a [u8]>,
+}
+
+impl Colours<'_> {
+    /// Straight sRGB of planes; without alpha opaque, without a colour channel black, without any transparent.
+    pub fn to_srgb(&self, size: Size, planes: &[Option<Vec<u8>>; 4], alpha: Option<&[u8]>) -> Vec<u8> {
+        let area = size.area();
+        if planes.iter().all(Option::is_none) && alpha.is_none() {
+            return vec![0; area * 4];
+        }
+        let value = |c: usize, i: usize| planes[c].as_ref().and_then(|plane| plane.get(i)).copied().unwrap_or(0);
+        let opacity = |i: usize| alpha.map_or(255, |alpha| alpha.get(i).copied().unwrap_or(255));
+        let pixels = |colour: &dyn Fn(usize) -> [u8; 3]| -> Vec<u8> {
+            let mut rgba = Vec::with_capacity(area * 4);
+            for i in 0..area {
+                rgba.extend(colour(i));
+                rgba.push(opacity(i));
+            }
+            rgba
+        };
+        match self.mode {
+            Mode::Bitmap | Mode::Duotone => pixels(&|i| [value(0, i); 3]),
+            Mode::Multichannel if self.channels < 3 => pixels(&|i| [value(0, i); 3]),
+            Mode::Grey => self.through_profile(size, pixels(&|i| [value(0, i); 3])),
+            Mode::Rgb => self.through_profile(size, pixels(&|i| [value(0, i), value(1, i), value(2, i)])),
+            Mode::Indexed => {
+                let mut rgba = pixels(&|i| self.looked_up(value(0, i)));
+                let gone = |i: usize| self.nothing == Some(value(0, i));
+                rgba.as_chunks_mut::<4>()
+                    .0
+                    .iter_mut()
+                    .enumerate()
+                    .filter(|(i, _)| gone(*i))
+                    .for_each(|(_, p)| p[3] = 0);
+                rgba
+            }
+            Mode::Lab => pixels(&|i| lab_to_srgb([value(0, i), value(1, i), value(2, i)])),
+            Mode::Cmyk | Mode::Multichannel => {
+                // Stored as light: 255 is no ink.
+                let ink = |i: usize| {
+                    [value(0, i), value(1, i), value(2, i), if self.channels < 4 { 255 } else { value(3, i) }]
+                };
+                let press = self.icc.filter(|_| self.mode == Mode::Cmyk).and_then(Press::new);
+                let mut rgba = pixels(&|i| ideal_press(ink(i)));
+                if let Some(press) = press {
+                    press.print(&mut rgba, ink);
+                }
+                rgba
+            }
+        }
+    }
+    fn through_profile(&self, size: Size, rgba: Vec<u8>) -> Vec<u8> {
+        match self.icc.filter(|icc| !self.is_light && !picture::is_own_srgb(icc)) {
+            Some(icc) => picture::to_srgb(size, rgba, self.mode == Mode::Grey, icc),
+            None => rgba,
+        }
+    }
+    /// A number of the table's; a number beyond it is black.
+    fn looked_up(&self, number: u8) -> [u8; 3] {
+        let (count, number) = (self.table.len() / 3, usize::from(number));
+        [0, 1, 2].map(|c| self.table.get(c * count + number).filter(|_| number < count).copied().unwrap_or(0))
+    }
+}
+
+/// Ink on white, as if it were printed by an ideal press; each value is the light that the ink lets through.
+fn ideal_press([c, m, y, k]: [u8; 4]) -> [u8; 3] {
+    [c, m, y].map(|ink| ((u32::from(ink) * u32::from(k) + 127) / 255) as u8)
+}
+
+/// CIE Lab of D50 in bytes, a and b about 128, as sRGB bytes.
+fn lab_to_srgb([l, a, b]: [u8; 3]) -> [u8; 3] {
+    /// The connection space's white.
+    const WHITE: [f32; 3] = [0.9642, 1.0, 0.8249];
+    /// XYZ of D50 to linear sRGB, adapted by Bradford's matrix.
+    const TO_SRGB: [[f32; 3]; 3] =
+        [[3.133_856, -1.616_867, -0.490_615], [-0.978_768, 1.916_142, 0.033_454], [0.071_945, -0.228_991, 1.405_243]];
+    let y = (f32::from(l) * 100.0 / 255.0 + 16.0) / 116.0;
+    let (x, z) = (y + (f32::from(a) - 128.0) / 500.0, y - (f32::from(b) - 128.0) / 200.0);
+    let linear = |t: f32| if t > 6.0 / 29.0 { t * t * t } else { 3.0 * (6.0f32 / 29.0).powi(2) * (t - 4.0 / 29.0) };
+    let xyz = [linear(x) * WHITE[0], linear(y) * WHITE[1], linear(z) * WHITE[2]];
+    TO_SRGB.map(|row| srgb::quantise(srgb::encode((row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]).max(0.0))))
+}
+
+/// A profile of four inks, made ready.
+struct Press {
+    transform: std::sync::Arc<moxcms::Transform16BitExecutor>,
+    /// The light that the press's black still reflects: it becomes none, as Photoshop shows it (black point
+    /// compensation).
+    black: f32,
+}
+
+impl Press {
+    /// `None` where the profile is of other colours, or cannot be used.
+    fn new(icc: &[u8]) -> Option<Self> {
+        let profile = ColorProfile::new_from_slice(icc).ok().filter(|p| p.color_space == DataColorSpace::Cmyk)?;
+        let screen = ColorProfile::new_srgb();
+        let by = |rendering_intent| TransformOptions { rendering_intent, ..TransformOptions::default() };
+        let seen = by(RenderingIntent::RelativeColorimetric);
+        let transform = profile.create_transform_16bit(Layout::Rgba, &screen, Layout::Rgb, seen).ok()?;
+        let mut press = Self { transform, black: 0.0 };
+        press.black = press.blackest(&profile, &screen, by(RenderingIntent::Perceptual)).unwrap_or(0.0);
+        Some(press)
+    }
+    /// The light of what the profile prints for black.
+    fn blackest(&self, profile: &ColorProfile, screen: &ColorProfile, options: TransformOptions) -> Option<f32> {
+        let printed = screen.create_transform_16bit(Layout::Rgb, profile, Layout::Rgba, options).ok()?;
+        let (mut inks, mut rgb) = ([0; 4], [0; 3]);
+        printed.transform(&[0; 3], &mut inks).ok()?;
+        self.transform.transform(&inks, &mut rgb).ok()?;
+        let [r, g, b] = rgb.map(|v| srgb::decode(f32::from(v) / 65535.0));
+        // Beyond this it is no black.
+        Some(srgb::luminance(r, g, b).max(0.0).min(0.18))
+    }
+    /// Puts the inks' colours into straight pixels, some thousand at a time.
+    fn print(&self, rgba: &mut [u8], ink: impl Fn(usize) -> [u8; 4]) {
+        const AT_ONCE: usize = 4096;
+        let light = |v: u16| {
+            let linear = (srgb::decode(f32::from(v) / 65535.0) - self.black) / (1.0 - self.black);
+            srgb::quantise(srgb::encode(linear.max(0.0)))
+        };
+        for (part, pixels) in rgba.chunks_mut(AT_ONCE * 4).enumerate() {
+            let count = pixels.len() / 4;
+            let share = |light: u8| u16::from(255 - light) * 257;
+            let inks: Vec<u16> = (0..count).flat_map(|i| ink(part * AT_ONCE + i).map(share)).collect();
+            let mut rgb = vec![0; count * 3];
+            if self.transform.transform(&inks, &mut rgb).is_ok() {
+                for (pixel, colour) in pixels.as_chunks_mut::<4>().0.iter_mut().zip(rgb.as_chunks::<3>().0) {
+                    pixel[..3].copy_from_slice(&colour.map(light));
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn colours(mode: Mode, channels: usize) -> Colours<'static> {
+        Colours { mode, channels, is_light: false, table: &[], nothing: None, icc: None }
+    }
+    fn one(colours: &Colours, values: [u8; 4]) -> [u8; 4] {
+        let planes = values.map(|v| Some(vec![v]));
+        colours.to_srgb(Size::new(1, 1), &planes, Some(&[200])).try_into().unwrap()
+    }
+
+    #[test]
+    fn every_mode_gives_the_colours_it_means() {
+        assert_eq!(one(&colours(Mode::Bitmap, 1), [255, 0, 0, 0]), [255, 255, 255, 200]);
+        assert_eq!(one(&colours(Mode::Rgb, 3), [1, 2, 3, 0]), [1, 2, 3, 200]);
+        assert_eq!(one(&colours(Mode::Cmyk, 4), [255, 0, 255, 128]), [128, 0, 128, 200], "magenta and half black");
+        assert_eq!(one(&colours(Mode::Multichannel, 3), [255, 0, 255, 0]), [255, 0, 255, 200], "no black ink");
+        let table = Colours { table: &[9, 8, 7, 6, 5, 4], nothing: Some(1), ..colours(Mode::Indexed, 1) };
+        assert_eq!(one(&table, [0; 4]), [9, 7, 5, 200]);
+        assert_eq!(one(&table, [1; 4])[3], 0, "the colour that stands for nothing");
+        assert_eq!(one(&table, [2; 4])[..3], [0; 3], "beyond the table");
+    }
+    #[test]
+    fn lab_is_read_in_the_connection_space_s_white() {
+        assert_eq!(one(&colours(Mode::Lab, 3), [255, 128, 128, 0])[..3], [255; 3]);
+        assert_eq!(one(&colours(Mode::Lab, 3), [0, 128, 128, 0])[..3], [0; 3]);
+        // L 53.24, a 80.09, b 67.2 under D65 is pure red; under D50 54.29, 80.8, 69.9.
+        let red = one(&colours(Mode::Lab, 3), [138, 209, 198, 0]);
+        assert!(red[0] > 250 && red[1] < 12 && red[2] < 12, "{red:?}");
+    }
+}

@@ -1,0 +1,270 @@
+//! Fill layers: one colour, a gradient, a pattern, as descriptors say them.
+//! Floor 5. Patterns' pictures are `pattern`'s.
+
+use super::colours::{Colours, Mode};
+use super::cursor::ByteCursor;
+use super::descriptor::{self, DescriptorObject};
+use crate::math::srgb::{self, Color};
+use crate::math::{Rect, Size, Vec2, vec2};
+use crate::paint::{Gradient, GradientStop, ImageFilter};
+use crate::surface::Operator;
+
+/// What a fill layer is filled with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fill {
+    Solid(Color),
+    Gradient(GradientFill),
+    Pattern(PatternFill),
+}
+
+/// A gradient and how it lies on what it fills.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GradientFill {
+    way: Way,
+    /// Counter-clockwise, as seen.
+    degrees: f32,
+    /// Of the length that just fills; 1 is that length.
+    scale: f32,
+    /// Of the middle, in shares of what is filled.
+    offset: Vec2,
+    /// It fills the layer, not the canvas.
+    pub aligned: bool,
+    stops: Vec<GradientStop>,
+}
+
+/// How a gradient runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    Linear,
+    Radial,
+    Angle,
+    Reflected,
+    Diamond,
+}
+
+/// Which pattern, and how it lies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatternFill {
+    pub id: String,
+    pub scale: f32,
+    pub phase: Vec2,
+}
+
+/// Stops from one that the file names to the next: colours and opacities have middles of their own, where ramps bend.
+const BETWEEN: usize = 8;
+/// More stops are no painter's.
+const MOST_STOPS: usize = 1000;
+
+/// Reads the block of a fill; `None` where it holds what is not understood.
+pub fn read(key: [u8; 4], mut data: ByteCursor, colours: &Colours) -> Option<Fill> {
+    let said = descriptor::read(&mut data)?;
+    Some(match &key {
+        b"SoCo" => Fill::Solid(colour(said.object("Clr ")?, colours)?),
+        b"GdFl" => Fill::Gradient(gradient(&said, colours)?),
+        _ => {
+            let phase = said.object("phase");
+            let along = |name: &str| phase.and_then(|phase| phase.number(name)).unwrap_or(0.0);
+            Fill::Pattern(PatternFill {
+                id: said.object("Ptrn")?.text("Idnt")?.to_owned(),
+                scale: share(&said, "Scl ", 1.0).max(0.01).min(100.0),
+                phase: vec2(along("Hrzn"), along("Vrtc")),
+            })
+        }
+    })
+}
+
+/// A percentage as a share.
+fn share(object: &DescriptorObject, name: &str, absent: f32) -> f32 {
+    object.number(name).map_or(absent, |percent| percent / 100.0)
+}
+
+/// A colour in any of the ways that descriptors say one.
+pub fn colour(said: &DescriptorObject, colours: &Colours) -> Option<Color> {
+    let byte = |v: f32, full: f32| srgb::quantise(v / full);
+    let all = |names: [&str; 3]| Some([said.number(names[0])?, said.number(names[1])?, said.number(names[2])?]);
+    let in_mode = |mode: Mode, values: [u8; 4]| {
+        let channels = usize::from(mode.channels());
+        let own = Colours { mode, channels, icc: colours.icc.filter(|_| colours.mode == mode), ..*colours };
+        let planes = values.map(|v| Some(vec![v]));
+        let rgba = own.to_srgb(Size::new(1, 1), &planes, None);
+        Color { r: rgba[0], g: rgba[1], b: rgba[2], a: 255 }
+    };
+    if let Some(rgb) = all(["Rd  ", "Grn ", "Bl  "]) {
+        let [r, g, b] = rgb.map(|v| byte(v, 255.0));
+        return Some(in_mode(Mode::Rgb, [r, g, b, 0]));
+    }
+    if let Some([h, s, v]) = all(["H   ", "Strt", "Brgh"]) {
+        let [r, g, b] = of_hue(h, s / 100.0, v / 100.0).map(|v| byte(v, 1.0));
+        return Some(in_mode(Mode::Rgb, [r, g, b, 0]));
+    }
+    if let (Some(cmy), Some(k)) = (all(["Cyn ", "Mgnt", "Ylw "]), said.number("Blck")) {
+        let [c, m, y] = cmy.map(|ink| byte(100.0 - ink, 100.0));
+        return Some(in_mode(Mode::Cmyk, [c, m, y, byte(100.0 - k, 100.0)]));
+    }
+    if let Some([l, a, b]) = all(["Lmnc", "A   ", "B   "]) {
+        return Some(in_mode(Mode::Lab, [byte(l, 100.0), byte(a + 128.0, 255.0), byte(b + 128.0, 255.0), 0]));
+    }
+    let grey = byte(100.0 - said.number("Gry ")?, 100.0);
+    Some(in_mode(Mode::Grey, [grey, 0, 0, 0]))
+}
+
+/// Hue in degrees, saturation and brightness as shares.
+fn of_hue(h: f32, s: f32, v: f32) -> [f32; 3] {
+    [5.0, 3.0, 1.0].map(|n: f32| {
+        let k = (n + h / 60.0).rem_euclid(6.0);
+        v - v * s * k.min(4.0 - k).max(0.0).min(1.0)
+    })
+}
+
+fn gradient(said: &DescriptorObject, colours: &Colours) -> Option<GradientFill> {
+    let way = match said.word("Type")? {
+        b"Rdl " => Way::Radial,
+        b"Angl" => Way::Angle,
+        b"Rflc" => Way::Reflected,
+        b"Dmnd" => Way::Diamond,
+        _ => Way::Linear,
+    };
+    let offset = said.object("Ofst");
+    let along = |name: &str| offset.map_or(0.0, |offset| share(offset, name, 0.0));
+    let mut stops = stops(said.object("Grad")?, colours)?;
+    if said.flag("Rvrs") {
+        stops.iter_mut().for_each(|stop| stop.t = 1.0 - stop.t);
+        stops.reverse();
+    }
+    Some(GradientFill {
+        way,
+        degrees: said.number("Angl").unwrap_or(0.0),
+        scale: share(said, "Scl ", 1.0).max(0.001).min(1000.0),
+        offset: vec2(along("Hrzn"), along("Vrtc")),
+        aligned: !said.is_false("Algn"),
+        stops,
+    })
+}
+
+/// A value at a place of a ramp, and where the middle between it and the next lies.
+#[derive(Clone, Copy)]
+struct Mark<T> {
+    t: f32,
+    middle: f32,
+    value: T,
+}
+
+/// The ramp's colours and opacities as stops of colours with alpha; `None` of noise.
+fn stops(ramp: &DescriptorObject, colours: &Colours) -> Option<Vec<GradientStop>> {
+    let place = |object: &DescriptorObject| {
+        let t = object.number("Lctn")? / 4096.0;
+        Some((t.max(0.0).min(1.0), share(object, "Mdpn", 0.5).max(0.01).min(0.99)))
+    };
+    let mut inks: Vec<Mark<[f32; 3]>> = Vec::new();
+    for object in ramp.objects("Clrs").take(MOST_STOPS) {
+        let (t, middle) = place(object)?;
+        let [r, g, b, _] = object.object("Clr ").and_then(|said| colour(said, colours))?.to_f32();
+        inks.push(Mark { t, middle, value: [r, g, b] });
+    }
+    let mut opacities: Vec<Mark<[f32; 1]>> = Vec::new();
+    for object in ramp.objects("Trns").take(MOST_STOPS) {
+        let (t, middle) = place(object)?;
+        opacities.push(Mark { t, middle, value: [share(object, "Opct", 1.0)] });
+    }
+    inks.sort_by(|a, b| a.t.total_cmp(&b.t));
+    opacities.sort_by(|a, b| a.t.total_cmp(&b.t));
+    inks.first()?;
+    let mut places: Vec<f32> = [0.0, 1.0].into_iter().chain(inks.iter().map(|mark| mark.t)).collect();
+    places.extend(opacities.iter().map(|mark| mark.t));
+    places.sort_by(f32::total_cmp);
+    places.dedup();
+    let between = |pair: &[f32]| {
+        let (from, to) = (pair[0], pair[1]);
+        (0..BETWEEN).map(move |i| from + (to - from) * i as f32 / BETWEEN as f32)
+    };
+    let all: Vec<f32> = places.windows(2).flat_map(between).chain(places.last().copied()).collect();
+    let stop = |t: f32| {
+        let [r, g, b] = at(&inks, t)?;
+        let [a] = at(&opacities, t).unwrap_or([1.0]);
+        let [r, g, b, a] = [r, g, b, a].map(srgb::quantise);
+        Some(GradientStop { t, color: Color { r, g, b, a } })
+    };
+    all.into_iter().map(stop).collect()
+}
+
+/// The value at a place: between two marks it is halfway where the middle lies.
+fn at<const N: usize>(marks: &[Mark<[f32; N]>], t: f32) -> Option<[f32; N]> {
+    let next = marks.partition_point(|mark| mark.t <= t);
+    let (Some(from), Some(to)) = (next.checked_sub(1).map(|i| marks[i]), marks.get(next)) else {
+        return if next == 0 { marks.first() } else { marks.last() }.map(|mark| mark.value);
+    };
+    let s = (t - from.t) / (to.t - from.t);
+    let s = if s < from.middle { 0.5 * s / from.middle } else { 0.5 + 0.5 * (s - from.middle) / (1.0 - from.middle) };
+    Some(std::array::from_fn(|i| from.value[i] + (to.value[i] - from.value[i]) * s))
+}
+
+impl GradientFill {
+    /// As a gradient of this program, on the rectangle that it fills; `None` where it is not straight.
+    pub fn live(&self, rect: Rect) -> Option<Gradient> {
+        if self.way != Way::Linear {
+            return None;
+        }
+        let (middle, half) = self.line(rect);
+        Some(Gradient {
+            from: middle - half,
+            to: middle + half,
+            stops: self.stops.clone(),
+            operator: Operator::None,
+            filter: ImageFilter::Bilinear,
+        })
+    }
+    /// Its middle, and from there to its end.
+    fn line(&self, rect: Rect) -> (Vec2, Vec2) {
+        let (w, h) = (rect.width() as f32, rect.height() as f32);
+        let middle = vec2(rect.x0 as f32 + w / 2.0, rect.y0 as f32 + h / 2.0) + self.offset * vec2(w, h);
+        let (sin, cos) = self.degrees.to_radians().sin_cos();
+        // The line ends where it meets the rectangle's border.
+        let reach = (w / 2.0 / cos.abs().max(1e-6)).min(h / 2.0 / sin.abs().max(1e-6));
+        (middle, vec2(cos, -sin) * reach * self.scale)
+    }
+    /// Straight RGBA of the canvas.
+    pub fn pixels(&self, size: Size, rect: Rect) -> Vec<u8> {
+        let line = self.line(rect);
+        let mut out = Vec::with_capacity(size.area() * 4);
+        for y in 0..size.height as usize {
+            for x in 0..size.width as usize {
+                out.extend(self.at(self.place(line, vec2(x as f32 + 0.5, y as f32 + 0.5))));
+            }
+        }
+        out
+    }
+    /// The colour of a pixel.
+    pub fn colour_at(&self, rect: Rect, [x, y]: [i32; 2]) -> Option<Color> {
+        let [r, g, b, a] = self.at(self.place(self.line(rect), vec2(x as f32 + 0.5, y as f32 + 0.5)));
+        Some(Color { r, g, b, a })
+    }
+    /// Where on the ramp a point lies; `line`: the middle, and from there to the end.
+    fn place(&self, (middle, half): (Vec2, Vec2), at: Vec2) -> f32 {
+        let reach = half.length().max(1e-6);
+        let along = half / reach;
+        let from = at - middle;
+        let (u, v) = (from.dot(along) / reach, from.dot(vec2(-along.y, along.x)) / reach);
+        match self.way {
+            Way::Linear => (u + 1.0) / 2.0,
+            Way::Reflected => u.abs(),
+            Way::Radial => from.length() / reach,
+            Way::Diamond => u.abs() + v.abs(),
+            Way::Angle => (-v.atan2(u) / std::f32::consts::TAU).rem_euclid(1.0),
+        }
+    }
+    fn at(&self, t: f32) -> [u8; 4] {
+        let t = t.max(0.0).min(1.0);
+        let next = self.stops.partition_point(|stop| stop.t <= t);
+        let colour = |stop: Option<&GradientStop>| stop.map_or([0.0; 4], |stop| stop.color.to_f32());
+        match (next.checked_sub(1), self.stops.get(next)) {
+            (Some(i), Some(to)) => {
+                let from = self.stops[i];
+                let s = (t - from.t) / (to.t - from.t);
+                let (a, b) = (colour(Some(&from)), colour(Some(to)));
+                std::array::from_fn(|c| srgb::quantise(a[c] + (b[c] - a[c]) * s))
+            }
+            (None, first) => colour(first).map(srgb::quantise),
+            (Some(last), None) => colour(self.stops.get(last)).map(srgb::quantise),
+        }
+    }
+}

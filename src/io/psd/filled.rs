@@ -1,0 +1,119 @@
+//! What a record's layer holds: pixels, or the fill that they show.
+//! Floor 5.
+
+use super::fill::{Fill, GradientFill};
+use super::pattern::Pattern;
+use super::{LayerRecord, RecordMask};
+use crate::document::{Content, Live, PixelLayer};
+use crate::math::srgb::Color;
+use crate::math::{Rect, Size};
+use crate::raster::TileGrid;
+
+/// How far a fill's pixels may be from it, of 255, before they are believed and not it.
+const SAME: u8 = 3;
+
+/// The content of a layer. What its fill's pixels tell of its shape goes into its mask.
+pub fn content(record: &mut LayerRecord, size: Size, patterns: &[Pattern]) -> Content {
+    match record.fill.take() {
+        None => {
+            if record.stroked && record.rgba.is_empty() {
+                record.leave_out("the line around its shape is left out");
+            }
+            pixels(std::mem::take(&mut record.rgba), record.rect)
+        }
+        Some(fill) if record.rgba.is_empty() => drawn(record, fill, size, patterns),
+        Some(fill) => shown(record, fill, size),
+    }
+}
+
+/// A fill whose pixels the file does not hold.
+fn drawn(record: &mut LayerRecord, fill: Fill, size: Size, patterns: &[Pattern]) -> Content {
+    if record.stroked {
+        record.leave_out("the line around its shape is left out");
+    }
+    if record.unfilled {
+        return pixels(Vec::new(), Rect::EMPTY);
+    }
+    match fill {
+        Fill::Solid(colour) => Content::Fill(colour),
+        Fill::Gradient(gradient) => {
+            let rect = filled_rect(record, &gradient, size);
+            if let Some(live) = gradient.live(rect) {
+                return Content::Gradient(Live::new(live));
+            }
+            record.tell("its gradient became pixels");
+            pixels(gradient.pixels(size, rect), size.rect())
+        }
+        Fill::Pattern(fill) => match patterns.iter().find_map(|pattern| pattern.pixels(&fill, size)) {
+            Some(drawn) => {
+                record.tell("its pattern became pixels");
+                pixels(drawn, size.rect())
+            }
+            None => {
+                record.leave_out("its pattern is not in the file, or cannot be read");
+                pixels(Vec::new(), Rect::EMPTY)
+            }
+        },
+    }
+}
+
+/// A fill beside its pixels, which show its shape: they are believed where they are of other colours.
+fn shown(record: &mut LayerRecord, fill: Fill, size: Size) -> Content {
+    let is_plain = !record.stroked && !record.unfilled;
+    let live = match fill {
+        Fill::Solid(colour) if is_plain && is_of(record, |_| Some(colour)) => Some(Content::Fill(colour)),
+        Fill::Gradient(gradient) if is_plain => straight(record, &gradient, size),
+        _ => None,
+    };
+    let Some(live) = live else {
+        record.tell("its fill became pixels");
+        return pixels(std::mem::take(&mut record.rgba), record.rect);
+    };
+    let values: Vec<u8> = record.rgba.iter().skip(3).step_by(4).copied().collect();
+    let covers_all = record.rect.intersect(size.rect()) == size.rect() && values.iter().all(|v| *v == 255);
+    if !covers_all {
+        let shape = RecordMask { rect: record.rect, outside: 0, values, disabled: false };
+        record.mask = Some(match record.mask.take().filter(|mask| !mask.disabled) {
+            Some(mask) => mask.times(size, &shape),
+            None => shape,
+        });
+    }
+    record.rgba = Vec::new();
+    live
+}
+
+/// A straight, opaque gradient whose colours the pixels have.
+fn straight(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Option<Content> {
+    let rect = filled_rect(record, gradient, size);
+    let live = gradient.live(rect).filter(|live| live.stops.iter().all(|stop| stop.color.a == 255))?;
+    is_of(record, |at| gradient.colour_at(rect, at)).then(|| Content::Gradient(Live::new(live)))
+}
+
+/// What a gradient fills: the layer as far as its pixels and mask reach, or the canvas.
+fn filled_rect(record: &LayerRecord, gradient: &GradientFill, size: Size) -> Rect {
+    let layer = match &record.mask {
+        _ if !record.rect.is_empty() => record.rect,
+        Some(mask) if mask.outside == 0 => mask.covered(),
+        _ => size.rect(),
+    };
+    if gradient.aligned && !layer.is_empty() { layer } else { size.rect() }
+}
+
+/// The pixels are of those colours, as far as they are there.
+fn is_of(record: &LayerRecord, colour: impl Fn([i32; 2]) -> Option<Color>) -> bool {
+    let width = record.rect.width().max(1);
+    record.rgba.as_chunks::<4>().0.iter().enumerate().all(|(i, &[r, g, b, a])| {
+        // A faint pixel keeps too little of its colour.
+        let at = [record.rect.x0 + (i % width) as i32, record.rect.y0 + (i / width) as i32];
+        a < 64 || colour(at).is_some_and(|c| [(r, c.r), (g, c.g), (b, c.b)].iter().all(|(x, y)| x.abs_diff(*y) <= SAME))
+    })
+}
+
+fn pixels(rgba: Vec<u8>, rect: Rect) -> Content {
+    let (w, h, x, y) = (rect.width(), rect.height(), rect.x0, rect.y0);
+    let tiles = match rect.is_empty() || rgba.is_empty() {
+        true => TileGrid::default(),
+        false => TileGrid::from_straight_rgba(&rgba, w, h, x, y),
+    };
+    Content::Pixels(PixelLayer { file: String::new(), x, y, tiles })
+}

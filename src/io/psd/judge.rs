@@ -1,0 +1,189 @@
+//! Whether the layers look like the picture that the file holds of them, and what is done where they do not.
+//! Floor 5.
+//!
+//! Photoshop has more than this program can say. What is left out may or may not be missed, so the pictures are
+//! compared:
+//!
+//! * alike, and nothing left out: the layers alone;
+//! * alike, though something was left out: the file's picture lies hidden above them;
+//! * unlike: the file's picture is shown, and the layers lie hidden beneath it, in a group.
+
+use super::merged::Merged;
+use crate::document::{Content, Document, Group, Layer, PixelLayer, Progress, flatten};
+use crate::math::Size;
+use crate::raster::tile::TILE;
+use crate::raster::{TileAt, TileGrid};
+use std::sync::Arc;
+
+/// What two pictures may differ by and still be called alike, of 255: in the mean, and in all but a hundredth of the
+/// pixels.
+const ALIKE_MEAN: f64 = 1.0;
+const ALIKE_P99: usize = 8;
+/// Names of what is added.
+const PICTURE: &str = "The file's own picture";
+const LAYERS: &str = "Layers";
+
+/// How far two pictures differ: the farthest channel of each pixel, on white, of 255.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Difference {
+    mean: f64,
+    p99: usize,
+    most: usize,
+}
+
+impl Difference {
+    fn is_alike(self) -> bool {
+        self.mean <= ALIKE_MEAN && self.p99 <= ALIKE_P99
+    }
+    /// Of how many pixels differ by how much.
+    fn of(counts: &[u64; 256]) -> Self {
+        let all: u64 = counts.iter().sum::<u64>().max(1);
+        let total: u64 = counts.iter().zip(0..).map(|(count, by)| count * by).sum();
+        let mut left = all / 100;
+        let mut within = |count: &u64| {
+            let fits = *count <= left;
+            left = left.saturating_sub(*count);
+            fits
+        };
+        let beyond = counts.iter().rev().take_while(|count| within(count)).count();
+        let most = counts.iter().rposition(|count| *count > 0).unwrap_or(0);
+        Self { mean: total as f64 / all as f64, p99: 255usize.saturating_sub(beyond), most }
+    }
+}
+
+/// The document with the file's own picture where it is needed; what was done stands in the notes. `is_less`: something
+/// was left out.
+pub fn judged(document: Document, merged: Option<Merged>, is_less: bool, notes: &mut Vec<String>) -> Document {
+    let without = |notes: &mut Vec<String>, why: &str| {
+        if is_less {
+            notes.push(format!("{why}, so what is left out cannot be seen"));
+        }
+    };
+    let Some(merged) = merged else {
+        without(notes, "the file's own picture is damaged or missing");
+        return document;
+    };
+    if !merged.is_real {
+        without(notes, "the file was saved without a picture of its own");
+        return document;
+    }
+    let Some(shown) = flatten(&document, &Progress::default()) else { return document };
+    let difference = compared(document.size, &shown, &merged);
+    if difference.is_alike() {
+        if is_less {
+            notes
+                .push(format!("the layers look like the file's own picture; it lies hidden above them as “{PICTURE}”"));
+            return with_picture(document, &merged, false);
+        }
+        return document;
+    }
+    let Difference { mean, most, .. } = difference;
+    if is_blank(&merged.rgba) {
+        notes.push("the file's own picture is empty, so it was not compared with the layers".into());
+        return document;
+    }
+    notes.push(format!(
+        "the layers differ from the file's own picture by {mean:.1} of 255 in the mean, {most} at most: “{PICTURE}” is \
+         shown, and the layers lie hidden beneath it in the group “{LAYERS}”"
+    ));
+    let group = Group { layers: document.layers, pass_through: true };
+    let layers = Layer { visible: false, clip_to_surface: false, ..Layer::new(LAYERS, Content::Group(group)) };
+    with_picture(Document { layers: vec![Arc::new(layers)], ..document }, &merged, true)
+}
+
+fn with_picture(mut document: Document, merged: &Merged, visible: bool) -> Document {
+    let (w, h) = (document.size.width as usize, document.size.height as usize);
+    let tiles = TileGrid::from_straight_rgba(&merged.rgba, w, h, 0, 0);
+    let pixels = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+    document.layers.push(Arc::new(Layer { visible, clip_to_surface: false, ..Layer::new(PICTURE, pixels) }));
+    document
+}
+
+/// White, black or nothing everywhere: its writer left the picture out, without saying so.
+fn is_blank(rgba: &[u8]) -> bool {
+    let pixels = rgba.as_chunks::<4>().0;
+    let all = |value: u8| pixels.iter().all(|pixel| pixel[..3] == [value; 3]);
+    all(255) || all(0) || pixels.iter().all(|pixel| pixel[3] == 0)
+}
+
+fn compared(size: Size, shown: &TileGrid, merged: &Merged) -> Difference {
+    let mut counts = [0; 256];
+    for at in TileAt::covering(size.rect()) {
+        let inside = at.rect().intersect(size.rect());
+        let tile = shown.tile(at).map(|tile| tile.bytes());
+        for y in inside.y0..inside.y1 {
+            for x in inside.x0..inside.x1 {
+                let in_tile = ((y - at.rect().y0) as usize * TILE + (x - at.rect().x0) as usize) * 4;
+                let own = tile.and_then(|bytes| bytes.get(in_tile..)?.first_chunk()).copied().unwrap_or([0; 4]);
+                let in_picture = (y as usize * size.width as usize + x as usize) * 4;
+                let other = merged.rgba.get(in_picture..).and_then(|rest| rest.first_chunk()).copied();
+                counts[usize::from(apart(own, other.unwrap_or([0; 4]), merged.has_alpha))] += 1;
+            }
+        }
+    }
+    Difference::of(&counts)
+}
+
+/// How far a premultiplied pixel is from a straight one.
+fn apart(own: [u8; 4], straight: [u8; 4], with_alpha: bool) -> u8 {
+    let alpha = u32::from(straight[3]);
+    let on_white = |c: u8| ((u32::from(c) * alpha + 255 * (255 - alpha) + 127) / 255) as u8;
+    let colour = (0..3).map(|c| own[c].saturating_add(255 - own[3]).abs_diff(on_white(straight[c]))).max();
+    let alpha = if with_alpha { own[3].abs_diff(straight[3]) } else { 0 };
+    colour.unwrap_or(0).max(alpha)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::srgb::Color;
+
+    fn grey(value: u8) -> Document {
+        let fill = Content::Fill(Color { r: value, g: value, b: value, a: 255 });
+        Document { layers: vec![Arc::new(Layer::new("grey", fill))], ..Document::empty(Size::new(10, 20)) }
+    }
+    /// Of one grey but for one black pixel.
+    fn picture(value: u8) -> Option<Merged> {
+        let mut rgba = [value, value, value, 255].repeat(200);
+        rgba[..3].fill(0);
+        Some(Merged { rgba, has_alpha: false, is_real: true })
+    }
+    fn judged_as(merged: Option<Merged>, is_less: bool) -> (Vec<(String, bool)>, Vec<String>) {
+        let mut notes = Vec::new();
+        let document = judged(grey(100), merged, is_less, &mut notes);
+        (document.layers.iter().map(|layer| (layer.name.clone(), layer.visible)).collect(), notes)
+    }
+
+    #[test]
+    fn the_file_s_picture_is_shown_where_the_layers_look_otherwise() {
+        let (layers, notes) = judged_as(picture(120), false);
+        assert_eq!(layers, [(LAYERS.to_owned(), false), (PICTURE.to_owned(), true)]);
+        assert!(notes.len() == 1 && notes[0].contains("20.4 of 255 in the mean, 100 at most"), "{notes:?}");
+        assert_eq!(judged_as(picture(100), false), (vec![("grey".to_owned(), true)], vec![]));
+        let (layers, notes) = judged_as(picture(100), true);
+        assert_eq!(layers, [("grey".to_owned(), true), (PICTURE.to_owned(), false)]);
+        assert!(notes[0].contains("lies hidden"), "{notes:?}");
+    }
+    #[test]
+    fn a_picture_that_is_none_is_not_believed() {
+        let plain = |is_real| Some(Merged { rgba: vec![255; 800], has_alpha: false, is_real });
+        for (merged, is_less, said) in [
+            (None, true, "damaged or missing"),
+            (plain(false), true, "saved without a picture"),
+            (plain(true), false, "is empty"),
+        ] {
+            let (layers, notes) = judged_as(merged, is_less);
+            assert_eq!(layers, [("grey".to_owned(), true)]);
+            assert!(notes.len() == 1 && notes[0].contains(said), "{notes:?}");
+        }
+        assert_eq!(judged_as(plain(false), false).1, [""; 0]);
+    }
+    #[test]
+    fn the_hundredth_part_that_differs_most_does_not_count() {
+        let mut counts = [0; 256];
+        (counts[0], counts[3], counts[200]) = (980, 10, 10);
+        assert_eq!(Difference::of(&counts), Difference { mean: 2.03, p99: 3, most: 200 });
+        counts[200] = 11;
+        assert_eq!(Difference::of(&counts).p99, 200);
+    }
+}

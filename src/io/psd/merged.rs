@@ -1,0 +1,98 @@
+//! The picture of all its layers that a Photoshop file holds for programs that read nothing else.
+//! Floor 5. What is made of it is `judge`'s.
+
+use super::VERSION_INFO;
+use super::channel;
+use super::colours::{Colours, Mode};
+use super::cursor::ByteCursor;
+use super::parse::{PsdHeader, resource};
+
+/// What stands in each channel beyond the colours; 0 is the transparency of all.
+const ALPHA_NAMES: u16 = 1053;
+
+/// The picture, as it stands in the file.
+pub struct Merged {
+    /// Straight sRGB.
+    pub rgba: Vec<u8>,
+    /// Its alpha is the transparency of all layers.
+    pub has_alpha: bool,
+    /// The writer did not say that it left the picture out.
+    pub is_real: bool,
+}
+
+/// Reads the picture; `None` where it is damaged. `count`: the number that stands before the layers, if there are any.
+pub fn merged(
+    rest: &mut ByteCursor,
+    header: &PsdHeader,
+    colours: &Colours,
+    resources: ByteCursor,
+    count: Option<i16>,
+) -> Option<Merged> {
+    let has_alpha = usize::from(header.channels) > header.colours() && has_alpha(resources, header.mode, count);
+    let planes = planes(rest, header, header.colours() + usize::from(has_alpha))?;
+    let mut planes = planes.into_iter();
+    let mut slots: [Option<Vec<u8>>; 4] = [None, None, None, None];
+    slots.iter_mut().take(header.colours()).for_each(|slot| *slot = planes.next());
+    let alpha = planes.next();
+    let mut rgba = colours.to_srgb(header.size, &slots, alpha.as_deref());
+    // Photoshop lays the colours on white as far as they are transparent; some programs do not.
+    if has_alpha && count.is_some() && is_on_white(&rgba) {
+        off_white(&mut rgba);
+    }
+    // Since the number of its version: whether the picture is real.
+    let is_real = resource(resources, VERSION_INFO).is_none_or(|data| data.get(4) != Some(&0));
+    Some(Merged { rgba, has_alpha, is_real })
+}
+
+/// A channel beyond the colours is the transparency of all layers, not a selection that somebody kept.
+fn has_alpha(resources: ByteCursor, mode: Mode, count: Option<i16>) -> bool {
+    let names = resource(resources, ALPHA_NAMES).unwrap_or_default();
+    let is_named = !names.is_empty() && names.as_chunks::<4>().0.iter().all(|name| *name != [0; 4]);
+    mode != Mode::Multichannel && !is_named && count.is_none_or(|count| count < 0)
+}
+
+fn planes(rest: &mut ByteCursor, header: &PsdHeader, wanted: usize) -> Option<Vec<Vec<u8>>> {
+    let shape = |c: usize| header.shape(header.size, c < header.colours());
+    let (height, channels) = (header.size.height as usize, usize::from(header.channels));
+    let compression = rest.u16()?;
+    match compression {
+        0 => (0..wanted).map(|c| channel::decode_as(rest, shape(c), 0)).collect(),
+        1 => {
+            let lengths = channel::row_lengths(rest, shape(0), height * channels)?;
+            let rows = lengths.chunks(height).take(wanted).enumerate();
+            rows.map(|(c, lengths)| channel::unpack_rows(rest, shape(c), lengths)).collect()
+        }
+        2 | 3 => channel::inflate_planes(rest.rest(), wanted, shape, compression == 3),
+        _ => None,
+    }
+}
+
+/// No colour is darker than it can be on white.
+fn is_on_white(rgba: &[u8]) -> bool {
+    rgba.as_chunks::<4>().0.iter().all(|[r, g, b, a]| [r, g, b].iter().all(|c| c.saturating_add(3) >= 255 - a))
+}
+
+/// Takes away the white beneath colours as far as they are transparent; where they are wholly so, no colour is left.
+fn off_white(rgba: &mut [u8]) {
+    for [colour @ .., alpha] in rgba.as_chunks_mut::<4>().0 {
+        let a = i32::from(*alpha);
+        if a > 0 {
+            let c = |c: u8| ((i32::from(c) - 255 + a) * 255 + a / 2) / a;
+            *colour = colour.map(|v| c(v).max(0).min(255) as u8);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn white_beneath_what_is_transparent_is_taken_away() {
+        let mut rgba = [[255, 127, 127, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat();
+        off_white(&mut rgba);
+        assert_eq!(rgba, [[255, 0, 0, 128], [9, 9, 9, 255], [255, 255, 255, 0], [0, 0, 0, 10]].concat());
+        assert!(is_on_white(&[[255, 127, 127, 128], [0, 0, 0, 255]].concat()));
+        assert!(!is_on_white(&[100, 100, 100, 20]));
+    }
+}

@@ -1,0 +1,138 @@
+//! Patterns: the pictures that a file keeps for its fills.
+//! Floor 5.
+
+use super::channel;
+use super::colours::{Colours, Mode};
+use super::cursor::ByteCursor;
+use super::fill::PatternFill;
+use super::layers::RecordReader;
+use super::parse::PsdHeader;
+use crate::Result;
+use crate::math::Size;
+
+/// A picture that repeats.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    id: String,
+    size: Size,
+    /// Straight sRGB.
+    rgba: Vec<u8>,
+}
+
+/// More channels no pattern has.
+const MOST_CHANNELS: u32 = 32;
+
+/// The patterns of a file's blocks; those that cannot be read are left out, and what they fill is told.
+pub fn read<'a>(
+    blocks: impl Iterator<Item = ([u8; 4], ByteCursor<'a>)>,
+    layers: &mut RecordReader,
+) -> Result<Vec<Pattern>> {
+    let mut patterns = Vec::new();
+    for (key, mut data) in blocks {
+        if !matches!(&key, b"Patt" | b"Pat2" | b"Pat3") {
+            continue;
+        }
+        // Each is filled up to four bytes.
+        while let Some(one) = data.section(false).filter(|one| !one.rest().is_empty()) {
+            patterns.extend(pattern(one, layers)?);
+            let filling = one.rest().len().next_multiple_of(4) - one.rest().len();
+            data.take(filling.min(data.rest().len()));
+        }
+    }
+    Ok(patterns)
+}
+
+fn pattern(data: ByteCursor, layers: &mut RecordReader) -> Result<Option<Pattern>> {
+    let Some((id, mode, size, body)) = head(data) else { return Ok(None) };
+    // Beyond what may be held together, the file is refused.
+    layers.spend(size.area() as u64)?;
+    Ok(rgba(body, mode, size).map(|rgba| Pattern { id, size, rgba }))
+}
+
+/// Its name, what its colours are, its size, and what follows.
+fn head(mut data: ByteCursor) -> Option<(String, Mode, Size, ByteCursor)> {
+    data.u32()?;
+    let mode = Mode::of(u16::try_from(data.u32()?).ok()?)?;
+    let (height, width) = (u32::from(data.u16()?), u32::from(data.u16()?));
+    data.unicode()?;
+    let id = String::from_utf8_lossy(data.pascal(1)?).into_owned();
+    (width > 0 && height > 0).then_some((id, mode, Size::new(width, height), data))
+}
+
+fn rgba(mut data: ByteCursor, mode: Mode, size: Size) -> Option<Vec<u8>> {
+    let mut table = Vec::new();
+    if mode == Mode::Indexed {
+        // Here red, green and blue of a colour stand together.
+        let interleaved = data.take(768)?;
+        table = (0..3).flat_map(|c| interleaved.iter().skip(c).step_by(3).copied()).collect();
+        data.take(4)?;
+    }
+    data.u32()?;
+    let mut list = data.section(false)?;
+    list.rect()?;
+    let most = list.u32()?.min(MOST_CHANNELS);
+    let mut planes: [Option<Vec<u8>>; 4] = [None, None, None, None];
+    let mut alpha = None;
+    // Behind the colours' places come two more, the mask's and the transparency's.
+    for i in 0..most + 2 {
+        let Some(plane) = channel_of(&mut list, mode, size)? else { continue };
+        match planes.get_mut(i as usize).filter(|_| i < u32::from(mode.channels())) {
+            Some(slot) => *slot = Some(plane),
+            None => alpha = Some(plane),
+        }
+    }
+    let colours = Colours {
+        mode,
+        channels: usize::from(mode.channels()),
+        is_light: false,
+        table: &table,
+        nothing: None,
+        icc: None,
+    };
+    Some(colours.to_srgb(size, &planes, alpha.as_deref()))
+}
+
+/// One place of the list; `Some(None)` where nothing is written.
+fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Vec<u8>>> {
+    if list.u32()? == 0 {
+        return Some(None);
+    }
+    let mut data = list.section(false)?;
+    if data.rest().is_empty() {
+        return Some(None);
+    }
+    data.u32()?;
+    let rect = data.rect()?;
+    let bits = data.u16()?;
+    let compression = u16::from(data.u8()?);
+    let fits = [rect.width(), rect.height()] == [size.width as usize, size.height as usize];
+    let header = PsdHeader { large: false, size, channels: 1, bits, mode };
+    Some(if fits && [8, 16, 32].contains(&bits) {
+        channel::decode_as(&mut data, header.shape(size, true), compression)
+    } else {
+        None
+    })
+}
+
+impl Pattern {
+    /// Straight RGBA of a canvas filled with it; `None` where it is another.
+    pub fn pixels(&self, fill: &PatternFill, size: Size) -> Option<Vec<u8>> {
+        if self.id != fill.id {
+            return None;
+        }
+        let (w, h) = (i64::from(self.size.width), i64::from(self.size.height));
+        let place = |at: usize, phase: f32, side: i64| {
+            let at = ((at as f32 + 0.5 - phase) / fill.scale).floor() as i64;
+            at.rem_euclid(side) as usize
+        };
+        let mut out = Vec::with_capacity(size.area() * 4);
+        for y in 0..size.height as usize {
+            let row = place(y, fill.phase.y, h) * w as usize;
+            for x in 0..size.width as usize {
+                let at = (row + place(x, fill.phase.x, w)) * 4;
+                out.extend(self.rgba.get(at..at + 4).unwrap_or(&[0; 4]));
+            }
+        }
+        Some(out)
+    }
+}
