@@ -1,9 +1,9 @@
 //! What is compared with a reference picture: short recipes, each with its tolerance.
 //!
 //! Tolerances are steps of a byte. Blending, ramps and masks that are pictures take sums, products, quotients and roots
-//! only, which every machine rounds alike: 0. The rest also asks the platform for `exp`, `tan`, `pow` and the like. Their
-//! last bit differs between C libraries, so that a value may be rounded to the next byte: 1. Nothing is granted for the
-//! width of SIMD or the number of threads.
+//! only, which every machine rounds alike: 0. The rest also asks the platform for `exp`, `tan`, `pow` and the like.
+//! Their last bit differs between C libraries, so that a value may be rounded to the next byte: 1. Nothing is granted
+//! for the width of SIMD or the number of threads.
 
 use super::pictures::Pictures;
 use super::surfaces::{SIZE, Shape};

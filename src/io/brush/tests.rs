@@ -158,7 +158,8 @@ fn a_mypaint_brush_that_follows_several_inputs_follows_them_all() {
 fn a_mypaint_brush_tells_what_it_uses_and_loses_and_nothing_else() {
     let text = r#"{ "version": 3, "settings": {
         "posterize": { "base_value": 0.5, "inputs": {} }, "smudge_length": { "base_value": 0.9, "inputs": {} },
-        "smudge_bucket": { "base_value": 3, "inputs": {} }, "offset_by_speed_slowness": { "base_value": 2, "inputs": {} },
+        "smudge_bucket": { "base_value": 3, "inputs": {} },
+         "offset_by_speed_slowness": { "base_value": 2, "inputs": {} },
         "hardness": { "base_value": 0.5, "inputs": { "gridmap_x": [[0, 0], [256, 1]] } } } }"#;
     let notes = only("b.myb", text.as_bytes()).notes;
     assert_eq!(notes, ["“hardness” does not follow “gridmap_x”", "“posterize” has no counterpart"]);

@@ -77,8 +77,8 @@ pub fn presets() -> impl Iterator<Item = Preset> {
     preset_names().filter_map(preset)
 }
 
-/// A brush that comes with the program, as a hand takes it: its marks stay near the pen. A recipe that names it says so itself
-/// ([`Brush::reach`]), so that older ones paint as they did.
+/// A brush that comes with the program, as a hand takes it: its marks stay near the pen. A recipe that names it says so
+/// itself ([`Brush::reach`]), so that older ones paint as they did.
 pub fn preset(key: &str) -> Option<Preset> {
     let (_, text) = BRUSHES.iter().find(|(known, _)| *known == key)?;
     let mut preset = built_in(key, text).ok()?;

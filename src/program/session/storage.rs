@@ -147,7 +147,8 @@ pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
     Some((name, layer.picture))
 }
 
-/// The maps that belong to a file by their names, or stand in the same EXR: `pot_n.png` brings `pot_depth.exr` and `pot_mask.png` from its folder.
+/// The maps that belong to a file by their names, or stand in the same EXR: `pot_n.png` brings `pot_depth.exr` and
+/// `pot_mask.png` from its folder.
 pub fn maps_beside(file: &Path, kind: FileUse) -> SurfaceSource {
     let part = pairs::part_of(file);
     let mut source = if kind == FileUse::Depth { maps_of(None, Some(file)) } else { with_own_depth(file) };
