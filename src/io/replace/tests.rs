@@ -49,8 +49,11 @@ fn a_cancelled_save_changes_nothing() {
     assert_eq!((fs.file(FILE).unwrap(), fs.names().len()), (OLD.to_vec(), 2));
 }
 
+/// The disk, what is written, and the previous version that is kept.
+type Situation = (fn() -> MemoryFs, Terms, Option<&'static [u8]>);
+
 /// The situations in which a disk fails or loses power: what stands there, how it is written, and what is kept.
-fn situations() -> Vec<(fn() -> MemoryFs, Terms, Option<&'static [u8]>)> {
+fn situations() -> Vec<Situation> {
     let older: Option<&[u8]> = Some(b"older still");
     vec![
         (disk, this().into(), Some(OLD)),

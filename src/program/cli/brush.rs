@@ -67,7 +67,7 @@ fn numbered(file: &Path, number: usize) -> PathBuf {
 
 /// What a brush became, not written yet.
 enum Made {
-    Preset(brush::Encoded),
+    Preset(Box<brush::Encoded>),
     Picture(OutputFile, TileGrid, Size),
 }
 
@@ -78,7 +78,7 @@ impl Made {
         if extension == "json" {
             let encoded = brush::encode(to, preset)?;
             encoded.check(terms)?;
-            return Ok(Made::Preset(encoded));
+            return Ok(Made::Preset(encoded.into()));
         }
         let target = OutputFile::new(to, terms.clone())?;
         let none = || Error::unsupported(to, "the brush cannot be shown");

@@ -108,7 +108,11 @@ fn only_strokes_that_are_new_are_looked_at() {
     let id = old.layers[0].id;
     let add = |brush: Brush| {
         let stroke = Stroke::new(brush, Operator::None, Color::BLACK, vec![Sample::at(Vec2::ONE)]);
-        old.with_strokes(id, |strokes| Some(strokes.push(Arc::new(stroke)))).unwrap()
+        let add = |strokes: &mut Vec<Arc<Stroke>>| {
+            strokes.push(Arc::new(stroke));
+            Some(())
+        };
+        old.with_strokes(id, add).unwrap()
     };
     assert!(add(Brush::default()).fits(Some(&old)).is_ok());
     assert!(add(Brush { size: 0.0, ..Brush::default() }).fits(Some(&old)).unwrap_err().contains("stroke 2"));

@@ -46,7 +46,7 @@ fn strokes(strokes: Vec<Arc<Stroke>>) -> Layer {
 #[test]
 fn forty_nested_groups_come_back() {
     let into = |inner: Layer, i: usize| {
-        let group = Group { layers: vec![Arc::new(inner)], pass_through: i % 2 == 0 };
+        let group = Group { layers: vec![Arc::new(inner)], pass_through: i.is_multiple_of(2) };
         Layer::new(format!("Group {i}"), Content::Group(group))
     };
     comes_back(&of(vec![(0..40).fold(fill(), into)]));

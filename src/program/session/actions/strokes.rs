@@ -81,10 +81,10 @@ impl StrokeAction {
                 }
             }
             _ => {
-                if let Some((label, next, layer, chosen)) = self.edit(document) {
-                    if tab.commit(label, next) {
-                        tab.choose_strokes(layer, chosen);
-                    }
+                if let Some((label, next, layer, chosen)) = self.edit(document)
+                    && tab.commit(label, next)
+                {
+                    tab.choose_strokes(layer, chosen);
                 }
             }
         }
