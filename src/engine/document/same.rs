@@ -24,20 +24,31 @@ fn surface(a: &Document, b: &Document) -> Option<String> {
     let is_same = match (&a.surface, &b.surface) {
         (None, None) => true,
         (Some(x), Some(y)) => {
-            let sources = (a.surface_source.as_deref(), b.surface_source.as_deref());
-            let same_source = match sources {
-                (Some(x), Some(y)) => without_names(x) == without_names(y),
-                // One that came from no file was given maps by the file.
-                (x, _) => x.is_none(),
-            };
-            same_source && same_surface(x, y)
+            let source = a.surface_source.as_deref().filter(|source| has_files(source, a));
+            match (source, b.surface_source.as_deref()) {
+                (Some(source), Some(other)) => without_names(source) == without_names(other) && same_surface(x, y),
+                // One that came from no file is stored as maps made of it, which are normalised when they are read.
+                (None, _) => x.size() == y.size(),
+                (Some(_), None) => false,
+            }
         }
         _ => false,
     };
     (!is_same).then(|| "the surface".into())
 }
 
-/// How far the maps may be off: those of a surface that came from no file are made unit and planar once more when read.
+/// Whether the files of a surface's maps are known, so that they themselves are stored.
+fn has_files(source: &SurfaceSource, document: &Document) -> bool {
+    let is_known = |file: &str| document.surface_files.contains_key(file);
+    let mask = match &source.mask {
+        Some(MaskSource::File { file, .. }) => is_known(file),
+        _ => true,
+    };
+    let depth = source.depth.as_ref().is_none_or(|map| is_known(&map.file));
+    mask && depth && source.normal.as_ref().is_none_or(|map| is_known(&map.file))
+}
+
+/// How far the maps may be off.
 const TOLERANCE: f32 = 1e-4;
 
 fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
