@@ -6,8 +6,6 @@ use super::source::{MaskSource, SurfaceSource};
 use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, StrokeList};
 use crate::paint::Stroke;
 use crate::raster::TileGrid;
-use crate::surface::Surface;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 impl Document {
@@ -26,7 +24,7 @@ fn surface(a: &Document, b: &Document) -> Option<String> {
         (Some(x), Some(y)) => {
             let source = a.surface_source.as_deref().filter(|source| has_files(source, a));
             match (source, b.surface_source.as_deref()) {
-                (Some(source), Some(other)) => without_names(source) == without_names(other) && same_surface(x, y),
+                (Some(source), Some(other)) => x.size() == y.size() && same_maps(a, source, b, other),
                 // One that came from no file is stored as maps made of it, which are normalised when they are read.
                 (None, _) => x.size() == y.size(),
                 (Some(_), None) => false,
@@ -39,30 +37,24 @@ fn surface(a: &Document, b: &Document) -> Option<String> {
 
 /// Whether the files of a surface's maps are known, so that they themselves are stored.
 fn has_files(source: &SurfaceSource, document: &Document) -> bool {
-    let is_known = |file: &str| document.surface_files.contains_key(file);
-    let mask = match &source.mask {
-        Some(MaskSource::File { file, .. }) => is_known(file),
-        _ => true,
-    };
-    let depth = source.depth.as_ref().is_none_or(|map| is_known(&map.file));
-    mask && depth && source.normal.as_ref().is_none_or(|map| is_known(&map.file))
+    files_of(source).all(|file| document.surface_files.contains_key(file))
 }
 
-/// How far the maps may be off.
-const TOLERANCE: f32 = 1e-4;
+/// The same files, read in the same way: the surface follows from them. One that was scaled since is fitted once more
+/// when it is read, which may round it otherwise.
+fn same_maps(a: &Document, source: &SurfaceSource, b: &Document, other: &SurfaceSource) -> bool {
+    let mut files = files_of(source).zip(files_of(other));
+    without_names(source) == without_names(other)
+        && files.all(|(x, y)| a.surface_files.get(x).is_some_and(|file| b.surface_files.get(y) == Some(file)))
+}
 
-fn same_surface(a: &Arc<Surface>, b: &Arc<Surface>) -> bool {
-    if Arc::ptr_eq(a, b) {
-        return true;
-    }
-    let near = |a: &[f32], b: &[f32]| {
-        a.len() == b.len() && a.par_iter().zip(b).all(|(a, b)| a == b || (a - b).abs() <= TOLERANCE)
+fn files_of(source: &SurfaceSource) -> impl Iterator<Item = &str> {
+    let mask = match &source.mask {
+        Some(MaskSource::File { file, .. }) => Some(file.as_str()),
+        _ => None,
     };
-    let normals = || a.normal_planes().into_iter().zip(b.normal_planes()).all(|(a, b)| near(a.values(), b.values()));
-    a.size() == b.size()
-        && a.coverage_plane() == b.coverage_plane()
-        && near(a.depth_plane().values(), b.depth_plane().values())
-        && normals()
+    let (normal, depth) = (source.normal.as_ref(), source.depth.as_ref());
+    [normal.map(|map| map.file.as_str()), depth.map(|map| map.file.as_str()), mask].into_iter().flatten()
 }
 
 fn without_names(source: &SurfaceSource) -> SurfaceSource {

@@ -143,3 +143,10 @@ fn a_save_that_would_not_come_back_leaves_the_old_file() {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "and nothing is left beside it");
     }
 }
+#[test]
+fn a_drawing_that_was_scaled_by_odd_sides_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let scaled = everything(63).scaled(0.37).unwrap();
+    let file = folder.path().join("a.ora");
+    crate::save(&scaled, &file, crate::Overwrite::Nothing, &Progress::default()).unwrap().unwrap();
+}
