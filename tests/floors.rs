@@ -4,9 +4,10 @@
 use std::{fs, path::Path};
 
 /// `docs/ARCHITECTURE.md` shows the same table.
-const FLOORS: [(&str, u32); 12] = [
+const FLOORS: [(&str, u32); 13] = [
     ("error", 0),
     ("math", 0),
+    ("memory", 0),
     ("raster", 1),
     ("surface", 2),
     ("paint", 3),

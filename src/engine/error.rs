@@ -1,6 +1,7 @@
 //! The one error type: what went wrong, in which file, at which field, as a sentence.
 //! Floor 0. Shown once, by the window or by the command line; library code passes it on.
 
+use crate::memory::OutOfMemory;
 use std::path::{Path, PathBuf};
 
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -38,6 +39,8 @@ pub enum Remedy {
     LongerSides,
     /// A higher limit for the pixels of a picture.
     MorePixels,
+    /// More memory than is free.
+    MoreMemory,
     /// A background colour behind transparent parts.
     Background,
 }
@@ -72,5 +75,9 @@ impl Error {
             Self::At { error, .. } => error.remedy(),
             _ => None,
         }
+    }
+    /// The allocator itself refused.
+    pub fn out_of_memory(file: impl AsRef<Path>, refused: OutOfMemory) -> Self {
+        Self::too_large(file, refused).with_remedy(Remedy::MoreMemory)
     }
 }

@@ -2,6 +2,9 @@
 //! Floor 5. Not here: what the numbers mean (`picture`, `maps`), EXR (`exr`).
 
 mod tiff;
+mod weight;
+
+pub use weight::has_png_profile;
 
 use super::Budget;
 use crate::{Error, Remedy, Result, math::Size};
@@ -64,17 +67,22 @@ fn decode_as(
             return tiff::decode(file, bytes, budget);
         }
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-        reader.limits(limits(budget));
+        reader.limits(limits(format, bytes, budget));
         let mut decoder = reader.into_decoder().map_err(|e| failure(file, name, &e))?;
         let (width, height) = decoder.dimensions();
         let size = budget.size(file, width.into(), height.into())?;
         if !unbounded {
-            plausible(file, size, decoder.total_bytes(), bytes.len())?;
+            let decoded = decoder.total_bytes().saturating_mul(8);
+            let stored = weight::png_pixel_bits(bytes).filter(|_| format == ImageFormat::Png);
+            weight::plausible(file, size, stored.map_or(decoded, |bits| bits * size.area() as u64), bytes.len())?;
         }
+        room(file, size, decoder.total_bytes(), budget)?;
         let icc = decoder.icc_profile().ok().flatten();
+        let is_lost = icc.is_none() && format == ImageFormat::Png && weight::has_png_profile(bytes);
+        let warning = is_lost.then_some("its colour profile is damaged or unpacks without end, and was left out");
         let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
         let image = DynamicImage::from_decoder(decoder).map_err(|e| failure(file, name, &e))?;
-        Ok(Bitmap { image, icc, orientation, format: name, warning: None })
+        Ok(Bitmap { image, icc, orientation, format: name, warning })
     }));
     decoded.unwrap_or_else(|_| Err(Error::decode(file, format!("the {name} data is damaged"))))
 }
@@ -98,22 +106,29 @@ fn sniff(file: &Path, bytes: &[u8]) -> Result<(ImageFormat, &'static str, bool)>
     })
 }
 
-fn limits(budget: &Budget) -> image::Limits {
+fn limits(format: ImageFormat, bytes: &[u8], budget: &Budget) -> image::Limits {
     let mut limits = image::Limits::no_limits();
-    // Four floats a pixel is the most that any of the formats decodes to.
-    limits.max_alloc = Some(budget.area_px.saturating_mul(16));
+    limits.max_alloc = Some(match format {
+        // Here the limit holds for what lies beside the pixels: texts as they are packed, and the profile unpacked.
+        ImageFormat::Png => beside_pixels(bytes),
+        // Four floats a pixel is the most that any of the formats decodes to.
+        _ => budget.area_px.saturating_mul(16),
+    });
     limits
 }
 
-/// Refuses headers that promise more pixels than the following bytes could hold: DEFLATE reaches 1032 : 1, LZW about
-/// 2500 : 1.
-fn plausible(file: &Path, size: Size, decoded_bytes: u64, file_bytes: usize) -> Result<()> {
-    const GRANTED: u64 = 1 << 20;
-    if decoded_bytes > GRANTED && decoded_bytes / 4096 > file_bytes as u64 {
-        let reason = format!("the header promises {size} pixels, far more than {file_bytes} bytes can hold");
-        return Err(Error::decode(file, reason));
-    }
-    Ok(())
+/// What a PNG may hold in memory beside its pixels.
+pub fn beside_pixels(bytes: &[u8]) -> u64 {
+    PROFILE_BYTES + bytes.len() as u64
+}
+
+/// What a colour profile may unpack to. Those of printing presses have some 4 MB.
+const PROFILE_BYTES: u64 = 16 << 20;
+
+/// Asks for the memory of decoded pixels, once as the decoder gives them and once as they are handed on.
+fn room(file: &Path, size: Size, decoded_bytes: u64, budget: &Budget) -> Result<()> {
+    let handed_on = size.area() as u64 * 4;
+    budget.room(file, &format!("a picture of {size} pixels"), decoded_bytes.saturating_add(handed_on))
 }
 
 /// Whether a JPEG's last scan is followed by its end marker.

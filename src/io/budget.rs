@@ -3,13 +3,15 @@
 
 use crate::document::Document;
 use crate::math::Size;
+use crate::memory::spoken;
 use crate::paint::Stroke;
 use crate::raster::Picture;
 use crate::surface::Bend;
 use crate::{Error, Remedy, Result};
 use std::path::Path;
 
-/// Limits for what one file may request. The command line raises them with `--max-pixels` and `--max-side`.
+/// Limits for what one file may request. The command line raises them with `--max-pixels`, `--max-side` and
+/// `--max-memory`.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// Longest side of a picture, px.
@@ -18,6 +20,8 @@ pub struct Budget {
     pub area_px: u64,
     /// Pixels of all pictures of one document together.
     pub document_px: u64,
+    /// Bytes that reading a file may take at its peak, what was read included.
+    pub memory_bytes: u64,
     /// Bytes of any one file.
     pub file_bytes: u64,
     /// Bytes read from all entries of a zip together.
@@ -46,7 +50,8 @@ impl Default for Budget {
         Self {
             side_px: Picture::LONGEST_SIDE_PX,
             area_px: Picture::MOST_PX as u64,
-            document_px: 1 << 30,
+            document_px: 1 << 31,
+            memory_bytes: super::machine::UNKNOWN_BYTES,
             file_bytes: 2 << 30,
             unpacked_bytes: 8 << 30,
             // Each layer may have a look, pixels and a mask, each brush its pictures; a name takes some hundred bytes.
@@ -79,6 +84,30 @@ impl Budget {
             ..usual
         }
     }
+    /// The usual ceilings on this machine as it is now: `memory_bytes` is what is free, but for a rest.
+    pub fn of_this_machine() -> Self {
+        Self::default().within(super::machine::free_bytes())
+    }
+    /// With so much memory.
+    pub fn within(self, memory_bytes: u64) -> Self {
+        // A file and what is unpacked from it lie beside what is made of them.
+        let share = memory_bytes / 2;
+        Self {
+            memory_bytes,
+            file_bytes: self.file_bytes.min(share),
+            unpacked_bytes: self.unpacked_bytes.min(share.saturating_mul(4)),
+            ..self
+        }
+    }
+    /// Asks for memory before it is taken. `what`: for the sentence, in front of “takes”.
+    pub fn room(&self, file: &Path, what: &str, bytes: u64) -> Result<()> {
+        if bytes > self.memory_bytes {
+            let (asked, there) = (spoken(bytes), spoken(self.memory_bytes));
+            let reason = format!("{what} takes {asked} of memory, and {there} are free for it");
+            return Err(Error::too_large(file, reason).with_remedy(Remedy::MoreMemory));
+        }
+        Ok(())
+    }
     /// The size, or a sentence saying which ceiling it breaks. A side of 0 is not a picture.
     pub fn size(&self, file: &Path, width: u64, height: u64) -> Result<Size> {
         if width == 0 || height == 0 {
@@ -93,5 +122,22 @@ impl Budget {
             return Err(Error::too_large(file, reason).with_remedy(Remedy::MorePixels));
         }
         Ok(Size::new(width as u32, height as u32))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_names_what_is_asked_and_what_there_is() {
+        let budget = Budget::default().within(3_000_000_000);
+        assert!(budget.room(Path::new("n.png"), "its surface", 3_000_000_000).is_ok());
+        let said = budget.room(Path::new("n.png"), "its surface", 7_250_000_000).unwrap_err();
+        assert_eq!(
+            said.to_string(),
+            "n.png: too large: its surface takes 7.2 GB of memory, and 3.0 GB are free for it"
+        );
+        assert_eq!(said.remedy(), Some(Remedy::MoreMemory));
     }
 }

@@ -7,10 +7,11 @@ pub mod layers;
 use crate::document::Progress;
 use crate::fs::Disk;
 use crate::math::{Rect, Size, srgb, srgb::Color};
+use crate::project::pixels::strips;
 use crate::raster::TileGrid;
 use crate::replace::{Terms, check, replace};
 use crate::{Error, Remedy, Result};
-use std::io::Cursor;
+use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 /// A kind of file that a picture can be written to.
@@ -130,16 +131,22 @@ pub fn encode(
         return Err(Error::unsupported(file, "the part to be written holds no pixels"));
     }
     let canvas = Size::new(rect.width() as u32, rect.height() as u32);
-    let mut rgba = pixels.to_straight_rgba(rect);
-    if let Some(background) = options.background {
-        lay_on(&mut rgba, background);
-    }
+    let straight = |rect: Rect| {
+        let mut rgba = pixels.to_straight_rgba(rect);
+        if let Some(background) = options.background {
+            lay_on(&mut rgba, background);
+        }
+        rgba
+    };
     match format {
-        ExportFormat::Png => png(&rgba, canvas, png::BitDepth::Eight, options).map_err(|e| Error::unsupported(file, e)),
-        ExportFormat::Jpeg => jpeg(file, &rgba, canvas, options.quality),
-        ExportFormat::WebP => webp(file, &rgba, canvas),
-        ExportFormat::Tiff => tiff(file, rgba, canvas),
-        ExportFormat::Exr => exr(&rgba, canvas).map_err(|e| Error::unsupported(file, e)),
+        ExportFormat::Png => {
+            let written = png(strips(rect).map(straight), canvas, png::BitDepth::Eight, options);
+            written.map_err(|e| Error::unsupported(file, e))
+        }
+        ExportFormat::Jpeg => jpeg(file, &straight(rect), canvas, options.quality),
+        ExportFormat::WebP => webp(file, &straight(rect), canvas),
+        ExportFormat::Tiff => tiff(file, straight(rect), canvas),
+        ExportFormat::Exr => exr(&straight(rect), canvas).map_err(|e| Error::unsupported(file, e)),
     }
 }
 
@@ -171,8 +178,15 @@ fn png_resolution(dots_per_inch: f32) -> png::PixelDimensions {
     png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }
 }
 
-/// Straight RGBA of 8 bits, or of 16 with the larger byte first.
-fn png(rgba: &[u8], size: Size, depth: png::BitDepth, options: &ExportOptions) -> Result<Vec<u8>, png::EncodingError> {
+/// Straight RGBA of 8 bits, or of 16 with the larger byte first, a few rows at a time.
+fn png(
+    strips: impl Iterator<Item = Vec<u8>>,
+    size: Size,
+    depth: png::BitDepth,
+    options: &ExportOptions,
+) -> Result<Vec<u8>, png::EncodingError> {
+    /// Of a chunk of packed pixels.
+    const CHUNK_BYTES: usize = 1 << 20;
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
     encoder.set_color(png::ColorType::Rgba);
@@ -180,7 +194,11 @@ fn png(rgba: &[u8], size: Size, depth: png::BitDepth, options: &ExportOptions) -
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_pixel_dims(options.dots_per_inch.map(png_resolution));
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(rgba)?;
+    let mut rows = writer.stream_writer_with_size(CHUNK_BYTES)?;
+    for strip in strips {
+        rows.write_all(&strip)?;
+    }
+    rows.finish()?;
     writer.finish()?;
     Ok(bytes)
 }

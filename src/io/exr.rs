@@ -10,10 +10,12 @@ pub use names::{ExrPass, passes};
 pub use write::{encode_channels, encode_light};
 
 use super::Budget;
-use crate::{Error, Remedy, Result, math::Size, raster::Plane};
+use crate::raster::{Plane, TILE};
+use crate::{Error, Remedy, Result, math::Size};
 use exr::meta::{BlockDescription, MetaData, attribute::SampleType, header::Header};
 use std::{
     io::Cursor,
+    ops::Range,
     panic::{AssertUnwindSafe, catch_unwind},
     path::Path,
 };
@@ -92,15 +94,31 @@ impl<'a> ExrFile<'a> {
     /// Decodes some channels (indices into [`Self::channels`]) over the display window; NaN outside the data window.
     /// Unsigned integers become floats.
     pub fn read(&self, wanted: &[usize]) -> Result<Vec<Plane<f32>>> {
-        let mut planes = vec![Plane::filled(self.size, f32::NAN); wanted.len()];
+        self.read_rows(wanted, 0..self.size.height as usize)
+    }
+    /// The rows of the display window in runs that few chunks lie in, each a multiple of the height of tiles but for the last.
+    pub fn bands(&self) -> impl Iterator<Item = Range<usize>> {
+        let height = self.size.height as usize;
+        let tallest = self.meta.headers.iter().map(|h| h.max_block_pixel_size().y()).max().unwrap_or(1);
+        let band = tallest.min(height).next_multiple_of(TILE);
+        (0..height).step_by(band).map(move |top| top..(top + band).min(height))
+    }
+    /// As [`Self::read`], some rows of the display window.
+    pub fn read_rows(&self, wanted: &[usize], rows: Range<usize>) -> Result<Vec<Plane<f32>>> {
+        let size = Size::new(self.size.width, rows.len() as u32);
+        let mut planes = vec![Plane::filled(size, f32::NAN); wanted.len()];
         let targets: Vec<&ExrChannel> = wanted.iter().filter_map(|&w| self.channels.get(w)).collect();
-        let needed: Vec<&chunks::Chunk> =
-            self.chunks.iter().filter(|c| targets.iter().any(|t| t.part == c.part)).collect();
+        let (first, end) = (rows.start as i64, rows.end as i64);
+        let is_needed = |chunk: &&chunks::Chunk| {
+            let held = self.meta.headers.get(chunk.part).map_or(0..0, |header| chunk.rows(header));
+            held.start < end && held.end > first && targets.iter().any(|t| t.part == chunk.part)
+        };
+        let needed: Vec<&chunks::Chunk> = self.chunks.iter().filter(is_needed).collect();
         chunks::decode(self.file, self.bytes, &self.meta, &needed, |block| {
             let Some(header) = self.meta.headers.get(block.index.layer) else { return };
             for (target, plane) in targets.iter().zip(&mut planes) {
                 if target.part == block.index.layer {
-                    copy_block(header, block, target.index, plane);
+                    copy_block(header, block, target.index, first, plane);
                 }
             }
         })?;
@@ -145,7 +163,15 @@ fn check_part(file: &Path, header: &Header, budget: &Budget) -> Result<()> {
 }
 
 /// Copies one channel of a decoded block into its place in the display window.
-fn copy_block(header: &Header, block: &exr::block::UncompressedBlock, channel: usize, plane: &mut Plane<f32>) {
+///
+/// * `first`: the row of the display window that the plane begins with.
+fn copy_block(
+    header: &Header,
+    block: &exr::block::UncompressedBlock,
+    channel: usize,
+    first: i64,
+    plane: &mut Plane<f32>,
+) {
     let display = header.shared_attributes.display_window.position;
     let data = header.own_attributes.layer_position;
     let shift = |data: i32, display: i32, at: usize| i64::from(data) - i64::from(display) + at as i64;
@@ -157,14 +183,14 @@ fn copy_block(header: &Header, block: &exr::block::UncompressedBlock, channel: u
     let row_bytes = header.channels.bytes_per_pixel * width;
     let before: usize = header.channels.list[..channel].iter().map(|c| c.sample_type.bytes_per_sample() * width).sum();
     for row in 0..height {
-        let y = top + row as i64;
+        let y = top + row as i64 - first;
         let start = row * row_bytes + before;
         let samples = block.data.get(start..start + kind.bytes_per_sample() * width);
         let (Some(samples), true) = (samples, (0..plane.height() as i64).contains(&y)) else { continue };
-        let first = (-left).max(0).min(width as i64) as usize;
+        let begin = (-left).max(0).min(width as i64) as usize;
         let count = (plane.width() as i64 - left).max(0).min(width as i64) as usize;
         let target = plane.row_mut(y as usize);
-        for column in first..count {
+        for column in begin..count {
             target[(left + column as i64) as usize] = sample(kind, samples, column);
         }
     }
@@ -239,6 +265,11 @@ mod tests {
             let exr = ExrFile::open(Path::new("a.exr"), &file, &Budget::default()).unwrap();
             let z = exr.channels().iter().position(|c| c.name == "Z").unwrap();
             let planes = exr.read(&[z]).unwrap();
+            let parts: Vec<f32> = [0..4, 4..13]
+                .into_iter()
+                .flat_map(|rows| exr.read_rows(&[z], rows).unwrap().remove(0).into_values())
+                .collect();
+            assert_eq!(planes[0].values(), parts, "{encoding:?}");
             let expected: Vec<f32> = (0..W * H).map(|i| i as f32 * 2.0).collect();
             assert_eq!(planes[0].values(), expected, "{encoding:?}");
         }

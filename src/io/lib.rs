@@ -11,6 +11,7 @@ pub mod files;
 pub mod fs;
 pub mod inspect;
 pub mod json;
+pub mod machine;
 pub mod maps;
 pub mod open;
 pub mod picture;
@@ -22,7 +23,7 @@ pub mod replace;
 pub mod save;
 
 // The floors beneath, under their own names.
-use rilievo_engine::{Error, Remedy, Result, document, math, paint, raster, shading, surface};
+use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, surface};
 
 pub use budget::Budget;
 pub use files::{Files, RecipeFolder, UserFiles};

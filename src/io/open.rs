@@ -6,8 +6,9 @@ use super::project::{self, Archive, ProjectContents};
 use super::recipe::{self, RecipeSource};
 use super::replace::FileStamp;
 use super::{Budget, json, picture, psd};
-use crate::Result;
 use crate::document::{Content, Document, Layer, PixelLayer};
+use crate::memory;
+use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -68,14 +69,16 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let kind = FileKind::of(&bytes);
     let files = TrackedFiles::new(RecipeFolder::beside(file));
     let whole = |(document, notes)| ProjectContents { document, notes, is_whole: true };
-    let ProjectContents { document, notes, is_whole } = match kind {
-        FileKind::Project => project::read(file, &bytes, budget)?,
+    let read = || match kind {
+        FileKind::Project => project::read(file, &bytes, budget),
         FileKind::Recipe => {
-            whole(recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto: None })?)
+            recipe::read_noting(&bytes, RecipeSource { file, files: &files, budget, onto: None }).map(whole)
         }
-        FileKind::Psd => psd::read(file, &bytes, budget)?,
-        FileKind::Picture => single(file, &bytes, budget)?,
+        FileKind::Psd => psd::read(file, &bytes, budget),
+        FileKind::Picture => single(file, &bytes, budget),
     };
+    let read = memory::caught(read).map_err(|refused| Error::out_of_memory(file, refused))?;
+    let ProjectContents { document, notes, is_whole } = read?;
     let reads = [vec![file.into()], files.read_paths()].concat();
     Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes), reads })
 }
@@ -86,12 +89,12 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
     let mut stored = picture::layers(file, bytes, budget)?;
     let (several, has_whole) = (!stored.is_empty(), stored.iter().any(|layer| layer.is_whole));
     if !several {
-        let picture = picture::decode(file, bytes, budget)?;
-        stored.push(picture::LightLayer { name: String::new(), picture, is_whole: true });
+        let painted = picture::painted(file, bytes, 0, 0, budget)?;
+        stored.push(picture::LightLayer { name: String::new(), painted, is_whole: true });
     }
-    let size = stored[0].picture.size;
+    let size = stored[0].painted.size;
     let layer = |stored: picture::LightLayer| {
-        let tiles = picture::to_tiles(&stored.picture, 0, 0);
+        let tiles = stored.painted.tiles;
         let name = if stored.name.is_empty() { name.clone().into_owned() } else { stored.name };
         let content = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
         Arc::new(Layer { visible: stored.is_whole || !has_whole, ..Layer::new(name, content) })

@@ -2,8 +2,10 @@
 //! Floor 5. Not here: normal, depth and mask maps, which are data and whose colour tags are ignored (`maps`).
 
 mod light;
+mod painted;
 
 pub use light::{LightLayer, finished, layers};
+pub use painted::{Painted, painted};
 
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};
@@ -34,13 +36,14 @@ fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> 
     let size = Size::new(bitmap.image.width(), bitmap.image.height());
     let picture = match &bitmap.image {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            let texels = bitmap.image.to_rgba32f().into_raw().as_chunks().0.to_vec();
+            let texels = bitmap.image.into_rgba32f().into_raw().as_chunks().0.to_vec();
             let profiled = bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
             Picture::linear(size, profiled.unwrap_or(texels))
         }
         image => {
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
-            Picture::srgb8(size, profiled.unwrap_or_else(|| image.to_rgba8().into_raw().as_chunks().0.to_vec()))
+            let plain = || bitmap.image.into_rgba8().into_raw().as_chunks().0.to_vec();
+            Picture::srgb8(size, profiled.unwrap_or_else(plain))
         }
     };
     picture.ok_or_else(|| Error::decode(file, "the picture has no pixels"))
@@ -65,17 +68,30 @@ pub fn to_tiles(picture: &Picture, x: i32, y: i32) -> TileGrid {
 pub fn decode_coverage(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Plane<u8>> {
     let plane = if ExrFile::is_exr(bytes) {
         let exr = ExrFile::open(file, bytes, budget)?;
-        let size = exr.size();
-        let texels = light::texels(file, &exr)?;
-        Plane::from_values(size, texels.iter().map(|&t| coverage(t)).collect())
+        let mut covered = Vec::with_capacity(exr.size().area());
+        light::in_bands(file, &exr, light::chosen(file, &exr)?, |texels| {
+            covered.extend(texels.iter().map(|&t| coverage(t)));
+            Ok(())
+        })?;
+        Plane::from_values(exr.size(), covered)
     } else {
         let mut bitmap = bitmap::decode(file, bytes, budget)?;
         bitmap.image.apply_orientation(bitmap.orientation);
         let size = Size::new(bitmap.image.width(), bitmap.image.height());
-        let texels = bitmap.image.into_rgba32f();
-        Plane::from_values(size, texels.as_raw().as_chunks().0.iter().map(|&t| coverage(t)).collect())
+        let mut covered = Vec::with_capacity(size.area());
+        for strip in strips(&bitmap.image) {
+            covered.extend(strip.into_rgba32f().as_raw().as_chunks().0.iter().map(|&t| coverage(t)));
+        }
+        Plane::from_values(size, covered)
     };
     plane.ok_or_else(|| Error::decode(file, "the mask has no pixels"))
+}
+
+/// An image in strips of a few rows, so that what is made of them in between is never as large as all of it.
+fn strips(image: &DynamicImage) -> impl Iterator<Item = DynamicImage> {
+    const ROWS: u32 = 64;
+    let (w, h) = (image.width(), image.height());
+    (0..h).step_by(ROWS as usize).map(move |y| image.crop_imm(0, y, w, ROWS.min(h - y)))
 }
 
 fn coverage([r, g, b, a]: [f32; 4]) -> u8 {
@@ -151,9 +167,9 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u8; 4]>> {
             | DynamicImage::ImageLuma16(_)
             | DynamicImage::ImageLumaA16(_)
     );
-    let (layout, source) = match (profile.color_space, grey) {
-        (DataColorSpace::Rgb, false) => (Layout::Rgba, image.to_rgba16().into_raw()),
-        (DataColorSpace::Gray, true) => (Layout::GrayAlpha, image.to_luma_alpha16().into_raw()),
+    let layout = match (profile.color_space, grey) {
+        (DataColorSpace::Rgb, false) => Layout::Rgba,
+        (DataColorSpace::Gray, true) => Layout::GrayAlpha,
         _ => return None,
     };
     let target = ColorProfile::new_srgb();
@@ -169,7 +185,12 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u8; 4]>> {
         (0..3).any(|c| byte(to[c]).abs_diff(byte(from[c])) > 1)
     });
     moved.then_some(())?;
-    Some(run(&source)?.as_chunks::<4>().0.iter().map(|t| t.map(byte)).collect())
+    let mut texels = Vec::with_capacity(image.width() as usize * image.height() as usize);
+    for strip in strips(image) {
+        let source = if grey { strip.into_luma_alpha16().into_raw() } else { strip.into_rgba16().into_raw() };
+        texels.extend(run(&source)?.as_chunks::<4>().0.iter().map(|t| t.map(byte)));
+    }
+    Some(texels)
 }
 
 /// Linear light of float texels in the colours of an ICC profile; beyond white it is clipped.

@@ -7,6 +7,7 @@ use crate::{Error, Remedy};
 pub fn with_advice(error: &Error) -> String {
     let advice = match error.remedy() {
         Some(Remedy::LongerSides | Remedy::MorePixels) => ". A smaller version of the picture can be opened",
+        Some(Remedy::MoreMemory) => ". Close other drawings (File, Close) and programs",
         Some(Remedy::Background) => ". Tick “Lay it on white” in File, Export…",
         None => "",
     };

@@ -7,6 +7,7 @@ use crate::files::FilePurpose;
 use crate::io::recipe::Preset;
 use crate::io::replace::FileStamp;
 use crate::io::{maps, recovery};
+use crate::memory;
 use crate::raster::Picture;
 use crate::saving::{Pending, Saving};
 use crate::session::Edit;
@@ -156,9 +157,12 @@ impl Jobs {
         self.next += 1;
         let progress = Arc::new(Progress::default());
         let (sender, ctx, watched) = (self.sender.clone(), self.ctx.clone(), progress.clone());
+        let named = name.clone();
         let run = move || {
+            let done = memory::caught(|| work(&watched));
+            let done = done.unwrap_or_else(|refused| JobResult::Failed(Error::out_of_memory(&named, refused)));
             // The window may be gone by then.
-            let _ = sender.send((key, work(&watched)));
+            let _ = sender.send((key, done));
             ctx.request_repaint();
         };
         if let Err(error) = spawn(&name, run) {

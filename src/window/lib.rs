@@ -12,7 +12,6 @@ mod icons;
 mod jobs;
 mod keymap;
 mod keys;
-mod memory;
 mod operators;
 mod panel_layout;
 mod panels;
@@ -26,13 +25,14 @@ mod settings;
 mod swatches;
 mod theme;
 mod thumbnails;
+mod usage;
 mod widgets;
 mod window;
 
 pub use window::MainWindow;
 
 // The floors beneath, under their own names.
-use rilievo_engine::{Error, Remedy, Result, document, math, paint, raster, shading, surface};
+use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, surface};
 use rilievo_io as io;
 use rilievo_program::{session, tools};
 

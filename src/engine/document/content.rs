@@ -17,7 +17,7 @@ pub use pixels::PixelLayer;
 pub use strokes::StrokeList;
 
 use super::scale::CanvasScale;
-use super::{Live, NormalLayer};
+use super::{Live, NormalLayer, Progress};
 use crate::Result;
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Gradient, PlacedImage, Scene};
@@ -70,7 +70,8 @@ trait LayerKind {
         TileContent::Nothing
     }
     /// Computes now what many tiles would otherwise compute at the same time.
-    fn warm(&self, _scene: &Scene) {}
+    /// Ends soon once it is cancelled.
+    fn warm(&self, _scene: &Scene, _progress: &Progress) {}
     /// On a canvas of another size.
     fn scaled(&self, scale: &CanvasScale) -> Content;
     /// Elsewhere on the canvas; `None` of what has no place.
@@ -209,8 +210,8 @@ impl Content {
     pub(super) fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         self.kind().painted(scene, at)
     }
-    pub(super) fn warm(&self, scene: &Scene) {
-        self.kind().warm(scene);
+    pub(super) fn warm(&self, scene: &Scene, progress: &Progress) {
+        self.kind().warm(scene, progress);
     }
     pub(super) fn scaled(&self, scale: &CanvasScale) -> Content {
         self.kind().scaled(scale)

@@ -4,6 +4,7 @@
 use super::compose::Composer;
 use super::prepare::in_parallel;
 use super::{Document, Layer, LayerId, PreparedDocument, Progress};
+use crate::memory::filled_or_unwind;
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
@@ -15,17 +16,21 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
 
 /// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row. `None` if cancelled.
 pub fn flatten_deep(document: &Document, progress: &Progress) -> Option<Vec<[f32; 4]>> {
+    // So many tiles, in f32, are held beside the picture.
+    const AT_A_TIME: usize = 256;
     let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
-    let composed = in_parallel(&tiles, progress, |at| prepared.compose_tile(at))?;
     let canvas = document.size.rect();
-    let mut pixels = vec![[0.0; 4]; document.size.area()];
-    for (at, tile) in tiles.iter().zip(composed) {
-        let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
-        for (y, row) in (inside.y0..inside.y1).zip(tile.rows()) {
-            let start = y as usize * canvas.width() + rect.x0 as usize;
-            let onto = pixels.iter_mut().skip(start).take(inside.width());
-            onto.enumerate().for_each(|(x, pixel)| *pixel = row.pixel(x));
+    let mut pixels = filled_or_unwind(document.size.area(), [0.0; 4]);
+    for part in tiles.chunks(AT_A_TIME) {
+        let composed = in_parallel(part, progress, |at| prepared.compose_tile(at))?;
+        for (at, tile) in part.iter().zip(composed) {
+            let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
+            for (y, row) in (inside.y0..inside.y1).zip(tile.rows()) {
+                let start = y as usize * canvas.width() + rect.x0 as usize;
+                let onto = pixels.iter_mut().skip(start).take(inside.width());
+                onto.enumerate().for_each(|(x, pixel)| *pixel = row.pixel(x));
+            }
         }
     }
     Some(pixels)

@@ -98,6 +98,12 @@ impl<T> Live<T> {
         let cells = self.cells(scene);
         cells.cell(at)?.get_or_init(|| render().map(Arc::new)).clone()
     }
+    /// The tiles of the canvas that were not rendered on a scene, row by row.
+    pub fn missing(&self, scene: &Scene) -> Vec<TileAt> {
+        let cells = self.cells(scene);
+        let is_missing = |at: &TileAt| cells.cell(*at).is_some_and(|cell| cell.get().is_none());
+        TileAt::covering(scene.size.rect()).filter(is_missing).collect()
+    }
     /// Both are the same value with the same rendered tiles.
     pub fn ptr_eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.params, &other.params)

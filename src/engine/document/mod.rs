@@ -22,6 +22,7 @@ mod scenes;
 pub mod source;
 mod strokes;
 pub mod view;
+mod weight;
 
 pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use diff::diff;

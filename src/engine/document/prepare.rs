@@ -48,7 +48,7 @@ pub(super) struct Adjustment {
 impl PreparedDocument {
     /// Resolves the layers and measures what adjustments refer to; `None` if cancelled meanwhile.
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
-        let mut builder = StackBuilder::default();
+        let mut builder = StackBuilder { adjustments: Vec::new(), progress };
         let stack = builder.nodes(&document.layers, &mut document.scene(), &[]);
         let mut prepared = Self { size: document.size, stack, beneath: Vec::new() };
         for adjustment in builder.adjustments {
@@ -79,9 +79,9 @@ pub(super) fn in_parallel<T: Send>(
     tiles.par_iter().map(each).collect()
 }
 
-#[derive(Default)]
-struct StackBuilder {
+struct StackBuilder<'a> {
     adjustments: Vec<Adjustment>,
+    progress: &'a Progress,
 }
 
 /// What a clipped layer would be clipped to.
@@ -94,8 +94,8 @@ enum ClipBase {
     Shown,
 }
 
-impl StackBuilder {
-    /// `scene` is what the first layer sees, and is updated to what layers above see; `beneath` is the scope so far.
+impl StackBuilder<'_> {
+    /// `scene` is what the first layer sees and is updated to what layers above see; `beneath` is the scope so far.
     fn nodes(&mut self, layers: &[Arc<Layer>], scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<PreparedLayer> {
         let mut nodes: Vec<PreparedLayer> = Vec::new();
         let mut base = ClipBase::Nothing;
@@ -131,7 +131,7 @@ impl StackBuilder {
             Role::Groups(group) => self.children(group, scene, beneath),
             _ => Vec::new(),
         };
-        layer.content.warm(&visible_scene);
+        layer.content.warm(&visible_scene, self.progress);
         if let Role::Adjusts(scaling) = layer.content.role() {
             let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), beneath.to_vec());
             self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });

@@ -3,18 +3,21 @@
 
 mod active;
 pub(super) mod dabs;
+mod many;
 
 pub use active::{ActiveStrokes, Backdrop};
+pub use many::{are_heavy, render_tiles};
 
 use super::brush::Brush;
 use super::dab::DabScratch;
 use super::scene::Scene;
 use super::stroke_tile::StrokeBlend;
 use crate::math::{COORDINATE, Range, Rect, UNIT, Vec2, range, srgb::Color, vec2};
+use crate::memory::Kept;
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::Operator;
 use crate::surface::objects::CanvasPart;
-use dabs::StrokeDabs;
+use dabs::{StrokeDabs, TileReach};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// One point of the pen's path.
@@ -59,7 +62,8 @@ impl Sample {
     }
 }
 
-/// One stroke of a stroke layer. It is never changed, so its dabs are cached with it.
+/// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it, and its dabs as long as
+/// those of all strokes stay below a ceiling.
 #[derive(Clone)]
 pub struct Stroke {
     brush: Brush,
@@ -72,7 +76,8 @@ pub struct Stroke {
 /// What was computed of a stroke on a canvas.
 #[derive(Default)]
 struct StrokeCache {
-    stroke_dabs: Option<Arc<StrokeDabs>>,
+    stroke_dabs: Option<(Arc<StrokeDabs>, Kept)>,
+    support: Option<Arc<TileReach>>,
     /// Bounds that were known before the dabs: active strokes know theirs.
     bounds: Option<(Scene, Rect)>,
 }
@@ -100,31 +105,62 @@ impl Stroke {
     /// The pixels that the stroke can touch on a canvas, in whole tiles; never fewer.
     pub fn bounds(&self, scene: &Scene) -> Rect {
         let known = self.found().bounds.as_ref().filter(|(on, _)| on.is_same(scene)).map(|(_, bounds)| *bounds);
-        known.unwrap_or_else(|| self.stroke_dabs(scene).bounds()).intersect(scene.size.rect())
+        known.unwrap_or_else(|| self.support(scene).bounds()).intersect(scene.size.rect())
     }
     /// Whether the stroke may paint on a tile.
     pub fn touches(&self, scene: &Scene, at: TileAt) -> bool {
-        self.stroke_dabs(scene).touches(at)
+        self.support(scene).touches(at)
     }
-    /// The stroke's dabs on a canvas, computed once.
+    /// The tiles of a canvas that the stroke touches, computed once.
+    fn support(&self, scene: &Scene) -> Arc<TileReach> {
+        if let Some(support) = self.found().support.as_ref().filter(|support| support.is_on(scene)) {
+            return support.clone();
+        }
+        let stroke_dabs = self.stroke_dabs(scene);
+        let support = self.found().support.clone().filter(|support| support.is_on(scene));
+        support.unwrap_or_else(|| Arc::new(stroke_dabs.support()))
+    }
+    /// The stroke's dabs on a canvas, computed again where they were not cached.
     fn stroke_dabs(&self, scene: &Scene) -> Arc<StrokeDabs> {
-        if let Some(stroke_dabs) = self.found().stroke_dabs.as_ref().filter(|stroke_dabs| stroke_dabs.is_on(scene)) {
+        if let Some((stroke_dabs, _)) =
+            self.found().stroke_dabs.as_ref().filter(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
+        {
             return stroke_dabs.clone();
         }
         // Without the lock: two threads may both compute them; the results are equal.
         let stroke_dabs = Arc::new(StrokeDabs::of(self, scene));
-        self.found().stroke_dabs = Some(stroke_dabs.clone());
+        self.found().keep(&stroke_dabs);
         stroke_dabs
+    }
+    /// Whether its dabs on a canvas are kept.
+    fn is_laid(&self, scene: &Scene) -> bool {
+        self.found().stroke_dabs.as_ref().is_some_and(|(stroke_dabs, _)| stroke_dabs.is_on(scene))
     }
     fn found(&self) -> MutexGuard<'_, StrokeCache> {
         self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
+impl StrokeCache {
+    /// Keeps where a stroke lies, and its dabs if there is room.
+    fn keep(&mut self, stroke_dabs: &Arc<StrokeDabs>) {
+        // Gives back what it held before it asks.
+        self.stroke_dabs = None;
+        self.support = Some(Arc::new(stroke_dabs.support()));
+        self.stroke_dabs = Kept::try_new(stroke_dabs.bytes()).map(|kept| (stroke_dabs.clone(), kept));
+    }
+}
+
 impl Stroke {
-    /// Paints the stroke over a tile. Flow applies per dab; opacity caps the whole stroke.
-    fn paint(&self, scene: &Scene, at: TileAt, pixels: &mut PlanarTile, scratch: &mut DabScratch) {
-        let stroke_dabs = self.stroke_dabs(scene);
+    /// Paints the stroke, whose dabs are given, over a tile. Flow applies per dab; opacity caps the whole stroke.
+    fn paint(
+        &self,
+        stroke_dabs: &StrokeDabs,
+        scene: &Scene,
+        at: TileAt,
+        pixels: &mut PlanarTile,
+        scratch: &mut DabScratch,
+    ) {
         let mut stroke_tile = stroke_dabs.stroke_tile();
         let grain = stroke_dabs.grain(at);
         for dab in stroke_dabs.on_tile(at) {
@@ -155,7 +191,7 @@ fn pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<PlanarTi
     let mut here = strokes.iter().filter(|s| s.touches(scene, at)).peekable();
     here.peek()?;
     let (mut pixels, mut scratch) = (PlanarTile::transparent(), DabScratch::default());
-    here.for_each(|stroke| stroke.paint(scene, at, &mut pixels, &mut scratch));
+    here.for_each(|stroke| stroke.paint(&stroke.stroke_dabs(scene), scene, at, &mut pixels, &mut scratch));
     Some(pixels)
 }
 

@@ -80,6 +80,25 @@ impl TileGrid {
         }
         *self = Self { extent, tiles: Arc::new(tiles) };
     }
+    /// Takes in the tiles of a grid that paints no pixel that this one paints.
+    pub fn join(&mut self, other: &TileGrid) {
+        self.reserve(other.bounds());
+        for (at, tile) in other.iter() {
+            let joined = match self.tile(at) {
+                None => Some(tile.clone()),
+                Some(own) => {
+                    let both = own.bytes().iter().zip(tile.bytes()).map(|(a, b)| a | b).collect();
+                    Tile::from_bytes(both).map(Arc::new)
+                }
+            };
+            self.set(at, joined);
+        }
+    }
+    /// What it takes, were nothing of it shared.
+    pub fn bytes(&self) -> usize {
+        let held = self.tiles.iter().flatten().count();
+        held * TILE * TILE * 4 + self.tiles.len() * size_of::<Option<Arc<Tile>>>()
+    }
     /// The tiles that hold something, row by row.
     pub fn iter(&self) -> impl Iterator<Item = (TileAt, &Arc<Tile>)> {
         let e = self.extent;
@@ -214,6 +233,18 @@ mod tests {
         let grid = TileGrid::from_straight_rgba(&rgba, w, h, -5, 3);
         assert_eq!(grid.to_straight_rgba(Rect::new(-5, 3, 125, 73)), rgba);
         assert_eq!(grid.pixel(-6, 3), [0; 4]);
+    }
+    #[test]
+    fn a_picture_joined_from_strips_is_the_picture() {
+        let rgba: Vec<u8> = (0..130 * 90 * 4).map(|i| (i % 249) as u8 | 1).collect();
+        let whole = TileGrid::from_straight_rgba(&rgba, 130, 90, -5, 3);
+        let mut joined = TileGrid::default();
+        for (i, strip) in rgba.chunks(130 * 4 * 25).enumerate() {
+            joined.join(&TileGrid::from_straight_rgba(strip, 130, strip.len() / 520, -5, 3 + 25 * i as i32));
+        }
+        assert_eq!(joined.bounds(), whole.bounds());
+        assert!(whole.iter().all(|(at, tile)| joined.tile(at).unwrap().bytes() == tile.bytes()));
+        assert_eq!(joined.bytes(), 6 * (16384 + 8));
     }
     #[test]
     fn straight_and_premultiplied_bytes_are_rounded_to_nearest() {

@@ -2,6 +2,7 @@
 //! Floor 1. Not for layers, which are sparse tiles (`grid`).
 
 use crate::math::Size;
+use crate::memory::filled_or_unwind;
 
 /// `size.area()` values; pixel (x, y) is at index `y · width + x`.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Plane<T> {
 
 impl<T: Copy> Plane<T> {
     pub fn filled(size: Size, value: T) -> Self {
-        Self { size, values: vec![value; size.area()] }
+        Self { size, values: filled_or_unwind(size.area(), value) }
     }
     /// `None` where `values` does not hold exactly one value per pixel.
     pub fn from_values(size: Size, values: Vec<T>) -> Option<Self> {
@@ -25,13 +26,27 @@ impl<T: Copy> Plane<T> {
     {
         use rayon::prelude::*;
         let width = size.width.max(1) as usize;
-        let mut values = vec![T::default(); size.area()];
+        let mut values = filled_or_unwind(size.area(), T::default());
         values.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
             for (x, v) in row.iter_mut().enumerate() {
                 *v = value(x, y);
             }
         });
         Self { size, values }
+    }
+    /// Computes every pixel anew from its column, row and value, rows in parallel, in the same memory.
+    pub fn updated(mut self, value: impl Fn(usize, usize, T) -> T + Sync) -> Self
+    where
+        T: Send + Sync,
+    {
+        use rayon::prelude::*;
+        let width = self.size.width.max(1) as usize;
+        self.values.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            for (x, v) in row.iter_mut().enumerate() {
+                *v = value(x, y, *v);
+            }
+        });
+        self
     }
     pub fn map<U: Copy + Send + Sync + Default>(&self, f: impl Fn(T) -> U + Sync) -> Plane<U>
     where

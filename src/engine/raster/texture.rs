@@ -3,6 +3,7 @@
 
 use super::picture::{Picture, Texels};
 use crate::math::{Size, srgb};
+use rayon::prelude::*;
 
 /// What a lookup beyond the picture's border finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -57,7 +58,7 @@ impl Texture {
         let texels = match &picture.texels {
             Texels::Srgb8(t) => t.iter().map(|&[r, g, b, a]| premultiplied_u8([r, g, b, a])).collect(),
             Texels::Linear(t) => t
-                .iter()
+                .par_iter()
                 .map(|&[r, g, b, a]| {
                     let e = |v: f32| srgb::quantise(srgb::encode(v).min(1.0) * a);
                     [e(r), e(g), e(b), srgb::quantise(a)]

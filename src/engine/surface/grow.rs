@@ -46,6 +46,13 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     near.values().iter().all(|&i| i != NONE).then_some(near)
 }
 
+/// Gives every pixel the value of its nearest valid one, in place: valid pixels are their own.
+pub fn fill<T: Copy>(values: &mut Plane<T>, nearest: &Plane<u32>) {
+    for i in 0..nearest.values().len() {
+        values.values_mut()[i] = values.values()[nearest.values()[i] as usize];
+    }
+}
+
 /// Removes the coverage of pixels without valid values, except within two pixels of a valid one at a partly covered
 /// rim.
 pub fn punch_holes(coverage: &mut Plane<u8>, valid: &Plane<bool>) {

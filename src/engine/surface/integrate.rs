@@ -2,11 +2,19 @@
 //! by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. Normals do not say
 //! how far apart two pieces of surface are across an occluding contour; that stays unknown.
 
+mod large;
 mod multigrid;
+mod slopes;
 
-use crate::math::{Vec3, vec2};
+use crate::math::Vec3;
+use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
 use multigrid::SpringGrid;
+use slopes::Slopes;
+
+/// Up to so many pixels every one of them is an unknown of the solver, which holds some ten planes. Beyond, blocks of 2 × 2 are,
+/// and their pixels are relaxed (`large`): 4096².
+const WHOLE_PX: usize = 1 << 24;
 
 /// Depth made from normals.
 pub struct IntegratedDepth {
@@ -22,65 +30,44 @@ pub struct IntegratedDepth {
 /// and w = ((n_z,i + n_z,j)/2)² gives more weight to what faces the viewer. Separate pieces are each centred on the
 /// same depth.
 pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
-    let size = normals.size();
-    let (w, h) = (size.width as usize, size.height as usize);
-    // Slopes beyond 20 px a px are noise at the rim.
-    const STEEPEST: f32 = 0.05;
-    let edge = |a: (usize, usize), b: (usize, usize), axis: usize| {
-        if b.0 >= w || b.1 >= h || !inside.at(a.0, a.1) || !inside.at(b.0, b.1) {
-            return (0.0, 0.0);
-        }
-        let (na, nb) = (normals.at(a.0, a.1), normals.at(b.0, b.1));
-        let along = vec2(na.x + nb.x, -na.y - nb.y)[axis];
-        let facing = (na.z + nb.z) * 0.5;
-        let weight = facing.max(STEEPEST).powi(2);
-        (weight, along * 0.5 / facing.max(STEEPEST))
-    };
-    let right = Plane::from_fn(size, |x, y| edge((x, y), (x + 1, y), 0));
-    let down = Plane::from_fn(size, |x, y| edge((x, y), (x, y + 1), 1));
-    // The right-hand side of the normal equations: what flows out of each pixel.
-    let source = Plane::from_fn(size, |x, y| {
-        let mut b = 0.0;
-        let flow = |(weight, slope): (f32, f32)| weight * slope;
-        b -= flow(right.at(x, y)) + flow(down.at(x, y));
-        if x > 0 {
-            b += flow(right.at(x - 1, y));
-        }
-        if y > 0 {
-            b += flow(down.at(x, y - 1));
-        }
-        b
-    });
-    let grid = SpringGrid::new(
-        w,
-        h,
-        right.values().iter().map(|e| e.0).collect(),
-        down.values().iter().map(|e| e.0).collect(),
-    );
-    let mut heights = multigrid::solve(grid, source.values());
+    let slopes = Slopes { normals, inside };
+    let mut heights = if inside.values().len() <= WHOLE_PX { whole(&slopes) } else { large::solve(&slopes) };
     centre_pieces(&mut heights, inside);
     let held = || heights.iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
     let (near, far) =
         held().fold(None, |r: Option<(f32, f32)>, z| Some(r.map_or((z, z), |(a, b)| (a.min(z), b.max(z)))))?;
     let range_px = if far > near { far - near } else { 1.0 };
-    let depth =
-        Plane::from_fn(size, |x, y| if inside.at(x, y) { (heights[y * w + x] - near) / range_px } else { f32::NAN });
+    let depth = Plane::from_values(normals.size(), heights)?;
+    let depth = depth.updated(|x, y, z| if inside.at(x, y) { (z - near) / range_px } else { f32::NAN });
     Some(IntegratedDepth { depth, range_px })
+}
+
+/// The heights of all pixels at once.
+fn whole(slopes: &Slopes) -> Vec<f32> {
+    let (w, h) = (slopes.inside.width(), slopes.inside.height());
+    let size = slopes.inside.size();
+    let right = Plane::from_fn(size, |x, y| slopes.edge((x, y), 0).0).into_values();
+    let down = Plane::from_fn(size, |x, y| slopes.edge((x, y), 1).0).into_values();
+    let source = Plane::from_fn(size, |x, y| slopes.source(x, y));
+    multigrid::solve(&multigrid::levels(SpringGrid::new(w, h, right, down)), source.values(), multigrid::EXACT)
 }
 
 /// Gives every connected piece the mean 0: the equations leave a free constant per piece.
 fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
     let (w, n) = (inside.width(), heights.len());
     let mut seen: Vec<bool> = inside.values().iter().map(|i| !i).collect();
+    // Room for the largest piece there can be, so that it does not grow in steps; 32 bits count the pixels of any map.
+    let mut piece: Vec<u32> = Vec::with_capacity(seen.iter().filter(|seen| !**seen).count());
     for start in 0..n {
         if seen[start] {
             continue;
         }
         seen[start] = true;
-        let mut piece = vec![start];
+        piece.clear();
+        piece.push(start as u32);
         let mut next = 0;
         while next < piece.len() {
-            let i = piece[next];
+            let i = piece[next] as usize;
             next += 1;
             let x = i % w;
             let near =
@@ -88,12 +75,12 @@ fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
             for (there, j) in near {
                 if there && !seen[j] {
                     seen[j] = true;
-                    piece.push(j);
+                    piece.push(j as u32);
                 }
             }
         }
-        let mean = piece.iter().map(|&i| f64::from(heights[i])).sum::<f64>() / piece.len() as f64;
-        piece.iter().for_each(|&i| heights[i] -= mean as f32);
+        let mean = piece.iter().map(|&i| f64::from(heights[i as usize])).sum::<f64>() / piece.len() as f64;
+        piece.iter().for_each(|&i| heights[i as usize] -= mean as f32);
     }
 }
 
@@ -101,6 +88,34 @@ fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
 mod tests {
     use super::*;
     use crate::math::{Size, vec3};
+
+    /// A ball and a slope beside it that do not touch, noise on both.
+    fn pieces(size: Size) -> (Plane<Vec3>, Plane<bool>) {
+        let r = size.longer_side() * 0.3;
+        let at = |x: usize, y: usize| (x as f32 - r - 4.0, y as f32 - size.height as f32 * 0.5);
+        let normals = Plane::from_fn(size, |x, y| {
+            let ((dx, dy), noise) = (at(x, y), 0.1 * ((x * 7 + y * 13) % 5) as f32 - 0.2);
+            let rest = r * r - dx * dx - dy * dy;
+            let ball = vec3(dx + noise, -dy, rest.max(0.0).sqrt().max(0.05 * r));
+            if rest > 0.0 { ball.normalize_or(Vec3::Z) } else { vec3(0.3, 0.2 + noise, 1.0).normalize_or(Vec3::Z) }
+        });
+        let inside = Plane::from_fn(size, |x, y| {
+            let (dx, dy) = at(x, y);
+            dx.hypot(dy) < r || (dx > r * 1.2 && (x + y) % 61 != 0)
+        });
+        (normals, inside)
+    }
+    #[test]
+    fn blocks_lead_to_the_heights_that_all_pixels_at_once_have() {
+        let (normals, inside) = pieces(Size::new(301, 230));
+        let slopes = Slopes { normals: &normals, inside: &inside };
+        let (mut all, mut blocks) = (whole(&slopes), large::solve(&slopes));
+        [&mut all, &mut blocks].into_iter().for_each(|heights| centre_pieces(heights, &inside));
+        let range = all.iter().copied().fold(0.0, f32::max) - all.iter().copied().fold(0.0, f32::min);
+        let off = all.iter().zip(&blocks).zip(inside.values()).filter(|(_, inside)| **inside);
+        let worst = off.map(|((a, b), _)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(worst < 2e-3 * range, "{worst} px of {range}");
+    }
 
     #[test]
     fn a_sphere_gets_its_depth_back() {

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
+use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
 /// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
@@ -57,31 +58,50 @@ pub struct Surface {
     objects: OnceLock<Objects>,
 }
 
+/// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never stand whole
+/// beside each other.
+fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
+    const AT_A_TIME: usize = 1 << 22;
+    let size = normals.size();
+    let mut planes = [(); 3].map(|()| Plane::filled(size, 0.0));
+    let mut left = normals.into_values();
+    while !left.is_empty() {
+        let start = (left.len() - 1) / AT_A_TIME * AT_A_TIME;
+        let [x, y, z] = planes.each_mut().map(|plane| plane.values_mut()[start..].par_iter_mut());
+        left[start..].par_iter().zip(x).zip(y).zip(z).for_each(|(((n, x), y), z)| {
+            let n = n.normalize_or(Vec3::Z);
+            (*x, *y, *z) = (n.x, -n.y, n.z);
+        });
+        left.truncate(start);
+        left.shrink_to_fit();
+    }
+    planes
+}
+
 impl Surface {
     /// Normalises the normals, drops what is not finite, grows the valid values outward and finds the depth jumps.
     pub fn new(maps: Maps) -> Result<Self, SurfaceError> {
-        let size = maps.normals.size();
-        for (other, s) in [("depth", maps.depth.size()), ("mask", maps.coverage.size())] {
+        let Maps { mut normals, mut depth, mut coverage } = maps;
+        let size = normals.size();
+        for (other, s) in [("depth", depth.size()), ("mask", coverage.size())] {
             if s != size {
                 return Err(SurfaceError::SizesDiffer { normals: size, other, size: s });
             }
         }
-        let mut coverage = maps.coverage;
         let valid = Plane::from_fn(size, |x, y| {
-            let n = maps.normals.at(x, y);
-            coverage.at(x, y) > 0 && maps.depth.at(x, y).is_finite() && n.is_finite() && n.length() > 1e-6
+            let n = normals.at(x, y);
+            coverage.at(x, y) > 0 && depth.at(x, y).is_finite() && n.is_finite() && n.length() > 1e-6
         });
         // A partly covered pixel at the rim without a normal takes its neighbour's; further inside it is a hole.
         grow::punch_holes(&mut coverage, &valid);
-        let nearest = grow::nearest(&valid).ok_or(SurfaceError::Empty)?;
-        let unit = |x: usize, y: usize| {
-            let n = maps.normals.values()[nearest.at(x, y) as usize].normalize_or(Vec3::Z);
-            vec3(n.x, -n.y, n.z)
-        };
-        let nbar_x = Plane::from_fn(size, |x, y| unit(x, y).x);
-        let nbar_y = Plane::from_fn(size, |x, y| unit(x, y).y);
-        let nz = Plane::from_fn(size, |x, y| unit(x, y).z);
-        let depth = nearest.map(|i| maps.depth.values()[i as usize].clamp(0.0, 1.0));
+        if valid.values().iter().any(|valid| !valid) {
+            let nearest = grow::nearest(&valid).ok_or(SurfaceError::Empty)?;
+            grow::fill(&mut normals, &nearest);
+            grow::fill(&mut depth, &nearest);
+        }
+        drop(valid);
+        let depth = depth.updated(|_, _, z| z.clamp(0.0, 1.0));
+        let [nbar_x, nbar_y, nz] = apart(normals);
         let depth_range_px = links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
         let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
         Ok(Self {

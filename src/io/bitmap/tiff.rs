@@ -4,7 +4,7 @@
 
 mod sample;
 
-use super::{Bitmap, plausible};
+use super::{Bitmap, room, weight};
 use crate::Budget;
 use crate::math::Size;
 use crate::{Error, Remedy, Result};
@@ -82,9 +82,14 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let (width, height) = decoder.dimensions().map_err(failed)?;
     let size = budget.size(file, width.into(), height.into())?;
     let color = decoder.colortype().map_err(failed)?;
-    let promised = size.area() as u64 * samples(color) as u64 * u64::from(color.bit_depth()).div_ceil(8);
-    plausible(file, size, promised, bytes.len())?;
     let compression = decoder.find_tag_unsigned::<u16>(Tag::Compression).ok().flatten();
+    let values = size.area() as u64 * samples(color) as u64;
+    let is_fax = compression.is_some_and(|compression| FAX.contains(&compression));
+    let row_bits =
+        if is_fax { 1 } else { u64::from(color.bit_depth()) * samples(color) as u64 * u64::from(size.width) };
+    weight::plausible(file, size, row_bits.saturating_mul(size.height.into()), bytes.len())?;
+    // What is decoded, those samples sorted, and the picture made of them.
+    room(file, size, values.saturating_mul(2 * u64::from(color.bit_depth()).div_ceil(8)), budget)?;
     if compression == Some(JPEG) && claims_more(bytes, size) {
         return Err(Error::too_large(file, "a JPEG within the TIFF claims more pixels than the picture has"));
     }
@@ -107,6 +112,8 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
 }
 
+/// Compressions of fax machines: a white row takes a bit.
+const FAX: std::ops::RangeInclusive<u16> = 2..=4;
 /// The compression that is a JPEG in each strip or tile.
 const JPEG: u16 = 7;
 /// Pixels of a JPEG within that are always allowed for: tiles may be larger than the picture.

@@ -30,7 +30,7 @@ pub fn encode(
     match format {
         ExportFormat::Png => {
             let values: Vec<u8> = part.iter().flat_map(straight16).flat_map(u16::to_be_bytes).collect();
-            png(&values, size, png::BitDepth::Sixteen, options).map_err(|e| Error::unsupported(file, e))
+            png([values].into_iter(), size, png::BitDepth::Sixteen, options).map_err(|e| Error::unsupported(file, e))
         }
         ExportFormat::Tiff => {
             let values = part.iter().flat_map(straight16).collect();

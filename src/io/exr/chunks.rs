@@ -21,6 +21,22 @@ pub struct Chunk {
     bytes: Range<usize>,
 }
 
+impl Chunk {
+    /// The rows of the display window that it holds some of, those of a whole block.
+    pub fn rows(&self, header: &Header) -> Range<i64> {
+        let (data, display) = (header.own_attributes.layer_position, header.shared_attributes.display_window.position);
+        let (top, rows) = match (self.place, header.blocks) {
+            (ChunkPlace::Rows { y }, _) => (i64::from(y), header.compression.scan_lines_per_block()),
+            (ChunkPlace::Tile { y, .. }, BlockDescription::Tiles(tiles)) => {
+                (i64::from(data.y()) + (y * tiles.tile_size.y()) as i64, tiles.tile_size.y())
+            }
+            (ChunkPlace::Tile { .. }, BlockDescription::ScanLines) => (i64::from(data.y()), header.layer_size.y()),
+        };
+        let top = top - i64::from(display.y());
+        top..top + rows as i64
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 enum ChunkPlace {
     /// The top row, in the file's own coordinates.

@@ -10,13 +10,18 @@ use std::collections::HashMap;
 /// fills a third of it.
 pub fn constant(stored: &StoredMap, coverage: Option<&Plane<u8>>) -> Option<[f32; 4]> {
     let size = stored.size;
-    let outside: Vec<usize> = match coverage {
-        Some(c) => (0..size.area()).filter(|&i| c.values()[i] == 0).collect(),
-        None => border(size),
-    };
     // A value that fills a third of the outside fills a third of a spread sample of it.
-    let step = (outside.len() / 50_000).max(1);
-    let outside: Vec<usize> = outside.into_iter().step_by(step).collect();
+    let outside: Vec<usize> = match coverage {
+        Some(c) => {
+            let bare = c.values().iter().filter(|c| **c == 0).count();
+            (0..size.area()).filter(|&i| c.values()[i] == 0).step_by((bare / 50_000).max(1)).collect()
+        }
+        None => {
+            let all = border(size);
+            let step = (all.len() / 50_000).max(1);
+            all.into_iter().step_by(step).collect()
+        }
+    };
     let mut counts: HashMap<[u32; 4], usize> = HashMap::new();
     for &i in &outside {
         // Adding 0 makes −0 and 0 one key.
@@ -46,28 +51,34 @@ pub fn same(a: [f32; 4], b: [f32; 4], lossy: bool) -> bool {
 pub fn joined_to_border(size: Size, is: impl Fn(usize) -> bool) -> Plane<bool> {
     let (w, h) = (size.width as usize, size.height as usize);
     let mut found = Plane::filled(size, false);
-    let mut queue: Vec<usize> = border(size).into_iter().filter(|&i| is(i)).collect();
-    queue.iter().for_each(|&i| found.values_mut()[i] = true);
-    while let Some(i) = queue.pop() {
-        let (x, y) = (i % w, i / w);
+    // No file has more pixels than 32 bits count.
+    let mut front: Vec<u32> = border(size).into_iter().filter(|&i| is(i)).map(|i| i as u32).collect();
+    front.iter().for_each(|&i| found.values_mut()[i as usize] = true);
+    // Ring after ring, so that no more than two rings are held.
+    while !front.is_empty() {
+        let mut next = Vec::new();
         let mut visit = |j: usize| {
             if !found.values()[j] && is(j) {
                 found.values_mut()[j] = true;
-                queue.push(j);
+                next.push(j as u32);
             }
         };
-        if x > 0 {
-            visit(i - 1);
+        for i in front.into_iter().map(|i| i as usize) {
+            let (x, y) = (i % w, i / w);
+            if x > 0 {
+                visit(i - 1);
+            }
+            if x + 1 < w {
+                visit(i + 1);
+            }
+            if y > 0 {
+                visit(i - w);
+            }
+            if y + 1 < h {
+                visit(i + w);
+            }
         }
-        if x + 1 < w {
-            visit(i + 1);
-        }
-        if y > 0 {
-            visit(i - w);
-        }
-        if y + 1 < h {
-            visit(i + w);
-        }
+        front = next;
     }
     found
 }

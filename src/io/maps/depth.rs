@@ -35,10 +35,10 @@ pub fn read(
         let reason = "the picture is coloured; depth is one grey channel (name one with “channel”)";
         return Err(Error::decode(&stored.file, reason));
     }
-    let plane = &stored.channels[0];
+    let channel = &stored.channels[0];
     let covered = |i: usize| coverage.is_none_or(|c| c.values()[i] > 0);
     let edge = background::constant(stored, coverage).map(|t| t[0]);
-    let mut values = plane.map(|v| if v.is_finite() && v.abs() < FAR_AWAY { v } else { f32::NAN });
+    let mut values = channel.map(|v| if v.is_finite() && v.abs() < FAR_AWAY { v } else { f32::NAN });
     let stray = |v: f32| overrides.background.iter().any(|b| (v - b).abs() <= 1e-6 * b.abs().max(1.0));
     values.values_mut().iter_mut().filter(|v| stray(**v)).for_each(|v| *v = f32::NAN);
     let mut sentinels = Vec::new();
@@ -55,7 +55,8 @@ pub fn read(
     for s in &sentinels {
         findings.note(format!("{s} is no depth but background"));
     }
-    let infinite = plane.values().iter().any(|v| *v >= FAR_AWAY);
+    let area = stored.size.area();
+    let infinite = (0..area).any(|i| channel.at(i) >= FAR_AWAY);
     let outliers = sentinels.iter().filter(|s| s.abs() > 1000.0 * (high - low).max(1e-6));
     let (above, below) = (infinite || outliers.clone().any(|s| *s > high), outliers.clone().any(|s| *s < low));
     // The farthest value marks the background of metric depth; of camera z, which is negative, the lowest.
@@ -72,8 +73,7 @@ pub fn read(
         _ => 0.0,
     };
     let has_background = !sentinels.is_empty()
-        || values.values().iter().zip(plane.values()).any(|(v, p)| v.is_nan() && !p.is_nan())
-        || plane.values().iter().any(|v| v.is_nan());
+        || (0..area).any(|i| values.values()[i].is_nan() != channel.at(i).is_nan() || channel.at(i).is_nan());
     Ok(RawDepth { values, has_background, near_high, near_high_leaning: leaning })
 }
 
@@ -141,7 +141,7 @@ pub fn near_override(overrides: &DepthConvention, raw: &RawDepth) -> Option<bool
 /// Turns stored numbers into planar depth that grows away from the viewer, in any unit; NaN stays.
 pub fn planar(
     stored: &StoredMap,
-    values: &Plane<f32>,
+    values: Plane<f32>,
     overrides: &DepthConvention,
     near_high: bool,
     encoding: DepthEncoding,
@@ -150,8 +150,7 @@ pub fn planar(
     let fov = overrides.fov_degrees.or(stored.fov_degrees);
     let focal_px = fov.map(|f| size.width as f32 * 0.5 / (f.to_radians() * 0.5).tan());
     let centre = size.center();
-    Plane::from_fn(size, |x, y| {
-        let v = values.at(x, y);
+    values.updated(|x, y, v| {
         match encoding {
             DepthEncoding::Inverse if v.abs() < 1e-12 => f32::NAN,
             // 1/z falls with distance; where low was said to be near, the numbers are negative camera z inverted.
@@ -217,7 +216,7 @@ pub struct NormalizedDepth {
 /// * `inside`: pixels with a depth of their own. Partly covered ones that hold the background's value join the range
 ///   where that value carries on from the surface's (a map whose far end is the background's), and get no depth.
 pub fn normalise(
-    planar: &Plane<f32>,
+    planar: Plane<f32>,
     inside: &Plane<bool>,
     coverage: &Plane<u8>,
     findings: &mut Findings,
@@ -228,6 +227,7 @@ pub fn normalise(
     let (mut near, mut far) = (*held.first()?, *held.last()?);
     let percentile = |p: f64| held[((held.len() - 1) as f64 * p).round() as usize];
     let (low, high) = (percentile(0.001), percentile(0.999));
+    drop(held);
     if high - low < 0.5 * (far - near) && high > low {
         findings.note(format!("depth was clipped to {low} … {high}: a few stray pixels reach {near} … {far}"));
         (near, far) = (low, high);
@@ -242,8 +242,7 @@ pub fn normalise(
         findings.note("depth is the same everywhere; D_p will bend nothing");
     }
     let scale = if span > 0.0 { 1.0 / span } else { 0.0 };
-    let depth = Plane::from_fn(planar.size(), |x, y| {
-        let v = planar.at(x, y);
+    let depth = planar.updated(|x, y, v| {
         if inside.at(x, y) && v.is_finite() { ((v - near) * scale).max(0.0).min(1.0) } else { f32::NAN }
     });
     Some(NormalizedDepth { depth, near, far })

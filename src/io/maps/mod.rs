@@ -3,6 +3,7 @@
 //! confidence.
 
 mod background;
+mod channel;
 mod depth;
 pub mod detail;
 mod encoding;
@@ -24,6 +25,7 @@ use super::files::CachedFiles;
 use super::{Budget, Files, picture};
 use crate::document::source::{DepthConvention, DepthEncoding, MapSource, MaskSource, NormalConvention, SurfaceSource};
 use crate::math::{Size, Vec3, srgb};
+use crate::memory;
 use crate::raster::{Asset, Plane};
 use crate::surface::{Maps, Surface, differentiate, integrate};
 use crate::{Error, Result};
@@ -43,6 +45,11 @@ pub struct ImportedSurface {
 /// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there
 /// is no surface at all. Where one of normals and depth is missing it is derived from the other, with a note.
 pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<ImportedSurface> {
+    let read = memory::caught(|| read(source, files, budget));
+    read.map_err(|refused| Error::out_of_memory(files.path(""), refused))?
+}
+
+fn read(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<ImportedSurface> {
     let files = &CachedFiles::new(files);
     let mut findings = Findings::default();
     let normal = source.normal.as_ref().map(|m| load(m, MapRole::Normals, files, budget)).transpose()?;
@@ -61,8 +68,10 @@ pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Res
     same_size(&file, sizes)?;
     let overrides = ConventionOverrides::of(source);
     let coverage = mask.map(|(_, m)| m).or_else(|| alpha(&maps, &overrides, &mut findings));
-    let maps = understand(normal.as_ref(), depth.as_ref(), coverage, &overrides, &mut findings)?;
-    let surface = Surface::new(maps).map_err(|e| Error::decode(file, e))?;
+    let understood = understand(normal.as_ref(), depth.as_ref(), coverage, &overrides, &mut findings)?;
+    // What is left to do takes the most memory; what the files store is not asked any more.
+    drop((normal, depth));
+    let surface = Surface::new(complete(understood, &overrides, &mut findings)).map_err(|e| Error::decode(file, e))?;
     Ok(ImportedSurface { surface, findings, files: files.assets() })
 }
 
@@ -152,6 +161,20 @@ fn alpha(maps: &[&StoredMap], overrides: &ConventionOverrides, findings: &mut Fi
     Some(alpha.map(srgb::quantise))
 }
 
+/// Maps in the program's convention, one of which may be missing.
+struct Understood {
+    /// Unit; zero where there are none.
+    normals: Option<Plane<Vec3>>,
+    /// Grows away from the viewer, in any unit.
+    planar: Option<Plane<f32>>,
+    /// Pixels of the surface with numbers of their own.
+    inside: Plane<bool>,
+    coverage: Plane<u8>,
+    /// Something tells the coverage beside the numbers.
+    is_masked: bool,
+    fov_degrees: Option<f32>,
+}
+
 /// Converts loaded maps to the program's convention.
 fn understand(
     normal: Option<&StoredMap>,
@@ -159,7 +182,7 @@ fn understand(
     given_coverage: Option<Plane<u8>>,
     overrides: &ConventionOverrides,
     findings: &mut Findings,
-) -> Result<Maps> {
+) -> Result<Understood> {
     let raw_depth = depth.map(|d| depth::read(d, &overrides.depth, given_coverage.as_ref(), findings)).transpose()?;
     let bare = |i: usize| raw_depth.as_ref().is_some_and(|d| d.values.values()[i].is_nan());
     let raw_normals =
@@ -192,7 +215,7 @@ fn understand(
     let judged = Plane::from_fn(size, |x, y| inside.at(x, y) && !fills(y * w + x));
     let enough = judged.values().iter().filter(|j| **j).count() >= 16;
     let judged = if enough { &judged } else { &inside };
-    let (mut unit, planar) = join(normal, depth, raw_normals.as_ref(), raw_depth.as_ref(), judged, overrides, findings);
+    let (mut unit, planar) = join(normal, depth, raw_normals, raw_depth, judged, overrides, findings);
     let turned_away =
         (0..size.area()).find(|&i| fills(i)).zip(unit.as_ref()).is_some_and(|(i, n)| n.values()[i].z < -0.5);
     if turned_away && enough {
@@ -204,31 +227,28 @@ fn understand(
     {
         steps::snap_flat(normals);
     }
-    let inside = Plane::from_fn(size, |x, y| inside.at(x, y) && coverage.at(x, y) > 0);
-    let normals = unit.map(|n| Plane::from_fn(size, |x, y| if inside.at(x, y) { n.at(x, y) } else { Vec3::ZERO }));
-    let (normals, depth) = complete(normals, planar, depth, &inside, &coverage, overrides, findings);
-    if explicit {
-        drop_unknown(&mut coverage, &normals, findings);
-    }
-    Ok(Maps { normals, depth, coverage })
+    let inside = inside.updated(|x, y, is| is && coverage.at(x, y) > 0);
+    let normals = unit.map(|n| n.updated(|x, y, n| if inside.at(x, y) { n } else { Vec3::ZERO }));
+    let fov_degrees = overrides.depth.fov_degrees.or(depth.and_then(|s| s.fov_degrees));
+    Ok(Understood { normals, planar, inside, coverage, is_masked: explicit, fov_degrees })
 }
 
 /// Settles axes and polarity together; unit normals and planar depth that grows away from the viewer.
 fn join(
     normal: Option<&StoredMap>,
     depth: Option<&StoredMap>,
-    raw_normals: Option<&normals::RawNormals>,
-    raw_depth: Option<&depth::RawDepth>,
+    raw_normals: Option<normals::RawNormals>,
+    raw_depth: Option<depth::RawDepth>,
     inside: &Plane<bool>,
     overrides: &ConventionOverrides,
     findings: &mut Findings,
 ) -> (Option<Plane<Vec3>>, Option<Plane<f32>>) {
-    let near_override = raw_depth.and_then(|d| depth::near_override(&overrides.depth, d));
-    let leaning = raw_depth.map_or(0.0, |d| d.near_high_leaning);
+    let near_override = raw_depth.as_ref().and_then(|d| depth::near_override(&overrides.depth, d));
+    let leaning = raw_depth.as_ref().map_or(0.0, |d| d.near_high_leaning);
     let near = orientation::FixedAxes { near_high: near_override, near_high_leaning: leaning, ..Default::default() };
     let values = raw_depth.map(|d| match (overrides.depth.smooth_steps, depth.and_then(|s| s.step)) {
         (Some(true), Some(step)) => steps::smooth(&d.values, step, inside),
-        _ => d.values.clone(),
+        _ => d.values,
     });
     let oriented = normal
         .zip(raw_normals)
@@ -240,7 +260,7 @@ fn join(
     };
     let unit = oriented.map(|o| o.0);
     let encoding = depth_encoding(stored, &values, unit.as_ref(), inside, near_high, overrides, findings);
-    let planar = depth::planar(stored, &values, &overrides.depth, near_high, encoding);
+    let planar = depth::planar(stored, values, &overrides.depth, near_high, encoding);
     let near = if near_high { crate::document::source::Near::High } else { crate::document::source::Near::Low };
     findings.depth = Some(DepthConvention { near, encoding: Some(encoding), ..overrides.depth.clone() });
     (unit, Some(planar))
@@ -285,34 +305,30 @@ fn depth_encoding(
 }
 
 /// Normalises depth and derives the map that is missing.
-fn complete(
-    normals: Option<Plane<Vec3>>,
-    planar: Option<Plane<f32>>,
-    stored_depth: Option<&StoredMap>,
-    inside: &Plane<bool>,
-    coverage: &Plane<u8>,
-    overrides: &ConventionOverrides,
-    findings: &mut Findings,
-) -> (Plane<Vec3>, Plane<f32>) {
+fn complete(understood: Understood, overrides: &ConventionOverrides, findings: &mut Findings) -> Maps {
+    let Understood { normals, planar, inside, mut coverage, is_masked, fov_degrees } = understood;
     let size = inside.size();
     let nothing = || Plane::filled(size, f32::NAN);
-    let normalised = planar.and_then(|p| depth::normalise(&p, inside, coverage, findings));
+    let normalised = planar.and_then(|p| depth::normalise(p, &inside, &coverage, findings));
     findings.depth_range = normalised.as_ref().map(|n| (n.near, n.far));
-    match (normals, normalised) {
+    let (normals, depth) = match (normals, normalised) {
         (Some(normals), Some(n)) => (normals, n.depth),
         (Some(normals), None) => {
             findings.note("depth was made from the normals; a true depth map is better at occluding contours");
-            let depth = integrate::depth_from_normals(&normals, inside).map(|i| i.depth);
+            let depth = integrate::depth_from_normals(&normals, &inside).map(|i| i.depth);
             (normals, depth.unwrap_or_else(nothing))
         }
         (None, Some(n)) => {
-            let fov = overrides.depth.fov_degrees.or(stored_depth.and_then(|s| s.fov_degrees));
-            let range_px = overrides.depth.range_px.unwrap_or_else(|| depth_range_px(&n, inside, fov));
+            let range_px = overrides.depth.range_px.unwrap_or_else(|| depth_range_px(&n, &inside, fov_degrees));
             findings.note(format!("normals were made from depth, taken to be {range_px:.0} pixels deep (“range_px”)"));
             (differentiate::normals_from_depth(&n.depth, range_px), n.depth)
         }
         (None, None) => (Plane::filled(size, Vec3::ZERO), nothing()),
+    };
+    if is_masked {
+        drop_unknown(&mut coverage, &normals, findings);
     }
+    Maps { normals, depth, coverage }
 }
 
 /// The depth of a surface in pixels: from the camera if depth is metric and the field of view known, else half the

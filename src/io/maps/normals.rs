@@ -2,6 +2,7 @@
 //! Floor 5.
 
 use super::background::{self, is_degenerate};
+use super::channel::Channel;
 use super::encoding::{self, TexelReading};
 use super::findings::Findings;
 use super::orientation::{self, AxisMapping, FixedAxes};
@@ -72,7 +73,8 @@ fn smooth_if_asked<'a>(
 ) -> (&'a StoredMap, Option<StoredMap>) {
     let (Some(true), Some(step)) = (overrides.smooth_steps, stored.step) else { return (stored, None) };
     findings.note("the steps of the normals' numbers were smoothed, each within the half step it stands for");
-    let channels = stored.channels.iter().map(|c| steps::smooth(c, step, inside)).collect();
+    let smooth = |c: &Channel| Channel::Float(steps::smooth(&c.map(|v| v), step, inside));
+    let channels = stored.channels.iter().map(smooth).collect();
     let copy = StoredMap { channels, alpha: None, file: stored.file.clone(), layer: stored.layer.clone(), ..*stored };
     (stored, Some(copy))
 }
@@ -82,7 +84,7 @@ fn smooth_if_asked<'a>(
 ///
 /// * `depth`: as stored, NaN where there is none.
 pub fn orient(
-    raw: &RawNormals,
+    raw: RawNormals,
     stored: &StoredMap,
     overrides: &NormalConvention,
     inside: &Plane<bool>,
@@ -90,22 +92,26 @@ pub fn orient(
     near: &FixedAxes,
     findings: &mut Findings,
 ) -> (Plane<Vec3>, bool) {
-    let unit = raw.vectors.map(|n| if is_degenerate(n) { Vec3::ZERO } else { n.normalize_or_zero() });
+    let RawNormals { vectors, reading, .. } = raw;
+    let unit = vectors.updated(|_, _, n| if is_degenerate(n) { Vec3::ZERO } else { n.normalize_or_zero() });
     let at = samples::spread(inside);
     let turn = space(&unit, stored, overrides, inside, &at, depth, near, findings);
-    let turned = turn.map_or_else(|| unit.clone(), |m| unit.map(|n| m * n));
+    let turned = match turn {
+        Some(m) => unit.updated(|_, _, n| m * n),
+        None => unit,
+    };
     // Rotated normals are already in camera space: only the user can flip them.
     let fixed = FixedAxes {
-        order: overrides.channels.map(|c| order_of(c, raw.reading.encoding)).or(turn.map(|_| [0, 1, 2])),
+        order: overrides.channels.map(|c| order_of(c, reading.encoding)).or(turn.map(|_| [0, 1, 2])),
         flip: [0, 1, 2].map(|k| [overrides.flip_x, overrides.flip_y, overrides.flip_z][k].or(turn.map(|_| false))),
         ..*near
     };
     let found = orientation::find(&turned, inside, depth, &fixed);
     report(overrides, &found, &fixed, depth.is_some(), findings);
     findings.normal = Some(NormalConvention {
-        encoding: Some(raw.reading.encoding),
-        channels: Some(channels_of(found.axes.order, raw.reading.encoding)),
-        srgb: Some(raw.reading.srgb),
+        encoding: Some(reading.encoding),
+        channels: Some(channels_of(found.axes.order, reading.encoding)),
+        srgb: Some(reading.srgb),
         flip_x: Some(found.axes.flip[0]),
         flip_y: Some(found.axes.flip[1]),
         flip_z: Some(found.axes.flip[2]),
@@ -115,7 +121,7 @@ pub fn orient(
         smooth_steps: overrides.smooth_steps,
     });
     let axes = found.axes;
-    (if axes == AxisMapping::PLAIN { turned } else { turned.map(|n| axes.apply(n)) }, found.near_high)
+    (if axes == AxisMapping::PLAIN { turned } else { turned.updated(|_, _, n| axes.apply(n)) }, found.near_high)
 }
 
 /// Two-channel maps rebuild z themselves, so that no other order makes sense.

@@ -9,9 +9,13 @@ const ENOUGH: usize = 60_000;
 
 /// Indices of pixels where `inside` holds, evenly thinned.
 pub fn spread(inside: &Plane<bool>) -> Vec<usize> {
-    let all: Vec<usize> = (0..inside.values().len()).filter(|&i| inside.values()[i]).collect();
-    let step = all.len().div_ceil(ENOUGH).max(1);
-    all.into_iter().step_by(step).collect()
+    thinned(inside.values().len(), ENOUGH, |i| inside.values()[i])
+}
+
+/// Of the numbers below `n` that `is` accepts about `enough`, evenly thinned. Asks twice, rather than hold them all.
+pub fn thinned(n: usize, enough: usize, is: impl Fn(usize) -> bool) -> Vec<usize> {
+    let count = (0..n).filter(|&i| is(i)).count();
+    (0..n).filter(|&i| is(i)).step_by(count.div_ceil(enough).max(1)).collect()
 }
 
 /// Pixels at the rim of the surface with the direction in which it ends there: x right, y **up**, length 1.

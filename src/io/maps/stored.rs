@@ -1,12 +1,11 @@
 //! Maps as their files store them: numbers per channel. Only the layer of an EXR is chosen; nothing else is
 //! interpreted. Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
 
+use super::channel::{Channel, channels};
 use super::layers;
 use crate::math::Size;
-use crate::raster::Plane;
 use crate::{Budget, bitmap, exr::ExrFile};
 use crate::{Error, Result};
-use image::DynamicImage;
 use std::path::{Path, PathBuf};
 
 /// The contents of one map file.
@@ -14,9 +13,9 @@ pub struct StoredMap {
     pub file: PathBuf,
     pub size: Size,
     /// One to four channels: red, green, blue, alpha of a picture; x, y, z of an EXR layer. `[0, 1]` in integer files.
-    pub channels: Vec<Plane<f32>>,
-    /// Coverage from the file itself, `[0, 1]`; absent if it is 1 everywhere.
-    pub alpha: Option<Plane<f32>>,
+    pub channels: Vec<Channel>,
+    /// Coverage told by the file itself, `[0, 1]`; absent where it is 1 everywhere.
+    pub alpha: Option<Channel>,
     /// The step between two neighbouring numbers of an integer file: 1/255 or 1/65535.
     pub step: Option<f32>,
     /// JPEG, or EXR's B44: equal pixels may differ a little, and the background bleeds into the rim.
@@ -50,6 +49,8 @@ fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, bud
     let exr = ExrFile::open(file, bytes, budget)?;
     let choice = layers::choose(file, &exr, channel, role)?;
     let wanted: Vec<usize> = choice.channels.iter().chain(&choice.alpha).copied().collect();
+    let stored = wanted.len() as u64 * size_of::<f32>() as u64;
+    budget.room(file, &surface_of(exr.size()), exr.size().area() as u64 * (PEAK_BYTES_PER_PX + stored))?;
     let mut channels = exr.read(&wanted)?;
     let alpha = if choice.alpha.is_some() { channels.pop() } else { None };
     // Beyond the data window there is nothing: transparent, and not a number in every other channel.
@@ -57,8 +58,8 @@ fn load_exr(file: &Path, bytes: &[u8], channel: Option<&str>, role: MapRole, bud
     Ok(StoredMap {
         file: file.into(),
         size: exr.size(),
-        channels,
-        alpha: alpha.filter(|a| a.values().iter().any(|&v| v < 1.0)),
+        channels: channels.into_iter().map(Channel::Float).collect(),
+        alpha: alpha.map(Channel::Float).filter(Channel::is_below_one),
         step: None,
         lossy: exr.compression().starts_with("b44"),
         layer: choice.name,
@@ -78,11 +79,12 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
         _ => None,
     };
     let (colours, has_alpha) = (if image.color().has_color() { 3 } else { 1 }, image.color().has_alpha());
-    let planes = planes(image, size, colours, has_alpha);
+    let stored = u64::from(image.color().bytes_per_pixel());
+    budget.room(file, &surface_of(size), size.area() as u64 * (PEAK_BYTES_PER_PX + stored))?;
     let mut stored = StoredMap {
         file: file.into(),
         size,
-        channels: planes,
+        channels: channels(image),
         alpha: None,
         step,
         lossy: bitmap.format == "JPEG",
@@ -103,27 +105,22 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
         let reason = format!("this picture has no channel “{name}”; its channels are called r, g, b and a");
         stored.channels = vec![plane.ok_or_else(|| Error::invalid(file, "channel", reason))?];
     } else if has_alpha {
-        stored.alpha = stored.channels.last().filter(|a| a.values().iter().any(|&v| v < 1.0)).cloned();
+        stored.alpha = stored.channels.last().filter(|alpha| alpha.is_below_one()).cloned();
     }
     Ok(stored)
 }
 
-/// The channels of a picture as planes, grey as one, alpha last where there is one.
-fn planes(image: DynamicImage, size: Size, colours: usize, has_alpha: bool) -> Vec<Plane<f32>> {
-    let (texels, per_pixel): (Vec<f32>, usize) = match (colours, has_alpha) {
-        (1, false) => (image.to_luma32f().into_raw(), 1),
-        (1, true) => (image.to_luma_alpha32f().into_raw(), 2),
-        (_, false) => (image.into_rgb32f().into_raw(), 3),
-        _ => (image.into_rgba32f().into_raw(), 4),
-    };
-    let at = |c: usize| Plane::from_fn(size, |x, y| texels[(y * size.width as usize + x) * per_pixel + c]);
-    (0..per_pixel).map(at).collect()
+/// What the largest step of making a surface of maps takes beside the maps as they are stored, measured on one of 8192².
+const PEAK_BYTES_PER_PX: u64 = 28;
+
+fn surface_of(size: Size) -> String {
+    format!("a surface of {size} pixels")
 }
 
 impl StoredMap {
     /// The first three channels at a pixel, 0 where there are fewer; the fourth is alpha or a fourth channel.
     pub fn texel(&self, i: usize) -> [f32; 4] {
-        std::array::from_fn(|c| self.channels.get(c).map_or(0.0, |p| p.values()[i]))
+        std::array::from_fn(|c| self.channels.get(c).map_or(0.0, |channel| channel.at(i)))
     }
     /// The number of the file's colour channels, alpha not counted.
     pub fn colours(&self) -> usize {
@@ -137,9 +134,10 @@ impl StoredMap {
     pub fn is_grey(&self, tolerance: f32) -> bool {
         let first = &self.channels[0];
         let others = self.channels.iter().take(self.colours()).skip(1);
-        others.into_iter().all(|p| {
-            let far = p.values().iter().zip(first.values()).filter(|(a, b)| (*a - *b).abs() > tolerance);
-            far.count() * 1000 <= p.values().len()
+        let area = self.size.area();
+        others.into_iter().all(|other| {
+            let far = (0..area).filter(|&i| (other.at(i) - first.at(i)).abs() > tolerance);
+            far.count() * 1000 <= area
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Pictures in EXR files: which of a file's layers is the picture, and all of them as layers.
 //! Floor 5.
 
+use super::painted::{self, Painted};
 use crate::Budget;
 use crate::exr::{ExrFile, ExrPass};
 use crate::raster::Picture;
@@ -13,14 +14,14 @@ const WHOLE: [&str; 7] = ["", "combined", "beauty", "rgba", "rgb", "color", "col
 /// The picture of an EXR, straight alpha.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let exr = ExrFile::open(file, bytes, budget)?;
-    picture(file, &exr, texels(file, &exr)?)
+    picture(file, &exr, chosen(file, &exr)?, budget)
 }
 
 /// A layer of colours.
 pub struct LightLayer {
     /// Empty for the channels without a layer.
     pub name: String,
-    pub picture: Picture,
+    pub painted: Painted,
     /// Whether it is the picture to show; usually it combines all the others.
     pub is_whole: bool,
 }
@@ -46,35 +47,45 @@ pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLay
     let whole = passes.iter().enumerate().filter(|(_, p)| rank(p) < WHOLE.len()).min_by_key(|(_, p)| rank(p));
     // Of several parts, such as the views of two eyes, the first is the one to show.
     let whole = whole.map(|(i, _)| i).or((exr.parts() > 1).then_some(0));
+    let mut used_bytes = 0;
     let one = |(i, pass): (usize, &&ExrPass)| {
-        let picture = picture(file, &exr, texels_of(&exr, pass)?)?;
-        Ok(LightLayer { name: pass.name.clone(), picture, is_whole: whole == Some(i) })
+        let painted = painted::of_light(file, &exr, pass, 0, 0, budget)?;
+        used_bytes += painted.tiles.bytes() as u64;
+        budget.room(file, "what its layers hold", used_bytes)?;
+        Ok(LightLayer { name: pass.name.clone(), painted, is_whole: whole == Some(i) })
     };
     passes.iter().enumerate().map(one).collect()
 }
 
-/// The finished picture that a renderer stored beside its maps, `None` where there is none.
+/// The finished picture that a renderer stored beside its maps, and its layer's name; `None` where there is none.
 ///
 /// * `maps`: the layer that was read as normals, which is no picture.
-pub fn finished(file: &Path, bytes: &[u8], maps: &str, budget: &Budget) -> Result<Option<LightLayer>> {
+pub fn finished(file: &Path, bytes: &[u8], maps: &str, budget: &Budget) -> Result<Option<(String, Picture)>> {
     if !ExrFile::is_exr(bytes) {
         return Ok(None);
     }
     let exr = ExrFile::open(file, bytes, budget)?;
     let is_finished = |pass: &&ExrPass| pass.letters("rgb").is_some() && rank(pass) < WHOLE.len() && pass.name != maps;
     let Some(pass) = exr.passes().iter().filter(is_finished).min_by_key(|pass| rank(pass)) else { return Ok(None) };
-    let picture = picture(file, &exr, texels_of(&exr, pass)?)?;
-    Ok(Some(LightLayer { name: pass.name.clone(), picture, is_whole: true }))
+    Ok(Some((pass.name.clone(), picture(file, &exr, pass, budget)?)))
+}
+
+/// A layer as a picture.
+fn picture(file: &Path, exr: &ExrFile, pass: &ExrPass, budget: &Budget) -> Result<Picture> {
+    // Once as it is gathered, once as it is shared.
+    let bytes = exr.size().area() as u64 * 2 * size_of::<[f32; 4]>() as u64;
+    budget.room(file, &format!("a picture of {} pixels of light", exr.size()), bytes)?;
+    let mut texels = Vec::with_capacity(exr.size().area());
+    in_bands(file, exr, pass, |band| {
+        texels.extend(band.iter().map(|&texel| straight(texel)));
+        Ok(())
+    })?;
+    Picture::linear(exr.size(), texels).ok_or_else(|| Error::decode(file, "the picture has no pixels"))
 }
 
 /// EXR's alpha is associated: colours are stored multiplied by it.
-fn picture(file: &Path, exr: &ExrFile, mut texels: Vec<[f32; 4]>) -> Result<Picture> {
-    for [r, g, b, a] in &mut texels {
-        if *a > 0.0 && *a < 1.0 {
-            [r, g, b].into_iter().for_each(|c| *c /= *a);
-        }
-    }
-    Picture::linear(exr.size(), texels).ok_or_else(|| Error::decode(file, "the picture has no pixels"))
+pub fn straight([r, g, b, a]: [f32; 4]) -> [f32; 4] {
+    if a > 0.0 && a < 1.0 { [r / a, g / a, b / a, a] } else { [r, g, b, a] }
 }
 
 /// The place of a layer's name among those of the whole picture; beyond them for others.
@@ -83,29 +94,40 @@ fn rank(pass: &ExrPass) -> usize {
     WHOLE.iter().position(|known| *known == last).unwrap_or(WHOLE.len())
 }
 
-/// The colour layer of an EXR as stored, alpha 1 where it has none: the unnamed one, else one called colour or beauty,
-/// else the first with R, G and B, else a lone grey channel.
-pub fn texels(file: &Path, exr: &ExrFile) -> Result<Vec<[f32; 4]>> {
+/// The colour layer of an EXR: the unnamed one, else one called colour or beauty, else the first with R, G and B, else a lone
+/// grey channel.
+pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     let colour = |pass: &&ExrPass| pass.letters("rgb").is_some();
     let grey = |pass: &&ExrPass| pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1;
     let passes = exr.passes();
-    let chosen = passes.iter().filter(colour).min_by_key(|p| rank(p));
-    let Some(pass) = chosen.or_else(|| passes.iter().filter(grey).min_by_key(|p| rank(p))) else {
+    let found = passes.iter().filter(colour).min_by_key(|p| rank(p));
+    found.or_else(|| passes.iter().filter(grey).min_by_key(|p| rank(p))).ok_or_else(|| {
         let names: Vec<&str> = passes.iter().map(|p| p.name.as_str()).collect();
-        let reason = format!("no layer of this EXR has R, G and B; it has {}", names.join(", "));
-        return Err(Error::unsupported(file, reason));
-    };
-    texels_of(exr, pass)
+        Error::unsupported(file, format!("no layer of this EXR has R, G and B; it has {}", names.join(", ")))
+    })
 }
 
-/// The colours of a layer as stored, of a grey one thrice the same.
-fn texels_of(exr: &ExrFile, pass: &ExrPass) -> Result<Vec<[f32; 4]>> {
+/// Hands on the colours of a layer as stored, of a grey one thrice the same, alpha 1 where it has none: whole rows from the top,
+/// a multiple of the height of tiles at a time, so that no more than that is held.
+pub fn in_bands(
+    file: &Path,
+    exr: &ExrFile,
+    pass: &ExrPass,
+    mut take: impl FnMut(&[[f32; 4]]) -> Result<()>,
+) -> Result<()> {
     let rgb = pass.letters("rgb").or(pass.letters("y").map(|y| vec![y[0]; 3]));
-    let rgb = rgb.unwrap_or_else(|| vec![pass.channels[0]; 3]);
+    let only = pass.channels.first().ok_or_else(|| Error::decode(file, "a layer of the EXR has no channels"))?;
+    let rgb = rgb.unwrap_or_else(|| vec![*only; 3]);
     let alpha = pass.letters("a").filter(|a| a[0] != rgb[0]);
     let wanted: Vec<usize> = rgb.iter().chain(alpha.iter().flatten()).copied().collect();
-    let planes = exr.read(&wanted)?;
     let finite = |v: f32| if v.is_finite() { v } else { v.max(0.0).min(65504.0) };
-    let texel = |i: usize| std::array::from_fn(|c| planes.get(c).map_or(1.0, |plane| finite(plane.values()[i])));
-    Ok((0..exr.size().area()).map(texel).collect())
+    let mut texels = Vec::new();
+    for rows in exr.bands() {
+        let planes = exr.read_rows(&wanted, rows.clone())?;
+        let texel = |i: usize| std::array::from_fn(|c| planes.get(c).map_or(1.0, |plane| finite(plane.values()[i])));
+        texels.clear();
+        texels.extend((0..rows.len() * exr.size().width as usize).map(texel));
+        take(&texels)?;
+    }
+    Ok(())
 }

@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// A document from the plain OpenRaster entries.
 pub fn document(reading: &mut ProjectReader, stack: StackXml) -> Result<Document> {
     let size = size(reading, &stack)?;
-    let mut reader = ForeignReader { reading, used_px: 0, live: None };
+    let mut reader = ForeignReader { reading, used_px: 0, used_bytes: 0, live: None };
     let layers = reader.layers(stack.layers)?;
     Ok(Document { layers, ..Document::empty(size) })
 }
@@ -48,8 +48,12 @@ pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifes
         reading.lost(format!("the surface is lost: {error}"));
         Ok::<_, Error>(Document::empty(size))
     })?;
-    let mut reader =
-        ForeignReader { reading, used_px: 0, live: Some(SavedState { value: value.clone(), canvas, manifest }) };
+    let mut reader = ForeignReader {
+        reading,
+        used_px: 0,
+        used_bytes: 0,
+        live: Some(SavedState { value: value.clone(), canvas, manifest }),
+    };
     let layers = reader.layers(stack.layers)?;
     Ok(Document { layers, size, ..base })
 }
@@ -60,6 +64,7 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
     let is_layer = |name: &&String| name.starts_with("data/") && name.to_lowercase().ends_with(".png");
     let mut layers = Vec::new();
     let mut size: Option<Size> = None;
+    let mut used_bytes = 0;
     let only_merged = MERGED.to_owned();
     for name in names.iter().filter(is_layer).chain([&only_merged]) {
         // The merged picture shows all the others.
@@ -67,10 +72,12 @@ pub fn leftovers(reading: &mut ProjectReader, error: Error) -> Result<Document> 
             break;
         }
         let Ok(bytes) = reading.archive.bytes(name, reading.budget.file_bytes) else { continue };
-        let Ok(picture) = picture::decode(Path::new(name), &bytes, reading.budget) else { continue };
-        let grown = |s: Size| Size::new(s.width.max(picture.size.width), s.height.max(picture.size.height));
-        size = Some(size.map_or(picture.size, grown));
-        let tiles = picture::to_tiles(&picture, 0, 0);
+        let Ok(painted) = picture::painted(Path::new(name), &bytes, 0, 0, reading.budget) else { continue };
+        let (own, tiles) = (painted.size, painted.tiles);
+        let grown = |s: Size| Size::new(s.width.max(own.width), s.height.max(own.height));
+        size = Some(size.map_or(own, grown));
+        used_bytes += tiles.bytes() as u64;
+        reading.budget.room(reading.file, "what its layers hold", used_bytes)?;
         let content = Content::Pixels(PixelLayer { file: name.clone(), x: 0, y: 0, tiles });
         layers.push(Arc::new(Layer { clip_to_surface: false, ..Layer::new(name.as_str(), content) }));
         if layers.len() >= reading.budget.layers {
@@ -92,6 +99,7 @@ struct SavedState<'a> {
 struct ForeignReader<'a, 'b> {
     reading: &'a mut ProjectReader<'b>,
     used_px: u64,
+    used_bytes: u64,
     live: Option<SavedState<'a>>,
 }
 
@@ -151,7 +159,7 @@ impl ForeignReader<'_, '_> {
     fn picture(&mut self, name: &str, src: String, x: i32, y: i32) -> Result<PixelLayer> {
         let path = self.reading.archive_path(&src);
         let read = self.reading.archive.bytes(&src, self.reading.budget.file_bytes);
-        let decoded = read.and_then(|bytes| picture::decode(&path, &bytes, self.reading.budget));
+        let decoded = read.and_then(|bytes| picture::painted(&path, &bytes, x, y, self.reading.budget));
         let decoded = match decoded {
             Ok(decoded) => decoded,
             Err(error @ Error::TooLarge { .. }) => return Err(error),
@@ -165,7 +173,9 @@ impl ForeignReader<'_, '_> {
             let reason = format!("its layers hold more than {} pixels together", self.reading.budget.document_px);
             return Err(Error::too_large(self.reading.file, reason));
         }
-        Ok(PixelLayer { tiles: picture::to_tiles(&decoded, x, y), file: src, x, y })
+        self.used_bytes += decoded.tiles.bytes() as u64;
+        self.reading.budget.room(self.reading.file, "what its layers hold", self.used_bytes)?;
+        Ok(PixelLayer { tiles: decoded.tiles, file: src, x, y })
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::look::{paint, remember};
 use super::manifest::{Manifest, ManifestPicture};
-use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, pixels, repair, stack};
+use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, repair, stack};
 use crate::document::cache::EncodedPixels;
 use crate::document::{Content, Document, LayerId};
 use crate::math::Size;
@@ -156,6 +156,7 @@ impl ProjectReader<'_> {
         let mut wanted = BTreeSet::new();
         list_paint(&value["layers"], &mut wanted);
         let left_px = AtomicU64::new(self.budget.document_px);
+        let left_bytes = AtomicU64::new(self.budget.memory_bytes);
         let one = |key: (String, i32, i32)| {
             let bytes = self.archive.bytes(&key.0, self.budget.file_bytes).ok()?;
             let size = repair::png_size(&bytes)?;
@@ -164,15 +165,13 @@ impl ProjectReader<'_> {
                 (known.x, known.y, known.size) == (key.1, key.2, size) && known.file.bytes() == bytes
             });
             let known = known.map(|(_, tiles)| tiles.clone());
-            let quick = || pixels::decode_tiles(&bytes, key.1, key.2, self.budget);
-            let slow = || {
-                let picture = picture::decode(Path::new(&key.0), &bytes, self.budget).ok()?;
-                Some(picture::to_tiles(&picture, key.1, key.2))
-            };
-            let tiles = known.or_else(quick).or_else(slow)?;
+            let read = || picture::painted(Path::new(&key.0), &bytes, key.1, key.2, self.budget).ok();
+            let tiles = known.or_else(|| Some(read()?.tiles))?;
             // What is in memory counts, not the rectangle around it.
             let px = (tiles.iter().count() * TILE_AREA) as u64;
             left_px.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| left.checked_sub(px)).ok()?;
+            let bytes = tiles.bytes() as u64;
+            left_bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left: u64| left.checked_sub(bytes)).ok()?;
             Some((key.clone(), tiles))
         };
         wanted.into_par_iter().filter_map(one).collect()

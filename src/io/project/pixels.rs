@@ -2,10 +2,14 @@
 //! trusted. Floor 5. `look` decides which pixels are stored.
 
 use crate::Budget;
+use crate::bitmap;
 use crate::document::cache::EncodedPixels;
 use crate::math::{Rect, Size};
+use crate::picture::Painted;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};
+use std::borrow::Cow;
+use std::io::Write;
 use std::path::Path;
 
 /// The tight rectangle around what is not transparent, as a PNG; one transparent pixel where there is nothing.
@@ -15,41 +19,88 @@ pub fn encode(file: &Path, tiles: &TileGrid, within: Option<Rect>) -> Result<Enc
     let bounds = painted(tiles, within);
     let rect = if bounds.is_empty() { Rect::new(0, 0, 1, 1) } else { bounds };
     let size = Size::new(rect.width() as u32, rect.height() as u32);
-    let straight = tiles.to_straight_rgba(rect);
-    let png = checked(file, &straight, size, png::ColorType::Rgba)?;
-    Ok(EncodedPixels { file: png, size, x: rect.x0, y: rect.y0 })
+    let strips = || strips(rect).map(|strip| Cow::Owned(tiles.to_straight_rgba(strip)));
+    Ok(EncodedPixels { file: checked(file, strips, size, png::ColorType::Rgba)?, size, x: rect.x0, y: rect.y0 })
+}
+
+/// A rectangle in rows of tiles.
+pub fn strips(rect: Rect) -> impl Iterator<Item = Rect> {
+    let row_of = |y: i32| TileAt::of_pixel(rect.x0, y).row;
+    let rows = row_of(rect.y0)..=row_of(rect.y1 - 1);
+    rows.map(move |row| {
+        let tile = TileAt::new(0, row).rect();
+        Rect::new(rect.x0, tile.y0.max(rect.y0), rect.x1, tile.y1.min(rect.y1))
+    })
 }
 
 /// A mask as a grey PNG.
 pub fn encode_coverage(file: &Path, plane: &Plane<u8>) -> Result<Asset> {
-    checked(file, plane.values(), plane.size(), png::ColorType::Grayscale)
+    checked(file, || [Cow::Borrowed(plane.values())].into_iter(), plane.size(), png::ColorType::Grayscale)
 }
 
 /// Straight RGBA texels as a PNG, the colours of transparent ones kept.
 pub fn encode_texels(file: &Path, texels: &[[u8; 4]], size: Size) -> Result<Asset> {
-    checked(file, texels.as_flattened(), size, png::ColorType::Rgba)
+    checked(file, || [Cow::Borrowed(texels.as_flattened())].into_iter(), size, png::ColorType::Rgba)
 }
 
-/// Encodes, decodes the result and compares it: encoders have written unreadable files before.
-fn checked(file: &Path, values: &[u8], size: Size, color: png::ColorType) -> Result<Asset> {
-    let bytes = encoded(values, size, color).map_err(|e| Error::unsupported(file, e))?;
-    if decoded(&bytes).as_deref() != Some(values) {
+/// Of a chunk of packed pixels.
+const CHUNK_BYTES: usize = 1 << 20;
+/// What a PNG takes beside its pixels.
+const STORED_BYTES: usize = 1 << 10;
+
+/// Encodes, decodes what was encoded, and compares: encoders have written files that nobody could read.
+///
+/// * `strips`: the values, a few whole rows at a time. Asked for twice.
+fn checked<'v, S: Iterator<Item = Cow<'v, [u8]>>>(
+    file: &Path,
+    strips: impl Fn() -> S,
+    size: Size,
+    color: png::ColorType,
+) -> Result<Asset> {
+    let encode = |how| encoded(strips(), size, color, how).map_err(|e| Error::unsupported(file, e));
+    let mut bytes = encode(png::Compression::Fast)?;
+    // The quick compressor makes noise larger than it is.
+    if bytes.len() > STORED_BYTES + size.area() * color.samples() * 1001 / 1000 {
+        bytes = encode(png::Compression::NoCompression)?;
+    }
+    if !comes_back(&bytes, strips()) {
         return Err(Error::unsupported(file, "a picture did not come back as it was written; nothing was saved"));
     }
     Ok(bytes.into())
 }
 
-fn encoded(values: &[u8], size: Size, color: png::ColorType) -> Result<Vec<u8>, png::EncodingError> {
+fn encoded<'v>(
+    strips: impl Iterator<Item = Cow<'v, [u8]>>,
+    size: Size,
+    color: png::ColorType,
+    how: png::Compression,
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
     encoder.set_color(color);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
+    encoder.set_compression(how);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(values)?;
+    let mut rows = writer.stream_writer_with_size(CHUNK_BYTES)?;
+    for strip in strips {
+        rows.write_all(&strip)?;
+    }
+    rows.finish()?;
     writer.finish()?;
     Ok(bytes)
+}
+
+/// Whether a PNG holds these values, row by row.
+fn comes_back<'v>(png: &[u8], strips: impl Iterator<Item = Cow<'v, [u8]>>) -> bool {
+    let Ok(mut reader) = png::Decoder::new(std::io::Cursor::new(png)).read_info() else { return false };
+    let Some(length) = reader.output_line_size(reader.info().width) else { return false };
+    let mut line = vec![0; length];
+    let is_same = |reader: &mut png::Reader<_>, line: &mut Vec<u8>, row: &[u8]| {
+        matches!(reader.read_row(line), Ok(Some(_))) && line == row
+    };
+    let all = strips.into_iter().all(|strip| strip.chunks(length).all(|row| is_same(&mut reader, &mut line, row)));
+    all && matches!(reader.read_row(&mut line), Ok(None)) && reader.finish().is_ok()
 }
 
 /// The values of a PNG that was encoded here.
@@ -66,32 +117,54 @@ pub fn decoded(bytes: &[u8]) -> Option<Vec<u8>> {
 /// one: `picture` then reads it or reports the error.
 ///
 /// A row of tiles at a time, so that no more than that is in memory twice.
-pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<TileGrid> {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
+pub fn decode_tiles(bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Option<Painted> {
+    let limits = png::Limits { bytes: usize::try_from(bitmap::beside_pixels(bytes)).ok()? };
+    let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().ok()?;
     let info = reader.info();
-    let is_plain = (info.color_type, info.bit_depth) == (png::ColorType::Rgba, png::BitDepth::Eight);
-    let is_bare = info.icc_profile.is_none() && info.exif_metadata.is_none() && info.animation_control.is_none();
-    if !is_plain || !is_bare || info.interlaced {
+    let is_bare = info.exif_metadata.is_none() && info.animation_control.is_none() && !bitmap::has_png_profile(bytes);
+    let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
+    let (color, depth) = reader.output_color_type();
+    if depth != png::BitDepth::Eight || !is_bare || info.interlaced {
         return None;
     }
-    let size = budget.size(Path::new(""), info.width.into(), info.height.into()).ok()?;
     let rect = Rect::new(x, y, x.checked_add(size.width as i32)?, y.checked_add(size.height as i32)?);
-    let mut grid = TileGrid::for_rect(rect);
+    let mut tiles = TileGrid::for_rect(rect);
     let line = rect.width() * 4;
     let mut strip = vec![0; line * TILE.min(rect.height())];
+    let mut stored = vec![0; reader.output_line_size(size.width)?];
     let mut top = y;
     while top < rect.y1 {
         let next = TileAt::of_pixel(x, top).rect().y1.min(rect.y1);
         let rows = (next - top) as usize;
         for row in strip[..rows * line].chunks_exact_mut(line) {
-            reader.read_row(row).ok()??;
+            reader.read_row(&mut stored).ok()??;
+            to_rgba(&stored, color, row)?;
         }
-        let tiles = TileGrid::from_straight_rgba(&strip[..rows * line], rect.width(), rows, x, top);
-        tiles.iter().for_each(|(at, tile)| grid.set(at, Some(tile.clone())));
+        let part = TileGrid::from_straight_rgba(&strip[..rows * line], rect.width(), rows, x, top);
+        part.iter().for_each(|(at, tile)| tiles.set(at, Some(tile.clone())));
         top = next;
     }
     reader.finish().ok()?;
-    Some(grid)
+    Some(Painted { size, tiles })
+}
+
+/// A row of a PNG's samples as straight RGBA; `None` of one that still numbers colours.
+fn to_rgba(stored: &[u8], color: png::ColorType, row: &mut [u8]) -> Option<()> {
+    let pixels = row.as_chunks_mut::<4>().0;
+    match color {
+        png::ColorType::Rgba => row.copy_from_slice(stored.get(..row.len())?),
+        png::ColorType::Rgb => {
+            pixels.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [r, g, b])| *p = [*r, *g, *b, 255]);
+        }
+        png::ColorType::Grayscale => pixels.iter_mut().zip(stored).for_each(|(p, v)| *p = [*v, *v, *v, 255]),
+        png::ColorType::GrayscaleAlpha => {
+            pixels.iter_mut().zip(stored.as_chunks().0).for_each(|(p, [v, a])| *p = [*v, *v, *v, *a]);
+        }
+        png::ColorType::Indexed => return None,
+    }
+    Some(())
 }
 
 /// The smallest rectangle that holds every pixel that is not transparent.
@@ -139,7 +212,7 @@ mod tests {
         let crate::raster::picture::Texels::Srgb8(texels) = picture.texels else { panic!("bytes") };
         let (w, h) = (encoded.size.width as usize, encoded.size.height as usize);
         let back = TileGrid::from_straight_rgba(texels.as_flattened(), w, h, encoded.x, encoded.y);
-        let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default()).unwrap();
+        let quick = decode_tiles(encoded.file.bytes(), encoded.x, encoded.y, &Budget::default()).unwrap().tiles;
         for (at, tile) in tiles.iter() {
             assert_eq!(back.tile(at).unwrap().bytes(), tile.bytes(), "{at:?}");
             assert_eq!(quick.tile(at).unwrap().bytes(), tile.bytes(), "{at:?}");

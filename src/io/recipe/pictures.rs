@@ -7,6 +7,7 @@ use crate::json::JsonNode;
 use crate::maps::detail;
 use crate::math::{Size, Vec3};
 use crate::paint::{Adjust, PictureSource};
+use crate::raster::picture::Texels;
 use crate::raster::{Picture, Plane, TileGrid, blur};
 use crate::surface::DetailMap;
 use crate::{Error, Result};
@@ -26,6 +27,7 @@ pub struct PictureCache {
     tiles: TileGrids,
     details: Vec<CachedDetail>,
     used_px: u64,
+    used_bytes: u64,
 }
 
 /// A detail map as it was read.
@@ -59,7 +61,12 @@ impl PictureCache {
         let bytes = bytes(source, name)?;
         let path = source.files.path(name.text()?);
         let picture = picture::decode(&path, &bytes, source.budget).map_err(|e| name.led_to(e))?;
-        self.spend(source, picture.size)?;
+        let texel = match picture.texels {
+            Texels::Srgb8(_) => size_of::<[u8; 4]>(),
+            Texels::Linear(_) => size_of::<[f32; 4]>(),
+        };
+        // Beside it stands the texture that it is read through, of bytes and with its smaller copies.
+        self.spend(source, picture.size, picture.size.area() * (texel + 6))?;
         self.pictures.insert(name.text()?.to_owned(), picture.clone());
         Ok(picture)
     }
@@ -79,14 +86,16 @@ impl PictureCache {
         let bytes = bytes(source, name)?;
         let read = detail::read(&source.files.path(file), &bytes, convention, source.budget);
         let normals = read.map_err(|e| name.led_to(e))?;
-        self.spend(source, normals.size())?;
+        self.spend(source, normals.size(), normals.size().area() * 2 * size_of::<Vec3>())?;
         let map = Arc::new(DetailMap::new(blurred(normals, blur_px)));
         let (file, convention) = (file.to_owned(), convention.clone());
         self.details.push(CachedDetail { file, convention, blur_px, map: map.clone() });
         Ok(map)
     }
     /// Counts the pixels of a document: many pictures, each within its own limit, could fill the memory together.
-    fn spend(&mut self, source: RecipeSource, size: Size) -> Result<()> {
+    fn spend(&mut self, source: RecipeSource, size: Size, bytes: usize) -> Result<()> {
+        self.used_bytes += bytes as u64;
+        source.budget.room(source.file, "what its layers hold", self.used_bytes)?;
         self.used_px += size.area() as u64;
         if self.used_px > source.budget.document_px {
             let reason = format!("its pictures hold more than {} pixels together", source.budget.document_px);
@@ -98,9 +107,10 @@ impl PictureCache {
     pub fn tiles(&mut self, source: RecipeSource, name: &JsonNode, x: i32, y: i32) -> Result<(String, TileGrid)> {
         let key = (name.text()?.to_owned(), x, y);
         if !self.tiles.contains_key(&key) {
-            let picture = self.picture(source, name)?;
-            self.spend(source, picture.size)?;
-            self.tiles.insert(key.clone(), picture::to_tiles(&picture, x, y));
+            let (bytes, path) = (bytes(source, name)?, source.files.path(name.text()?));
+            let painted = picture::painted(&path, &bytes, x, y, source.budget).map_err(|e| name.led_to(e))?;
+            self.spend(source, painted.size, painted.tiles.bytes())?;
+            self.tiles.insert(key.clone(), painted.tiles);
         }
         let tiles = self.tiles.get(&key).cloned().unwrap_or_default();
         Ok((key.0, tiles))

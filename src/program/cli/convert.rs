@@ -70,6 +70,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
         let OpenedDocument { document, notes, reads, .. } = open(&args.from, &args.limits.budget())?;
         let terms = terms(args, output, reads);
         let document = render::scaled(&args.from, args.scale, &args.limits, document)?;
+        args.limits.room_to_paint(&args.from, &document)?;
         match output {
             Output::Project | Output::Psd => {
                 check(&Disk, &args.to, &terms)?;
@@ -117,6 +118,8 @@ fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, terms:
         return target.replace(&bytes.unwrap_or_default());
     }
     if is_exr || args.bits == 16 {
+        let bytes = document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64;
+        args.limits.budget().room(&args.from, "a picture of more than 8 bits", bytes)?;
         let pixels = progress::shown(|progress| flatten_deep(document, progress)).unwrap_or_default();
         return target.replace(&deep::encode(&args.to, format, &pixels, document.size, &options)?);
     }

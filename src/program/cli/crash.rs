@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::Result;
+use crate::memory::OutOfMemory;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
 use std::sync::{Mutex, PoisonError};
 
@@ -17,6 +18,10 @@ pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), Stri
     }));
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(done) => done.map_err(|error| super::with_advice(&error)),
+        Err(payload) if payload.is::<OutOfMemory>() => {
+            let refused = payload.downcast_ref().map_or_else(String::new, OutOfMemory::to_string);
+            Err(format!("{refused}; close other programs, or make the picture smaller"))
+        }
         Err(_) => {
             let what = LAST.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
             Err(format!("internal error: {what}; this is a defect of Rilievo, please report it"))
@@ -28,6 +33,16 @@ pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), Stri
 mod tests {
     use super::*;
 
+    #[test]
+    fn what_finds_no_memory_becomes_a_sentence_that_helps() {
+        let said = caught(|| std::panic::panic_any(OutOfMemory { bytes: 4_000_000_000 })).unwrap_err();
+        let _ = std::panic::take_hook();
+        assert!(said.starts_with("there is no memory for 4.0 GB more; close other programs"), "{said}");
+        let asked = || crate::io::Budget::default().within(1).room(std::path::Path::new("a.png"), "it", 2);
+        let said = caught(asked).unwrap_err();
+        let _ = std::panic::take_hook();
+        assert!(said.contains("--max-memory"), "{said}");
+    }
     #[test]
     fn a_panic_becomes_a_sentence() {
         let said = caught(|| panic!("a {} went missing", "tile")).unwrap_err();

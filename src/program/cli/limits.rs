@@ -1,8 +1,10 @@
 //! Options for limits and threads, common to all subcommands.
 //! Floor 7.
 
-use crate::io::Budget;
+use crate::document::Document;
+use crate::io::{Budget, machine::free_bytes};
 use crate::{Error, Result};
+use std::path::Path;
 
 /// How much a command may use.
 #[derive(clap::Args)]
@@ -13,15 +15,28 @@ pub struct LimitArgs {
     /// Pixels of any picture
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000_000))]
     max_pixels: Option<u64>,
+    /// Memory that reading and painting may take, such as 800M or 6G; what is free, unless said
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    max_memory: Option<u64>,
     /// Threads to work with; the result is the same with any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
 
+/// A number of bytes, with K, M or G behind it for thousands, millions or thousands of millions of them.
+fn bytes(text: &str) -> std::result::Result<u64, String> {
+    let short = text.trim_end_matches(['b', 'B']);
+    let units = [("k", 1e3), ("K", 1e3), ("m", 1e6), ("M", 1e6), ("g", 1e9), ("G", 1e9)];
+    let found = units.into_iter().find_map(|(name, unit)| Some((short.strip_suffix(name)?, unit)));
+    let (digits, unit) = found.unwrap_or((short, 1.0));
+    let number = digits.trim().parse::<f64>().ok().filter(|n| (0.0..1e18).contains(n));
+    number.map(|n| (n * unit) as u64).ok_or_else(|| "a size is a number such as 800M or 6G".to_owned())
+}
+
 impl LimitArgs {
     /// The budget for readers.
     pub fn budget(&self) -> Budget {
-        let usual = Budget::default();
+        let usual = Budget::default().within(self.max_memory.unwrap_or_else(free_bytes));
         let area_px = self.max_pixels.unwrap_or(usual.area_px);
         Budget {
             side_px: self.max_side.unwrap_or(usual.side_px),
@@ -30,10 +45,27 @@ impl LimitArgs {
             ..usual
         }
     }
+    /// Asks for what painting a document takes, before it begins.
+    pub fn room_to_paint(&self, file: &Path, document: &Document) -> Result<()> {
+        let what = format!("painting {} pixels", document.size);
+        self.budget().room(file, &what, document.flattening_bytes())
+    }
     /// Does the work with the requested number of threads.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
         let Some(threads) = self.threads else { return work() };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build();
         pool.map_err(|e| Error::io("--threads", std::io::Error::other(e)))?.install(work)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_with_their_units() {
+        let read = ["1000", "800M", "1.5 GB", "2k"].map(bytes);
+        assert_eq!(read, [Ok(1000), Ok(800_000_000), Ok(1_500_000_000), Ok(2000)]);
+        assert!(["", "M", "-3G", "lots", "nan"].map(bytes).iter().all(Result::is_err));
     }
 }

@@ -58,6 +58,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, window: Option<OpenWin
             return ExitCode::from(u8::try_from(refusal.exit_code()).unwrap_or(2));
         }
     };
+    crate::memory::set_kept_ceiling(crate::io::machine::kept_bytes());
     let done = crash::caught(|| force::naming_the_flag(dispatched(parsed.command, window)));
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -107,6 +108,7 @@ pub fn with_advice(error: &Error) -> String {
     let option = match error.remedy() {
         Some(Remedy::LongerSides) => " (raise the limit with --max-side)",
         Some(Remedy::MorePixels) => " (raise the limit with --max-pixels)",
+        Some(Remedy::MoreMemory) => " (close other programs, or raise the limit with --max-memory)",
         Some(Remedy::Background) => " (choose a background with --background)",
         None => "",
     };

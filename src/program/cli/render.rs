@@ -86,6 +86,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         refuse_incomplete(&args.document, &document)?;
         let target = OutputFile::new(&args.output, args.force.export(reads))?;
         let document = scaled(&args.document, args.scale, &args.limits, document)?;
+        args.limits.room_to_paint(&args.document, &document)?;
         let pixels = progress::shown(|progress| match &args.layer {
             None => Ok(flatten(&document, progress)),
             Some(name) => Ok(flatten_layer(&document, named(args, &document, name)?, progress)),
@@ -169,6 +170,9 @@ pub(super) fn scaled(file: &Path, factor: f32, limits: &LimitArgs, document: Doc
     }
     let size = document.size.scaled(factor);
     limits.budget().size(file, size.width.into(), size.height.into())?;
+    // A surface is made anew of normals, depth and coverage; layers are copied.
+    let a_pixel = if document.surface.is_some() { 40 } else { 8 };
+    limits.budget().room(file, &format!("a canvas of {size} pixels"), size.area() as u64 * a_pixel)?;
     document.scaled(factor).map_err(|error| Error::invalid(file, "--scale", error))
 }
 

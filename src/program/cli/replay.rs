@@ -23,7 +23,7 @@ pub struct ReplayArgs {
 }
 
 pub fn run(args: &ReplayArgs) -> Result<()> {
-    let text = read_file(&args.file, Budget::default().json_bytes)?;
+    let text = read_file(&args.file, Budget::of_this_machine().json_bytes)?;
     let text = String::from_utf8_lossy(&text);
     let mut session = Session::default();
     session.replaces_unasked = args.force.or(Overwrite::Nothing) == Overwrite::Forced;

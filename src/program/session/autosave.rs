@@ -180,7 +180,7 @@ impl LostSessions {
     }
     /// Recovers a drawing: untitled and unsaved. Its old log is deleted once a new one holds it.
     pub fn bring_back(&self, mut session: recovery::LostSession) -> Result<RecoveredTab> {
-        let recovered = session.recover(&Budget::default())?;
+        let recovered = session.recover(&Budget::of_this_machine())?;
         let name = Path::new(&recovered.title).file_stem().unwrap_or_default().to_string_lossy();
         let mut tab = OpenDocument::new(format!("{name} (recovered)"), recovered.document, None);
         tab.mark_unsaved();

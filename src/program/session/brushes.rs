@@ -41,7 +41,7 @@ fn preset_of(file: &Path, imported: ImportedBrush) -> (Preset, Vec<String>) {
 /// Adds the brushes of a file to the list, and selects the first.
 pub fn import(session: &mut Session, file: &Path) -> Result<()> {
     let mut first = None;
-    for (preset, notes) in read(file, &Budget::default())? {
+    for (preset, notes) in read(file, &Budget::of_this_machine())? {
         session.notes.extend(notes.iter().map(|note| format!("{}: {note}.", preset.name)));
         let key = add(session, preset)?;
         first.get_or_insert(key);
@@ -103,7 +103,7 @@ pub fn kept(folder: &Path) -> (Vec<Preset>, Vec<String>) {
     files.sort();
     let (mut presets, mut notes) = (Vec::new(), Vec::new());
     for file in files {
-        match load_preset(&file, &Budget::default()) {
+        match load_preset(&file, &Budget::of_this_machine()) {
             Ok(preset) => presets.push(Preset { group: PresetGroup::Imported, ..preset }),
             Err(error) => notes.push(error.to_string()),
         }

@@ -71,7 +71,7 @@ pub fn kind_of(file: &Path) -> Result<FileUse> {
     if is_document(file) {
         return Ok(FileUse::Document);
     }
-    let budget = Budget::default();
+    let budget = Budget::of_this_machine();
     let bytes = read_file(file, budget.file_bytes)?;
     let found = inspect::describe(file, &bytes, &budget)?;
     let named = pairs::part_of(file).map(|(_, part)| part);
@@ -90,7 +90,8 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
         FileUse::Document | FileUse::Picture => {
             io::save::tidy(file);
             let io::OpenedDocument { document, notes, is_whole, kind, stamp, reads } =
-                io::open(file, &Budget::default())?;
+                io::open(file, &Budget::of_this_machine())?;
+            Budget::of_this_machine().room(file, "painting it", document.flattening_bytes())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             // A Photoshop file that is taken over with all it has is saved to as well.
             let is_taken_over = kind == io::open::FileKind::Psd && is_whole && notes.is_empty() && is_saved_to(file);
@@ -123,12 +124,12 @@ pub fn maps_of(normal: Option<&Path>, depth: Option<&Path>) -> SurfaceSource {
 
 /// Reads a surface from the user's own files.
 pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
-    maps::import(source, &UserFiles::default(), &Budget::default())
+    maps::import(source, &UserFiles::default(), &Budget::of_this_machine())
 }
 
 /// Whether an EXR of normals holds depth too, as renderers write them.
 fn holds_depth(file: &Path) -> bool {
-    let budget = Budget::default();
+    let budget = Budget::of_this_machine();
     ends_in(file, &["exr"])
         && read_file(file, budget.file_bytes)
             .and_then(|bytes| inspect::describe(file, &bytes, &budget))
@@ -138,13 +139,13 @@ fn holds_depth(file: &Path) -> bool {
 /// The finished picture in the file of the normals, where a renderer put it there, and the name of its layer.
 pub fn finished_picture(source: &SurfaceSource) -> Option<(String, Picture)> {
     let map = source.normal.as_ref()?;
-    let (file, budget) = (Path::new(&map.file), Budget::default());
+    let (file, budget) = (Path::new(&map.file), Budget::of_this_machine());
     let bytes = read_file(file, budget.file_bytes).ok()?;
     let normals = inspect::describe(file, &bytes, &budget).ok()?.normals;
     let normals = map.channel.as_ref().or(normals.first()).map_or("", String::as_str);
-    let layer = picture::finished(file, &bytes, normals, &budget).ok()??;
-    let name = layer.name.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("Picture").to_owned();
-    Some((name, layer.picture))
+    let (name, picture) = picture::finished(file, &bytes, normals, &budget).ok()??;
+    let name = name.rsplit('.').next().filter(|name| !name.is_empty()).unwrap_or("Picture").to_owned();
+    Some((name, picture))
 }
 
 /// The maps that belong to a file by their names, or stand in the same EXR: `pot_n.png` brings `pot_depth.exr` and

@@ -4,9 +4,10 @@
 use crate::canvas::Canvas;
 use crate::jobs::{JobKind, Jobs};
 use crate::math::Vec2;
-use crate::memory::{MemoryMeter, spoken};
+use crate::memory::spoken;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Session;
+use crate::usage::MemoryMeter;
 use crate::widgets::bar;
 use eframe::egui::{self, Button, RichText, Ui};
 

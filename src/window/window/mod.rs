@@ -13,7 +13,6 @@ use super::clipboard::{self, Clipboard};
 use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, export, import, new, palette, shortcuts};
 use super::files::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
-use super::memory::MemoryMeter;
 use super::panel_layout::PanelSide;
 use super::pen::SharedTablet;
 use super::requests::{UiRequests, WindowRequest};
@@ -27,6 +26,7 @@ use crate::document::Progress;
 use crate::session::actions::ViewAction;
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
+use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
 use std::path::PathBuf;
 

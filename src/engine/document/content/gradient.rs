@@ -3,6 +3,7 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, TileContent};
 use crate::document::Live;
+use crate::document::Progress;
 use crate::math::Vec2;
 use crate::paint::{Gradient, Scene};
 use crate::raster::TileAt;
@@ -18,7 +19,7 @@ impl LayerKind for Live<Gradient> {
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
-    fn warm(&self, scene: &Scene) {
+    fn warm(&self, scene: &Scene, _: &Progress) {
         let bend = Bend { operator: self.params().operator, ..Bend::default() };
         Deformation::new(scene.surface.as_deref(), scene.size, &bend);
     }

@@ -4,6 +4,7 @@
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
 use crate::document::Live;
+use crate::document::Progress;
 use crate::math::Vec2;
 use crate::paint::{PlacedImage, Placement, Scene};
 use crate::raster::TileAt;
@@ -19,7 +20,7 @@ impl LayerKind for Live<PlacedImage> {
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
-    fn warm(&self, scene: &Scene) {
+    fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().source.texture();
         Deformation::new(scene.surface.as_deref(), scene.size, &self.params().bend);
     }

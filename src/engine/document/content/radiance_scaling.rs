@@ -2,6 +2,7 @@
 //! Floor 4. What it does to pixels is `shading::radiance`'s.
 
 use super::{CanvasScale, Changed, Content, LayerKind, Role};
+use crate::document::Progress;
 use crate::paint::Scene;
 use crate::shading::{RadianceScaling, Reference};
 
@@ -15,7 +16,7 @@ impl LayerKind for RadianceScaling {
     fn role(&self) -> Role<'_> {
         Role::Adjusts(self)
     }
-    fn warm(&self, scene: &Scene) {
+    fn warm(&self, scene: &Scene, _: &Progress) {
         let _ = scene.surface.as_deref().map(|surface| self.features.on(surface));
     }
     fn scaled(&self, scale: &CanvasScale) -> Content {

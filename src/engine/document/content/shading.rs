@@ -4,6 +4,7 @@
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
 use crate::document::Live;
+use crate::document::Progress;
 use crate::paint::Scene;
 use crate::raster::TileAt;
 use crate::shading::{LightKind, LitSphere, Shading};
@@ -23,7 +24,7 @@ impl LayerKind for Live<Shading> {
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
     }
-    fn warm(&self, scene: &Scene) {
+    fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().warm(scene);
     }
     fn scaled(&self, scale: &CanvasScale) -> Content {

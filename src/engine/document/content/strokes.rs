@@ -3,7 +3,7 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
 use crate::Result;
-use crate::document::Live;
+use crate::document::{Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{Scene, Stroke, stroke};
 use crate::raster::TileAt;
@@ -26,10 +26,20 @@ impl LayerKind for Live<StrokeList> {
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || stroke::render_tile(&self.params().strokes, scene, at)))
     }
-    fn warm(&self, scene: &Scene) {
+    /// Of strokes whose dabs are too many to be cached the tiles as well: tile by tile, each stroke would be laid again and
+    /// again.
+    fn warm(&self, scene: &Scene, progress: &Progress) {
         for stroke in &self.params().strokes {
             let bend = Bend { operator: stroke.operator(), ..Bend::default() };
             Deformation::new(scene.surface.as_deref(), scene.size, &bend);
+        }
+        let (missing, is_wanted) = (self.missing(scene), || !progress.is_cancelled());
+        let strokes = &self.params().strokes;
+        if !missing.is_empty() && stroke::are_heavy(strokes, scene, is_wanted) == Some(true) {
+            // Cancelled, they are rendered when they are asked for.
+            let _ = stroke::render_tiles(strokes, scene, &missing, is_wanted, |at, tile| {
+                self.tile(scene, at, || tile);
+            });
         }
     }
     fn scaled(&self, scale: &CanvasScale) -> Content {

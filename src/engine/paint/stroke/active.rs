@@ -149,7 +149,7 @@ impl ActiveStroke {
     }
     /// The stroke as far as it was drawn.
     fn stroke(&self, scene: &Scene) -> Stroke {
-        let found = StrokeCache { stroke_dabs: None, bounds: Some((scene.clone(), self.bounds)) };
+        let found = StrokeCache { bounds: Some((scene.clone(), self.bounds)), ..StrokeCache::default() };
         let Self { brush, operator, color, samples, .. } = self;
         let (brush, samples) = (brush.clone(), samples.clone());
         Stroke { brush, operator: *operator, color: *color, samples, found: Arc::new(Mutex::new(found)) }
@@ -160,7 +160,8 @@ impl ActiveStroke {
             let tiles = tiles_of(&self.stroke_dabs.place(dab, scene));
             self.stroke_dabs.push(dab, &tiles);
         }
-        let found = StrokeCache { stroke_dabs: Some(Arc::new(self.stroke_dabs)), bounds: None };
+        let mut found = StrokeCache::default();
+        found.keep(&Arc::new(self.stroke_dabs));
         let Self { brush, operator, color, samples, .. } = self;
         Stroke { brush, operator, color, samples, found: Arc::new(Mutex::new(found)) }
     }

@@ -12,8 +12,9 @@ use crate::paint::stroke::Sample;
 use crate::paint::stroke_tile::StrokeTile;
 use crate::paint::tint;
 use crate::paint::tip::{GrainTile, PreparedTip};
-use crate::raster::TileAt;
+use crate::raster::{TILE, TileAt};
 use std::collections::HashMap;
+use std::mem::size_of;
 use std::ops::Range;
 
 /// A stroke's dabs, and which of them may touch which tile of a canvas.
@@ -51,7 +52,18 @@ impl StrokeDabs {
             let tiles = tiles_of(&stroke_dabs.place(dab, scene));
             stroke_dabs.push(dab, &tiles);
         }
+        stroke_dabs.dabs.shrink_to_fit();
         stroke_dabs
+    }
+    /// The memory it takes, about.
+    pub fn bytes(&self) -> u64 {
+        let runs: usize = self.tiles.values().map(Vec::capacity).sum();
+        let tiles = self.tiles.capacity() * size_of::<(TileAt, Vec<Range<u32>>)>();
+        (self.dabs.capacity() * size_of::<Dab>() + runs * size_of::<Range<u32>>() + tiles + size_of::<Self>()) as u64
+    }
+    /// The tiles it touches, without its dabs.
+    pub fn support(&self) -> TileReach {
+        TileReach::new(self.scene.clone(), self.dabs.len(), self.tiles.keys().copied())
     }
     /// Anchors the grain, if any, at the start of the stroke; later samples do not change it.
     pub fn begin(&mut self, brush: &Brush, samples: &[Sample]) {
@@ -81,13 +93,6 @@ impl StrokeDabs {
     pub fn is_on(&self, scene: &Scene) -> bool {
         self.scene.is_same(scene)
     }
-    pub fn touches(&self, at: TileAt) -> bool {
-        self.tiles.contains_key(&at)
-    }
-    /// Whole tiles.
-    pub fn bounds(&self) -> Rect {
-        self.tiles.keys().fold(Rect::EMPTY, |r, at| r.union(at.rect()))
-    }
     /// The dabs that may touch a tile, in their order.
     pub fn on_tile(&self, at: TileAt) -> impl Iterator<Item = &Dab> {
         let runs = self.tiles.get(&at).into_iter().flatten();
@@ -110,6 +115,50 @@ impl StrokeDabs {
         scratch: &mut DabScratch,
     ) {
         self.tip.add(dab, at, grain, stroke_tile, scratch);
+    }
+}
+
+/// The tiles of a canvas that a stroke may touch, a bit each: kept when its dabs are not.
+pub(in crate::paint) struct TileReach {
+    scene: Scene,
+    /// How many dabs there are.
+    pub dabs: usize,
+    /// Whole tiles.
+    bounds: Rect,
+    /// Row by row over the bounds.
+    bits: Box<[u64]>,
+}
+
+impl TileReach {
+    pub fn new(scene: Scene, dabs: usize, tiles: impl Iterator<Item = TileAt> + Clone) -> Self {
+        // Beyond the canvas nothing is asked for.
+        let canvas = scene.size.rect();
+        let tiles = tiles.filter(|at| !at.rect().intersect(canvas).is_empty());
+        let bounds = tiles.clone().fold(Rect::EMPTY, |r, at| r.union(at.rect()));
+        let mut bits = vec![0; (bounds.width() / TILE * (bounds.height() / TILE)).div_ceil(64)];
+        let mut support = Self { scene, dabs, bounds, bits: Box::default() };
+        for i in tiles.filter_map(|at| support.index(at)) {
+            bits[i / 64] |= 1 << (i % 64);
+        }
+        support.bits = bits.into();
+        support
+    }
+    fn index(&self, at: TileAt) -> Option<usize> {
+        let corner = at.rect();
+        let (x, y) = (corner.x0, corner.y0);
+        let place = |v: i32, from: i32| (v - from) as usize / TILE;
+        let inside = self.bounds.contains(x, y);
+        inside.then(|| place(y, self.bounds.y0) * (self.bounds.width() / TILE) + place(x, self.bounds.x0))
+    }
+    pub fn is_on(&self, scene: &Scene) -> bool {
+        self.scene.is_same(scene)
+    }
+    pub fn touches(&self, at: TileAt) -> bool {
+        self.index(at).and_then(|i| self.bits.get(i / 64).map(|word| word >> (i % 64) & 1 == 1)).unwrap_or(false)
+    }
+    /// Whole tiles of the canvas.
+    pub fn bounds(&self) -> Rect {
+        self.bounds
     }
 }
 

@@ -1,6 +1,7 @@
 //! Weighted Laplace equations on a grid of any shape: conjugate gradients, preconditioned by one multigrid V-cycle.
 //! Floor 2. Sums are formed row by row and added in order, so that the bits do not depend on the number of threads.
 
+use crate::memory::filled_or_unwind;
 use rayon::prelude::*;
 
 /// A grid of unknowns with springs to the right and down; no spring, no coupling.
@@ -50,8 +51,8 @@ impl SpringGrid {
             self.diagonal[i] * v[i] - self.pull(v, x, y)
         })
     }
-    fn rows(&self, value: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
-        let mut out = vec![0.0; self.w * self.h];
+    pub fn rows(&self, value: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
+        let mut out = filled_or_unwind(self.w * self.h, 0.0);
         out.par_chunks_mut(self.w).enumerate().for_each(|(y, row)| {
             for (x, v) in row.iter_mut().enumerate() {
                 *v = value(x, y);
@@ -87,13 +88,23 @@ impl SpringGrid {
     }
 }
 
-/// Solves A v = b to a residual of 1e-5 of b, or as far as 60 steps go.
-pub fn solve(grid: SpringGrid, b: &[f32]) -> Vec<f32> {
+/// A grid and the coarser ones under it, down to a few unknowns.
+pub fn levels(grid: SpringGrid) -> Vec<SpringGrid> {
     let mut levels = vec![grid];
     while let Some(last) = levels.last().filter(|g| g.w * g.h > 16) {
         let coarser = last.coarser();
         levels.push(coarser);
     }
+    levels
+}
+
+/// A residual of 1e-5 of the right-hand side, squared.
+pub const EXACT: f64 = 1e-10;
+/// One of 1e-2, for what corrects a solution.
+pub const NEARLY: f64 = 1e-4;
+
+/// Solves A v = b until the residual is so small a part of b, squared, or as far as 60 steps go.
+pub fn solve(levels: &[SpringGrid], b: &[f32], goal: f64) -> Vec<f32> {
     let grid = &levels[0];
     let dot = |a: &[f32], b: &[f32]| -> f64 {
         let rows: Vec<f64> = a
@@ -103,10 +114,10 @@ pub fn solve(grid: SpringGrid, b: &[f32]) -> Vec<f32> {
             .collect();
         rows.iter().sum()
     };
-    let mut v = vec![0.0; b.len()];
+    let mut v = filled_or_unwind(b.len(), 0.0);
     let mut residual = b.to_vec();
-    let goal = dot(b, b) * 1e-10;
-    let mut z = cycle(&levels, &residual);
+    let goal = dot(b, b) * goal;
+    let mut z = cycle(levels, &residual);
     let mut direction = z.clone();
     let mut rz = dot(&residual, &z);
     for _ in 0..60 {
@@ -118,7 +129,8 @@ pub fn solve(grid: SpringGrid, b: &[f32]) -> Vec<f32> {
         let step = (rz / energy) as f32;
         v.iter_mut().zip(&direction).for_each(|(v, d)| *v += step * d);
         residual.iter_mut().zip(&pulled).for_each(|(r, p)| *r -= step * p);
-        z = cycle(&levels, &residual);
+        drop((pulled, z));
+        z = cycle(levels, &residual);
         let next = dot(&residual, &z);
         let turn = (next / rz) as f32;
         rz = next;
@@ -130,7 +142,7 @@ pub fn solve(grid: SpringGrid, b: &[f32]) -> Vec<f32> {
 /// One symmetric V-cycle: an approximate solution of A v = b on the finest level.
 fn cycle(levels: &[SpringGrid], b: &[f32]) -> Vec<f32> {
     let Some((grid, coarser)) = levels.split_first() else { return Vec::new() };
-    let mut v = vec![0.0; b.len()];
+    let mut v = filled_or_unwind(b.len(), 0.0);
     let sweeps = if coarser.is_empty() { 40 } else { 2 };
     (0..sweeps).for_each(|_| grid.relax(&mut v, b));
     let Some(below) = coarser.first() else { return v };
@@ -144,9 +156,13 @@ fn cycle(levels: &[SpringGrid], b: &[f32]) -> Vec<f32> {
         }
         sum
     });
+    drop(pulled);
     let correction = cycle(coarser, &rest);
-    let lifted = grid.rows(|x, y| v[y * grid.w + x] + correction[y / 2 * below.w + x / 2]);
-    v = lifted;
+    v.par_chunks_mut(grid.w).enumerate().for_each(|(y, row)| {
+        for (x, v) in row.iter_mut().enumerate() {
+            *v += correction[y / 2 * below.w + x / 2];
+        }
+    });
     (0..2).for_each(|_| grid.relax(&mut v, b));
     v
 }
@@ -168,7 +184,7 @@ mod tests {
         let truth: Vec<f32> = (0..w * h).map(|i| ((i % w) as f32 * 0.2).sin() * 5.0 + (i / w) as f32 * 0.3).collect();
         let b = grid.apply(&truth);
         let springs = SpringGrid::new(w, h, plane(1, 0), plane(0, 1));
-        let found = solve(grid, &b);
+        let found = solve(&levels(grid), &b, EXACT);
         let off = springs.apply(&found).iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(off < 1e-3, "residual {off}");
     }

@@ -50,7 +50,7 @@ impl FileAction {
         session.drop_gesture();
         match self {
             FileAction::New { width, height, background } => {
-                let size = Budget::default().size(Path::new("new"), (*width).into(), (*height).into())?;
+                let size = Budget::of_this_machine().size(Path::new("new"), (*width).into(), (*height).into())?;
                 let name = session.untitled();
                 session.add_document(OpenDocument::new(name, empty(size, *background), None));
             }
@@ -144,8 +144,8 @@ pub fn export(
 
 /// A picture of the user's own, with the name it goes by.
 pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
-    let bytes = read_file(file, Budget::default().file_bytes)?;
-    let picture = picture::decode(file, &bytes, &Budget::default())?;
+    let bytes = read_file(file, Budget::of_this_machine().file_bytes)?;
+    let picture = picture::decode(file, &bytes, &Budget::of_this_machine())?;
     Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
 }
 

@@ -75,15 +75,15 @@ enum PartValue {
 
 /// Reads a part from a file of the user's.
 pub fn read(part: PicturePart, file: &Path) -> Result<ReadPart> {
-    let bytes = || read_file(file, Budget::default().file_bytes);
+    let bytes = || read_file(file, Budget::of_this_machine().file_bytes);
     let (name, what) = match part {
         PicturePart::Mask => {
-            let mask = picture::decode_coverage(file, &bytes()?, &Budget::default())?;
+            let mask = picture::decode_coverage(file, &bytes()?, &Budget::of_this_machine())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             (name, PartValue::Mask(mask))
         }
         PicturePart::Detail => {
-            let normals = detail::read(file, &bytes()?, &NormalConvention::default(), &Budget::default())?;
+            let normals = detail::read(file, &bytes()?, &NormalConvention::default(), &Budget::of_this_machine())?;
             let (name, picture) = read_picture(file)?;
             (name, PartValue::Detail(picture, Arc::new(DetailMap::new(normals))))
         }

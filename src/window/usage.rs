@@ -31,20 +31,13 @@ fn resident(status: &str) -> Option<u64> {
     kib.checked_mul(1024)
 }
 
-/// Bytes for display: “312 MB”, “1.4 GB”.
-pub fn spoken(bytes: u64) -> String {
-    let mb = bytes as f64 / 1e6;
-    if mb < 1000.0 { format!("{mb:.0} MB") } else { format!("{:.1} GB", mb / 1000.0) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn memory_is_read_and_spoken() {
+    fn memory_is_read() {
         assert_eq!(resident("Name:\tx\nVmRSS:\t    2048 kB\n"), Some(2 << 20));
         assert_eq!(resident("VmRSS: many kB"), None);
-        assert_eq!([900_000_000, 1_440_000_000].map(spoken), ["900 MB", "1.4 GB"]);
     }
 }

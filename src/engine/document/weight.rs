@@ -1,0 +1,85 @@
+//! How much memory flattening a document takes beside the document itself, told before it begins.
+//! Floor 4. An estimate from above; what there is, floors above know.
+
+use super::{Content, Document, Layer, MaskKind, StrokeList};
+use crate::math::Rect;
+use std::sync::Arc;
+
+/// Of a tile, bytes a pixel.
+const TILE_BYTES: u64 = 4;
+/// A tensor of curvature with its fade, and the map of κ made of it, bytes a pixel.
+const CURVATURE_BYTES: u64 = 15;
+/// A surface that other normals were put on, bytes a pixel.
+const SURFACE_BYTES: u64 = 18;
+
+impl Document {
+    /// Bytes that flattening takes at most: the picture, the tiles that live layers are rendered to, and what is prepared of
+    /// the surface for shading, scaling and masks.
+    pub fn flattening_bytes(&self) -> u64 {
+        let area = self.size.area() as u64;
+        area * TILE_BYTES + of_layers(&self.layers, self.size.rect(), area)
+    }
+}
+
+fn of_layers(layers: &[Arc<Layer>], canvas: Rect, area: u64) -> u64 {
+    layers.iter().filter(|layer| layer.visible).map(|layer| of_layer(layer, canvas, area)).sum()
+}
+
+fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
+    let mask = match layer.mask.as_ref().map(|mask| &mask.kind) {
+        Some(MaskKind::Curvature { .. }) => area * CURVATURE_BYTES,
+        _ => 0,
+    };
+    mask + match &layer.content {
+        Content::Fill(_) | Content::Pixels(_) => 0,
+        Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
+        Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,
+        Content::Shading(_) => area * (TILE_BYTES + CURVATURE_BYTES),
+        Content::RadianceScaling(_) => area * CURVATURE_BYTES,
+        Content::Normals(_) => area * SURFACE_BYTES,
+        Content::Group(group) => of_layers(&group.layers, canvas, area),
+    }
+}
+
+/// Pixels of the boxes around the strokes, unbent.
+fn of_strokes(list: &StrokeList, canvas: Rect) -> u64 {
+    let of_one = |stroke: &Arc<crate::paint::Stroke>| {
+        let reach = stroke.brush().size.max(0.0).min(1e6).ceil() as i32;
+        let boxed = stroke.samples().iter().fold(Rect::EMPTY, |all, sample| {
+            let (x, y) = (sample.at.x.floor() as i32, sample.at.y.floor() as i32);
+            all.union(Rect::new(x, y, x.saturating_add(1), y.saturating_add(1)))
+        });
+        let boxed = boxed.grown(reach).intersect(canvas);
+        (boxed.width() * boxed.height()) as u64
+    };
+    list.strokes.iter().map(of_one).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Live;
+    use crate::math::{Size, srgb::Color, vec2};
+    use crate::paint::{Brush, Gradient, ImageFilter, Sample, Stroke};
+    use crate::surface::Operator;
+
+    #[test]
+    fn live_layers_weigh_what_they_are_rendered_to() {
+        let weight = |contents: Vec<Content>| {
+            let layers = contents.into_iter().map(|content| Arc::new(Layer::new("a", content))).collect();
+            Document { layers, ..Document::empty(Size::new(1000, 100)) }.flattening_bytes()
+        };
+        let (from, to) = (vec2(0.0, 0.0), vec2(9.0, 9.0));
+        let of_no_stops =
+            Gradient { from, to, stops: Vec::new(), operator: Operator::None, filter: ImageFilter::Antialias };
+        let gradient = || Content::Gradient(Live::new(of_no_stops.clone()));
+        assert_eq!(weight(vec![Content::Fill(Color::BLACK)]), 400_000);
+        assert_eq!(weight(vec![gradient(), gradient()]), 1_200_000);
+        let samples = vec![Sample::at(vec2(50.0, 50.0))];
+        let brush = Brush { size: 10.0, ..Brush::default() };
+        let stroke = Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples));
+        let strokes = |n: usize| Content::Strokes(Live::new(StrokeList { strokes: vec![stroke.clone(); n] }));
+        assert_eq!(weight(vec![strokes(1)]), 400_000 + 21 * 21 * 4);
+        assert_eq!(weight(vec![strokes(1000)]), 800_000, "no more than the canvas");
+    }
+}

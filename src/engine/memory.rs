@@ -1,0 +1,104 @@
+//! What memory may be used for: buffers that ask before they are made, and the ceiling of what is kept for speed alone.
+//! Floor 0. Not here: how much the machine has, which floors above read and pass in.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The allocator has no room for a buffer of so many bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no memory for {} more", spoken(*.bytes))]
+pub struct OutOfMemory {
+    pub bytes: u64,
+}
+
+/// `len` copies of a value, or a refusal where the allocator has no room for them: `vec!` would end the program.
+///
+/// The room is asked for and given back before the buffer is made, since a buffer of zeros comes from the system untouched, which
+/// one that is filled by hand does not.
+pub fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
+    let mut probe: Vec<T> = Vec::new();
+    let bytes = (len as u64).saturating_mul(size_of::<T>() as u64);
+    probe.try_reserve_exact(len).map_err(|_| OutOfMemory { bytes })?;
+    drop(probe);
+    Ok(vec![value; len])
+}
+
+/// As [`filled`] for those who cannot fail: unwinds with an [`OutOfMemory`], which [`caught`] makes a refusal of.
+pub fn filled_or_unwind<T: Clone>(len: usize, value: T) -> Vec<T> {
+    filled(len, value).unwrap_or_else(|refused| std::panic::panic_any(refused))
+}
+
+/// Does work of which some buffer may find no room.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, OutOfMemory> {
+    // What the work made is dropped with it; nothing half done is seen again.
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).map_err(|payload| match payload.downcast() {
+        Ok(refused) => *refused,
+        Err(other) => std::panic::resume_unwind(other),
+    })
+}
+
+/// Bytes as people read them: “312 MB”, “1.4 GB”.
+pub fn spoken(bytes: u64) -> String {
+    let mb = bytes as f64 / 1e6;
+    if mb < 1000.0 { format!("{mb:.0} MB") } else { format!("{:.1} GB", mb / 1000.0) }
+}
+
+/// Bytes that may be kept for speed alone, and those that are.
+static CEILING: AtomicU64 = AtomicU64::new(64 << 20);
+static KEPT: AtomicU64 = AtomicU64::new(0);
+
+/// Sets how much may be kept for speed alone: what could be computed again. What is kept already stays.
+pub fn set_kept_ceiling(bytes: u64) {
+    CEILING.store(bytes, Ordering::Relaxed);
+}
+
+/// Leave to keep something that could be computed again, for as long as this lives.
+#[derive(Debug)]
+pub struct Kept {
+    bytes: u64,
+}
+
+impl Kept {
+    /// `None` where all that is kept would be more than the ceiling.
+    pub fn try_new(bytes: u64) -> Option<Self> {
+        let ceiling = CEILING.load(Ordering::Relaxed);
+        let more = |kept: u64| kept.checked_add(bytes).filter(|sum| *sum <= ceiling);
+        KEPT.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more).ok().map(|_| Self { bytes })
+    }
+}
+
+impl Drop for Kept {
+    fn drop(&mut self) {
+        KEPT.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_buffer_without_room_is_a_refusal_and_no_abort() {
+        let refused = filled(usize::MAX / 16, [0u64; 2]).unwrap_err();
+        assert!(refused.to_string().starts_with("there is no memory for "), "{refused}");
+        assert_eq!(caught(|| filled_or_unwind(usize::MAX / 16, [0u64; 2]).len()), Err(refused));
+        assert_eq!(filled(3, 7u8), Ok(vec![7; 3]));
+    }
+    #[test]
+    fn other_panics_are_passed_on() {
+        let passed = std::panic::catch_unwind(|| caught(|| panic!("another")));
+        assert_eq!(passed.unwrap_err().downcast_ref(), Some(&"another"));
+    }
+    #[test]
+    fn what_is_kept_stays_below_the_ceiling_and_is_given_back() {
+        assert!(Kept::try_new(u64::MAX).is_none());
+        let kept = Kept::try_new(1000);
+        assert!(kept.is_some() && KEPT.load(Ordering::Relaxed) >= 1000);
+        assert!(Kept::try_new((64 << 20) - 999).is_none());
+        drop(kept);
+        assert!(Kept::try_new(1000).is_some());
+    }
+    #[test]
+    fn bytes_are_spoken() {
+        assert_eq!([312_000_000, 900_000_000, 1_440_000_000].map(spoken), ["312 MB", "900 MB", "1.4 GB"]);
+    }
+}

@@ -1,0 +1,120 @@
+//! How much memory this machine has left for the program, as the system tells: free memory, the ceilings of the control groups
+//! around the process, its address space.
+//! Floor 5. The only place that asks; floors beneath are passed figures.
+
+use std::fs;
+use std::path::Path;
+
+/// What is taken to be free where the system tells nothing.
+pub const UNKNOWN_BYTES: u64 = 4 << 30;
+
+/// Bytes that may be taken now without driving anything out, but for an eighth that is left to everything else.
+pub fn free_bytes() -> u64 {
+    let free = told(Path::new("/")).unwrap_or(UNKNOWN_BYTES);
+    free - free / 8
+}
+
+/// Bytes that may be kept for speed alone (`memory::set_kept_ceiling`): a small share, so that old machines keep less.
+pub fn kept_bytes() -> u64 {
+    const MOST: u64 = 64 << 20;
+    MOST.min(told(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)
+}
+
+/// The least of what each of Linux's accounts leaves; `None` on other systems. `root`: where its folders hang.
+fn told(root: &Path) -> Option<u64> {
+    let read = |name: &str| fs::read_to_string(root.join(name)).ok();
+    let free = field(&read("proc/meminfo")?, "MemAvailable:")? * 1024;
+    let groups = read("proc/self/cgroup").unwrap_or_default();
+    let left = [left_in_groups(root, &groups), left_in_addresses(&read)];
+    Some(left.into_iter().flatten().fold(free, u64::min))
+}
+
+/// The number behind a name at the start of a line.
+fn field(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// What is left under the ceilings of the process's groups, of version 2 and 1, and of all groups around them.
+fn left_in_groups(root: &Path, groups: &str) -> Option<u64> {
+    let line = |is: &dyn Fn(&str) -> bool| {
+        groups.lines().find_map(|line| {
+            let (controllers, path) = line.split_once(':')?.1.split_once(':')?;
+            is(controllers).then(|| path.trim_start_matches('/').to_owned())
+        })
+    };
+    let second = line(&|controllers| controllers.is_empty());
+    let first = line(&|controllers| controllers.split(',').any(|c| c == "memory"));
+    let second = second.map(|path| ("sys/fs/cgroup", path, ["memory.max", "memory.current"], "inactive_file"));
+    let first = first.map(|path| {
+        ("sys/fs/cgroup/memory", path, ["memory.limit_in_bytes", "memory.usage_in_bytes"], "total_inactive_file")
+    });
+    let all = second.into_iter().chain(first).flat_map(|(mount, path, names, cache)| {
+        let top = root.join(mount);
+        let inner = top.join(path);
+        // Within a container the path may be one of the world outside; its own group is then the top.
+        let around = inner.ancestors().take_while(|folder| folder.starts_with(&top)).map(Path::to_owned);
+        around.filter_map(|folder| left_in_group(&folder, names, cache)).collect::<Vec<_>>()
+    });
+    all.min()
+}
+
+/// What is left in one group; the files it holds in memory are given back when they are in the way.
+fn left_in_group(folder: &Path, [ceiling, used]: [&str; 2], cache: &str) -> Option<u64> {
+    let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
+    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
+    let cache = read("memory.stat").and_then(|stat| field(&stat, &format!("{cache} "))).unwrap_or(0);
+    Some(number(ceiling)?.saturating_sub(number(used)?.saturating_sub(cache)))
+}
+
+/// What is left of the process's address space (`ulimit -v`).
+fn left_in_addresses(read: &impl Fn(&str) -> Option<String>) -> Option<u64> {
+    let ceiling = field(&read("proc/self/limits")?, "Max address space")?;
+    Some(ceiling.saturating_sub(field(&read("proc/self/status")?, "VmSize:")? * 1024))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A machine of 8 GB, 6 of them free, with more files of the system.
+    fn machine(files: &[(&str, &str)]) -> Option<u64> {
+        let root = tempfile::tempdir().unwrap();
+        let meminfo = ("proc/meminfo", "MemTotal:  8000000 kB\nMemFree:  1000000 kB\nMemAvailable:  6000000 kB\n");
+        for (name, text) in files.iter().chain([&meminfo]) {
+            let file = root.path().join(name);
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, text).unwrap();
+        }
+        told(root.path())
+    }
+    #[test]
+    fn the_least_of_all_ceilings_counts() {
+        assert_eq!(machine(&[]), Some(6_144_000_000));
+        let unlimited = "Max address space         unlimited            unlimited            bytes\n";
+        let limited = "Max address space         2000000000           unlimited            bytes\n";
+        let status = ("proc/self/status", "VmSize:\t  500000 kB\n");
+        assert_eq!(machine(&[("proc/self/limits", unlimited), status]), Some(6_144_000_000));
+        assert_eq!(machine(&[("proc/self/limits", limited), status]), Some(1_488_000_000));
+    }
+    #[test]
+    fn groups_count_with_all_around_them_and_their_cached_files_are_free() {
+        let groups = ("proc/self/cgroup", "0::/user/app\n");
+        let open = ("sys/fs/cgroup/user/app/memory.max", "max\n");
+        let ceiling = ("sys/fs/cgroup/user/memory.max", "1000000000\n");
+        let used = ("sys/fs/cgroup/user/memory.current", "700000000\n");
+        let stat = ("sys/fs/cgroup/user/memory.stat", "anon 1\ninactive_file 200000000\n");
+        assert_eq!(machine(&[groups, open, ceiling, used, stat]), Some(500_000_000));
+        let old = [
+            ("proc/self/cgroup", "3:cpu:/a\n2:memory:/elsewhere\n"),
+            ("sys/fs/cgroup/memory/memory.limit_in_bytes", "900000000"),
+            ("sys/fs/cgroup/memory/memory.usage_in_bytes", "400000000"),
+        ];
+        assert_eq!(machine(&old), Some(500_000_000));
+    }
+    #[test]
+    fn a_system_that_tells_nothing_is_taken_for_a_small_one() {
+        assert_eq!(told(Path::new("no such folder")), None);
+        assert!(free_bytes() > 0 && kept_bytes() > 0);
+    }
+}

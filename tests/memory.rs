@@ -1,0 +1,195 @@
+//! Memory has a ceiling: files that unpack without end, large maps, light and layers, and very many strokes take no more than
+//! what is made of them needs; beyond what there is they get a sentence with both figures.
+
+use super::watch;
+use rilievo_engine::document::source::{MapSource, SurfaceSource};
+use rilievo_engine::document::{Content, Document, Layer, Live, Progress, StrokeList, flatten};
+use rilievo_engine::math::{Size, hash, srgb::Color, vec2};
+use rilievo_engine::memory::set_kept_ceiling;
+use rilievo_engine::paint::{Brush, Sample, Stroke};
+use rilievo_engine::surface::Operator;
+use rilievo_io::export::{self, ExportFormat, ExportOptions};
+use rilievo_io::{Budget, UserFiles, exr, maps, open, picture};
+use std::io::{Cursor, Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+const MIB: usize = 1 << 20;
+
+/// What some work came to, and the most bytes that it held at a time.
+fn watched<T>(work: impl FnOnce() -> T) -> (T, usize) {
+    let before = watch::forget();
+    let done = work();
+    (done, watch::peak().saturating_sub(before))
+}
+
+fn chunk(kind: &[u8; 4], body: &[u8]) -> Vec<u8> {
+    let named = [kind, body].concat();
+    [&(body.len() as u32).to_be_bytes()[..], &named, &crc32fast::hash(&named).to_be_bytes()].concat()
+}
+/// A PNG of one colour of `bits` and a kind, with chunks in front of its pixels.
+fn png_of(size: Size, kind: png::ColorType, bits: png::BitDepth, before: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size.width, size.height);
+    encoder.set_color(kind);
+    encoder.set_depth(bits);
+    encoder.set_compression(png::Compression::High);
+    if kind == png::ColorType::Indexed {
+        encoder.set_palette(&[255, 0, 0, 0, 255, 0][..]);
+    }
+    let row = (size.width as usize * kind.samples() * bits as usize).div_ceil(8);
+    let mut writer = encoder.write_header().unwrap();
+    let mut rows = writer.stream_writer_with_size(MIB).unwrap();
+    let texel: &[u8] = if kind == png::ColorType::Rgb { &[128, 128, 255] } else { &[0] };
+    let row: Vec<u8> = texel.iter().copied().cycle().take(row).collect();
+    (0..size.height).for_each(|_| rows.write_all(&row).unwrap());
+    rows.finish().unwrap();
+    writer.finish().unwrap();
+    // Behind the header, which takes 33 bytes.
+    bytes.splice(33..33, before.concat());
+    bytes
+}
+/// Zeros, packed by DEFLATE within the frame that a PNG wants.
+fn bomb(bytes: usize) -> Vec<u8> {
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    zip.start_file("zeros", zip::write::SimpleFileOptions::default()).unwrap();
+    let zeros = vec![0; MIB];
+    (0..bytes / MIB).for_each(|_| zip.write_all(&zeros).unwrap());
+    let file = zip.finish().unwrap().into_inner();
+    let mut archive = zip::ZipArchive::new(Cursor::new(file)).unwrap();
+    let mut packed = vec![0x78, 0xda];
+    archive.by_index_raw(0).unwrap().read_to_end(&mut packed).unwrap();
+    // Whatever stands for the checksum is not reached.
+    packed.extend([0; 4]);
+    packed
+}
+
+#[test]
+fn what_unpacks_without_end_beside_a_picture_is_left_packed() {
+    let _turn = watch::turn();
+    let bomb = bomb(512 * MIB);
+    let beside = [
+        chunk(b"iCCP", &[&b"x\0\0"[..], &bomb].concat()),
+        chunk(b"zTXt", &[&b"Raw profile type iptc\0\0"[..], &bomb].concat()),
+        chunk(b"iTXt", &[&b"XML:com.adobe.xmp\0\x01\0\0\0"[..], &bomb].concat()),
+    ];
+    for chunk in beside {
+        let name = String::from_utf8_lossy(&chunk[4..8]).into_owned();
+        let file = png_of(Size::new(8, 8), png::ColorType::Rgb, png::BitDepth::Eight, &[chunk]);
+        let read = |file: &[u8]| picture::decode(Path::new("a.png"), file, &Budget::default()).unwrap();
+        let (read, peak) = watched(|| read(&file));
+        assert_eq!(read.size, Size::new(8, 8));
+        assert!(peak < 48 * MIB, "{name}: {peak} bytes");
+    }
+}
+#[test]
+fn files_that_pack_well_open() {
+    let _turn = watch::turn();
+    let folder = tempfile::tempdir().unwrap();
+    let size = Size::new(6000, 4000);
+    let palette = png_of(size, png::ColorType::Indexed, png::BitDepth::One, &[]);
+    assert!(palette.len() < 12_000, "{} bytes", palette.len());
+    let grey = png_of(size, png::ColorType::Grayscale, png::BitDepth::One, &[]);
+    for (name, bytes, pixel) in [("palette.png", palette, [255, 0, 0, 255]), ("grey.png", grey, [0, 0, 0, 255])] {
+        let file = folder.path().join(name);
+        std::fs::write(&file, bytes).unwrap();
+        let document = open(&file, &Budget::default()).unwrap_or_else(|e| panic!("{e}")).document;
+        let Content::Pixels(pixels) = &document.layers[0].content else { panic!("a paint layer") };
+        assert_eq!((document.size, pixels.tiles.pixel(5999, 3999)), (size, pixel), "{name}");
+    }
+}
+#[test]
+fn a_map_takes_thirty_two_bytes_a_pixel_with_its_depth_derived() {
+    let _turn = watch::turn();
+    // Larger than what the solver holds whole.
+    let size = Size::new(4200, 4000);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("flat.png");
+    std::fs::write(&file, png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &[])).unwrap();
+    let normal = MapSource { file: file.to_string_lossy().into_owned(), ..MapSource::default() };
+    let source = SurfaceSource { normal: Some(normal), depth: None, mask: None };
+    let (read, peak) = watched(|| maps::import(&source, &UserFiles::default(), &Budget::default()).unwrap());
+    assert_eq!(read.surface.size(), size);
+    assert!(peak < 32 * size.area(), "{} bytes a pixel", peak / size.area());
+    let little = Budget::default().within(300_000_000);
+    let said = maps::import(&source, &UserFiles::default(), &little).err().unwrap();
+    let figures = "a surface of 4200 × 4000 pixels takes 521 MB of memory, and 300 MB are free for it";
+    assert!(said.to_string().contains(figures) && said.remedy().is_some(), "{said}");
+}
+#[test]
+fn light_becomes_a_paint_layer_a_few_rows_at_a_time() {
+    let _turn = watch::turn();
+    let size = Size::new(2000, 3000);
+    let channel = |c: u32| (0..size.area()).map(|i| ((i as u32 * 7 + c) % 1009) as f32 / 900.0).collect();
+    let channels = vec![("R", channel(0)), ("G", channel(1)), ("B", channel(2))];
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("light.exr");
+    let bytes = exr::encode_channels(&file, size, channels).unwrap();
+    std::fs::write(&file, &bytes).unwrap();
+    let (opened, peak) = watched(|| open(&file, &Budget::default()).unwrap());
+    let taken = peak.saturating_sub(bytes.len());
+    assert!(taken < 10 * size.area(), "{} bytes a pixel beside the file", taken / size.area());
+    let Content::Pixels(pixels) = &opened.document.layers[0].content else { panic!("a paint layer") };
+    let whole = picture::to_tiles(&picture::decode(&file, &bytes, &Budget::default()).unwrap(), 0, 0);
+    assert!(whole.iter().all(|(at, tile)| pixels.tiles.tile(at).unwrap().bytes() == tile.bytes()));
+}
+#[test]
+fn sparse_layers_take_what_is_painted_on_them() {
+    let _turn = watch::turn();
+    let (side, layers) = (3000u32, 6);
+    let mut rgba = vec![0; (side * side * 4) as usize];
+    for at in [0, rgba.len() - 4] {
+        rgba[at..at + 4].copy_from_slice(&[200, 30, 60, 255]);
+    }
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, side, side);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.write_header().unwrap().write_image_data(&rgba).unwrap();
+    drop(rgba);
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    let mut stack = format!("<?xml version='1.0'?><image w='{side}' h='{side}'><stack>");
+    let mut entry = |name: &str, bytes: &[u8]| {
+        zip.start_file(name, stored).unwrap();
+        zip.write_all(bytes).unwrap();
+    };
+    entry("mimetype", b"image/openraster");
+    for i in 0..layers {
+        entry(&format!("data/{i}.png"), &png);
+        stack += &format!("<layer name='{i}' src='data/{i}.png'/>");
+    }
+    entry("stack.xml", (stack + "</stack></image>").as_bytes());
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("sparse.ora");
+    std::fs::write(&file, zip.finish().unwrap().into_inner()).unwrap();
+    let (seen, peak) = watched(|| {
+        let document = open(&file, &Budget::default()).unwrap().document;
+        let pixels = flatten(&document, &Progress::default()).unwrap();
+        let out =
+            export::encode(Path::new("a.png"), ExportFormat::Png, &pixels, document.size, &ExportOptions::default());
+        (document.layers.len(), pixels.pixel(2999, 2999), out.unwrap().len())
+    });
+    assert_eq!((seen.0, seen.1), (layers, [200, 30, 60, 255]));
+    // One decoded picture alone would take 36 MB.
+    assert!(peak < 16 * MIB, "{peak} bytes");
+}
+#[test]
+fn of_very_many_strokes_few_dabs_are_held() {
+    let _turn = watch::turn();
+    set_kept_ceiling(4 << 20);
+    let size = Size::new(1000, 800);
+    let stroke = |i: u32| {
+        let at = |j: u32| vec2(1000.0 * hash::unit(i, j, 0), 800.0 * hash::unit(i, j, 1));
+        let brush = Brush { size: 4.0, ..Brush::default() };
+        let samples = (0..10).map(|j| Sample::at(at(j))).collect();
+        Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples))
+    };
+    let list = StrokeList { strokes: (0..80).map(stroke).collect() };
+    let layer = Layer::new("strokes", Content::Strokes(Live::new(list)));
+    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
+    let (pixels, peak) = watched(|| flatten(&document, &Progress::default()).unwrap());
+    set_kept_ceiling(64 << 20);
+    assert!(pixels.iter().count() > 100);
+    // All dabs together take some 130 MiB.
+    assert!(peak < 90 * MIB, "{peak} bytes");
+}
