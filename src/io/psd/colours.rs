@@ -56,7 +56,7 @@ pub struct Colours<'a> {
 
 impl Colours<'_> {
     /// Straight sRGB of planes; without alpha opaque, without a colour channel black, without any transparent.
-    pub fn to_srgb(&self, size: Size, planes: &[Option<Vec<u8>>; 4], alpha: Option<&[u8]>) -> Vec<u8> {
+    pub fn to_srgb(self, size: Size, planes: &[Option<Vec<u8>>; 4], alpha: Option<&[u8]>) -> Vec<u8> {
         let area = size.area();
         if planes.iter().all(Option::is_none) && alpha.is_none() {
             return vec![0; area * 4];

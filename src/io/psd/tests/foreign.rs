@@ -21,7 +21,8 @@ const HIDDEN: [(&str, bool); 2] = [("Layers", false), ("The file's own picture",
 fn every_kind_of_colours_opens_from_the_file_s_picture() {
     let float = |v: f32| v.to_be_bytes().to_vec();
     let table = || (0..3).flat_map(|c| (0..256).map(move |i| if i == 7 { [10, 20, 30][c] } else { 0 })).collect();
-    let kinds: [(u16, u16, Vec<u8>, Vec<Vec<u8>>, [u8; 3]); 9] = [
+    type Kind = (u16, u16, Vec<u8>, Vec<Vec<u8>>, [u8; 3]);
+    let kinds: [Kind; 9] = [
         // The first pixel of eight is white, the others ink.
         (0, 1, vec![], vec![vec![0b0111_1111]], [255; 3]),
         (1, 16, vec![], vec![vec![0x80, 0x80]], [128; 3]),
