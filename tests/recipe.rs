@@ -285,7 +285,6 @@ fn every_refusal_names_file_and_field() {
             said_of(json!({ "kind": "fill", "mask": { "file": "p.png" } })),
             "layers[0].mask.file: “p.png” has 10 × 6 pixels",
         ),
-        (said_of(json!({ "kind": "fill", "mask": { "kind": "depth", "from": 1 } })), "layers[0].mask: “from” and “to”"),
         (said_of(json!({ "kind": "gradient", "stops": [] })), "layers[0].stops: is empty"),
         (
             said_of(json!({ "kind": "gradient", "stops": [[1, "#000000"], [0, "#000000"]] })),
@@ -336,7 +335,8 @@ fn documents_beyond_the_budget_are_refused() {
     says(small, json!([{ "kind": "group", "layers": [{ "kind": "group" }] }]), "layers[0].layers[0] is nested");
     says(small, json!([image(json!([{ "at": [1, 2] }, { "at": [1, 2] }]))]), "layers[0].anchors has 2 items");
     says(small, json!([{ "kind": "strokes", "strokes": [{ "samples": [[1, 2], [1, 2]] }] }]), "samples has 2 items");
-    says(small, json!([{ "kind": "pixels", "file": "p.png" }]), "more than 100 pixels together");
+    let few = Budget { document_px: 50, ..Budget::default() };
+    says(few, json!([{ "kind": "pixels", "file": "p.png" }]), "more than 50 pixels together");
 }
 
 #[test]

@@ -168,7 +168,7 @@ fn a_file_that_is_there_already_is_replaced_only_when_that_is_said_twice() {
     command(&mut harness, "Export…");
     press(&mut harness, "Export…");
     choose(&mut harness, &file);
-    harness.get_by_label_contains("such a file already");
+    harness.get_by_label_contains("This file already exists");
     assert_eq!(std::fs::read(&file).unwrap(), b"something else");
     press(&mut harness, "Replace");
     until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());

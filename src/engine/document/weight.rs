@@ -13,8 +13,8 @@ const CURVATURE_BYTES: u64 = 15;
 const SURFACE_BYTES: u64 = 18;
 
 impl Document {
-    /// Bytes that flattening takes at most: the picture, the tiles that live layers are rendered to, and what is prepared of
-    /// the surface for shading, scaling and masks.
+    /// Bytes that flattening takes at most: the picture, the tiles that live layers are rendered to, and what is
+    /// prepared of the surface for shading, scaling and masks.
     pub fn flattening_bytes(&self) -> u64 {
         let area = self.size.area() as u64;
         area * TILE_BYTES + of_layers(&self.layers, self.size.rect(), area)

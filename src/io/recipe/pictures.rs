@@ -7,6 +7,7 @@ use crate::json::JsonNode;
 use crate::maps::detail;
 use crate::math::{Size, Vec3};
 use crate::paint::{Adjust, PictureSource};
+use crate::picture::Painted;
 use crate::raster::picture::Texels;
 use crate::raster::{Picture, Plane, TileGrid, blur};
 use crate::surface::DetailMap;
@@ -107,8 +108,14 @@ impl PictureCache {
     pub fn tiles(&mut self, source: RecipeSource, name: &JsonNode, x: i32, y: i32) -> Result<(String, TileGrid)> {
         let key = (name.text()?.to_owned(), x, y);
         if !self.tiles.contains_key(&key) {
-            let (bytes, path) = (bytes(source, name)?, source.files.path(name.text()?));
-            let painted = picture::painted(&path, &bytes, x, y, source.budget).map_err(|e| name.led_to(e))?;
+            // Another layer may show the same file.
+            let painted = match self.pictures.get(name.text()?) {
+                Some(picture) => Painted { size: picture.size, tiles: picture::to_tiles(picture, x, y) },
+                None => {
+                    let (bytes, path) = (bytes(source, name)?, source.files.path(name.text()?));
+                    picture::painted(&path, &bytes, x, y, source.budget).map_err(|e| name.led_to(e))?
+                }
+            };
             self.spend(source, painted.size, painted.tiles.bytes())?;
             self.tiles.insert(key.clone(), painted.tiles);
         }

@@ -33,8 +33,14 @@ pub fn caught(work: impl FnOnce() -> Result<()>) -> std::result::Result<(), Stri
 mod tests {
     use super::*;
 
+    /// There is one hook for panics: the tests that set it take turns.
+    fn turn() -> std::sync::MutexGuard<'static, ()> {
+        static TURN: Mutex<()> = Mutex::new(());
+        TURN.lock().unwrap_or_else(PoisonError::into_inner)
+    }
     #[test]
     fn what_finds_no_memory_becomes_a_sentence_that_helps() {
+        let _turn = turn();
         let said = caught(|| std::panic::panic_any(OutOfMemory { bytes: 4_000_000_000 })).unwrap_err();
         let _ = std::panic::take_hook();
         assert!(said.starts_with("there is no memory for 4.0 GB more; close other programs"), "{said}");
@@ -45,6 +51,7 @@ mod tests {
     }
     #[test]
     fn a_panic_becomes_a_sentence() {
+        let _turn = turn();
         let said = caught(|| panic!("a {} went missing", "tile")).unwrap_err();
         let _ = std::panic::take_hook();
         assert!(said.starts_with("internal error: a tile went missing (src/program/cli/crash.rs:"), "{said}");

@@ -240,7 +240,7 @@ fn a_brush_carries_paint_along_and_loses_it_as_fast_as_its_length_says() {
     assert_eq!(at(0.0, 60), [255, 0, 0, 255]);
     let (short, long) = (at(0.0, 125), at(0.95, 125));
     assert!(long[0] > short[0].max(60) && long[3] == 255, "red is carried into blue: {long:?}, not {short:?}");
-    assert_eq!(at(1.0, 170)[0], 0, "what is never taken up is not carried");
+    assert_eq!(at(1.0, 170)[0], 255, "what was taken up first and is never renewed is carried to the end");
 }
 #[test]
 fn a_brush_that_picks_nothing_up_paints_as_plain_paint_does() {
