@@ -12,7 +12,7 @@
 //! | 3 | [`paint`], [`shading`] | footprints, strokes, gradients, placed images; materials and radiance scaling |
 //! | 2 | [`surface`] | maps, curvature, the operators D_p and D_n, anchors, weights |
 //! | 1 | [`raster`] | tiles, blend modes, textures, samplers |
-//! | 0 | [`math`], [`error`], [`memory`] | rectangles, sRGB, run-time SIMD; the one error type; buffers that ask first |
+//! | 0 | [`math`], [`error`], [`memory`] | rectangles, sRGB, run-time SIMD; the error type; buffers that ask first |
 
 pub mod error;
 pub mod math;

@@ -12,8 +12,8 @@ pub struct OutOfMemory {
 
 /// `len` copies of a value, or a refusal where the allocator has no room for them: `vec!` would end the program.
 ///
-/// The room is asked for and given back before the buffer is made, since a buffer of zeros comes from the system untouched, which
-/// one that is filled by hand does not.
+/// The room is asked for and given back before the buffer is made, since a buffer of zeros comes from the system
+/// untouched, which one that is filled by hand does not.
 pub fn filled<T: Clone>(len: usize, value: T) -> Result<Vec<T>, OutOfMemory> {
     let mut probe: Vec<T> = Vec::new();
     let bytes = (len as u64).saturating_mul(size_of::<T>() as u64);

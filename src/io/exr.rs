@@ -96,7 +96,8 @@ impl<'a> ExrFile<'a> {
     pub fn read(&self, wanted: &[usize]) -> Result<Vec<Plane<f32>>> {
         self.read_rows(wanted, 0..self.size.height as usize)
     }
-    /// The rows of the display window in runs that few chunks lie in, each a multiple of the height of tiles but for the last.
+    /// The rows of the display window in runs that few chunks lie in, each a multiple of the height of tiles but for
+    /// the last.
     pub fn bands(&self) -> impl Iterator<Item = Range<usize>> {
         let height = self.size.height as usize;
         let tallest = self.meta.headers.iter().map(|h| h.max_block_pixel_size().y()).max().unwrap_or(1);

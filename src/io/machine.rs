@@ -1,6 +1,5 @@
-//! How much memory this machine has left for the program, as the system tells: free memory, the ceilings of the control groups
-//! around the process, its address space.
-//! Floor 5. The only place that asks; floors beneath are passed figures.
+//! How much memory this machine has left for the program, as the system tells: free memory, the ceilings of the control
+//! groups around the process, its address space. Floor 5. The only place that asks; floors beneath are passed figures.
 
 use std::fs;
 use std::path::Path;

@@ -62,8 +62,8 @@ impl Sample {
     }
 }
 
-/// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it, and its dabs as long as
-/// those of all strokes stay below a ceiling.
+/// One stroke of a stroke layer. It is never changed, so the tiles it touches are cached with it, and its dabs as long
+/// as those of all strokes stay below a ceiling.
 #[derive(Clone)]
 pub struct Stroke {
     brush: Brush,

@@ -2,19 +2,13 @@
 //! by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. Normals do not say
 //! how far apart two pieces of surface are across an occluding contour; that stays unknown.
 
-mod large;
 mod multigrid;
 mod slopes;
 
 use crate::math::Vec3;
-use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
 use multigrid::SpringGrid;
 use slopes::Slopes;
-
-/// Up to so many pixels every one of them is an unknown of the solver, which holds some ten planes. Beyond, blocks of 2 × 2 are,
-/// and their pixels are relaxed (`large`): 4096².
-const WHOLE_PX: usize = 1 << 24;
 
 /// Depth made from normals.
 pub struct IntegratedDepth {
@@ -31,7 +25,7 @@ pub struct IntegratedDepth {
 /// same depth.
 pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
     let slopes = Slopes { normals, inside };
-    let mut heights = if inside.values().len() <= WHOLE_PX { whole(&slopes) } else { large::solve(&slopes) };
+    let mut heights = whole(&slopes);
     centre_pieces(&mut heights, inside);
     let held = || heights.iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
     let (near, far) =
@@ -88,34 +82,6 @@ fn centre_pieces(heights: &mut [f32], inside: &Plane<bool>) {
 mod tests {
     use super::*;
     use crate::math::{Size, vec3};
-
-    /// A ball and a slope beside it that do not touch, noise on both.
-    fn pieces(size: Size) -> (Plane<Vec3>, Plane<bool>) {
-        let r = size.longer_side() * 0.3;
-        let at = |x: usize, y: usize| (x as f32 - r - 4.0, y as f32 - size.height as f32 * 0.5);
-        let normals = Plane::from_fn(size, |x, y| {
-            let ((dx, dy), noise) = (at(x, y), 0.1 * ((x * 7 + y * 13) % 5) as f32 - 0.2);
-            let rest = r * r - dx * dx - dy * dy;
-            let ball = vec3(dx + noise, -dy, rest.max(0.0).sqrt().max(0.05 * r));
-            if rest > 0.0 { ball.normalize_or(Vec3::Z) } else { vec3(0.3, 0.2 + noise, 1.0).normalize_or(Vec3::Z) }
-        });
-        let inside = Plane::from_fn(size, |x, y| {
-            let (dx, dy) = at(x, y);
-            dx.hypot(dy) < r || (dx > r * 1.2 && (x + y) % 61 != 0)
-        });
-        (normals, inside)
-    }
-    #[test]
-    fn blocks_lead_to_the_heights_that_all_pixels_at_once_have() {
-        let (normals, inside) = pieces(Size::new(301, 230));
-        let slopes = Slopes { normals: &normals, inside: &inside };
-        let (mut all, mut blocks) = (whole(&slopes), large::solve(&slopes));
-        [&mut all, &mut blocks].into_iter().for_each(|heights| centre_pieces(heights, &inside));
-        let range = all.iter().copied().fold(0.0, f32::max) - all.iter().copied().fold(0.0, f32::min);
-        let off = all.iter().zip(&blocks).zip(inside.values()).filter(|(_, inside)| **inside);
-        let worst = off.map(|((a, b), _)| (a - b).abs()).fold(0.0, f32::max);
-        assert!(worst < 2e-3 * range, "{worst} px of {range}");
-    }
 
     #[test]
     fn a_sphere_gets_its_depth_back() {

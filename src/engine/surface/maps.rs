@@ -58,8 +58,8 @@ pub struct Surface {
     objects: OnceLock<Objects>,
 }
 
-/// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never stand whole
-/// beside each other.
+/// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never
+/// stand whole beside each other.
 fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
     const AT_A_TIME: usize = 1 << 22;
     let size = normals.size();

@@ -1,6 +1,5 @@
-//! What a file of rows of numbers asks for before its pixels are decoded: how much its own bits could hold, and what a PNG keeps
-//! beside its pixels.
-//! Floor 5.
+//! What a file of rows of numbers asks for before its pixels are decoded: how much its own bits could hold, and what a
+//! PNG keeps beside its pixels. Floor 5.
 
 use crate::math::Size;
 use crate::{Error, Result};

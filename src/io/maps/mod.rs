@@ -40,6 +40,9 @@ pub struct ImportedSurface {
     pub files: BTreeMap<String, Asset>,
 }
 
+/// What deriving depth takes at its peak, the surface included: the solver holds some ten planes.
+const DERIVED_DEPTH_BYTES_PER_PX: u64 = 100;
+
 /// Reads a document's maps.
 ///
 /// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there
@@ -55,6 +58,10 @@ fn read(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<Im
     let normal = source.normal.as_ref().map(|m| load(m, MapRole::Normals, files, budget)).transpose()?;
     let depth = source.depth.as_ref().map(|m| load(m, MapRole::Depth, files, budget)).transpose()?;
     let maps: Vec<&StoredMap> = normal.iter().chain(&depth).collect();
+    if let (Some(normal), None) = (&normal, &depth) {
+        let what = format!("the depth of {} pixels, derived from their normals,", normal.size);
+        budget.room(&normal.file, &what, normal.size.area() as u64 * DERIVED_DEPTH_BYTES_PER_PX)?;
+    }
     let Some(first) = maps.first() else {
         return Err(Error::invalid(files.path(""), "surface", "it names neither normals nor depth"));
     };

@@ -110,7 +110,8 @@ fn load_bitmap(file: &Path, bytes: &[u8], channel: Option<&str>, budget: &Budget
     Ok(stored)
 }
 
-/// What the largest step of making a surface of maps takes beside the maps as they are stored, measured on one of 8192².
+/// What the largest step of making a surface of maps takes beside the maps as they are stored, measured on one of
+/// 8192².
 const PEAK_BYTES_PER_PX: u64 = 28;
 
 fn surface_of(size: Size) -> String {

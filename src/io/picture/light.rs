@@ -94,8 +94,8 @@ fn rank(pass: &ExrPass) -> usize {
     WHOLE.iter().position(|known| *known == last).unwrap_or(WHOLE.len())
 }
 
-/// The colour layer of an EXR: the unnamed one, else one called colour or beauty, else the first with R, G and B, else a lone
-/// grey channel.
+/// The colour layer of an EXR: the unnamed one, else one called colour or beauty, else the first with R, G and B, else
+/// a lone grey channel.
 pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     let colour = |pass: &&ExrPass| pass.letters("rgb").is_some();
     let grey = |pass: &&ExrPass| pass.letters("y").or(pass.letters("a")).is_some() || pass.channels.len() == 1;
@@ -107,8 +107,8 @@ pub fn chosen<'e>(file: &Path, exr: &'e ExrFile) -> Result<&'e ExrPass> {
     })
 }
 
-/// Hands on the colours of a layer as stored, of a grey one thrice the same, alpha 1 where it has none: whole rows from the top,
-/// a multiple of the height of tiles at a time, so that no more than that is held.
+/// Hands on the colours of a layer as stored, of a grey one thrice the same, alpha 1 where it has none: whole rows from
+/// the top, a multiple of the height of tiles at a time, so that no more than that is held.
 pub fn in_bands(
     file: &Path,
     exr: &ExrFile,

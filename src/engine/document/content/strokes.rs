@@ -26,8 +26,8 @@ impl LayerKind for Live<StrokeList> {
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || stroke::render_tile(&self.params().strokes, scene, at)))
     }
-    /// Of strokes whose dabs are too many to be cached the tiles as well: tile by tile, each stroke would be laid again and
-    /// again.
+    /// Of strokes whose dabs are too many to be cached the tiles as well: tile by tile, each stroke would be laid again
+    /// and again.
     fn warm(&self, scene: &Scene, progress: &Progress) {
         for stroke in &self.params().strokes {
             let bend = Bend { operator: stroke.operator(), ..Bend::default() };

@@ -1,6 +1,6 @@
-//! Many strokes on many tiles, with a bounded number of dabs in flight: each stroke is laid once for all the tiles that wait for
-//! it, painted on them, and forgotten.
-//! Floor 3. The same pixels as tile by tile (`render_tile`), which lays a stroke whose dabs are not kept once for each tile.
+//! Many strokes on many tiles, with a bounded number of dabs in flight: each stroke is laid once for all the tiles that
+//! wait for it, painted on them, and forgotten. Floor 3. The same pixels as tile by tile (`render_tile`), which lays a
+//! stroke whose dabs are not kept once for each tile.
 
 use super::Stroke;
 use super::dabs::{StrokeDabs, TileReach};

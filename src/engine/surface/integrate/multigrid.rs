@@ -100,8 +100,6 @@ pub fn levels(grid: SpringGrid) -> Vec<SpringGrid> {
 
 /// A residual of 1e-5 of the right-hand side, squared.
 pub const EXACT: f64 = 1e-10;
-/// One of 1e-2, for what corrects a solution.
-pub const NEARLY: f64 = 1e-4;
 
 /// Solves A v = b until the residual is so small a part of b, squared, or as far as 60 steps go.
 pub fn solve(levels: &[SpringGrid], b: &[f32], goal: f64) -> Vec<f32> {

@@ -14,7 +14,8 @@ pub struct Slopes<'a> {
 const STEEPEST: f32 = 0.05;
 
 impl Slopes<'_> {
-    /// Weight and height of the step from a pixel to the one at its right (axis 0) or below (1); nothing where there is none.
+    /// Weight and height of the step from a pixel to the one at its right (axis 0) or below (1); nothing where there is
+    /// none.
     #[inline(always)]
     pub fn edge(&self, (x, y): (usize, usize), axis: usize) -> (f32, f32) {
         let b = if axis == 0 { (x + 1, y) } else { (x, y + 1) };
@@ -42,26 +43,5 @@ impl Slopes<'_> {
             b += flow(self.edge((x, y - 1), 1));
         }
         b
-    }
-    /// Springs of a pixel: what its neighbours' heights pull at it with, and how stiff they are together.
-    #[inline(always)]
-    pub fn springs(&self, heights: &[f32], x: usize, y: usize) -> (f32, f32) {
-        let (w, i) = (self.inside.width(), y * self.inside.width() + x);
-        let (mut pull, mut stiff) = (0.0, 0.0);
-        let mut add = |weight: f32, j: usize| {
-            if weight > 0.0 {
-                pull += weight * heights[j];
-                stiff += weight;
-            }
-        };
-        add(self.edge((x, y), 0).0, i + 1);
-        add(self.edge((x, y), 1).0, i + w);
-        if x > 0 {
-            add(self.edge((x - 1, y), 0).0, i - 1);
-        }
-        if y > 0 {
-            add(self.edge((x, y - 1), 1).0, i - w);
-        }
-        (pull, stiff)
     }
 }
