@@ -1,7 +1,7 @@
 //! Rilievo as a library: paint over normal and depth maps without the window.
 //!
 //! A [`Document`] is a canvas, the [`Surface`] that is painted on, and layers. It is read from a recipe or a project
-//! file, or built in code; [`flatten`] makes the picture. Values are cheap to clone and never change while shared.
+//! file, or built in code; [`flatten()`] makes the picture. Values are cheap to clone and never change while shared.
 //!
 //! Render a recipe to a PNG:
 //!

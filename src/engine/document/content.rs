@@ -1,5 +1,5 @@
 //! What a layer holds, and what every kind of it can be asked.
-//! Floor 4. Each kind has a file that answers [`LayerKind`], so that composing, walking and comparing layers name no
+//! Floor 4. Each kind has a file that answers `LayerKind`, so that composing, walking and comparing layers name no
 //! kinds. The rendering of marks is in `paint` and `shading`.
 
 mod fill;

@@ -35,7 +35,7 @@ impl DabReach {
         corner.length() > FULL * self.border_px
     }
     /// D(q), pushed out of the footprint as q nears the border: `D + push · t · (D − q_0) / |D − q_0|`, where t rises
-    /// from 0 at [`FULL`] of the reach to 1 at its border.
+    /// from 0 at `FULL` of the reach to 1 at its border.
     pub fn limit(&self, q: Vec2, d: Vec2) -> Vec2 {
         let t = (q.distance(self.at) / self.border_px - FULL) / (1.0 - FULL);
         if t <= 0.0 {

@@ -98,7 +98,7 @@ fn of_numbers([x, y, pressure, tilt_x, tilt_y, time_secs]: [f32; COLUMNS]) -> Sa
     Sample { at: vec2(x, y), pressure, tilt: vec2(tilt_x, tilt_y), time_secs }
 }
 
-/// A text from a file that is parsed into values: see [`with_rows_packed`].
+/// A text from a file that is parsed into values: see `with_rows_packed`.
 pub fn parse(file: &Path, text: &[u8], budget: &Budget) -> Result<Value> {
     match with_rows_packed(text) {
         Cow::Borrowed(_) => json::parse(file, text, budget),

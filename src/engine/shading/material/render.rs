@@ -16,7 +16,7 @@ impl Shading {
     /// One tile of the material on a scene, opaque wherever there is any surface; `None` where there is none.
     ///
     /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the first and cached:
-    /// [`Shading::warm_caches`] does so in advance.
+    /// [`Shading::warm`] does so in advance.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let surface = scene.surface.as_deref()?;
         let inside = at.rect().intersect(surface.size().rect());
