@@ -4,7 +4,7 @@
 use std::{fs, path::Path};
 
 /// `docs/ARCHITECTURE.md` shows the same table.
-const FLOORS: [(&str, u32); 13] = [
+const FLOORS: [(&str, u32); 14] = [
     ("error", 0),
     ("math", 0),
     ("memory", 0),
@@ -12,6 +12,7 @@ const FLOORS: [(&str, u32); 13] = [
     ("surface", 2),
     ("paint", 3),
     ("shading", 3),
+    ("shape", 3),
     ("document", 4),
     ("tools", 5),
     ("io", 5),

@@ -10,6 +10,7 @@
 //! |---|---|---|
 //! | 4 | [`document`] | layers, content, flattening |
 //! | 3 | [`paint`], [`shading`] | footprints, strokes, gradients, placed images; materials and radiance scaling |
+//! | 3 | [`shape`] | forms from outlines: inflated, turned, touched, combined |
 //! | 2 | [`surface`] | maps, curvature, the operators D_p and D_n, anchors, weights |
 //! | 1 | [`raster`] | tiles, blend modes, textures, samplers |
 //! | 0 | [`math`], [`error`], [`memory`] | rectangles, sRGB, run-time SIMD; the error type; buffers that ask first |
@@ -24,6 +25,7 @@ pub mod surface;
 
 pub mod paint;
 pub mod shading;
+pub mod shape;
 
 pub mod document;
 

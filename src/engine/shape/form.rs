@@ -1,0 +1,152 @@
+//! Forms: heights and normals of one part, as every algorithm of this floor gives them.
+//! Floor 3. How forms meet is `combine`'s.
+
+use super::{Outline, Rim};
+use crate::math::{Rect, Vec2, Vec3, vec2, vec3};
+use crate::raster::Plane;
+use rayon::prelude::*;
+
+/// The shape of one part over a rectangle of the canvas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Form {
+    /// Canvas px of the planes' first pixel.
+    pub corner: (i32, i32),
+    /// Toward the viewer, canvas px; 0 where nothing is covered.
+    pub height: Plane<f32>,
+    /// Unit, camera space (y up); +z where nothing is covered.
+    pub normals: Plane<Vec3>,
+    pub coverage: Plane<u8>,
+}
+
+/// What is made of a squared height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roundness {
+    /// Factor of the height; 1 makes a half sphere of a disc.
+    pub puff: f32,
+    /// Degrees that the rim turns away from the viewer; 90 is a silhouette, less a low relief.
+    pub rim_deg: f32,
+}
+
+impl Form {
+    /// Heights √q and their normals of a squared height q, px², that is 0 at the rim.
+    ///
+    /// With puff p and a constant k that flattens the rim, n ∝ (−p² ∂q/∂x, p² ∂q/∂y, 2 p √q + k): exact at the rim,
+    /// where n_z = 0 for k = 0. k is such that the rim turns by `rim_deg` in the mean. The heights whose slopes these
+    /// are: p√q − k/2 ln(1 + 2p√q / k).
+    pub fn of_squares(outline: &Outline, squares: &Plane<f32>, rim: &Rim, round: Roundness) -> Self {
+        let flat = flattening(outline, squares, rim, round);
+        let (sin, cos) = round.rim_deg.to_radians().sin_cos();
+        let (size, inside) = (outline.size(), outline.inside());
+        let puff = round.puff;
+        let mut height = Plane::filled(size, 0.0);
+        let mut normals = Plane::filled(size, Vec3::Z);
+        let width = size.width as usize;
+        let rows = height.values_mut().par_chunks_mut(width).zip(normals.values_mut().par_chunks_mut(width));
+        rows.enumerate().for_each(|(y, (heights, normals))| {
+            for (x, (height, normal)) in heights.iter_mut().zip(normals).enumerate() {
+                if inside.at(x, y) {
+                    let root = puff * squares.at(x, y).max(0.0).sqrt();
+                    let slope = rim.slope(squares, x, y) * (puff * puff);
+                    *height = if flat > 0.0 { root - 0.5 * flat * (2.0 * root / flat).ln_1p() } else { root };
+                    *normal = vec3(-slope.x, slope.y, 2.0 * root + flat).normalize_or(Vec3::Z);
+                } else if let Some(line) = outline.rim_line(x, y) {
+                    // The covered part of a pixel whose centre is outside lies at the rim.
+                    *normal = vec3(line.outward.x * sin, -line.outward.y * sin, cos);
+                }
+            }
+        });
+        Self { corner: outline.corner(), height, normals, coverage: outline.coverage().clone() }
+    }
+    /// The pixels of the canvas that the planes hold.
+    pub fn rect(&self) -> Rect {
+        let (size, (x, y)) = (self.height.size(), self.corner);
+        Rect::new(x, y, x.saturating_add(size.width as i32), y.saturating_add(size.height as i32))
+    }
+    /// The same form elsewhere.
+    pub fn moved(&self, by: (i32, i32)) -> Self {
+        let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));
+        Self { corner, ..self.clone() }
+    }
+    /// Leaned about its middle: a plane is added that rises by `tan(tilt)` toward the right (x) and the bottom (y).
+    /// What is a silhouette stays one. Degrees, between −90 and 90.
+    pub fn tilted(mut self, tilt_deg: Vec2) -> Self {
+        let slope = vec2(tilt_deg.x.to_radians().tan(), tilt_deg.y.to_radians().tan());
+        if slope == Vec2::ZERO || !slope.is_finite() {
+            return self;
+        }
+        let size = self.height.size();
+        let middle = vec2(size.width as f32, size.height as f32) * 0.5;
+        let coverage = &self.coverage;
+        self.height = self.height.updated(|x, y, z| {
+            let from = vec2(x as f32 + 0.5, y as f32 + 0.5) - middle;
+            if coverage.at(x, y) > 0 { z + slope.dot(from) } else { z }
+        });
+        self.normals = self.normals.updated(|x, y, n| match coverage.at(x, y) {
+            0 => n,
+            _ => vec3(n.x - slope.x * n.z, n.y + slope.y * n.z, n.z).normalize_or(Vec3::Z),
+        });
+        self
+    }
+    /// Nearer to the viewer by so many px.
+    pub fn raised(mut self, by_px: f32) -> Self {
+        let coverage = &self.coverage;
+        if by_px != 0.0 && by_px.is_finite() {
+            self.height = self.height.updated(|x, y, z| if coverage.at(x, y) > 0 { z + by_px } else { z });
+        }
+        self
+    }
+    /// With a height layer added, px, and the normals that follow: slopes add.
+    pub fn with_added(mut self, added: &Plane<f32>) -> Self {
+        if added.size() != self.height.size() {
+            return self;
+        }
+        let coverage = &self.coverage;
+        self.normals = self.normals.updated(|x, y, n| {
+            let covered = |x: i32, y: i32| coverage.get(x, y).unwrap_or(0) > 0;
+            if !covered(x as i32, y as i32) {
+                return n;
+            }
+            let slope = slope_within(added, &covered, x as i32, y as i32);
+            vec3(n.x - slope.x * n.z, n.y + slope.y * n.z, n.z).normalize_or(Vec3::Z)
+        });
+        self.height = self.height.updated(|x, y, z| if coverage.at(x, y) > 0 { z + added.at(x, y) } else { z });
+        self
+    }
+}
+
+/// The slope of a plane at a pixel by differences that do not leave what is covered.
+pub fn slope_within(plane: &Plane<f32>, covered: &dyn Fn(i32, i32) -> bool, x: i32, y: i32) -> Vec2 {
+    let here = plane.at(x as usize, y as usize);
+    let along = |dx: i32, dy: i32| {
+        let at = |s: i32| {
+            let (x, y) = (x + s * dx, y + s * dy);
+            covered(x, y).then(|| plane.get(x, y)).flatten()
+        };
+        match (at(-1), at(1)) {
+            (Some(a), Some(b)) => 0.5 * (b - a),
+            (Some(a), None) => here - a,
+            (None, Some(b)) => b - here,
+            (None, None) => 0.0,
+        }
+    };
+    vec2(along(1, 0), along(0, 1))
+}
+
+/// k of [`Form::of_squares`]: 0 for a silhouette, else what gives the mean slope of the rim its angle.
+fn flattening(outline: &Outline, squares: &Plane<f32>, rim: &Rim, round: Roundness) -> f32 {
+    if round.rim_deg >= 90.0 {
+        return 0.0;
+    }
+    let inside = outline.inside();
+    let (w, h) = (inside.width(), inside.height());
+    let (mut sum, mut count) = (0.0f64, 0u32);
+    for (x, y) in (1..h - 1).flat_map(|y| (1..w - 1).map(move |x| (x, y))) {
+        let whole = || inside.at(x - 1, y) && inside.at(x + 1, y) && inside.at(x, y - 1) && inside.at(x, y + 1);
+        if inside.at(x, y) && !whole() {
+            sum += f64::from(rim.slope(squares, x, y).length());
+            count += 1;
+        }
+    }
+    let mean = (sum / f64::from(count.max(1))) as f32;
+    round.puff * round.puff * mean / round.rim_deg.to_radians().tan().max(1e-3)
+}

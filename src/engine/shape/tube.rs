@@ -1,0 +1,64 @@
+//! Tubes: the union of the largest balls that an outline holds, smoothed across its ridges.
+//! Floor 3. A strip rises to its half width here, not to √2 of it as in `inflate`.
+
+use super::nearest::{RimDistance, lower_envelope};
+use super::{Outline, Rim};
+use crate::math::Size;
+use crate::raster::Plane;
+use rayon::prelude::*;
+
+/// A residual of 1e-4 of the right-hand side, squared.
+const GOAL: f64 = 1e-8;
+/// How far ridges are smoothed, a part of the radius of the ball there: facets go, cross-sections stay.
+const SMOOTHING: f32 = 0.08;
+/// The least smoothing, px: a ball that stands between pixels has its top half a pixel away.
+const LEAST_SMOOTHING_PX: f32 = 0.5;
+
+/// h, px², over the planes of an outline: the squared height of its maximal balls, smoothed, 0 at the rim.
+///
+/// Raw it is max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h = h₀, √t a twelfth of the
+/// ball's radius. `start` as for `inflate`.
+pub fn tube(outline: &Outline, start: Option<&Plane<f32>>) -> Plane<f32> {
+    let reach = RimDistance::of(outline).distance;
+    let raw = balls(outline, &reach);
+    let inside = outline.inside();
+    let screen = |x: usize, y: usize| {
+        let length = (SMOOTHING * raw.at(x, y).max(0.0).sqrt()).max(LEAST_SMOOTHING_PX);
+        1.0 / (length * length)
+    };
+    let source = Plane::from_fn(raw.size(), |x, y| if inside.at(x, y) { raw.at(x, y) * screen(x, y) } else { 0.0 });
+    let h = Rim::silhouette(outline).equation(screen).solve(&source, start.or(Some(&raw)), GOAL);
+    h.updated(|x, y, h| if inside.at(x, y) && h.is_finite() { h.max(0.0) } else { 0.0 })
+}
+
+/// max_c (r²(c) − |x − c|²) over the inside: rows first, then columns, each an upper envelope of parabolas.
+pub fn balls(outline: &Outline, reach: &Plane<f32>) -> Plane<f32> {
+    let (size, inside) = (outline.size(), outline.inside());
+    let (w, h) = (size.width as usize, size.height as usize);
+    let ball = |x: usize, y: usize| {
+        if inside.at(x, y) { -f64::from(reach.at(x, y)).powi(2) } else { f64::INFINITY }
+    };
+    // Along rows, then mirrored at the diagonal so that columns are rows too.
+    let along = envelopes(size, ball);
+    let mirrored = envelopes(Size::new(size.height, size.width), |x, y| along[x * w + y]);
+    Plane::from_fn(size, |x, y| {
+        let least = mirrored[x * h + y];
+        if inside.at(x, y) && least.is_finite() { (-least).max(0.0) as f32 } else { 0.0 }
+    })
+}
+
+/// min_v ((x − v)² + f(v, y)) for every pixel.
+fn envelopes(size: Size, f: impl Fn(usize, usize) -> f64 + Sync) -> Vec<f64> {
+    let w = size.width as usize;
+    let mut out = crate::memory::filled_or_unwind(size.area(), f64::INFINITY);
+    out.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+        let line: Vec<f64> = (0..w).map(|x| f(x, y)).collect();
+        lower_envelope(&line, |q, v| row[q] = (q as f64 - v as f64).powi(2) + line[v]);
+    });
+    out
+}
+
+/// A squared height between the pillow and the tube: (1 − t) u + t h, t in `[0, 1]`.
+pub fn blend(pillow: &Plane<f32>, tube: &Plane<f32>, t: f32) -> Plane<f32> {
+    Plane::from_fn(pillow.size(), |x, y| (1.0 - t) * pillow.at(x, y) + t * tube.at(x, y))
+}
