@@ -8,6 +8,7 @@ use super::replace::FileStamp;
 use super::{Budget, json, picture, psd};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::memory;
+use crate::raster::Asset;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,6 +25,8 @@ pub struct OpenedDocument {
     pub stamp: FileStamp,
     /// Every file that was read for it, itself first: none of them may be written over by what is made from it.
     pub reads: Vec<PathBuf>,
+    /// The picture of the whole that a project holds beside its layers, as a PNG.
+    pub picture: Option<Asset>,
 }
 
 /// What a file is.
@@ -68,7 +71,7 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
     let bytes = read_file(file, budget.file_bytes)?;
     let kind = FileKind::of(&bytes);
     let files = TrackedFiles::new(RecipeFolder::beside(file));
-    let whole = |(document, notes)| ProjectContents { document, notes, is_whole: true };
+    let whole = |(document, notes)| ProjectContents { document, notes, is_whole: true, picture: None };
     let read = || match kind {
         FileKind::Project => project::read(file, &bytes, budget),
         FileKind::Recipe => {
@@ -78,9 +81,9 @@ pub fn open(file: &Path, budget: &Budget) -> Result<OpenedDocument> {
         FileKind::Picture => single(file, &bytes, budget),
     };
     let read = memory::caught(read).map_err(|refused| Error::out_of_memory(file, refused))?;
-    let ProjectContents { document, notes, is_whole } = read?;
+    let ProjectContents { document, notes, is_whole, picture } = read?;
     let reads = [vec![file.into()], files.read_paths()].concat();
-    Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes), reads })
+    Ok(OpenedDocument { document, notes, is_whole, kind, stamp: FileStamp::of(&bytes), reads, picture })
 }
 
 /// A picture as a document of its size; an EXR of several layers with all of them.
@@ -106,7 +109,8 @@ fn single(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContents>
         (true, false) => Some("an EXR does not tell how its layers lie on each other: they stand as in the file"),
     };
     let notes = notes.map(str::to_owned).into_iter().collect();
-    Ok(ProjectContents { document: Document { layers, ..Document::empty(size) }, notes, is_whole: true })
+    let document = Document { layers, ..Document::empty(size) };
+    Ok(ProjectContents { document, notes, is_whole: true, picture: None })
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ mod pass;
 
 use crate::document::{Document, DocumentReducer};
 use crate::math::{Rect, Size};
+use crate::memory::{self, OutOfMemory};
 use crate::raster::{Tile, TileAt};
 use pass::RenderPass;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -36,6 +37,8 @@ pub struct RenderedTileBatch {
     pub is_settled: bool,
     /// The time since work on this document began.
     pub took: Duration,
+    /// There was no memory to paint it; what was painted before stays, until another document is wanted.
+    pub refused: Option<OutOfMemory>,
 }
 
 #[derive(Default)]
@@ -130,14 +133,23 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
     loop {
         if let Some(next) = work.wait(shared)? {
             let picture = next.picture;
-            work.take_up(next);
+            let refused = work.if_there_is_memory(|work| work.take_up(next)).err();
             // Nothing differs: whoever waits for the picture has it.
             if !work.has_more() {
-                send(RenderedTileBatch { picture, ..work.nothing() })?;
+                send(RenderedTileBatch { picture, refused, ..work.nothing() })?;
             }
         }
         let begun = Instant::now();
-        while let Some(painted) = work.paint() {
+        loop {
+            let painted = match work.if_there_is_memory(RenderWork::paint) {
+                Ok(Some(painted)) => painted,
+                Ok(None) => break,
+                Err(refused) => {
+                    let picture = work.wanted.as_ref().map_or(0, |wanted| wanted.picture);
+                    send(RenderedTileBatch { picture, refused: Some(refused), ..work.nothing() })?;
+                    break;
+                }
+            };
             let is_settled = painted.is_settled;
             send(painted)?;
             let newer = lock(&shared.wanted).is_some();
@@ -149,6 +161,15 @@ fn work(shared: &SharedRequest, sender: &Sender<RenderedTileBatch>, done: &dyn F
 }
 
 impl RenderWork {
+    /// Does some of the work; where there is no memory for it, it is put aside, and the next document is painted whole.
+    fn if_there_is_memory<T>(&mut self, step: impl FnOnce(&mut Self) -> T) -> Result<T, OutOfMemory> {
+        let done = memory::caught(|| step(self));
+        if done.is_err() {
+            (self.whole, self.draft) = (RenderPass::default(), None);
+            (self.is_drafting, self.is_resting, self.is_prepared) = (false, false, true);
+        }
+        done
+    }
     /// Waits for something to do; the document that is newly wanted, if any. `None` once the window is gone.
     fn wait(&mut self, shared: &SharedRequest) -> Option<Option<RenderRequest>> {
         let mut pause = PAUSE;
@@ -171,7 +192,8 @@ impl RenderWork {
                 (self.is_drafting, self.is_resting) = (!waited.timed_out(), waited.timed_out());
             } else if waited.timed_out() {
                 drop(wanted);
-                self.prepare();
+                // A drag that has no memory to be prepared will be told so itself, if it comes.
+                let _ = self.if_there_is_memory(Self::prepare);
                 // The next part at once.
                 pause = Duration::ZERO;
                 wanted = lock(&shared.wanted);
@@ -226,7 +248,8 @@ impl RenderWork {
             Some(draft) if self.is_drafting => (draft.step, draft.pass.size().unwrap_or(size)),
             _ => (1, size),
         };
-        RenderedTileBatch { picture: 0, step, size, tiles: Vec::new(), is_settled: true, took: Duration::ZERO }
+        let tiles = Vec::new();
+        RenderedTileBatch { picture: 0, step, size, tiles, is_settled: true, took: Duration::ZERO, refused: None }
     }
     /// Paints some of what is left, tiles in sight first.
     fn paint(&mut self) -> Option<RenderedTileBatch> {
@@ -306,6 +329,22 @@ mod tests {
         }
     }
 
+    #[test]
+    fn without_memory_the_picture_waits_and_the_next_one_is_painted_whole() {
+        let size = Size::new(100, 80);
+        let fill = Layer::new("fill", Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 }));
+        let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(size) };
+        let wanted =
+            || RenderRequest { picture: 3, document: document.clone(), visible: size.rect(), is_dragged: false };
+        let mut work = RenderWork::default();
+        work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
+        let none: Result<Vec<u8>, _> = work.if_there_is_memory(|_| memory::filled_or_unwind(usize::MAX / 2, 0u8));
+        assert!(none.is_err() && !work.has_more(), "the thread does not try again at once");
+        assert!(work.nothing().is_settled);
+        work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
+        let painted = work.if_there_is_memory(RenderWork::paint).unwrap().unwrap();
+        assert_eq!((painted.tiles.len(), painted.refused), (4, None));
+    }
     #[test]
     fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
         let size = Size::new(300, 200);

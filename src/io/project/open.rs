@@ -3,7 +3,7 @@
 
 use super::look::{paint, remember};
 use super::manifest::{Manifest, ManifestPicture};
-use super::{Archive, DOCUMENT, MANIFEST, STACK, foreign, repair, stack};
+use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, repair, stack};
 use crate::document::cache::EncodedPixels;
 use crate::document::{Content, Document, LayerId};
 use crate::math::Size;
@@ -25,6 +25,8 @@ pub struct ProjectContents {
     pub notes: Vec<String>,
     /// Whether nothing was lost. A document that is not whole must not overwrite its file without asking.
     pub is_whole: bool,
+    /// The picture of the whole that the file holds beside the layers, as a PNG.
+    pub picture: Option<Asset>,
 }
 
 /// Reads a project of ours, or any OpenRaster file. Fails only if nothing can be recovered.
@@ -36,7 +38,10 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         reading.lost("the file's table of contents is damaged; its entries were found without it");
     }
     let document = reading.document()?;
-    Ok(ProjectContents { document, notes: reading.notes, is_whole: reading.is_whole })
+    let ProjectReader { notes, is_whole, .. } = reading;
+    // Without it the layers are painted before anything is seen.
+    let picture = archive.has(MERGED).then(|| archive.bytes(MERGED, budget.file_bytes).ok()).flatten();
+    Ok(ProjectContents { document, notes, is_whole, picture: picture.map(Asset::from) })
 }
 
 /// Reads a project that was just made of a document, and compares the two; nothing that was saved may come back

@@ -47,7 +47,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     let (layers, is_less, mut notes) = builder.done();
     let document = Document { layers, ..Document::empty(size) };
     let document = judged(document, parsed.merged.take(), is_less || !damage.is_empty(), &mut notes);
-    Ok(ProjectContents { document, notes, is_whole: damage.is_empty() })
+    Ok(ProjectContents { document, notes, is_whole: damage.is_empty(), picture: None })
 }
 
 /// What became of the file's colours.

@@ -4,6 +4,7 @@
 pub mod actions;
 pub mod autosave;
 pub mod brushes;
+pub mod first_look;
 mod open_document;
 mod path;
 pub mod property;

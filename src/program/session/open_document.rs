@@ -1,6 +1,7 @@
 //! An open document: its history, selection, file and view.
 //! Floor 6.
 
+use super::first_look::FirstLook;
 use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind};
 use crate::io::replace::FileStamp;
@@ -51,6 +52,8 @@ pub struct OpenDocument {
     pub clone_source: Option<CloneSource>,
     /// Why the last edit was not kept, until that is told.
     pub refused: Option<String>,
+    /// The picture that its file held of it, until the window shows it.
+    pub first_look: FirstLook,
     /// The strokes chosen, by their places in the layer.
     chosen: Option<(LayerId, Vec<usize>)>,
 }
@@ -90,6 +93,7 @@ impl OpenDocument {
             last_end: None,
             clone_source: None,
             refused: None,
+            first_look: FirstLook::default(),
             chosen: None,
         }
     }

@@ -2,6 +2,7 @@
 //! and use are recognised.
 
 use super::OpenDocument;
+use super::first_look::FirstLook;
 use crate::Result;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::document::{Content, Document, Layer, Live, Progress};
@@ -89,7 +90,7 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
     match kind_of(file)? {
         FileUse::Document | FileUse::Picture => {
             io::save::tidy(file);
-            let io::OpenedDocument { document, notes, is_whole, kind, stamp, reads } =
+            let io::OpenedDocument { document, notes, is_whole, kind, stamp, reads, picture } =
                 io::open(file, &Budget::of_this_machine())?;
             Budget::of_this_machine().room(file, "painting it", document.flattening_bytes())?;
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -100,6 +101,7 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
             // A document that is not whole must not overwrite its file without asking.
             tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
             tab.reads = reads;
+            tab.first_look = FirstLook::of(file, picture.as_ref(), tab.document().size);
             Ok(OpenedTab { tab, notes })
         }
         FileUse::Normals => open_maps(&with_own_depth(file)),

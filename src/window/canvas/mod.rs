@@ -149,6 +149,9 @@ impl Canvas {
             self.tab = Some(tab.key);
             self.picture += 1;
             self.whole.begin(drawn.size);
+            if let Some(picture) = tab.first_look.take() {
+                self.whole.show(picture);
+            }
             (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
         }
         let is_dragged = is_dragged(session);
@@ -165,6 +168,9 @@ impl Canvas {
         let mut is_draft_next = self.is_draft_in_front;
         for painted in painted {
             (self.took, self.is_busy) = (painted.took, !painted.is_settled);
+            if let Some(refused) = painted.refused {
+                self.trouble = Some(Error::out_of_memory(tab.title(), refused));
+            }
             let is_draft = painted.step > 1;
             if painted.is_settled {
                 is_draft_next = is_draft;

@@ -17,6 +17,8 @@ pub struct TileSheet {
     /// Painted tiles that are not on the graphics card yet, and since when.
     unsent: Vec<TileAt>,
     unsent_since: Option<Instant>,
+    /// They are sent though more is being painted.
+    is_urgent: bool,
 }
 
 /// A redraw shorter than this is shown at once.
@@ -30,7 +32,13 @@ impl TileSheet {
         self.blocks.begin(size);
         self.size = Some(size);
         self.unsent.clear();
-        self.unsent_since = None;
+        (self.unsent_since, self.is_urgent) = (None, false);
+    }
+    /// Shows a whole picture at once, until its tiles are painted.
+    pub fn show(&mut self, picture: TileGrid) {
+        self.unsent.extend(picture.iter().map(|(at, _)| at));
+        self.grid = picture;
+        self.is_urgent = true;
     }
     pub fn size(&self) -> Option<Size> {
         self.size
@@ -49,10 +57,10 @@ impl TileSheet {
             return false;
         }
         let since = *self.unsent_since.get_or_insert_with(Instant::now);
-        if is_busy && since.elapsed() < WHOLE {
+        if is_busy && since.elapsed() < WHOLE && !self.is_urgent {
             return false;
         }
-        self.unsent_since = None;
+        (self.unsent_since, self.is_urgent) = (None, false);
         self.blocks.update(ctx, &self.grid, self.unsent.drain(..));
         true
     }
@@ -64,5 +72,32 @@ impl TileSheet {
         let Some(size) = self.size else { return };
         let scale = vec2(canvas.width as f32 / size.width as f32, canvas.height as f32 / size.height as f32);
         self.blocks.draw(painter, screen_from_canvas * Affine2::from_scale(scale));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stored_picture_is_sent_before_anything_is_painted() {
+        let (ctx, mut sheet) = (egui::Context::default(), TileSheet::default());
+        sheet.begin(Size::new(100, 80));
+        sheet.show(TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(8000), 100, 80, 0, 0));
+        assert_eq!(sheet.grid.pixel(99, 79), [9, 90, 200, 255]);
+        assert!(sheet.send(&ctx, true), "though the thread is busy");
+        let tiles = vec![(TileAt::of_pixel(0, 0), None)];
+        let batch = RenderedTileBatch {
+            picture: 1,
+            step: 1,
+            size: Size::new(100, 80),
+            tiles,
+            is_settled: false,
+            took: Duration::ZERO,
+            refused: None,
+        };
+        sheet.take(batch);
+        assert_eq!((sheet.grid.pixel(0, 0), sheet.grid.pixel(99, 79)), ([0; 4], [9, 90, 200, 255]));
+        assert!(!sheet.send(&ctx, true), "tiles of a long redraw wait a little");
     }
 }

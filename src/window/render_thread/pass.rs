@@ -45,7 +45,7 @@ impl PassBatch {
     }
     pub fn painted(self, picture: u64, step: u32, size: Size) -> RenderedTileBatch {
         let Self { tiles, is_settled, took, .. } = self;
-        RenderedTileBatch { picture, step, size, tiles, is_settled, took }
+        RenderedTileBatch { picture, step, size, tiles, is_settled, took, refused: None }
     }
 }
 

@@ -1,0 +1,56 @@
+//! The picture that a project holds of itself, to be seen until its layers are painted.
+//! Floor 6. The window's canvas shows it.
+
+use crate::io::{Budget, picture};
+use crate::math::Size;
+use crate::raster::{Asset, TileGrid};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// The pixels of that picture, until somebody takes them.
+#[derive(Default)]
+pub struct FirstLook(Mutex<Option<TileGrid>>);
+
+impl FirstLook {
+    /// Of a PNG as large as the canvas; nothing of any other, of a damaged one, and where there is no room for it.
+    pub fn of(file: &Path, png: Option<&Asset>, canvas: Size) -> Self {
+        let read = || {
+            let budget = Budget::of_this_machine();
+            budget.room(file, "the picture of it", canvas.area() as u64 * 4).ok()?;
+            let painted = picture::painted(file, png?.bytes(), 0, 0, &budget).ok()?;
+            (painted.size == canvas).then_some(painted.tiles)
+        };
+        Self(Mutex::new(read()))
+    }
+    pub fn take(&self) -> Option<TileGrid> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Content, Document, Layer, Progress, flatten};
+    use crate::io::Overwrite;
+    use crate::math::srgb::Color;
+    use crate::session::storage;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_reopened_project_has_its_picture_before_anything_is_painted() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.ora");
+        let fill = Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 });
+        let layers = vec![Arc::new(Layer::new("sky", fill))];
+        let document = Document { layers, ..Document::empty(Size::new(90, 70)) };
+        storage::save(&file, &document, Overwrite::Nothing, &Progress::default()).unwrap();
+        let tab = storage::open(&file).unwrap().tab;
+        let picture = tab.first_look.take().expect("the stored picture");
+        let painted = flatten(&document, &Progress::default()).unwrap();
+        let rect = document.size.rect();
+        assert!(picture.to_straight_rgba(rect) == painted.to_straight_rgba(rect));
+        assert!(tab.first_look.take().is_none(), "it is held no longer than it is needed");
+        let of = |size| FirstLook::of(&file, Some(&Asset::from(vec![1, 2, 3])), size).take();
+        assert!(of(document.size).is_none());
+    }
+}
