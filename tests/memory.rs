@@ -9,7 +9,7 @@ use rilievo_engine::memory::set_kept_ceiling;
 use rilievo_engine::paint::{Brush, Sample, Stroke};
 use rilievo_engine::surface::Operator;
 use rilievo_io::export::{self, ExportFormat, ExportOptions};
-use rilievo_io::{Budget, UserFiles, exr, maps, open, picture};
+use rilievo_io::{Budget, UserFiles, exr, maps, open, picture, psd};
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -174,6 +174,28 @@ fn sparse_layers_take_what_is_painted_on_them() {
     assert_eq!((seen.0, seen.1), (layers, [200, 30, 60, 255]));
     // One decoded picture alone would take 36 MB.
     assert!(peak < 16 * MIB, "{peak} bytes");
+}
+#[test]
+fn a_photoshop_file_takes_no_more_than_is_asked_for() {
+    let _turn = watch::turn();
+    let size = Size::new(3000, 2000);
+    let fill = Layer::new("sky", Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 }));
+    let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(size) };
+    let file = Path::new("a.psd");
+    let bytes = psd::write(file, &document, &Progress::default()).unwrap().unwrap().bytes;
+    // Another program's: the number of our own part is changed.
+    let at = bytes.windows(6).position(|w| w == b"8BIM\x12\x67").unwrap();
+    let other = [&bytes[..at], b"8BIM\x12\x66", &bytes[at + 6..]].concat();
+    let (read, peak) = watched(|| psd::read(file, &other, &Budget::default()).unwrap());
+    assert_eq!((read.document.layers.len(), read.notes.len()), (1, 0));
+    // Asked for: 4 of the layer, 4 + 4 + 4 of the picture, 4 of the layers flattened.
+    assert!(peak < 21 * size.area(), "{} bytes a pixel", peak / size.area());
+    for (bytes_free, what) in
+        [(20_000_000, "reading its layers takes"), (60_000_000, "picture of them all"), (100_000_000, "comparing")]
+    {
+        let said = psd::read(file, &other, &Budget::default().within(bytes_free)).err().unwrap();
+        assert!(said.to_string().contains(what) && said.remedy().is_some(), "{said}");
+    }
 }
 #[test]
 fn of_very_many_strokes_few_dabs_are_held() {

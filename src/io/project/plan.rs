@@ -5,7 +5,9 @@
 //! the format cannot express is composed:
 //!
 //! * a mask, and clipping to the surface, go into the layer's own picture;
-//! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden beside it;
+//! * layers clipped to one beneath become a stack with one composed picture, the layers themselves hidden beside it:
+//!   for Photoshop's format too, whose clipping Krita does not read, nor others to the edge; there the hidden layers
+//!   are clipped as here;
 //! * so does an isolated group with a mask;
 //! * a layer that changes or reads what lies beneath in a way that cannot be expressed (radiance scaling, exclusion,
 //!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
@@ -96,14 +98,11 @@ impl Planner<'_> {
         let Some((base, rest)) = run.split_first() else { return Vec::new() };
         let is_base = is_base(base);
         let clipped = rest.iter().any(|layer| layer.clip_below && layer.visible);
-        let is_said = |layer: &Arc<Layer>| !layer.clip_below || !layer.visible || self.says_how_it_meets(layer);
-        let may_clip = self.words.clipping && base.content.group().is_none() && rest.iter().all(is_said);
-        if is_base && may_clip {
-            let item = |layer: &Arc<Layer>| PlanItem { clipped: layer.clip_below, ..self.single(layer) };
-            return run.iter().map(item).collect();
-        }
         if is_base && base.visible && clipped {
-            return vec![self.clipping_stack(base, run)];
+            return self.clipping_stack(base, run);
+        }
+        if let Some(items) = self.clipped_by_format(run) {
+            return items;
         }
         let mut items: Vec<PlanItem> = run.iter().map(|layer| self.single(layer)).collect();
         for (item, layer) in items.iter_mut().zip(run) {
@@ -112,12 +111,25 @@ impl Planner<'_> {
         }
         items
     }
-    fn clipping_stack(&self, base: &Arc<Layer>, run: &[Arc<Layer>]) -> PlanItem {
-        let parts = run.iter().map(|layer| self.single(layer)).collect();
+    /// A layer and those clipped to it as the format clips; `None` where it cannot.
+    fn clipped_by_format(&self, run: &[Arc<Layer>]) -> Option<Vec<PlanItem>> {
+        let (base, rest) = run.split_first()?;
+        let is_said = |layer: &Arc<Layer>| !layer.clip_below || !layer.visible || self.says_how_it_meets(layer);
+        let can = self.words.clipping && is_base(base) && base.content.group().is_none() && rest.iter().all(is_said);
+        let item = |layer: &Arc<Layer>| PlanItem { clipped: layer.clip_below, ..self.single(layer) };
+        can.then(|| run.iter().map(item).collect())
+    }
+    fn clipping_stack(&self, base: &Arc<Layer>, run: &[Arc<Layer>]) -> Vec<PlanItem> {
+        let single = || run.iter().map(|layer| self.single(layer)).collect();
+        let parts = self.clipped_by_format(run).unwrap_or_else(single);
         let layers = run.iter().filter(|layer| layer.visible).map(|layer| layer.id).collect();
         let composed = ItemContent::Composed { document: self.plain(base.id), layers };
+        if self.words.clipping {
+            // No group around both: some programs take a group of such a file for opaque.
+            return vec![hidden_parts(&base.name, parts), PlanItem { shows: composed, ..item(base) }];
+        }
         let items = vec![hidden_parts(&base.name, parts), picture(base.name.clone(), composed)];
-        PlanItem { shows: ItemContent::Stack { isolated: true, items }, ..item(base) }
+        vec![PlanItem { shows: ItemContent::Stack { isolated: true, items }, ..item(base) }]
     }
     /// The document with one layer's opacity and blend mode reset.
     fn plain(&self, id: LayerId) -> Document {
@@ -246,7 +258,8 @@ mod tests {
         let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
         text(&plan(&document, FormatSupport::OPENRASTER))
     }
-    /// Names; hidden ones in lower case brackets, composed ones with a star, stacks with what they hold.
+    /// Names; hidden ones behind a minus, clipped ones behind an arrow, composed ones with a star, stacks with what
+    /// they hold.
     fn text(items: &[PlanItem]) -> String {
         let one = |item: &PlanItem| {
             let what = match &item.shows {
@@ -257,7 +270,8 @@ mod tests {
                     format!("{}[{}]", if *isolated { "" } else { "through" }, text(items))
                 }
             };
-            format!("{}{}{what}", if item.visible { "" } else { "-" }, item.name.replace(" (parts)", "~"))
+            let sign = format!("{}{}", if item.visible { "" } else { "-" }, if item.clipped { "^" } else { "" });
+            format!("{sign}{}{what}", item.name.replace(" (parts)", "~"))
         };
         items.iter().map(one).collect::<Vec<_>>().join(" ")
     }
@@ -276,15 +290,16 @@ mod tests {
         assert_eq!(planned(vec![clipped]), "-c", "clipped to nothing");
     }
     #[test]
-    fn where_a_format_says_clipping_only_what_it_cannot_blend_is_composed() {
-        let planned = |blend| {
-            let clipped = Layer { clip_below: true, blend, ..fill("c") };
+    fn where_a_format_says_clipping_the_hidden_layers_are_clipped() {
+        let planned = |blend, visible| {
+            let clipped = Layer { clip_below: true, blend, visible, ..fill("c") };
             let layers = [fill("a"), fill("b"), clipped].map(Arc::new).to_vec();
             let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
             text(&plan(&document, FormatSupport::PHOTOSHOP))
         };
-        assert_eq!(planned(BlendMode::Screen), "a b c");
-        assert_eq!(planned(BlendMode::Plus), "a b[-b~[b c] b*2]", "a mode without a word");
+        assert_eq!(planned(BlendMode::Screen, true), "a -b~[b ^c] b*2");
+        assert_eq!(planned(BlendMode::Plus, true), "a -b~[b c] b*2", "a mode without a word");
+        assert_eq!(planned(BlendMode::Screen, false), "a b -^c", "nothing is seen that is clipped");
     }
     #[test]
     fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {

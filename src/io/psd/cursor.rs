@@ -69,10 +69,15 @@ impl<'a> ByteCursor<'a> {
         let count = usize::try_from(self.u32()?).ok()?;
         let letters = self.take(count.checked_mul(2)?)?;
         let letters: Vec<u16> = letters.as_chunks().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
-        let text = String::from_utf16_lossy(&letters);
-        Some(text.trim_end_matches('\0').trim().chars().filter(|c| !c.is_control()).collect())
+        Some(shown_text(&String::from_utf16_lossy(&letters)))
     }
     pub fn f64(&mut self) -> Option<f64> {
         self.array().map(f64::from_be_bytes)
     }
+}
+
+/// What of a text can be shown: no control characters, no blanks around it.
+pub fn shown_text(text: &str) -> String {
+    let plain: String = text.chars().filter(|c| !c.is_control()).collect();
+    plain.trim().to_owned()
 }

@@ -27,6 +27,10 @@ pub enum DescriptorValue {
 pub struct DescriptorObject(Vec<(Vec<u8>, DescriptorValue)>);
 
 impl DescriptorObject {
+    #[cfg(test)]
+    pub fn of(values: Vec<(&str, DescriptorValue)>) -> Self {
+        Self(values.into_iter().map(|(name, value)| (name.into(), value)).collect())
+    }
     fn get(&self, name: &str) -> Option<&DescriptorValue> {
         self.0.iter().find(|(known, _)| known == name.as_bytes()).map(|(_, value)| value)
     }

@@ -9,7 +9,7 @@ use crate::picture;
 /// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
 
-/// The whole file. `merged` is straight RGBA of the canvas, `ours` our own resource.
+/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `ours` our own resource.
 pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], ours: &[u8]) -> Vec<u8> {
     let mut out = MAGIC.to_vec();
     short(&mut out, 1);
@@ -27,14 +27,13 @@ pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], ours: &[u8]) -> 
     // No mask of all layers.
     long(&mut layers, 0);
     section(&mut out, &layers);
-    let merged = on_white(merged);
-    let planes: Vec<Vec<u8>> = (0..4).map(|c| plane(&merged, c)).collect();
+    let planes: Vec<Vec<u8>> = (0..4).map(|c| plane(merged, c)).collect();
     packed(&mut out, &planes, size.width as usize);
     out
 }
 
 /// The merged picture's colours are blended with white where it is transparent; readers remove the white again.
-fn on_white(straight: &[u8]) -> Vec<u8> {
+pub fn on_white(straight: &[u8]) -> Vec<u8> {
     let mixed = |c: u8, a: u8| ((u32::from(c) * u32::from(a) + 255 * (255 - u32::from(a)) + 127) / 255) as u8;
     straight.as_chunks().0.iter().flat_map(|&[r, g, b, a]| [mixed(r, a), mixed(g, a), mixed(b, a), a]).collect()
 }

@@ -216,14 +216,18 @@ impl<'a> RecordReader<'a> {
         self.spend(size.area() as u64)?;
         Ok(Some(rect))
     }
-    /// Counts pixels that will be held.
+    /// Counts pixels that will be held, of four bytes.
     pub fn spend(&mut self, px: u64) -> Result<()> {
         self.used_px += px;
         if self.used_px > self.budget.document_px {
             let reason = format!("its layers hold more than {} pixels together", self.budget.document_px);
             return Err(Error::too_large(self.file, reason));
         }
-        Ok(())
+        self.budget.room(self.file, "reading its layers", self.held_bytes())
+    }
+    /// What the layers that were read take.
+    pub fn held_bytes(&self) -> u64 {
+        self.used_px.saturating_mul(4)
     }
     /// A mask's rectangle and its values; `None` where they are damaged.
     fn mask(&mut self, name: &str, data: &mut ByteCursor, rect: Rect) -> Result<Option<(Rect, Vec<u8>)>> {

@@ -1,10 +1,11 @@
 //! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the document itself is
-//! stored beside them. Floor 5. `emit` writes the records as bytes.
+//! stored beside them. Floor 5. `emit` writes the records as bytes, `verify` reads them again.
 
-use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, emit, signature};
+use super::{LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, signature, verify};
 use crate::document::cache::EncodedPixels;
 use crate::document::{Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten};
 use crate::math::{Rect, Size};
+use crate::memory;
 use crate::project::look::{self, Cancellable};
 use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
 use crate::project::{self, pixels};
@@ -15,6 +16,8 @@ use std::path::Path;
 
 /// A side of a file of this kind.
 const LONGEST_PX: u32 = 30_000;
+/// A file of this kind; PSB, which may be longer, is not written.
+const LONGEST_BYTES: usize = (2 << 30) - 1;
 
 /// A Photoshop file, and notes on what other programs show differently.
 pub struct WrittenPsd {
@@ -23,6 +26,9 @@ pub struct WrittenPsd {
 }
 
 /// The bytes of a Photoshop file, 8 bits a channel; `None` if cancelled. `file` is for messages.
+///
+/// They are read again as any file is, and compared: every record and pixel, the merged picture, and the document that
+/// comes back live. Fails with a sentence that says what would not come back, or which limit of the format is passed.
 pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellable<WrittenPsd> {
     if document.size.width.max(document.size.height) > LONGEST_PX {
         let reason = format!("a Photoshop file has at most {LONGEST_PX} pixels a side, not {}", document.size);
@@ -35,11 +41,22 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let mut lowering = RecordBuilder { size: document.size, looks: looks.into_iter(), ..RecordBuilder::default() };
     lowering.items(file, &items)?;
     let RecordBuilder { records, shown, notes, .. } = lowering;
+    if records.len() > MOST_RECORDS {
+        let reason = format!("its layers would be {} for Photoshop, which may be {MOST_RECORDS}", records.len());
+        return Err(Error::unsupported(file, reason));
+    }
     let shown: BTreeMap<LayerId, &(String, EncodedPixels)> = shown.iter().map(|(id, picture)| (*id, picture)).collect();
     let ours = project::documents(file, document, &paint, &shown, signature(&records))?;
     let ours = project::packed(file, &ours)?;
     let merged = merged.to_straight_rgba(document.size.rect());
-    Ok(Some(WrittenPsd { bytes: emit::emit(document.size, &records, &merged, &ours), notes }))
+    let merged = emit::on_white(&merged);
+    let bytes = emit::emit(document.size, &records, &merged, &ours);
+    if bytes.len() > LONGEST_BYTES {
+        let reason = format!("a Photoshop file has at most 2 GB, not {}", memory::spoken(bytes.len() as u64));
+        return Err(Error::unsupported(file, reason));
+    }
+    verify::read_back(file, &bytes, verify::Meant { document, records: &records, merged })?;
+    Ok(Some(WrittenPsd { bytes, notes }))
 }
 
 /// Records in the making.
@@ -51,12 +68,21 @@ struct RecordBuilder {
     /// The records that show a single layer, for the manifest.
     shown: Vec<(LayerId, (String, EncodedPixels))>,
     notes: Vec<String>,
+    /// The items stand in a group that is not seen.
+    is_hidden: bool,
 }
 
 impl Default for RecordBuilder {
     fn default() -> Self {
         let looks = Vec::new().into_iter();
-        Self { size: Size::new(1, 1), looks, records: Vec::new(), shown: Vec::new(), notes: Vec::new() }
+        Self {
+            size: Size::new(1, 1),
+            looks,
+            records: Vec::new(),
+            shown: Vec::new(),
+            notes: Vec::new(),
+            is_hidden: false,
+        }
     }
 }
 
@@ -65,13 +91,17 @@ impl RecordBuilder {
         items.iter().try_for_each(|item| self.item(file, item))
     }
     fn item(&mut self, file: &Path, item: &PlanItem) -> Result<()> {
+        self.tell_of_blending(item);
         if let ItemContent::Stack { isolated, items } = &item.shows {
             self.records.push(LayerRecord {
                 name: "</Layer group>".into(),
                 section: RecordSection::End,
                 ..LayerRecord::default()
             });
+            let around = self.is_hidden;
+            self.is_hidden |= !item.visible;
             self.items(file, items)?;
+            self.is_hidden = around;
             let blend = if *isolated { key(item.blend) } else { PASS_THROUGH };
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
             self.records.push(LayerRecord { blend, mask, section: RecordSection::Group, ..record(item) });
@@ -97,6 +127,13 @@ impl RecordBuilder {
         self.records.push(LayerRecord { rect, rgba, mask, ..record(item) });
         Ok(())
     }
+    /// What other programs compute otherwise, though they read it.
+    fn tell_of_blending(&mut self, item: &PlanItem) {
+        if let Some(programs) = differs_in(item.blend).filter(|_| item.visible && !self.is_hidden) {
+            let blend = item.blend.label().to_lowercase();
+            self.notes.push(format!("“{}” is blended by “{blend}”, shown otherwise by {programs}", item.name));
+        }
+    }
     /// A mask of a picture; derived ones are in the layer's pixels.
     fn mask(&self, mask: &LayerMask) -> Option<RecordMask> {
         let MaskKind::File { coverage, .. } = &mask.kind else { return None };
@@ -113,6 +150,15 @@ impl RecordBuilder {
     }
 }
 
+/// Programs that read the format's word for a mode and compute it otherwise, as was measured (docs/PROJECTS.md).
+fn differs_in(blend: BlendMode) -> Option<&'static str> {
+    match blend {
+        BlendMode::SoftLight => Some("Krita and GIMP"),
+        BlendMode::Hue | BlendMode::Saturation | BlendMode::Color | BlendMode::Luminosity => Some("GIMP 2.10"),
+        _ => None,
+    }
+}
+
 /// The key of a mode; hidden parts may have one that the format has not.
 fn key(blend: BlendMode) -> [u8; 4] {
     if blend == BlendMode::Plus { BlendMode::LinearDodge.photoshop() } else { blend.photoshop() }
@@ -121,7 +167,8 @@ fn key(blend: BlendMode) -> [u8; 4] {
 /// What an item says of itself.
 fn record(item: &PlanItem) -> LayerRecord {
     LayerRecord {
-        name: item.name.clone(),
+        // As it is read again; ours is kept beside it, with its blanks.
+        name: cursor::shown_text(&item.name),
         blend: key(item.blend),
         opacity: (item.opacity * 255.0).round() as u8,
         clipped: item.clipped,

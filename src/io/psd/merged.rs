@@ -73,7 +73,7 @@ fn is_on_white(rgba: &[u8]) -> bool {
 }
 
 /// Takes away the white beneath colours as far as they are transparent; where they are wholly so, no colour is left.
-fn off_white(rgba: &mut [u8]) {
+pub fn off_white(rgba: &mut [u8]) {
     for [colour @ .., alpha] in rgba.as_chunks_mut::<4>().0 {
         let a = i32::from(*alpha);
         if a > 0 {

@@ -14,6 +14,7 @@
 //! | `judge` | whether that looks like the file's own picture, and what is done where it does not |
 //! | `lower` | a document into records |
 //! | `emit` | records into a file |
+//! | `verify` | that file read again and compared |
 //!
 //! Our files hold a private resource with the document itself, so that live layers come back live.
 
@@ -32,14 +33,16 @@ mod masks;
 mod merged;
 mod outline;
 mod parse;
-mod pattern;
+pub(super) mod pattern;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod verify;
 
 pub use lower::write;
 pub use tree::read;
 
+use crate::document::Document;
 use crate::math::Rect;
 use blocks::Ground;
 use fill::Fill;
@@ -54,6 +57,8 @@ const VERSION_INFO: u16 = 1057;
 /// Our number among those reserved for plug-ins: a zip of the document and its files.
 const OURS: u16 = 4711;
 
+/// Records of a file: of a group two.
+const MOST_RECORDS: usize = 2 * Document::MOST_LAYERS;
 /// The key of a group whose layers blend with what lies beneath it.
 const PASS_THROUGH: [u8; 4] = *b"pass";
 

@@ -29,6 +29,8 @@ pub struct ParsedPsd<'a> {
     pub patterns: Vec<Pattern>,
     /// What could not be read.
     pub damage: Vec<String>,
+    /// What the layers and the picture take in memory.
+    pub held_bytes: u64,
 }
 
 /// What the file says of itself.
@@ -51,6 +53,11 @@ impl PsdHeader {
             is_colour,
             large: self.large,
         }
+    }
+    /// What the picture of all layers takes while it is read: RGBA, a plane of bytes a channel, and as it is stored.
+    fn merged_bytes(&self) -> u64 {
+        let planes = self.colours() as u64 + 1;
+        self.size.area() as u64 * (4 + planes + planes * u64::from(self.bits.div_ceil(8)))
     }
     /// Channels of colour, at most four.
     pub fn colours(&self) -> usize {
@@ -83,14 +90,17 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let info = layer_info(section, header.large);
     let records = info.map_or_else(|| Ok(Vec::new()), |info| reader.records(info))?;
     let patterns = pattern::read(global_blocks(section, header.large), &mut reader)?;
+    let held_bytes = reader.held_bytes();
     let damage = reader.damage;
     let is_there = rest.take(length).is_some();
     let count = info.and_then(|info| ByteCursor::new(info.rest()).i16());
+    let held_bytes = held_bytes.saturating_add(header.merged_bytes());
+    budget.room(file, "reading its layers and the picture of them all", held_bytes)?;
     let merged = if is_there { merged(&mut rest, &header, &colours, resources, count) } else { None };
     if merged.is_none() && records.is_empty() {
         return Err(Error::decode(file, "it holds no layers, and its picture is damaged or cut short"));
     }
-    Ok(ParsedPsd { header, ours: resource(resources, OURS), records, merged, patterns, damage })
+    Ok(ParsedPsd { header, ours: resource(resources, OURS), records, merged, patterns, damage, held_bytes })
 }
 
 fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<PsdHeader> {

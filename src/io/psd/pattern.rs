@@ -1,4 +1,4 @@
-//! Patterns: the pictures that a file keeps for its fills.
+//! Patterns: the pictures that a file keeps for its fills, and a collection of brushes for their textures.
 //! Floor 5.
 
 use super::channel;
@@ -28,24 +28,29 @@ pub fn read<'a>(
     layers: &mut RecordReader,
 ) -> Result<Vec<Pattern>> {
     let mut patterns = Vec::new();
-    for (key, mut data) in blocks {
-        if !matches!(&key, b"Patt" | b"Pat2" | b"Pat3") {
-            continue;
-        }
-        // Each is filled up to four bytes.
-        while let Some(one) = data.section(false).filter(|one| !one.rest().is_empty()) {
-            patterns.extend(pattern(one, layers)?);
-            let filling = one.rest().len().next_multiple_of(4) - one.rest().len();
-            data.take(filling.min(data.rest().len()));
+    for (key, data) in blocks {
+        if matches!(&key, b"Patt" | b"Pat2" | b"Pat3") {
+            patterns.extend(of_block(data, |px| layers.spend(px))?);
         }
     }
     Ok(patterns)
 }
 
-fn pattern(data: ByteCursor, layers: &mut RecordReader) -> Result<Option<Pattern>> {
+/// The patterns of one block. `spend`: asked for each one's pixels; beyond what may be held together, it refuses.
+pub fn of_block(mut data: ByteCursor, mut spend: impl FnMut(u64) -> Result<()>) -> Result<Vec<Pattern>> {
+    let mut patterns = Vec::new();
+    // Each is filled up to four bytes.
+    while let Some(one) = data.section(false).filter(|one| !one.rest().is_empty()) {
+        patterns.extend(pattern(one, &mut spend)?);
+        let filling = one.rest().len().next_multiple_of(4) - one.rest().len();
+        data.take(filling.min(data.rest().len()));
+    }
+    Ok(patterns)
+}
+
+fn pattern(data: ByteCursor, spend: &mut impl FnMut(u64) -> Result<()>) -> Result<Option<Pattern>> {
     let Some((id, mode, size, body)) = head(data) else { return Ok(None) };
-    // Beyond what may be held together, the file is refused.
-    layers.spend(size.area() as u64)?;
+    spend(size.area() as u64)?;
     Ok(rgba(body, mode, size).map(|rgba| Pattern { id, size, rgba }))
 }
 
@@ -115,6 +120,18 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
 }
 
 impl Pattern {
+    #[cfg(test)]
+    pub fn grey(id: &str, size: Size, values: &[u8]) -> Self {
+        Self { id: id.into(), size, rgba: values.iter().flat_map(|v| [*v, *v, *v, 255]).collect() }
+    }
+    /// What fills and brushes call it.
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+    /// `(size, straight sRGB)`.
+    pub fn picture(&self) -> (Size, &[u8]) {
+        (self.size, &self.rgba)
+    }
     /// Straight RGBA of a canvas filled with it; `None` where it is another.
     pub fn pixels(&self, fill: &PatternFill, size: Size) -> Option<Vec<u8>> {
         if self.id != fill.id {

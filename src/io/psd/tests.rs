@@ -46,6 +46,17 @@ fn our_own_file_comes_back_live_in_every_parameter_and_pixel() {
     assert_same(&document, &back.document);
 }
 #[test]
+fn names_that_other_programs_cannot_show_do_not_cost_what_is_live() {
+    for name in [" in blanks ", "two\nlines", "ends\0", "", "\u{7f}"] {
+        let mut document = everything(32);
+        let named = document.with_layer(document.layers[0].id, |layer| layer.name = name.into());
+        document = named.unwrap();
+        let back = read_back(&written(&document));
+        assert_eq!(back.notes, [""; 0], "{name:?}");
+        assert_same(&document, &back.document);
+    }
+}
+#[test]
 fn the_same_document_gives_the_same_bytes() {
     assert!(written(&everything(48)) == written(&everything(48)));
 }
@@ -61,7 +72,7 @@ fn layers_groups_masks_clipping_locks_and_names_are_carried() {
         &json!({ "canvas": { "width": 40, "height": 30 }, "layers": [
             { "name": "grund “ü” 絵", "kind": "pixels", "file": "paint.png", "x": -11, "y": 22, "lock": "alpha" },
             { "name": "clip", "kind": "pixels", "file": "photo.png", "x": 3, "y": 9, "clip_below": true,
-              "blend": "soft-light" },
+              "visible": false, "blend": "soft-light" },
             { "name": "g", "kind": "group", "opacity": 0.5, "blend": "multiply", "visible": false, "layers": [
                 { "name": "inner", "kind": "pixels", "file": "photo.png", "x": 100, "y": 100, "lock": "all" } ] },
             { "name": "through", "kind": "group", "pass_through": true, "layers": [] } ] }),
@@ -112,6 +123,20 @@ fn every_blend_mode_that_the_format_has_is_carried() {
         let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(Size::new(2, 2)) };
         assert_eq!(read_back(&without_ours(&written(&document))).document.layers[0].blend, blend, "{name}");
     }
+}
+#[test]
+fn what_others_blend_otherwise_is_told_where_it_is_seen() {
+    let notes = |blend, visible| {
+        let tiles = TileGrid::from_straight_rgba(&[90; 4 * 4], 2, 2, 0, 0);
+        let content = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles });
+        let layer = Layer { blend, visible, ..Layer::new("sheen", content) };
+        let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(Size::new(2, 2)) };
+        write(Path::new("a.psd"), &document, &Progress::default()).unwrap().unwrap().notes
+    };
+    let said = ["“sheen” is blended by “soft light”, shown otherwise by Krita and GIMP"];
+    assert_eq!(notes(BlendMode::SoftLight, true), said);
+    assert_eq!(notes(BlendMode::SoftLight, false), [""; 0]);
+    assert_eq!(notes(BlendMode::Multiply, true), [""; 0]);
 }
 #[test]
 fn layers_that_another_program_changed_are_believed() {

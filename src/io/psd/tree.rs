@@ -46,6 +46,10 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
     let (layers, is_less, mut notes) = builder.done();
     let document = Document { layers, ..Document::empty(size) };
+    if parsed.merged.is_some() {
+        let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
+        budget.room(file, "comparing its layers with its own picture", compared)?;
+    }
     let document = judged(document, parsed.merged.take(), is_less || !damage.is_empty(), &mut notes);
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty(), picture: None })
 }
@@ -74,7 +78,7 @@ fn flattened(parsed: &mut ParsedPsd) {
 
 /// The document that our own resource holds, the layers' pixels taken from the file; `None` where the layers are
 /// others.
-fn restored(file: &Path, ours: &[u8], records: &[LayerRecord], budget: &Budget) -> Result<Option<ProjectContents>> {
+pub fn restored(file: &Path, ours: &[u8], records: &[LayerRecord], budget: &Budget) -> Result<Option<ProjectContents>> {
     let archive = Archive::open(file, ours, budget)?;
     let damaged = |e: zip::result::ZipError| Error::decode(file, format!("our part of the file is damaged ({e})"));
     let text = archive.bytes(project::MANIFEST, budget.json_bytes)?;

@@ -1,0 +1,151 @@
+//! Reads a Photoshop file that was just made, as any file is read, and compares it with what it was made of.
+//! Floor 5. What a project is held to stands in `project::read_back`.
+
+use super::merged::off_white;
+use super::parse::{ParsedPsd, parse};
+use super::tree::restored;
+use super::{LayerRecord, RecordSection};
+use crate::Budget;
+use crate::document::Document;
+use crate::{Error, Result};
+use std::path::Path;
+
+/// What a file was made of.
+pub struct Meant<'a> {
+    pub document: &'a Document,
+    pub records: &'a [LayerRecord],
+    /// RGBA of the canvas, on white where it is transparent.
+    pub merged: Vec<u8>,
+}
+
+/// Fails with a sentence that says what would not come back: to other programs, or here.
+pub fn read_back(file: &Path, bytes: &[u8], meant: Meant) -> Result<()> {
+    let lost =
+        |what: String| Err(Error::unsupported(file, format!("the drawing would not come back as it is: {what}")));
+    let budget = Budget::holding(meant.document);
+    let mut parsed = match parse(file, bytes, &budget) {
+        Ok(parsed) => parsed,
+        Err(error) => return lost(error.to_string()),
+    };
+    if !parsed.damage.is_empty() {
+        return lost(parsed.damage.join("; "));
+    }
+    if let Some(what) = difference(&mut parsed, &meant) {
+        return lost(what);
+    }
+    let Some(ours) = parsed.ours else { return lost("what is live in it is missing".into()) };
+    match restored(file, ours, &parsed.records, &budget) {
+        Err(error) => lost(error.to_string()),
+        Ok(None) => lost("its layers are taken for another program's".into()),
+        Ok(Some(read)) if !read.notes.is_empty() => lost(read.notes.join("; ")),
+        Ok(Some(read)) => meant.document.difference(&read.document).map_or(Ok(()), lost),
+    }
+}
+
+/// What other programs would see otherwise than it was meant.
+fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
+    if parsed.header.size != meant.document.size {
+        return Some(format!("the canvas is {}", parsed.header.size));
+    }
+    if parsed.records.len() != meant.records.len() {
+        return Some(format!("of {} layers and groups {} are there", meant.records.len(), parsed.records.len()));
+    }
+    let differs = parsed.records.iter().zip(meant.records).find_map(|(read, meant)| {
+        let what = differing_field(read, meant)?;
+        let of = if meant.section == RecordSection::End { "a group" } else { &meant.name };
+        Some(format!("{what} of “{of}”"))
+    });
+    if differs.is_some() {
+        return differs;
+    }
+    let mut expected = meant.merged.clone();
+    if !meant.records.is_empty() {
+        // As the reader takes the white away: no two pixels become the same by that.
+        off_white(&mut expected);
+    }
+    let is_same = parsed.merged.take().is_some_and(|read| read.is_real && read.rgba == expected);
+    (!is_same).then(|| "the picture of all layers".into())
+}
+
+fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static str> {
+    let fields = [
+        (read.name == meant.name, "the name"),
+        (read.section == meant.section, "the kind"),
+        (read.blend == meant.blend, "the blend mode"),
+        ((read.opacity, read.fill_opacity) == (meant.opacity, meant.fill_opacity), "the opacity"),
+        (read.rect == meant.rect, "the place"),
+        (read.rgba == meant.rgba, "the pixels"),
+        (read.mask == meant.mask, "the mask"),
+        (
+            (read.clipped, read.visible) == (meant.clipped, meant.visible),
+            "what it is clipped to, or whether it is seen",
+        ),
+        ((read.lock_alpha, read.lock_all) == (meant.lock_alpha, meant.lock_all), "the lock"),
+        // Effects, fills, outlines: none is written.
+        (read == meant, "something that was not put there"),
+    ];
+    fields.into_iter().find(|(is_same, _)| !is_same).map(|(_, what)| what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Progress, flatten};
+    use crate::math::Rect;
+    use crate::project::sample::everything;
+    use crate::psd::{emit, lower};
+
+    const FILE: &str = "a.psd";
+
+    /// What is said where a file was meant to hold something else.
+    fn said(bytes: &[u8], document: &Document, change: impl FnOnce(&mut Vec<LayerRecord>, &mut Vec<u8>)) -> String {
+        let file = Path::new(FILE);
+        let written = lower::write(file, document, &Progress::default()).unwrap().unwrap().bytes;
+        let mut records = parse(file, &written, &Budget::default()).unwrap().records;
+        let shown = flatten(document, &Progress::default()).unwrap();
+        let mut merged = emit::on_white(&shown.to_straight_rgba(document.size.rect()));
+        change(&mut records, &mut merged);
+        let meant = Meant { document, records: &records, merged };
+        read_back(file, bytes, meant).err().map(|error| error.to_string()).unwrap_or_default()
+    }
+    #[test]
+    fn nothing_is_called_saved_that_other_programs_would_see_otherwise() {
+        type Change = fn(&mut Vec<LayerRecord>, &mut Vec<u8>);
+        let document = everything(32);
+        let bytes = lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
+        assert_eq!(said(&bytes, &document, |_, _| ()), "");
+        let changes: [(Change, &str); 9] = [
+            (|records, _| records[1].name.push('x'), "the name of"),
+            (|records, _| records[1].opacity ^= 1, "the opacity of"),
+            (|records, _| records[1].blend = *b"scrn", "the blend mode of"),
+            (|records, _| records[1].rect = Rect::new(1, 2, 3, 4), "the place of"),
+            (|records, _| records.iter_mut().find(|r| !r.rgba.is_empty()).unwrap().rgba[0] ^= 1, "the pixels of"),
+            (|records, _| records[1].visible ^= true, "whether it is seen"),
+            (|records, _| records[1].lock_all ^= true, "the lock of"),
+            (|records, _| drop(records.pop()), "layers and groups"),
+            (|_, merged| merged[0] ^= 1, "the picture of all layers"),
+        ];
+        for (change, expected) in changes {
+            let said = said(&bytes, &document, change);
+            assert!(said.contains("would not come back") && said.contains(expected), "{expected}: {said}");
+        }
+    }
+    #[test]
+    fn nothing_is_called_saved_that_is_cut_short_or_no_longer_live() {
+        let document = everything(32);
+        let bytes = lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
+        for length in [0, 30, bytes.len() / 2, bytes.len() - 1] {
+            assert!(said(&bytes[..length], &document, |_, _| ()).contains("would not come back"), "{length}");
+        }
+        let other = document.with_layer(document.layers[0].id, |layer| layer.opacity *= 0.999).unwrap();
+        let meant = |document| {
+            let records = parse(Path::new(FILE), &bytes, &Budget::default()).unwrap().records;
+            let shown = flatten(&everything(32), &Progress::default()).unwrap();
+            let merged = emit::on_white(&shown.to_straight_rgba(other.size.rect()));
+            read_back(Path::new(FILE), &bytes, Meant { document, records: &records, merged })
+        };
+        assert!(meant(&document).is_ok());
+        let said = meant(&other).unwrap_err().to_string();
+        assert!(said.contains("opacity"), "{said}");
+    }
+}
