@@ -1,6 +1,7 @@
 //! Photoshop's brushes: sampled tips of versions 1 and 2, and of 6 and later, and computed round ones.
-//! Floor 5. Only name, spacing, size, rotation and the shape of a computed tip are imported.
+//! Floor 5. What the descriptions of later versions say of a brush is carried over by `presets` and `dynamics`.
 
+mod dynamics;
 mod presets;
 
 use super::{ImportedBrush, TipNames};
@@ -9,6 +10,8 @@ use crate::math::Size;
 use crate::paint::{Brush, Tip};
 use crate::psd::channel::{ChannelLayout, decode_as};
 use crate::psd::cursor::ByteCursor;
+use crate::psd::descriptor::{self, DescriptorObject};
+use crate::psd::pattern::{self, Pattern};
 use crate::raster::Picture;
 use crate::{Error, Result};
 use std::path::Path;
@@ -30,6 +33,7 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<ImportedBr
         tips: TipNames::default(),
         brushes: Vec::new(),
         keys: Vec::new(),
+        patterns: Vec::new(),
         damaged: 0,
     };
     match version {
@@ -57,6 +61,8 @@ struct AbrReader<'a> {
     brushes: Vec<ImportedBrush>,
     /// The keys of the sampled tips, if the version has them.
     keys: Vec<(String, usize)>,
+    /// The pictures of the brushes' textures.
+    patterns: Vec<Pattern>,
     damaged: usize,
 }
 
@@ -116,15 +122,19 @@ impl AbrReader<'_> {
                 return Err(Error::unsupported(self.file, reason));
             }
         };
-        let mut said = Vec::new();
-        while let Some((key, block)) = next_block(cursor) {
+        let mut said = None;
+        while let Some((key, mut block)) = next_block(cursor) {
             match &key {
                 b"samp" => self.samples(block, before)?,
-                b"desc" => said = presets::read(block),
+                b"desc" => said = descriptor::read(&mut block),
+                b"patt" => {
+                    let (file, budget, used_px) = (self.file, self.budget, &mut self.used_px);
+                    self.patterns = pattern::of_block(block, |px| spend(file, budget, used_px, px))?;
+                }
                 _ => {}
             }
         }
-        self.call(said);
+        self.call(&said.unwrap_or_default());
         Ok(())
     }
     fn samples(&mut self, mut block: ByteCursor, before: usize) -> Result<()> {
@@ -146,19 +156,20 @@ impl AbrReader<'_> {
         Ok(())
     }
     /// The brushes by their names in the collection, in its order; tips without a name come last.
-    fn call(&mut self, said: Vec<presets::AbrPreset>) {
+    fn call(&mut self, said: &DescriptorObject) {
         let tips = std::mem::take(&mut self.brushes);
         let mut is_called = vec![false; tips.len()];
-        for said in said {
+        let mut pictures = presets::AbrPictures { file: self.file, patterns: &self.patterns, tips: &mut self.tips };
+        for said in presets::read(said) {
             let at = said.sample.as_ref().map(|key| self.keys.iter().find(|(known, _)| known == key).map(|(_, i)| *i));
             match at {
                 // Its tip is damaged or missing.
                 Some(None) => {}
                 Some(Some(i)) => {
                     is_called[i] = true;
-                    self.brushes.push(said.brush(tips.get(i)));
+                    self.brushes.push(said.brush(tips.get(i), &mut pictures));
                 }
-                None => self.brushes.push(said.brush(None)),
+                None => self.brushes.push(said.brush(None, &mut pictures)),
             }
         }
         let rest = tips.into_iter().zip(is_called).filter(|(_, is_called)| !is_called);
@@ -178,11 +189,7 @@ impl AbrReader<'_> {
             return Ok(());
         }
         let size = self.budget.size(self.file, width, height)?;
-        self.used_px += size.area() as u64;
-        if self.used_px > self.budget.document_px {
-            let reason = format!("its tips hold more than {} pixels together", self.budget.document_px);
-            return Err(Error::too_large(self.file, reason));
-        }
+        spend(self.file, self.budget, &mut self.used_px, size.area() as u64)?;
         match sampled(record, size, bits, compression) {
             Some(picture) => {
                 let name = name.filter(|n| !n.is_empty()).unwrap_or_else(|| self.next_name());
@@ -198,6 +205,16 @@ impl AbrReader<'_> {
         let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
         format!("{stem} {}", self.brushes.len() + 1)
     }
+}
+
+/// Counts the pixels of tips and textures.
+fn spend(file: &Path, budget: &Budget, used_px: &mut u64, px: u64) -> Result<()> {
+    *used_px += px;
+    if *used_px > budget.document_px {
+        let reason = format!("its pictures hold more than {} pixels together", budget.document_px);
+        return Err(Error::too_large(file, reason));
+    }
+    Ok(())
 }
 
 /// What stands before the pixels of a tip of versions 1 and 2: its spacing, and its name.

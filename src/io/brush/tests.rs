@@ -256,6 +256,7 @@ fn named_abr() -> Vec<u8> {
             named("Nm  ", "TEXT", text(name)),
             named("Brsh", "Objc", object(brush)),
             named("useScatter", "bool", vec![1]),
+            percent("Scat", 120.0),
         ];
         [b"Objc".to_vec(), object(&fields)].concat()
     };
@@ -277,7 +278,12 @@ fn later_photoshop_brushes_have_their_names_sizes_and_spacings() {
     let told: Vec<_> = read.iter().map(|b| (b.name.as_str(), b.brush.size, b.brush.spacing)).collect();
     assert_eq!(told, [("Reed", 30.0, 0.4), ("Dot", 12.0, 0.25), ("set 1", 4.0, 0.25)]);
     assert_eq!(texels(&tips(&read[0])[0])[2], [255; 4], "the second tip's");
-    assert_eq!((read[1].brush.hardness, read[0].notes[0].as_str()), (0.5, "scattering not taken from Photoshop"));
+    assert_eq!(
+        (read[1].brush.hardness, read[0].notes[0].as_str()),
+        (0.5, "it scatters to all sides, not across the stroke alone")
+    );
+    // Scattered up to 120 %, which is a radius of 60.
+    assert_eq!(read[0].brush.scatter, 0.6);
 }
 #[test]
 fn what_is_no_brush_gets_a_sentence() {

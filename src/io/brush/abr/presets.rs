@@ -1,25 +1,19 @@
-//! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings.
-//! Floor 5.
+//! Descriptions of brushes in later versions of Photoshop: names, sizes, spacings, and the tips they are of.
+//! Floor 5. What drives them is `dynamics`'.
 
+use super::dynamics::carried;
 use super::{MOST, SPACING};
 use crate::brush::ImportedBrush;
+use crate::brush::TipNames;
 use crate::paint::{Brush, Tip};
-use crate::psd::cursor::ByteCursor;
-use crate::psd::descriptor::{self, DescriptorObject};
-
-/// Settings that are not imported.
-const LEFT_OUT: [(&str, &str); 7] = [
-    ("useTipDynamics", "shape dynamics"),
-    ("useScatter", "scattering"),
-    ("useTexture", "texture"),
-    ("useColorDynamics", "colour dynamics"),
-    ("usePaintDynamics", "transfer"),
-    ("Wtdg", "wet edges"),
-    ("Nose", "noise"),
-];
+use crate::psd::descriptor::DescriptorObject;
+use crate::psd::pattern::Pattern;
+use std::path::Path;
 
 /// One brush of a collection.
-pub struct AbrPreset {
+pub struct AbrPreset<'a> {
+    /// All that is said of it.
+    description: &'a DescriptorObject,
     name: String,
     /// The key of its sampled tip; `None` of a computed one.
     pub sample: Option<String>,
@@ -28,24 +22,20 @@ pub struct AbrPreset {
     rotation: f32,
     roundness: f32,
     hardness: f32,
-    notes: Vec<String>,
 }
 
-/// The brushes that a block of descriptions names, in its order; none where it is not understood.
-pub fn read(block: ByteCursor) -> Vec<AbrPreset> {
-    let mut block = block;
-    let Some(root) = descriptor::read(&mut block) else { return Vec::new() };
+/// The brushes that a description of a collection names, in its order.
+pub fn read(root: &DescriptorObject) -> Vec<AbrPreset<'_>> {
     root.objects("Brsh").filter_map(said).take(MOST).collect()
 }
 
-fn said(preset: &DescriptorObject) -> Option<AbrPreset> {
+fn said(preset: &DescriptorObject) -> Option<AbrPreset<'_>> {
     let brush = preset.object("Brsh")?;
     let text =
         |object: &DescriptorObject, name: &str| object.text(name).map(str::to_owned).filter(|text| !text.is_empty());
     let percent = |name: &str, plain: f32| brush.number(name).map_or(plain, |v| v / 100.0);
-    let left_out: Vec<&str> = LEFT_OUT.iter().filter(|(key, _)| preset.flag(key)).map(|(_, word)| *word).collect();
-    let note = format!("{} not taken from Photoshop", left_out.join(", "));
     Some(AbrPreset {
+        description: preset,
         name: text(preset, "Nm  ").or(text(brush, "Nm  ")).unwrap_or_default(),
         sample: text(brush, "sampledData"),
         diameter_px: brush.number("Dmtr"),
@@ -53,13 +43,19 @@ fn said(preset: &DescriptorObject) -> Option<AbrPreset> {
         rotation: brush.number("Angl").unwrap_or(0.0),
         roundness: percent("Rndn", 1.0),
         hardness: percent("Hrdn", 1.0),
-        notes: if left_out.is_empty() { Vec::new() } else { vec![note] },
     })
 }
 
-impl AbrPreset {
+/// Where the pictures of a collection come from and go to.
+pub struct AbrPictures<'a> {
+    pub file: &'a Path,
+    pub patterns: &'a [Pattern],
+    pub tips: &'a mut TipNames,
+}
+
+impl AbrPreset<'_> {
     /// The brush, on its sampled tip where it has one.
-    pub fn brush(self, tip: Option<&ImportedBrush>) -> ImportedBrush {
+    pub fn brush(self, tip: Option<&ImportedBrush>, pictures: &mut AbrPictures) -> ImportedBrush {
         let ratio = self.roundness.max(0.05).min(1.0);
         let plain = tip.map(|imported| imported.brush.clone());
         let is_sampled = plain.is_some();
@@ -72,11 +68,13 @@ impl AbrPreset {
             hardness: if is_sampled { plain.hardness } else { self.hardness.max(0.0).min(1.0) },
             ..plain
         };
-        let mut notes = self.notes;
+        let mut notes = Vec::new();
         if is_sampled && ratio < 1.0 {
             notes.push(format!("its tip is squeezed to {:.0} % there", 100.0 * ratio));
         }
         let name = if self.name.is_empty() { tip.map_or("Brush".into(), |tip| tip.name.clone()) } else { self.name };
-        ImportedBrush { name, brush, notes }
+        let mut carried = carried(self.description, brush, notes);
+        carried.textured(pictures.file, pictures.patterns, pictures.tips);
+        ImportedBrush { name, brush: carried.brush, notes: carried.notes }
     }
 }

@@ -1,0 +1,358 @@
+//! What drives a brush of Photoshop's: shape dynamics, scattering, texture, colour dynamics and transfer.
+//! Floor 5. Each stands in the description of the brush beside a switch; its tip is `presets`'.
+//!
+//! A control says what a property follows, and down to which share (“minimum”); a jitter takes some of it away at
+//! random, dab by dab.
+
+use crate::brush::TipNames;
+use crate::math::{srgb, vec2};
+use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
+use crate::paint::grain::{BrushGrain, GrainSource};
+use crate::paint::{Brush, ColorJitter, Tip};
+use crate::psd::descriptor::DescriptorObject;
+use crate::psd::pattern::Pattern;
+use crate::raster::Picture;
+use std::path::Path;
+
+/// Switched on, and nothing here is like them.
+const LEFT_OUT: [(&str, &str); 4] =
+    [("Wtdg", "wet edges"), ("Nose", "noise"), ("useDualBrush", "dual brush"), ("useBrushPose", "brush pose")];
+/// Points of a curve that is no line.
+const POINTS: usize = 9;
+/// What texture keeps of a stroke where it is white takes the rest away; other ways are told.
+const TAKEN_BLENDS: [&[u8]; 2] = [b"Mltp", b"Sbtr"];
+
+/// What a control is, by its number.
+enum Control {
+    Off,
+    Follows(Input),
+    Unknown(&'static str),
+}
+
+impl Control {
+    fn of(object: &DescriptorObject) -> Self {
+        match object.number("bVTy").map(|v| v as i32) {
+            None | Some(0) => Control::Off,
+            Some(1) => Control::Unknown("fading"),
+            Some(2) => Control::Follows(Input::Pressure),
+            Some(3) => Control::Follows(Input::Tilt),
+            Some(4) => Control::Unknown("a pen's wheel"),
+            Some(6) => Control::Follows(Input::Direction),
+            Some(5 | 7) => Control::Unknown("the first direction, or a pen's rotation"),
+            Some(_) => Control::Unknown("something unknown"),
+        }
+    }
+}
+
+/// A description being carried over to a brush.
+pub struct Carried<'a> {
+    preset: &'a DescriptorObject,
+    pub brush: Brush,
+    pub notes: Vec<String>,
+}
+
+/// A brush with all that a description drives. Nothing follows the pressure unless it says so.
+pub fn carried<'a>(preset: &'a DescriptorObject, brush: Brush, notes: Vec<String>) -> Carried<'a> {
+    let mut carried = Carried { preset, brush: Brush { dynamics: Dynamics::none(), ..brush }, notes };
+    if preset.flag("useTipDynamics") {
+        carried.shape();
+    }
+    if preset.flag("useScatter") {
+        carried.scatter();
+    }
+    if preset.flag("usePaintDynamics") {
+        carried.follow(Property::Opacity, "opVr", "minimumOpacity");
+        carried.follow(Property::Flow, "prVr", "minimumFlow");
+    }
+    if preset.flag("useColorDynamics") {
+        carried.color();
+    }
+    let nested = preset.object("dualBrush").is_some_and(|dual| dual.flag("useDualBrush"));
+    let is_on = |key: &str| preset.flag(key) || (key == "useDualBrush" && nested);
+    let left_out: Vec<&str> = LEFT_OUT.iter().filter(|(key, _)| is_on(key)).map(|(_, word)| *word).collect();
+    if !left_out.is_empty() {
+        carried.notes.push(format!("{} not taken from Photoshop", left_out.join(", ")));
+    }
+    carried
+}
+
+/// A share of 100 %, `[0, 1]`.
+fn share(percent: f32) -> f32 {
+    (percent / 100.0).max(0.0).min(1.0)
+}
+
+impl Carried<'_> {
+    /// A percentage of the brush itself, or of a part of it; 0 where neither says it.
+    fn percent(&self, name: &str, part: Option<&DescriptorObject>, in_part: &str) -> f32 {
+        // A part often says 0 where the brush says more.
+        let own = self.preset.number(name).filter(|v| *v != 0.0);
+        own.or(part.and_then(|part| part.number(in_part))).unwrap_or(0.0)
+    }
+    fn drive(&mut self, property: Property, input: Input, curve: Option<Curve>) {
+        if let Some(curve) = curve {
+            self.brush.dynamics = self.brush.dynamics.with(property, input, curve);
+        }
+    }
+    /// The input of a control; what has none here is told of once.
+    fn input(&mut self, part: &DescriptorObject) -> Option<Input> {
+        match Control::of(part) {
+            Control::Off => None,
+            Control::Follows(input) => Some(input),
+            Control::Unknown(what) => {
+                let note = format!("nothing here follows {what}");
+                if !self.notes.contains(&note) {
+                    self.notes.push(note);
+                }
+                None
+            }
+        }
+    }
+    /// A factor that follows its control from the minimum up, and is taken from at random.
+    fn follow(&mut self, property: Property, part: &str, minimum: &str) {
+        let Some(object) = self.preset.object(part) else { return };
+        let least = share(self.percent(minimum, Some(object), "Mnm "));
+        if let Some(input) = self.input(object) {
+            self.drive(property, input, Some(Curve::Share(1.0 - least)));
+        }
+        let jitter = share(object.number("jitter").unwrap_or(0.0)).min(1.0 - least);
+        if jitter > 0.0 {
+            self.drive(property, Input::Random, Some(Curve::Share(jitter)));
+        }
+    }
+    /// Size, angle and roundness.
+    fn shape(&mut self) {
+        self.follow(Property::Size, "szVr", "minimumDiameter");
+        if let Some(angle) = self.preset.object("angleDynamics") {
+            // Of the pen's tilt it is the direction that turns a tip.
+            let input = self.input(angle).map(|input| if input == Input::Tilt { Input::TiltDirection } else { input });
+            if let Some(input) = input {
+                self.drive(Property::Rotation, input, Some(Curve::Share(1.0)));
+            }
+            let half = 0.5 * share(angle.number("jitter").unwrap_or(0.0));
+            if half > 0.0 {
+                self.drive(Property::Rotation, Input::Random, Curve::added(vec![vec2(0.0, -half), vec2(1.0, half)]));
+            }
+        }
+        if let Some(roundness) = self.preset.object("roundnessDynamics") {
+            self.round(roundness);
+        }
+        if self.preset.flag("flipX") || self.preset.flag("flipY") {
+            self.notes.push("its dabs are not mirrored at random".to_owned());
+        }
+    }
+    /// A tip that gets flatter: its elongation is one over its roundness, which no line is.
+    fn round(&mut self, part: &DescriptorObject) {
+        let least = share(self.percent("minimumRoundness", Some(part), "Mnm ")).max(0.05);
+        let control = self.input(part).map(|input| (input, 1.0 - least));
+        let jitter = share(part.number("jitter").unwrap_or(0.0)).min(1.0 - least);
+        let flatter = [control, (jitter > 0.0).then_some((Input::Random, jitter))];
+        let (Tip::Round | Tip::Ellipse { .. }) = self.brush.tip else {
+            if flatter.iter().any(Option::is_some) {
+                self.notes.push("its tip does not get flatter".to_owned());
+            }
+            return;
+        };
+        let long = 1.0 / self.brush.ratio();
+        for (input, taken) in flatter.into_iter().flatten() {
+            let at = |i: usize| {
+                let x = i as f32 / (POINTS - 1) as f32;
+                vec2(x, long / (1.0 - taken * (1.0 - x)) - long)
+            };
+            self.drive(Property::Elongation, input, Curve::added((0..POINTS).map(at).collect()));
+        }
+    }
+    fn scatter(&mut self) {
+        let dynamics = self.preset.object("scatterDynamics");
+        let percent = self.preset.number("Scat").filter(|v| *v > 0.0);
+        let percent = percent.or(dynamics.and_then(|part| part.number("jitter"))).unwrap_or(0.0);
+        // Theirs is a share of the diameter across, ours of the radius of the disc.
+        self.brush.scatter = (0.5 * percent / 100.0).max(0.0).min(*Brush::SCATTER.end());
+        if let Some(input) = dynamics.and_then(|part| self.input(part)) {
+            self.drive(Property::Scatter, input, Some(Curve::Share(1.0)));
+        }
+        if !self.preset.flag("bothAxes") && self.brush.scatter > 0.0 {
+            self.notes.push("it scatters to all sides, not across the stroke alone".to_owned());
+        }
+        // So many dabs at a place lie as densely as so much closer places.
+        let count = self.preset.number("Cnt ").unwrap_or(1.0).max(1.0).min(16.0);
+        self.brush.spacing = (self.brush.spacing / count).max(*Brush::SPACING.start());
+        let counts = self.preset.object("countDynamics");
+        if counts.is_some_and(|part| part.number("jitter").unwrap_or(0.0) > 0.0) {
+            self.notes.push("as many dabs stand at each place".to_owned());
+        }
+    }
+    fn color(&mut self) {
+        let percent = |name: &str| share(self.preset.number(name).unwrap_or(0.0));
+        let jitter = ColorJitter {
+            hue_degrees: *ColorJitter::HUE_DEGREES.end() * percent("H   "),
+            saturation: percent("Strt"),
+            value: percent("Brgh"),
+        };
+        let is_other = self.preset.number("purity").is_some_and(|v| v != 0.0)
+            || self.preset.object("clVr").is_some_and(|part| {
+                part.number("jitter").unwrap_or(0.0) > 0.0 || part.number("bVTy").unwrap_or(0.0) > 0.0
+            });
+        self.brush.jitter = jitter;
+        if is_other {
+            self.notes.push("it keeps to the colour in front, as pure as it is".to_owned());
+        }
+    }
+    /// The texture that it takes paint away by; its pattern is in the collection.
+    pub fn textured(&mut self, file: &Path, patterns: &[Pattern], tips: &mut TipNames) {
+        if !self.preset.flag("useTexture") {
+            return;
+        }
+        let id = self.preset.object("Txtr").and_then(|texture| texture.text("Idnt"));
+        let pattern = id.and_then(|id| patterns.iter().find(|pattern| pattern.id() == id));
+        let inverted = self.preset.flag("InvT");
+        let Some(picture) = pattern.and_then(|pattern| grain_picture(pattern, inverted)) else {
+            return self.notes.push("the pattern of its texture is not in the collection".to_owned());
+        };
+        let scale = self.preset.number("textureScale").map_or(1.0, |v| v / 100.0);
+        let size_px = picture.size.longer_side() * scale;
+        let depth = share(self.preset.number("textureDepth").unwrap_or(100.0));
+        let source = tips.add(file, picture, "texture");
+        self.brush.grain = Some(BrushGrain {
+            source: GrainSource::Picture(source),
+            size_px: size_px.max(*BrushGrain::SIZE_PX.start()).min(*BrushGrain::SIZE_PX.end()),
+            strength: depth,
+            ..BrushGrain::default()
+        });
+        let is_set = |name: &str| self.preset.number(name).is_some_and(|v| v != 0.0);
+        let blend = self.preset.word("textureBlendMode");
+        if is_set("textureBrightness") || is_set("textureContrast") || blend.is_some_and(|b| !TAKEN_BLENDS.contains(&b))
+        {
+            self.notes.push("its texture takes paint away as it is, in proportion".to_owned());
+        }
+        if self.preset.object("textureDepthDynamics").is_some_and(|part| !matches!(Control::of(part), Control::Off)) {
+            self.notes.push("the depth of its texture stays the same".to_owned());
+        }
+    }
+}
+
+/// A pattern's light as grain; where it is transparent it takes no paint.
+fn grain_picture(pattern: &Pattern, inverted: bool) -> Option<Picture> {
+    let (size, rgba) = pattern.picture();
+    let grey = |[r, g, b, a]: &[u8; 4]| {
+        let v = srgb::quantise((0.299 * f32::from(*r) + 0.587 * f32::from(*g) + 0.114 * f32::from(*b)) / 255.0);
+        let v = if inverted { 255 - v } else { v };
+        [v, v, v, *a]
+    };
+    Picture::srgb8(size, rgba.as_chunks().0.iter().map(grey).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paint::dynamics::DabInputs;
+    use crate::psd::descriptor::DescriptorValue::{Flag, Number, Object, Text, Word};
+    use crate::psd::descriptor::{DescriptorObject, DescriptorValue};
+
+    type Values = Vec<(&'static str, DescriptorValue)>;
+
+    fn part(control: i32, jitter: f64, least: f64) -> DescriptorValue {
+        let values = vec![
+            ("bVTy", Number(control.into())),
+            ("fStp", Number(25.0)),
+            ("jitter", Number(jitter)),
+            ("Mnm ", Number(least)),
+        ];
+        Object(DescriptorObject::of(values))
+    }
+    fn told(values: Values) -> (Brush, Vec<String>) {
+        let preset = DescriptorObject::of(values);
+        let Carried { brush, notes, .. } = carried(&preset, Brush::default(), Vec::new());
+        (brush, notes)
+    }
+    fn at(brush: &Brush, property: Property, pressure: f32) -> f32 {
+        brush.dynamics.value(property, 1.0, &DabInputs { pressure, ..DabInputs::default() })
+    }
+
+    #[test]
+    fn shape_and_transfer_follow_the_pen_down_to_their_minimum() {
+        let (brush, notes) = told(vec![
+            ("useTipDynamics", Flag(true)),
+            // The part says 0 where the brush says more.
+            ("minimumDiameter", Number(40.0)),
+            ("szVr", part(2, 0.0, 0.0)),
+            ("angleDynamics", part(6, 0.0, 0.0)),
+            ("usePaintDynamics", Flag(true)),
+            ("opVr", part(2, 0.0, 25.0)),
+            ("prVr", part(0, 50.0, 0.0)),
+        ]);
+        assert_eq!(notes, [""; 0]);
+        assert!((at(&brush, Property::Size, 0.0) - 0.4).abs() < 1e-6 && at(&brush, Property::Size, 1.0) == 1.0);
+        assert!((at(&brush, Property::Opacity, 0.0) - 0.25).abs() < 1e-6);
+        assert_eq!(brush.dynamics.curve(Property::Rotation, Input::Direction), Some(&Curve::Share(1.0)));
+        assert_eq!(brush.dynamics.curve(Property::Flow, Input::Random), Some(&Curve::Share(0.5)));
+        assert!(brush.dynamics.curve(Property::Flow, Input::Pressure).is_none(), "nothing follows it unasked");
+    }
+    #[test]
+    fn what_is_switched_off_drives_nothing() {
+        let (brush, notes) = told(vec![
+            ("useTipDynamics", Flag(false)),
+            ("szVr", part(2, 90.0, 0.0)),
+            ("useScatter", Flag(false)),
+            ("Scat", Number(300.0)),
+            ("useTexture", Flag(false)),
+        ]);
+        assert_eq!((brush.dynamics.drives().len(), brush.scatter, notes.len()), (0, 0.0, 0));
+    }
+    #[test]
+    fn a_round_tip_gets_as_flat_as_it_is_said_to() {
+        let (brush, _) = told(vec![("useTipDynamics", Flag(true)), ("roundnessDynamics", part(2, 0.0, 25.0))]);
+        let long = |pressure| at(&brush, Property::Elongation, pressure);
+        assert!((long(0.0) - 4.0).abs() < 1e-5 && (long(1.0) - 1.0).abs() < 1e-5, "{} {}", long(0.0), long(1.0));
+        assert!((long(0.5) - 1.0 / 0.625).abs() < 1e-5);
+    }
+    #[test]
+    fn dabs_scatter_by_their_radius_and_stand_closer_where_there_are_several() {
+        let (brush, notes) = told(vec![
+            ("useScatter", Flag(true)),
+            ("bothAxes", Flag(true)),
+            ("scatterDynamics", part(3, 200.0, 0.0)),
+            ("Cnt ", Number(4.0)),
+        ]);
+        assert_eq!((brush.scatter, brush.spacing, notes.len()), (1.0, Brush::default().spacing / 4.0, 0));
+        assert_eq!(brush.dynamics.curve(Property::Scatter, Input::Tilt), Some(&Curve::Share(1.0)));
+    }
+    #[test]
+    fn only_what_is_used_and_lost_is_told() {
+        let (brush, notes) = told(vec![
+            ("useTipDynamics", Flag(true)),
+            ("szVr", part(1, 0.0, 0.0)),
+            ("useColorDynamics", Flag(true)),
+            ("H   ", Number(50.0)),
+            ("Wtdg", Flag(true)),
+            ("Nose", Flag(false)),
+            ("dualBrush", Object(DescriptorObject::of(vec![("useDualBrush", Flag(true))]))),
+        ]);
+        assert_eq!(notes, ["nothing here follows fading", "wet edges, dual brush not taken from Photoshop"]);
+        assert_eq!(brush.jitter, ColorJitter { hue_degrees: 90.0, saturation: 0.0, value: 0.0 });
+    }
+    #[test]
+    fn a_texture_is_the_collection_s_pattern() {
+        let pattern = Pattern::grey("p", crate::math::Size::new(2, 1), &[0, 200]);
+        let values = |blend: &[u8]| {
+            DescriptorObject::of(vec![
+                ("useTexture", Flag(true)),
+                ("Txtr", Object(DescriptorObject::of(vec![("Idnt", Text("p".into()))]))),
+                ("textureScale", Number(150.0)),
+                ("textureDepth", Number(60.0)),
+                ("InvT", Flag(true)),
+                ("textureBlendMode", Word(blend.into())),
+            ])
+        };
+        let textured = |preset: &DescriptorObject, patterns: &[Pattern]| {
+            let mut carried = carried(preset, Brush::default(), Vec::new());
+            carried.textured(Path::new("a.abr"), patterns, &mut TipNames::default());
+            (carried.brush.grain, carried.notes)
+        };
+        let (grain, notes) = textured(&values(b"Mltp"), &[pattern.clone()]);
+        let grain = grain.unwrap();
+        assert_eq!((grain.size_px, grain.strength, notes.len()), (3.0, 0.6, 0));
+        assert_eq!(textured(&values(b"CBrn"), &[pattern]).1.len(), 1, "another way to take paint away");
+        let (none, notes) = textured(&values(b"Mltp"), &[]);
+        assert!(none.is_none() && notes[0].contains("not in the collection"), "{notes:?}");
+    }
+}
