@@ -150,7 +150,7 @@ fn kill_while_saving(rounds: u32) {
     for round in 0..rounds {
         std::fs::copy(at("old.ora"), at("t.ora")).unwrap();
         let mut child = Command::new(PROGRAM)
-            .args(["convert", "new.json", "t.ora"])
+            .args(["convert", "new.json", "t.ora", "--force"])
             .current_dir(folder.path())
             .stderr(Stdio::null())
             .spawn()

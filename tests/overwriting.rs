@@ -115,11 +115,14 @@ fn every_view_of_a_folder_is_drawn_or_none() {
     assert_eq!(bytes(&views), drawn);
 }
 #[test]
-fn a_project_keeps_its_previous_version_and_needs_no_force() {
+fn a_project_is_replaced_with_force_alone_and_keeps_its_previous_version() {
     let folder = folder();
     done(folder.path(), &["convert", "r.json", "a.ora"]);
     fs::write(folder.path().join("b.ora"), "the old one").unwrap();
-    done(folder.path(), &["convert", "a.ora", "b.ora"]);
+    refused(folder.path(), &["convert", "a.ora", "b.ora"], "--force replaces it");
+    assert_eq!(fs::read(folder.path().join("b.ora")).unwrap(), b"the old one");
+    assert!(!folder.path().join("b.ora~").exists());
+    done(folder.path(), &["convert", "a.ora", "b.ora", "--force"]);
     assert_eq!(fs::read(folder.path().join("b.ora~")).unwrap(), b"the old one");
 }
 #[test]

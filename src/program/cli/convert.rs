@@ -15,8 +15,7 @@ use std::path::{Path, PathBuf};
 /// Convert between projects, Photoshop files, recipes and pictures
 ///
 /// What is read is never written over: not FROM, nor any picture, map or tip that it names. Another file is replaced
-/// with
-/// --force alone, but for a project: its previous version is kept as TO~.
+/// with --force alone; of a project the previous version is kept as TO~.
 #[derive(clap::Args)]
 pub struct ConvertArgs {
     /// What to read: .ora, .psd, .json, or a picture

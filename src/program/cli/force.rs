@@ -18,9 +18,9 @@ impl Force {
     pub fn export(self, reads: Vec<PathBuf>) -> Terms {
         Terms::export(self.or(Overwrite::Nothing), reads)
     }
-    /// For a project, whose previous version is kept: one that is there may be replaced.
+    /// For a project: the same, and the previous version is kept beside it.
     pub fn project(self, reads: Vec<PathBuf>) -> Terms {
-        Terms { reads, ..self.or(Overwrite::Anything).into() }
+        Terms { keeps_previous: true, ..self.export(reads) }
     }
     pub fn or(self, usual: Overwrite) -> Overwrite {
         if self.force { Overwrite::Forced } else { usual }
