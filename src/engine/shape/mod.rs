@@ -5,17 +5,33 @@
 //! primitives, lathes, sweeps. `touches`, `sculpt`, `relief` and `lines` change a form that is there. Not here: where
 //! outlines come from and how parts are kept (`document::parts`), files (`io`).
 
+pub mod bevel;
+pub mod combine;
 pub mod form;
 pub mod inflate;
 pub mod nearest;
 pub mod outline;
 pub mod path;
+pub mod primitive;
+pub mod profiles;
+pub mod relief;
 pub mod rim;
+pub mod sculpt;
+pub mod solver;
+pub mod sweep;
+pub mod touches;
 pub mod tube;
 
+pub use bevel::{Bevel, BevelCurve};
+pub use combine::{Combine, Relief};
 pub use form::{Form, Roundness};
 pub use outline::Outline;
+pub use primitive::{Body, Primitive};
+pub use relief::Detail;
 pub use rim::Rim;
+pub use sculpt::{SculptStroke, SculptTool};
+pub use sweep::Ball;
+pub use touches::Touch;
 
 #[cfg(test)]
 mod tests;

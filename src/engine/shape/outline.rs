@@ -143,7 +143,7 @@ impl Outline {
         Self::new((low.x as i32, low.y as i32), &coverage)
     }
     /// Coverage between the centres of pixels, `[0, 1]`; `p` in px of the plane.
-    fn between(&self, p: Vec2) -> f32 {
+    pub(super) fn between(&self, p: Vec2) -> f32 {
         let q = p - 0.5;
         let (x, y) = (q.x.floor(), q.y.floor());
         let at = |dx: i32, dy: i32| f32::from(self.coverage.get(x as i32 + dx, y as i32 + dy).unwrap_or(0));

@@ -1,10 +1,10 @@
 //! What is asked of a height field at the rim of an outline: held at 0 between pixels, or free where it is joined.
-//! Floor 3. It makes the equations that `surface::integrate::multigrid` solves.
+//! Floor 3. It makes the equations that `solver` solves.
 
 use super::Outline;
+use super::solver::Solver;
 use crate::math::{Vec2, vec2};
 use crate::raster::Plane;
-use crate::surface::integrate::multigrid::{self, SpringGrid};
 
 /// The four neighbours of a pixel.
 const STEPS: [(i32, i32); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
@@ -18,7 +18,7 @@ pub struct Rim<'a> {
 
 /// −∇²v + s v = b over an outline, ready to be solved for several b.
 pub struct Equation {
-    levels: Vec<SpringGrid>,
+    solver: Solver,
 }
 
 impl<'a> Rim<'a> {
@@ -49,10 +49,6 @@ impl<'a> Rim<'a> {
     /// px⁻², `≥ 0`.
     pub fn equation(&self, screen: impl Fn(usize, usize) -> f32 + Sync) -> Equation {
         let (inside, size) = (self.outline.inside(), self.outline.size());
-        let (w, h) = (size.width as usize, size.height as usize);
-        let linked = |a: bool, b: bool| if a && b { 1.0 } else { 0.0 };
-        let right = Plane::from_fn(size, |x, y| linked(inside.at(x, y), x + 1 < w && inside.at(x + 1, y)));
-        let down = Plane::from_fn(size, |x, y| linked(inside.at(x, y), y + 1 < h && inside.at(x, y + 1)));
         // A piece that is free all around would rise without end: it is held faintly, as far as the plane is long.
         let faint = if self.joined.is_some() { size.longer_side().powi(-2) } else { 0.0 };
         let held = Plane::from_fn(size, |x, y| {
@@ -65,8 +61,7 @@ impl<'a> Rim<'a> {
             });
             sides.iter().sum::<f32>() + screen(x, y) + faint
         });
-        let grid = SpringGrid::with_held(w, h, right.into_values(), down.into_values(), held.into_values());
-        Equation { levels: multigrid::levels(grid) }
+        Equation { solver: Solver::new(inside, held) }
     }
     /// The slope of a field at an inside pixel, image axes, a px: central differences, of unequal steps at the rim,
     /// where the field is 0.
@@ -107,7 +102,7 @@ impl Equation {
     /// The field for a right-hand side, row by row; `start` is where the search begins, a field nearly right.
     pub fn solve(&self, b: &Plane<f32>, start: Option<&Plane<f32>>, goal: f64) -> Plane<f32> {
         let start = start.filter(|start| start.size() == b.size()).map(|start| start.values().to_vec());
-        let found = multigrid::solve_from(&self.levels, b.values(), start, goal);
+        let found = self.solver.solve(b.values(), start, goal);
         Plane::from_values(b.size(), found).unwrap_or_else(|| Plane::filled(b.size(), 0.0))
     }
 }

@@ -7,8 +7,8 @@ use crate::math::Size;
 use crate::raster::Plane;
 use rayon::prelude::*;
 
-/// A residual of 1e-4 of the right-hand side, squared.
-const GOAL: f64 = 1e-8;
+/// A residual of 1e-3 of the right-hand side, squared.
+const GOAL: f64 = 1e-6;
 /// How far ridges are smoothed, a part of the radius of the ball there: facets go, cross-sections stay.
 const SMOOTHING: f32 = 0.08;
 /// The least smoothing, px: a ball that stands between pixels has its top half a pixel away.

@@ -2,7 +2,7 @@
 //! by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. Normals do not say
 //! how far apart two pieces of surface are across an occluding contour; that stays unknown.
 
-pub mod multigrid;
+mod multigrid;
 mod slopes;
 
 use crate::math::Vec3;

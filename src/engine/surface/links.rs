@@ -95,6 +95,21 @@ pub fn find(
     })
 }
 
+/// Takes away the links between pixels of different pieces.
+pub fn cut(links: &mut Plane<u8>, piece: impl Fn(usize, usize) -> u32 + Sync) {
+    let whole = std::mem::replace(links, Plane::filled(links.size(), 0));
+    let (w, h) = (whole.width(), whole.height());
+    *links = whole.updated(|x, y, linked| {
+        let here = piece(x, y);
+        let other = |bit: u8, there: bool, at: (usize, usize)| if there && piece(at.0, at.1) != here { bit } else { 0 };
+        linked
+            & !(other(LEFT, x > 0, (x.wrapping_sub(1), y))
+                | other(RIGHT, x + 1 < w, (x + 1, y))
+                | other(UP, y > 0, (x, y.wrapping_sub(1)))
+                | other(DOWN, y + 1 < h, (x, y + 1)))
+    });
+}
+
 /// Flags of the step from a pixel to its right neighbour: it is a jump; it is one if it touches another.
 const JUMP: u8 = 1;
 const LIKELY_JUMP: u8 = 2;

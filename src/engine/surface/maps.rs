@@ -56,6 +56,8 @@ pub struct Surface {
     occlusions: RecentCache<u32, Plane<f32>>,
     bounds: MapPyramids,
     objects: OnceLock<Objects>,
+    /// Which part each pixel shows, where the surface was made of parts; their objects are these.
+    parts: Option<Arc<Plane<u32>>>,
 }
 
 /// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never
@@ -119,7 +121,25 @@ impl Surface {
             occlusions: RecentCache::default(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
+            parts: None,
         })
+    }
+    /// A surface made of parts, whose objects are known: no depth jump is needed to tell them apart.
+    ///
+    /// * `parts`: for each pixel which part it shows, from 1 on; 0 where there is none.
+    /// * `piece_of`: for each part the piece of surface that it belongs to: parts grown into one share it. One that is
+    ///   not listed is a piece of its own.
+    pub fn with_parts(maps: Maps, parts: Plane<u32>, piece_of: &[u32]) -> Result<Self, SurfaceError> {
+        let mut surface = Self::new(maps)?;
+        if parts.size() != surface.size {
+            return Err(SurfaceError::SizesDiffer { normals: surface.size, other: "parts", size: parts.size() });
+        }
+        links::cut(&mut surface.links, |x, y| {
+            let part = parts.at(x, y);
+            piece_of.get(part as usize).copied().unwrap_or(part)
+        });
+        surface.parts = Some(Arc::new(parts));
+        Ok(surface)
     }
     /// The same surface with other unit normals (y up), one for each pixel; what depends on depth alone is shared.
     pub(super) fn with_normals(self: &Arc<Self>, normals: &Plane<Vec3>) -> Self {
@@ -138,6 +158,7 @@ impl Surface {
             occlusions: RecentCache::default(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
+            parts: self.parts.clone(),
         }
     }
     pub fn size(&self) -> Size {
@@ -180,6 +201,10 @@ impl Surface {
     /// Z: how many pixels deep the range 0 … 1 of depth is, estimated from how depth and normals agree.
     pub fn depth_range_px(&self) -> f32 {
         self.depth_range_px
+    }
+    /// Which part each pixel shows, from 1 on, where the surface was made of parts.
+    pub fn parts_plane(&self) -> Option<&Plane<u32>> {
+        self.parts.as_deref()
     }
     /// Min–max pyramids of the maps, for `support`.
     pub(super) fn bounds(&self) -> &MapPyramids {

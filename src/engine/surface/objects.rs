@@ -4,6 +4,7 @@
 use super::{Surface, links};
 use crate::math::{Rect, Vec2};
 use crate::raster::Plane;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Pieces smaller than this are fragments of a ragged edge, not objects: they join the neighbour nearest in depth. The
@@ -22,11 +23,33 @@ pub struct Objects {
 pub struct ObjectId(u32);
 
 impl Objects {
-    /// Splits a surface: pixels belong to one object if a path of linked neighbours joins them.
+    /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts are known, if a path
+    /// of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
+        if let Some(parts) = surface.parts_plane() {
+            return Self::of_parts(surface, parts);
+        }
         let mut pieces = PieceForest::of(surface);
         pieces.join_crumbs(surface);
         pieces.numbered(surface)
+    }
+    /// One object for each part that is seen.
+    fn of_parts(surface: &Surface, parts: &Plane<u32>) -> Self {
+        let mut numbers = BTreeMap::new();
+        let (mut labels, mut rects) = (Plane::filled(surface.size(), 0), Vec::new());
+        let width = parts.width();
+        let seen = parts.values().iter().zip(surface.coverage_plane().values()).enumerate();
+        for (i, (part, _)) in seen.filter(|(_, (part, covered))| **part > 0 && **covered > 0) {
+            let label = *numbers.entry(*part).or_insert_with(|| {
+                rects.push(Rect::EMPTY);
+                rects.len() as u32
+            });
+            labels.values_mut()[i] = label;
+            let (x, y) = ((i % width) as i32, (i / width) as i32);
+            let rect = &mut rects[label as usize - 1];
+            *rect = rect.union(Rect::new(x, y, x + 1, y + 1));
+        }
+        Self { labels, rects }
     }
     /// The object that covers a pixel; `None` off the surface and off the canvas.
     pub fn at(&self, x: i32, y: i32) -> Option<ObjectId> {

@@ -1,0 +1,321 @@
+//! Forms in order, the farthest first, as one surface: over, smooth union, add, cut.
+//! Floor 3. Order gives depth, and which part is seen at a pixel is its object.
+
+use super::Form;
+use crate::math::{Range, Size, Vec3, vec3};
+use crate::raster::Plane;
+use crate::surface::{Maps, Surface, SurfaceError};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// How a part meets what lies beneath it.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Combine {
+    /// In front of it, as far as it must be to hide it.
+    #[default]
+    Over,
+    /// Grown into one with it, over so many px of height.
+    Union { smooth: f32 },
+    /// Its height is added.
+    Add,
+    /// Its height is taken away.
+    Cut,
+    /// In front of it, but level with it along the rim that lies on it.
+    Join,
+}
+
+impl Combine {
+    /// Every way with its name in documents; a union's smoothness is a number beside it.
+    pub const ALL: [(Combine, &'static str); 5] = [
+        (Combine::Over, "over"),
+        (Combine::Union { smooth: Combine::DEFAULT_SMOOTH }, "union"),
+        (Combine::Add, "add"),
+        (Combine::Cut, "cut"),
+        (Combine::Join, "join"),
+    ];
+    /// px.
+    pub const SMOOTH: Range = 0.0..=1024.0;
+    pub const DEFAULT_SMOOTH: f32 = 8.0;
+
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Combine::Over => "over",
+            Combine::Union { .. } => "union",
+            Combine::Add => "add",
+            Combine::Cut => "cut",
+            Combine::Join => "join",
+        }
+    }
+}
+
+/// What forms make together on a canvas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Relief {
+    /// Toward the viewer, px.
+    pub height: Plane<f32>,
+    /// Unit, camera space (y up).
+    pub normals: Plane<Vec3>,
+    pub coverage: Plane<u8>,
+    /// Which part is seen, from 1 on; 0 where there is none.
+    pub ids: Plane<u32>,
+    /// For each part the one whose piece of surface it belongs to: what is grown into another, or level with it.
+    pub piece_of: Vec<u32>,
+}
+
+/// The least by which a part stands before another, as a part of the canvas's longer side: enough for a depth jump.
+const GAP: f32 = 0.004;
+
+impl Relief {
+    pub fn empty(size: Size) -> Self {
+        Self {
+            height: Plane::filled(size, 0.0),
+            normals: Plane::filled(size, Vec3::Z),
+            coverage: Plane::filled(size, 0),
+            ids: Plane::filled(size, 0),
+            piece_of: vec![0],
+        }
+    }
+    /// With one more part in front; `id` from 1 on. What of it lies off the canvas is left out.
+    pub fn add(&mut self, form: &Form, combine: Combine, id: u32) {
+        let piece = match combine {
+            Combine::Union { .. } | Combine::Join => self.mostly_beneath(form).map(|other| self.piece(other)),
+            Combine::Over | Combine::Add | Combine::Cut => None,
+        };
+        let known = self.piece_of.len() as u32;
+        self.piece_of.extend(known..=id.max(known));
+        self.piece_of[id as usize] = piece.unwrap_or(id);
+        let offset = match combine {
+            Combine::Over => self.offset(form),
+            Combine::Join => self.level(form),
+            Combine::Union { .. } | Combine::Add | Combine::Cut => 0.0,
+        };
+        let rect = form.rect().intersect(self.height.size().rect());
+        if rect.is_empty() {
+            return;
+        }
+        let width = self.height.width();
+        let (first, last) = (rect.y0 as usize * width, rect.y1 as usize * width);
+        let heights = self.height.values_mut()[first..last].par_chunks_mut(width);
+        let normals = self.normals.values_mut()[first..last].par_chunks_mut(width);
+        let coverages = self.coverage.values_mut()[first..last].par_chunks_mut(width);
+        let ids = self.ids.values_mut()[first..last].par_chunks_mut(width);
+        heights.zip(normals).zip(coverages).zip(ids).enumerate().for_each(
+            |(row, (((heights, normals), covers), ids))| {
+                let fy = (rect.y0 - form.corner.1) as usize + row;
+                for x in rect.x0 as usize..rect.x1 as usize {
+                    let fx = (x as i32 - form.corner.0) as usize;
+                    let above = Texel {
+                        height: form.height.at(fx, fy) + offset,
+                        normal: form.normals.at(fx, fy),
+                        coverage: form.coverage.at(fx, fy),
+                        id,
+                    };
+                    let beneath = Texel { height: heights[x], normal: normals[x], coverage: covers[x], id: ids[x] };
+                    if above.coverage > 0 {
+                        let met = beneath.met_by(above, combine);
+                        (heights[x], normals[x], covers[x], ids[x]) = (met.height, met.normal, met.coverage, met.id);
+                    }
+                }
+            },
+        );
+    }
+    fn piece(&self, id: u32) -> u32 {
+        self.piece_of.get(id as usize).copied().unwrap_or(id)
+    }
+    /// The part that most of a form lies on.
+    fn mostly_beneath(&self, form: &Form) -> Option<u32> {
+        let mut counts = BTreeMap::new();
+        for (_, _, (x, y)) in self.pairs(form) {
+            let at = (x as i32 + form.corner.0, y as i32 + form.corner.1);
+            *counts.entry(self.ids.at(at.0 as usize, at.1 as usize)).or_insert(0u32) += 1;
+        }
+        counts.into_iter().filter(|(id, _)| *id > 0).max_by_key(|(_, count)| *count).map(|(id, _)| id)
+    }
+    /// Pairs of a form's covered pixels and those beneath them: heights, and where in the form.
+    fn pairs<'a>(&'a self, form: &'a Form) -> impl Iterator<Item = (f32, f32, (usize, usize))> + 'a {
+        let rect = form.rect().intersect(self.height.size().rect());
+        (rect.y0..rect.y1).flat_map(move |y| {
+            (rect.x0..rect.x1).filter_map(move |x| {
+                let (fx, fy) = ((x - form.corner.0) as usize, (y - form.corner.1) as usize);
+                let (x, y) = (x as usize, y as usize);
+                // A pixel that is hardly covered shows its neighbour.
+                let both = form.coverage.at(fx, fy) >= 128 && self.coverage.at(x, y) >= 128;
+                both.then(|| (self.height.at(x, y), form.height.at(fx, fy), (fx, fy)))
+            })
+        })
+    }
+    /// The most that anything beneath rises above a form where they overlap, and a gap; 0 where they do not.
+    fn offset(&self, form: &Form) -> f32 {
+        let rise = self
+            .pairs(form)
+            .map(|(beneath, own, _)| beneath - own)
+            .fold(None, |most: Option<f32>, rise| Some(most.map_or(rise, |most| most.max(rise))));
+        rise.map_or(0.0, |rise| (rise + GAP * self.height.size().longer_side()).max(0.0))
+    }
+    /// What brings the rim of a form to the mean height of what lies beneath that rim.
+    fn level(&self, form: &Form) -> f32 {
+        let at_rim = |&(_, _, (x, y)): &(f32, f32, (usize, usize))| {
+            let bare = |dx: i32, dy: i32| form.coverage.get(x as i32 + dx, y as i32 + dy).is_none_or(|c| c < 128);
+            bare(1, 0) || bare(-1, 0) || bare(0, 1) || bare(0, -1)
+        };
+        let (sum, count) = self
+            .pairs(form)
+            .filter(at_rim)
+            .fold((0.0f64, 0u32), |(sum, n), (beneath, own, _)| (sum + f64::from(beneath - own), n + 1));
+        if count == 0 { 0.0 } else { (sum / f64::from(count)) as f32 }
+    }
+    /// The maps of a surface: heights become depths, 0 near … 1 far over all that is covered.
+    pub fn maps(&self) -> Maps {
+        let covered = || self.height.values().iter().zip(self.coverage.values()).filter(|(_, c)| **c > 0);
+        let (low, high) = covered().fold((f32::MAX, f32::MIN), |(l, h), (z, _)| (l.min(*z), h.max(*z)));
+        let range = if high > low { high - low } else { 1.0 };
+        let depth = Plane::from_fn(self.height.size(), |x, y| match self.coverage.at(x, y) {
+            0 => f32::NAN,
+            _ => (high - self.height.at(x, y)) / range,
+        });
+        Maps { normals: self.normals.clone(), depth, coverage: self.coverage.clone() }
+    }
+    /// The surface, whose objects are the parts.
+    pub fn surface(&self) -> Result<Surface, SurfaceError> {
+        Surface::with_parts(self.maps(), self.ids.clone(), &self.piece_of)
+    }
+}
+
+/// What stands at one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Texel {
+    height: f32,
+    normal: Vec3,
+    coverage: u8,
+    id: u32,
+}
+
+impl Texel {
+    fn met_by(self, above: Texel, combine: Combine) -> Texel {
+        let both = 255 - (255 - u32::from(self.coverage)) * (255 - u32::from(above.coverage)) / 255;
+        let coverage = both as u8;
+        if self.coverage == 0 {
+            // Nothing to add to or to cut from: the part alone, but no hole has a shape.
+            return if combine == Combine::Cut { self } else { above };
+        }
+        match combine {
+            // Where a part covers less than half of a pixel, what lies beneath is seen.
+            Combine::Over if above.coverage < 128 => Texel { coverage, ..self },
+            Combine::Over => Texel { coverage, ..above },
+            Combine::Join if above.coverage < 128 => Texel { coverage, ..self },
+            Combine::Join => Texel { coverage, ..above },
+            Combine::Union { smooth } => {
+                let (height, share) = smooth_max(self.height, above.height, smooth);
+                let id = if share < 0.5 { above.id } else { self.id };
+                Texel { height, normal: between(self.normal, above.normal, share), coverage, id }
+            }
+            Combine::Add => self.sum(above, 1.0),
+            Combine::Cut => self.sum(above, -1.0),
+        }
+    }
+    /// Heights and slopes added, the part's taken `sign` times.
+    fn sum(self, above: Texel, sign: f32) -> Texel {
+        let (a, b) = (self.normal, above.normal);
+        // A wall that is added stays steep, but not so that nothing else is seen.
+        let (az, bz) = (a.z.max(0.02), b.z.max(0.02));
+        let normal = vec3(a.x * bz + sign * b.x * az, a.y * bz + sign * b.y * az, az * bz).normalize_or(Vec3::Z);
+        Texel { height: self.height + sign * above.height, normal, ..self }
+    }
+}
+
+/// The greater of two heights with its edge rounded, and the share that the first has of its slope.
+///
+/// max(a, b) + k/4 · h² with h = max(k − |a − b|, 0)/k.
+pub fn smooth_max(a: f32, b: f32, smooth: f32) -> (f32, f32) {
+    if smooth <= 0.0 {
+        return (a.max(b), if a >= b { 1.0 } else { 0.0 });
+    }
+    let h = (smooth - (a - b).abs()).max(0.0) / smooth;
+    let share = (0.5 + (a - b) / (2.0 * smooth)).max(0.0).min(1.0);
+    (a.max(b) + 0.25 * smooth * h * h, share)
+}
+
+/// The normal whose slope is the mean of two, the first with a share.
+fn between(a: Vec3, b: Vec3, share: f32) -> Vec3 {
+    let (wa, wb) = (share * b.z, (1.0 - share) * a.z);
+    if share >= 1.0 {
+        return a;
+    }
+    if share <= 0.0 {
+        return b;
+    }
+    vec3(a.x * wa + b.x * wb, a.y * wa + b.y * wb, a.z * b.z).normalize_or(if share > 0.5 { a } else { b })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Vec2, vec2};
+    use crate::shape::primitive::{Body, Primitive};
+
+    fn ball(center: Vec2, radius: f32) -> Form {
+        Primitive::new(Body::Sphere, center, radius).form(1 << 20).unwrap()
+    }
+    const SIZE: Size = Size::new(200, 120);
+
+    #[test]
+    fn order_gives_depth_and_every_part_is_an_object() {
+        let mut relief = Relief::empty(SIZE);
+        let (back, front) = (ball(vec2(80.0, 60.0), 50.0), ball(vec2(120.0, 60.0), 30.0));
+        relief.add(&back, Combine::Over, 1);
+        relief.add(&front, Combine::Over, 2);
+        assert_eq!((relief.ids.at(60, 60), relief.ids.at(120, 60), relief.ids.at(0, 0)), (1, 2, 0));
+        // Nothing of the front part lies behind what it covers.
+        let mut alone = Relief::empty(SIZE);
+        alone.add(&back, Combine::Over, 1);
+        for (x, y) in (0..120).flat_map(|y| (0..200).map(move |x| (x, y))) {
+            if relief.ids.at(x, y) == 2 && alone.ids.at(x, y) == 1 && alone.coverage.at(x, y) >= 128 {
+                assert!(relief.height.at(x, y) > alone.height.at(x, y), "({x}, {y})");
+            }
+        }
+        let surface = relief.surface().unwrap();
+        assert_eq!(surface.objects().count(), 2);
+        let object = |x, y| surface.objects().at(x, y);
+        assert_ne!(object(60, 60), object(120, 60));
+        assert_eq!(object(60, 60), object(80, 20));
+    }
+    #[test]
+    fn a_part_beside_the_others_keeps_its_height_and_one_off_the_canvas_adds_nothing() {
+        let mut relief = Relief::empty(SIZE);
+        relief.add(&ball(vec2(30.0, 60.0), 20.0), Combine::Over, 1);
+        relief.add(&ball(vec2(150.0, 60.0), 20.0), Combine::Over, 2);
+        assert!((relief.height.at(150, 60) - 20.0).abs() < 0.1);
+        let before = relief.clone();
+        relief.add(&ball(vec2(-400.0, 900.0), 20.0), Combine::Over, 3);
+        assert!(relief.height == before.height && relief.ids == before.ids && relief.coverage == before.coverage);
+        // Half of it on the canvas.
+        relief.add(&ball(vec2(0.0, 0.0), 20.0), Combine::Over, 4);
+        assert_eq!(relief.ids.at(0, 0), 4);
+    }
+    #[test]
+    fn a_smooth_union_is_smooth_and_never_below_either() {
+        for i in 0..100 {
+            let (a, b) = (i as f32 * 0.3, 12.0);
+            let (top, share) = smooth_max(a, b, 8.0);
+            assert!(top >= a.max(b) && top <= a.max(b) + 2.0 + 1e-6);
+            let slope = (smooth_max(a + 0.01, b, 8.0).0 - smooth_max(a - 0.01, b, 8.0).0) / 0.02;
+            assert!((slope - share).abs() < 0.02, "{slope} and not {share} at {a}");
+        }
+        assert_eq!(smooth_max(3.0, 5.0, 0.0), (5.0, 0.0));
+    }
+    #[test]
+    fn what_is_added_and_cut_changes_heights_and_leaves_the_object() {
+        let mut relief = Relief::empty(SIZE);
+        relief.add(&ball(vec2(80.0, 60.0), 50.0), Combine::Over, 1);
+        let before = relief.height.at(80, 60);
+        relief.add(&ball(vec2(80.0, 60.0), 10.0), Combine::Add, 2);
+        assert!((relief.height.at(80, 60) - before - 10.0).abs() < 0.1);
+        relief.add(&ball(vec2(80.0, 60.0), 10.0), Combine::Cut, 3);
+        assert!((relief.height.at(80, 60) - before).abs() < 0.1);
+        assert_eq!(relief.ids.at(80, 60), 1);
+        let covered = relief.coverage.clone();
+        relief.add(&ball(vec2(180.0, 20.0), 10.0), Combine::Cut, 4);
+        assert_eq!(relief.coverage, covered, "nothing is cut out of nothing");
+    }
+}

@@ -1,0 +1,131 @@
+//! Lighting profiles: normals from one drawing shaded several times by hand, each with the light elsewhere.
+//! Floor 3. Photometric stereo (Woodham 1980): I_k = ρ n·ℓ_k.
+
+use crate::math::{Mat3, Size, Vec3};
+use crate::raster::Plane;
+
+/// One shading of the drawing.
+pub struct Profile {
+    /// Linear light, `[0, 1]`.
+    pub grey: Plane<f32>,
+    /// Unit, toward the light, camera space (y up).
+    pub light: Vec3,
+}
+
+/// What shadings tell.
+pub struct ProfileNormals {
+    /// Unit, camera space; zero where fewer than three shadings say anything.
+    pub normals: Plane<Vec3>,
+    /// ρ.
+    pub albedo: Plane<f32>,
+    /// How far the shadings contradict each other, r.m.s. of what is left of I, linear light.
+    pub residual: Plane<f32>,
+}
+
+/// How many shadings there may be.
+pub const MOST_PROFILES: usize = 5;
+/// Darker or lighter than this a shading is clipped and says nothing: half a step of 8 bits, and as much below white.
+const CLIPPED: (f32, f32) = (0.0016, 0.9984);
+
+/// ρn = (Σ w ℓℓᵀ)⁻¹ Σ w I ℓ at every pixel, w = 0 where a shading is clipped.
+///
+/// With two shadings n is the nearest to the viewer of those that both allow (the third equation is n·z ≥ 0, held
+/// faintly). `None` where the planes differ in size or there are fewer than two or more than five.
+pub fn normals_from_profiles(profiles: &[Profile]) -> Option<ProfileNormals> {
+    let size = profiles.first()?.grey.size();
+    let fits = (2..=MOST_PROFILES).contains(&profiles.len()) && profiles.iter().all(|p| p.grey.size() == size);
+    if !fits {
+        return None;
+    }
+    let all = Plane::from_fn(size, |x, y| solved(profiles, x, y));
+    Some(ProfileNormals {
+        normals: all.map(|v| v.0.normalize_or(Vec3::ZERO)),
+        albedo: all.map(|v| v.0.length()),
+        residual: all.map(|v| v.1),
+    })
+}
+
+/// ρn and the residual at a pixel; zero where it is not told.
+fn solved(profiles: &[Profile], x: usize, y: usize) -> (Vec3, f32) {
+    let told = |p: &&Profile| {
+        let grey = p.grey.at(x, y);
+        grey > CLIPPED.0 && grey < CLIPPED.1
+    };
+    let used: Vec<&Profile> = profiles.iter().filter(told).collect();
+    if used.len() < profiles.len().min(3) {
+        return (Vec3::ZERO, 0.0);
+    }
+    let outer = |l: Vec3| Mat3::from_cols(l * l.x, l * l.y, l * l.z);
+    let mut normal = used.iter().fold(Mat3::ZERO, |m, p| m + outer(p.light));
+    let mut right = used.iter().fold(Vec3::ZERO, |v, p| v + p.light * p.grey.at(x, y));
+    if used.len() < 3 {
+        // Two planes meet in a line: of its points the one nearest to the viewer's own direction.
+        const FAINT: f32 = 1e-3;
+        let mean = used.iter().map(|p| p.grey.at(x, y)).sum::<f32>() / used.len() as f32;
+        normal += FAINT * outer(Vec3::Z);
+        right += FAINT * mean * Vec3::Z;
+    }
+    if normal.determinant().abs() < 1e-9 {
+        return (Vec3::ZERO, 0.0);
+    }
+    let found = normal.inverse() * right;
+    if !found.is_finite() || found.length() < 1e-6 {
+        return (Vec3::ZERO, 0.0);
+    }
+    let left = used.iter().map(|p| (p.grey.at(x, y) - found.dot(p.light)).powi(2)).sum::<f32>();
+    (found, (left / used.len() as f32).sqrt())
+}
+
+/// The size of all shadings; `None` where there are none.
+pub fn size_of(profiles: &[Profile]) -> Option<Size> {
+    profiles.first().map(|p| p.grey.size())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{vec2, vec3};
+    use crate::shape::primitive::{Body, Primitive};
+
+    fn lights() -> Vec<Vec3> {
+        let around = |i: usize| {
+            let turn = crate::math::Vec2::from_angle(std::f32::consts::TAU * i as f32 / 4.0 + 0.3);
+            vec3(turn.x * 0.6, turn.y * 0.6, 0.8)
+        };
+        (0..4).map(around).chain([Vec3::Z]).collect()
+    }
+    #[test]
+    fn five_shadings_of_a_ball_give_its_normals_back_and_shadows_hardly_harm_them() {
+        let ball = Primitive::new(Body::Sphere, vec2(60.0, 60.0), 55.0).form(1 << 16).unwrap();
+        let shaded =
+            |light: Vec3| Profile { grey: ball.normals.map(|n| (0.8 * n.dot(light)).max(0.0).min(1.0)), light };
+        let profiles: Vec<Profile> = lights().into_iter().map(shaded).collect();
+        let found = normals_from_profiles(&profiles).unwrap();
+        let (mut clear, mut shadowed) = (Vec::new(), Vec::new());
+        for (i, n) in ball.normals.values().iter().enumerate() {
+            if ball.coverage.values()[i] == 255 {
+                let got = found.normals.values()[i];
+                let off = got.cross(*n).length().atan2(got.dot(*n)).to_degrees();
+                let lit = profiles.iter().all(|p| n.dot(p.light) > 0.01);
+                if lit { clear.push(off) } else { shadowed.push(off) }
+            }
+        }
+        let mean = |v: &[f32]| v.iter().sum::<f32>() / v.len() as f32;
+        assert!(mean(&clear) < 0.5 && mean(&shadowed) < 3.0, "{}°, {}°", mean(&clear), mean(&shadowed));
+        assert!(shadowed.len() > 100);
+        assert!(found.residual.values().iter().all(|r| *r < 1e-3));
+    }
+    #[test]
+    fn a_shading_that_contradicts_the_others_shows_in_the_residual() {
+        let size = Size::new(4, 4);
+        let n = vec3(0.3, 0.2, 0.9).normalize();
+        let mut profiles: Vec<Profile> = lights()
+            .into_iter()
+            .map(|light| Profile { grey: Plane::filled(size, 0.7 * n.dot(light)), light })
+            .collect();
+        profiles[0].grey.set(2, 2, 0.9);
+        let found = normals_from_profiles(&profiles).unwrap();
+        assert!(found.residual.at(2, 2) > 0.05 && found.residual.at(0, 0) < 1e-4);
+        assert!(normals_from_profiles(&profiles[..1]).is_none());
+    }
+}
