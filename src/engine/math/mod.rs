@@ -4,11 +4,13 @@
 pub mod fast;
 pub mod hash;
 pub mod noise;
+pub mod plane_map;
 pub mod range;
 pub mod rect;
 pub mod simd;
 pub mod srgb;
 
 pub use glam::{Affine2, Mat2, Mat3, Vec2, Vec3, Vec4, vec2, vec3};
+pub use plane_map::PlaneMap;
 pub use range::{COORDINATE, Range, TURNS, UNIT};
 pub use rect::{Rect, Size};

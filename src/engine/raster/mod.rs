@@ -13,6 +13,7 @@ pub mod plane;
 pub mod sampler;
 pub mod texture;
 pub mod tile;
+pub mod warp;
 
 pub use asset::Asset;
 pub use blend::{BlendMode, Mix, TileCoverage, TilePaint};
@@ -22,3 +23,4 @@ pub use planar::PlanarTile;
 pub use plane::Plane;
 pub use texture::{Outside, Texture};
 pub use tile::{TILE, Tile, TileAt};
+pub use warp::Resampling;

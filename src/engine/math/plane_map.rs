@@ -1,0 +1,228 @@
+//! Maps of the plane onto itself: affine and perspective ones, from a layer's own frame to the canvas.
+//! Floor 0. What pixels become under a map is `raster::warp`'s; maps bent by a mesh are `math::mesh_map`'s.
+
+use super::{Affine2, Mat2, Rect, Size, Vec2, vec2};
+use glam::{DMat2, DMat3, DVec2, DVec3, dvec2};
+
+/// An invertible projective map, with its inverse. Held in f64: maps follow one another, and ten turns of 36° must be
+/// none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneMap {
+    forward: DMat3,
+    backward: DMat3,
+}
+
+/// A map that moves every pixel onto one other pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelMove {
+    /// Where the pixel's step to the right leads, and its step down: unit vectors along the axes.
+    pub right: (i32, i32),
+    pub down: (i32, i32),
+    /// Where the corner (0, 0) of the plane goes.
+    pub origin: (i32, i32),
+}
+
+/// A map whose positions are this far from those of a simpler one is that one, px: far below what a byte shows.
+const SAME_PX: f64 = 1.0 / 512.0;
+
+/// Farther than any pixel lies.
+const FAR: f32 = 1e7;
+const EVERYWHERE: Rect = Rect { x0: -(FAR as i32), y0: -(FAR as i32), x1: FAR as i32, y1: FAR as i32 };
+
+impl Default for PlaneMap {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl PlaneMap {
+    pub const IDENTITY: PlaneMap = PlaneMap { forward: DMat3::IDENTITY, backward: DMat3::IDENTITY };
+
+    /// x′ = a x + c y + e, y′ = b x + d y + f. `None` where numbers are not finite or the map cannot be inverted.
+    pub fn affine([a, b, c, d, e, f]: [f64; 6]) -> Option<Self> {
+        Self::of(DMat3::from_cols_array(&[a, b, 0.0, c, d, 0.0, e, f, 1.0]))
+    }
+    pub fn translation(by: Vec2) -> Self {
+        let by = by.as_dvec2();
+        Self { forward: DMat3::from_translation(by), backward: DMat3::from_translation(-by) }
+    }
+    /// A turn counter-clockwise as seen about a point, degrees.
+    pub fn rotation(degrees: f64, about: Vec2) -> Self {
+        // y points down, so counter-clockwise as seen is a negative angle.
+        let angle = -degrees.to_radians();
+        let about = about.as_dvec2();
+        let map = |angle| {
+            DMat3::from_translation(about) * DMat3::from_angle(angle) * DMat3::from_translation(-about)
+        };
+        Self { forward: map(angle), backward: map(-angle) }
+    }
+    /// The perspective in which the corners of a canvas (upper left, upper right, lower right, lower left) go to four
+    /// points. `None` unless these form a convex quadrilateral.
+    pub fn quad(canvas: Size, corners: [DVec2; 4]) -> Option<Self> {
+        let convex = (0..4).map(|i| {
+            let [a, b, c] = [corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]];
+            (b - a).perp_dot(c - b)
+        });
+        let signs: Vec<f64> = convex.collect();
+        if !(signs.iter().all(|s| *s > 0.0) || signs.iter().all(|s| *s < 0.0)) {
+            return None;
+        }
+        // Heckbert 1989: the unit square to a quadrilateral, in closed form.
+        let [p0, p1, p2, p3] = corners;
+        let (d1, d2, s) = (p1 - p2, p3 - p2, p0 - p1 + p2 - p3);
+        let det = d1.perp_dot(d2);
+        let (g, h) = (s.perp_dot(d2) / det, d1.perp_dot(s) / det);
+        let (right, down) = (p1 - p0 + p1 * g, p3 - p0 + p3 * h);
+        let unit = DMat3::from_cols(right.extend(g), down.extend(h), p0.extend(1.0));
+        let size = dvec2(f64::from(canvas.width), f64::from(canvas.height));
+        Self::of(unit * DMat3::from_scale(size.recip()))
+    }
+    fn of(forward: DMat3) -> Option<Self> {
+        // Scaled so that the least and the greatest determinants count alike on every canvas.
+        let determinant = forward.determinant();
+        if !forward.is_finite() || determinant.abs() < 1e-12 {
+            return None;
+        }
+        let backward = forward.inverse();
+        backward.is_finite().then_some(Self { forward, backward })
+    }
+    /// First this map, then `outer`.
+    pub fn then(&self, outer: &PlaneMap) -> PlaneMap {
+        Self { forward: outer.forward * self.forward, backward: self.backward * outer.backward }
+    }
+    pub fn inverse(&self) -> PlaneMap {
+        Self { forward: self.backward, backward: self.forward }
+    }
+    /// a, b, c, d, e, f of an affine map.
+    pub fn coefficients(&self) -> Option<[f64; 6]> {
+        let [a, b, g, c, d, h, e, f, i] = self.forward.to_cols_array();
+        (g == 0.0 && h == 0.0).then(|| [a, b, c, d, e, f].map(|v| v / i))
+    }
+    pub fn as_affine(&self) -> Option<Affine2> {
+        let c = self.coefficients()?.map(|v| v as f32);
+        Some(Affine2::from_cols_array(&c))
+    }
+    /// Where a point of the frame lies on the canvas. `None` where it lies beyond the horizon.
+    pub fn to_canvas(&self, p: Vec2) -> Option<Vec2> {
+        project(&self.forward, p).map(|(q, _)| q)
+    }
+    /// Which point of the frame lies at a canvas point, and ∂p/∂q there. `None` beyond the horizon.
+    pub fn from_canvas(&self, q: Vec2) -> Option<(Vec2, Mat2)> {
+        project(&self.backward, q)
+    }
+    /// ∂q/∂p at a point of the frame; `None` beyond the horizon.
+    pub fn stretch_at(&self, p: Vec2) -> Option<Mat2> {
+        project(&self.forward, p).map(|(_, jacobian)| jacobian)
+    }
+    /// A rectangle of the frame that holds all that a rectangle of the canvas shows, with room for a filter; every
+    /// place where the rectangle reaches beyond the horizon.
+    pub fn source_rect(&self, canvas: Rect) -> Rect {
+        let corner = |x: i32, y: i32| self.from_canvas(vec2(x as f32, y as f32));
+        let Rect { x0, y0, x1, y1 } = canvas;
+        let corners = [corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)];
+        let Some(corners) = corners.into_iter().collect::<Option<Vec<_>>>() else { return EVERYWHERE };
+        let (mut low, mut high, mut reach) = (Vec2::INFINITY, Vec2::NEG_INFINITY, 1.0f32);
+        for (p, jacobian) in corners {
+            (low, high) = (low.min(p), high.max(p));
+            reach = reach.max(jacobian.x_axis.length() + jacobian.y_axis.length());
+        }
+        let side = |v: f32| v.max(-FAR).min(FAR) as i32;
+        let reach = 2.0 + reach;
+        Rect::new(side(low.x - reach), side(low.y - reach), side(high.x + reach) + 1, side(high.y + reach) + 1)
+    }
+    /// Whether it leaves everything on a canvas in place, to far less than a byte shows.
+    pub fn is_identity_on(&self, canvas: Size) -> bool {
+        self.pixel_move_on(canvas) == Some(PixelMove::NONE)
+    }
+    /// The move of whole pixels that it is on a canvas: a shift, quarter turns, mirrors.
+    pub fn pixel_move_on(&self, canvas: Size) -> Option<PixelMove> {
+        let [a, b, c, d, e, f] = self.coefficients()?;
+        let whole = [a, b, c, d, e, f].map(f64::round);
+        let reach = f64::from(canvas.longer_side());
+        let off = |i: usize, j: usize, k: usize, v: [f64; 6]| {
+            ((v[i] - whole[i]).abs() + (v[j] - whole[j]).abs()) * reach + (v[k] - whole[k]).abs()
+        };
+        let coefficients = [a, b, c, d, e, f];
+        if off(0, 2, 4, coefficients).max(off(1, 3, 5, coefficients)) > SAME_PX {
+            return None;
+        }
+        let [a, b, c, d, e, f] = whole.map(|v| v as i32);
+        let turns = (a * d - b * c).abs() == 1 && a.abs() + b.abs() == 1 && c.abs() + d.abs() == 1;
+        turns.then_some(PixelMove { right: (a, b), down: (c, d), origin: (e, f) })
+    }
+}
+
+impl PixelMove {
+    pub const NONE: PixelMove = PixelMove { right: (1, 0), down: (0, 1), origin: (0, 0) };
+
+    /// Which pixel of the frame a pixel of the canvas shows.
+    pub fn source(&self, x: i32, y: i32) -> (i32, i32) {
+        // Centres lie half a pixel in. The matrix is orthogonal, so its inverse is its transpose.
+        let (dx, dy) = (2 * (x - self.origin.0) + 1, 2 * (y - self.origin.1) + 1);
+        let along = |axis: (i32, i32)| (axis.0 * dx + axis.1 * dy - 1).div_euclid(2);
+        (along(self.right), along(self.down))
+    }
+}
+
+/// A point under a projective map, and the map's Jacobian there.
+fn project(map: &DMat3, p: Vec2) -> Option<(Vec2, Mat2)> {
+    let v = *map * DVec3::new(f64::from(p.x), f64::from(p.y), 1.0);
+    // The horizon: beyond it a point would come back mirrored.
+    if v.z <= 1e-9 {
+        return None;
+    }
+    let q = v.truncate() / v.z;
+    let [x, y] = [map.x_axis, map.y_axis].map(|axis| (axis.truncate() - q * axis.z) / v.z);
+    let jacobian = DMat2::from_cols(x, y).as_mat2();
+    (q.is_finite() && jacobian.is_finite()).then(|| (vec2(q.x as f32, q.y as f32), jacobian))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CANVAS: Size = Size::new(400, 300);
+
+    #[test]
+    fn ten_turns_of_36_degrees_leave_every_pixel() {
+        let turn = PlaneMap::rotation(36.0, vec2(200.0, 150.0));
+        let all = (0..10).fold(PlaneMap::IDENTITY, |map, _| map.then(&turn));
+        assert!(all.is_identity_on(CANVAS));
+        assert!(!turn.is_identity_on(CANVAS));
+    }
+    #[test]
+    fn quarter_turns_and_mirrors_move_pixels_onto_pixels() {
+        // Counter-clockwise as seen: what was on the right is on top.
+        let turn = PlaneMap::rotation(90.0, vec2(50.0, 50.0)).pixel_move_on(CANVAS).unwrap();
+        assert_eq!(turn.source(10, 0), (99, 10));
+        let mirror = PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0]).unwrap().pixel_move_on(CANVAS).unwrap();
+        assert_eq!(mirror.source(0, 7), (99, 7));
+        let shift = PlaneMap::translation(vec2(7.0, -3.0)).pixel_move_on(CANVAS).unwrap();
+        assert_eq!(shift.source(7, 0), (0, 3));
+        assert_eq!(PlaneMap::translation(vec2(0.5, 0.0)).pixel_move_on(CANVAS), None);
+    }
+    #[test]
+    fn a_quad_takes_the_corners_where_they_are_to_go_and_back() {
+        let corners = [dvec2(20.0, 10.0), dvec2(350.0, 40.0), dvec2(300.0, 280.0), dvec2(5.0, 200.0)];
+        let map = PlaneMap::quad(CANVAS, corners).unwrap();
+        let of = [vec2(0.0, 0.0), vec2(400.0, 0.0), vec2(400.0, 300.0), vec2(0.0, 300.0)];
+        for (p, q) in of.into_iter().zip(corners) {
+            let found = map.to_canvas(p).unwrap();
+            assert!((found.as_dvec2() - q).length() < 1e-3, "{found} for {q}");
+            assert!((map.from_canvas(found).unwrap().0 - p).length() < 1e-2);
+        }
+        // Differences agree with the Jacobian.
+        let (p, jacobian) = map.from_canvas(vec2(120.0, 90.0)).unwrap();
+        let (ahead, _) = map.from_canvas(vec2(120.5, 90.0)).unwrap();
+        assert!(((ahead - p) / 0.5 - jacobian.x_axis).length() < 1e-2);
+        // Straight lines stay straight: the diagonals meet where the canvas's do.
+        assert!(map.to_canvas(vec2(200.0, 150.0)).is_some());
+        let crossed = [corners[0], corners[2], corners[1], corners[3]];
+        assert_eq!(PlaneMap::quad(CANVAS, crossed), None, "crossed sides");
+    }
+    #[test]
+    fn what_cannot_be_inverted_is_no_map() {
+        assert_eq!(PlaneMap::affine([1.0, 2.0, 2.0, 4.0, 0.0, 0.0]), None);
+        assert_eq!(PlaneMap::affine([f64::NAN, 0.0, 0.0, 1.0, 0.0, 0.0]), None);
+    }
+}
