@@ -65,6 +65,13 @@ impl BrushGrain {
     pub const SIZE_PX: Range = 0.5..=20_000.0;
     pub const LEVEL: Range = -4.0..=4.0;
     pub const GAMMA: Range = 0.0..=8.0;
+
+    /// For a canvas `factor > 0` times as large. Every field is named, so that a new one has to say whether it is a
+    /// length.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let Self { source, size_px, rotation, strength, levels, lies } = self.clone();
+        Self { source, size_px: size_px * factor, rotation, strength, levels, lies }
+    }
 }
 
 impl Default for BrushGrain {

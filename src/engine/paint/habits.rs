@@ -86,6 +86,9 @@ pub struct Hand {
     /// Over which time each of the two paces is averaged.
     pub pace_secs: f32,
     pub slow_pace_secs: f32,
+    /// How many px count as one where a pace is read: more on a canvas that was enlarged, so that its brushes read the
+    /// same hand.
+    pub pace_px: f32,
     /// Over how many dabs the custom input is averaged.
     pub custom_dabs: f32,
 }
@@ -99,7 +102,26 @@ impl Default for Hand {
             direction_px: 0.0,
             pace_secs: 0.04,
             slow_pace_secs: 0.8,
+            pace_px: 1.0,
             custom_dabs: 0.0,
+        }
+    }
+}
+
+impl Hand {
+    /// For a canvas `factor > 0` times as large. Every field is named, so that a new one has to say whether it is a
+    /// length.
+    pub fn scaled(self, factor: f32) -> Self {
+        let Self { tremor, lag_dabs, lead_secs, direction_px, pace_secs, slow_pace_secs, pace_px, custom_dabs } = self;
+        Self {
+            tremor,
+            lag_dabs,
+            lead_secs,
+            direction_px: direction_px * factor,
+            pace_secs,
+            slow_pace_secs,
+            pace_px: pace_px * factor,
+            custom_dabs,
         }
     }
 }
@@ -213,6 +235,8 @@ settings! {
         "Seconds over which the pace is averaged";
     "hand" "slow_pace" hand.slow_pace_secs in 0.0..=10.0, "Slow pace over",
         "Seconds over which the slow pace is averaged";
+    "hand" "pace_pixel" hand.pace_px in 0.001..=1000.0, "Pace pixel",
+        "How many pixels count as one where the hand's pace is read";
     "hand" "custom" hand.custom_dabs in 0.0..=1000.0, "Custom over",
         "Dabs over which the custom input is averaged";
     "cycle" "length" cycle.length in 0.01..=10_000.0, "Cycle",

@@ -94,7 +94,7 @@ impl DabRules {
         let Moment { place, direction, travelled_px, cycle, custom, number } = *moment;
         let unit = |v: f32| v.max(0.0).min(1.0);
         let in_frame = |v: Vec2| self.facing.transpose() * v;
-        let [pace, slow_pace] = place.paces.map(pace_of);
+        let [pace, slow_pace] = place.paces.map(|px_per_sec| pace_of(px_per_sec / self.brush.hand.pace_px));
         let inputs = DabInputs {
             pressure: place.pressure,
             tilt: unit(place.tilt.length() / 90.0),
