@@ -40,6 +40,7 @@ fn image(operator: Operator, filter: ImageFilter, anchors: usize) -> PlacedImage
         outside: Outside::Mirror,
         bend: Bend { operator, anchors, weights: Weights::default() },
         filter,
+        frame: Default::default(),
     }
 }
 

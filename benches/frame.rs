@@ -51,6 +51,7 @@ fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Co
             weights: Weights::default(),
         },
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     }))
 }
 

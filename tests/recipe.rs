@@ -312,7 +312,7 @@ fn every_refusal_names_file_and_field() {
         (said(&json!({ "canvas": { "width": 0, "height": 4 } })), "canvas.width: is 0"),
         (said(&json!({ "canvas": { "width": 100000, "height": 4 } })), "100000 × 4 pixels; a side may have 32768"),
         (said(&json!({ "format": "psd" })), "format: is “psd”; it must be one of rilievo"),
-        (said(&json!({ "version": 2, "shiny": true })), "version: is 2; this program reads up to 1"),
+        (said(&json!({ "version": 3, "shiny": true })), "version: is 3; this program reads up to 2"),
         (said(&json!({ "layer": [] })), "layer: is unknown; did you mean “layers”?"),
         (said(&json!([])), "the document: is a list; it must be an object"),
         (said(&json!({ "surface": {} })), "surface: names neither a normal map nor a depth map"),

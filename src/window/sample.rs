@@ -22,6 +22,7 @@ pub fn open() -> Result<OpenedTab> {
         stops: vec![GradientStop { t: 0.0, color: grey(0x3a) }, GradientStop { t: 1.0, color: grey(0x24) }],
         operator: Operator::None,
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     };
     let clay = Gradient {
         from: vec2(0.30, 0.22) * SIDE as f32,
@@ -33,6 +34,7 @@ pub fn open() -> Result<OpenedTab> {
         ],
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     };
     let behind = Layer { clip_to_surface: false, ..Layer::new("Background", Content::Gradient(Live::new(background))) };
     let layers = vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];

@@ -1,7 +1,7 @@
 //! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles are cached in
 //! `live`.
 
-use super::{Layer, normals::Combination};
+use super::{Layer, normals::Combination, transform::CanvasCache};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::shading::RadianceScaling;
@@ -15,6 +15,8 @@ pub struct LayerCache {
     pub look: Memo<bool, EncodedPixels>,
     /// The pixels of a paint layer, as a project stores them.
     pub pixels: Memo<(), EncodedPixels>,
+    /// The layer seen through its transforms.
+    pub(super) on_canvas: CanvasCache,
     /// Of a normal layer: the surface with its detail.
     pub(super) combined: Memo<Combination, Arc<Surface>>,
     /// The greatest luminance.

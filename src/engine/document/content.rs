@@ -17,7 +17,7 @@ pub use pixels::PixelLayer;
 pub use strokes::StrokeList;
 
 use super::scale::CanvasScale;
-use super::{Live, NormalLayer, Progress};
+use super::{LayerMap, Live, NormalLayer, Progress};
 use crate::Result;
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Gradient, PlacedImage, Scene};
@@ -76,6 +76,11 @@ trait LayerKind {
     fn scaled(&self, scale: &CanvasScale) -> Content;
     /// Elsewhere on the canvas; `None` of what has no place.
     fn moved(&self, _by: Vec2) -> Option<Content> {
+        None
+    }
+    /// As it lies on the canvas, its frame taken there by `map`; `None` of what has no place. `last`: other content, and
+    /// what became of it under the same map.
+    fn on_canvas(&self, _map: &LayerMap, _last: Option<(&Content, &Content)>) -> Option<Content> {
         None
     }
     /// Without what was painted; `None` of what is not painted on.
@@ -187,6 +192,15 @@ impl Content {
     pub fn moved(&self, by: Vec2) -> Content {
         self.kind().moved(by).unwrap_or_else(|| self.clone())
     }
+    /// The same content where a map takes its frame.
+    ///
+    /// * `last`: other content of the layer and what became of it under this map: what did not change is not made again.
+    pub fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Content {
+        match last {
+            Some((own, seen)) if self.is_identical(own) => seen.clone(),
+            _ => self.kind().on_canvas(map, last).unwrap_or_else(|| self.clone()),
+        }
+    }
     /// The same kind without what was painted; `None` of what is not painted on.
     pub fn emptied(&self) -> Option<Content> {
         self.kind().emptied()
@@ -218,6 +232,20 @@ impl Content {
     }
     pub(super) fn touched(&self, scene: Option<&Scene>) -> Touched {
         self.kind().touched(scene)
+    }
+    /// Whether it is the very same value in memory, or the same number.
+    pub(super) fn is_identical(&self, other: &Content) -> bool {
+        match (self, other) {
+            (Content::Image(a), Content::Image(b)) => a.ptr_eq(b),
+            (Content::Gradient(a), Content::Gradient(b)) => a.ptr_eq(b),
+            (Content::Strokes(a), Content::Strokes(b)) => a.ptr_eq(b),
+            (Content::Shading(a), Content::Shading(b)) => a.ptr_eq(b),
+            (Content::Pixels(a), Content::Pixels(b)) => a.tiles.ptr_eq(&b.tiles),
+            (Content::Normals(a), Content::Normals(b)) => a == b,
+            (Content::Fill(a), Content::Fill(b)) => a == b,
+            (Content::RadianceScaling(a), Content::RadianceScaling(b)) => a == b,
+            _ => false,
+        }
     }
     pub(super) fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
         self.kind().changed_from(old, scene)

@@ -3,7 +3,8 @@
 //! reported one may be.
 
 use super::content::{Changed, Touched};
-use super::{Document, Layer, LayerId, mask};
+use super::transform::on_canvas;
+use super::{Document, Layer, LayerId, LayerMap, mask};
 use crate::math::Rect;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -31,12 +32,27 @@ struct LayerContext {
     /// The normal layers that affect it. The pointers are only compared; both documents keep the layers alive
     /// meanwhile.
     normals: Vec<*const Layer>,
+    /// What takes the frames of the groups around it to the canvas; absent where nothing does.
+    around: Option<LayerMap>,
 }
 
 fn contexts(document: &Document) -> BTreeMap<LayerId, LayerContext> {
     let mut all = BTreeMap::new();
     survey(&document.layers, &mut Vec::new(), &mut all);
+    place(&document.layers, &LayerMap::none(document.size), &mut all);
     all
+}
+
+/// Notes which layers stand in groups that were transformed.
+fn place(layers: &[Arc<Layer>], around: &LayerMap, all: &mut BTreeMap<LayerId, LayerContext>) {
+    for layer in layers {
+        if let Some(context) = all.get_mut(&layer.id).filter(|_| !around.is_none()) {
+            context.around = Some(*around);
+        }
+        if let Some(group) = layer.content.group() {
+            place(&group.layers, &around.within(layer), all);
+        }
+    }
 }
 
 fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTreeMap<LayerId, LayerContext>) {
@@ -67,6 +83,13 @@ fn survey(layers: &[Arc<Layer>], normals: &mut Vec<*const Layer>, all: &mut BTre
     }
 }
 
+/// Which of the two documents.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Version {
+    Old,
+    New,
+}
+
 struct Diff<'d> {
     old: BTreeMap<LayerId, LayerContext>,
     new: BTreeMap<LayerId, LayerContext>,
@@ -86,14 +109,14 @@ impl Diff<'_> {
         };
         let (in_old, in_new) = (kept(old), kept(new));
         for removed in old.iter().filter(|layer| !in_new(layer)) {
-            changed |= self.whole(removed);
+            changed |= self.whole(removed, Version::Old);
         }
         let ranks: BTreeMap<LayerId, (usize, &Arc<Layer>)> =
             old.iter().filter(in_new).enumerate().map(|(rank, layer)| (layer.id, (rank, layer))).collect();
         let mut rank = 0;
         for layer in new {
             match ranks.get(&layer.id).filter(|_| in_old(&layer)) {
-                None => changed |= self.whole(layer),
+                None => changed |= self.whole(layer, Version::New),
                 // Of two layers that changed their order, one at least changed its rank.
                 Some(&(before, old)) => {
                     changed |= if before == rank { self.layer(old, layer, changed) } else { self.both(old, layer) };
@@ -114,6 +137,9 @@ impl Diff<'_> {
         if let (Some(a), Some(b)) = (&old.mask, &new.mask)
             && !a.is_same(b)
         {
+            if self.stands_elsewhere(new) {
+                return self.both(old, new);
+            }
             // If a mask was painted on, only some of its tiles differ.
             let Some(tiles) = mask::changed_tiles(a, b) else { return self.both(old, new) };
             let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
@@ -131,7 +157,8 @@ impl Diff<'_> {
         if Arc::ptr_eq(old, new) {
             return false;
         }
-        match new.content.changed_from(&old.content, &|| self.seen_by(new.id)) {
+        let (old_seen, new_seen) = (self.on_canvas(old, Version::Old), self.on_canvas(new, Version::New));
+        match new_seen.content.changed_from(&old_seen.content, &|| self.seen_by(new.id)) {
             Changed::Nowhere => false,
             Changed::Wholly => self.both(old, new),
             Changed::Tiles(tiles) => self.tiles(tiles),
@@ -145,17 +172,28 @@ impl Diff<'_> {
     fn sees_normals(&self, layer: LayerId) -> bool {
         [&self.old, &self.new].iter().any(|all| all.get(&layer).is_some_and(|s| !s.normals.is_empty()))
     }
-    fn both(&mut self, old: &Layer, new: &Layer) -> bool {
-        self.whole(old) | self.whole(new)
+    /// A layer as it lies on the canvas in one of the documents.
+    fn on_canvas(&self, layer: &Arc<Layer>, version: Version) -> Arc<Layer> {
+        let contexts = if version == Version::Old { &self.old } else { &self.new };
+        let around = contexts.get(&layer.id).and_then(|context| context.around);
+        on_canvas(layer, &around.unwrap_or(LayerMap::none(self.document.size)))
+    }
+    /// Whether its own frame or that of a group around it is not the canvas.
+    fn stands_elsewhere(&self, layer: &Layer) -> bool {
+        layer.transform.is_some() || self.new.get(&layer.id).is_some_and(|context| context.around.is_some())
+    }
+    fn both(&mut self, old: &Arc<Layer>, new: &Arc<Layer>) -> bool {
+        self.whole(old, Version::Old) | self.whole(new, Version::New)
     }
     /// Reports every tile that a layer can touch; returns whether there is any.
-    fn whole(&mut self, layer: &Layer) -> bool {
+    fn whole(&mut self, layer: &Arc<Layer>, version: Version) -> bool {
         if !layer.visible {
             return false;
         }
         if let Some(group) = layer.content.group() {
-            return group.layers.iter().fold(false, |changed, layer| self.whole(layer) | changed);
+            return group.layers.iter().fold(false, |changed, layer| self.whole(layer, version) | changed);
         }
+        let layer = self.on_canvas(layer, version);
         let canvas = self.scene.size.rect();
         // Normal layers put another surface in place of the canvas's.
         let touched = layer.content.touched(Some(&self.scene).filter(|_| !self.sees_normals(layer.id)));
@@ -188,6 +226,7 @@ fn looks_alike(a: &Layer, b: &Layer) -> bool {
         && a.clip_below == b.clip_below
         && a.clip_to_surface == b.clip_to_surface
         && a.mask.is_some() == b.mask.is_some()
+        && a.transform == b.transform
 }
 
 #[cfg(test)]

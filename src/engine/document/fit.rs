@@ -114,6 +114,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
     }
     within("opacity", layer.opacity, &Layer::OPACITY)?;
     layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
+    layer.transform.map_or(Ok(()), |transform| transform.fits())?;
     match &layer.content {
         Content::Fill(_) | Content::Group(_) => Ok(()),
         Content::Pixels(pixels) => pixels_fit(pixels, canvas),

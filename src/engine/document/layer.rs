@@ -1,7 +1,7 @@
 //! A layer: how it meets what lies beneath, and what it holds.
 //! Floor 4.
 
-use super::{Content, cache::LayerCache, mask::LayerMask};
+use super::{Content, LayerTransform, cache::LayerCache, mask::LayerMask};
 use crate::math::{Range, UNIT};
 use crate::raster::BlendMode;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -35,6 +35,8 @@ pub struct Layer {
     pub mask: Option<LayerMask>,
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
+    /// Where the frame that content and mask lie in stands on the canvas; absent: it is the canvas.
+    pub transform: Option<LayerTransform>,
     pub content: Content,
     /// Cached values of this layer; no part of the document's value.
     pub cache: LayerCache,
@@ -58,6 +60,7 @@ impl Layer {
             lock: LayerLock::None,
             mask: None,
             clip_to_surface: true,
+            transform: None,
             content,
             cache: LayerCache::default(),
         }

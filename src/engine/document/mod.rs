@@ -21,6 +21,7 @@ pub mod scale;
 mod scenes;
 pub mod source;
 mod strokes;
+pub mod transform;
 pub mod view;
 mod weight;
 
@@ -37,6 +38,7 @@ pub use prepare::PreparedDocument;
 pub use progress::Progress;
 pub use scale::DocumentReducer;
 pub use source::SurfaceSource;
+pub use transform::{LayerMap, LayerTransform, TransformShape};
 
 use crate::{math::Size, paint::Scene, raster::Asset, surface::Surface};
 use std::{collections::BTreeMap, sync::Arc};
@@ -60,6 +62,15 @@ impl Document {
     /// The canvas as the bottom layer sees it.
     pub fn scene(&self) -> Scene {
         Scene { size: self.size, surface: self.surface.clone() }
+    }
+    /// Where the frame of a layer lies: its own transform and those of the groups around it. `None` if there is no such
+    /// layer.
+    pub fn map_of(&self, id: LayerId) -> Option<LayerMap> {
+        let mut found = None;
+        transform::each_with_map(&self.layers, &LayerMap::none(self.size), &mut |layer, map| {
+            found = found.or((layer.id == id).then_some(map));
+        });
+        found
     }
     /// A layer by its name, groups opened, the topmost of several.
     pub fn layer_named(&self, name: &str) -> Option<&Arc<Layer>> {

@@ -1,8 +1,9 @@
 //! Normal layers: detail combined with the surface, for everything above in the group (SF fig. 12b–c). Floor 4. The
 //! equation is in `surface::combine`.
 
-use super::{Layer, LayerMask, prepare, source::NormalConvention};
-use crate::math::{Affine2, Range, Vec2, Vec3, vec2};
+use super::transform::{LayerMap, on_canvas};
+use super::{Layer, LayerMask, Role, prepare, source::NormalConvention};
+use crate::math::{Affine2, Mat2, PlaneMap, Range, Vec2, Vec3, vec2, vec3};
 use crate::paint::{PictureSource, Placement, Scene};
 use crate::raster::Outside;
 use crate::surface::{Curvature, DetailMap, NoiseRelief, Surface};
@@ -17,6 +18,8 @@ pub struct NormalLayer {
     pub outside: Outside,
     /// Multiplies the detail's slopes, `≥ 0`; 1 is the map as it is.
     pub strength: f32,
+    /// Where the frame of `placement` lies on the canvas.
+    pub frame: PlaneMap,
 }
 
 impl NormalLayer {
@@ -50,6 +53,7 @@ impl PartialEq for NormalLayer {
             && self.placement == other.placement
             && self.outside == other.outside
             && self.strength == other.strength
+            && self.frame == other.frame
     }
 }
 
@@ -74,13 +78,17 @@ impl PartialEq for Combination {
 
 /// The scene of the layers above a normal layer. The layer caches it: the surface stays identical until an input
 /// changes.
-pub(super) fn scene_above(layer: &Layer, normals: &NormalLayer, beneath: &Scene) -> Scene {
+///
+/// * `map`: what takes the groups around it to the canvas.
+pub(super) fn scene_above(layer: &Arc<Layer>, map: &LayerMap, beneath: &Scene) -> Scene {
+    let layer = on_canvas(layer, map);
+    let Role::Shapes(normals) = layer.content.role() else { return beneath.clone() };
     let Some(surface) = beneath.surface.as_ref().filter(|_| normals.strength > 0.0 && layer.opacity > 0.0) else {
         return beneath.clone();
     };
     let combination = Combination { normals: normals.clone(), opacity: layer.opacity, mask: layer.mask.clone() };
     let combine = || {
-        let curvature = prepare::curvature_of_mask(layer, beneath);
+        let curvature = prepare::curvature_of_mask(&layer, beneath);
         Some(Arc::new(combination.on(surface, beneath, curvature.as_deref())))
     };
     let combined = layer.cache.combined.get(beneath, &[], &combination, combine);
@@ -124,20 +132,32 @@ impl<'a> PlacedDetail<'a> {
     }
     /// The detail normal at a canvas point, y up.
     fn normal(&self, q: Vec2) -> Option<Vec3> {
-        let at = self.from_canvas.transform_point2(q);
+        let Some((in_frame, jacobian)) = self.normals.frame.from_canvas(q) else { return None };
+        let at = self.from_canvas.transform_point2(in_frame);
+        let per_px = self.per_px * jacobian.determinant().abs().sqrt();
         let normal = match &self.normals.source {
-            DetailSource::Map { map, .. } => map.at(at, self.per_px, self.normals.outside)?,
-            DetailSource::Grain(grain) => grain.normal(at, self.per_px),
+            DetailSource::Map { map, .. } => map.at(at, per_px, self.normals.outside)?,
+            DetailSource::Grain(grain) => grain.normal(at, per_px),
         };
-        Some(self.turn.rotate(normal.truncate()).extend(normal.z))
+        let normal = self.turn.rotate(normal.truncate()).extend(normal.z);
+        Some(if jacobian == Mat2::IDENTITY { normal } else { taken_along(normal, jacobian) })
     }
+}
+
+/// A normal (y up) of a relief whose places are taken along: slopes s become k A⁻ᵀ s, A how places stretch, and k =
+/// √|det A|, so that a larger relief is as steep. `jacobian`: A⁻¹, image axes.
+fn taken_along(normal: Vec3, jacobian: Mat2) -> Vec3 {
+    let slope = vec2(normal.x, -normal.y) / normal.z.max(1e-3);
+    let scale = jacobian.determinant().abs().sqrt().max(1e-6).recip();
+    let slope = jacobian.transpose() * slope * scale;
+    vec3(slope.x, -slope.y, 1.0).normalize_or(Vec3::Z)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::document::{Content, Document, Group, Live, MaskKind, PreparedDocument, Progress, flatten};
-    use crate::math::{Size, srgb::Color, vec3};
+    use crate::math::{Size, srgb::Color};
     use crate::raster::Plane;
     use crate::shading::{Model, Shading};
     use crate::surface::Maps;
@@ -157,7 +177,8 @@ mod tests {
         let picture = crate::raster::Picture::srgb8(Size::new(4, 4), texels).unwrap();
         let picture = PictureSource::new("d.png".into(), picture, Default::default());
         let source = DetailSource::Map { picture, convention: NormalConvention::default(), map };
-        NormalLayer { source, placement: Placement::covering(SIZE), outside: Outside::Repeat, strength }
+        let (placement, frame) = (Placement::covering(SIZE), PlaneMap::IDENTITY);
+        NormalLayer { source, placement, outside: Outside::Repeat, strength, frame }
     }
     fn normals(strength: f32) -> Layer {
         Layer::new("cloth", Content::Normals(leaning(strength)))
@@ -166,8 +187,7 @@ mod tests {
         Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong))))
     }
     fn seen(layer: &Layer, document: &Document) -> Arc<Surface> {
-        let Content::Normals(normals) = &layer.content else { unreachable!() };
-        scene_above(layer, normals, &document.scene()).surface.unwrap()
+        scene_above(&Arc::new(layer.clone()), &LayerMap::none(SIZE), &document.scene()).surface.unwrap()
     }
     /// The red of a pixel.
     fn red(document: &Document, x: i32, y: i32) -> u8 {
@@ -205,6 +225,16 @@ mod tests {
         assert!((n - vec3(0.0, 0.6, 0.8)).length() < 1e-4, "counter-clockwise: to the right becomes up, not {n}");
     }
     #[test]
+    fn taken_along_by_a_mirror_detail_leans_the_other_way() {
+        let frame = PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 80.0, 0.0]).unwrap();
+        let mirrored = Layer::new("", Content::Normals(NormalLayer { frame, ..leaning(1.0) }));
+        let n = seen(&mirrored, &document(vec![])).normal(10, 10);
+        assert!((n - vec3(-0.6, 0.0, 0.8)).length() < 1e-4, "{n}");
+        // Turned by 90° counter-clockwise, to the right becomes up; twice the size is as steep.
+        let turned = taken_along(vec3(0.6, 0.0, 0.8), Mat2::from_cols(vec2(0.0, 0.5), vec2(-0.5, 0.0)));
+        assert!((turned - vec3(0.0, 0.6, 0.8)).length() < 1e-4, "{turned}");
+    }
+    #[test]
     fn the_combined_surface_is_kept_until_what_it_is_made_from_changes() {
         let document = document(vec![]);
         let layer = normals(1.0);
@@ -238,10 +268,10 @@ mod tests {
     #[test]
     fn grain_roughens_and_without_a_surface_there_is_nothing_to_roughen() {
         let grain = NormalLayer { source: DetailSource::Grain(NoiseRelief::default()), ..leaning(0.5) };
-        let layer = Layer::new("", Content::Normals(grain.clone()));
+        let layer = Layer::new("", Content::Normals(grain));
         let surface = seen(&layer, &document(vec![]));
         assert!((0..40).any(|y| surface.normal(20, y).z < 0.98));
         let nothing = Scene { size: SIZE, surface: None };
-        assert!(scene_above(&layer, &grain, &nothing).surface.is_none());
+        assert!(scene_above(&Arc::new(layer), &LayerMap::none(SIZE), &nothing).surface.is_none());
     }
 }

@@ -1,6 +1,7 @@
 //! Prepares a document for flattening: finds the visible layers, what each is clipped to, and the surface that each
 //! sees. Floor 4. Done once before the tiles; composing one tile is `compose`.
 
+use super::transform::{LayerMap, on_canvas};
 use super::{Document, Group, Layer, MaskKind, Progress, Role, normals};
 use crate::math::Size;
 use crate::paint::Scene;
@@ -49,7 +50,8 @@ impl PreparedDocument {
     /// Resolves the layers and measures what adjustments refer to; `None` if cancelled meanwhile.
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
         let mut builder = StackBuilder { adjustments: Vec::new(), progress };
-        let stack = builder.nodes(&document.layers, &mut document.scene(), &[]);
+        let scope = Scope { beneath: &[], map: LayerMap::none(document.size) };
+        let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let mut prepared = Self { size: document.size, stack, beneath: Vec::new() };
         for adjustment in builder.adjustments {
             // Each may depend on those beneath it, which are measured by now.
@@ -79,6 +81,15 @@ pub(super) fn in_parallel<T: Send>(
     tiles.par_iter().map(each).collect()
 }
 
+/// Where a list of layers stands.
+#[derive(Clone, Copy)]
+struct Scope<'a> {
+    /// The layers beneath it that it blends with.
+    beneath: &'a [Arc<Layer>],
+    /// What takes the frames of the groups around it to the canvas.
+    map: LayerMap,
+}
+
 struct StackBuilder<'a> {
     adjustments: Vec<Adjustment>,
     progress: &'a Progress,
@@ -95,15 +106,15 @@ enum ClipBase {
 }
 
 impl StackBuilder<'_> {
-    /// `scene` is what the first layer sees and is updated to what layers above see; `beneath` is the scope so far.
-    fn nodes(&mut self, layers: &[Arc<Layer>], scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<PreparedLayer> {
+    /// `scene` is what the first layer sees and is updated to what layers above see.
+    fn nodes(&mut self, layers: &[Arc<Layer>], scene: &mut Scene, scope: Scope) -> Vec<PreparedLayer> {
         let mut nodes: Vec<PreparedLayer> = Vec::new();
         let mut base = ClipBase::Nothing;
         for (i, layer) in layers.iter().enumerate() {
-            if let Role::Shapes(normals) = layer.content.role() {
+            if layer.content.shapes() {
                 // It paints nothing, so it is no base and does not separate a base from its clipped layers.
                 if layer.visible {
-                    *scene = normals::scene_above(layer, normals, scene);
+                    *scene = normals::scene_above(layer, &scope.map, scene);
                 }
                 continue;
             }
@@ -113,7 +124,8 @@ impl StackBuilder<'_> {
             if !layer.visible || !matches!(base, ClipBase::Shown) {
                 continue;
             }
-            let node = self.node(layer, scene, &[beneath, &layers[..i]].concat());
+            let beneath = [scope.beneath, &layers[..i]].concat();
+            let node = self.node(layer, scene, Scope { beneath: &beneath, ..scope });
             match nodes.last_mut() {
                 Some(base) if layer.clip_below => {
                     base.adjustments.end = node.adjustments.end;
@@ -124,16 +136,18 @@ impl StackBuilder<'_> {
         }
         nodes
     }
-    fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, beneath: &[Arc<Layer>]) -> PreparedLayer {
+    fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, scope: Scope) -> PreparedLayer {
+        let within = Scope { map: scope.map.within(layer), ..scope };
+        let layer = &on_canvas(layer, &scope.map);
         let first = self.adjustments.len();
         let visible_scene = scene.clone();
         let children = match layer.content.role() {
-            Role::Groups(group) => self.children(group, scene, beneath),
+            Role::Groups(group) => self.children(group, scene, within),
             _ => Vec::new(),
         };
         layer.content.warm(&visible_scene, self.progress);
         if let Role::Adjusts(scaling) = layer.content.role() {
-            let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), beneath.to_vec());
+            let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), scope.beneath.to_vec());
             self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
         }
         PreparedLayer {
@@ -145,11 +159,11 @@ impl StackBuilder<'_> {
             adjustments: first..self.adjustments.len(),
         }
     }
-    fn children(&mut self, group: &Group, scene: &mut Scene, beneath: &[Arc<Layer>]) -> Vec<PreparedLayer> {
+    fn children(&mut self, group: &Group, scene: &mut Scene, scope: Scope) -> Vec<PreparedLayer> {
         if group.pass_through {
-            return self.nodes(&group.layers, scene, beneath);
+            return self.nodes(&group.layers, scene, scope);
         }
-        self.nodes(&group.layers, &mut scene.clone(), &[])
+        self.nodes(&group.layers, &mut scene.clone(), Scope { beneath: &[], ..scope })
     }
 }
 

@@ -93,7 +93,9 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
 }
 
 fn meets_alike(a: &Layer, b: &Layer) -> bool {
-    let meets = |l: &Layer| (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below, l.lock, l.clip_to_surface);
+    let meets = |l: &Layer| {
+        (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below, l.lock, l.clip_to_surface, l.transform)
+    };
     meets(a) == meets(b)
 }
 

@@ -8,7 +8,7 @@ pub use reducer::DocumentReducer;
 use super::cache::LayerCache;
 use super::{Document, Layer, MaskKind, PixelLayer};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
-use crate::paint::{Sample, Stabilizer, Stroke};
+use crate::paint::{Sample, Stroke};
 use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
 use crate::surface::SurfaceError;
@@ -52,6 +52,7 @@ impl CanvasScale {
     }
     fn layer(&self, layer: &Layer) -> Layer {
         let mut next = Layer { content: layer.content.scaled(self), cache: LayerCache::default(), ..layer.clone() };
+        next.transform = layer.transform.map(|transform| transform.scaled(self.per_axis));
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
             Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
             Some(MaskKind::Curvature { scale, blur, .. }) => {
@@ -69,19 +70,8 @@ impl CanvasScale {
         }
     }
     pub fn stroke(&self, stroke: &Stroke) -> Stroke {
-        let mut brush = stroke.brush().clone();
-        brush.size *= self.length;
-        brush.hand.direction_px *= self.length;
-        match &mut brush.stabilizer {
-            Stabilizer::None => {}
-            Stabilizer::String { length_px } => *length_px *= self.length,
-            // The same decay over a path that is this much longer.
-            Stabilizer::Average { weight } => *weight = weight.max(0.0).powf(1.0 / self.length),
-            // Time is the same on every canvas.
-            Stabilizer::Lag { .. } => {}
-        }
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
-        Stroke::new(brush, stroke.operator(), stroke.color(), samples)
+        Stroke::new(stroke.brush().scaled(self.length), stroke.operator(), stroke.color(), samples)
     }
     pub fn pixels(&self, pixels: &PixelLayer) -> PixelLayer {
         let corner = vec2(pixels.x as f32, pixels.y as f32) * self.per_axis;

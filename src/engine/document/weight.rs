@@ -70,8 +70,14 @@ mod tests {
             Document { layers, ..Document::empty(Size::new(1000, 100)) }.flattening_bytes()
         };
         let (from, to) = (vec2(0.0, 0.0), vec2(9.0, 9.0));
-        let of_no_stops =
-            Gradient { from, to, stops: Vec::new(), operator: Operator::None, filter: ImageFilter::Antialias };
+        let of_no_stops = Gradient {
+            from,
+            to,
+            stops: Vec::new(),
+            operator: Operator::None,
+            filter: ImageFilter::Antialias,
+            frame: Default::default(),
+        };
         let gradient = || Content::Gradient(Live::new(of_no_stops.clone()));
         assert_eq!(weight(vec![Content::Fill(Color::BLACK)]), 400_000);
         assert_eq!(weight(vec![gradient(), gradient()]), 1_200_000);

@@ -51,9 +51,7 @@ impl PlaneMap {
         // y points down, so counter-clockwise as seen is a negative angle.
         let angle = -degrees.to_radians();
         let about = about.as_dvec2();
-        let map = |angle| {
-            DMat3::from_translation(about) * DMat3::from_angle(angle) * DMat3::from_translation(-about)
-        };
+        let map = |angle| DMat3::from_translation(about) * DMat3::from_angle(angle) * DMat3::from_translation(-about);
         Self { forward: map(angle), backward: map(-angle) }
     }
     /// The perspective in which the corners of a canvas (upper left, upper right, lower right, lower left) go to four

@@ -1,9 +1,10 @@
 //! The gradient tool: a colour ramp between two anchors, bent before it is applied (SF sec. 5.2, fig. 8).
 //! Floor 3. Not here: the ramp itself (`ramp`), D (`surface::deformation`).
 
+use super::image::{BentFrame, transform};
 use super::ramp::Ramp;
 use super::scene::{ImageFilter, Scene};
-use crate::math::{Rect, Vec2, srgb::Color};
+use crate::math::{Affine2, PlaneMap, Rect, Vec2, srgb::Color};
 use crate::raster::tile::{TILE, transparent_f32};
 use crate::raster::{Tile, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
@@ -26,6 +27,8 @@ pub struct Gradient {
     pub stops: Vec<GradientStop>,
     pub operator: Operator,
     pub filter: ImageFilter,
+    /// Where the frame that both ends lie in stands on the canvas.
+    pub frame: PlaneMap,
 }
 
 impl Gradient {
@@ -33,7 +36,8 @@ impl Gradient {
 
     /// The *where*: both ends are anchors, and their weights change along the segment (MATH 2).
     pub fn bend(&self) -> Bend {
-        let anchors = vec![Anchor::fixed(self.from), Anchor::fixed(self.to)];
+        let on_canvas = |p: Vec2| self.frame.to_canvas(p).unwrap_or(p);
+        let anchors = vec![Anchor::fixed(on_canvas(self.from)), Anchor::fixed(on_canvas(self.to))];
         Bend { operator: self.operator, anchors, weights: Weights::Segment }
     }
     /// One tile of the layer. `None` where it is transparent, without stops, or beyond the canvas.
@@ -73,12 +77,16 @@ impl RampPositions {
         let bend = gradient.bend();
         let mut d = DeformedRect::default();
         Deformation::new(scene.surface.as_deref(), scene.size, &bend).fill(rect, &mut d);
+        let frame = BentFrame::of(&gradient.frame, rect);
+        if !frame.apply(&mut d.x, &mut d.y) && frame.linear != Affine2::IDENTITY {
+            transform(frame.linear, &mut d.x, &mut d.y);
+        }
         let (from, along) = (gradient.from, gradient.to - gradient.from);
         let squared = along.length_squared();
         if squared > 0.0 {
             let flat = along / squared;
             let t = d.x.iter().zip(&d.y).map(|(&x, &y)| (x - from.x) * flat.x + (y - from.y) * flat.y).collect();
-            Self { rect, t, flat }
+            Self { rect, t, flat: frame.linear.matrix2.transpose() * flat }
         } else {
             // A segment without length: the whole canvas lies beyond its end.
             Self { rect, t: vec![1.0; d.x.len()], flat: Vec2::ZERO }
@@ -114,7 +122,14 @@ mod tests {
 
     fn black_to_white(from: Vec2, to: Vec2) -> Gradient {
         let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
-        Gradient { from, to, stops, operator: Operator::None, filter: ImageFilter::Antialias }
+        Gradient {
+            from,
+            to,
+            stops,
+            operator: Operator::None,
+            filter: ImageFilter::Antialias,
+            frame: Default::default(),
+        }
     }
     fn pixel(gradient: &Gradient, x: i32, y: i32) -> [u8; 4] {
         let scene = Scene { size: Size::new(100, 100), surface: None };

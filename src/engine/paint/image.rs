@@ -7,7 +7,7 @@ use super::{
     scene::{ImageFilter, Scene},
     stamp::StampCache,
 };
-use crate::math::{Affine2, Size, Vec2};
+use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::sampler::{Antialias, Bilinear};
 use crate::raster::{Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
 use crate::surface::{Bend, Deformation, deformation::DeformedRect};
@@ -85,6 +85,8 @@ pub struct PlacedImage {
     pub outside: Outside,
     pub bend: Bend,
     pub filter: ImageFilter,
+    /// Where the frame of `placement` lies on the canvas; anchors are on the canvas already.
+    pub frame: PlaneMap,
 }
 
 impl PlacedImage {
@@ -95,14 +97,18 @@ impl PlacedImage {
             return None;
         }
         let mut pixels = vec![[0u8; 4]; TILE_AREA];
-        let texels_from_canvas = self.placement.texels_from_canvas(scene.size, self.source.texture().size());
+        let texels_from_frame = self.placement.texels_from_canvas(scene.size, self.source.texture().size());
+        let bent_frame = BentFrame::of(&self.frame, area);
+        let texels_from_canvas = texels_from_frame * bent_frame.linear;
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
         let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;
         // One more pixel on every side, where differences are taken.
         let margin = if self.filter == ImageFilter::Bilinear || is_exact { 0 } else { 1 };
         let mut positions = DeformedRect::default();
         deformation.fill(area.grown(margin), &mut positions);
-        if texels_from_canvas != Affine2::IDENTITY {
+        if bent_frame.apply(&mut positions.x, &mut positions.y) {
+            transform(texels_from_frame, &mut positions.x, &mut positions.y);
+        } else if texels_from_canvas != Affine2::IDENTITY {
             transform(texels_from_canvas, &mut positions.x, &mut positions.y);
         }
         let (width, texture) = (area.width(), self.source.texture());
@@ -126,6 +132,38 @@ impl PlacedImage {
             }
         }
         Tile::from_pixels(pixels.into_flattened())
+    }
+}
+
+/// The way back from the canvas into the frame of what is placed in it.
+pub(super) struct BentFrame {
+    /// The map itself where it is affine, else its tangent at the middle of the tile.
+    pub linear: Affine2,
+    perspective: Option<PlaneMap>,
+}
+
+impl BentFrame {
+    /// `area`: the pixels that are asked for.
+    pub fn of(frame: &PlaneMap, area: Rect) -> Self {
+        if let Some(linear) = frame.inverse().as_affine() {
+            return Self { linear, perspective: None };
+        }
+        let middle = vec2((area.x0 + area.x1) as f32, (area.y0 + area.y1) as f32) * 0.5;
+        let linear = frame
+            .from_canvas(middle)
+            .map_or(Affine2::IDENTITY, |(p, jacobian)| Affine2::from_mat2_translation(jacobian, p - jacobian * middle));
+        Self { linear, perspective: Some(*frame) }
+    }
+    /// Takes points of the canvas into the frame if a perspective does so; whether it did. Points beyond the horizon go
+    /// far away.
+    pub fn apply(&self, x: &mut [f32], y: &mut [f32]) -> bool {
+        const FAR: f32 = 1e7;
+        let Some(frame) = &self.perspective else { return false };
+        for (x, y) in x.iter_mut().zip(y) {
+            let p = frame.from_canvas(vec2(*x, *y)).map_or(Vec2::splat(FAR), |(p, _)| p);
+            (*x, *y) = p.into();
+        }
+        true
     }
 }
 
@@ -169,6 +207,7 @@ mod tests {
             outside: Outside::None,
             bend: Bend::default(),
             filter: ImageFilter::Bilinear,
+            frame: Default::default(),
         }
     }
 

@@ -51,6 +51,16 @@ impl Stroke {
         let samples = self.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
         Stroke::new(self.brush().clone(), self.operator(), self.color(), samples)
     }
+    /// The stroke where a map takes its samples: `place` tells where a point goes (`None`: nowhere), `length` how much
+    /// longer lengths become there. Its brush grows by the mean over the samples that are left.
+    pub fn mapped(&self, place: &dyn Fn(Vec2) -> Option<Vec2>, length: impl Fn(Vec2) -> f32) -> Stroke {
+        let placed = |sample: &Sample| Some(Sample { at: place(sample.at)?, ..*sample });
+        let (samples, lengths): (Vec<Sample>, Vec<f64>) =
+            self.samples().iter().filter_map(|sample| Some((placed(sample)?, f64::from(length(sample.at))))).unzip();
+        let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
+        let brush = if samples.is_empty() { self.brush().clone() } else { self.brush().scaled(mean as f32) };
+        Stroke::new(brush, self.operator(), self.color(), samples)
+    }
     /// The same movement of the hand with another brush.
     pub fn with_brush(&self, brush: Brush) -> Stroke {
         Stroke::new(brush, self.operator(), self.color(), self.samples().to_vec())

@@ -96,6 +96,10 @@ impl<'a> JsonNode<'a> {
         }
         Ok(number as f32)
     }
+    /// A number as it is written, not rounded to f32.
+    pub fn exact_number(&self, range: RangeInclusive<f32>) -> Result<f64> {
+        self.number(range).map(|rounded| self.value.as_f64().unwrap_or(f64::from(rounded)))
+    }
     pub fn integer(&self, range: RangeInclusive<i64>) -> Result<i64> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a whole number"))?;
         // 12.0 is a whole number too: other programs write it so.

@@ -87,18 +87,21 @@ fn look(
 
 /// A paint layer's pixels, where nothing hides any of them from other programs.
 fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a TileGrid> {
-    let is_cut = (masked && layer.mask.is_some()) || (document.surface.is_some() && layer.clip_to_surface);
+    let is_moved = document.map_of(layer.id).is_some_and(|map| !map.is_none());
+    let is_cut = is_moved || (masked && layer.mask.is_some()) || (document.surface.is_some() && layer.clip_to_surface);
     match &layer.content {
         Content::Pixels(pixels) if !is_cut => Some(&pixels.tiles),
         _ => None,
     }
 }
 
-/// What a layer's look depends on besides the scene: the layer itself, and normal layers beneath it.
+/// What a layer's look depends on besides the scene: the layer itself, normal layers beneath it, and groups that take
+/// it elsewhere.
 fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
-    let normals = document.walk().into_iter().map(|(_, layer)| layer);
-    let normals = normals.filter(|layer| layer.content.shapes());
-    std::iter::once(layer).chain(normals).cloned().collect()
+    let all = document.walk().into_iter().map(|(_, layer)| layer);
+    let takes_along = |layer: &Layer| layer.transform.is_some() && layer.content.group().is_some();
+    let others = all.filter(|layer| layer.content.shapes() || takes_along(layer));
+    std::iter::once(layer).chain(others).cloned().collect()
 }
 
 /// Stores the pictures that were read with a document as the looks of its layers, so that saving copies them.

@@ -211,6 +211,7 @@ impl GradientFill {
             stops: self.stops.clone(),
             operator: Operator::None,
             filter: ImageFilter::Bilinear,
+            frame: Default::default(),
         })
     }
     /// Its middle, and from there to its end.

@@ -22,6 +22,7 @@ impl LayerReader<'_> {
             outside: fields.one_of("outside", &OUTSIDES, Outside::Mirror)?,
             bend: self.bend(fields, placement.center)?,
             filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
+            frame: Default::default(),
         })
     }
     /// By default from the middle of the left side to the middle of the right one, black to white.
@@ -35,6 +36,7 @@ impl LayerReader<'_> {
             stops: fields.get("stops").map_or_else(|| Ok(black_to_white()), |node| stops(&node))?,
             operator: operator(fields)?.unwrap_or_default(),
             filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
+            frame: Default::default(),
         })
     }
     /// Operator, anchors and weights. An operator without a list of anchors is pinned at `center`; an empty list pins

@@ -3,7 +3,7 @@
 
 use super::LayerReader;
 use super::names::{BLEND_SPACES, LOCKS};
-use super::{images, masks, normals, shading, strokes};
+use super::{images, masks, normals, shading, strokes, transforms};
 use crate::document::{Content, Group, Layer, LayerLock, Live, PixelLayer};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
@@ -48,10 +48,11 @@ impl LayerReader<'_> {
         let lock = fields.one_of("lock", &LOCKS, LayerLock::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
+        let transform = fields.get("transform").map(|node| transforms::read(&node)).transpose()?;
         let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);
-        Ok(Layer { visible, opacity, blend, blend_linear, clip_below, lock, mask, clip_to_surface, ..layer })
+        Ok(Layer { visible, opacity, blend, blend_linear, clip_below, lock, mask, clip_to_surface, transform, ..layer })
     }
     fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
         let mut offset = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
@@ -123,6 +124,7 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     if let Some(mask) = &layer.mask {
         out.set("mask", masks::write(mask));
     }
+    out.said("transform", layer.transform.as_ref(), transforms::write);
     write_content(&mut out, &layer.content, canvas);
     out
 }

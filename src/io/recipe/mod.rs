@@ -14,6 +14,7 @@
 //! | `presets` | the brushes that come with the program, and those in files of their own |
 //! | `shading` | shading layers, radiance scaling |
 //! | `masks` | layer masks |
+//! | `transforms` | where the frames of layers lie |
 //! | `pictures` | the files that layers name, each decoded once |
 
 mod brush;
@@ -30,6 +31,7 @@ mod shading;
 mod strokes;
 pub mod surface;
 mod tips;
+pub mod transforms;
 
 pub use presets::{
     Preset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,
@@ -50,8 +52,8 @@ pub use pictures::TileGrids;
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
-/// The newest schema this program reads, and the one it writes.
-pub const VERSION: i64 = 1;
+/// The newest schema this program reads. What needs nothing of it is written as the first.
+pub const VERSION: i64 = 2;
 
 /// The source of a document.
 #[derive(Clone, Copy)]
@@ -221,11 +223,16 @@ pub fn print(document: &Document) -> String {
     out.done()
 }
 
+/// Whether the first version has no words for something in a document.
+fn needs_second_version(document: &Document) -> bool {
+    document.walk().iter().any(|(_, layer)| layer.transform.is_some())
+}
+
 /// All but the layers.
 fn head(document: &Document) -> JsonObject {
     let mut out = JsonObject::default();
     out.set("format", "rilievo".into());
-    out.set("version", VERSION.into());
+    out.set("version", if needs_second_version(document) { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     out.said("surface", document.surface_source.as_deref(), surface::write);
     out

@@ -25,6 +25,7 @@ impl LayerReader<'_> {
             None => self.detail_map(&source, convention.unwrap_or_default())?,
         };
         Ok(NormalLayer {
+            frame: Default::default(),
             source,
             placement: self.placement(fields)?,
             outside: fields.one_of("outside", &OUTSIDES, Outside::Repeat)?,

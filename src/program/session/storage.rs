@@ -261,6 +261,7 @@ pub fn flat_image(name: &str, file: &str, picture: Picture, canvas: Size) -> Lay
         outside: Outside::Mirror,
         bend: Bend::default(),
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     };
     Layer::new(name, Content::Image(Live::new(image)))
 }
@@ -288,6 +289,7 @@ fn clay(size: Size) -> Gradient {
         stops: vec![stop(0.0, [0xee, 0xe9, 0xe2]), stop(0.55, [0xb4, 0xad, 0xa5]), stop(1.0, [0x6a, 0x65, 0x61])],
         operator: Operator::Normal { alpha: 0.6, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     }
 }
 

@@ -72,6 +72,7 @@ fn clay(background: Color, size: Size) -> Gradient {
         stops: stops.to_vec(),
         operator: Operator::Normal { alpha: 0.35, beta: 0.5, detail: 0.0 },
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     }
 }
 

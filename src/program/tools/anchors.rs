@@ -191,6 +191,7 @@ mod tests {
             outside: Outside::Mirror,
             bend: Bend { operator: Operator::None, anchors, weights: Weights::default() },
             filter: ImageFilter::Antialias,
+            frame: Default::default(),
         };
         let layers = vec![Arc::new(Layer::new("image", Content::Image(Live::new(image))))];
         Document { layers, ..Document::empty(size) }

@@ -33,7 +33,14 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     }
     let stops =
         vec![GradientStop { t: 0.0, color: context.color }, GradientStop { t: 1.0, color: context.second_color }];
-    let gradient = Gradient { from: at, to: at, stops, operator: context.operator, filter: ImageFilter::Antialias };
+    let gradient = Gradient {
+        from: at,
+        to: at,
+        stops,
+        operator: context.operator,
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+    };
     let place = selected.and_then(|layer| context.document.place_of(layer.id));
     let laid = NewGradientGesture { document: context.document.clone(), place, gradient, layer: None };
     (Some(Box::new(laid)), Outcome::Idle)

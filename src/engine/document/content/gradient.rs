@@ -2,8 +2,7 @@
 //! Floor 4. Its rendering is `paint::gradient`'s.
 
 use super::{CanvasScale, Changed, Content, LayerKind, TileContent};
-use crate::document::Live;
-use crate::document::Progress;
+use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{Gradient, Scene};
 use crate::raster::TileAt;
@@ -33,6 +32,9 @@ impl LayerKind for Live<Gradient> {
         let gradient = self.params();
         let (from, to) = (gradient.from + by, gradient.to + by);
         Some(Content::Gradient(Live::new(Gradient { from, to, ..gradient.clone() })))
+    }
+    fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
+        Some(Content::Gradient(Live::new(Gradient { frame: map.plane, ..self.params().clone() })))
     }
     fn bend(&self) -> Option<Bend> {
         Some(self.params().bend())

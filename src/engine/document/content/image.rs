@@ -3,8 +3,7 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
-use crate::document::Live;
-use crate::document::Progress;
+use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{PlacedImage, Placement, Scene};
 use crate::raster::TileAt;
@@ -36,6 +35,12 @@ impl LayerKind for Live<PlacedImage> {
         let image = self.params();
         let placement = Placement { center: image.placement.center + by, ..image.placement };
         Some(Content::Image(Live::new(PlacedImage { placement, ..image.clone() })))
+    }
+    fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
+        let mut image = self.params().clone();
+        image.frame = map.plane;
+        image.bend.anchors = map.anchors(&image.bend.anchors);
+        Some(Content::Image(Live::new(image)))
     }
     fn bend(&self) -> Option<Bend> {
         Some(self.params().bend.clone())

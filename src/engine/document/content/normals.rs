@@ -3,7 +3,7 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, Role, Touched};
 use crate::Result;
-use crate::document::{DetailSource, NormalLayer};
+use crate::document::{DetailSource, LayerMap, NormalLayer};
 use crate::paint::Scene;
 
 impl LayerKind for NormalLayer {
@@ -23,6 +23,9 @@ impl LayerKind for NormalLayer {
             grain.size_px *= scale.length;
         }
         Content::Normals(normals)
+    }
+    fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
+        Some(Content::Normals(NormalLayer { frame: map.plane, ..self.clone() }))
     }
     fn files(&self) -> Vec<&str> {
         match &self.source {

@@ -2,8 +2,10 @@
 //! Floor 4.
 
 use super::{CanvasScale, Changed, Content, LayerKind, TileContent, Touched};
+use crate::document::LayerMap;
 use crate::math::Vec2;
 use crate::paint::Scene;
+use crate::raster::warp::{PixelMap, warped};
 use crate::raster::{TileAt, TileGrid};
 
 /// A paint layer.
@@ -37,6 +39,26 @@ impl LayerKind for PixelLayer {
             tiles: self.tiles.translated(by.x as i32, by.y as i32),
             file: self.file.clone(),
         }))
+    }
+    fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Option<Content> {
+        let canvas = map.canvas();
+        let all = || TileAt::covering(canvas.rect());
+        let tiles = match last {
+            Some((Content::Pixels(own), Content::Pixels(seen))) => {
+                let changed = own.tiles.changed_tiles(&self.tiles);
+                let shows = |at: &TileAt| {
+                    let source = map.source_rect(at.rect());
+                    changed.iter().any(|changed| !changed.rect().intersect(source).is_empty())
+                };
+                let wanted: Vec<TileAt> = all().filter(shows).collect();
+                let anew = warped(&self.tiles, map, map.filter, &wanted);
+                let mut tiles = seen.tiles.clone();
+                wanted.into_iter().for_each(|at| tiles.set(at, anew.tile(at).cloned()));
+                tiles
+            }
+            _ => warped(&self.tiles, map, map.filter, &all().collect::<Vec<_>>()),
+        };
+        Some(Content::Pixels(PixelLayer { tiles, ..self.clone() }))
     }
     fn emptied(&self) -> Option<Content> {
         Some(Content::Pixels(PixelLayer::default()))

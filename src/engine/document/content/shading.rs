@@ -3,8 +3,7 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
-use crate::document::Live;
-use crate::document::Progress;
+use crate::document::{LayerMap, Live, Progress};
 use crate::paint::Scene;
 use crate::raster::TileAt;
 use crate::shading::{LightKind, LitSphere, Shading};
@@ -37,6 +36,16 @@ impl LayerKind for Live<Shading> {
             }
         }
         Content::Shading(Live::new(shading))
+    }
+    fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
+        let mut shading = self.params().clone();
+        for light in &mut shading.lights {
+            if let LightKind::Point { position } = &mut light.kind {
+                let at = position.truncate();
+                *position = map.point(at).extend(position.z * map.length_at(at));
+            }
+        }
+        Some(Content::Shading(Live::new(shading)))
     }
     fn files(&self) -> Vec<&str> {
         let environment = self.params().environment.iter().map(|environment| environment.file.as_str());

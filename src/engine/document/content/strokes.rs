@@ -3,11 +3,12 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
 use crate::Result;
-use crate::document::{Live, Progress};
+use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{Scene, Stroke, stroke};
 use crate::raster::TileAt;
 use crate::surface::{Bend, Deformation};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The strokes of a stroke layer, in the order they were painted. Shared, so that adding one copies pointers.
@@ -47,6 +48,20 @@ impl LayerKind for Live<StrokeList> {
     }
     fn moved(&self, by: Vec2) -> Option<Content> {
         Some(self.with_each(|stroke| Arc::new(stroke.moved(by))))
+    }
+    fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Option<Content> {
+        // A stroke that was seen is seen again as the very same one, with its dabs.
+        let seen: HashMap<*const Stroke, &Arc<Stroke>> = match last {
+            Some((Content::Strokes(own), Content::Strokes(seen))) => {
+                own.params().strokes.iter().map(Arc::as_ptr).zip(&seen.params().strokes).collect()
+            }
+            _ => HashMap::new(),
+        };
+        let on_canvas = |stroke: &Arc<Stroke>| match seen.get(&Arc::as_ptr(stroke)) {
+            Some(seen) => Arc::clone(seen),
+            None => Arc::new(stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p))),
+        };
+        Some(self.with_each(on_canvas))
     }
     fn emptied(&self) -> Option<Content> {
         Some(Content::Strokes(Live::new(StrokeList::default())))

@@ -67,7 +67,14 @@ impl RandomNumbers {
                 let stops =
                     vec![GradientStop { t: 0.0, color: self.color() }, GradientStop { t: 1.0, color: self.color() }];
                 let (from, to) = (vec2(10.0, 10.0), vec2(200.0, 150.0));
-                let gradient = Gradient { from, to, stops, operator: Operator::None, filter: Default::default() };
+                let gradient = Gradient {
+                    from,
+                    to,
+                    stops,
+                    operator: Operator::None,
+                    filter: Default::default(),
+                    frame: Default::default(),
+                };
                 Content::Gradient(Live::new(gradient))
             }
             _ => Content::Pixels(self.pixels()),

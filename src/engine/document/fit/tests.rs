@@ -45,6 +45,7 @@ fn what_leaves_a_range_is_refused_with_the_layers_name() {
             stops,
             operator: Operator::None,
             filter: crate::paint::ImageFilter::Antialias,
+            frame: Default::default(),
         };
         Layer::new("Ramp", Content::Gradient(Live::new(gradient)))
     };

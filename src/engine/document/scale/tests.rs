@@ -38,10 +38,17 @@ fn document() -> Document {
         outside: Outside::Mirror,
         bend: Bend { operator, anchors: vec![anchor], weights: Weights::default() },
         filter: ImageFilter::Bilinear,
+        frame: Default::default(),
     };
     let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
-    let gradient =
-        Gradient { from: vec2(50.0, 30.0), to: vec2(180.0, 120.0), stops, operator, filter: ImageFilter::Antialias };
+    let gradient = Gradient {
+        from: vec2(50.0, 30.0),
+        to: vec2(180.0, 120.0),
+        stops,
+        operator,
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+    };
     let samples = [40.0, 120.0, 190.0].map(|x| Sample::at(vec2(x, 60.0 + 0.2 * x))).to_vec();
     let brush = Brush { size: 50.0, ..Brush::default() };
     let stroke = Stroke::new(brush, operator, Color { r: 255, g: 240, b: 200, a: 255 }, samples);

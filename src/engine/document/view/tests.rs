@@ -25,6 +25,7 @@ fn ball() -> Document {
         stops: vec![stop(0.0, Color::BLACK), stop(1.0, Color::WHITE)],
         operator: Operator::Normal { alpha: 0.5, beta: 1.0, detail: 0.0 },
         filter: ImageFilter::Bilinear,
+        frame: Default::default(),
     };
     let layer = Layer::new("ramp", Content::Gradient(Live::new(gradient)));
     Document { surface: Some(Arc::new(surface)), layers: vec![Arc::new(layer)], ..Document::empty(size) }

@@ -169,6 +169,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
         outside: Outside::Mirror,
         bend: Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() },
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     };
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));

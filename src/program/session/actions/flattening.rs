@@ -44,27 +44,34 @@ pub fn painted(name: &str, tiles: TileGrid) -> Layer {
 
 /// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to the layer.
 fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Document> {
+    let document = &document.with_transform_applied(layer.id)?;
+    let mask = document.map_of(layer.id)?.layer_on_canvas(document.layer(layer.id)?).mask.clone();
     let bare = document.with_layer(layer.id, |layer| {
         (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
     })?;
     let tiles = flatten_layer(&bare, layer.id, progress)?;
-    document
-        .with_layer(layer.id, |layer| layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
+    document.with_layer(layer.id, |layer| {
+        layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
+        (layer.transform, layer.mask) = (None, mask);
+    })
 }
 
 /// A layer and the one beneath it as one paint layer.
 fn merged(document: &Document, layer: &Layer, progress: &Progress) -> Option<Edit> {
+    // Groups around hand their transforms down, so that what is merged lies as it shows.
+    let document = &document.with_transform_applied(layer.id)?;
+    let layer = document.layer(layer.id)?;
     let place = document.place_of(layer.id)?;
     let beneath: LayerId = sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })?;
     let beneath = document.layer(beneath)?.clone();
     // The two alone, in a canvas of their own that sees the same surface.
     let pair = vec![Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&beneath) })];
     let mut pair = Document { layers: pair, ..document.clone() };
-    pair.layers.push(Arc::new(layer.clone()));
+    pair.layers.push(layer.clone());
     let tiles = flatten(&pair, progress)?;
     let document = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
-        (layer.opacity, layer.mask) = (1.0, None);
+        (layer.opacity, layer.mask, layer.transform) = (1.0, None, None);
     })?;
     Some(Edit { label: "Merge down", document, select: Some(beneath.id) })
 }

@@ -71,6 +71,8 @@ actions! {
         "paint mask" PaintMask { layer: LayerPath, hides: bool }
         /// Selects whether the brush paints on the mask or on the layer.
         "on mask" OnMask { layer: LayerPath, on: bool }
+        /// The layer's transform is applied for good: its frame becomes the canvas.
+        "apply transform" ApplyTransform { layer: LayerPath }
         /// Into a group of its own.
         "group" Group { layer: LayerPath }
         "ungroup" Ungroup { layer: LayerPath }
@@ -94,6 +96,7 @@ impl LayerAction {
             ],
             operator: session.operator,
             filter: ImageFilter::Antialias,
+            frame: Default::default(),
         };
         session.drop_gesture();
         let Some(tab) = session.active_mut() else { return };
@@ -179,6 +182,9 @@ impl LayerAction {
                 let index = place.index.saturating_add_signed(*by as isize);
                 ("Move layer", document.with_moved(id, LayerSlot { index, ..place })?, Some(id))
             }
+            LayerAction::ApplyTransform { layer: path } => {
+                ("Apply transform", document.with_transform_applied(layer(path)?.id)?, None)
+            }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
                 return self.flattened(document, &Progress::default());
             }
@@ -191,7 +197,8 @@ impl LayerAction {
                 ("Group layer", document.without_layer(layer.id)?.with_inserted(group, place)?, Some(id))
             }
             LayerAction::Ungroup { layer: path } => {
-                let layer = layer(path)?;
+                let document = &document.with_transform_applied(layer(path)?.id)?;
+                let layer = path.find(document)?.clone();
                 let group = layer.content.group()?;
                 let place = document.place_of(layer.id)?;
                 let mut next = document.without_layer(layer.id)?;
@@ -274,6 +281,7 @@ fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> La
                 placement: Placement { center: size.center(), scale: 1.0, rotation: 0.0 },
                 outside: Outside::Repeat,
                 strength: 0.5,
+                frame: Default::default(),
             };
             ("Detail normals", Content::Normals(normals))
         }

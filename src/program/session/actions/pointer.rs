@@ -1,10 +1,11 @@
 //! The pen on the canvas, passed on to the current tool.
 //! Floor 6.
 
+use crate::document::Document;
 use crate::math::vec2;
 use crate::paint::{BrushMode, Sample};
 use crate::session::replay::{ReplayValue, actions, record};
-use crate::session::{CloneSource, Session};
+use crate::session::{CloneSource, OpenDocument, Session};
 use crate::tools::brush::StrokePurpose;
 use crate::tools::{self, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
 use serde_json::Value;
@@ -77,8 +78,12 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     };
     let Some(tab) = session.active() else { return };
     let strokes = tab.chosen_strokes();
+    let document = match works_in_place(tool, tab) {
+        Ok(document) => document,
+        Err(why) => return session.notes.push(why.into()),
+    };
     let context = ToolContext {
-        document: tab.document(),
+        document: &document,
         layer: tab.selected,
         brush: &session.brush,
         color: session.color,
@@ -102,6 +107,20 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         session.remember_color();
     }
     take(session, outcome);
+}
+
+/// The document for a tool that works on the selected layer where it shows: with the layer's transform applied.
+fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'static str> {
+    let document = tab.document();
+    let looks_only = matches!(tool, ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom);
+    let Some(layer) = tab.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };
+    let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
+    let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
+    let is_group = applied.layer(layer).is_some_and(|layer| layer.content.group().is_some());
+    if is_in_place || is_group {
+        return Ok(applied);
+    }
+    Err("The layer is skewed by its transform; bake it, or remove the transform, to work on it.")
 }
 
 fn take(session: &mut Session, outcome: Outcome) {

@@ -7,7 +7,7 @@ pub use values::{DerivedMask, DerivedMaskNumbers};
 
 use super::actions::pictures::PicturePart;
 use super::replay::actions;
-use crate::document::{Content, DetailSource, Layer, LayerLock, Live, NormalLayer};
+use crate::document::{Content, DetailSource, Layer, LayerLock, LayerTransform, Live, NormalLayer};
 use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
@@ -28,6 +28,8 @@ actions! {
         "clip" ClipBelow { on: bool }
         "lock" Locked { lock: LayerLock }
         "clip to surface" ClipToSurface { on: bool }
+        /// Where the layer's frame lies on the canvas; none: it is the canvas.
+        "transform" Transformed { transform: Option<LayerTransform> }
         "pass through" PassThrough { on: bool }
         "fill" Fill { color: Color }
         "operator" Bend { operator: Operator }
@@ -83,6 +85,7 @@ impl Property {
             Property::ClipBelow { .. } => "Clip to layer below",
             Property::Locked { .. } => "Lock layer",
             Property::ClipToSurface { .. } => "Clip to surface",
+            Property::Transformed { .. } => "Transform",
             Property::PassThrough { .. } => "Pass through",
             Property::Fill { .. } => "Fill colour",
             Property::Bend { .. } => "Operator",
@@ -117,6 +120,7 @@ impl Property {
         match self {
             Property::Name { name } => layer.name.clone_from(name),
             Property::Visible { on } => layer.visible = *on,
+            Property::Transformed { transform } => layer.transform = *transform,
             Property::Opacity { to } => layer.opacity = held(*to, &Layer::OPACITY),
             Property::Blend { mode } => layer.blend = *mode,
             Property::BlendLinear { on } => layer.blend_linear = *on,

@@ -1,7 +1,9 @@
 //! The values of properties in replays.
 //! Floor 6.
 
-use crate::document::{Layer, LayerLock, LayerMask, MaskKind};
+use crate::document::{Layer, LayerLock, LayerMask, LayerTransform, MaskKind};
+use crate::io::json::JsonNode;
+use crate::io::recipe::transforms;
 use crate::math::Vec3;
 use crate::paint::{Adjust, GradientStop, ImageFilter, Placement};
 use crate::raster::{BlendMode, Outside};
@@ -35,6 +37,16 @@ record!(Term { color, weight, scaling });
 record!(FeatureScale { curvature_scale_px, blur_px, weight });
 record!(Features { scales, lambda });
 record!(Light { kind, color, intensity });
+
+/// As a document says it.
+impl crate::session::replay::ReplayValue for LayerTransform {
+    fn written(&self) -> serde_json::Value {
+        transforms::write(self)
+    }
+    fn read(value: &serde_json::Value) -> Result<Self, String> {
+        transforms::read(&JsonNode::root(std::path::Path::new("transform"), value)).map_err(|error| error.to_string())
+    }
+}
 
 /// How marks follow the surface, as four words with their numbers.
 impl crate::session::replay::ReplayValue for Operator {

@@ -27,6 +27,7 @@ fn everything() -> Document {
         outside: Outside::Mirror,
         bend: Default::default(),
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     };
     let stops = [0.0, 1.0].map(|t| GradientStop { t, color: Color::WHITE }).to_vec();
     let gradient = Gradient {
@@ -35,11 +36,13 @@ fn everything() -> Document {
         stops,
         operator: Default::default(),
         filter: ImageFilter::Antialias,
+        frame: Default::default(),
     };
     let environment = Some(Environment::new("sky.png".into(), picture));
     let shading = Shading { environment, occlusion_radius_px: 4.0, ..Shading::new(Model::Phong) };
     let grain = DetailSource::Grain(NoiseRelief::default());
-    let normals = NormalLayer { source: grain, placement, outside: Outside::Repeat, strength: 0.5 };
+    let normals =
+        NormalLayer { source: grain, placement, outside: Outside::Repeat, strength: 0.5, frame: Default::default() };
     let contents = [
         Content::Fill(Color::BLACK),
         Content::Image(Live::new(image)),
@@ -61,7 +64,7 @@ const NUMBERS: [f32; 22] = [
     -2e6, 1e30, -1e30,
 ];
 /// Edits with `#` for a number and `%` for a whole one; the property of a layer, or an action.
-const PROPERTIES: [&str; 40] = [
+const PROPERTIES: [&str; 43] = [
     r#"{"do":"opacity","to":#}"#,
     r#"{"do":"linear","on":true}"#,
     r#"{"do":"clip","on":true}"#,
@@ -77,6 +80,9 @@ const PROPERTIES: [&str; 40] = [
     r#"{"do":"anchors","anchors":[{"at":[#,2],"source":[3,#]},{"at":[5,6],"source":[7,8]}]}"#,
     r#"{"do":"anchors","anchors":[]}"#,
     r#"{"do":"power","to":#}"#,
+    r#"{"do":"transform","transform":{"matrix":[#,0.5,-0.25,#,#,3],"filter":"sharp"}}"#,
+    r#"{"do":"transform","transform":{"quad":[[#,1],[40,3],[38,#],[2,30.125]]}}"#,
+    r#"{"do":"transform","transform":null}"#,
     r#"{"do":"placement","placement":{"center":[#,5],"scale":1,"rotation":#}}"#,
     r#"{"do":"placement","placement":{"center":[4,5],"scale":#,"rotation":30}}"#,
     r#"{"do":"outside","outside":"clamp"}"#,
