@@ -58,6 +58,8 @@ pub enum JobResult {
     /// The flattened picture is in the clipboard as long as this is kept.
     Copied(Clipboard),
     Pasted(PastedContent),
+    /// What was copied here is to be pasted.
+    PastedOwn,
     /// The user's own brushes, and the errors of unreadable ones.
     Brushes(Vec<Preset>, Vec<String>),
     /// Nothing to do, as after a cancelled job.

@@ -4,6 +4,7 @@
 use super::files::FilePurpose;
 use super::panels::PanelKind;
 use crate::session::Action;
+use crate::session::actions::EdgeChange;
 use std::path::PathBuf;
 
 /// Pushed by panels, done once a frame.
@@ -43,7 +44,8 @@ pub enum WindowRequest {
     /// Asks first where there is unsaved work.
     Close(usize),
     Quit,
-    CopyMerged,
+    EdgeDialog(EdgeChange),
+    KeepDialog,
     Paste,
     Palette,
     Shortcuts,

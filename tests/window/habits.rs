@@ -14,7 +14,7 @@ fn a_key_that_is_taken_is_asked_for_and_then_given() {
     steps(&mut harness);
     press(&mut harness, "Add a key to New radiance scaling");
     key(&mut harness, Modifiers::COMMAND, Key::J);
-    harness.get_by_label_contains("belongs to “Duplicate layer”");
+    harness.get_by_label_contains("belongs to “Layer via copy”");
     press(&mut harness, "Give it to “New radiance scaling”");
     press(&mut harness, "Close");
     key(&mut harness, Modifiers::COMMAND, Key::J);

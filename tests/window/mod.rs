@@ -9,6 +9,7 @@ mod marks;
 mod panels;
 mod recovery;
 mod replayed;
+mod selecting;
 
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;

@@ -4,6 +4,7 @@
 
 mod light;
 mod marks;
+mod selections;
 
 use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, PixelLayer};
 use crate::math::range::{at_most, within};
@@ -42,7 +43,7 @@ impl Document {
                 fit = layer_fits(layer, was.map(|was| &**was), self.size).map_err(|why| named(layer, &why));
             }
         });
-        fit.and_then(|()| total.fits().map_err(|why| format!("{why}.")))
+        fit.and_then(|()| selections::fit(self, before)).and_then(|()| total.fits().map_err(|why| format!("{why}.")))
     }
 }
 
@@ -156,6 +157,7 @@ fn mask_fits(mask: &LayerMask, canvas: Size) -> Fit {
             ramp(*from, *to, &LayerMask::KAPPA)
         }
         MaskKind::Depth { from, to } => ramp(*from, *to, &LayerMask::DEPTH),
+        MaskKind::Region(region) => selections::region(region),
     }
 }
 

@@ -5,6 +5,7 @@ use super::{Layer, Role, prepare, prepare::PreparedLayer};
 use crate::math::{Range, UNIT};
 use crate::paint::Scene;
 use crate::raster::{Plane, TileAt, TileCoverage};
+use crate::surface::region::SurfaceRegion;
 use crate::surface::{Curvature, Surface};
 use std::sync::Arc;
 
@@ -28,6 +29,8 @@ pub enum MaskKind {
     Curvature { scale: f32, blur: f32, from: f32, to: f32 },
     /// z, 0 at `from`, 1 at `to`.
     Depth { from: f32, to: f32 },
+    /// All that has something in common with a point of the surface.
+    Region(SurfaceRegion),
 }
 
 /// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is clipped to it.
@@ -125,6 +128,11 @@ impl LayerMask {
         if self.disabled || (needs_surface && scene.surface.is_none()) {
             return coverage;
         }
+        if let (MaskKind::Region(region), Some(surface)) = (&self.kind, &scene.surface) {
+            let grid = surface.region(region);
+            let way = |c: u8| f32::from(if self.invert { 255 - c } else { c }) / 255.0;
+            return coverage.times(pixels(at, |x, y| way(grid.at(x, y))));
+        }
         coverage.times(pixels(at, |x, y| self.at(scene, curvature, x, y)))
     }
     /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived from it.
@@ -136,12 +144,13 @@ impl LayerMask {
         if let MaskKind::File { coverage, .. } = &self.kind {
             return way(coverage.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0));
         }
-        let Some(surface) = scene.surface.as_deref() else { return 1.0 };
+        let Some(surface) = &scene.surface else { return 1.0 };
         if !surface.size().rect().contains(x, y) {
             return 0.0;
         }
         let (x, y) = (x as usize, y as usize);
         match (&self.kind, curvature) {
+            (MaskKind::Region(region), _) => way(f32::from(surface.region(region).at(x as i32, y as i32)) / 255.0),
             (&MaskKind::Fresnel { f0, power }, _) => way(fresnel(surface.normal(x, y).z, f0, power)),
             (&MaskKind::Depth { from, to }, _) => way(ramp(surface.depth(x, y), from, to)),
             (&MaskKind::Curvature { scale, from, to, .. }, Some(curvature)) => {
@@ -152,7 +161,7 @@ impl LayerMask {
     }
     /// Whether both have the same coverage: the same picture by pointer, or the same numbers.
     pub(super) fn is_same(&self, other: &LayerMask) -> bool {
-        use MaskKind::{Curvature, Depth, File, Fresnel};
+        use MaskKind::{Curvature, Depth, File, Fresnel, Region};
         let same_kind = match (&self.kind, &other.kind) {
             (File { coverage: a, .. }, File { coverage: b, .. }) => Arc::ptr_eq(a, b),
             (Fresnel { f0, power }, Fresnel { f0: f, power: p }) => (f0, power) == (f, p),
@@ -160,6 +169,7 @@ impl LayerMask {
                 (scale, blur, from, to) == (s, b, f, t)
             }
             (Depth { from, to }, Depth { from: f, to: t }) => (from, to) == (f, t),
+            (Region(a), Region(b)) => a == b,
             _ => false,
         };
         same_kind && self.invert == other.invert && self.disabled == other.disabled

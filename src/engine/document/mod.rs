@@ -4,6 +4,7 @@
 pub mod cache;
 mod compose;
 pub mod content;
+pub mod cut;
 pub mod diff;
 pub mod edit;
 mod fit;
@@ -19,6 +20,7 @@ pub mod progress;
 mod same;
 pub mod scale;
 mod scenes;
+pub mod selections;
 pub mod source;
 mod strokes;
 pub mod transform;
@@ -37,10 +39,12 @@ pub use normals::{DetailSource, NormalLayer};
 pub use prepare::PreparedDocument;
 pub use progress::Progress;
 pub use scale::DocumentReducer;
+pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
 pub use transform::{LayerMap, LayerTransform, TransformShape};
 
-use crate::{math::Size, paint::Scene, raster::Asset, surface::Surface};
+use crate::paint::{Scene, Selection};
+use crate::{math::Size, raster::Asset, surface::Surface};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// A picture being painted: the canvas, its surface, and the layers, bottom first.
@@ -53,11 +57,23 @@ pub struct Document {
     /// The files that `surface_source` names, by their names, where they are known.
     pub surface_files: Arc<BTreeMap<String, Asset>>,
     pub layers: Vec<Arc<Layer>>,
+    /// Those kept by name; each name stands once.
+    pub selections: Vec<NamedSelection>,
+    /// What marks may change; absent: everything. Never empty.
+    pub active_selection: Option<Arc<Selection>>,
 }
 
 impl Document {
     pub fn empty(size: Size) -> Self {
-        Self { size, surface: None, surface_source: None, surface_files: Arc::default(), layers: Vec::new() }
+        Self {
+            size,
+            surface: None,
+            surface_source: None,
+            surface_files: Arc::default(),
+            layers: Vec::new(),
+            selections: Vec::new(),
+            active_selection: None,
+        }
     }
     /// The canvas as the bottom layer sees it.
     pub fn scene(&self) -> Scene {

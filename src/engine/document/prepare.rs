@@ -150,6 +150,11 @@ impl StackBuilder<'_> {
             let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), scope.beneath.to_vec());
             self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
         }
+        if let (Some(MaskKind::Region(region)), Some(surface)) =
+            (layer.mask.as_ref().map(|mask| &mask.kind), &visible_scene.surface)
+        {
+            surface.region(region);
+        }
         PreparedLayer {
             curvature: curvature_of_mask(layer, &visible_scene),
             layer: layer.clone(),

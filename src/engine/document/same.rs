@@ -3,7 +3,7 @@
 //! Floor 4. Names of files are not part of it: a project gives them its own. What must be redrawn is `diff`'s.
 
 use super::source::{MaskSource, SurfaceSource};
-use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, StrokeList};
+use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, NamedSelection, StrokeList};
 use crate::paint::Stroke;
 use crate::raster::TileGrid;
 use std::sync::Arc;
@@ -14,8 +14,24 @@ impl Document {
         if self.size != other.size {
             return Some("the size of the canvas".into());
         }
-        surface(self, other).or_else(|| layers(&self.layers, &other.layers))
+        surface(self, other).or_else(|| layers(&self.layers, &other.layers)).or_else(|| selections(self, other))
     }
+}
+
+/// Those kept by name, and the active one.
+fn selections(a: &Document, b: &Document) -> Option<String> {
+    let same_kept = |(a, b): (&NamedSelection, &NamedSelection)| {
+        a.name == b.name && (Arc::ptr_eq(&a.selection, &b.selection) || a.selection.is_same(&b.selection))
+    };
+    if a.selections.len() != b.selections.len() || !a.selections.iter().zip(&b.selections).all(same_kept) {
+        return Some("the selections kept by name".into());
+    }
+    let same_active = match (&a.active_selection, &b.active_selection) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a.is_same(b),
+        _ => false,
+    };
+    (!same_active).then(|| "the selection".into())
 }
 
 fn surface(a: &Document, b: &Document) -> Option<String> {
@@ -142,11 +158,20 @@ fn same_detail(a: &DetailSource, b: &DetailSource) -> bool {
     }
 }
 
+fn same_selection(a: &Stroke, b: &Stroke) -> bool {
+    match (a.selection(), b.selection()) {
+        (None, None) => true,
+        (Some(a), Some(b)) => a.is_same(b),
+        _ => false,
+    }
+}
+
 fn same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
     let same = |(a, b): (&Arc<Stroke>, &Arc<Stroke>)| {
         Arc::ptr_eq(a, b)
             || (a.operator(), a.color()) == (b.operator(), b.color())
                 && a.samples() == b.samples()
+                && same_selection(a, b)
                 && a.brush() == b.brush()
     };
     a.strokes.len() == b.strokes.len() && a.strokes.iter().zip(&b.strokes).all(same)

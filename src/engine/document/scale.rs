@@ -2,18 +2,20 @@
 //! layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
 
 mod reducer;
+mod selections;
 
 pub use reducer::DocumentReducer;
 
 use super::cache::LayerCache;
 use super::{Document, Layer, MaskKind, PixelLayer};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
-use crate::paint::{Sample, Stroke};
+use crate::paint::{Sample, Selection, Stroke};
 use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
 use crate::surface::SurfaceError;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
 
 impl Document {
     /// The same picture on a canvas `factor` times as large, its sides rounded. Layers keep their ids.
@@ -23,7 +25,9 @@ impl Document {
     pub fn scaled(&self, factor: f32) -> Result<Document, SurfaceError> {
         let Some(scale) = CanvasScale::of(self.size, factor) else { return Ok(self.clone()) };
         let surface = self.surface.as_ref().map(|s| s.stretched(scale.to).map(Arc::new)).transpose()?;
-        Ok(Document { size: scale.to, surface, layers: scale.layers(&self.layers), ..self.clone() })
+        let layers = scale.layers(&self.layers);
+        let scaled = Document { size: scale.to, surface, layers, ..scale.selected(self) };
+        Ok(scaled.with_selections_found())
     }
 }
 
@@ -35,6 +39,8 @@ pub(super) struct CanvasScale {
     pub length: f32,
     from: Size,
     to: Size,
+    /// Selections that were scaled, by their addresses.
+    selections: Mutex<HashMap<usize, (Arc<Selection>, Arc<Selection>)>>,
 }
 
 impl CanvasScale {
@@ -45,7 +51,7 @@ impl CanvasScale {
             return None;
         }
         let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
-        Some(Self { per_axis, length: factor, from, to })
+        Some(Self { per_axis, length: factor, from, to, selections: Mutex::default() })
     }
     pub fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()
@@ -58,6 +64,7 @@ impl CanvasScale {
             Some(MaskKind::Curvature { scale, blur, .. }) => {
                 (*scale, *blur) = (*scale * self.length, *blur * self.length)
             }
+            Some(MaskKind::Region(region)) => region.at *= self.per_axis,
             Some(MaskKind::Fresnel { .. } | MaskKind::Depth { .. }) | None => {}
         }
         next
@@ -71,7 +78,9 @@ impl CanvasScale {
     }
     pub fn stroke(&self, stroke: &Stroke) -> Stroke {
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
-        Stroke::new(stroke.brush().scaled(self.length), stroke.operator(), stroke.color(), samples)
+        let selection = stroke.selection().map(|own| own.scaled(self.selection(&own.selection), self.per_axis));
+        let brush = stroke.brush().scaled(self.length);
+        Stroke::new(brush, stroke.operator(), stroke.color(), samples).within(selection)
     }
     pub fn pixels(&self, pixels: &PixelLayer) -> PixelLayer {
         let corner = vec2(pixels.x as f32, pixels.y as f32) * self.per_axis;

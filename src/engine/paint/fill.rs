@@ -9,7 +9,8 @@ mod gaps;
 mod tests;
 
 use crate::math::{Rect, Size, Vec2};
-use crate::raster::{Plane, Tile, TileAt, distance};
+use crate::raster::coverage::{CoverageGrid, edges};
+use crate::raster::{Plane, TILE, Tile, TileAt};
 use crate::surface::objects::{CanvasPart, PaintLimit};
 use std::sync::Arc;
 
@@ -77,36 +78,68 @@ impl Fill {
         }
         // Comparisons that turn NaN into the minimum.
         let tolerance = (self.tolerance.max(0.0).min(1.0) * 255.0).round() as u8;
-        let mut inside = flood::joined((x, y), canvas, part, tolerance, tile)?;
+        let flooded = flood::joined((x, y), canvas, part, tolerance, tile)?;
         let gap_px = self.gap_px.max(0.0).min(WIDEST_GAP_PX);
-        if gap_px > 0.0 {
-            inside = gaps::closed(inside, (x, y), canvas, gap_px);
-        }
+        let inside = flood::pixels(&flooded);
+        let inside = if gap_px > 0.0 { gaps::closed(inside, (x, y), canvas, gap_px) } else { inside };
         Some(self.edged(inside, canvas, part))
     }
-    /// The pixels found as coverage, the edge moved and smoothed.
+    /// The same area as coverage on the canvas; `everywhere`: all pixels of a colour like the first one's, joined or
+    /// not, through which gaps do not matter.
     ///
-    /// A pixel is covered by ½ + g − d, clamped, with g the growth and d how far its centre lies beyond the edge, which
-    /// runs midway between pixels inside and outside: a step across an axis stays sharp, a slanted one is smoothed.
+    /// `None` as of [`Fill::from`], whose arguments these are.
+    pub fn selected(
+        &self,
+        start: Vec2,
+        canvas: Size,
+        part: &CanvasPart,
+        everywhere: bool,
+        tile: impl Fn(TileAt) -> Option<Arc<Tile>> + Sync,
+    ) -> Option<CoverageGrid> {
+        let (x, y) = (start.x.floor() as i32, start.y.floor() as i32);
+        if !start.is_finite() || !canvas.rect().contains(x, y) {
+            return None;
+        }
+        let tolerance = (self.tolerance.max(0.0).min(1.0) * 255.0).round() as u8;
+        let moves = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
+        if !everywhere && self.gap_px > 0.0 {
+            let area = self.from(start, canvas, part, tile)?;
+            return Some(CoverageGrid::from_plane(&area.coverage, area.rect.x0, area.rect.y0));
+        }
+        let found = match everywhere {
+            true => flood::alike((x, y), canvas, part, tolerance, tile)?,
+            false => flood::joined((x, y), canvas, part, tolerance, tile)?.coverage(),
+        };
+        let found = if moves == 0.0 { found } else { edges::grown(&found, moves, canvas.rect()) };
+        Some(if part.is_whole() { found } else { limited(&found, part) })
+    }
+    /// The pixels found as coverage, the edge moved and smoothed.
     fn edged(&self, inside: PixelSet, canvas: Size, part: &CanvasPart) -> FilledArea {
         let grow_px = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
-        let limit = grow_px.abs().ceil() as u16 + 1;
-        let PixelSet { rect, pixels } = inside.within(inside.rect.grown(i32::from(limit)).intersect(canvas.rect()));
-        let to_inside = distance::squared(&pixels, limit);
-        let to_outside = distance::squared(&pixels.map(|p| u8::from(p == 0)), limit);
-        let coverage = Plane::from_fn(pixels.size(), |x, y| {
-            let beyond = match pixels.at(x, y) {
-                0 => f32::from(to_inside.at(x, y)).sqrt() - 0.5,
-                _ => 0.5 - f32::from(to_outside.at(x, y)).sqrt(),
-            };
-            let share = 0.5 + grow_px - beyond;
-            let share = if self.antialias { share.clamp(0.0, 1.0) } else { f32::from(u8::from(share > 0.5)) };
-            let (x, y) = (x as i32 + rect.x0, y as i32 + rect.y0);
-            let allowed = if part.is_whole() || share == 0.0 { 1.0 } else { part.coverage(x, y) };
-            (share * allowed * 255.0).round() as u8
-        });
-        FilledArea { rect, coverage }
+        let limit = grow_px.abs().ceil() as i32 + 1;
+        let PixelSet { rect, pixels } = inside.within(inside.rect.grown(limit).intersect(canvas.rect()));
+        let coverage = edges::moved(&pixels, grow_px, self.antialias);
+        if part.is_whole() {
+            return FilledArea { rect, coverage };
+        }
+        let allowed = |x: usize, y: usize, share: u8| match share {
+            0 => 0,
+            _ => (f32::from(share) * part.coverage(x as i32 + rect.x0, y as i32 + rect.y0)).round() as u8,
+        };
+        FilledArea { rect, coverage: coverage.updated(allowed) }
     }
+}
+
+/// Coverage within a part of the canvas.
+fn limited(found: &CoverageGrid, part: &CanvasPart) -> CoverageGrid {
+    CoverageGrid::from_tiles(found.bounds(), |at, bytes| {
+        let Some(tile) = found.tile(at) else { return };
+        let corner = at.rect();
+        for (i, (to, share)) in bytes.iter_mut().zip(tile.bytes()).enumerate().filter(|(_, (_, share))| **share > 0) {
+            let (x, y) = ((i % TILE) as i32, (i / TILE) as i32);
+            *to = (f32::from(*share) * part.coverage(corner.x0 + x, corner.y0 + y)).round() as u8;
+        }
+    })
 }
 
 /// Some pixels of the canvas: 1 in a plane that holds a rectangle of it.

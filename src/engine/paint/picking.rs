@@ -3,9 +3,10 @@
 
 use super::brush::Brush;
 use super::scene::Scene;
+use super::selection::StrokeSelection;
 use super::stroke::{Sample, Stroke, render_tile};
 use crate::math::Vec2;
-use crate::raster::{BlendMode, TILE, TileAt, TileGrid};
+use crate::raster::{BlendMode, CoverageGrid, TILE, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
 /// The least alpha of 255 that counts as part of a stroke: faint rims are hard to see but easy to hit.
@@ -37,6 +38,18 @@ impl Stroke {
         }
         grid
     }
+    /// Whether any of the stroke's paint lies where something is covered.
+    pub fn meets(self: &Arc<Self>, scene: &Scene, covered: &CoverageGrid) -> bool {
+        let paint = [self.as_paint()];
+        covered.iter().filter(|(at, _)| self.touches(scene, *at)).any(|(at, covered)| {
+            let rendered = render_tile(&paint, scene, at);
+            let painted = |tile: Tile| {
+                let pixels = tile.bytes().as_chunks::<4>().0.iter().zip(covered.bytes());
+                pixels.into_iter().any(|(pixel, covered)| pixel[3] > 0 && *covered > 0)
+            };
+            rendered.is_some_and(painted)
+        })
+    }
     /// The stroke as it looks on a transparent layer.
     fn as_paint(self: &Arc<Self>) -> Arc<Stroke> {
         let brush = self.brush();
@@ -50,6 +63,11 @@ impl Stroke {
     pub fn moved(&self, by: Vec2) -> Stroke {
         let samples = self.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
         Stroke::new(self.brush().clone(), self.operator(), self.color(), samples)
+            .within(self.selection().map(|selection| selection.moved(by)))
+    }
+    /// The same stroke within another selection, or within none.
+    pub fn selecting(&self, selection: Option<StrokeSelection>) -> Stroke {
+        self.with_brush(self.brush().clone()).within(selection)
     }
     /// The stroke where a map takes its samples: `place` tells where a point goes (`None`: nowhere), `length` how much
     /// longer lengths become there. Its brush grows by the mean over the samples that are left.
@@ -63,7 +81,7 @@ impl Stroke {
     }
     /// The same movement of the hand with another brush.
     pub fn with_brush(&self, brush: Brush) -> Stroke {
-        Stroke::new(brush, self.operator(), self.color(), self.samples().to_vec())
+        Stroke::new(brush, self.operator(), self.color(), self.samples().to_vec()).within(self.selection().cloned())
     }
 }
 

@@ -15,6 +15,7 @@ use super::brush::{Brush, BrushMode};
 use super::dab::{DabScratch, PlacedDab};
 use super::dab_walker::{Dab, DabWalker};
 use super::scene::Scene;
+use super::selection::StrokeSelection;
 use super::stroke::dabs::{StrokeDabs, tiles_of};
 use super::stroke::{Sample, Stroke};
 use super::stroke_tile::StrokeTile;
@@ -50,6 +51,7 @@ struct RetouchStroke {
     walker: DabWalker,
     /// From a pixel to what is cloned onto it, px.
     offset: Vec2,
+    selection: Option<StrokeSelection>,
     /// Where it may paint; known from its first sample on.
     part: Option<CanvasPart>,
     progress: DabQueue,
@@ -87,6 +89,7 @@ impl ActiveRetouching {
             stroke_dabs: StrokeDabs::empty(stroke.brush(), scene),
             walker: DabWalker::new(stroke.brush(), stroke.operator(), stroke.color(), scene),
             offset,
+            selection: stroke.selection().cloned(),
             part: None,
             progress: DabQueue::default(),
         };
@@ -192,9 +195,16 @@ impl RetouchStroke {
     }
     /// The part of a tile that a dab covers; `None` if it covers nothing.
     fn touch(&self, placed: &PlacedDab, at: TileAt, scratch: &mut DabScratch, scene: &Scene) -> Option<TileDab> {
+        let selected = match &self.selection {
+            None => None,
+            Some(selection) => Some(selection.tile(at)?),
+        };
         let mut stroke_tile = StrokeTile::one_color();
         let grain = self.stroke_dabs.grain(at);
         self.stroke_dabs.add(placed, at, grain.as_deref(), &mut stroke_tile, scratch);
+        if let Some(selected) = selected {
+            stroke_tile.select(&selected);
+        }
         let mut coverage: Box<[f32; TILE_AREA]> = Box::new([0.0; TILE_AREA]);
         coverage.copy_from_slice(stroke_tile.coverage(0, TILE_AREA));
         let opaque = if self.brush.mode == BrushMode::Paint { f32::from(self.color.a) / 255.0 } else { 1.0 };

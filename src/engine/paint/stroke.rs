@@ -11,6 +11,7 @@ pub use many::{are_heavy, render_tiles};
 use super::brush::Brush;
 use super::dab::DabScratch;
 use super::scene::Scene;
+use super::selection::StrokeSelection;
 use super::stroke_tile::StrokeBlend;
 use crate::math::{COORDINATE, Range, Rect, UNIT, Vec2, range, srgb::Color, vec2};
 use crate::memory::Kept;
@@ -70,6 +71,8 @@ pub struct Stroke {
     operator: Operator,
     color: Color,
     samples: Vec<Sample>,
+    /// Where it may paint; absent: everywhere.
+    selection: Option<StrokeSelection>,
     found: Arc<Mutex<StrokeCache>>,
 }
 
@@ -87,7 +90,11 @@ impl Stroke {
     pub const MOST_SAMPLES: usize = 1_000_000;
 
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
-        Self { brush, operator, color, samples, found: Arc::default() }
+        Self { brush, operator, color, samples, selection: None, found: Arc::default() }
+    }
+    /// The same stroke within a selection, or within none.
+    pub fn within(self, selection: Option<StrokeSelection>) -> Self {
+        Self { selection, ..self }
     }
     pub fn brush(&self) -> &Brush {
         &self.brush
@@ -101,6 +108,10 @@ impl Stroke {
     }
     pub fn samples(&self) -> &[Sample] {
         &self.samples
+    }
+    /// The selection that it was painted in.
+    pub fn selection(&self) -> Option<&StrokeSelection> {
+        self.selection.as_ref()
     }
     /// The pixels that the stroke can touch on a canvas, in whole tiles; never fewer.
     pub fn bounds(&self, scene: &Scene) -> Rect {
@@ -161,12 +172,23 @@ impl Stroke {
         pixels: &mut PlanarTile,
         scratch: &mut DabScratch,
     ) {
+        let selected = match &self.selection {
+            None => None,
+            // Where nothing is selected nothing is painted.
+            Some(selection) => match selection.tile(at) {
+                None => return,
+                tile => tile,
+            },
+        };
         let mut stroke_tile = stroke_dabs.stroke_tile();
         let grain = stroke_dabs.grain(at);
         for dab in stroke_dabs.on_tile(at) {
             stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, grain.as_deref(), &mut stroke_tile, scratch);
         }
         stroke_tile.limit_to(&self.part(scene), at);
+        if let Some(selected) = selected {
+            stroke_tile.select(&selected);
+        }
         stroke_tile.blend_over(pixels, at, self.manner());
     }
     /// The part of the canvas that the stroke may touch.

@@ -5,7 +5,7 @@ use super::brush::Brush;
 use crate::math::srgb::Color;
 use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE_AREA;
-use crate::raster::{BlendMode, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
+use crate::raster::{BlendMode, CoverageTile, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
 use crate::surface::objects::CanvasPart;
 
 /// The accumulated paint of a stroke on a tile.
@@ -116,6 +116,23 @@ impl StrokeTile {
             }
         }
     }
+    /// Keeps of each pixel the share that is selected.
+    pub fn select(&mut self, selected: &CoverageTile) {
+        if selected.is_whole() {
+            return;
+        }
+        let shares = selected.bytes().as_chunks::<TILE>().0;
+        match self {
+            StrokeTile::OneColor(coverage) => {
+                coverage.as_chunks_mut::<TILE>().0.iter_mut().zip(shares).for_each(|(row, shares)| keep(shares, row));
+            }
+            StrokeTile::Colors(tile) => {
+                for (row, shares) in tile.rows_mut().iter_mut().zip(shares) {
+                    row.rgb.iter_mut().chain([&mut row.a]).for_each(|plane| keep(shares, plane));
+                }
+            }
+        }
+    }
     /// Lays the dried paint on the pixels of a tile.
     pub fn blend_over(&self, pixels: &mut PlanarTile, at: TileAt, manner: StrokeBlend) {
         if manner.erases {
@@ -186,6 +203,11 @@ fn mixed(p: [f32; 4], f: f32, source: [f32; 3], ceiling: f32) -> [f32; 4] {
 }
 
 crate::widest! {
+    fn keep(shares: &[u8; TILE], values: &mut [f32; TILE]) {
+        for (v, share) in values.iter_mut().zip(shares) {
+            *v *= f32::from(*share) * (1.0 / 255.0);
+        }
+    }
     fn add_covered(covered: &[f32], paint: DabPaint, coverage: &mut [f32]) {
         for (a, f) in coverage.iter_mut().zip(covered) {
             *a = raised(*a, paint.flow * f, paint.ceiling);

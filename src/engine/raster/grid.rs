@@ -1,18 +1,33 @@
-//! A sparse grid of tiles: the pixels of a paint layer, cheap to clone, shared tile by tile.
-//! Floor 1.
+//! A sparse grid of tiles, cheap to clone, shared tile by tile: the pixels of a paint layer ([`TileGrid`]), the
+//! coverage of a selection (`coverage`). Floor 1.
 
 use super::tile::{TILE, Tile, TileAt};
 use crate::math::Rect;
 use std::sync::Arc;
 
-/// Tiles on the canvas lattice; what is not held is transparent. It may reach beyond the canvas on every side.
+/// Tiles on the canvas lattice; what is not held is empty. It may reach beyond the canvas on every side.
 ///
 /// A clone shares everything; writing one tile of a shared grid copies the list of tiles, never their pixels.
-#[derive(Clone, Default)]
-pub struct TileGrid {
+pub struct Grid<T> {
     /// Columns and rows of tiles held, half open, in tile units.
     extent: TileExtent,
-    tiles: Arc<Vec<Option<Arc<Tile>>>>,
+    tiles: Arc<Vec<Option<Arc<T>>>>,
+}
+
+/// The pixels of a paint layer; what is not held is transparent.
+pub type TileGrid = Grid<Tile>;
+
+// Derived ones would ask the same of the tiles, which are shared.
+impl<T> Clone for Grid<T> {
+    fn clone(&self) -> Self {
+        Self { extent: self.extent, tiles: self.tiles.clone() }
+    }
+}
+
+impl<T> Default for Grid<T> {
+    fn default() -> Self {
+        Self { extent: TileExtent::default(), tiles: Arc::default() }
+    }
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -39,7 +54,7 @@ impl TileExtent {
     }
 }
 
-impl TileGrid {
+impl<T> Grid<T> {
     /// An empty grid ready for the tiles of a pixel rectangle, so that writing them does not grow it.
     pub fn for_rect(rect: Rect) -> Self {
         if rect.is_empty() {
@@ -56,11 +71,11 @@ impl TileGrid {
             self.grow(extent);
         }
     }
-    pub fn tile(&self, at: TileAt) -> Option<&Arc<Tile>> {
+    pub fn tile(&self, at: TileAt) -> Option<&Arc<T>> {
         self.tiles[self.extent.index(at)?].as_ref()
     }
     /// Puts a tile in place, or removes it.
-    pub fn set(&mut self, at: TileAt, tile: Option<Arc<Tile>>) {
+    pub fn set(&mut self, at: TileAt, tile: Option<Arc<T>>) {
         if self.extent.index(at).is_none() {
             if tile.is_none() {
                 return;
@@ -80,6 +95,39 @@ impl TileGrid {
         }
         *self = Self { extent, tiles: Arc::new(tiles) };
     }
+    /// The tiles that hold something, row by row.
+    pub fn iter(&self) -> impl Iterator<Item = (TileAt, &Arc<T>)> {
+        let e = self.extent;
+        self.tiles.iter().enumerate().filter_map(move |(i, tile)| {
+            let i = i as i32;
+            Some((TileAt::new(e.col0 + i % e.cols, e.row0 + i / e.cols), tile.as_ref()?))
+        })
+    }
+    /// The pixels of all held tiles, a multiple of [`TILE`] on every side.
+    pub fn bounds(&self) -> Rect {
+        self.iter().fold(Rect::EMPTY, |r, (at, _)| r.union(at.rect()))
+    }
+    /// Both grids are the same value in memory: nothing has changed between them.
+    pub fn ptr_eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.tiles, &other.tiles)
+    }
+    /// The tiles in which two grids differ, by pointer.
+    pub fn changed_tiles<'a>(&'a self, other: &'a Self) -> Vec<TileAt> {
+        if self.ptr_eq(other) {
+            return Vec::new();
+        }
+        let differs = |a: Option<&Arc<T>>, b: Option<&Arc<T>>| match (a, b) {
+            (None, None) => false,
+            (Some(a), Some(b)) => !Arc::ptr_eq(a, b),
+            _ => true,
+        };
+        TileAt::covering(self.bounds().union(other.bounds()))
+            .filter(|&at| differs(self.tile(at), other.tile(at)))
+            .collect()
+    }
+}
+
+impl Grid<Tile> {
     /// Takes in the tiles of a grid that paints no pixel that this one paints.
     pub fn join(&mut self, other: &TileGrid) {
         self.reserve(other.bounds());
@@ -99,42 +147,12 @@ impl TileGrid {
         let held = self.tiles.iter().flatten().count();
         held * TILE * TILE * 4 + self.tiles.len() * size_of::<Option<Arc<Tile>>>()
     }
-    /// The tiles that hold something, row by row.
-    pub fn iter(&self) -> impl Iterator<Item = (TileAt, &Arc<Tile>)> {
-        let e = self.extent;
-        self.tiles.iter().enumerate().filter_map(move |(i, tile)| {
-            let i = i as i32;
-            Some((TileAt::new(e.col0 + i % e.cols, e.row0 + i / e.cols), tile.as_ref()?))
-        })
-    }
-    /// The pixels of all held tiles, a multiple of [`TILE`] on every side.
-    pub fn bounds(&self) -> Rect {
-        self.iter().fold(Rect::EMPTY, |r, (at, _)| r.union(at.rect()))
-    }
     /// A premultiplied pixel; transparent where there is no tile.
     pub fn pixel(&self, x: i32, y: i32) -> [u8; 4] {
         let at = TileAt::of_pixel(x, y);
         let Some(tile) = self.tile(at) else { return [0; 4] };
         let i = ((y - at.rect().y0) as usize * TILE + (x - at.rect().x0) as usize) * 4;
         tile.bytes()[i..i + 4].try_into().unwrap_or([0; 4])
-    }
-    /// Both grids are the same value in memory: nothing has changed between them.
-    pub fn ptr_eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.tiles, &other.tiles)
-    }
-    /// The tiles in which two grids differ, by pointer.
-    pub fn changed_tiles<'a>(&'a self, other: &'a Self) -> Vec<TileAt> {
-        if self.ptr_eq(other) {
-            return Vec::new();
-        }
-        let differs = |a: Option<&Arc<Tile>>, b: Option<&Arc<Tile>>| match (a, b) {
-            (None, None) => false,
-            (Some(a), Some(b)) => !Arc::ptr_eq(a, b),
-            _ => true,
-        };
-        TileAt::covering(self.bounds().union(other.bounds()))
-            .filter(|&at| differs(self.tile(at), other.tile(at)))
-            .collect()
     }
     /// The same pixels elsewhere: moved by whole pixels, byte for byte.
     pub fn translated(&self, dx: i32, dy: i32) -> TileGrid {

@@ -4,7 +4,9 @@
 pub mod asset;
 pub mod blend;
 pub mod blur;
+pub mod coverage;
 pub mod distance;
+pub mod flood;
 pub mod grid;
 pub mod line_integral;
 pub mod picture;
@@ -17,6 +19,7 @@ pub mod warp;
 
 pub use asset::Asset;
 pub use blend::{BlendMode, Mix, TileCoverage, TilePaint};
+pub use coverage::{Combine, CoverageGrid, CoverageTile};
 pub use grid::TileGrid;
 pub use picture::Picture;
 pub use planar::PlanarTile;

@@ -1,6 +1,7 @@
 //! The surface: normals, depth and coverage in the one convention of the program, whole and finite everywhere.
 //! Floor 2. Not here: files and their conventions (`io::maps`).
 
+use super::region::SurfaceRegion;
 use super::{
     cache::RecentCache,
     curvature::{Curvature, Kappa},
@@ -9,7 +10,7 @@ use super::{
     pyramid::MapPyramids,
 };
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
-use crate::raster::Plane;
+use crate::raster::{CoverageGrid, Plane};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
@@ -54,6 +55,7 @@ pub struct Surface {
     base: Option<Arc<Surface>>,
     /// By radius.
     occlusions: RecentCache<u32, Plane<f32>>,
+    regions: RecentCache<SurfaceRegion, CoverageGrid>,
     bounds: MapPyramids,
     objects: OnceLock<Objects>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
@@ -119,6 +121,7 @@ impl Surface {
             kappas: RecentCache::default(),
             base: None,
             occlusions: RecentCache::default(),
+            regions: RecentCache::default(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
             parts: None,
@@ -156,6 +159,7 @@ impl Surface {
             kappas: RecentCache::default(),
             base: Some(self.base.as_ref().unwrap_or(self).clone()),
             occlusions: RecentCache::default(),
+            regions: RecentCache::default(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
             parts: self.parts.clone(),
@@ -223,6 +227,9 @@ impl Surface {
     /// Computed by the calling thread alone: see `pyramid`.
     pub(super) fn objects_cell(&self) -> &OnceLock<Objects> {
         &self.objects
+    }
+    pub(super) fn regions(&self) -> &RecentCache<SurfaceRegion, CoverageGrid> {
+        &self.regions
     }
     pub(super) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
         &self.occlusions

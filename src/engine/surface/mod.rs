@@ -22,6 +22,7 @@ mod occlusion;
 pub mod operator;
 mod pyramid;
 pub mod reach;
+pub mod region;
 pub mod scene;
 pub mod support;
 

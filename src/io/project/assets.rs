@@ -7,10 +7,13 @@ use crate::document::cache::EncodedPixels;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };
-use crate::document::{Content, Document, Layer, LayerId, MaskKind};
+use crate::document::{Content, Document, Layer, LayerId, MaskKind, SelectionList};
 use crate::exr;
+use crate::math::Rect;
+use crate::paint::Selection;
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane};
+use crate::recipe;
 use crate::surface::Surface;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -34,6 +37,7 @@ pub struct AssetList {
 pub struct MadeFiles {
     pictures: BTreeMap<usize, (Picture, Asset)>,
     masks: BTreeMap<usize, (Arc<Plane<u8>>, Asset)>,
+    selections: BTreeMap<usize, (Arc<Selection>, Asset)>,
     /// The maps and the mask of a surface.
     surfaces: BTreeMap<usize, (Arc<Surface>, Asset, Asset)>,
 }
@@ -60,6 +64,11 @@ impl AssetList {
     pub fn rename(&mut self, file: &Path, document: &Document, painted: &StoredPixels) -> Result<Document> {
         let source = document.surface.as_ref().map(|surface| self.surface(file, surface, document)).transpose()?;
         let layers = self.layers(file, &document.layers, painted)?;
+        for (place, selection) in SelectionList::of(document).all().enumerate().filter(|(_, s)| s.made.is_none()) {
+            let (name, mask) = (recipe::selection_file(place), self.made.selection(file, selection)?);
+            self.taken.insert(name.to_lowercase());
+            self.files.push((name, mask));
+        }
         Ok(Document { surface_source: source.map(Arc::new), layers, ..document.clone() })
     }
     fn layers(&mut self, file: &Path, layers: &[Arc<Layer>], painted: &StoredPixels) -> Result<Vec<Arc<Layer>>> {
@@ -202,6 +211,18 @@ impl MadeFiles {
         }
         let asset = pixels::encode_coverage(file, coverage)?;
         self.masks.insert(key, (coverage.clone(), asset.clone()));
+        Ok(asset)
+    }
+    /// The rectangle that a selection covers.
+    fn selection(&mut self, file: &Path, selection: &Arc<Selection>) -> Result<Asset> {
+        let key = Arc::as_ptr(selection) as usize;
+        if let Some((_, known)) = self.selections.get(&key) {
+            return Ok(known.clone());
+        }
+        let covered = selection.coverage.covered();
+        let rect = if covered.is_empty() { Rect::new(0, 0, 1, 1) } else { covered };
+        let asset = pixels::encode_coverage(file, &selection.coverage.to_plane(rect))?;
+        self.selections.insert(key, (selection.clone(), asset.clone()));
         Ok(asset)
     }
     /// Normals and depth of 32 bits, and the coverage.

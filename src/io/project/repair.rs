@@ -52,7 +52,9 @@ pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, mani
             left_out = true;
         }
     }
-    let canvas = document["canvas"].clone();
+    left_out |= leave_out_selections(reading, document);
+    let canvas =
+        json!({ "canvas": document["canvas"], "selections": document.get("selections").unwrap_or(&json!([])) });
     let mut paths = Vec::new();
     list_layers(&document["layers"], "", &mut paths);
     for path in paths {
@@ -78,6 +80,21 @@ pub fn leave_out_damaged(reading: &mut ProjectReader, document: &mut Value, mani
     left_out
 }
 
+/// Takes the masks of selections that cannot be read away; whether there was any.
+fn leave_out_selections(reading: &mut ProjectReader, document: &mut Value) -> bool {
+    let (mut left_out, canvas) = (false, document["canvas"].clone());
+    for selection in document.get_mut("selections").and_then(Value::as_array_mut).into_iter().flatten() {
+        let alone = json!({ "format": "rilievo", "canvas": canvas, "selections": [selection] });
+        let Err(error) = reading.read_value(&alone) else { continue };
+        reading.lost(format!("a selection is lost: {error}"));
+        if let Value::Object(fields) = selection {
+            fields.shift_remove("mask");
+        }
+        left_out = true;
+    }
+    left_out
+}
+
 /// Why a single layer cannot be read. A group is tested without its layers.
 fn trouble(reading: &ProjectReader, canvas: &Value, layer: &Value) -> Option<crate::Error> {
     let mut layer = layer.clone();
@@ -86,7 +103,9 @@ fn trouble(reading: &ProjectReader, canvas: &Value, layer: &Value) -> Option<cra
     {
         fields.shift_remove("layers");
     }
-    reading.read_value(&json!({ "format": "rilievo", "canvas": canvas, "layers": [layer] })).err()
+    let (canvas, selections) = (&canvas["canvas"], &canvas["selections"]);
+    let alone = json!({ "format": "rilievo", "canvas": canvas, "selections": selections, "layers": [layer] });
+    reading.read_value(&alone).err()
 }
 
 /// Replaces a layer by its picture, or by an empty one; its blending stays.

@@ -4,7 +4,7 @@
 use super::LayerReader;
 use super::names::{BLEND_SPACES, LOCKS};
 use super::{images, masks, normals, shading, strokes, transforms};
-use crate::document::{Content, Group, Layer, LayerLock, Live, PixelLayer};
+use crate::document::{Content, Group, Layer, LayerLock, Live, PixelLayer, SelectionList};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
@@ -76,12 +76,12 @@ impl LayerReader<'_> {
 }
 
 /// Layers as JSON; `canvas` determines the default placements.
-pub fn write(layers: &[Arc<Layer>], canvas: Size) -> Value {
+pub fn write(layers: &[Arc<Layer>], canvas: Size, list: &SelectionList) -> Value {
     let one = |layer: &Arc<Layer>| {
         let mut out = bare(layer, canvas);
         match &layer.content {
-            Content::Group(group) => out.set("layers", write(&group.layers, canvas)),
-            Content::Strokes(live) => out.set("strokes", strokes::written(live.params()).collect()),
+            Content::Group(group) => out.set("layers", write(&group.layers, canvas, list)),
+            Content::Strokes(live) => out.set("strokes", strokes::written(live.params(), list).collect()),
             _ => {}
         }
         out.done()
@@ -90,16 +90,16 @@ pub fn write(layers: &[Arc<Layer>], canvas: Size) -> Value {
 }
 
 /// The same as text, a stroke at a time.
-pub fn print(layers: &[Arc<Layer>], canvas: Size, out: &mut Printer) {
+pub fn print(layers: &[Arc<Layer>], canvas: Size, list: &SelectionList, out: &mut Printer) {
     out.open_list(Some("layers"));
     for layer in layers {
         out.open_object(None);
         bare(layer, canvas).fields().iter().for_each(|(key, value)| out.value(Some(key), value));
         match &layer.content {
-            Content::Group(group) => print(&group.layers, canvas, out),
+            Content::Group(group) => print(&group.layers, canvas, list, out),
             Content::Strokes(live) => {
                 out.open_list(Some("strokes"));
-                strokes::written(live.params()).for_each(|stroke| out.value(None, &stroke));
+                strokes::written(live.params(), list).for_each(|stroke| out.value(None, &stroke));
                 out.close_list();
             }
             _ => {}

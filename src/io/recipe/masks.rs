@@ -2,11 +2,13 @@
 //! Floor 5.
 
 use super::LayerReader;
+use super::selections::{region, write_region};
 use crate::Result;
 use crate::document::{LayerMask, MaskKind};
 use crate::json::{Fields, JsonNode, JsonObject};
 use crate::math::Range;
 use crate::shading::FeatureScale;
+use crate::surface::region::RegionKind;
 use serde_json::Value;
 
 #[derive(Clone, Copy)]
@@ -14,12 +16,17 @@ enum DerivedMaskKind {
     Fresnel,
     Curvature,
     Depth,
+    Region(RegionKind),
 }
 
-const DERIVED: [(DerivedMaskKind, &str); 3] = [
+const DERIVED: [(DerivedMaskKind, &str); 7] = [
     (DerivedMaskKind::Fresnel, "fresnel"),
     (DerivedMaskKind::Curvature, "curvature"),
     (DerivedMaskKind::Depth, "depth"),
+    (DerivedMaskKind::Region(RegionKind::Direction), "direction"),
+    (DerivedMaskKind::Region(RegionKind::Object), "object"),
+    (DerivedMaskKind::Region(RegionKind::Shine), "shine"),
+    (DerivedMaskKind::Region(RegionKind::Flow), "flow"),
 ];
 
 impl LayerReader<'_> {
@@ -27,7 +34,14 @@ impl LayerReader<'_> {
         let mut fields = node.fields()?;
         let (invert, disabled) = (fields.boolean("invert", false)?, fields.boolean("disabled", false)?);
         let kind = match fields.get("kind") {
-            Some(kind) => derived(kind.one_of(&DERIVED)?, &mut fields)?,
+            // What has a point is a region about it.
+            Some(kind) => match (kind.one_of(&DERIVED)?, fields.get("at").is_some()) {
+                (DerivedMaskKind::Curvature, true) => {
+                    derived(DerivedMaskKind::Region(RegionKind::Curvature), &mut fields)?
+                }
+                (DerivedMaskKind::Depth, true) => derived(DerivedMaskKind::Region(RegionKind::Depth), &mut fields)?,
+                (kind, _) => derived(kind, &mut fields)?,
+            },
             None => {
                 let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, self.size)?;
                 MaskKind::File { file, coverage }
@@ -52,6 +66,7 @@ fn derived(kind: DerivedMaskKind, fields: &mut Fields) -> Result<MaskKind> {
             let (from, to) = ramp(fields, LayerMask::KAPPA)?;
             MaskKind::Curvature { scale, blur, from, to }
         }
+        DerivedMaskKind::Region(kind) => MaskKind::Region(region(kind, fields)?),
         DerivedMaskKind::Depth => {
             let (from, to) = ramp(fields, LayerMask::DEPTH)?;
             MaskKind::Depth { from, to }
@@ -69,6 +84,7 @@ pub fn write(mask: &LayerMask) -> Value {
     let mut out = JsonObject::default();
     match &mask.kind {
         MaskKind::File { file, .. } => out.set("file", file.as_str().into()),
+        MaskKind::Region(region) => write_region(&mut out, region),
         MaskKind::Fresnel { f0, power } => {
             out.set("kind", "fresnel".into());
             out.number("f0", *f0, 0.04);

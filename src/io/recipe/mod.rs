@@ -15,6 +15,7 @@
 //! | `shading` | shading layers, radiance scaling |
 //! | `masks` | layer masks |
 //! | `transforms` | where the frames of layers lie |
+//! | `selections` | selections |
 //! | `pictures` | the files that layers name, each decoded once |
 
 mod brush;
@@ -27,6 +28,7 @@ mod normals;
 mod pictures;
 mod presets;
 mod samples;
+mod selections;
 mod shading;
 mod strokes;
 pub mod surface;
@@ -38,19 +40,22 @@ pub use presets::{
     written_brush,
 };
 pub use samples::parse;
+pub use selections::{file as selection_file, with_selection, write_of_stroke};
 pub use strokes::write_stroke;
 
 use super::json::{Fields, JsonNode, JsonObject, Printer};
 use super::{Budget, Files, RecipeFolder, files, maps};
-use crate::document::{Document, SurfaceSource};
+use crate::document::{Document, SelectionList, SurfaceSource};
 use crate::math::Size;
+use crate::paint::{Scene, Selection};
 use crate::raster::Asset;
 use crate::surface::{Surface, SurfaceError};
 use crate::{Error, Result};
 use pictures::PictureCache;
 pub use pictures::TileGrids;
 use serde_json::{Value, json};
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::collections::{BTreeMap, HashMap};
+use std::{path::Path, sync::Arc};
 
 /// The newest schema this program reads. What needs nothing of it is written as the first.
 pub const VERSION: i64 = 2;
@@ -111,14 +116,21 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
     let own = root.get("surface").map(|node| Ok::<_, Error>((surface::read(&node)?, node))).transpose()?;
     let layers = root.get("layers");
+    let (selections, active) = (root.get("selections"), root.get("active_selection"));
     root.finish()?;
 
     let CanvasAndSurface { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *source.budget;
-    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures: PictureCache::knowing(tiles) };
+    let pictures = PictureCache::knowing(tiles);
+    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections: HashMap::new() };
+    let scene = Scene { size, surface: surface.clone() };
+    let selections = selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
+    let active_selection = active.map(|node| reader.selection_of(&node)).transpose()?.filter(|found| !found.is_empty());
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
-    Ok((Document { size, surface, surface_source, surface_files: Arc::new(files), layers }, notes))
+    let surface_files = Arc::new(files);
+    let document = Document { size, surface, surface_source, surface_files, layers, selections, active_selection };
+    Ok((document, notes))
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {
@@ -145,7 +157,9 @@ pub fn put_onto(document: &Document, file: &Path, onto: OtherSurface, budget: &B
     let maps::ImportedSurface { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
     let surface = fitted(surface, document.size).map_err(|e| Error::unsupported(file, e))?;
     let surface_source = Some(Arc::new(onto.surface.clone()));
-    Ok(Document { surface: Some(surface), surface_source, surface_files: Arc::new(files), ..document.clone() })
+    let surface_files = Arc::new(files);
+    let next = Document { surface: Some(surface), surface_source, surface_files, ..document.clone() };
+    Ok(next.with_selections_found())
 }
 
 struct CanvasAndSurface {
@@ -203,13 +217,20 @@ struct LayerReader<'a> {
     /// And readings of the pen.
     samples_left: usize,
     pictures: PictureCache,
+    /// By their ids.
+    selections: HashMap<String, Arc<Selection>>,
 }
 
 /// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project puts its pixels
 /// beside it under the same names.
 pub fn write(document: &Document) -> Value {
-    let mut out = head(document);
-    out.set("layers", layers::write(&document.layers, document.size));
+    write_naming(document, &SelectionList::of(document))
+}
+
+/// The same of a document whose selections stand in a list, of which it may lack strokes.
+pub fn write_naming(document: &Document, list: &SelectionList) -> Value {
+    let mut out = head(document, list);
+    out.set("layers", layers::write(&document.layers, document.size, list));
     out.done()
 }
 
@@ -217,8 +238,9 @@ pub fn write(document: &Document) -> Value {
 pub fn print(document: &Document) -> String {
     let mut out = Printer::default();
     out.open_object(None);
-    head(document).fields().iter().for_each(|(key, value)| out.value(Some(key), value));
-    layers::print(&document.layers, document.size, &mut out);
+    let list = SelectionList::of(document);
+    head(document, &list).fields().iter().for_each(|(key, value)| out.value(Some(key), value));
+    layers::print(&document.layers, document.size, &list, &mut out);
     out.close_object();
     out.done()
 }
@@ -229,11 +251,13 @@ fn needs_second_version(document: &Document) -> bool {
 }
 
 /// All but the layers.
-fn head(document: &Document) -> JsonObject {
+fn head(document: &Document, list: &SelectionList) -> JsonObject {
     let mut out = JsonObject::default();
     out.set("format", "rilievo".into());
-    out.set("version", if needs_second_version(document) { VERSION } else { 1 }.into());
+    let is_second = needs_second_version(document) || selections::is_needed(document, list);
+    out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     out.said("surface", document.surface_source.as_deref(), surface::write);
+    selections::write(&mut out, document, list);
     out
 }

@@ -9,7 +9,7 @@ use crate::math::{Size, Vec3};
 use crate::paint::{Adjust, PictureSource};
 use crate::picture::Painted;
 use crate::raster::picture::Texels;
-use crate::raster::{Picture, Plane, TileGrid, blur};
+use crate::raster::{CoverageGrid, Picture, Plane, TileGrid, blur};
 use crate::surface::DetailMap;
 use crate::{Error, Result};
 use crate::{files, picture};
@@ -121,6 +121,14 @@ impl PictureCache {
         }
         let tiles = self.tiles.get(&key).cloned().unwrap_or_default();
         Ok((key.0, tiles))
+    }
+    /// The mask of a selection that a field names, its corner at a canvas pixel.
+    pub fn selection(&mut self, source: RecipeSource, name: &JsonNode, x: i32, y: i32) -> Result<CoverageGrid> {
+        let bytes = bytes(source, name)?;
+        let plane = picture::decode_coverage(&source.files.path(name.text()?), &bytes, source.budget);
+        let plane = plane.map_err(|e| name.led_to(e))?;
+        self.spend(source, plane.size(), plane.size().area())?;
+        Ok(CoverageGrid::from_plane(&plane, x, y))
     }
     /// The mask that a field names; it has the canvas's size.
     pub fn coverage(

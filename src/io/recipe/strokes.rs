@@ -5,9 +5,10 @@
 use super::LayerReader;
 use super::brush::{settings, write_brush};
 use super::images::{operator, write_operator};
+use super::selections::{with_selection, write_of_stroke};
 use super::{presets, samples, tips};
 use crate::Result;
-use crate::document::StrokeList;
+use crate::document::{SelectionList, StrokeList};
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, Stroke};
@@ -42,8 +43,9 @@ impl LayerReader<'_> {
             Some(node) => samples::read(&node, most, &mut self.samples_left)?,
             None => Vec::new(),
         };
+        let selection = self.stroke_selection(&mut fields)?;
         fields.finish()?;
-        Ok(Stroke::new(brush, operator, color, samples))
+        Ok(Stroke::new(brush, operator, color, samples).within(selection))
     }
     /// A preset, an inline brush, or a preset or the brush of the stroke before with some of its fields changed.
     fn brush(&mut self, node: &JsonNode, before: Option<Brush>) -> Result<(Brush, Operator)> {
@@ -65,18 +67,19 @@ impl LayerReader<'_> {
 }
 
 /// The strokes of a layer as they stand in its `strokes`, one after the other.
-pub fn written(list: &StrokeList) -> impl Iterator<Item = Value> {
+pub fn written<'a>(list: &'a StrokeList, selections: &'a SelectionList) -> impl Iterator<Item = Value> + 'a {
     let mut before: Option<JsonObject> = None;
     list.strokes.iter().map(move |stroke| {
         let brush = write_brush(stroke.brush());
         let told = before.as_ref().and_then(|before| as_before(&brush, before));
         let value = write(stroke, told.as_ref().unwrap_or(&brush));
+        let value = with_selection(value, &write_of_stroke(stroke, selections));
         before = Some(brush);
         value
     })
 }
 
-/// One stroke by itself.
+/// One stroke by itself, without its selection.
 pub fn write_stroke(stroke: &Stroke) -> Value {
     write(stroke, &write_brush(stroke.brush()))
 }
@@ -133,7 +136,8 @@ mod tests {
             Arc::new(Stroke::new(brush.clone(), Operator::None, Color::BLACK, samples))
         };
         let list = StrokeList { strokes: brushes.iter().map(stroke).collect() };
-        let told: Vec<Value> = written(&list).map(|stroke| stroke["brush"].clone()).collect();
+        let none = SelectionList::of(&crate::document::Document::empty(crate::math::Size::new(4, 4)));
+        let told: Vec<Value> = written(&list, &none).map(|stroke| stroke["brush"].clone()).collect();
         assert_eq!(
             told[1..3],
             [
@@ -146,7 +150,7 @@ mod tests {
         assert_eq!(told[6], told[0]);
         let text = serde_json::json!({
             "canvas": { "width": 4, "height": 4 },
-            "layers": [{ "kind": "strokes", "strokes": written(&list).collect::<Value>() }],
+            "layers": [{ "kind": "strokes", "strokes": written(&list, &none).collect::<Value>() }],
         });
         let read = crate::project::sample::read(&text, &crate::UserFiles::default());
         for (stroke, brush) in read.strokes(read.layers[0].id).iter().zip(&brushes) {

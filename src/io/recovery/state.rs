@@ -2,7 +2,7 @@
 //! that of recipes; tiles, strokes and files are replaced by keys of blobs.
 
 use super::log::{self, RecordKind};
-use crate::document::{Content, Document, Layer, Live, PixelLayer, StrokeList};
+use crate::document::{Content, Document, Layer, Live, PixelLayer, SelectionList, StrokeList};
 use crate::math::Size;
 use crate::paint::Stroke;
 use crate::project::assets::{AssetList, MadeFiles, StoredPixels};
@@ -47,8 +47,9 @@ pub fn write(
     let mut assets = AssetList::again(std::mem::take(&mut known.made));
     let renamed = assets.rename(file, document, &StoredPixels { pixels: &pixels, shared: &shared })?;
     let bare = Document { layers: renamed.layers.iter().map(without_large_parts).collect(), ..renamed.clone() };
-    let mut writer = StateWriter { file, known, used: HashMap::new(), out, given_up };
-    let mut value = recipe::write(&bare);
+    let list = SelectionList::of(document);
+    let mut writer = StateWriter { file, list: &list, known, used: HashMap::new(), out, given_up };
+    let mut value = recipe::write_naming(&bare, &list);
     writer.layers(&renamed.layers, &mut value)?;
     let mut files = Map::new();
     for (name, asset) in assets.files() {
@@ -80,6 +81,7 @@ fn without_large_parts(layer: &Arc<Layer>) -> Arc<Layer> {
 
 struct StateWriter<'a> {
     file: &'a Path,
+    list: &'a SelectionList,
     known: &'a mut LoggedParts,
     used: HashMap<usize, (u64, LoggedPart)>,
     out: &'a mut Vec<u8>,
@@ -115,7 +117,10 @@ impl StateWriter<'_> {
     fn stroke(&mut self, stroke: &Arc<Stroke>) -> Result<Value> {
         let held = LoggedPart::Stroke { _stroke: stroke.clone() };
         let bytes = || Ok(recipe::write_stroke(stroke).to_string().into_bytes());
-        Ok(self.key(Arc::as_ptr(stroke) as usize, held, bytes)?.into())
+        let key = self.key(Arc::as_ptr(stroke) as usize, held, bytes)?;
+        // The ids of selections are those of this version of the document; the blob stays.
+        let selection = recipe::write_of_stroke(stroke, self.list);
+        Ok(if selection.is_empty() { key.into() } else { recipe::with_selection(json!({ "stroke": key }), &selection) })
     }
     /// The key of a part in memory; its bytes are written if the log does not have them yet.
     fn key(&mut self, address: usize, held: LoggedPart, bytes: impl FnOnce() -> Result<Vec<u8>>) -> Result<u64> {
@@ -210,7 +215,12 @@ impl<'a> LastState<'a> {
             }
             if let Some(keys) = layer.get_mut("strokes").and_then(Value::as_array_mut) {
                 for key in keys {
-                    *key = recipe::parse(file, self.blob(file, key)?, budget)?;
+                    let mut told = key.take();
+                    let blob = told.as_object_mut().and_then(|told| told.shift_remove("stroke"));
+                    *key = recipe::parse(file, self.blob(file, blob.as_ref().unwrap_or(&told))?, budget)?;
+                    if let (Value::Object(stroke), Value::Object(told)) = (&mut *key, told) {
+                        stroke.extend(told);
+                    }
                 }
             }
             let tiles = layer.as_object_mut().and_then(|layer| layer.shift_remove("tiles"));

@@ -67,6 +67,30 @@ fn strokes_of_an_hour_come_back_and_take_little() {
     assert_eq!(document.difference(&read(&log).1.unwrap()), None);
 }
 #[test]
+fn selections_come_back_with_the_strokes_in_them_and_selecting_writes_no_stroke_again() {
+    use crate::document::{Live, StrokeList};
+    use crate::paint::{Selection, StrokeSelection};
+    use crate::raster::CoverageGrid;
+    let fs = MemoryFs::with(&[("/r/other", b"")]);
+    let mut journal = journal(&fs);
+    let square = |x0| Selection::new(CoverageGrid::filled(crate::math::Rect::new(x0, 3, 40, 30)));
+    let empty = Document::empty(Size::new(48, 40)).with_selection(Some(square(5)));
+    let own = empty.stroke_selection().map(|own| own.moved(crate::math::vec2(1.5, 0.0)));
+    let other = StrokeSelection::new(Arc::new(square(20)));
+    let strokes = vec![Arc::new(drawn(9).selecting(own)), Arc::new(drawn(50_000).selecting(Some(other))), drawn(7)];
+    let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
+    let document = Document { layers: vec![Arc::new(layer)], ..empty };
+    journal.record(&document).unwrap();
+    let whole = fs.file(LOG).unwrap().len();
+    assert_eq!(document.difference(&read(&fs.file(LOG).unwrap()).1.unwrap()), None);
+    // The places of the others in the list change; their blobs do not.
+    let next = document.with_kept_selection("a").unwrap().with_selection(Some(square(9)));
+    journal.record(&next).unwrap();
+    let log = fs.file(LOG).unwrap();
+    assert!((log.len() - whole) * 10 < whole, "{} of {whole}", log.len() - whole);
+    assert_eq!(next.difference(&read(&log).1.unwrap()), None);
+}
+#[test]
 fn a_log_of_an_older_version_with_a_number_a_value_opens() {
     let fs = MemoryFs::with(&[("/r/other", b"")]);
     let mut journal = journal(&fs);

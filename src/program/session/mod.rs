@@ -14,8 +14,9 @@ pub mod swatch;
 pub mod view;
 
 pub use actions::Action;
+pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
-pub use open_document::{CloneSource, Edit, OpenDocument, is_same};
+pub use open_document::{CloneSource, Edit, OpenDocument, is_same, looks_same};
 pub use path::LayerPath;
 pub use property::Property;
 pub use view::CanvasView;
@@ -29,6 +30,7 @@ use crate::io::{Overwrite, Terms};
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
+use crate::tools::select::SelectSettings;
 use crate::tools::{Gesture, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -58,6 +60,14 @@ pub struct Session {
     pub symmetry: Symmetry,
     /// The settings of the fill tool.
     pub fill: Fill,
+    /// The settings of the selection tools.
+    pub select: SelectSettings,
+    /// The corners of the lasso that is being set.
+    pub lasso: Vec<Vec2>,
+    /// The outline of the selection is not drawn.
+    pub hides_selection: bool,
+    /// What was copied last.
+    pub copied: Option<Copied>,
     /// Whether a mouse, which has no pressure, presses less the faster it moves.
     pub presses_by_speed: bool,
     /// A view of the surface shown over the picture, by its name.
@@ -75,6 +85,8 @@ pub struct Session {
     pub replaces_unasked: bool,
     /// Sentences for the user, not shown yet.
     pub notes: Vec<String>,
+    /// The same of little weight, which go by themselves.
+    pub said: Vec<String>,
     untitled: usize,
 }
 
@@ -96,6 +108,10 @@ impl Default for Session {
             operator: Operator::None,
             symmetry: Symmetry::None,
             fill: Fill::default(),
+            select: SelectSettings::default(),
+            lasso: Vec::new(),
+            hides_selection: false,
+            copied: None,
             presses_by_speed: false,
             overlay: None,
             overlay_opacity: 0.85,
@@ -106,6 +122,7 @@ impl Default for Session {
             brush_files: Vec::new(),
             replaces_unasked: false,
             notes: Vec::new(),
+            said: Vec::new(),
             untitled: 0,
         }
     }
@@ -202,6 +219,10 @@ impl Session {
         self.brush = preset.brush.clone();
         self.preset = preset.key.clone();
         self.tool = ToolKind::Brush;
+    }
+    /// Tells the user something of little weight.
+    pub fn say(&mut self, sentence: &str) {
+        self.said.push(sentence.into());
     }
     /// Drops the current gesture and its preview.
     pub fn drop_gesture(&mut self) {

@@ -6,6 +6,7 @@ use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind};
 use crate::io::replace::FileStamp;
 use crate::math::Vec2;
+use crate::paint::Selection;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -46,6 +47,10 @@ pub struct OpenDocument {
     pub on_mask: bool,
     /// The one layer that is shown, while it is alone.
     pub solo: Option<LayerId>,
+    /// The brush and the eraser change the selection.
+    pub quick_mask: bool,
+    /// The selection that was let go of last.
+    pub last_selection: Option<Arc<Selection>>,
     /// Where the last stroke ended, canvas px.
     pub last_end: Option<Vec2>,
     /// Where clone brushes copy from.
@@ -89,6 +94,8 @@ impl OpenDocument {
             name: name.into(),
             view: None,
             on_mask: false,
+            quick_mask: false,
+            last_selection: None,
             solo: None,
             last_end: None,
             clone_source: None,
@@ -108,6 +115,9 @@ impl OpenDocument {
     /// The document as drawn: a solo layer hides the others.
     pub fn drawn(&self) -> Document {
         let shown = self.shown();
+        if self.quick_mask {
+            return under_red(shown);
+        }
         self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
     }
     /// The file's name, or the one given.
@@ -143,7 +153,13 @@ impl OpenDocument {
         let mut is_kept = true;
         if !is_same(self.document(), &document) {
             match document.fits(Some(self.document())) {
-                Ok(()) => self.history.commit(label, document),
+                Ok(()) => {
+                    if document.active_selection.is_none() {
+                        let let_go = self.document().active_selection.clone();
+                        self.last_selection = let_go.or(self.last_selection.take());
+                    }
+                    self.history.commit(label, document);
+                }
                 Err(why) => {
                     is_kept = false;
                     self.refused = Some(format!("{why} Nothing was changed."));
@@ -220,9 +236,38 @@ impl OpenDocument {
 
 /// Whether both are the same value: nothing was edited between them.
 pub fn is_same(a: &Document, b: &Document) -> bool {
+    let same_active = match (&a.active_selection, &b.active_selection) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        _ => false,
+    };
+    let same_kept = a.selections.len() == b.selections.len()
+        && a.selections
+            .iter()
+            .zip(&b.selections)
+            .all(|(a, b)| a.name == b.name && Arc::ptr_eq(&a.selection, &b.selection));
+    same_active && same_kept && looks_same(a, b)
+}
+
+/// Whether both show the same picture, whatever is selected.
+pub fn looks_same(a: &Document, b: &Document) -> bool {
     let same_layers =
         a.layers.len() == b.layers.len() && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));
     same_layers && a.scene().is_same(&b.scene())
+}
+
+/// The document with what is not selected under red.
+fn under_red(document: &Document) -> Document {
+    use crate::document::{Content, Layer, LayerMask};
+    let Some(selected) = document.selected() else { return document.clone() };
+    let coverage = Arc::new(selected.to_plane(document.size.rect()));
+    let kind = MaskKind::File { file: String::new(), coverage };
+    let mask = LayerMask { invert: true, ..LayerMask::new(kind) };
+    let red = Content::Fill(crate::math::srgb::Color { r: 230, g: 20, b: 20, a: 255 });
+    let sheet = Layer { mask: Some(mask), opacity: 0.5, clip_to_surface: false, ..Layer::new("Quick mask", red) };
+    let mut layers = document.layers.clone();
+    layers.push(Arc::new(sheet));
+    Document { layers, ..document.clone() }
 }
 
 /// The document with one layer shown alone; `None` if it has no such layer.

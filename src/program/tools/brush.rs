@@ -63,7 +63,10 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     }
     let color = if is_eraser { Color { a: 255, ..context.color } } else { context.color };
     let images = context.symmetry.images(document.size);
-    let like = |image: &SymmetryImage| Stroke::new(image.brush(&brush), context.operator, color, Vec::new());
+    let like = |image: &SymmetryImage| {
+        Stroke::new(image.brush(&brush), context.operator, color, Vec::new())
+            .within(context.document.stroke_selection())
+    };
     let strokes: Vec<Stroke> = images.iter().map(like).collect();
     let work = retouch::begun(context, &images, pen, layer, &strokes, &scene);
     // With Shift a straight line from where the last stroke ended, with the pressure of this sample.

@@ -8,7 +8,9 @@ use crate::document::{
 };
 use crate::math::srgb::Color;
 use crate::paint::fill::FilledArea;
-use crate::raster::{Mix, PlanarTile, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
+use crate::raster::{
+    CoverageGrid, CoverageTile, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TileGrid, TilePaint,
+};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -29,7 +31,7 @@ fn filled(context: &ToolContext, pen: PenSample) -> Option<Outcome> {
         context.fill.from(pen.place(), document.size, &part, |at| picture.flatten_tile(at))
     }?;
     let mix = Mix { atop: layer.lock == LayerLock::Alpha, ..Mix::default() };
-    let tiles = painted(&pixels.tiles, &filled, context.color, mix);
+    let tiles = painted(&pixels.tiles, &filled, document.selected(), context.color, mix);
     let next = PixelLayer { file: String::new(), tiles, ..pixels.clone() };
     let document = document.with_layer(id, |layer| layer.content = Content::Pixels(next))?;
     Some(Outcome::Commit { label: "Fill".into(), document, select: Some(id) })
@@ -52,20 +54,34 @@ fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
 }
 
 /// The layer's pixels with a colour over the filled area.
-fn painted(base: &TileGrid, filled: &FilledArea, color: Color, mix: Mix) -> TileGrid {
+fn painted(base: &TileGrid, filled: &FilledArea, selected: Option<&CoverageGrid>, color: Color, mix: Mix) -> TileGrid {
     let tiles: Vec<TileAt> = TileAt::covering(filled.rect).collect();
-    let made: Vec<Option<Arc<Tile>>> =
-        tiles.par_iter().map(|&at| tile(base.tile(at), at, filled, color, mix)).collect();
+    let one = |&at: &TileAt| match selected.map(|grid| grid.tile(at)) {
+        // Nothing of the tile is selected.
+        Some(None) => base.tile(at).cloned(),
+        selected => tile(base.tile(at), at, (filled, selected.flatten()), color, mix),
+    };
+    let made: Vec<Option<Arc<Tile>>> = tiles.par_iter().map(one).collect();
     let mut grid = base.clone();
     grid.reserve(filled.rect);
     tiles.iter().zip(made).for_each(|(&at, tile)| grid.set(at, tile));
     grid
 }
 
-fn tile(base: Option<&Arc<Tile>>, at: TileAt, filled: &FilledArea, color: Color, mix: Mix) -> Option<Arc<Tile>> {
+fn tile(
+    base: Option<&Arc<Tile>>,
+    at: TileAt,
+    (filled, selected): (&FilledArea, Option<&Arc<CoverageTile>>),
+    color: Color,
+    mix: Mix,
+) -> Option<Arc<Tile>> {
     let corner = at.rect();
     let covered = |x: usize, y: usize| filled.coverage(corner.x0 + x as i32, corner.y0 + y as i32);
     let coverage = TileCoverage::FULL.times(covered);
+    let coverage = match selected.filter(|selected| !selected.is_whole()) {
+        Some(selected) => coverage.times(|x, y| f32::from(selected.bytes()[y * TILE + x]) / 255.0),
+        None => coverage,
+    };
     if coverage.is_none() {
         return base.cloned();
     }

@@ -59,7 +59,8 @@ impl NewGradientGesture {
     fn with(&mut self) -> Option<Document> {
         let name = free_name(&self.document, "Gradient");
         let content = Content::Gradient(Live::new(self.gradient.clone()));
-        let layer = self.layer.get_or_insert_with(|| Layer::new(name, content.clone()));
+        let mask = self.document.selection_as_mask();
+        let layer = self.layer.get_or_insert_with(|| Layer { mask, ..Layer::new(name, content.clone()) });
         layer.content = content;
         let place = self.place.map_or(LayerSlot::top_level(usize::MAX), |p| LayerSlot { index: p.index + 1, ..p });
         self.document.with_inserted(layer.clone(), place)

@@ -6,7 +6,8 @@ use super::brush::{self, StrokePurpose};
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerMask, MaskKind, PixelLayer};
 use crate::math::srgb::{Color, luminance, quantise};
-use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
+use crate::paint::Selection;
+use crate::raster::{CoverageGrid, Plane, TILE, Tile, TileAt, TileGrid};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -17,31 +18,61 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
     let Some(LayerMask { kind: MaskKind::File { coverage, .. }, .. }) = &layer.mask else {
         return (None, Outcome::Idle);
     };
+    // The strokes bend over what the layer itself sees: the surface with the detail beneath it.
+    let surface = context.document.scene_of(layer.id).map_or(context.document.surface.clone(), |scene| scene.surface);
+    let active_selection = context.document.active_selection.clone();
+    let sees = Document { surface, active_selection, ..Document::empty(context.document.size) };
+    painted(context, (pen, purpose), MaskTarget::Layer(layer.id), coverage.clone(), sees)
+}
+
+/// The pen comes down on the selection itself: light colours select, dark ones and the eraser take away.
+pub fn press_on_selection(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> GestureStart {
+    let size = context.document.size;
+    let mask = match context.document.selected() {
+        Some(selected) => selected.to_plane(size.rect()),
+        None => Plane::filled(size, 255),
+    };
+    let sees = Document { surface: context.document.surface.clone(), ..Document::empty(size) };
+    painted(context, (pen, purpose), MaskTarget::Selection, Arc::new(mask), sees)
+}
+
+/// Begins a stroke on a sheet of a mask's greys; `sees`: the document around the sheet.
+fn painted(
+    context: &ToolContext,
+    (pen, purpose): (PenSample, StrokePurpose),
+    target: MaskTarget,
+    mask: Arc<Plane<u8>>,
+    sees: Document,
+) -> GestureStart {
     let Color { r, g, b, a } = context.color;
     let [r, g, b] = [r, g, b].map(|v| f32::from(v) / 255.0);
     let grey = quantise(luminance(r, g, b));
-    let shown = greys(coverage);
+    let shown = greys(&mask);
     let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: shown.clone() };
     let sheet = Layer::new("mask", Content::Pixels(pixels));
-    // The strokes bend over what the layer itself sees: the surface with the detail beneath it.
-    let surface = context.document.scene_of(layer.id).map_or(context.document.surface.clone(), |scene| scene.surface);
     let on_sheet = ToolContext {
         layer: Some(sheet.id),
         color: Color { r: grey, g: grey, b: grey, a },
-        document: &Document { surface, layers: vec![Arc::new(sheet)], ..Document::empty(context.document.size) },
+        document: &Document { layers: vec![Arc::new(sheet)], ..sees },
         ..*context
     };
     let (Some(stroke), first) = brush::press(&on_sheet, pen, purpose) else { return (None, Outcome::Idle) };
-    let (document, layer, mask) = (context.document.clone(), layer.id, coverage.clone());
-    let mut painting = MaskGesture { document, layer, mask, shown, stroke };
+    let mut painting = MaskGesture { document: context.document.clone(), target, mask, shown, stroke };
     let outcome = painting.took(first);
     (Some(Box::new(painting)), outcome)
+}
+
+/// What is painted on.
+#[derive(Clone, Copy)]
+enum MaskTarget {
+    Layer(LayerId),
+    Selection,
 }
 
 /// A stroke being drawn.
 struct MaskGesture {
     document: Document,
-    layer: LayerId,
+    target: MaskTarget,
     /// The mask with the stroke as far as it is drawn, and the tiles that hold the same.
     mask: Arc<Plane<u8>>,
     shown: TileGrid,
@@ -55,7 +86,13 @@ impl MaskGesture {
         match outcome {
             Outcome::Preview(sheet) => self.with(&sheet).map_or(Outcome::Idle, Outcome::Preview),
             Outcome::Commit { document: sheet, .. } => match self.with(&sheet) {
-                Some(document) => Outcome::Commit { label: "Paint on mask".into(), document, select: Some(self.layer) },
+                Some(document) => {
+                    let (label, select) = match self.target {
+                        MaskTarget::Layer(layer) => ("Paint on mask", Some(layer)),
+                        MaskTarget::Selection => ("Paint selection", None),
+                    };
+                    Outcome::Commit { label: label.into(), document, select }
+                }
                 None => Outcome::Cancel,
             },
             other => other,
@@ -69,7 +106,11 @@ impl MaskGesture {
         }
         self.shown = pixels.tiles.clone();
         let now = self.mask.clone();
-        self.document.with_layer(self.layer, |layer| {
+        let MaskTarget::Layer(layer) = self.target else {
+            let selection = Selection::new(CoverageGrid::from_plane(&now, 0, 0));
+            return Some(self.document.with_selection(Some(selection)));
+        };
+        self.document.with_layer(layer, |layer| {
             if let Some(LayerMask { kind: MaskKind::File { file, coverage }, .. }) = &mut layer.mask {
                 // Painted pixels no longer match the file.
                 file.clear();

@@ -13,6 +13,7 @@ pub mod mask;
 pub mod move_content;
 pub mod outline;
 mod retouch;
+pub mod select;
 pub mod strokes;
 pub mod symmetry;
 
@@ -20,6 +21,7 @@ use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Fill, Sample};
 use crate::surface::Operator;
+pub use select::SelectSettings;
 pub use symmetry::Symmetry;
 
 /// The tools.
@@ -34,6 +36,11 @@ pub enum ToolKind {
     Anchors,
     Move,
     Strokes,
+    SelectRectangle,
+    SelectEllipse,
+    Lasso,
+    Wand,
+    SurfaceWand,
     Eyedropper,
     Hand,
     Zoom,
@@ -54,7 +61,7 @@ pub struct ToolRow {
 }
 
 impl ToolKind {
-    pub const ALL: [ToolRow; 11] = [
+    pub const ALL: [ToolRow; 16] = [
         ToolRow {
             kind: ToolKind::Brush,
             name: "brush",
@@ -112,6 +119,41 @@ impl ToolKind {
             hint: "Select strokes of a stroke layer and drag them; Shift selects more. Properties lists them too",
         },
         ToolRow {
+            kind: ToolKind::SelectRectangle,
+            name: "select rectangle",
+            label: "Select rectangle",
+            key: 'R',
+            hint: "Drag a rectangle to select. Shift adds, Alt takes away, both intersect; a drag inside moves it",
+        },
+        ToolRow {
+            kind: ToolKind::SelectEllipse,
+            name: "select ellipse",
+            label: "Select ellipse",
+            key: 'O',
+            hint: "Drag an ellipse to select; Ctrl makes it a circle. Shift adds, Alt takes away, both intersect",
+        },
+        ToolRow {
+            kind: ToolKind::Lasso,
+            name: "lasso",
+            label: "Lasso",
+            key: 'L',
+            hint: "Drag to select freely, or click corner by corner; Enter or the first corner closes, Escape gives up",
+        },
+        ToolRow {
+            kind: ToolKind::Wand,
+            name: "wand",
+            label: "Wand",
+            key: 'W',
+            hint: "Click to select what is like a pixel; drag right or left for more or less tolerance",
+        },
+        ToolRow {
+            kind: ToolKind::SurfaceWand,
+            name: "surface wand",
+            label: "Surface wand",
+            key: 'Q',
+            hint: "Click the surface to select all that faces the same way; drag right or left for tolerance",
+        },
+        ToolRow {
             kind: ToolKind::Eyedropper,
             name: "eyedropper",
             label: "Eyedropper",
@@ -130,6 +172,11 @@ impl ToolKind {
     pub fn row(self) -> &'static ToolRow {
         const ROWS: &[ToolRow] = &ToolKind::ALL;
         ROWS.iter().find(|row| row.kind == self).unwrap_or(&ROWS[0])
+    }
+    /// It makes selections.
+    pub fn selects(self) -> bool {
+        use ToolKind::{Lasso, SelectEllipse, SelectRectangle, SurfaceWand, Wand};
+        matches!(self, SelectRectangle | SelectEllipse | Lasso | Wand | SurfaceWand)
     }
     pub fn name(self) -> &'static str {
         self.row().name
@@ -184,6 +231,10 @@ pub struct ToolContext<'a> {
     pub symmetry: Symmetry,
     /// The settings of the fill tool.
     pub fill: Fill,
+    /// The settings of the selection tools.
+    pub select: SelectSettings,
+    /// The corners of the lasso that is being set.
+    pub lasso: &'a [Vec2],
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
     /// From a pixel to what a clone brush copies onto it, px; `None` before it was set.
@@ -204,6 +255,8 @@ impl<'a> ToolContext<'a> {
             last_end: None,
             symmetry: Symmetry::None,
             fill: Fill::default(),
+            select: SelectSettings::default(),
+            lasso: &[],
             strokes: &[],
             clone_offset: None,
         }
@@ -222,6 +275,14 @@ pub enum Outcome {
         /// To be selected from now on.
         select: Option<LayerId>,
     },
+    /// A selection made with settings that the pen changed: a preview, or a finished step.
+    Tuned {
+        document: Document,
+        select: SelectSettings,
+        is_done: bool,
+    },
+    /// The corners of a lasso that goes on.
+    Lasso(Vec<Vec2>),
     /// These strokes of the selected layer are chosen from now on.
     Chosen(Vec<usize>),
     /// Clone brushes copy from here from now on.
@@ -255,6 +316,11 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Anchors => anchors::press(context, pen),
         ToolKind::Move => move_content::press(context, pen),
         ToolKind::Strokes => strokes::press(context, pen),
+        ToolKind::SelectRectangle
+        | ToolKind::SelectEllipse
+        | ToolKind::Lasso
+        | ToolKind::Wand
+        | ToolKind::SurfaceWand => select::press(kind, context, pen),
         ToolKind::Eyedropper => eyedropper::press(context, pen),
         ToolKind::Hand | ToolKind::Zoom => (None, Outcome::Idle),
     }

@@ -24,6 +24,14 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     if tool == ToolKind::Strokes {
         chosen(painter, session, &to_screen);
     }
+    if tool == ToolKind::Lasso && !session.lasso.is_empty() {
+        let line: Vec<Pos2> = session.lasso.iter().copied().chain(under).map(to_screen).collect();
+        painter.circle_filled(line[0], 4.0, Color32::from_black_alpha(160));
+        painter.circle_filled(line[0], 2.6, Color32::WHITE);
+        for stroke in [Stroke::new(2.4, Color32::from_black_alpha(130)), Stroke::new(1.1, Color32::WHITE)] {
+            painter.add(Shape::line(line.clone(), stroke));
+        }
+    }
     let (Some(at), Some(document)) = (under, session.shown()) else { return };
     match tool {
         ToolKind::Brush | ToolKind::Eraser => {

@@ -2,6 +2,7 @@
 //! graphics card, `pointer` turns events into actions, `marks` and `overlay` draw what lies over the picture. Pixels
 //! come from the render thread.
 
+mod ants;
 mod blocks;
 mod marks;
 mod overlay;
@@ -16,9 +17,11 @@ use super::render_thread::{RenderRequest, RenderThread};
 use super::theme;
 use crate::Error;
 use crate::math::{Affine2, Rect, Size, Vec2, vec2};
+use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
-use crate::session::{Action, CanvasView, Session, is_same};
+use crate::session::{Action, CanvasView, Session, looks_same};
 use crate::tools::ToolKind;
+use ants::Ants;
 use blocks::{corners, on_screen, quad};
 use eframe::egui::{
     self, Color32, ColorImage, Sense, Stroke, TextureHandle, TextureOptions, TextureWrapMode, Ui, pos2,
@@ -45,6 +48,7 @@ pub struct Canvas {
     checker: Option<TextureHandle>,
     overlay: Overlay,
     insets: Insets,
+    ants: Ants,
     /// The picture for the navigator, and whether it is outdated.
     small: Option<TextureHandle>,
     small_is_old: bool,
@@ -78,6 +82,7 @@ impl Canvas {
             checker: None,
             overlay: Overlay::default(),
             insets: Insets::default(),
+            ants: Ants::default(),
             small: None,
             small_is_old: true,
             area_pt: vec2(800.0, 600.0),
@@ -132,7 +137,9 @@ impl Canvas {
         let under = pointer.map(|p| inverse.transform_point2(vec2(p.x, p.y)));
         self.under = under.filter(|p| canvas.contains(p.x.floor() as i32, p.y.floor() as i32));
         let tool = self.hand.tool(session);
+        self.ants.draw(&painter, session, screen_from_canvas, visible_rect(&view, rect));
         marks::draw(&painter, session, screen_from_canvas, under, tool);
+        lasso_keys(ui, session, actions);
         if tool == ToolKind::Anchors {
             self.insets.draw(ui.ctx(), session, &painter);
             self.trouble = self.trouble.take().or(self.insets.trouble.take());
@@ -140,6 +147,10 @@ impl Canvas {
         if response.hovered() || self.hand.is_looking() {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
+    }
+    /// What is selected, as last drawn.
+    pub fn selected(&self) -> Option<Rect> {
+        self.ants.covered()
     }
     /// Requests the picture to show, and takes the tiles that were painted.
     fn follow(&mut self, ctx: &egui::Context, session: &Session, view: &CanvasView, area: egui::Rect) {
@@ -155,7 +166,7 @@ impl Canvas {
             (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
         }
         let is_dragged = is_dragged(session);
-        if !self.wanted.as_ref().is_some_and(|(old, dragged)| *dragged == is_dragged && is_same(old, &drawn)) {
+        if !self.wanted.as_ref().is_some_and(|(old, dragged)| *dragged == is_dragged && looks_same(old, &drawn)) {
             let (picture, document, visible) = (self.picture, drawn.clone(), visible_rect(view, area));
             if let Some(thread) = &self.render_thread {
                 thread.want(RenderRequest { picture, document, visible, is_dragged });
@@ -233,10 +244,23 @@ impl Canvas {
     }
 }
 
+/// Enter closes a lasso of clicks, Escape gives it up.
+fn lasso_keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
+    if session.lasso.is_empty() || session.is_drawing() || ui.ctx().egui_wants_keyboard_input() {
+        return;
+    }
+    if ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+        actions.push(Action::Selection(SelectionAction::CloseLasso {}));
+    } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        actions.push(Action::Selection(SelectionAction::DropLasso {}));
+    }
+}
+
 /// Whether a slider, a handle or a layer is being dragged. A brush does not count: its strokes change few tiles, and
-/// are looked at closely.
+/// are looked at closely. Nor does selecting, which changes nothing of the picture.
 fn is_dragged(session: &Session) -> bool {
-    let paints = session.is_drawing() && matches!(session.tool, ToolKind::Brush | ToolKind::Eraser);
+    let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) || session.tool.selects();
+    let paints = session.is_drawing() && paints;
     !paints && session.active().is_some_and(|tab| tab.is_previewing())
 }
 

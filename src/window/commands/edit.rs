@@ -1,11 +1,11 @@
 //! The Edit menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_layer, key, row};
 use crate::document::Content;
 use crate::requests::WindowRequest;
 use crate::session::Action;
-use crate::session::actions::{EditAction, HandAction, LayerAction};
+use crate::session::actions::{ClipboardAction, EditAction, HandAction, LayerAction};
 use crate::tools::ToolKind;
 use eframe::egui::Key;
 
@@ -25,19 +25,36 @@ pub const COMMANDS: &[MenuCommand] = &[
         |_, requests| requests.act(Action::Edit(EditAction::Redo {})),
     ),
     LINE,
+    row("Cut", &[ctrl(Key::X)], "Takes what is selected out of the layer, to be pasted", always, |_, requests| {
+        requests.act(Action::Clipboard(ClipboardAction::Cut {}))
+    }),
+    row(
+        "Copy",
+        &[ctrl(Key::C)],
+        "Copies what is selected of the layer; strokes stay strokes",
+        always,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::Copy { merged: false })),
+    ),
     row(
         "Copy merged picture",
         &[ctrl_shift(Key::C)],
-        "Copies the flattened picture to the clipboard",
-        has_document,
-        |_, requests| requests.request(WindowRequest::CopyMerged),
+        "Copies all that shows where you selected",
+        always,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::Copy { merged: true })),
     ),
     row(
-        "Paste picture",
+        "Paste",
         &[ctrl(Key::V)],
-        "Pastes a picture from the clipboard as an image layer",
+        "Pastes what was copied where it was, as a layer; of another program its picture, as an image layer",
         always,
         |_, requests| requests.request(WindowRequest::Paste),
+    ),
+    row(
+        "Paste as new document",
+        &[ctrl_shift(Key::V)],
+        "A document as large as what was copied, which is its layer",
+        always,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::PasteNew {})),
     ),
     LINE,
     row(
@@ -54,7 +71,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Clear layer",
         &[key(Key::Delete)],
-        "Removes the paint or the strokes of the selected layer",
+        "Removes the paint or the strokes of the selected layer where you selected; without a selection all of them",
         has_layer,
         |session, requests| {
             if let Some(layer) = session.layer_path() {

@@ -1,7 +1,7 @@
 //! The File menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, row};
 use crate::requests::WindowRequest;
 use eframe::egui::Key;
 
@@ -48,7 +48,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     LINE,
     row(
         "Place image…",
-        &[ctrl_shift(Key::I)],
+        &[ctrl_alt(Key::I)],
         "A picture as a layer bent over the surface",
         has_document,
         |_, requests| requests.request(WindowRequest::PlaceDialog),

@@ -6,7 +6,7 @@ use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
 use crate::files::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::pictures::PicturePart;
-use crate::session::actions::{LayerAction, NewLayer};
+use crate::session::actions::{ClipboardAction, LayerAction, NewLayer};
 use crate::session::{Action, LayerPath, Property, Session};
 use eframe::egui::Key;
 
@@ -92,7 +92,21 @@ pub const COMMANDS: &[MenuCommand] = &[
     ),
     row("New group", &[], "Layers flattened together", has_document, |_, requests| add(requests, NewLayer::Group)),
     LINE,
-    row("Duplicate layer", &[ctrl(Key::J)], "A copy above it", has_layer, |session, requests| {
+    row(
+        "Layer via copy",
+        &[ctrl(Key::J)],
+        "A new layer with what is selected of this one; without a selection a copy of all of it",
+        has_layer,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: false })),
+    ),
+    row(
+        "Layer via cut",
+        &[ctrl_shift(Key::J)],
+        "What is selected of this layer is taken out of it to a new one",
+        has_layer,
+        |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
+    ),
+    row("Duplicate layer", &[], "A copy above it", has_layer, |session, requests| {
         with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
     }),
     row("Delete layer", &[shift(Key::Delete)], "Including its contents", has_layer, |session, requests| {

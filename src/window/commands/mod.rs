@@ -7,15 +7,17 @@ mod help;
 mod layer;
 mod paint;
 mod row;
+mod select;
 mod shading;
 mod view;
 
 pub use row::MenuCommand;
 
 /// The menus and what is in them.
-pub const MENUS: [(&str, &[MenuCommand]); 6] = [
+pub const MENUS: [(&str, &[MenuCommand]); 7] = [
     ("File", file::COMMANDS),
     ("Edit", edit::COMMANDS),
+    ("Select", select::COMMANDS),
     ("Layer", layer::COMMANDS),
     ("Paint", paint::COMMANDS),
     ("View", view::COMMANDS),
@@ -26,7 +28,7 @@ pub const SHADING: &[MenuCommand] = shading::COMMANDS;
 
 /// Every command, menu by menu.
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
-    const EVERY: [(&str, &[MenuCommand]); 6] = MENUS;
+    const EVERY: [(&str, &[MenuCommand]); 7] = MENUS;
     let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
     menus.chain(SHADING).filter(|command| !command.is_line())
 }

@@ -1,6 +1,7 @@
 //! Dialogs: one at a time, over the window. Each is a struct that holds the input and a function that shows it.
 //! Floor 7.
 
+pub mod edge;
 pub mod export;
 pub mod help;
 pub mod import;
@@ -27,6 +28,8 @@ use std::path::PathBuf;
 /// The dialog that is open.
 pub enum Dialog {
     New(new::NewDialog),
+    Edge(edge::EdgeDialog),
+    Keep(edge::KeepDialog),
     Export(export::ExportDialog),
     Import(Box<import::ImportDialog>),
     Path(path::PathDialog),
@@ -87,6 +90,12 @@ impl Dialog {
             ui.spacing_mut().item_spacing.y = 7.0;
             match self {
                 Dialog::New(new) => new.show(ui, requests),
+                Dialog::Edge(edge) => edge.show(ui, requests),
+                Dialog::Keep(keep) => {
+                    let kept = session.active().map_or(&[][..], |tab| &tab.document().selections);
+                    let names: Vec<String> = kept.iter().map(|kept| kept.name.clone()).collect();
+                    keep.show(ui, &names, requests)
+                }
                 Dialog::Export(export) => export.show(ui, session, preview),
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),

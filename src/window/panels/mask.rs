@@ -1,12 +1,14 @@
 //! The mask of the selected layer.
 //! Floor 7.
 
+use super::select::{softness, tolerance};
 use super::setter::LayerSetter;
 use crate::document::{Layer, MaskKind};
 use crate::session::Property;
 use crate::session::actions::LayerAction;
 use crate::session::actions::pictures::PicturePart;
 use crate::session::property::{DerivedMask, DerivedMaskNumbers};
+use crate::surface::region::SurfaceRegion;
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::Ui;
 
@@ -18,6 +20,7 @@ enum MaskChoice {
     Fresnel,
     Curvature,
     Depth,
+    Region,
 }
 
 /// The mask of a layer: its kind, whether it is enabled, and whether the brush paints on it.
@@ -29,6 +32,7 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
         Some(MaskKind::Fresnel { .. }) => MaskChoice::Fresnel,
         Some(MaskKind::Curvature { .. }) => MaskChoice::Curvature,
         Some(MaskKind::Depth { .. }) => MaskChoice::Depth,
+        Some(MaskKind::Region(_)) => MaskChoice::Region,
     };
     let all = [
         (MaskChoice::None, "none"),
@@ -36,14 +40,16 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
         (MaskChoice::Curvature, "curvature"),
         (MaskChoice::Depth, "depth"),
         (MaskChoice::File, "paint"),
+        (MaskChoice::Region, "region"),
     ];
-    let offered = if current == MaskChoice::File { &all[..] } else { &all[..4] };
-    if let Some(to) = choice_row(ui, "Made of", current, offered) {
+    let own = all.iter().copied().filter(|(choice, _)| *choice == current);
+    let offered: Vec<_> = all[..4].iter().copied().chain(own.filter(|(choice, _)| is_made(*choice))).collect();
+    if let Some(to) = choice_row(ui, "Made of", current, &offered) {
         let numbers = match to {
             MaskChoice::Fresnel => Some(DerivedMaskNumbers::Fresnel { f0: 0.04, power: 5.0 }),
             MaskChoice::Curvature => Some(DerivedMaskNumbers::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 }),
             MaskChoice::Depth => Some(DerivedMaskNumbers::Depth { from: 0.0, to: 1.0 }),
-            MaskChoice::None | MaskChoice::File => None,
+            MaskChoice::None | MaskChoice::File | MaskChoice::Region => None,
         };
         setter.set(Property::Mask { mask: numbers.map(DerivedMask) }, true);
     }
@@ -89,9 +95,20 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
     }
 }
 
+/// It is made elsewhere, and only offered where it is.
+fn is_made(choice: MaskChoice) -> bool {
+    matches!(choice, MaskChoice::File | MaskChoice::Region)
+}
+
 fn mask_numbers(ui: &mut Ui, kind: &MaskKind) -> Option<ValueChange<DerivedMaskNumbers>> {
     match *kind {
         MaskKind::File { .. } => None,
+        MaskKind::Region(region) => {
+            let a = tolerance(region).row(ui, region.tolerance);
+            let b = softness().row(ui, region.softness);
+            a.map(|c| c.map(|tolerance| DerivedMaskNumbers::Region(SurfaceRegion { tolerance, ..region })))
+                .or(b.map(|c| c.map(|softness| DerivedMaskNumbers::Region(SurfaceRegion { softness, ..region }))))
+        }
         MaskKind::Fresnel { f0, power } => {
             let a = NumberField::new("Facing", 0.0..=1.0, "Coverage where the surface faces you").row(ui, f0);
             let b = NumberField::new("Power", 0.2..=10.0, "How closely it follows the rim").row(ui, power);

@@ -5,7 +5,7 @@ use crate::commands::{MENUS, MenuCommand, SHADING};
 use crate::icons::{Icon, sized_button};
 use crate::keymap::shown;
 use crate::requests::{UiRequests, WindowRequest};
-use crate::session::actions::FileAction;
+use crate::session::actions::{FileAction, SelectionAction};
 use crate::session::{Action, Session};
 use crate::settings::Settings;
 use eframe::egui::{self, Button, RichText, Ui};
@@ -27,6 +27,7 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                                 SHADING.iter().for_each(|command| entry(ui, session, settings, command, requests));
                             })),
                             "Open…" => recent_files(ui, &settings.recent, requests),
+                            "Keep selection…" => kept_selections(ui, session, requests),
                             _ => {}
                         }
                     }
@@ -65,6 +66,22 @@ fn recent_files(ui: &mut Ui, recent: &[PathBuf], requests: &mut UiRequests) {
                 let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 if ui.button(name).on_hover_text(file.display().to_string()).clicked() {
                     requests.request(WindowRequest::Open(file.clone()));
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+/// The selections that the document keeps.
+fn kept_selections(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let kept = session.active().map_or(&[][..], |tab| &tab.document().selections);
+    ui.add_enabled_ui(!kept.is_empty(), |ui| {
+        ui.menu_button("Select kept", |ui| {
+            for name in kept.iter().map(|kept| kept.name.clone()) {
+                if ui.button(&name).clicked() {
+                    let how = session.select.combine;
+                    requests.act(Action::Selection(SelectionAction::Take { name, how }));
                     ui.close();
                 }
             }

@@ -15,6 +15,7 @@ pub mod menu;
 pub mod navigator;
 pub mod options;
 pub mod properties;
+mod select;
 mod setter;
 pub mod status;
 pub mod strokes;

@@ -1,7 +1,7 @@
 //! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
-use super::{brush_mode, fill};
+use super::{brush_mode, fill, select};
 use crate::operators::{OPERATORS, OperatorOwner, give, has, set, whose};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
@@ -36,6 +36,11 @@ fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
 fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool == ToolKind::Fill {
         return drop(ui.weak("Fills are not bent: they colour the pixels that they cover"));
+    }
+    if session.tool.selects() {
+        return drop(
+            ui.weak("Selections say where marks may land: every brush, fill, gradient and eraser keeps to them"),
+        );
     }
     let (whose, operator) = whose(session);
     let about = match whose {
@@ -72,6 +77,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                 requests.act(Action::Hand(HandAction::PressBySpeed { on: by_speed }));
             }
         }
+        tool if tool.selects() => select::options(ui, session, requests),
         tool => drop(ui.weak(tool.row().hint)),
     }
 }

@@ -46,6 +46,11 @@ pub fn show(
         }
         ui.weak(document.size.to_string());
         ui.separator();
+        if let Some(rect) = canvas.selected().filter(|_| document.active_selection.is_some()) {
+            let about = format!("Selected {} × {} at {}, {}", rect.width(), rect.height(), rect.x0, rect.y0);
+            ui.label(about).on_hover_text("The rectangle around all that is selected");
+            ui.separator();
+        }
         if let Some(said) = jobs.said() {
             ui.label(said);
             ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));

@@ -11,6 +11,7 @@ use crate::jobs::{JobKind, JobResult, PartResult, PinPosition, short};
 use crate::math::Vec2;
 use crate::raster::Picture;
 use crate::session::Action;
+use crate::session::actions::ClipboardAction;
 use crate::session::actions::FileAction;
 use crate::session::actions::files::place;
 use crate::session::actions::pictures::{self, PicturePart};
@@ -85,6 +86,7 @@ impl MainWindow {
                 self.pictured("pasted.png", picture, PinPosition::Pointer);
             }
             JobResult::Pasted(PastedContent::Files(files)) => self.take_files(files),
+            JobResult::PastedOwn => self.apply(&Action::Clipboard(ClipboardAction::Paste {})),
             JobResult::Copied(clipboard) => {
                 self.clipboard = Some(clipboard);
                 self.jobs.say("The picture is in the clipboard".into());

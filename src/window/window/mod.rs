@@ -10,7 +10,7 @@ mod work;
 
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
-use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, export, import, new, palette, shortcuts};
+use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, edge, export, import, new, palette, shortcuts};
 use super::files::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
 use super::panel_layout::PanelSide;
@@ -29,6 +29,7 @@ use crate::session::{Action, Session, storage};
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The program's one window.
 pub struct MainWindow {
@@ -61,6 +62,8 @@ pub struct MainWindow {
     memory: MemoryMeter,
     /// What was copied last; kept, so that it stays in the system's clipboard.
     clipboard: Option<Clipboard>,
+    /// What was put there last of what was copied here.
+    handed_out: Option<Arc<Vec<u8>>>,
     /// The recorded actions, if they are recorded.
     recorded: Option<Vec<Action>>,
 }
@@ -94,6 +97,7 @@ impl MainWindow {
             after_saving: None,
             memory: MemoryMeter::default(),
             clipboard: None,
+            handed_out: None,
             recorded: None,
         }
     }
@@ -216,6 +220,8 @@ impl MainWindow {
             self.apply(&action);
         }
         self.messages.append(&mut self.session.notes);
+        self.session.said.drain(..).for_each(|sentence| self.jobs.say(sentence));
+        self.hand_out();
         for ask in requests.window {
             self.do_request(ctx, ask);
         }
@@ -243,7 +249,8 @@ impl MainWindow {
             }
             WindowRequest::Close(tab) => self.close(ctx, tab),
             WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
-            WindowRequest::CopyMerged => self.copy_merged(),
+            WindowRequest::EdgeDialog(change) => self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change))),
+            WindowRequest::KeepDialog => self.dialogs.push(Dialog::Keep(edge::KeepDialog::default())),
             WindowRequest::Paste => self.paste(),
             WindowRequest::Palette => self.dialogs.push(Dialog::Palette(palette::CommandPalette::default())),
             WindowRequest::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default())),

@@ -2,20 +2,24 @@
 //! Floor 7.
 
 use super::MainWindow;
-use crate::clipboard;
+use crate::clipboard::{self, PastedContent};
 use crate::dialogs::AfterUnsaved;
-use crate::document::flatten;
+use crate::document::Progress;
 use crate::files::FilePurpose;
 use crate::io::export::ExportOptions;
 use crate::io::replace::FileStamp;
 use crate::io::{Overwrite, Terms};
 use crate::jobs::{EditResult, JobKind, JobResult, short};
+use crate::math::Size;
+use crate::raster::Picture;
+use crate::raster::picture::Texels;
 use crate::saving::{Exporting, Pending, Saving};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 impl MainWindow {
     /// Saves the document in front to its file, or asks where to. `then` is done once it is saved.
@@ -81,20 +85,27 @@ impl MainWindow {
         self.jobs.say(format!("Exported {}", file.display()));
         self.messages.extend(notes);
     }
-    pub(super) fn copy_merged(&mut self) {
-        let Some(document) = self.session.shown().cloned() else { return };
-        self.jobs.start("Copying the picture".into(), JobKind::Working, move |progress| {
-            let Some(tiles) = flatten(&document, progress) else { return JobResult::Nothing };
-            match clipboard::put(document.size, &tiles.to_straight_rgba(document.size.rect())) {
-                Ok(clipboard) => JobResult::Copied(clipboard),
-                Err(error) => JobResult::Failed(error),
-            }
-        });
+    /// Puts what was copied last into the system's clipboard, for other programs.
+    pub(super) fn hand_out(&mut self) {
+        let Some(copied) = self.session.copied.as_ref().filter(|copied| !copied.rect.is_empty()) else { return };
+        if self.handed_out.as_ref().is_some_and(|known| Arc::ptr_eq(known, &copied.rgba)) {
+            return;
+        }
+        let size = Size::new(copied.rect.width() as u32, copied.rect.height() as u32);
+        let rgba = copied.rgba.clone();
+        self.handed_out = Some(rgba.clone());
+        // Without a clipboard it can still be pasted here.
+        let put = move |_: &Progress| clipboard::put(size, &rgba).map_or(JobResult::Nothing, JobResult::Copied);
+        self.jobs.start("Copying".into(), JobKind::Working, put);
     }
+    /// Pastes the system's picture, or what was copied here if that is the same, or there is none.
     pub(super) fn paste(&mut self) {
-        self.jobs.start("Pasting".into(), JobKind::Working, |_| match clipboard::pasted() {
-            Ok(pasted) => JobResult::Pasted(pasted),
-            Err(error) => JobResult::Failed(error),
+        let own = self.session.copied.as_ref().map(|copied| copied.rgba.clone());
+        self.jobs.start("Pasting".into(), JobKind::Working, move |_| match (clipboard::pasted(), own) {
+            (Ok(PastedContent::Picture(picture)), Some(own)) if is_own(&picture, &own) => JobResult::PastedOwn,
+            (Ok(pasted), _) => JobResult::Pasted(pasted),
+            (Err(_), Some(_)) => JobResult::PastedOwn,
+            (Err(error), None) => JobResult::Failed(error),
         });
     }
     /// Whether an action takes long, and was begun on a thread instead.
@@ -136,4 +147,11 @@ impl MainWindow {
             }
         });
     }
+}
+
+/// Whether a picture is what was handed out. Clipboards may lose the colours of what is transparent.
+fn is_own(picture: &Picture, rgba: &[u8]) -> bool {
+    let Texels::Srgb8(texels) = &picture.texels else { return false };
+    let same = |(a, b): (&[u8; 4], &[u8; 4])| a == b || (a[3] == 0 && b[3] == 0);
+    texels.len() * 4 == rgba.len() && texels.iter().zip(rgba.as_chunks::<4>().0).all(same)
 }

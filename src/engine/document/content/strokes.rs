@@ -5,8 +5,9 @@ use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Tou
 use crate::Result;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
-use crate::paint::{Scene, Stroke, stroke};
-use crate::raster::TileAt;
+use crate::paint::{Scene, Selection, Stroke, StrokeSelection, stroke};
+use crate::raster::warp::warped_plane;
+use crate::raster::{CoverageGrid, TileAt};
 use crate::surface::{Bend, Deformation};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -57,11 +58,16 @@ impl LayerKind for Live<StrokeList> {
             }
             _ => HashMap::new(),
         };
-        let on_canvas = |stroke: &Arc<Stroke>| match seen.get(&Arc::as_ptr(stroke)) {
+        let mut selections = HashMap::new();
+        let mut on_canvas = |stroke: &Arc<Stroke>| match seen.get(&Arc::as_ptr(stroke)) {
             Some(seen) => Arc::clone(seen),
-            None => Arc::new(stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p))),
+            None => {
+                let mapped = stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p));
+                Arc::new(mapped.within(stroke.selection().map(|own| selected(own, map, &mut selections))))
+            }
         };
-        Some(self.with_each(on_canvas))
+        let strokes = self.params().strokes.iter().map(&mut on_canvas).collect();
+        Some(Content::Strokes(Live::new(StrokeList { strokes })))
     }
     fn emptied(&self) -> Option<Content> {
         Some(Content::Strokes(Live::new(StrokeList::default())))
@@ -80,7 +86,7 @@ impl LayerKind for Live<StrokeList> {
                 source.file = name(&source.file, &source.picture)?;
                 Ok::<_, crate::Error>(source)
             })?;
-            Ok(Arc::new(Stroke::new(brush, stroke.operator(), stroke.color(), stroke.samples().to_vec())))
+            Ok(Arc::new(stroke.with_brush(brush)))
         };
         let strokes = self.params().strokes.iter().map(&mut renamed).collect::<Result<_>>()?;
         Ok(Some(Content::Strokes(Live::new(StrokeList { strokes }))))
@@ -113,6 +119,23 @@ impl Live<StrokeList> {
         let strokes = self.params().strokes.iter().map(change).collect();
         Content::Strokes(Live::new(StrokeList { strokes }))
     }
+}
+
+/// The selection of a stroke as it lies on the canvas, sampled once for all strokes that share it unmoved; `known`: by
+/// their addresses, those of the strokes, which live on.
+fn selected(
+    own: &StrokeSelection,
+    map: &LayerMap,
+    known: &mut HashMap<*const Selection, Arc<Selection>>,
+) -> StrokeSelection {
+    let warped = || {
+        let plane = own.coverage().to_plane(map.canvas().rect());
+        Arc::new(Selection::new(CoverageGrid::from_plane(&warped_plane(&plane, map, map.filter), 0, 0)))
+    };
+    StrokeSelection::new(match own.moved == Vec2::ZERO {
+        true => known.entry(Arc::as_ptr(&own.selection)).or_insert_with(warped).clone(),
+        false => warped(),
+    })
 }
 
 /// Strokes are painted in order, so those between a common beginning and a common end may change what they touch.

@@ -8,7 +8,8 @@ use crate::paint::grain::{BrushGrain, GrainSpace};
 use crate::paint::habits::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
-    Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke, Tip,
+    Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke,
+    StrokeSelection, Tip,
 };
 use crate::surface::{Bend, Operator, Weights};
 use std::sync::Arc;
@@ -55,6 +56,11 @@ fn stroke(stroke: &Stroke) -> Fit {
     at_most("readings of the pen", stroke.samples().len(), Stroke::MOST_SAMPLES)?;
     brush(stroke.brush())?;
     operator(stroke.operator())?;
+    if let Some(own) = stroke.selection() {
+        let range = &StrokeSelection::MOVED_PX;
+        within("how far its selection moved", own.moved.x, range)?;
+        within("how far its selection moved", own.moved.y, range)?;
+    }
     stroke.samples().iter().try_for_each(|sample| {
         point("a reading of the pen", sample.at)?;
         within("the pressure", sample.pressure, &Sample::PRESSURE)?;

@@ -21,14 +21,15 @@ impl DocumentReducer {
     pub fn new(factor: f32) -> Self {
         Self { factor, surface: None, layers: HashMap::new() }
     }
-    /// The reduced document: equal to [`Document::scaled`], with the same errors.
+    /// The reduced document: equal to [`Document::scaled`], with the same errors; what was selected by the surface is
+    /// resampled and not found anew.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
         let Some(scale) = CanvasScale::of(document.size, self.factor) else { return Ok(document.clone()) };
         let surface = document.surface.as_ref().map(|surface| self.surface(surface, &scale)).transpose()?;
         let mut layers = HashMap::new();
         let small = self.stack(&document.layers, &scale, &mut layers);
         self.layers = layers;
-        Ok(Document { size: scale.to, surface, layers: small, ..document.clone() })
+        Ok(Document { size: scale.to, surface, layers: small, ..scale.selected(document) })
     }
     /// Scales one more part of the document in advance for [`DocumentReducer::of`]; returns whether there was one.
     /// An idle thread can prepare in steps with this; the surface is one of them and takes half a second at 4096².

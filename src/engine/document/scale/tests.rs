@@ -80,7 +80,8 @@ fn picture(document: &Document) -> TileGrid {
 }
 fn reduced(grid: &TileGrid, factor: f32) -> TileGrid {
     let to = SIZE.scaled(factor);
-    CanvasScale { per_axis: Vec2::splat(factor), length: factor, from: SIZE, to }.grid(grid)
+    CanvasScale { per_axis: Vec2::splat(factor), length: factor, from: SIZE, to, selections: Default::default() }
+        .grid(grid)
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
 use crate::paint::dab_walker::DabWalker;
 use crate::paint::scene::Scene;
+use crate::paint::selection::StrokeSelection;
 use crate::paint::stroke_tile::{StrokeBlend, StrokeTile};
 use crate::paint::tip::GrainTile;
 use crate::raster::{Mix, PlanarTile, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
@@ -44,6 +45,7 @@ struct ActiveStroke {
     operator: Operator,
     color: Color,
     samples: Vec<Sample>,
+    selection: Option<StrokeSelection>,
     walker: DabWalker,
     /// The settled dabs.
     stroke_dabs: StrokeDabs,
@@ -73,12 +75,13 @@ struct NewDabs<'s> {
 
 impl ActiveStroke {
     fn new(stroke: &Stroke, scene: &Scene) -> Self {
-        let Stroke { brush, operator, color, .. } = stroke;
+        let Stroke { brush, operator, color, selection, .. } = stroke;
         Self {
             brush: brush.clone(),
             operator: *operator,
             color: *color,
             samples: Vec::new(),
+            selection: selection.clone(),
             walker: DabWalker::new(brush, *operator, *color, scene),
             stroke_dabs: StrokeDabs::empty(brush, scene),
             tail: Vec::new(),
@@ -150,9 +153,9 @@ impl ActiveStroke {
     /// The stroke as far as it was drawn.
     fn stroke(&self, scene: &Scene) -> Stroke {
         let found = StrokeCache { bounds: Some((scene.clone(), self.bounds)), ..StrokeCache::default() };
-        let Self { brush, operator, color, samples, .. } = self;
-        let (brush, samples) = (brush.clone(), samples.clone());
-        Stroke { brush, operator: *operator, color: *color, samples, found: Arc::new(Mutex::new(found)) }
+        let Self { brush, operator, color, samples, selection, .. } = self;
+        let (brush, samples, selection) = (brush.clone(), samples.clone(), selection.clone());
+        Stroke { brush, operator: *operator, color: *color, samples, selection, found: Arc::new(Mutex::new(found)) }
     }
     /// The finished stroke, its dabs known already.
     fn finished(mut self, scene: &Scene) -> Stroke {
@@ -162,8 +165,8 @@ impl ActiveStroke {
         }
         let mut found = StrokeCache::default();
         found.keep(&Arc::new(self.stroke_dabs));
-        let Self { brush, operator, color, samples, .. } = self;
-        Stroke { brush, operator, color, samples, found: Arc::new(Mutex::new(found)) }
+        let Self { brush, operator, color, samples, selection, .. } = self;
+        Stroke { brush, operator, color, samples, selection, found: Arc::new(Mutex::new(found)) }
     }
 }
 
@@ -194,8 +197,15 @@ impl ActiveStrokes {
             let mut pixels = backdrop.pixels(scene, *at, &mut tile.beneath);
             let cached = tile.stroke_tiles.iter_mut().zip(&mut tile.grains);
             for ((stroke, fresh), cached) in strokes.iter().zip(&fresh).zip(cached) {
+                let selected = stroke.selection.as_ref().map(|selection| selection.tile(*at));
+                if matches!(selected, Some(None)) {
+                    continue;
+                }
                 if let Some(mut shown) = stroke.shown(fresh, *at, cached, scratch) {
                     shown.limit_to(&stroke.part(scene), *at);
+                    if let Some(selected) = selected.flatten() {
+                        shown.select(&selected);
+                    }
                     shown.blend_over(&mut pixels, *at, StrokeBlend::of(&stroke.brush, stroke.color));
                 }
             }
@@ -240,10 +250,11 @@ impl Backdrop {
 mod tests {
     use super::*;
     use crate::math::{Size, Vec2, hash, vec2, vec3};
+    use crate::paint::Selection;
     use crate::paint::grain::{BrushGrain, GrainSpace};
     use crate::paint::stroke::render_tile;
     use crate::paint::{ColorJitter, Curve, Dynamics, Input, Property, Tip};
-    use crate::raster::{BlendMode, Plane};
+    use crate::raster::{BlendMode, CoverageGrid, Plane};
     use crate::surface::{Maps, Surface};
     use proptest::prelude::*;
 
@@ -291,19 +302,24 @@ mod tests {
             let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
             let red = Color::parse("#c04020").unwrap();
             let beneath = Arc::new(Stroke::new(Brush::default(), operator, red, samples(!seed, 6)));
-            for brush in brushes() {
+            // Soft, with tiles wholly selected and tiles not at all; every other brush keeps to it.
+            let soft = Plane::from_fn(SIZE, |x, y| ((x as i32 - 100) * 3 + y as i32 / 4).clamp(0, 255) as u8);
+            let selection = StrokeSelection::new(Arc::new(Selection::new(CoverageGrid::from_plane(&soft, 0, 0))));
+            for (i, brush) in brushes().into_iter().enumerate() {
+                let own = (i % 2 == 1).then(|| selection.moved(vec2(0.25 * i as f32, 0.0)));
                 let color = Color::parse("#20a0e0").unwrap();
                 let samples = samples(seed, 17);
                 let all = samples.clone();
                 let mirror = |s: &Sample| Sample { at: vec2(300.0 - s.at.x, s.at.y), ..*s };
                 let mirrored: Vec<Sample> = samples.iter().map(mirror).collect();
-                let like = [(); 2].map(|_| Stroke::new(brush.clone(), operator, color, Vec::new()));
+                let like = [(); 2].map(|_| Stroke::new(brush.clone(), operator, color, Vec::new()).within(own.clone()));
                 let mut stroke = ActiveStrokes::new(&like, Backdrop::Strokes(vec![beneath.clone()]), &scene);
                 let mut shown: HashMap<TileAt, Option<Arc<Tile>>> = HashMap::new();
                 for (batch, mirrored) in samples.chunks(batch).zip(mirrored.chunks(batch)) {
                     shown.extend(stroke.draw(&[batch.to_vec(), mirrored.to_vec()]));
                 }
-                let once = [all, mirrored].map(|samples| Stroke::new(brush.clone(), operator, color, samples));
+                let made = |samples| Stroke::new(brush.clone(), operator, color, samples).within(own.clone());
+                let once = [all, mirrored].map(made);
                 let mut strokes = vec![beneath.clone()];
                 strokes.extend(once.into_iter().map(Arc::new));
                 let bounds = stroke.strokes().iter().map(|s| s.bounds(&scene)).collect::<Vec<_>>();

@@ -106,6 +106,7 @@ impl HandAction {
         match self {
             HandAction::Tool { tool } => {
                 session.drop_gesture();
+                session.lasso.clear();
                 session.tool = *tool;
             }
             HandAction::Preset { name } => session.take_preset(name),

@@ -80,7 +80,7 @@ actions! {
         "solo" Solo { layer: LayerPath }
         /// A property; shown only, until it is `done`.
         "set" Set { layer: LayerPath, to: Property, done: bool }
-        /// The strokes or pixels are taken out of a layer.
+        /// The strokes or pixels are taken out of a layer, or what is selected of them.
         "clear" Clear { layer: LayerPath }
     }
 }
@@ -128,19 +128,33 @@ impl LayerAction {
             }
         }
     }
+    /// Does an edit that needs no settings on an open document.
+    pub(super) fn step_on(&self, tab: &mut OpenDocument) {
+        let settings = Gradient {
+            from: vec2(0.0, 0.0),
+            to: vec2(1.0, 1.0),
+            stops: Vec::new(),
+            frame: Default::default(),
+            operator: Default::default(),
+            filter: ImageFilter::Antialias,
+        };
+        if let Some(edit) = self.edit(tab, &settings) {
+            tab.take(edit);
+        }
+    }
     /// The step: its name, the resulting document, and the new selection.
     fn edit(&self, tab: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
         let document = tab.document();
         let layer = |path: &LayerPath| path.find(document).cloned();
         let (label, document, select) = match self {
             LayerAction::Add { kind } => {
-                let new = made(*kind, document, gradient_settings);
+                let new = selecting(document, made(*kind, document, gradient_settings));
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
             }
             LayerAction::AddShading { model } => {
                 let content = Content::Shading(Live::new(Shading::new(*model)));
-                let new = Layer::new(free_name(document, &model_name(*model)), content);
+                let new = selecting(document, Layer::new(free_name(document, &model_name(*model)), content));
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
             }
@@ -209,8 +223,13 @@ impl LayerAction {
             }
             LayerAction::Clear { layer: path } => {
                 let layer = layer(path)?;
-                let empty = layer.content.emptied()?;
-                ("Clear layer", document.with_layer(layer.id, |layer| layer.content = empty)?, None)
+                match document.selected() {
+                    Some(selected) => ("Clear", document.with_cleared(layer.id, selected)?, None),
+                    None => {
+                        let empty = layer.content.emptied()?;
+                        ("Clear layer", document.with_layer(layer.id, |layer| layer.content = empty)?, None)
+                    }
+                }
             }
             LayerAction::Select { .. }
             | LayerAction::Solo { .. }
@@ -219,6 +238,13 @@ impl LayerAction {
         };
         Some(Edit { label, document, select })
     }
+}
+
+/// A new layer that covers the canvas covers what is selected, by a mask.
+fn selecting(document: &Document, layer: Layer) -> Layer {
+    let covers =
+        !matches!(layer.content, Content::Pixels(_) | Content::Strokes(_) | Content::Group(_) | Content::Normals(_));
+    Layer { mask: if covers { document.selection_as_mask() } else { None }, ..layer }
 }
 
 fn set(tab: &mut OpenDocument, layer: &LayerPath, to: &Property, done: bool) {
@@ -291,7 +317,7 @@ fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> La
 }
 
 /// A copy under fresh ids.
-fn copied(layer: &Layer, name: &str) -> Layer {
+pub(super) fn copied(layer: &Layer, name: &str) -> Layer {
     let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
     if let Some(group) = copy.content.group_mut() {
         group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();

@@ -1,6 +1,7 @@
 //! Everything that can be done, as values: the window creates them, a replay reads them, [`Action::apply`] performs
 //! them. Floor 6. There is one small enum per area, with its `apply` in its own file.
 
+pub mod clipboard;
 pub mod edit;
 pub mod files;
 mod flattening;
@@ -8,14 +9,17 @@ pub mod hand;
 pub mod layers;
 pub mod pictures;
 pub mod pointer;
+pub mod selection;
 pub mod strokes;
 pub mod views;
 
+pub use clipboard::ClipboardAction;
 pub use edit::EditAction;
 pub use files::FileAction;
 pub use hand::HandAction;
 pub use layers::{LayerAction, NewLayer};
 pub use pointer::PointerAction;
+pub use selection::{EdgeChange, SelectionAction};
 pub use strokes::{StrokeAction, Style};
 pub use views::ViewAction;
 
@@ -27,11 +31,13 @@ use serde_json::Value;
 /// One action.
 #[derive(Clone)]
 pub enum Action {
+    Clipboard(ClipboardAction),
     Edit(EditAction),
     File(FileAction),
     Hand(HandAction),
     Layer(LayerAction),
     Pointer(PointerAction),
+    Selection(SelectionAction),
     Stroke(StrokeAction),
     View(ViewAction),
 }
@@ -42,11 +48,13 @@ impl Action {
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         let mut done = Ok(());
         match self {
+            Action::Clipboard(action) => action.apply(session),
             Action::Edit(action) => action.apply(session),
             Action::File(action) => done = action.apply(session),
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),
+            Action::Selection(action) => action.apply(session),
             Action::Stroke(action) => action.apply(session),
             Action::View(action) => action.apply(session),
         }
@@ -58,11 +66,13 @@ impl Action {
 impl ReplayValue for Action {
     fn written(&self) -> Value {
         let (room, mut value) = match self {
+            Action::Clipboard(action) => ("clipboard", action.written()),
             Action::Edit(action) => ("edit", action.written()),
             Action::File(action) => ("file", action.written()),
             Action::Hand(action) => ("hand", action.written()),
             Action::Layer(action) => ("layer", action.written()),
             Action::Pointer(action) => ("pointer", action.written()),
+            Action::Selection(action) => ("selection", action.written()),
             Action::Stroke(action) => ("stroke", action.written()),
             Action::View(action) => ("view", action.written()),
         };
@@ -73,14 +83,19 @@ impl ReplayValue for Action {
     }
     fn read(value: &Value) -> std::result::Result<Self, String> {
         Ok(match value.get("in").and_then(Value::as_str) {
+            Some("clipboard") => Action::Clipboard(ReplayValue::read(value)?),
             Some("edit") => Action::Edit(ReplayValue::read(value)?),
             Some("file") => Action::File(ReplayValue::read(value)?),
             Some("hand") => Action::Hand(ReplayValue::read(value)?),
             Some("layer") => Action::Layer(ReplayValue::read(value)?),
             Some("pointer") => Action::Pointer(ReplayValue::read(value)?),
+            Some("selection") => Action::Selection(ReplayValue::read(value)?),
             Some("stroke") => Action::Stroke(ReplayValue::read(value)?),
             Some("view") => Action::View(ReplayValue::read(value)?),
-            _ => return Err("“in” must be edit, file, hand, layer, pointer, stroke or view".into()),
+            _ => {
+                let rooms = "clipboard, edit, file, hand, layer, pointer, selection, stroke or view";
+                return Err(format!("“in” must be {rooms}"));
+            }
         })
     }
 }

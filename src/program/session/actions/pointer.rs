@@ -93,10 +93,14 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         last_end: tab.last_end,
         symmetry: session.symmetry,
         fill: session.fill,
+        select: session.select,
+        lasso: &session.lasso,
         strokes: &strokes,
         clone_offset,
     };
     let (gesture, outcome) = match tool {
+        ToolKind::Brush if tab.quick_mask => tools::mask::press_on_selection(&context, pen, StrokePurpose::Paint),
+        ToolKind::Eraser if tab.quick_mask => tools::mask::press_on_selection(&context, pen, StrokePurpose::Erase),
         ToolKind::Brush if tab.on_mask => tools::mask::press(&context, pen, StrokePurpose::Paint),
         ToolKind::Eraser if tab.on_mask => tools::mask::press(&context, pen, StrokePurpose::Erase),
         _ => tools::press(tool, &context, pen),
@@ -134,6 +138,18 @@ fn take(session: &mut Session, outcome: Outcome) {
                 tab.selected = select.or(tab.selected);
                 tab.last_end = end;
             }
+            session.lasso.clear();
+        }
+        Outcome::Tuned { document, select, is_done } => {
+            match is_done {
+                true => drop(tab.commit("Select", document)),
+                false => tab.show("", document),
+            }
+            session.select = select;
+        }
+        Outcome::Lasso(corners) => {
+            tab.forget_preview();
+            session.lasso = corners;
         }
         Outcome::CloneFrom(at) => tab.clone_source = Some(CloneSource { at, offset: None }),
         Outcome::Refused(why) => session.notes.push(why.into()),

@@ -10,6 +10,7 @@ use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{names, record};
 use crate::shading::scaling::Reference;
 use crate::shading::{FeatureScale, Features, Light, LightKind, Model, Projection, Scaling, Term};
+use crate::surface::region::SurfaceRegion;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
 names!(BlendMode);
@@ -114,11 +115,13 @@ pub enum DerivedMaskNumbers {
     Fresnel { f0: f32, power: f32 },
     Curvature { scale: f32, blur: f32, from: f32, to: f32 },
     Depth { from: f32, to: f32 },
+    Region(SurfaceRegion),
 }
 
 impl crate::session::replay::ReplayValue for DerivedMask {
     fn written(&self) -> serde_json::Value {
         let (kind, numbers): (&str, Vec<f32>) = match self.0 {
+            DerivedMaskNumbers::Region(region) => return serde_json::json!({ "region": region.written() }),
             DerivedMaskNumbers::Fresnel { f0, power } => ("fresnel", vec![f0, power]),
             DerivedMaskNumbers::Curvature { scale, blur, from, to } => ("curvature", vec![scale, blur, from, to]),
             DerivedMaskNumbers::Depth { from, to } => ("depth", vec![from, to]),
@@ -126,6 +129,9 @@ impl crate::session::replay::ReplayValue for DerivedMask {
         serde_json::json!({ "kind": kind, "numbers": numbers.written() })
     }
     fn read(value: &serde_json::Value) -> Result<Self, String> {
+        if let Some(region) = value.get("region") {
+            return SurfaceRegion::read(region).map(|region| Self(DerivedMaskNumbers::Region(region)));
+        }
         let numbers: Vec<f32> = crate::session::replay::field(value, "numbers")?;
         let kind = value.get("kind").and_then(|kind| kind.as_str()).unwrap_or_default();
         Ok(Self(match (kind, &numbers[..]) {
@@ -145,6 +151,7 @@ pub(super) fn set_mask(layer: &mut Layer, mask: Option<DerivedMask>) {
             DerivedMaskNumbers::Fresnel { f0, power } => MaskKind::Fresnel { f0, power },
             DerivedMaskNumbers::Curvature { scale, blur, from, to } => MaskKind::Curvature { scale, blur, from, to },
             DerivedMaskNumbers::Depth { from, to } => MaskKind::Depth { from, to },
+            DerivedMaskNumbers::Region(region) => MaskKind::Region(region),
         };
         LayerMask { invert, ..LayerMask::new(kind) }
     });

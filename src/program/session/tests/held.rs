@@ -64,7 +64,8 @@ const NUMBERS: [f32; 22] = [
     -2e6, 1e30, -1e30,
 ];
 /// Edits with `#` for a number and `%` for a whole one; the property of a layer, or an action.
-const PROPERTIES: [&str; 43] = [
+const PROPERTIES: [&str; 44] = [
+    r#"{"do":"mask","mask":{"region":{"kind":"shine","at":[5,#],"tolerance":#,"softness":#,"contiguous":false}}}"#,
     r#"{"do":"opacity","to":#}"#,
     r#"{"do":"linear","on":true}"#,
     r#"{"do":"clip","on":true}"#,
@@ -110,7 +111,21 @@ const PROPERTIES: [&str; 43] = [
     r#"{"do":"reference","reference":#}"#,
     r#"{"do":"strength","to":#}"#,
 ];
-const OTHERS: [&str; 30] = [
+const OTHERS: [&str; 42] = [
+    r#"{"in":"selection","do":"all"}"#,
+    r#"{"in":"selection","do":"region","region":{"kind":"direction","at":[20.5,#],"tolerance":#,"softness":#,
+        "contiguous":true},"how":"replace"}"#,
+    r#"{"in":"selection","do":"region","region":{"kind":"depth","at":[#,8.5],"tolerance":#,"softness":0,
+        "contiguous":false},"how":"add"}"#,
+    r#"{"in":"selection","do":"change","change":"feather","px":#}"#,
+    r#"{"in":"selection","do":"change","change":"shrink","px":#}"#,
+    r#"{"in":"selection","do":"move","by":[#,#]}"#,
+    r#"{"in":"selection","do":"invert"}"#,
+    r#"{"in":"selection","do":"keep","name":"a"}"#,
+    r#"{"in":"selection","do":"to mask","layer":"0"}"#,
+    r#"{"in":"clipboard","do":"layer via","cut":true}"#,
+    r#"{"in":"clipboard","do":"cut"}"#,
+    r#"{"in":"clipboard","do":"paste"}"#,
     r#"{"do":"model","model":"ashikhmin"}"#,
     r#"{"do":"model","model":"toon"}"#,
     r#"{"do":"bands","to":%}"#,

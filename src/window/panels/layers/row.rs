@@ -6,10 +6,11 @@ use crate::document::{Document, Layer, LayerId, LayerLock, MaskKind};
 use crate::icons::{Icon, sized_button};
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
-use crate::session::actions::LayerAction;
+use crate::session::actions::{LayerAction, SelectionAction};
 use crate::session::{Action, LayerPath, Property, Session};
 use crate::theme::ACCENT;
 use crate::thumbnails::Thumbnails;
+use crate::tools::ModifierKeys;
 use eframe::egui::{
     self, Align2, Color32, Id, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui, pos2, vec2,
 };
@@ -55,11 +56,17 @@ impl LayerRow<'_> {
         inner.spacing_mut().item_spacing.x = 3.0;
         inner.add_space(2.0 + *depth as f32 * INDENT_PT);
         self.switches(&mut inner, requests);
-        picture(&mut inner, document, layer, thumbnails);
+        let thumbnail = picture(&mut inner, document, layer, thumbnails);
         self.mask(&mut inner, thumbnails, requests);
         name(&mut inner, session, layer, path, &response, requests);
         drag::show(ui, document, layer, &response, rect, requests);
-        if response.clicked() {
+        let keys = ui.input(|input| input.modifiers);
+        let is_on_picture = response.interact_pointer_pos().is_some_and(|at| thumbnail.contains(at));
+        if response.clicked() && keys.command && is_on_picture {
+            let settings = session.select;
+            let how = settings.how(ModifierKeys { shift: keys.shift, ctrl: true, alt: keys.alt });
+            requests.act(Action::Selection(SelectionAction::Layer { layer: path.clone(), how }));
+        } else if response.clicked() {
             requests.act(Action::Layer(LayerAction::Select { layer: path.clone() }));
         }
         response.context_menu(|ui| menu::show(ui, layer, path, requests));
@@ -125,8 +132,8 @@ impl LayerRow<'_> {
     }
 }
 
-/// The thumbnail, or the kind's icon until there is one.
-fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mut Thumbnails) {
+/// The thumbnail, or the kind's icon until there is one; returns where it is.
+fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mut Thumbnails) -> Rect {
     let (rect, _) = ui.allocate_exact_size(vec2(30.0, 30.0), Sense::hover());
     let icon = kind_icon(&layer.content);
     ui.painter().rect_filled(rect, 3.0, Color32::from_gray(0x70));
@@ -141,6 +148,7 @@ fn picture(ui: &mut Ui, document: &Document, layer: &Arc<Layer>, thumbnails: &mu
     } else {
         icon.draw(ui.painter(), rect.shrink(6.0), Color32::from_gray(0xe4));
     }
+    rect
 }
 
 /// The name, or a text field to change it.

@@ -1,0 +1,59 @@
+//! Selections that a file can hold. Floor 4.
+
+use super::Fit;
+use crate::document::{Document, NamedSelection, SelectionList};
+use crate::math::range::{at_most, within};
+use crate::math::{COORDINATE, Size};
+use crate::paint::Selection;
+use crate::raster::Picture;
+use crate::surface::region::SurfaceRegion;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Those of a document that another does not hold already, and their number.
+pub fn fit(document: &Document, before: Option<&Document>) -> Fit {
+    let list = SelectionList::of(document);
+    if list.is_empty() {
+        return Ok(());
+    }
+    at_most("Selections", list.all().len(), Document::MOST_SELECTIONS).map_err(|why| format!("{why}."))?;
+    let mut known = HashSet::new();
+    if let Some(before) = before {
+        known.extend(SelectionList::of(before).all().map(Arc::as_ptr));
+    }
+    let mut names = HashSet::new();
+    for (name, selection) in list.named() {
+        if let Some(name) = name {
+            let letters = at_most("letters of a selection's name", name.chars().count(), NamedSelection::LONGEST_NAME);
+            letters.map_err(|why| format!("{why}."))?;
+            if name.is_empty() || !names.insert(name) {
+                return Err(format!("Two selections would be called “{name}”, or one nothing at all."));
+            }
+        }
+        if !known.contains(&Arc::as_ptr(selection)) {
+            selected(selection, document.size).map_err(|why| format!("The selection: {why}."))?;
+        }
+    }
+    Ok(())
+}
+
+fn selected(selection: &Selection, canvas: Size) -> Fit {
+    if let Some(told) = &selection.made {
+        return region(told);
+    }
+    let rect = selection.coverage.covered();
+    [rect.x0, rect.y0, rect.x1, rect.y1].iter().try_for_each(|v| within("its place", *v as f32, &COORDINATE))?;
+    let side = Picture::LONGEST_SIDE_PX.max(canvas.width).max(canvas.height) as usize;
+    let (width, height) = (rect.width(), rect.height());
+    if width.max(height) > side || width * height > Picture::MOST_PX.max(canvas.area()) {
+        return Err(format!("it has {width} × {height} px, more than a picture holds"));
+    }
+    Ok(())
+}
+
+pub fn region(region: &SurfaceRegion) -> Fit {
+    within("the point of a region", region.at.x, &COORDINATE)?;
+    within("the point of a region", region.at.y, &COORDINATE)?;
+    within("the tolerance of a region", region.tolerance, &region.kind.tolerances())?;
+    within("the softness of a region", region.softness, &SurfaceRegion::SOFTNESS)
+}

@@ -1,0 +1,63 @@
+//! Selections on a canvas of another size. Floor 4.
+
+use super::{CanvasScale, covered};
+use crate::document::{Document, NamedSelection};
+use crate::math::{Rect, srgb::quantise};
+use crate::paint::Selection;
+use crate::raster::{CoverageGrid, TILE};
+use crate::surface::region::SurfaceRegion;
+use std::sync::{Arc, PoisonError};
+
+impl CanvasScale {
+    /// The document with its active and its kept selections scaled, and all else as it is.
+    pub(super) fn selected(&self, document: &Document) -> Document {
+        let kept =
+            |kept: &NamedSelection| NamedSelection { selection: self.selection(&kept.selection), ..kept.clone() };
+        let scaled = |selection: &Arc<Selection>| self.selection(selection);
+        Document {
+            selections: document.selections.iter().map(kept).collect(),
+            active_selection: document.active_selection.as_ref().map(scaled).filter(|found| !found.is_empty()),
+            ..document.clone()
+        }
+    }
+    /// A selection scaled, resampled once however many strokes share it.
+    pub(super) fn selection(&self, selection: &Arc<Selection>) -> Arc<Selection> {
+        let key = Arc::as_ptr(selection) as usize;
+        let mut known = self.selections.lock().unwrap_or_else(PoisonError::into_inner);
+        let (_, scaled) = known.entry(key).or_insert_with(|| {
+            let made = selection.made.map(|region| SurfaceRegion { at: region.at * self.per_axis, ..region });
+            let scaled = Arc::new(Selection { coverage: self.coverage(&selection.coverage), made });
+            // The old one is kept too, so that no other takes its address.
+            (selection.clone(), scaled)
+        });
+        scaled.clone()
+    }
+    /// Coverage resampled; what is not covered goes on beyond the canvas.
+    fn coverage(&self, grid: &CoverageGrid) -> CoverageGrid {
+        let Rect { x0, y0, x1, y1 } = grid.covered();
+        let low = |v: i32, s: f32| (f64::from(v) * f64::from(s)).floor() as i32;
+        let high = |v: i32, s: f32| (f64::from(v) * f64::from(s)).ceil() as i32;
+        let bounds = Rect::new(
+            low(x0, self.per_axis.x),
+            low(y0, self.per_axis.y),
+            high(x1, self.per_axis.x),
+            high(y1, self.per_axis.y),
+        );
+        // Beyond the old canvas the border goes on, as of masks.
+        let clamp = |v: i32, n: u32| if (-1..=n as i32).contains(&v) { v.max(0).min(n as i32 - 1) } else { v };
+        CoverageGrid::from_tiles(bounds.intersect(self.to.rect().grown(self.to.width as i32)), |at, bytes| {
+            let rect = at.rect();
+            let columns: Vec<_> = (rect.x0..rect.x1).map(|x| covered(x, self.per_axis.x)).collect();
+            for (y, row) in (rect.y0..).zip(bytes.as_chunks_mut::<TILE>().0) {
+                let rows = covered(y, self.per_axis.y);
+                for (to, columns) in row.iter_mut().zip(&columns) {
+                    let of_row = |&(y, wy): &(i32, f32)| {
+                        let at = |x: i32| f32::from(grid.at(clamp(x, self.from.width), clamp(y, self.from.height)));
+                        columns.iter().map(|&(x, wx)| wx * wy * at(x)).sum::<f32>()
+                    };
+                    *to = quantise(rows.iter().map(of_row).sum::<f32>() / 255.0);
+                }
+            }
+        })
+    }
+}

@@ -1,0 +1,72 @@
+//! How much each pixel of a surface differs from one of its pixels, by each kind of region (MATH 7). Floor 2.
+
+use super::RegionKind;
+use crate::math::{Vec2, Vec3};
+use crate::raster::Plane;
+use crate::surface::Surface;
+use crate::surface::flow::FlowField;
+
+/// κ is taken at this share of the canvas's longer side, and the normals are blurred by that one before: a picture has
+/// the same regions at any size.
+const KAPPA_SCALE: f32 = 1.0 / 96.0;
+const KAPPA_BLUR: f32 = 1.0 / 512.0;
+/// The smoothing of the flow, a share of the longer side.
+const FLOW_BLUR: f32 = 1.0 / 256.0;
+
+/// v of every pixel; infinite off the surface.
+pub fn of(surface: &Surface, kind: RegionKind, (x0, y0): (usize, usize)) -> Plane<f32> {
+    let on_surface = |value: &(dyn Fn(usize, usize) -> f32 + Sync)| {
+        Plane::from_fn(surface.size(), |x, y| if surface.coverage(x, y) > 0 { value(x, y) } else { f32::INFINITY })
+    };
+    let longer = surface.size().longer_side();
+    match kind {
+        RegionKind::Direction => {
+            let n0 = surface.normal(x0, y0);
+            on_surface(&|x, y| angle(surface.normal(x, y), n0))
+        }
+        RegionKind::Shine => {
+            let r0 = mirrored(surface.normal(x0, y0));
+            on_surface(&|x, y| angle(mirrored(surface.normal(x, y)), r0))
+        }
+        RegionKind::Depth => {
+            let z0 = surface.depth(x0, y0);
+            on_surface(&|x, y| (surface.depth(x, y) - z0).abs())
+        }
+        RegionKind::Curvature => {
+            let curvature = surface.curvature(KAPPA_BLUR * longer);
+            let kappa = |x: usize, y: usize| curvature.kappa(x, y, KAPPA_SCALE * longer);
+            let k0 = kappa(x0, y0);
+            on_surface(&|x, y| (kappa(x, y) - k0).abs())
+        }
+        RegionKind::Object => {
+            let labels = surface.objects().labels();
+            let here = labels.at(x0, y0);
+            on_surface(&|x, y| if labels.at(x, y) == here { 0.0 } else { f32::INFINITY })
+        }
+        RegionKind::Flow => {
+            let flow = FlowField::of_normals(surface).smoothed(Some(surface.coverage_plane()), FLOW_BLUR * longer);
+            let along = |x: usize, y: usize| {
+                let eigen = flow.at(x, y).eigen();
+                // Where the normals turn alike every way there is no line.
+                (eigen.larger > 1.05 * eigen.smaller.max(0.0) + 1e-12).then_some(eigen.direction)
+            };
+            let Some(u0) = along(x0, y0) else { return on_surface(&|_, _| f32::INFINITY) };
+            on_surface(&|x, y| along(x, y).map_or(f32::INFINITY, |u| between_lines(u, u0)))
+        }
+    }
+}
+
+/// The angle between unit vectors, degrees: 2 asin(½ |a − b|), which small angles do not lose their digits in.
+pub fn angle(a: Vec3, b: Vec3) -> f32 {
+    2.0 * (0.5 * a.distance(b)).min(1.0).asin().to_degrees()
+}
+
+/// r = 2 n_z n − e_z: where a mirror sends the view (MATH 5).
+pub fn mirrored(n: Vec3) -> Vec3 {
+    2.0 * n.z * n - Vec3::Z
+}
+
+/// The angle between two lines of unit directions, degrees, at most 90.
+pub fn between_lines(a: Vec2, b: Vec2) -> f32 {
+    a.perp_dot(b).abs().atan2(a.dot(b).abs()).to_degrees()
+}

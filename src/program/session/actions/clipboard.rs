@@ -1,0 +1,184 @@
+//! Cut, copy and paste of what is selected. What is copied stays a layer of its own kind: strokes stay strokes, live
+//! layers live; other programs are handed its pixels. Floor 6. The system's clipboard is the window's.
+
+use super::layers::{LayerAction, above};
+use crate::document::cut::taken;
+use crate::document::{Content, Document, Layer, LayerLock, LayerSlot, PixelLayer, Progress, flatten, flatten_layer};
+use crate::math::{Rect, Size};
+use crate::raster::{CoverageGrid, TileGrid};
+use crate::session::replay::actions;
+use crate::session::{OpenDocument, Session};
+use crate::tools::brush::free_name;
+use std::sync::Arc;
+
+actions! {
+    ClipboardAction {
+        /// Of the selected layer, or of all that shows.
+        "copy" Copy { merged: bool }
+        "cut" Cut {}
+        /// In place, above the selected layer.
+        "paste" Paste {}
+        /// As a document of its size.
+        "paste new" PasteNew {}
+        /// A new layer with what is selected of this one: copied, or taken out of it.
+        "layer via" LayerVia { cut: bool }
+    }
+}
+
+/// What was copied last.
+#[derive(Clone)]
+pub struct Copied {
+    /// As a layer of its own kind.
+    layer: Layer,
+    canvas: Size,
+    /// The same for other programs: straight RGBA, where it lies.
+    pub rect: Rect,
+    pub rgba: Arc<Vec<u8>>,
+}
+
+impl ClipboardAction {
+    pub fn apply(&self, session: &mut Session) {
+        session.drop_gesture();
+        if let ClipboardAction::PasteNew {} = self {
+            return paste_new(session);
+        }
+        let copied = session.copied.clone();
+        let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
+        tab.forget_preview();
+        let said = match self {
+            ClipboardAction::Copy { merged } => match copy(tab.document(), tab.selected, *merged) {
+                Ok(copied) => {
+                    session.copied = Some(copied);
+                    return session.say("Copied.");
+                }
+                Err(why) => why,
+            },
+            ClipboardAction::Cut {} => match cut(tab) {
+                Ok(copied) => return session.copied = Some(copied),
+                Err(why) => why,
+            },
+            ClipboardAction::Paste {} => match copied {
+                Some(copied) => return paste(tab, &copied),
+                None => "Nothing was copied yet.",
+            },
+            ClipboardAction::LayerVia { cut } => match layer_via(tab, *cut) {
+                Ok(()) => return,
+                Err(why) => why,
+            },
+            ClipboardAction::PasteNew {} => return,
+        };
+        session.say(said);
+    }
+}
+
+const NO_LAYER: &str = "Choose a layer first.";
+const NOTHING_THERE: &str = "The layer has nothing where you selected.";
+const LOCKED: &str = "The layer is locked: unlock it to cut from it.";
+
+/// What is selected, or all of the canvas.
+fn covered(document: &Document) -> CoverageGrid {
+    document.selected().cloned().unwrap_or_else(|| CoverageGrid::filled(document.size.rect()))
+}
+
+fn copy(document: &Document, layer: Option<crate::document::LayerId>, merged: bool) -> Result<Copied, &'static str> {
+    let (covered, progress) = (covered(document), Progress::default());
+    let (layer, tiles) = if merged {
+        let tiles = taken(&flatten(document, &progress).ok_or(NOTHING_THERE)?, &covered);
+        let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
+        (Layer { clip_to_surface: false, ..Layer::new("Copy", Content::Pixels(pixels)) }, tiles)
+    } else {
+        let id = layer.ok_or(NO_LAYER)?;
+        let copied = document.copied_from(id, &covered).ok_or(NOTHING_THERE)?;
+        let look = document.with_layer(id, |layer| {
+            (layer.opacity, layer.visible, layer.clip_below) = (1.0, true, false);
+        });
+        let painted = look.and_then(|look| flatten_layer(&look, id, &progress)).ok_or(NOTHING_THERE)?;
+        (copied, taken(&painted, &covered))
+    };
+    let rect = CoverageGrid::of_alpha(&tiles).covered().intersect(document.size.rect());
+    if rect.is_empty() && merged {
+        return Err("Nothing shows where you selected.");
+    }
+    let rgba = Arc::new(tiles.to_straight_rgba(rect));
+    Ok(Copied { layer, canvas: document.size, rect, rgba })
+}
+
+fn cut(tab: &mut OpenDocument) -> Result<Copied, &'static str> {
+    let document = tab.document();
+    let id = tab.selected.ok_or(NO_LAYER)?;
+    if document.layer(id).is_some_and(|layer| layer.lock != LayerLock::None) {
+        return Err(LOCKED);
+    }
+    let copied = copy(document, Some(id), false)?;
+    let next = document.with_cleared(id, &covered(document)).ok_or(LOCKED)?;
+    tab.commit("Cut", next);
+    Ok(copied)
+}
+
+fn paste(tab: &mut OpenDocument, copied: &Copied) {
+    let layer = pasted(copied, tab.document());
+    let (id, slot) = (layer.id, above(tab));
+    let next = tab.document().with_inserted(layer, slot);
+    if next.is_some_and(|next| tab.commit("Paste", next)) {
+        tab.selected = Some(id);
+    }
+}
+
+/// What was copied as a new layer of a document; on a canvas of another size masks, which have their canvas's, become
+/// pixels.
+fn pasted(copied: &Copied, document: &Document) -> Layer {
+    let name = free_name(document, &copied.layer.name);
+    let is_plain = copied.layer.mask.is_none() && copied.layer.content.group().is_none();
+    if copied.canvas != document.size && !is_plain {
+        let Rect { x0, y0, .. } = copied.rect;
+        let tiles = TileGrid::from_straight_rgba(&copied.rgba, copied.rect.width(), copied.rect.height(), x0, y0);
+        return Layer::new(name, Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+    }
+    // Pasted twice, it is two layers.
+    Layer { name, ..super::layers::copied(&copied.layer, "") }
+}
+
+fn paste_new(session: &mut Session) {
+    let Some(copied) = session.copied.clone().filter(|copied| !copied.rect.is_empty()) else {
+        return session.say("Nothing was copied yet.");
+    };
+    let (width, height) = (copied.rect.width(), copied.rect.height());
+    let size = Size::new(width as u32, height as u32);
+    let tiles = TileGrid::from_straight_rgba(&copied.rgba, width, height, 0, 0);
+    let layer = Layer::new(copied.layer.name.clone(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+    let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
+    let name = session.untitled();
+    let mut tab = OpenDocument::new(name, document, None);
+    tab.mark_unsaved();
+    session.add_document(tab);
+}
+
+/// Copies what is selected of the layer to a new one above it, and takes it out of this one if it is cut.
+fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
+    let document = tab.document();
+    let id = tab.selected.ok_or(NO_LAYER)?;
+    let old = document.layer(id).ok_or(NO_LAYER)?;
+    if cut && old.lock != LayerLock::None {
+        return Err(LOCKED);
+    }
+    let Some(selected) = document.selected() else {
+        if cut {
+            return Err("Nothing is selected.");
+        }
+        let path = crate::session::LayerPath::of(document, id).ok_or(NO_LAYER)?;
+        LayerAction::Duplicate { layer: path }.step_on(tab);
+        return Ok(());
+    };
+    let mut layer = document.copied_from(id, selected).ok_or(NOTHING_THERE)?;
+    layer.name = free_name(document, &format!("{} copy", old.name));
+    let left = match cut {
+        true => document.with_cleared(id, selected).ok_or(LOCKED)?,
+        false => document.clone(),
+    };
+    let (new, place) = (layer.id, document.place_of(id).ok_or(NO_LAYER)?);
+    let next = left.with_inserted(layer, LayerSlot { index: place.index + 1, ..place }).ok_or(NO_LAYER)?;
+    if tab.commit(if cut { "Layer via cut" } else { "Layer via copy" }, next) {
+        tab.selected = Some(new);
+    }
+    Ok(())
+}

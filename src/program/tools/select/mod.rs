@@ -1,0 +1,109 @@
+//! The selection tools: rectangle, ellipse, lasso, wand, and the wand of the surface. Each shows its selection while
+//! the pen moves and keeps it when it lifts. Floor 5. What selections are stands in `paint::selection`, how they meet
+//! in `document::selections`. Not here: commands on the selection there is (`session::actions::selection`).
+
+mod lasso;
+mod shapes;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod wand;
+
+use super::{Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
+use crate::document::Document;
+use crate::math::{Range, Vec2};
+use crate::paint::{Fill, Selection};
+use crate::raster::coverage::Combine;
+use crate::surface::region::{RegionKind, SurfaceRegion};
+
+/// The settings of the selection tools.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelectSettings {
+    /// How a new selection meets the one there is, where no key says otherwise.
+    pub combine: Combine,
+    /// The wand: its region is that of a fill.
+    pub wand: Fill,
+    /// The wand takes only what is joined to the pixel.
+    pub joined: bool,
+    /// The surface wand: its point is that of the pen.
+    pub region: SurfaceRegion,
+}
+
+impl Default for SelectSettings {
+    fn default() -> Self {
+        Self {
+            combine: Combine::Replace,
+            wand: Fill { grow_px: 0.0, ..Fill::default() },
+            joined: true,
+            region: SurfaceRegion::new(RegionKind::Direction, Vec2::ZERO),
+        }
+    }
+}
+
+impl SelectSettings {
+    /// Of the wand.
+    pub const TOLERANCE: Range = crate::math::UNIT;
+
+    /// With another kind of region, which begins with its own tolerance.
+    pub fn with_kind(self, kind: RegionKind) -> Self {
+        Self { region: SurfaceRegion { kind, tolerance: kind.tolerance(), ..self.region }, ..self }
+    }
+    /// How a selection meets the one there is: Shift adds, Alt takes away, both intersect.
+    pub fn how(&self, keys: ModifierKeys) -> Combine {
+        match (keys.shift, keys.alt) {
+            (true, true) => Combine::Intersect,
+            (true, false) => Combine::Add,
+            (false, true) => Combine::TakeAway,
+            (false, false) => self.combine,
+        }
+    }
+}
+
+/// Screen points that the pen moves for all of a tolerance's range.
+const TOLERANCE_PT: f32 = 500.0;
+/// Movements smaller than this are those of a click, screen points.
+const SLOP_PT: f32 = 3.0;
+
+/// The pen comes down with one of the selection tools.
+pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureStart {
+    match kind {
+        ToolKind::SelectRectangle | ToolKind::SelectEllipse if moves(context, pen) => shapes::moving(context, pen),
+        ToolKind::SelectRectangle => shapes::press(context, pen, shapes::Shape::Rectangle),
+        ToolKind::SelectEllipse => shapes::press(context, pen, shapes::Shape::Ellipse),
+        ToolKind::Lasso => lasso::press(context, pen),
+        ToolKind::Wand => wand::press(context, pen),
+        ToolKind::SurfaceWand => surface::press(context, pen),
+        _ => (None, Outcome::Idle),
+    }
+}
+
+/// The selection of a lasso that is closed by a key.
+pub fn closed(document: &Document, points: &[Vec2], settings: &SelectSettings) -> Option<Document> {
+    (points.len() >= 3).then(|| lasso::selected(document, points, settings.combine))
+}
+
+/// Whether the pen takes hold of the selection that there is: it comes down within it, and would replace it.
+fn moves(context: &ToolContext, pen: PenSample) -> bool {
+    let at = pen.place().floor().as_ivec2();
+    let is_in = context.document.selected().is_some_and(|grid| grid.at(at.x, at.y) >= 128);
+    is_in && pen.place().is_finite() && context.select.how(pen.keys) == Combine::Replace
+}
+
+/// The tolerance that a drag to the right or the left says.
+fn dragged(from: f32, by_px: f32, px_per_pt: f32, range: &Range) -> f32 {
+    let span = range.end() - range.start();
+    crate::math::range::held(from + by_px / px_per_pt.max(1e-6) * span / TOLERANCE_PT, range)
+}
+
+fn begin(mut gesture: impl Gesture + 'static, pen: PenSample) -> GestureStart {
+    let outcome = gesture.drag(&[pen]);
+    (Some(Box::new(gesture)), outcome)
+}
+
+fn step(document: Document) -> Outcome {
+    Outcome::Commit { label: "Select".into(), document, select: None }
+}
+
+fn combined(document: &Document, new: Selection, how: Combine) -> Document {
+    document.with_combined(new, how)
+}

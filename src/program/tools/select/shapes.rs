@@ -1,0 +1,103 @@
+//! Rectangles and ellipses dragged from corner to corner, and the outline of a selection moved. Floor 5.
+
+use super::{SLOP_PT, begin, combined, step};
+use crate::document::Document;
+use crate::math::Vec2;
+use crate::paint::Selection;
+use crate::raster::coverage::{Combine, shapes};
+use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+
+#[derive(Clone, Copy, PartialEq)]
+pub enum Shape {
+    Rectangle,
+    Ellipse,
+}
+
+pub fn press(context: &ToolContext, pen: PenSample, shape: Shape) -> GestureStart {
+    let (document, how) = (context.document.clone(), context.select.how(pen.keys));
+    let slop_px = SLOP_PT * context.px_per_pt;
+    let from = pen.place();
+    (Some(Box::new(ShapeGesture { document, shape, how, from, to: from, slop_px })), Outcome::Idle)
+}
+
+struct ShapeGesture {
+    document: Document,
+    shape: Shape,
+    how: Combine,
+    from: Vec2,
+    to: Vec2,
+    slop_px: f32,
+}
+
+impl ShapeGesture {
+    /// Whether the pen went far enough for a shape.
+    fn is_drawn(&self) -> bool {
+        (self.to - self.from).abs().max_element() > self.slop_px
+    }
+    fn with(&self) -> Document {
+        let canvas = self.document.size.rect();
+        let coverage = match self.shape {
+            // Along whole pixels, as they are seen.
+            Shape::Rectangle => shapes::rectangle(self.from.round(), self.to.round(), canvas),
+            Shape::Ellipse => shapes::ellipse(self.from, self.to, canvas),
+        };
+        combined(&self.document, Selection::new(coverage), self.how)
+    }
+}
+
+impl Gesture for ShapeGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        let by = pen.place() - self.from;
+        // With Ctrl as wide as high.
+        let even = Vec2::splat(by.abs().max_element()).copysign(by);
+        self.to = self.from + if pen.keys.ctrl { even } else { by };
+        if self.is_drawn() { Outcome::Preview(self.with()) } else { Outcome::Idle }
+    }
+    fn release(&mut self) -> Outcome {
+        if self.is_drawn() {
+            return step(self.with());
+        }
+        // A click beside the selection lets go of it, which can be undone.
+        match self.how == Combine::Replace && self.document.active_selection.is_some() {
+            true => {
+                Outcome::Commit { label: "Deselect".into(), document: self.document.with_selection(None), select: None }
+            }
+            false => Outcome::Cancel,
+        }
+    }
+}
+
+/// Takes hold of the selection; its pixels stay.
+pub fn moving(context: &ToolContext, pen: PenSample) -> GestureStart {
+    begin(MoveOutline { document: context.document.clone(), from: pen.place(), by: Vec2::ZERO }, pen)
+}
+
+struct MoveOutline {
+    document: Document,
+    from: Vec2,
+    by: Vec2,
+}
+
+impl MoveOutline {
+    fn with(&self) -> Option<Document> {
+        let coverage = self.document.selected()?.shifted(self.by.x as i32, self.by.y as i32);
+        Some(self.document.with_selection(Some(Selection::new(coverage))))
+    }
+}
+
+impl Gesture for MoveOutline {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        let by = |v: f32| crate::math::range::held(v, &crate::math::COORDINATE).round();
+        let moved = pen.place() - self.from;
+        self.by = Vec2::new(by(moved.x), by(moved.y));
+        self.with().filter(|_| self.by != Vec2::ZERO).map_or(Outcome::Idle, Outcome::Preview)
+    }
+    fn release(&mut self) -> Outcome {
+        match self.with().filter(|_| self.by != Vec2::ZERO) {
+            Some(document) => Outcome::Commit { label: "Move selection".into(), document, select: None },
+            None => Outcome::Cancel,
+        }
+    }
+}

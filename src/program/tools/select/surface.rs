@@ -1,0 +1,66 @@
+//! The surface wand: all that faces the same way as the point under the pen, lies as deep, bends as it does, belongs to
+//! its object, would shine with it, or flows along it; a drag to the right or the left changes the tolerance. Floor 5.
+//! `surface::region` finds it.
+
+use super::{SelectSettings, combined, dragged};
+use crate::document::Document;
+use crate::math::Vec2;
+use crate::paint::Selection;
+use crate::raster::coverage::Combine;
+use crate::surface::region::{RegionField, SurfaceRegion};
+use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let Some(surface) = &context.document.surface else {
+        return (None, Outcome::Refused("There is no surface here to select by. File › New… opens one from its maps."));
+    };
+    let told = SurfaceRegion { at: pen.place(), ..context.select.region };
+    let Some(field) = RegionField::new(surface, told.kind, told.at) else {
+        return (None, Outcome::Refused("Click on the surface: beside it there is nothing to select by."));
+    };
+    let mut gesture = RegionGesture {
+        document: context.document.clone(),
+        how: context.select.how(pen.keys),
+        field,
+        from: pen.place(),
+        begun: told,
+        told,
+        settings: context.select,
+        px_per_pt: context.px_per_pt,
+    };
+    let outcome = gesture.drag(&[pen]);
+    (Some(Box::new(gesture)), outcome)
+}
+
+struct RegionGesture {
+    document: Document,
+    how: Combine,
+    field: RegionField,
+    from: Vec2,
+    begun: SurfaceRegion,
+    /// With the tolerance as far as it was dragged.
+    told: SurfaceRegion,
+    settings: SelectSettings,
+    px_per_pt: f32,
+}
+
+impl RegionGesture {
+    fn outcome(&self, is_done: bool) -> Outcome {
+        let selection = Selection { coverage: self.field.region(&self.told), made: Some(self.told) };
+        let document = combined(&self.document, selection, self.how);
+        Outcome::Tuned { document, select: SelectSettings { region: self.told, ..self.settings }, is_done }
+    }
+}
+
+impl Gesture for RegionGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        let by_px = pen.place().x - self.from.x;
+        let range = self.begun.kind.tolerances();
+        self.told.tolerance = dragged(self.begun.tolerance, by_px, self.px_per_pt, &range);
+        self.outcome(false)
+    }
+    fn release(&mut self) -> Outcome {
+        self.outcome(true)
+    }
+}

@@ -1,0 +1,114 @@
+//! The outline of the selection: dashes that march, one screen point wide at any zoom. Floor 7. The outline is found
+//! tile by tile (`raster::coverage::contour`) and cached; only tiles in view are drawn.
+
+use crate::math::{Affine2, Rect, Vec2, vec2};
+use crate::raster::coverage::contour::{self, Run, RunsKey};
+use crate::raster::{CoverageGrid, TileAt};
+use crate::session::Session;
+use eframe::egui::{
+    self, Color32, ColorImage, Mesh, Painter, Shape, TextureHandle, TextureOptions, TextureWrapMode, pos2,
+};
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A dash and the gap after it, screen points.
+const DASHES_PT: f32 = 8.0;
+/// How fast they march, screen points a second.
+const PACE_PT: f32 = 16.0;
+/// Between two frames of them.
+const FRAME: Duration = Duration::from_millis(60);
+/// Outlines of tiles that are kept.
+const KEPT: usize = 20_000;
+
+/// The outlines of the tiles of the selection that is shown.
+#[derive(Default)]
+pub struct Ants {
+    /// Kept, so that no other tile takes the address of one of its own.
+    grid: CoverageGrid,
+    runs: HashMap<RunsKey, Arc<Vec<Run>>>,
+    dashes: Option<TextureHandle>,
+    /// What is selected, canvas px.
+    covered: Option<Rect>,
+}
+
+impl Ants {
+    /// The smallest rectangle that holds all that is selected, as last drawn.
+    pub fn covered(&self) -> Option<Rect> {
+        self.covered
+    }
+    /// Draws the outline of the selection as shown. `visible`: the canvas pixels in view.
+    pub fn draw(&mut self, painter: &Painter, session: &Session, screen_from_canvas: Affine2, visible: Rect) {
+        let selected = session.shown().and_then(|document| document.selected());
+        self.follow(selected);
+        let Some(grid) = selected else { return };
+        if session.hides_selection || session.active().is_some_and(|tab| tab.quick_mask) {
+            return;
+        }
+        let scale = screen_from_canvas.matrix2.x_axis.length();
+        // Blocks of at least a screen point.
+        let level = (1.0 / scale.max(1e-6)).log2().floor().max(0.0) as u32;
+        let bounds = grid.bounds();
+        let reach = Rect { x1: bounds.x1 + 1, y1: bounds.y1 + 1, ..bounds }.intersect(visible);
+        let time_secs = painter.ctx().input(|input| input.time) as f32;
+        let mut mesh = Mesh::with_texture(self.dashes(painter.ctx()));
+        let phase = (time_secs * PACE_PT / DASHES_PT).fract();
+        for at in TileAt::covering(reach) {
+            for run in self.runs_of(grid, at, level).iter() {
+                line(&mut mesh, run, screen_from_canvas, phase);
+            }
+        }
+        painter.add(Shape::mesh(mesh));
+        painter.ctx().request_repaint_after(FRAME);
+    }
+    /// Takes up another selection, and forgets what is not of it. The old one lives until then, so that tiles of both
+    /// have different addresses.
+    fn follow(&mut self, selected: Option<&CoverageGrid>) {
+        let Some(grid) = selected else {
+            return *self = Self { dashes: self.dashes.take(), ..Self::default() };
+        };
+        if self.covered.is_some() && grid.ptr_eq(&self.grid) {
+            return;
+        }
+        self.runs.retain(|key, _| key.is_of(grid));
+        (self.grid, self.covered) = (grid.clone(), Some(grid.covered()));
+    }
+    fn runs_of(&mut self, grid: &CoverageGrid, at: TileAt, level: u32) -> Arc<Vec<Run>> {
+        if self.runs.len() > KEPT {
+            self.runs.clear();
+        }
+        let key = contour::key(grid, at, level);
+        self.runs.entry(key).or_insert_with(|| Arc::new(contour::runs(grid, at, level))).clone()
+    }
+    fn dashes(&mut self, ctx: &egui::Context) -> egui::TextureId {
+        let texture = self.dashes.get_or_insert_with(|| {
+            let pixel = |i: usize| if i < 4 { Color32::WHITE } else { Color32::BLACK };
+            let image = ColorImage::new([8, 1], (0..8).map(pixel).collect());
+            let options = TextureOptions { wrap_mode: TextureWrapMode::Repeat, ..TextureOptions::NEAREST };
+            ctx.load_texture("dashes", image, options)
+        });
+        texture.id()
+    }
+}
+
+/// A piece of the outline as a band of one screen point. Its dashes follow its place on the screen, so that they go on
+/// from piece to piece.
+fn line(mesh: &mut Mesh, run: &Run, screen_from_canvas: Affine2, phase: f32) {
+    let from = vec2(run.x as f32, run.y as f32);
+    let along = if run.is_vertical { vec2(0.0, run.length as f32) } else { vec2(run.length as f32, 0.0) };
+    let [a, b] = [from, from + along].map(|p| screen_from_canvas.transform_point2(p));
+    let way = (b - a).normalize_or_zero();
+    // Half a point longer at both ends, so that corners are closed.
+    let (a, b, aside) = (a - 0.5 * way, b + 0.5 * way, 0.5 * vec2(-way.y, way.x));
+    let first = mesh.vertices.len() as u32;
+    for p in [a - aside, a + aside, b + aside, b - aside] {
+        mesh.vertices.push(vertex(p, phase));
+    }
+    mesh.add_triangle(first, first + 1, first + 2);
+    mesh.add_triangle(first, first + 2, first + 3);
+}
+
+fn vertex(p: Vec2, phase: f32) -> egui::epaint::Vertex {
+    let uv = pos2((p.x + p.y) / DASHES_PT - phase, 0.5);
+    egui::epaint::Vertex { pos: pos2(p.x, p.y), uv, color: Color32::WHITE }
+}

@@ -1,0 +1,76 @@
+//! Asks by how much the edge of the selection is to be changed.
+//! Floor 7.
+
+use super::{DialogAnswer, buttons};
+use crate::requests::UiRequests;
+use crate::session::Action;
+use crate::session::actions::{EdgeChange, SelectionAction};
+use eframe::egui::{DragValue, Ui};
+
+pub struct EdgeDialog {
+    change: EdgeChange,
+    px: f32,
+}
+
+impl EdgeDialog {
+    pub fn new(change: EdgeChange) -> Self {
+        Self { change, px: 5.0 }
+    }
+    pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
+        ui.set_width(300.0);
+        ui.heading(self.change.label());
+        ui.weak(self.change.hint());
+        ui.horizontal(|ui| {
+            let label = ui.label("Pixels");
+            let range = self.change.range();
+            ui.add(DragValue::new(&mut self.px).range(range).speed(0.1).suffix(" px")).labelled_by(label.id);
+        });
+        match buttons(ui, "Change", true) {
+            Some(true) => {
+                requests.act(Action::Selection(SelectionAction::Change { change: self.change, px: self.px }));
+                DialogAnswer::Close
+            }
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
+        }
+    }
+}
+
+/// Asks for the name that the selection is kept by, and shows those that are kept.
+#[derive(Default)]
+pub struct KeepDialog {
+    name: String,
+    is_begun: bool,
+}
+
+impl KeepDialog {
+    pub fn show(&mut self, ui: &mut Ui, kept: &[String], requests: &mut UiRequests) -> DialogAnswer {
+        ui.set_width(320.0);
+        ui.heading("Keep selection");
+        ui.weak("Under a name, with the document. A name that is there already gets the new selection.");
+        ui.horizontal(|ui| {
+            let label = ui.label("Name of selection");
+            let field = ui.text_edit_singleline(&mut self.name).labelled_by(label.id);
+            if !std::mem::replace(&mut self.is_begun, true) {
+                field.request_focus();
+            }
+        });
+        for name in kept {
+            ui.horizontal(|ui| {
+                ui.label(name);
+                if ui.small_button(format!("Forget {name}")).clicked() {
+                    requests.act(Action::Selection(SelectionAction::Forget { name: name.clone() }));
+                }
+            });
+        }
+        match buttons(ui, "Keep", !self.name.trim().is_empty()) {
+            Some(true) => {
+                let name = self.name.trim().to_owned();
+                requests.act(Action::Selection(SelectionAction::Keep { name }));
+                DialogAnswer::Close
+            }
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
+        }
+    }
+}
