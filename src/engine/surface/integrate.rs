@@ -2,12 +2,12 @@
 //! by conjugate gradients with a multigrid preconditioner. Floor 2. The reverse is `differentiate`. Normals do not say
 //! how far apart two pieces of surface are across an occluding contour; that stays unknown.
 
-mod multigrid;
 mod slopes;
 
+use super::springs::{Effort, SolveScratch, SpringGrid, SpringSolver};
 use crate::math::Vec3;
+use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
-use multigrid::SpringGrid;
 use slopes::Slopes;
 
 /// Depth made from normals.
@@ -38,12 +38,14 @@ pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option
 
 /// The heights of all pixels at once.
 fn whole(slopes: &Slopes) -> Vec<f32> {
-    let (w, h) = (slopes.inside.width(), slopes.inside.height());
     let size = slopes.inside.size();
     let right = Plane::from_fn(size, |x, y| slopes.edge((x, y), 0).0).into_values();
     let down = Plane::from_fn(size, |x, y| slopes.edge((x, y), 1).0).into_values();
     let source = Plane::from_fn(size, |x, y| slopes.source(x, y));
-    multigrid::solve(&multigrid::levels(SpringGrid::new(w, h, right, down)), source.values(), multigrid::EXACT)
+    let solver = SpringSolver::new(SpringGrid::new(slopes.inside.width(), right, down));
+    let mut heights = filled_or_unwind(size.area(), 0.0);
+    solver.solve(source.values(), &mut heights, Effort::EXACT, &mut SolveScratch::default());
+    heights
 }
 
 /// Gives every connected piece the mean 0: the equations leave a free constant per piece.

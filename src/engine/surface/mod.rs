@@ -24,6 +24,7 @@ mod pyramid;
 pub mod reach;
 pub mod region;
 pub mod scene;
+mod springs;
 pub mod support;
 
 pub use anchor::{Anchor, Bend, Weights};

@@ -1,0 +1,368 @@
+//! The coarser levels of springs: unknowns that stand for blocks of finer ones, joined by springs in any shape.
+//! Floor 2. How unknowns are merged, and the V-cycle below the grid. Not here: the grid itself (`springs`).
+
+use super::SpringGrid;
+use crate::memory::filled_or_unwind;
+use rayon::prelude::*;
+
+/// No unknown of a coarser level.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A spring joins its ends into one coarser unknown if it is at least this share of the stiffest at the slacker end.
+const STRONG: f32 = 0.1;
+
+/// Unknowns and their springs, those of unknown i at `starts[i]..starts[i + 1]`.
+pub(super) struct SpringGraph {
+    starts: Vec<u32>,
+    ends: Vec<u32>,
+    stiffness: Vec<f32>,
+    /// 1 / Σ w; 0 without springs.
+    inverse: Vec<f32>,
+    /// The block of the grid that each unknown lies in.
+    blocks: Vec<[u32; 2]>,
+    /// Of each unknown, its unknown on the next level; empty on the last.
+    parent: Vec<u32>,
+    /// Of each unknown of the last level the number of its piece, and how many pieces there are.
+    pieces: (Vec<u32>, usize),
+}
+
+/// Right-hand side and solution of a level.
+#[derive(Default)]
+pub(super) struct GraphScratch {
+    b: Vec<f32>,
+    v: Vec<f32>,
+    twin: Vec<f32>,
+}
+
+/// Unknowns that one task works on; fewer are not worth a task.
+const CHUNK: usize = 8192;
+
+impl SpringGraph {
+    /// The first level below a grid, and of each of the grid's unknowns the one that stands for it.
+    pub fn of_grid(grid: &SpringGrid) -> (Vec<u32>, Self) {
+        let (w, h) = (grid.width(), grid.height());
+        let mut parent = filled_or_unwind(w * h, NONE);
+        let mut blocks: Vec<[u32; 2]> = Vec::new();
+        if w == 0 || h == 0 {
+            return (parent, Self::joined(blocks, |_, _| {}));
+        }
+        // Each two rows number their unknowns from 0; what precedes them is added afterwards.
+        let counts: Vec<Vec<u32>> =
+            parent.par_chunks_mut(2 * w).enumerate().map(|(y, rows)| number_rows(grid, y, rows)).collect();
+        let mut before = Vec::with_capacity(counts.len());
+        for (y, columns) in counts.iter().enumerate() {
+            before.push(blocks.len() as u32);
+            blocks.extend(columns.iter().map(|&x| [x, y as u32]));
+        }
+        parent.par_chunks_mut(2 * w).zip(&before).for_each(|(rows, before)| {
+            rows.iter_mut().filter(|p| **p != NONE).for_each(|p| *p += before);
+        });
+        let of_block = |[x, y]: [u32; 2]| {
+            let (x, y) = (2 * x as usize, 2 * y as usize);
+            [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].into_iter().filter(|&(x, y)| x < w && y < h)
+        };
+        let graph = Self::joined(blocks.clone(), |unknown, add| {
+            for (x, y) in of_block(blocks[unknown]).filter(|&(x, y)| parent[y * w + x] == unknown as u32) {
+                let i = y * w + x;
+                springs_at(grid, i).into_iter().filter(|s| s.1 > 0.0).for_each(|(j, s)| add(parent[j], s));
+            }
+        });
+        (parent, graph)
+    }
+    /// A graph of unknowns in given blocks; `springs` tells each unknown's finer springs with the unknown at their end.
+    fn joined(blocks: Vec<[u32; 2]>, springs: impl Fn(usize, &mut dyn FnMut(u32, f32)) + Sync) -> Self {
+        let chunk = |start: usize| {
+            let mut rows: Vec<(u32, f32)> = Vec::new();
+            let (mut counts, mut inner) = (Vec::new(), Vec::new());
+            for unknown in start..(start + CHUNK).min(blocks.len()) {
+                let (first, mut within) = (rows.len(), 0.0);
+                springs(unknown, &mut |end, stiffness| {
+                    if end == unknown as u32 {
+                        within += stiffness;
+                        return;
+                    }
+                    match rows[first..].iter_mut().find(|(known, _)| *known == end) {
+                        Some((_, sum)) => *sum += stiffness,
+                        None => rows.push((end, stiffness)),
+                    }
+                });
+                counts.push((rows.len() - first) as u32);
+                // Each was met at both of its ends, and half of them lie along any one way.
+                inner.push(0.25 * within);
+            }
+            (rows, counts, inner)
+        };
+        let starts: Vec<usize> = (0..blocks.len()).step_by(CHUNK).collect();
+        let chunks: Vec<_> = starts.into_par_iter().map(chunk).collect();
+        let inner: Vec<f32> = chunks.iter().flat_map(|(_, _, inner)| inner.iter().copied()).collect();
+        let mut graph = Self {
+            starts: Vec::with_capacity(blocks.len() + 1),
+            ends: Vec::new(),
+            stiffness: Vec::new(),
+            inverse: Vec::with_capacity(blocks.len()),
+            blocks,
+            parent: Vec::new(),
+            pieces: (Vec::new(), 0),
+        };
+        graph.starts.push(0);
+        for (mut rows, counts, _) in chunks {
+            let mut first = 0;
+            for count in counts {
+                let unknown = graph.inverse.len();
+                let row = &mut rows[first..first + count as usize];
+                row.iter_mut().for_each(|(end, s)| *s = in_series(*s, inner[unknown], inner[*end as usize]));
+                let sum: f32 = row.iter().map(|(_, s)| s).sum();
+                graph.inverse.push(if sum > 0.0 { 1.0 / sum } else { 0.0 });
+                graph.ends.extend(row.iter().map(|(end, _)| end));
+                graph.stiffness.extend(row.iter().map(|(_, s)| s));
+                graph.starts.push(graph.ends.len() as u32);
+                first += count as usize;
+            }
+        }
+        graph
+    }
+    pub fn len(&self) -> usize {
+        self.blocks.len()
+    }
+    pub fn parents(&self) -> &[u32] {
+        &self.parent
+    }
+    fn springs(&self, i: usize) -> impl Iterator<Item = (u32, f32)> {
+        let row = self.starts[i] as usize..self.starts[i + 1] as usize;
+        self.ends[row.clone()].iter().copied().zip(self.stiffness[row].iter().copied())
+    }
+    /// The next level; `None` where nothing is left to merge: this one is the last.
+    pub fn coarser(&mut self) -> Option<Self> {
+        let coarser = if self.len() <= 16 { None } else { self.merged() };
+        if coarser.is_none() {
+            self.pieces = self.found_pieces();
+        }
+        coarser
+    }
+    fn merged(&mut self) -> Option<Self> {
+        let stiffest: Vec<f32> = (0..self.len()).map(|i| self.springs(i).fold(0.0, |m: f32, s| m.max(s.1))).collect();
+        let block = |i: usize| self.blocks[i].map(|v| v / 2);
+        let mut first: Vec<u32> = (0..self.len() as u32).collect();
+        for i in 0..self.len() {
+            for (j, stiffness) in self.springs(i) {
+                let j = j as usize;
+                if j > i && block(i) == block(j) && stiffness >= STRONG * stiffest[i].min(stiffest[j]) {
+                    join(&mut first, i as u32, j as u32);
+                }
+            }
+        }
+        let (parent, roots) = numbered(&mut first);
+        // Where all that is left are pieces of one unknown each, merging has come to its end.
+        if roots.len() * 10 > self.len() * 9 {
+            return None;
+        }
+        let children = children(&parent, roots.len());
+        let blocks = roots.iter().map(|&root| block(root as usize)).collect();
+        let graph = Self::joined(blocks, |unknown, add| {
+            for &child in children.of(unknown) {
+                self.springs(child as usize).for_each(|(end, s)| add(parent[end as usize], s));
+            }
+        });
+        self.parent = parent;
+        Some(graph)
+    }
+    /// Of the last level, the number of each unknown's piece, and how many pieces springs hold together.
+    pub fn pieces(&self) -> &(Vec<u32>, usize) {
+        &self.pieces
+    }
+    fn found_pieces(&self) -> (Vec<u32>, usize) {
+        let mut first: Vec<u32> = (0..self.len() as u32).collect();
+        for i in 0..self.len() {
+            self.springs(i).for_each(|(j, _)| join(&mut first, i as u32, j));
+        }
+        let (labels, roots) = numbered(&mut first);
+        (labels, roots.len())
+    }
+    /// Takes the mean of every piece away: what rounding leaves there no spring answers, and it would grow.
+    fn centre(&self, values: &mut [f32]) {
+        let (labels, count) = &self.pieces;
+        let mut sums = vec![(0.0f32, 0.0f32); *count];
+        for (v, &label) in values.iter().zip(labels) {
+            let sum = &mut sums[label as usize];
+            *sum = (sum.0 + v, sum.1 + 1.0);
+        }
+        for (v, &label) in values.iter_mut().zip(labels) {
+            *v -= sums[label as usize].0 / sums[label as usize].1;
+        }
+    }
+    /// One sweep of Jacobi: `v + step ((b + Σ w v) / Σ w − v)`.
+    fn relax(&self, b: &[f32], v: &[f32], step: f32, out: &mut [f32]) {
+        let one = |(i, out): (usize, &mut f32)| {
+            let pull: f32 = self.springs(i).map(|(j, s)| s * v[j as usize]).sum();
+            *out = v[i] + step * ((b[i] + pull) * self.inverse[i] - v[i]);
+        };
+        self.each(out, one);
+    }
+    /// b − A v.
+    fn residual(&self, b: &[f32], v: &[f32], out: &mut [f32]) {
+        let one = |(i, out): (usize, &mut f32)| {
+            *out = b[i] - self.springs(i).map(|(j, s)| s * (v[i] - v[j as usize])).sum::<f32>();
+        };
+        self.each(out, one);
+    }
+    fn each(&self, out: &mut [f32], one: impl Fn((usize, &mut f32)) + Sync) {
+        if self.len() <= CHUNK {
+            return out.iter_mut().enumerate().for_each(one);
+        }
+        out.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, out)| {
+            (chunk * CHUNK..).zip(out).for_each(&one);
+        });
+    }
+}
+
+/// The stiffness between the middles of two blocks: that of the springs between them in a row with half of each block's
+/// own. Of even springs it is half of what lies between; of slack ones between firm blocks all of it.
+fn in_series(between: f32, inner_a: f32, inner_b: f32) -> f32 {
+    let yields = |inner: f32| if inner > 0.0 { 0.5 * between / inner } else { 0.0 };
+    between / (1.0 + yields(inner_a) + yields(inner_b))
+}
+
+/// The springs of one of a grid's unknowns with the index at their end; stiffness 0 where there is none.
+fn springs_at(grid: &SpringGrid, i: usize) -> [(usize, f32); 4] {
+    let w = grid.width();
+    let [right, down] = grid.springs();
+    let left = if i % w > 0 { (i - 1, right[i - 1]) } else { (i, 0.0) };
+    let up = if i >= w { (i - w, down[i - w]) } else { (i, 0.0) };
+    [left, (i + 1, right[i]), up, (i + w, down[i])]
+}
+
+/// Numbers the coarser unknowns of two rows from 0 on, left to right, and returns the column of blocks of each.
+fn number_rows(grid: &SpringGrid, y: usize, rows: &mut [u32]) -> Vec<u32> {
+    let w = grid.width();
+    let [right, down] = grid.springs();
+    let stiffest = |i: usize| springs_at(grid, i).into_iter().fold(0.0, |m: f32, s| m.max(s.1));
+    let mut columns = Vec::new();
+    for x in (0..w).step_by(2) {
+        // The block's pixels: two of the upper row, two of the lower.
+        let inside = |k: usize| (x + k % 2 < w && k / 2 * w + x + k % 2 < rows.len()).then_some(k / 2 * w + x + k % 2);
+        let top: [Option<usize>; 4] = std::array::from_fn(inside);
+        let most = top.map(|at| at.map_or(0.0, |at| stiffest(2 * y * w + at)));
+        let mut first = [0, 1, 2, 3];
+        for (a, b, springs) in [(0, 1, right), (2, 3, right), (0, 2, down), (1, 3, down)] {
+            let Some((at, _)) = top[a].zip(top[b]) else { continue };
+            let stiffness = springs[2 * y * w + at];
+            if stiffness > 0.0 && stiffness >= STRONG * most[a].min(most[b]) {
+                let (from, to) = (first[a].max(first[b]), first[a].min(first[b]));
+                first.iter_mut().filter(|f| **f == from).for_each(|f| *f = to);
+            }
+        }
+        for k in 0..4 {
+            let Some(at) = top[k].filter(|_| most[k] > 0.0) else { continue };
+            rows[at] = match top[first[k]].filter(|_| first[k] < k) {
+                Some(same) => rows[same],
+                None => {
+                    columns.push((x / 2) as u32);
+                    columns.len() as u32 - 1
+                }
+            };
+        }
+    }
+    columns
+}
+
+fn root(first: &mut [u32], mut i: u32) -> u32 {
+    while first[i as usize] != i {
+        // Halving the path keeps it short.
+        first[i as usize] = first[first[i as usize] as usize];
+        i = first[i as usize];
+    }
+    i
+}
+
+fn join(first: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(first, a), root(first, b));
+    first[a.max(b) as usize] = a.min(b);
+}
+
+/// Numbers the trees of a forest in the order of their roots: the number of each node's tree, and the roots.
+fn numbered(first: &mut [u32]) -> (Vec<u32>, Vec<u32>) {
+    let (mut labels, mut roots) = (vec![0; first.len()], Vec::new());
+    for i in 0..first.len() as u32 {
+        let root = root(first, i);
+        if root == i {
+            labels[i as usize] = roots.len() as u32;
+            roots.push(i);
+        } else {
+            labels[i as usize] = labels[root as usize];
+        }
+    }
+    (labels, roots)
+}
+
+/// The finer unknowns that each coarser one stands for.
+struct Children {
+    starts: Vec<u32>,
+    nodes: Vec<u32>,
+}
+
+impl Children {
+    fn of(&self, unknown: usize) -> &[u32] {
+        &self.nodes[self.starts[unknown] as usize..self.starts[unknown + 1] as usize]
+    }
+}
+
+fn children(parent: &[u32], count: usize) -> Children {
+    let mut starts = vec![0u32; count + 1];
+    parent.iter().for_each(|&p| starts[p as usize + 1] += 1);
+    (0..count).for_each(|i| starts[i + 1] += starts[i]);
+    let (mut next, mut nodes) = (starts.clone(), vec![0; parent.len()]);
+    for (i, &p) in parent.iter().enumerate() {
+        nodes[next[p as usize] as usize] = i as u32;
+        next[p as usize] += 1;
+    }
+    Children { starts, nodes }
+}
+
+/// Adds up what is left of a finer level as the right-hand side of the first graph.
+pub(super) fn gather(parent: &[u32], left: &[f32], levels: &mut [GraphScratch], graphs: &[SpringGraph]) {
+    let Some((level, graph)) = levels.first_mut().zip(graphs.first()) else { return };
+    level.b.clear();
+    level.b.resize(graph.len(), 0.0);
+    for (&p, v) in parent.iter().zip(left).filter(|(p, _)| **p != NONE) {
+        level.b[p as usize] += v;
+    }
+}
+
+/// Adds a coarser solution to a finer one.
+pub(super) fn spread(parents: &[u32], coarse: &GraphScratch, fine: &mut [f32]) {
+    for (v, &p) in fine.iter_mut().zip(parents) {
+        if p != NONE {
+            *v += coarse.v[p as usize];
+        }
+    }
+}
+
+/// One symmetric V-cycle from the first graph down: solves each level's `b` for its `v`.
+pub(super) fn cycle(graphs: &[SpringGraph], levels: &mut [GraphScratch]) {
+    let (Some((graph, below)), Some((level, levels))) = (graphs.split_first(), levels.split_first_mut()) else {
+        return;
+    };
+    let GraphScratch { b, v, twin } = level;
+    v.resize(graph.len(), 0.0);
+    twin.resize(graph.len(), 0.0);
+    if below.is_empty() {
+        graph.centre(b);
+    }
+    graph.each(twin, |(i, out)| *out = super::STEPS[0] * b[i] * graph.inverse[i]);
+    graph.relax(b, twin, super::STEPS[1], v);
+    if below.is_empty() {
+        // Few unknowns, or many that hardly any spring joins.
+        for _ in 0..20 {
+            graph.relax(b, v, super::STEPS[0], twin);
+            graph.relax(b, twin, super::STEPS[1], v);
+        }
+        graph.centre(v);
+        return;
+    }
+    graph.residual(b, v, twin);
+    gather(&graph.parent, twin, levels, below);
+    cycle(below, levels);
+    spread(&graph.parent, &levels[0], v);
+    graph.relax(b, v, super::STEPS[0], twin);
+    graph.relax(b, twin, super::STEPS[1], v);
+}
