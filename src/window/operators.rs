@@ -1,7 +1,6 @@
 //! The operators that the bar and the Paint menu offer, and whose operator they change.
 //! Floor 7.
 
-use crate::document::Content;
 use crate::requests::UiRequests;
 use crate::session::actions::{HandAction, LayerAction};
 use crate::session::{Action, LayerPath, Property, Session};
@@ -9,21 +8,52 @@ use crate::surface::Operator;
 use crate::tools::ToolKind;
 use crate::widgets::ValueChange;
 
-/// The operators as the tool bar offers them, each with the numbers it begins with.
-pub const OPERATORS: [(&str, Operator, &str); 4] = [
-    ("Flat", Operator::None, "Marks lie on the canvas as they are"),
-    ("Texture", Operator::Depth { gamma: 1.0 }, "Marks follow the depth, like a print on the surface"),
-    (
-        "Shading",
-        Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 },
-        "Marks follow the normals, like shading and highlights: mirror for α above 0, glass below",
-    ),
-    (
-        "Reflection",
-        Operator::Reflection { alpha: 1.0, detail: 0.0 },
-        "Marks follow the mirrored view, like an image in polished metal",
-    ),
-];
+/// An operator as the window offers it.
+pub struct OfferedOperator {
+    pub label: &'static str,
+    /// With the numbers it begins with.
+    pub begins: Operator,
+    pub hint: &'static str,
+}
+
+/// The operators as the tool bar offers them.
+pub const OPERATORS: [OfferedOperator; 5] = [FLAT, TEXTURE, DEPTH_TEXTURE, SHADING, REFLECTION];
+
+pub const FLAT: OfferedOperator =
+    OfferedOperator { label: "Flat", begins: Operator::None, hint: "Marks lie on the canvas as they are" };
+pub const TEXTURE: OfferedOperator = OfferedOperator {
+    label: "Texture",
+    begins: Operator::Surface { amount: 1.0, smooth: 0.0 },
+    hint: "Marks lie on the surface like a print, equally large all over it",
+};
+pub const DEPTH_TEXTURE: OfferedOperator = OfferedOperator {
+    label: "Depth texture",
+    begins: Operator::Depth { gamma: 1.0 },
+    hint: "Marks follow the depth around their anchor: larger where the surface is nearer, smaller where it is farther",
+};
+pub const SHADING: OfferedOperator = OfferedOperator {
+    label: "Shading",
+    begins: Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 },
+    hint: "Marks follow the normals, like shading and highlights: mirror for α above 0, glass below",
+};
+pub const REFLECTION: OfferedOperator = OfferedOperator {
+    label: "Reflection",
+    begins: Operator::Reflection { alpha: 1.0, detail: 0.0 },
+    hint: "Marks follow the mirrored view, like an image in polished metal",
+};
+
+/// What a number of an operator does, by its name in documents.
+pub fn hint_of(key: &str) -> &'static str {
+    match key {
+        "alpha" => "Strength: a mirror above 0, flat at 0, glass below",
+        "beta" => "How much more the middle of the surface bends than its rim",
+        "detail" => "How much small bumps bend the image beyond the large form",
+        "gamma" => "How strongly the texture follows the depth",
+        "amount" => "How far the surface is unwrapped: 0 is flat, 1 as long as the surface is, 2 exaggerates it",
+        "smooth" => "Blurs the shape beforehand, in pixels, so that fine relief does not shear the print",
+        _ => "",
+    }
+}
 
 /// Whose operator the bar shows: the selected image's or gradient's with the tools that change it, else the hand's.
 pub enum OperatorOwner {
@@ -33,11 +63,8 @@ pub enum OperatorOwner {
 
 pub fn whose(session: &Session) -> (OperatorOwner, Operator) {
     let of_layer = matches!(session.tool, ToolKind::Image | ToolKind::Anchors | ToolKind::Move | ToolKind::Gradient);
-    let operator = session.layer().filter(|_| of_layer).and_then(|layer| match &layer.content {
-        Content::Image(live) => Some(live.params().bend.operator),
-        Content::Gradient(live) => Some(live.params().operator),
-        _ => None,
-    });
+    let bent = session.layer().filter(|_| of_layer).and_then(|layer| layer.content.bend());
+    let operator = bent.map(|bend| bend.operator);
     match (operator, session.layer_path()) {
         (Some(operator), Some(path)) => (OperatorOwner::Layer(path), operator),
         _ => (OperatorOwner::Hand, session.operator),
@@ -46,7 +73,7 @@ pub fn whose(session: &Session) -> (OperatorOwner, Operator) {
 
 /// The bar shows this operator, whatever its numbers.
 pub fn has(session: &Session, operator: Operator) -> bool {
-    std::mem::discriminant(&whose(session).1) == std::mem::discriminant(&operator)
+    whose(session).1.is_like(operator)
 }
 
 /// Another operator for what the bar shows.

@@ -102,6 +102,7 @@ fn operators() -> Vec<Case> {
         ("depth", json!({ "kind": "depth", "gamma": 1.5 })),
         ("normal", json!({ "kind": "normal", "alpha": 0.4, "beta": 1.5, "detail": 0.5 })),
         ("reflection", json!({ "kind": "reflection", "alpha": 0.5 })),
+        ("surface", json!({ "kind": "surface" })),
     ];
     let image = |kind: &str, operator: &Value, filter: &str| {
         let layers = json!([{ "kind": "image", "source": { "file": "tiles.png" },
@@ -114,7 +115,21 @@ fn operators() -> Vec<Case> {
         operators.iter().flat_map(|(kind, operator)| ["antialias", "bilinear"].map(|f| image(kind, operator, f)));
     let ramp = json!([{ "kind": "gradient", "from": [22, 24], "to": [52, 52], "operator": operators[1].1,
         "stops": [[0, "#fff4d0"], [0.35, "#d07030"], [0.36, "#401040"], [1, "#2060a0"]] }]);
-    both.chain([Case::layers("operator", "normal-gradient", ROUNDED, Shape::Torus, ramp)]).collect()
+    let even = json!([{ "kind": "gradient", "from": [14, 37], "to": [62, 37], "operator": operators[3].1,
+        "stops": [[0, "#fff4d0"], [0.35, "#d07030"], [0.36, "#401040"], [1, "#2060a0"]] }]);
+    // The decals' tip is a picture, the line's grain lies on the surface too.
+    let decals = json!([{ "kind": "fill", "color": "#f0e8d8" }, { "kind": "strokes", "strokes": [
+        { "color": "#b03018", "operator": operators[3].1, "samples": [[24, 24]],
+          "brush": { "size": 26, "tip": { "file": "leaf.png" } } },
+        { "color": "#203050", "operator": operators[3].1, "samples": [[52, 20], [58, 40], [50, 60]],
+          "brush": { "size": 12, "hardness": 0.6,
+                     "grain": { "kind": "lines", "size": 4, "lies": "unwrapped" } } } ] }]);
+    both.chain([
+        Case::layers("operator", "normal-gradient", ROUNDED, Shape::Torus, ramp),
+        Case::layers("operator", "surface-gradient", ROUNDED, Shape::Ball, even),
+        Case::layers("operator", "surface-strokes", ROUNDED, Shape::Ball, decals),
+    ])
+    .collect()
 }
 
 /// Every term of a model, each scaled, with λ where light has a direction.

@@ -80,7 +80,7 @@ impl CanvasScale {
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
         let selection = stroke.selection().map(|own| own.scaled(self.selection(&own.selection), self.per_axis));
         let brush = stroke.brush().scaled(self.length);
-        Stroke::new(brush, stroke.operator(), stroke.color(), samples).within(selection)
+        Stroke::new(brush, stroke.operator().scaled(self.length), stroke.color(), samples).within(selection)
     }
     pub fn pixels(&self, pixels: &PixelLayer) -> PixelLayer {
         let corner = vec2(pixels.x as f32, pixels.y as f32) * self.per_axis;

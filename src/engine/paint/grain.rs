@@ -1,9 +1,10 @@
 //! Grain: a texture that reduces a stroke's paint in the valleys of the canvas or of the surface. Floor 3. The patterns
-//! are in `pattern`; the operator D_p places the grain on a surface.
+//! are in `pattern`; the operators D_p and D_s place the grain on a surface.
 //!
 //! ```text
 //! F′(q) = F(q) · (1 − k (1 − G(P⁻¹(T(q)))))      T(q) = q            grain on the canvas
-//!                                               T(q) = D_p(q; q_s)  grain on the surface
+//!                                               T(q) = D_p(q; q_s)  grain that follows the depth
+//!                                               T(q) = D_s(q; q_s)  grain that lies on the surface
 //! ```
 //!
 //! k is the strength, P scales and turns the texture, and q_s is where the stroke began: T(q_s) = q_s, so that the
@@ -59,6 +60,22 @@ pub enum GrainSpace {
     Canvas,
     /// The surface, through D_p.
     Surface { gamma: f32 },
+    /// The surface, through D_s: as large everywhere.
+    Unwrapped,
+}
+
+impl GrainSpace {
+    /// Every kind with its name in documents; the first with the numbers of the name alone.
+    pub const ALL: [(GrainSpace, &'static str); 3] = [
+        (GrainSpace::Canvas, "canvas"),
+        (GrainSpace::Surface { gamma: 1.0 }, "surface"),
+        (GrainSpace::Unwrapped, "unwrapped"),
+    ];
+    /// The same kind with the numbers of its name alone.
+    pub fn plain(self) -> Self {
+        let is_same = |(kind, _): &&(Self, &str)| std::mem::discriminant(kind) == std::mem::discriminant(&self);
+        Self::ALL.iter().find(is_same).map_or(self, |(kind, _)| *kind)
+    }
 }
 
 impl BrushGrain {
@@ -111,6 +128,7 @@ impl StrokeGrain {
         let operator = match grain.lies {
             GrainSpace::Canvas => Operator::None,
             GrainSpace::Surface { gamma } => Operator::Depth { gamma },
+            GrainSpace::Unwrapped => Operator::Surface { amount: 1.0, smooth: 0.0 },
         };
         Self {
             texture,
@@ -129,7 +147,7 @@ impl StrokeGrain {
         }
         let (mut deformed, mut patches) = (DeformedRect::default(), Patches::default());
         let (mut antialias, mut row) = (Antialias::default(), vec![[0; 4]; area.width()]);
-        let deformation = Deformation::of_dab(scene.surface.as_deref(), scene.size, self.operator, self.start);
+        let deformation = Deformation::of_pattern(scene.surface.as_deref(), scene.size, self.operator, self.start);
         deformation.fill(area.grown(1), &mut deformed);
         transform(self.texels_from_canvas, &mut deformed.x, &mut deformed.y);
         let from = (area.x0 - at.rect().x0) as usize;

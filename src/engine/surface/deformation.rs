@@ -1,12 +1,15 @@
 //! Evaluates D: the operator, its anchors and weights applied to a surface.
 //! Floor 2. [`Deformation::at`] and [`Deformation::jacobian`] read like the paper; [`Deformation::fill`] is the same
-//! over whole rows (`fill`), tested against it. Not here: looking up a picture at D(q) (`paint`).
+//! over whole rows (`fill`), tested against it. `plane` is the operator that unwraps the surface. Not here: looking up a picture at D(q) (`paint`).
 
 mod fill;
+mod plane;
 
 use super::operator::{MapSlopes, MapValues, Operator, outer};
+use super::unwrap::UnwrapSettings;
 use super::{Anchor, Bend, Curvature, DabReach, Surface, Weights, links};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
+use plane::LaidPlanes;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -21,6 +24,8 @@ pub struct Deformation<'a> {
     operator: Operator,
     weights: Weights,
     pins: Vec<Pin>,
+    /// Of the operator that unwraps the surface.
+    planes: Option<LaidPlanes<'a>>,
     /// Where the operator asks for detail.
     curvature: Option<Arc<Curvature>>,
     /// Of a dab that must stay near the pen.
@@ -57,13 +62,29 @@ impl<'a> Deformation<'a> {
     ///
     /// Anchors that are not finite are dropped, and parameters that are not finite count as 0: D is finite everywhere.
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
-        Self::pinned(surface, size, bend, at_anchor)
+        let deformation = Self::pinned(surface, size, bend, at_anchor);
+        deformation.laid(|surface, settings, anchors| LaidPlanes::pinned(surface, settings, anchors, bend.weights))
     }
     /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest surface
     /// values, so that a stroke continues over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
-        let bend = Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() };
-        Self::pinned(surface, size, &bend, nearest_map_values)
+        Self::pinned(surface, size, &Self::dab_bend(operator, at), nearest_map_values).laid(
+            |surface, settings, anchors| LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at)),
+        )
+    }
+    /// The same of a pattern that begins at a point and lies everywhere: grain.
+    pub fn of_pattern(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
+        let dab = Self::of_dab(surface, size, operator, at);
+        Self { planes: dab.planes.map(LaidPlanes::unbounded), ..dab }
+    }
+    fn dab_bend(operator: Operator, at: Vec2) -> Bend {
+        Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() }
+    }
+    /// With the planes of the unwrapped surface laid under the anchors, where the operator asks for them.
+    fn laid(self, lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes<'a>) -> Self {
+        let planes = self.surface.zip(self.operator.unwrapping());
+        let planes = planes.map(|(surface, settings)| lay(surface, settings, &self.anchors()));
+        Self { planes, ..self }
     }
     fn pinned(
         surface: Option<&'a Surface>,
@@ -84,7 +105,7 @@ impl<'a> Deformation<'a> {
         let operator = bend.operator.finite();
         let curvature = surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
         let weights = sane(bend.weights);
-        Self { surface, unit_px: size.longer_side(), operator, weights, pins, curvature, reach: None }
+        Self { surface, unit_px: size.longer_side(), operator, weights, pins, planes: None, curvature, reach: None }
     }
     /// The same, of a dab that lands within a reach; where D is the identity it does so anyway.
     pub fn within(self, reach: Option<DabReach>) -> Self {
@@ -93,13 +114,17 @@ impl<'a> Deformation<'a> {
     /// D(q) = q for every q: nothing is moved anywhere.
     pub fn is_identity(&self) -> bool {
         let bends = self.surface.is_some() && !self.operator.is_identity();
-        self.pins.is_empty() || !bends && self.pins.iter().all(|p| p.anchor.source == p.anchor.at)
+        self.planes.is_none()
+            && (self.pins.is_empty() || !bends && self.pins.iter().all(|p| p.anchor.source == p.anchor.at))
     }
     /// D(q) at the centre of a pixel: the reference that reads like the paper.
     ///
     /// MATH 2 (SF eq. 13, 15): `D(q) = q + Σ_i w_i(q) [ offset_i(q) + (s_i − q_i) ]`. Canvas px.
     pub fn at(&self, x: i32, y: i32) -> Vec2 {
         let q = vec2(x as f32, y as f32) + 0.5;
+        if let Some((planes, (_, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
+            return self.within_reach(q, planes.at(x, y));
+        }
         let weights = self.weights.at(&self.anchors(), q);
         let moved: Vec2 = self
             .pins
@@ -107,7 +132,10 @@ impl<'a> Deformation<'a> {
             .zip(weights)
             .map(|(pin, w)| w * (self.offset(pin, q, x, y) + (pin.anchor.source - pin.anchor.at)))
             .sum();
-        self.reach.map_or(q + moved, |reach| reach.limit(q, q + moved))
+        self.within_reach(q, q + moved)
+    }
+    fn within_reach(&self, q: Vec2, d: Vec2) -> Vec2 {
+        self.reach.map_or(d, |reach| reach.limit(q, d))
     }
     /// ∂D/∂q at the centre of a pixel, columns along x and y; a plain ratio. The maps are differenced within the piece
     /// of surface that holds the pixel, the weights analytically.
@@ -115,6 +143,11 @@ impl<'a> Deformation<'a> {
     /// `J = I + Σ_i [ w_i ∂offset_i/∂q + (offset_i + s_i − q_i) ∇w_iᵀ ]`.
     pub fn jacobian(&self, x: i32, y: i32) -> Mat2 {
         let q = vec2(x as f32, y as f32) + 0.5;
+        if let Some((planes, (surface, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
+            let near = DifferencePairs::linked(surface, x, y);
+            let rows = [near.slope(|x, y| planes.at(x, y).x), near.slope(|x, y| planes.at(x, y).y)];
+            return Mat2::from_cols(rows[0], rows[1]).transpose();
+        }
         let anchors = self.anchors();
         let weights = self.weights.at(&anchors, q);
         let gradients = self.weights.gradients(&anchors, q);

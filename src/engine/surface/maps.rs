@@ -8,6 +8,7 @@ use super::{
     grow, links,
     objects::Objects,
     pyramid::MapPyramids,
+    unwrap::Unwrapping,
 };
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::{CoverageGrid, Plane};
@@ -56,6 +57,8 @@ pub struct Surface {
     /// By radius.
     occlusions: RecentCache<u32, Plane<f32>>,
     regions: RecentCache<SurfaceRegion, CoverageGrid>,
+    /// By amount and blur.
+    unwrappings: RecentCache<[u32; 2], Unwrapping>,
     bounds: MapPyramids,
     objects: OnceLock<Objects>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
@@ -122,6 +125,7 @@ impl Surface {
             base: None,
             occlusions: RecentCache::default(),
             regions: RecentCache::default(),
+            unwrappings: RecentCache::default(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
             parts: None,
@@ -160,6 +164,7 @@ impl Surface {
             base: Some(self.base.as_ref().unwrap_or(self).clone()),
             occlusions: RecentCache::default(),
             regions: RecentCache::default(),
+            unwrappings: RecentCache::default(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
             parts: self.parts.clone(),
@@ -230,6 +235,9 @@ impl Surface {
     }
     pub(super) fn regions(&self) -> &RecentCache<SurfaceRegion, CoverageGrid> {
         &self.regions
+    }
+    pub(super) fn unwrappings(&self) -> &RecentCache<[u32; 2], Unwrapping> {
+        &self.unwrappings
     }
     pub(super) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
         &self.occlusions

@@ -26,6 +26,7 @@ pub mod region;
 pub mod scene;
 mod springs;
 pub mod support;
+pub mod unwrap;
 
 pub use anchor::{Anchor, Bend, Weights};
 pub use combine::DetailMap;

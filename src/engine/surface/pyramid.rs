@@ -61,6 +61,13 @@ impl<T: Join> Pyramid<T> {
     }
 }
 
+impl Pyramid<TurnSpan> {
+    /// The ranges of points that a surface's pixels are taken to.
+    pub(super) fn of_points(surface: &Surface, point: impl Fn(usize, usize) -> Vec2) -> Self {
+        Self::new(surface.size(), |block| turn_span(surface, block, &point))
+    }
+}
+
 fn joined<T: Join>(below: &Plane<T>, size: Size) -> Plane<T> {
     let mut values = Vec::with_capacity(size.area());
     for row in 0..size.height as usize {
@@ -114,7 +121,7 @@ impl Join for DepthSpan {
     }
 }
 
-/// n̄ or r̄ over a block and the pixels around it, and the largest norm of its derivative in it.
+/// n̄, r̄ or a point of the unwrapped plane over a block and the pixels around it, and the largest norm of its derivative in it.
 #[derive(Clone, Copy)]
 pub(super) struct TurnSpan {
     pub(super) low: Vec2,
@@ -211,13 +218,11 @@ impl MapPyramids {
         })
     }
     pub(super) fn nbar(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
-        let build = || Pyramid::new(surface.size(), |block| turn_span(surface, block, |x, y| surface.nbar(x, y)));
-        self.nbar.get_or_init(build)
+        self.nbar.get_or_init(|| Pyramid::of_points(surface, |x, y| surface.nbar(x, y)))
     }
     pub(super) fn mirrored(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
         let value = |x, y| reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
-        let build = || Pyramid::new(surface.size(), |block| turn_span(surface, block, value));
-        self.mirrored.get_or_init(build)
+        self.mirrored.get_or_init(|| Pyramid::of_points(surface, value))
     }
 }
 

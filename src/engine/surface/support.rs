@@ -1,4 +1,4 @@
-//! Support bounds: the blocks of the canvas that a dab may touch. Interval arithmetic on D_p, D_n and D_r over the
+//! Support bounds: the blocks of the canvas that a dab may touch. Interval arithmetic on D_p, D_n, D_r and D_s over the
 //! maps' pyramids finds them without reading pixels. Floor 2. `blocks` tests all blocks of a tile at once. The bounds
 //! are conservative: `deformation` decides about pixels.
 
@@ -7,9 +7,11 @@ mod blocks;
 use super::operator::{Operator, first_order, reflection, second_order};
 pub use super::pyramid::{BLOCK, TILE_BLOCKS};
 use super::pyramid::{BlockCover, DepthSpan, Pyramid, PyramidBlock, TILE_LEVEL, TurnSpan, block_rect, level_size};
+use super::unwrap::Unwrapping;
 use super::{DabReach, Surface};
 use crate::math::{Size, Vec2, vec2};
 use crate::raster::TileAt;
+use std::sync::Arc;
 
 /// Tolerance added to every distance, px, because D is computed in f32.
 const ROUNDING_PX: f32 = 0.05;
@@ -62,6 +64,12 @@ enum OperatorBounds<'s> {
         pyramid: &'s Pyramid<TurnSpan>,
         turn: Vec2,
         stretch: RadialOffset,
+    },
+    /// The surface unwrapped, and where the anchor lies in its plane.
+    Unwrapped {
+        surface: &'s Surface,
+        unwrapping: Arc<Unwrapping>,
+        at: Vec2,
     },
 }
 
@@ -220,6 +228,9 @@ impl OperatorBounds<'_> {
             OperatorBounds::Turn { pyramid, turn, stretch } => {
                 pyramid.at(block).map_or(ANYWHERE, |span| stretch.image(span, *turn, (low, high)))
             }
+            OperatorBounds::Unwrapped { surface, unwrapping, at } => {
+                unwrapping.bounds(surface).at(block).map_or(ANYWHERE, |span| BlockImage::laid(span, *at))
+            }
         }
     }
 }
@@ -229,6 +240,11 @@ impl BlockImage {
     #[inline(always)]
     fn flat(low: Vec2, high: Vec2) -> Self {
         Self { near: distance_to_box(low, high), far: low.abs().max(high.abs()).length(), pixel: 1.0 }
+    }
+    /// What D_s makes of a block whose points of the unwrapped plane span so much: it turns them about the anchor's.
+    #[inline(always)]
+    fn laid(span: TurnSpan, at: Vec2) -> Self {
+        Self { pixel: span.slope, ..Self::flat(span.low - at, span.high - at) }
     }
     /// What D_p makes of a flat block whose depths span so much, the anchor's being `z`.
     #[inline(always)]
@@ -280,6 +296,14 @@ impl<'s> OperatorBounds<'s> {
                 let turn = reflection::mirrored(nbar, nz);
                 OperatorBounds::Turn { pyramid: surface.bounds().mirrored(surface), turn, stretch }
             }
+            Operator::Surface { .. } => match operator.unwrapping() {
+                Some(settings) => {
+                    let unwrapping = surface.unwrapped(settings);
+                    let at = unwrapping.place(surface, at).at;
+                    OperatorBounds::Unwrapped { surface, unwrapping, at }
+                }
+                None => OperatorBounds::Still,
+            },
         }
     }
 }
@@ -331,6 +355,7 @@ mod tests {
             (-2.0f32..2.0, 0.0f32..5.0).prop_map(|(alpha, beta)| Operator::Normal { alpha, beta, detail: 0.0 }),
             (-1.0f32..1.0).prop_map(|alpha| Operator::Normal { alpha, beta: 1.0, detail: 1.5 }),
             (-2.0f32..2.0).prop_map(|alpha| Operator::Reflection { alpha, detail: 0.0 }),
+            (0.2f32..2.0).prop_map(|amount| Operator::Surface { amount, smooth: 0.0 }),
         ]
     }
     /// |∂(|D − q_0|)/∂q| by differences between linked neighbours, as the marks take it.

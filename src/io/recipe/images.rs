@@ -87,38 +87,12 @@ pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
     }
 }
 
-#[derive(Clone, Copy)]
-enum RecipeOperator {
-    None,
-    Depth,
-    Normal,
-    Reflection,
-}
-
-const OPERATORS: [(RecipeOperator, &str); 4] = [
-    (RecipeOperator::None, "none"),
-    (RecipeOperator::Depth, "depth"),
-    (RecipeOperator::Normal, "normal"),
-    (RecipeOperator::Reflection, "reflection"),
-];
-
 /// The field `operator`, if present.
 pub fn operator(fields: &mut Fields) -> Result<Option<Operator>> {
     let Some(node) = fields.get("operator") else { return Ok(None) };
     let mut fields = node.fields()?;
-    let operator = match fields.one_of("kind", &OPERATORS, RecipeOperator::None)? {
-        RecipeOperator::None => Operator::None,
-        RecipeOperator::Depth => Operator::Depth { gamma: fields.number("gamma", 1.0, Operator::GAMMA)? },
-        RecipeOperator::Normal => Operator::Normal {
-            alpha: fields.number("alpha", 0.5, Operator::ALPHA)?,
-            beta: fields.number("beta", 1.5, Operator::BETA)?,
-            detail: fields.number("detail", 0.0, Operator::DETAIL)?,
-        },
-        RecipeOperator::Reflection => Operator::Reflection {
-            alpha: fields.number("alpha", 0.5, Operator::ALPHA)?,
-            detail: fields.number("detail", 0.0, Operator::DETAIL)?,
-        },
-    };
+    let operator = fields.one_of("kind", &Operator::KINDS, Operator::None)?;
+    let operator = operator.try_map(|number, default| fields.number(number.key, default, number.range.clone()))?;
     fields.finish()?;
     Ok(Some(operator))
 }
@@ -196,23 +170,13 @@ fn write_anchor(anchor: &Anchor) -> Value {
 /// Empty for the operator that does nothing.
 pub fn write_operator(operator: Operator) -> JsonObject {
     let mut out = JsonObject::default();
-    match operator {
-        Operator::None => {}
-        Operator::Depth { gamma } => {
-            out.set("kind", "depth".into());
-            out.number("gamma", gamma, 1.0);
-        }
-        Operator::Normal { alpha, beta, detail } => {
-            out.set("kind", "normal".into());
-            out.number("alpha", alpha, 0.5);
-            out.number("beta", beta, 1.5);
-            out.number("detail", detail, 0.0);
-        }
-        Operator::Reflection { alpha, detail } => {
-            out.set("kind", "reflection".into());
-            out.number("alpha", alpha, 0.5);
-            out.number("detail", detail, 0.0);
-        }
+    if operator == Operator::None {
+        return out;
+    }
+    let (plain, name) = operator.row();
+    out.set("kind", name.into());
+    for ((number, value), (_, default)) in operator.numbers().into_iter().zip(plain.numbers()) {
+        out.number(number.key, value, default);
     }
     out
 }

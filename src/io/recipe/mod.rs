@@ -45,11 +45,12 @@ pub use strokes::write_stroke;
 
 use super::json::{Fields, JsonNode, JsonObject, Printer};
 use super::{Budget, Files, RecipeFolder, files, maps};
-use crate::document::{Document, SelectionList, SurfaceSource};
+use crate::document::{Content, Document, Layer, SelectionList, SurfaceSource};
 use crate::math::Size;
+use crate::paint::grain::GrainSpace;
 use crate::paint::{Scene, Selection};
 use crate::raster::Asset;
-use crate::surface::{Surface, SurfaceError};
+use crate::surface::{Operator, Surface, SurfaceError};
 use crate::{Error, Result};
 use pictures::PictureCache;
 pub use pictures::TileGrids;
@@ -59,6 +60,21 @@ use std::{path::Path, sync::Arc};
 
 /// The newest schema this program reads. What needs nothing of it is written as the first.
 pub const VERSION: i64 = 2;
+
+/// Whether a layer lies on the surface unwrapped, which the first version does not know.
+fn unwraps(document: &Document) -> bool {
+    let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
+    let is_new = |layer: &Layer| match &layer.content {
+        Content::Image(live) => is_print(live.params().bend.operator),
+        Content::Gradient(live) => is_print(live.params().operator),
+        Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
+            let grain = stroke.brush().grain.as_ref();
+            is_print(stroke.operator()) || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
+        }),
+        _ => false,
+    };
+    document.walk().iter().any(|(_, layer)| is_new(layer))
+}
 
 /// The source of a document.
 #[derive(Clone, Copy)]
@@ -254,7 +270,7 @@ fn needs_second_version(document: &Document) -> bool {
 fn head(document: &Document, list: &SelectionList) -> JsonObject {
     let mut out = JsonObject::default();
     out.set("format", "rilievo".into());
-    let is_second = needs_second_version(document) || selections::is_needed(document, list);
+    let is_second = needs_second_version(document) || selections::is_needed(document, list) || unwraps(document);
     out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     out.said("surface", document.surface_source.as_deref(), surface::write);

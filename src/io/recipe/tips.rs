@@ -34,7 +34,6 @@ const KINDS: [(TipKind, &str); 7] = [
     (TipKind::Picture, "picture"),
     (TipKind::Hose, "hose"),
 ];
-const LIES: [(bool, &str); 2] = [(false, "canvas"), (true, "surface")];
 
 /// The fields `tip` and `grain`; where they are absent the brush keeps what it has.
 pub fn read(fields: &mut Fields, brush: &mut Brush, picture: &mut ReadPicture) -> Result<()> {
@@ -121,14 +120,14 @@ fn grain(node: &JsonNode, picture: &mut ReadPicture) -> Result<BrushGrain> {
         Ok([levels[0], levels[1]])
     })?;
     let gamma = fields.number("gamma", 1.0, BrushGrain::GAMMA)?;
-    let on_surface = fields.one_of("lies", &LIES, false)?;
+    let lies = fields.one_of("lies", &GrainSpace::ALL, GrainSpace::Canvas)?;
     let grain = BrushGrain {
         source,
         size_px: fields.number("size", plain.size_px, BrushGrain::SIZE_PX)?,
         rotation: fields.number("rotation", plain.rotation, TURNS)?,
         strength: fields.number("strength", plain.strength, UNIT)?,
         levels,
-        lies: if on_surface { GrainSpace::Surface { gamma } } else { GrainSpace::Canvas },
+        lies: if let GrainSpace::Surface { .. } = lies { GrainSpace::Surface { gamma } } else { lies },
     };
     fields.finish()?;
     Ok(grain)
@@ -194,8 +193,8 @@ pub fn write_grain(out: &mut JsonObject, grain: Option<&BrushGrain>) {
     if grain.levels != plain.levels {
         written.set("levels", grain.levels.map(object::number).to_vec().into());
     }
+    written.word("lies", &GrainSpace::ALL, grain.lies.plain(), GrainSpace::Canvas);
     if let GrainSpace::Surface { gamma } = grain.lies {
-        written.set("lies", "surface".into());
         written.number("gamma", gamma, 1.0);
     }
     out.object("grain", written);
@@ -236,6 +235,7 @@ mod tests {
               "levels": [0.25, 0.75],
                                "lies": "surface", "gamma": 2 } }),
             json!({ "grain": { "file": "canvas.png", "size": 200 } }),
+            json!({ "grain": { "size": 9, "lies": "unwrapped" } }),
         ] {
             let brush = read_brush(&text).unwrap();
             let mut out = JsonObject::default();

@@ -4,7 +4,6 @@
 
 mod ants;
 mod blocks;
-mod frame;
 mod marks;
 mod overlay;
 mod pointer;

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::row::{LINE, MenuCommand, always, key, row, shift};
-use crate::operators::{self, OPERATORS};
+use crate::operators;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
@@ -46,20 +46,24 @@ pub const COMMANDS: &[MenuCommand] = &[
         hand(requests, HandAction::DefaultColors {})
     }),
     LINE,
-    row("Operator: flat", &[key(Key::F1)], OPERATORS[0].2, always, |session, requests| {
-        operators::give(session, requests, OPERATORS[0].1)
+    row("Operator: flat", &[key(Key::F1)], operators::FLAT.hint, always, |session, requests| {
+        operators::give(session, requests, operators::FLAT.begins)
     })
-    .ticked(|session, _| operators::has(session, OPERATORS[0].1)),
-    row("Operator: texture", &[key(Key::F2)], OPERATORS[1].2, always, |session, requests| {
-        operators::give(session, requests, OPERATORS[1].1)
+    .ticked(|session, _| operators::has(session, operators::FLAT.begins)),
+    row("Operator: texture", &[key(Key::F2)], operators::TEXTURE.hint, always, |session, requests| {
+        operators::give(session, requests, operators::TEXTURE.begins)
     })
-    .ticked(|session, _| operators::has(session, OPERATORS[1].1)),
-    row("Operator: shading", &[key(Key::F3)], OPERATORS[2].2, always, |session, requests| {
-        operators::give(session, requests, OPERATORS[2].1)
+    .ticked(|session, _| operators::has(session, operators::TEXTURE.begins)),
+    row("Operator: depth texture", &[], operators::DEPTH_TEXTURE.hint, always, |session, requests| {
+        operators::give(session, requests, operators::DEPTH_TEXTURE.begins)
     })
-    .ticked(|session, _| operators::has(session, OPERATORS[2].1)),
-    row("Operator: reflection", &[key(Key::F4)], OPERATORS[3].2, always, |session, requests| {
-        operators::give(session, requests, OPERATORS[3].1)
+    .ticked(|session, _| operators::has(session, operators::DEPTH_TEXTURE.begins)),
+    row("Operator: shading", &[key(Key::F3)], operators::SHADING.hint, always, |session, requests| {
+        operators::give(session, requests, operators::SHADING.begins)
     })
-    .ticked(|session, _| operators::has(session, OPERATORS[3].1)),
+    .ticked(|session, _| operators::has(session, operators::SHADING.begins)),
+    row("Operator: reflection", &[key(Key::F4)], operators::REFLECTION.hint, always, |session, requests| {
+        operators::give(session, requests, operators::REFLECTION.begins)
+    })
+    .ticked(|session, _| operators::has(session, operators::REFLECTION.begins)),
 ];

@@ -151,11 +151,19 @@ fn grain(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     number(ui, NumberField::new("Size", 1.0..=400.0, "Size of one feature of the pattern").px(), &mut to.size_px);
     number(ui, NumberField::new("Strength", 0.0..=1.0, "How much paint its valleys lose"), &mut to.strength);
     number(ui, NumberField::new("Turn", -180.0..=180.0, "Counter-clockwise").degrees(), &mut to.rotation);
-    let on_surface = matches!(grain.lies, GrainSpace::Surface { .. });
-    let hint = "Bends the grain over the surface like a texture; otherwise it lies on the flat canvas";
-    if let Some(on) = check(ui, "On the surface", hint, on_surface) {
-        (to.lies, changed) = (if on { GrainSpace::Surface { gamma: 1.0 } } else { GrainSpace::Canvas }, true);
-    }
+    const SPACES: [(&str, GrainSpace, &str); 3] = [
+        ("On the canvas", GrainSpace::Canvas, "The grain lies on the flat canvas"),
+        ("On the surface", GrainSpace::Unwrapped, "The grain lies on the surface, equally large all over it"),
+        ("By depth", GrainSpace::Surface { gamma: 1.0 }, "The grain is larger where the surface is nearer"),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        for (label, lies, hint) in SPACES {
+            let is_on = grain.lies.plain() == lies;
+            if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
+                (to.lies, changed) = (lies, true);
+            }
+        }
+    });
     if let GrainSpace::Surface { gamma } = &mut to.lies {
         let gammas = NumberField::new("Depth γ", 0.0..=4.0, "How strongly the grain follows the depth");
         if let Some(c) = gammas.row(ui, *gamma) {

@@ -1,8 +1,8 @@
 //! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
-use super::{brush_mode, fill, select, transform};
-use crate::operators::{OPERATORS, OperatorOwner, give, has, set, whose};
+use super::{brush_mode, fill, select};
+use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::actions::hand::SIZES;
@@ -48,7 +48,7 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         OperatorOwner::Layer(_) => "Selected layer",
     };
     ui.label(RichText::new(about).weak());
-    for (label, begins, hint) in OPERATORS {
+    for OfferedOperator { label, begins, hint } in OPERATORS {
         let is_on = has(session, begins);
         if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
             give(session, requests, begins);
@@ -78,7 +78,6 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
         tool if tool.selects() => select::options(ui, session, requests),
-        ToolKind::Transform => transform::options(ui, session, requests),
         tool => drop(ui.weak(tool.row().hint)),
     }
 }
@@ -122,27 +121,16 @@ fn numbers_by(
     operator: Operator,
     mut show: impl FnMut(NumberField<'static>, f32) -> Option<ValueChange<f32>>,
 ) -> Option<ValueChange<Operator>> {
-    let alphas = || NumberField::new("α", -1.5..=1.5, "Strength: a mirror above 0, flat at 0, glass below");
-    let betas = || NumberField::new("β", 0.0..=5.0, "How much more the middle of the surface bends than its rim");
-    let details = || NumberField::new("Detail", 0.0..=2.0, "How much small bumps bend the image beyond the large form");
-    match operator {
-        Operator::None => None,
-        Operator::Depth { gamma } => {
-            let gammas = NumberField::new("γ", 0.0..=4.0, "How strongly the texture follows the depth");
-            show(gammas, gamma).map(|changed| changed.map(|gamma| Operator::Depth { gamma }))
-        }
-        Operator::Normal { alpha, beta, detail } => {
-            let (a, b, d) = (show(alphas(), alpha), show(betas(), beta), show(details(), detail));
-            a.map(|changed| changed.map(|alpha| Operator::Normal { alpha, beta, detail }))
-                .or(b.map(|changed| changed.map(|beta| Operator::Normal { alpha, beta, detail })))
-                .or(d.map(|changed| changed.map(|detail| Operator::Normal { alpha, beta, detail })))
-        }
-        Operator::Reflection { alpha, detail } => {
-            let (a, d) = (show(alphas(), alpha), show(details(), detail));
-            a.map(|changed| changed.map(|alpha| Operator::Reflection { alpha, detail }))
-                .or(d.map(|changed| changed.map(|detail| Operator::Reflection { alpha, detail })))
+    let mut changed = None;
+    for (number, value) in operator.numbers() {
+        let field = NumberField::new(number.label, number.useful.clone(), hint_of(number.key));
+        let field = if number.key == "smooth" { field.px() } else { field };
+        if let Some(to) = show(field, value) {
+            let with = |v: f32| operator.map(|other, old| if other == number { v } else { old });
+            changed = Some(to.map(with));
         }
     }
+    changed
 }
 
 fn brush(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {

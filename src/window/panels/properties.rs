@@ -5,6 +5,7 @@ use super::setter::LayerSetter;
 use super::{colors, mask, material, options, strokes};
 use crate::document::{Content, DetailSource, Layer, NormalLayer};
 use crate::math::{Vec2, vec2};
+use crate::operators::{OPERATORS, OfferedOperator};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PlacedImage, Placement};
 use crate::raster::Outside;
 use crate::requests::UiRequests;
@@ -129,8 +130,8 @@ fn normal_layer(ui: &mut Ui, normals: &NormalLayer, setter: &mut LayerSetter) {
 
 fn operator(ui: &mut Ui, operator: crate::surface::Operator, setter: &mut LayerSetter) {
     ui.horizontal_wrapped(|ui| {
-        for (label, begins, hint) in crate::operators::OPERATORS {
-            let is_on = std::mem::discriminant(&operator) == std::mem::discriminant(&begins);
+        for OfferedOperator { label, begins, hint } in OPERATORS {
+            let is_on = operator.is_like(begins);
             if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
                 setter.set(Property::Bend { operator: begins }, true);
             }

@@ -3,7 +3,7 @@
 
 use super::{colors, options};
 use crate::icons::{Icon, icon_button};
-use crate::operators::OPERATORS;
+use crate::operators::{OPERATORS, OfferedOperator};
 use crate::paint::Stroke;
 use crate::requests::UiRequests;
 use crate::session::actions::hand::SIZES;
@@ -123,8 +123,8 @@ fn styles(ui: &mut Ui, stroke: &Stroke, mut set: impl FnMut(Style, bool)) {
     let softness = unit("Softness", "A rougher, less glossy mark").row(ui, brush.softness);
     give(softness.map(|c| c.map(|to| Style::Softness { to })));
     ui.horizontal_wrapped(|ui| {
-        for (label, begins, hint) in OPERATORS {
-            let is_on = std::mem::discriminant(&stroke.operator()) == std::mem::discriminant(&begins);
+        for OfferedOperator { label, begins, hint } in OPERATORS {
+            let is_on = stroke.operator().is_like(begins);
             if ui.selectable_label(is_on, label).on_hover_text(hint).clicked() && !is_on {
                 give(Some(ValueChange { to: Style::Operator { operator: begins }, done: true }));
             }

@@ -26,6 +26,7 @@ impl LayerKind for Live<Gradient> {
         let mut gradient = self.params().clone();
         gradient.from *= scale.per_axis;
         gradient.to *= scale.per_axis;
+        gradient.operator = gradient.operator.scaled(scale.length);
         Content::Gradient(Live::new(gradient))
     }
     fn moved(&self, by: Vec2) -> Option<Content> {

@@ -26,6 +26,7 @@ impl LayerKind for Live<PlacedImage> {
     fn scaled(&self, scale: &CanvasScale) -> Content {
         let mut image = self.params().clone();
         image.placement.center *= scale.per_axis;
+        image.bend.operator = image.bend.operator.scaled(scale.length);
         for Anchor { at, source } in &mut image.bend.anchors {
             (*at, *source) = (*at * scale.per_axis, *source * scale.per_axis);
         }

@@ -147,23 +147,12 @@ fn grain(grain: &BrushGrain) -> Fit {
     match grain.lies {
         GrainSpace::Canvas => Ok(()),
         GrainSpace::Surface { gamma } => within("γ of the grain", gamma, &BrushGrain::GAMMA),
+        GrainSpace::Unwrapped => Ok(()),
     }
 }
 
 pub fn operator(operator: Operator) -> Fit {
-    match operator {
-        Operator::None => Ok(()),
-        Operator::Depth { gamma } => within("γ", gamma, &Operator::GAMMA),
-        Operator::Normal { alpha, beta, detail } => {
-            within("α", alpha, &Operator::ALPHA)?;
-            within("β", beta, &Operator::BETA)?;
-            within("the detail", detail, &Operator::DETAIL)
-        }
-        Operator::Reflection { alpha, detail } => {
-            within("α", alpha, &Operator::ALPHA)?;
-            within("the detail", detail, &Operator::DETAIL)
-        }
-    }
+    operator.numbers().into_iter().try_for_each(|(number, value)| within(number.label, value, &number.range))
 }
 
 pub fn image(image: &PlacedImage) -> Fit {

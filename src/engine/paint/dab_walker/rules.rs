@@ -257,17 +257,13 @@ impl DabRules {
         })
     }
     fn operator(&self, inputs: &DabInputs) -> Operator {
-        let by = |value: f32, property| self.value(property, value, inputs);
-        match self.operator {
-            Operator::None => Operator::None,
-            Operator::Depth { gamma } => Operator::Depth { gamma: by(gamma, Property::Gamma) },
-            Operator::Normal { alpha, beta, detail } => {
-                Operator::Normal { alpha: by(alpha, Property::Alpha), beta, detail: by(detail, Property::Detail) }
-            }
-            Operator::Reflection { alpha, detail } => {
-                Operator::Reflection { alpha: by(alpha, Property::Alpha), detail: by(detail, Property::Detail) }
-            }
-        }
+        // What the surface is unwrapped with stays: every value would be a solve of its own.
+        self.operator.map(|number, value| match number.key {
+            "gamma" => self.value(Property::Gamma, value, inputs),
+            "alpha" => self.value(Property::Alpha, value, inputs),
+            "detail" => self.value(Property::Detail, value, inputs),
+            _ => value,
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod kernels;
 
-use super::{Deformation, Pin};
+use super::{Deformation, LaidPlanes, Pin};
 use crate::math::{Rect, simd::prefetch};
 use crate::raster::Plane;
 use crate::surface::Surface;
@@ -11,8 +11,8 @@ use crate::surface::anchor::{Weights, segment_slope};
 use crate::surface::operator::{Operator, first_order, reflection, second_order};
 use kernels::{
     DepthKernel, KernelSpan, MirrorKernel, NormalKernel, add_mean, coverage_gain, depth_add, depth_one, inverse_powers,
-    inverse_squares, mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, segment_weights, still_add,
-    still_one,
+    inverse_squares, laid_row, mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, segment_weights,
+    shifted_row, still_add, still_one,
 };
 use std::ops::Range;
 
@@ -40,6 +40,7 @@ pub(super) fn fill(
         return;
     }
     let map = deformation.surface.map_or(Rect::EMPTY, |s| s.size().rect());
+    let unwrapped = deformation.planes.as_ref().zip(deformation.surface);
     let plan = FillPlan::new(deformation);
     let mut scratch = SpanScratch::default();
     let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
@@ -62,15 +63,45 @@ pub(super) fn fill(
             if inside && y + 1 < map.y1 {
                 plan.prefetch(MapSpan { x: x as usize, y: y as usize + 1, n });
             }
-            plan.span(
-                maps,
-                x as f32 + 0.5,
-                y as f32 + 0.5,
-                &mut scratch,
-                &mut row_x[at..at + n],
-                &mut row_y[at..at + n],
-            );
+            let (out_x, out_y) = (&mut row_x[at..at + n], &mut row_y[at..at + n]);
+            let is_laid = unwrapped
+                .zip(maps)
+                .is_some_and(|((planes, surface), maps)| laid_span(planes, surface, maps, out_x, out_y));
+            if !is_laid {
+                plan.span(maps, x as f32 + 0.5, y as f32 + 0.5, &mut scratch, out_x, out_y);
+            }
+            if let Some(((planes, surface), maps)) = unwrapped.zip(maps).filter(|_| !is_laid) {
+                laid_over(planes, surface, maps, out_x, out_y);
+            }
             x += n as i32;
+        }
+    }
+}
+
+/// D_s over a span that the surface covers wholly; `false` where it does not, and nothing is written.
+fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f32], out_y: &mut [f32]) -> bool {
+    if at.of(surface.coverage_plane()).contains(&0) {
+        return false;
+    }
+    let [u, v] = planes.unwrapping.planes().map(|plane| at.of(plane));
+    let objects = at.of(planes.objects);
+    let one = objects.iter().all(|object| *object == objects[0]);
+    match planes.fits().iter().find(|fit| fit.object == objects[0]).filter(|fit| one && fit.is_rigid()) {
+        Some(fit) => laid_row(u, v, fit.linear, fit.shift, out_x, out_y),
+        None if one && planes.fits().iter().all(|fit| fit.object != objects[0]) => {
+            let away = planes.elsewhere_px();
+            shifted_row(u, v, away, out_x, out_y);
+        }
+        None => laid_over(planes, surface, at, out_x, out_y),
+    }
+    true
+}
+
+/// D_s at the pixels of a span that the surface covers, one by one: where objects meet, and under many anchors.
+fn laid_over(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f32], out_y: &mut [f32]) {
+    for (k, (out_x, out_y)) in out_x.iter_mut().zip(out_y).enumerate() {
+        if surface.coverage(at.x + k, at.y) > 0 {
+            (*out_x, *out_y) = planes.at(at.x + k, at.y).into();
         }
     }
 }
@@ -148,7 +179,7 @@ impl<'d> FillPlan<'d> {
         let kernel = match deformation.operator {
             _ if deformation.surface.is_none() => Kernel::Still,
             operator if operator.is_identity() => Kernel::Still,
-            Operator::None => Kernel::Still,
+            Operator::None | Operator::Surface { .. } => Kernel::Still,
             Operator::Depth { gamma } => Kernel::Depth(DepthKernel { rate: first_order::rate(gamma) }),
             Operator::Normal { alpha, beta, .. } => {
                 Kernel::Normal(NormalKernel { alpha_px: alpha * unit_px, softness: second_order::softness(beta) })

@@ -36,7 +36,7 @@ fn paraboloid() -> Surface {
     })
 }
 
-const OPERATORS: [Operator; 7] = [
+const OPERATORS: [Operator; 8] = [
     Operator::Depth { gamma: 1.5 },
     Operator::Normal { alpha: 0.8, beta: 0.0, detail: 0.0 },
     Operator::Normal { alpha: 0.5, beta: 2.0, detail: 0.0 },
@@ -44,6 +44,7 @@ const OPERATORS: [Operator; 7] = [
     Operator::Reflection { alpha: 0.7, detail: 0.0 },
     Operator::Normal { alpha: 0.4, beta: 1.0, detail: 1.5 },
     Operator::Reflection { alpha: 0.3, detail: 0.5 },
+    Operator::Surface { amount: 1.0, smooth: 0.0 },
 ];
 
 /// One anchor, three with one of them dragged, and the gradient's two.
@@ -183,6 +184,86 @@ fn identity_is_known_without_looking_at_pixels() {
     let flat = Bend { operator: Operator::Depth { gamma: 0.0 }, ..still.clone() };
     assert!(Deformation::new(Some(&surface), SIZE, &flat).is_identity());
     assert!(!Deformation::new(None, SIZE, &bends(Operator::None)[0]).is_identity());
+}
+
+const ON_SURFACE: Operator = Operator::Surface { amount: 1.0, smooth: 0.0 };
+
+/// A cylinder of radius 60 px about a vertical axis, and before its left half a plate that floats 15 px higher.
+fn cylinder_and_plate() -> Surface {
+    surface(|q| {
+        let x = q.x - 80.0;
+        let h = (3600.0 - x * x).max(0.0).sqrt();
+        let plate = (20.0..50.0).contains(&q.x) && (20.0..50.0).contains(&q.y);
+        if plate { Some((78.0, Vec2::ZERO)) } else { (x.abs() < 55.0).then(|| (h, vec2(-x / h, 0.0))) }
+    })
+}
+
+/// Arc length on that cylinder from its middle.
+fn arc(x: f32) -> f32 {
+    60.0 * ((x - 80.0) / 60.0).asin()
+}
+
+#[test]
+fn a_dab_on_the_surface_measures_along_it_and_stays_on_its_object() {
+    let surface = cylinder_and_plate();
+    let at = vec2(105.2, 80.7);
+    let d = Deformation::of_dab(Some(&surface), SIZE, ON_SURFACE, at);
+    for (x, y) in [(105, 80), (120, 80), (90, 95), (128, 60)] {
+        let truth = vec2(arc(x as f32 + 0.5) - arc(at.x), y as f32 + 0.5 - at.y);
+        let found = d.at(x, y) - at;
+        assert!(found.distance(truth) < 0.01 * truth.length() + 0.05, "({x}, {y}): {found} and {truth}");
+    }
+    assert!(d.at(30, 30).distance(at) > 1e5, "the plate is another object");
+    let grain = Deformation::of_pattern(Some(&surface), SIZE, ON_SURFACE, at);
+    assert!(grain.at(30, 30).distance(vec2(30.5, 30.5)) < 1.0, "a pattern lies on it too, in its own plane");
+    assert_eq!(grain.at(105, 80), d.at(105, 80));
+}
+
+#[test]
+fn an_anchor_moves_the_plane_of_its_object_and_two_turn_it() {
+    let surface = cylinder_and_plate();
+    let laid = |anchors: &[Anchor]| {
+        let bend = Bend { operator: ON_SURFACE, anchors: anchors.to_vec(), ..Bend::default() };
+        Deformation::new(Some(&surface), SIZE, &bend)
+    };
+    let (none, one) = (laid(&[]), laid(&[Anchor { at: vec2(90.5, 90.5), source: vec2(70.0, 60.0) }]));
+    assert!(!none.is_identity());
+    let by = one.at(90, 90) - none.at(90, 90);
+    assert!(one.at(90, 90).distance(vec2(70.0, 60.0)) < 1e-3);
+    assert!((one.at(120, 70) - none.at(120, 70)).distance(by) < 1e-3, "all of the cylinder");
+    assert_eq!(one.at(30, 30), none.at(30, 30), "and nothing of the plate");
+    // Two anchors whose sources lie turned by a right angle, as far apart as the points are on the surface.
+    let (a, b) = (none.at(70, 60), none.at(100, 60));
+    let pins = [(70.5, a), (100.5, a + (b - a).perp())].map(|(x, source)| Anchor { at: vec2(x, 60.5), source });
+    let two = laid(&pins);
+    assert!((two.at(85, 100) - a).distance((none.at(85, 100) - a).perp()) < 0.05, "the plane has turned as one");
+}
+
+#[test]
+fn a_gradient_on_the_surface_runs_evenly_along_it() {
+    let surface = cylinder_and_plate();
+    let anchors = vec![Anchor::fixed(vec2(80.5, 100.5)), Anchor::fixed(vec2(130.5, 100.5))];
+    let bend = Bend { operator: ON_SURFACE, anchors, weights: Weights::Segment };
+    let d = Deformation::new(Some(&surface), SIZE, &bend);
+    for x in [90, 100, 110, 120, 128] {
+        let share = (arc(x as f32 + 0.5) - arc(80.5)) / (arc(130.5) - arc(80.5));
+        let found = (d.at(x, 100).x - 80.5) / 50.0;
+        assert!((found - share).abs() < 0.01, "at {x}: {found} and {share}");
+    }
+}
+
+#[test]
+fn anchors_anywhere_leave_the_surface_finite() {
+    let (surface, huge) = (cylinder_and_plate(), vec2(f32::MAX, -1e30));
+    for at in [vec2(-50.0, 40.0), huge, vec2(f32::NAN, 1.0), vec2(90.5, 60.5)] {
+        let anchors = vec![Anchor::fixed(vec2(90.5, 60.5)), Anchor { at, source: huge }, Anchor::fixed(at)];
+        for weights in [Weights::Shepard { power: 2.0 }, Weights::Shepard { power: 0.3 }, Weights::Segment] {
+            let bend = Bend { operator: ON_SURFACE, anchors: anchors.clone(), weights };
+            let d = Deformation::new(Some(&surface), SIZE, &bend);
+            assert!([(90, 60), (30, 30), (2, 2)].iter().all(|&(x, y)| d.at(x, y).is_finite()), "{at} {weights:?}");
+        }
+        assert!(Deformation::of_dab(Some(&surface), SIZE, ON_SURFACE, at).at(90, 60).is_finite());
+    }
 }
 
 proptest! {

@@ -1,12 +1,16 @@
 //! The operators: how far a point of the image moves where the surface is nearer (D_p), turns (D_n) or mirrors (D_r)
-//! relative to an anchor. Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md). Not here:
-//! reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
+//! relative to an anchor, or where the surface unwrapped has it (D_s). Floor 2. Pure functions; each is an equation
+//! (docs/EQUATIONS.md). `kinds` is the table of their names and numbers. Not here: reading maps (`maps`), anchors and
+//! weights (`anchor`), the unwrapping itself (`unwrap`), pixels (`raster`).
 
 pub mod first_order;
+pub mod kinds;
 pub mod reflection;
 pub mod second_order;
 
-use crate::math::{Mat2, Range, Vec2, range::held};
+use super::unwrap::UnwrapSettings;
+use crate::math::{Mat2, Vec2};
+pub use kinds::OperatorNumber;
 
 /// Which surface flow an image follows, and how strongly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -21,6 +25,9 @@ pub enum Operator {
     Normal { alpha: f32, beta: f32, detail: f32 },
     /// By the reflected view direction on an angular map (beyond the paper). `alpha` in canvas lengths.
     Reflection { alpha: f32, detail: f32 },
+    /// The surface unwrapped: an image lies on it, undistorted as far as can be (MATH 8, beyond the papers). `amount`:
+    /// a, 0 flat … 1 its own metric; `smooth`: blur of the normals beforehand, px.
+    Surface { amount: f32, smooth: f32 },
 }
 
 /// What the maps hold at one pixel.
@@ -49,58 +56,35 @@ pub struct MapSlopes {
     pub nz: Vec2,
 }
 
-/// Magnitudes beyond this are pulled in, so that no product of distances leaves f32.
-const MAX_ALPHA: f32 = 1e5;
-
 impl Operator {
-    /// e^20 is half a thousand million: a stronger bend only loses digits.
-    pub const GAMMA: Range = 0.0..=20.0;
-    pub const ALPHA: Range = -100.0..=100.0;
-    pub const BETA: Range = 0.0..=50.0;
-    pub const DETAIL: Range = 0.0..=100.0;
-
-    /// With the nearest numbers that a document may hold.
-    pub fn held(self) -> Self {
-        match self {
-            Operator::None => Operator::None,
-            Operator::Depth { gamma } => Operator::Depth { gamma: held(gamma, &Self::GAMMA) },
-            Operator::Normal { alpha, beta, detail } => Operator::Normal {
-                alpha: held(alpha, &Self::ALPHA),
-                beta: held(beta, &Self::BETA),
-                detail: held(detail, &Self::DETAIL),
-            },
-            Operator::Reflection { alpha, detail } => {
-                Operator::Reflection { alpha: held(alpha, &Self::ALPHA), detail: held(detail, &Self::DETAIL) }
-            }
-        }
-    }
-    /// The operator with parameters that are finite and not absurd: what is not a number counts as 0.
-    pub fn finite(self) -> Self {
-        let number = |v: f32| if v.is_finite() { v.clamp(-MAX_ALPHA, MAX_ALPHA) } else { 0.0 };
-        match self {
-            Operator::None => Operator::None,
-            Operator::Depth { gamma } => Operator::Depth { gamma: number(gamma) },
-            Operator::Normal { alpha, beta, detail } => {
-                Operator::Normal { alpha: number(alpha), beta: number(beta), detail: number(detail) }
-            }
-            Operator::Reflection { alpha, detail } => {
-                Operator::Reflection { alpha: number(alpha), detail: number(detail) }
-            }
-        }
-    }
-    /// Whether it moves nothing on any surface: γ = 0 or α = 0.
+    /// Whether it moves nothing on any surface: γ = 0, α = 0 or a = 0.
     pub fn is_identity(self) -> bool {
         match self {
             Operator::None => true,
             Operator::Depth { gamma } => gamma == 0.0,
             Operator::Normal { alpha, .. } | Operator::Reflection { alpha, .. } => alpha == 0.0,
+            Operator::Surface { amount, .. } => amount == 0.0,
         }
     }
     /// μ: how strongly curvature scales the magnitude (SF fig. 10); 0 for operators without it.
     pub fn detail(self) -> f32 {
         match self {
-            Operator::None | Operator::Depth { .. } => 0.0,
+            Operator::None | Operator::Depth { .. } | Operator::Surface { .. } => 0.0,
             Operator::Normal { detail, .. } | Operator::Reflection { detail, .. } => detail,
+        }
+    }
+    /// What the surface must be unwrapped with; `None` for operators that only read maps at a pixel and at anchors.
+    pub fn unwrapping(self) -> Option<UnwrapSettings> {
+        match self {
+            Operator::Surface { amount, smooth } if amount > 0.0 => Some(UnwrapSettings { amount, smooth_px: smooth }),
+            _ => None,
+        }
+    }
+    /// On a canvas so many times as large: lengths in px grow with it.
+    pub fn scaled(self, by: f32) -> Self {
+        match self {
+            Operator::Surface { amount, smooth } => Operator::Surface { amount, smooth: smooth * by }.held(),
+            unitless => unitless,
         }
     }
     /// offsetᵢ(q) of MATH 2, without detail enhancement: how far one anchor moves a point, canvas px.
@@ -108,9 +92,11 @@ impl Operator {
     /// * `from_anchor`: q − qᵢ, px.
     /// * `here`, `anchor`: the maps at q and at qᵢ.
     /// * `unit_px`: *L*, the longer side of the canvas, px.
+    ///
+    /// 0 for the operator that unwraps: it is no sum over anchors (`deformation::plane`).
     pub fn offset(self, from_anchor: Vec2, here: MapValues, anchor: MapValues, unit_px: f32) -> Vec2 {
         match self {
-            Operator::None => Vec2::ZERO,
+            Operator::None | Operator::Surface { .. } => Vec2::ZERO,
             Operator::Depth { gamma } => first_order::offset(from_anchor, here.depth - anchor.depth, gamma),
             Operator::Normal { alpha, beta, .. } => {
                 unit_px * second_order::offset(here.nbar - anchor.nbar, alpha, beta)
@@ -131,7 +117,7 @@ impl Operator {
         unit_px: f32,
     ) -> Mat2 {
         match self {
-            Operator::None => Mat2::ZERO,
+            Operator::None | Operator::Surface { .. } => Mat2::ZERO,
             Operator::Depth { gamma } => {
                 first_order::offset_jacobian(from_anchor, here.depth - anchor.depth, slopes.depth, gamma)
             }

@@ -65,6 +65,12 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> TileBlocks {
             let spans = BlockRanges::of(at, cover, pyramid.leaves(), figures);
             turned(&spans, corner, support.extent, TurnedBlocks { turn: *turn, stretch: *stretch }, &mut touched);
         }
+        OperatorBounds::Unwrapped { surface, unwrapping, at: anchor } => {
+            let leaves = unwrapping.bounds(surface).leaves();
+            let figures = |span: TurnSpan| [span.low.x, span.low.y, span.high.x, span.high.y, span.slope];
+            let spans = BlockRanges::of(at, cover, leaves, figures);
+            laid(&spans, corner, support.extent, LaidBlocks { at: *anchor }, &mut touched);
+        }
     }
     let there = support.on_canvas(at);
     std::array::from_fn(|row| {
@@ -102,6 +108,11 @@ struct TurnedBlocks {
     stretch: RadialOffset,
 }
 
+#[derive(Clone, Copy)]
+struct LaidBlocks {
+    at: Vec2,
+}
+
 impl BlockBend<0> for StillBlocks {
     #[inline(always)]
     fn image(self, _: [f32; 0], _: (Vec2, Vec2), flat: BlockImage) -> BlockImage {
@@ -118,6 +129,13 @@ impl BlockBend<5> for TurnedBlocks {
     #[inline(always)]
     fn image(self, [x0, y0, x1, y1, slope]: [f32; 5], block: (Vec2, Vec2), _: BlockImage) -> BlockImage {
         self.stretch.image(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.turn, block)
+    }
+}
+
+impl BlockBend<5> for LaidBlocks {
+    #[inline(always)]
+    fn image(self, [x0, y0, x1, y1, slope]: [f32; 5], _: (Vec2, Vec2), _: BlockImage) -> BlockImage {
+        BlockImage::laid(TurnSpan { low: vec2(x0, y0), high: vec2(x1, y1), slope }, self.at)
     }
 }
 
@@ -153,6 +171,9 @@ crate::widest! {
         each(spans, corner, extent, bend, touched);
     }
     fn turned(spans: &BlockRanges<5>, corner: Vec2, extent: DabExtent, bend: TurnedBlocks, touched: &mut [u32]) {
+        each(spans, corner, extent, bend, touched);
+    }
+    fn laid(spans: &BlockRanges<5>, corner: Vec2, extent: DabExtent, bend: LaidBlocks, touched: &mut [u32]) {
         each(spans, corner, extent, bend, touched);
     }
 }

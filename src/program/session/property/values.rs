@@ -49,31 +49,21 @@ impl crate::session::replay::ReplayValue for LayerTransform {
     }
 }
 
-/// How marks follow the surface, as four words with their numbers.
+/// How marks follow the surface: a kind with its numbers.
 impl crate::session::replay::ReplayValue for Operator {
     fn written(&self) -> serde_json::Value {
-        match *self {
-            Operator::None => serde_json::json!({ "kind": "none" }),
-            Operator::Depth { gamma } => serde_json::json!({ "kind": "depth", "gamma": gamma.written() }),
-            Operator::Normal { alpha, beta, detail } => serde_json::json!({
-                "kind": "normal", "alpha": alpha.written(), "beta": beta.written(), "detail": detail.written(),
-            }),
-            Operator::Reflection { alpha, detail } => serde_json::json!({
-                "kind": "reflection", "alpha": alpha.written(), "detail": detail.written(),
-            }),
-        }
+        let mut written = serde_json::Map::new();
+        written.insert("kind".into(), self.row().1.into());
+        self.numbers().into_iter().for_each(|(number, value)| {
+            written.insert(number.key.into(), value.written());
+        });
+        written.into()
     }
     fn read(value: &serde_json::Value) -> Result<Self, String> {
-        let number = |name| crate::session::replay::field::<f32>(value, name);
-        match value.get("kind").and_then(|kind| kind.as_str()) {
-            Some("none") => Ok(Operator::None),
-            Some("depth") => Ok(Operator::Depth { gamma: number("gamma")? }),
-            Some("normal") => {
-                Ok(Operator::Normal { alpha: number("alpha")?, beta: number("beta")?, detail: number("detail")? })
-            }
-            Some("reflection") => Ok(Operator::Reflection { alpha: number("alpha")?, detail: number("detail")? }),
-            _ => Err("must be an operator of a known kind".into()),
-        }
+        let kind = value.get("kind").and_then(|kind| kind.as_str());
+        let known = Operator::KINDS.iter().find(|(_, name)| Some(*name) == kind);
+        let (operator, _) = known.ok_or("must be an operator of a known kind")?;
+        operator.try_map(|number, _| crate::session::replay::field::<f32>(value, number.key))
     }
 }
 

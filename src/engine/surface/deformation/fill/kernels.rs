@@ -2,6 +2,7 @@
 //! Floor 2. Not here: which of them a span asks for (`fill`).
 
 use super::FastPin;
+use crate::math::{Mat2, Vec2};
 use crate::surface::operator::{first_order, second_order};
 
 /// The pixels of a row: centre of the first, and what the maps hold.
@@ -207,6 +208,22 @@ crate::widest! {
             let along = (span.x + k as i32 as f32 - first.x) * slope[0] + (span.y - first.y) * slope[1];
             *w = offset + factor * along.max(0.0).min(1.0);
             *sum += *w;
+        }
+    }
+    /// D = linear U + shift over a row of points of the unwrapped plane.
+    pub(super) fn laid_row(u: &[f32], v: &[f32], linear: Mat2, shift: Vec2, out_x: &mut [f32], out_y: &mut [f32]) {
+        let n = out_x.len();
+        let (u, v, out_y) = (&u[..n], &v[..n], &mut out_y[..n]);
+        let ([xx, yx], [xy, yy]) = (linear.x_axis.to_array(), linear.y_axis.to_array());
+        for k in 0..n {
+            out_x[k] = xx * u[k] + xy * v[k] + shift.x;
+            out_y[k] = yx * u[k] + yy * v[k] + shift.y;
+        }
+    }
+    /// Points of the unwrapped plane where they lie, but for a shift in both directions.
+    pub(super) fn shifted_row(u: &[f32], v: &[f32], by: f32, out_x: &mut [f32], out_y: &mut [f32]) {
+        for (out, from) in out_x.iter_mut().zip(u).chain(out_y.iter_mut().zip(v)) {
+            *out = from + by;
         }
     }
     /// D = q + Σ w (…) / Σ w; q where there is no weight at all.

@@ -1,0 +1,171 @@
+//! A surface unwrapped: a map of it onto a plane that changes lengths as little as can be, from its normals (MATH 8).
+//! Floor 2. `metric` holds the equations, `steps` the local and global steps over rows, `smooth` the blur before them.
+//! The linear systems are `springs`'. Not here: anchors, and how marks use the plane (`deformation`).
+
+pub mod metric;
+mod place;
+mod settle;
+mod smooth;
+mod steps;
+
+pub use place::PlanePlace;
+
+use super::pyramid::{Pyramid, TurnSpan};
+use super::springs::{Effort, SolveScratch, SpringGrid, SpringSolver};
+use super::{Surface, links};
+use crate::math::{Rect, Size, Vec2, vec2};
+use crate::memory::filled_or_unwind;
+use crate::raster::Plane;
+use rayon::prelude::*;
+use std::sync::{Arc, OnceLock};
+use steps::Metric;
+
+/// Where each pixel of a surface lies in the plane it is unwrapped to, canvas px: D_s without anchors.
+///
+/// Each piece lies as near to where it is in the picture as a shift brings it. Off the surface the identity.
+pub struct Unwrapping {
+    x: Plane<f32>,
+    y: Plane<f32>,
+    /// The ranges of both over blocks, for `support`.
+    bounds: OnceLock<Pyramid<TurnSpan>>,
+}
+
+/// What an unwrapping depends on beside the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnwrapSettings {
+    /// a of MATH 8, `[0, 2]`.
+    pub amount: f32,
+    /// Standard deviation of the blur of the normals beforehand, px.
+    pub smooth_px: f32,
+}
+
+/// How often S is turned as the solution turned it, and solved again.
+const TURNS: usize = 3;
+/// How far the solves go before S is turned again, and the last one.
+const ROUGH: Effort = Effort { goal: 3e-2, most_steps: 30 };
+const FINE: Effort = Effort { goal: 1e-3, most_steps: 60 };
+
+impl Unwrapping {
+    pub fn new(surface: &Surface, settings: UnwrapSettings) -> Self {
+        let size = surface.size();
+        let mut planes = [Plane::from_fn(size, |x, _| x as f32 + 0.5), Plane::from_fn(size, |_, y| y as f32 + 0.5)];
+        let rect = covered(surface);
+        if settings.amount > 0.0 && !rect.is_empty() {
+            let moved = solved(surface, rect, settings);
+            for (plane, moved) in planes.iter_mut().zip(&moved) {
+                let w = size.width as usize;
+                let rows = plane.values_mut()[rect.y0 as usize * w..rect.y1 as usize * w].chunks_mut(w);
+                for (row, moved) in rows.zip(moved.chunks(rect.width())) {
+                    row[rect.x0 as usize..rect.x1 as usize].iter_mut().zip(moved).for_each(|(v, d)| *v += d);
+                }
+            }
+        }
+        let [x, y] = planes;
+        Self { x, y, bounds: OnceLock::new() }
+    }
+    pub fn size(&self) -> Size {
+        self.x.size()
+    }
+    /// Where a pixel's centre lies.
+    #[inline(always)]
+    pub fn at(&self, x: usize, y: usize) -> Vec2 {
+        vec2(self.x.at(x, y), self.y.at(x, y))
+    }
+    /// x and y as planes, for loops over rows.
+    pub fn planes(&self) -> [&Plane<f32>; 2] {
+        [&self.x, &self.y]
+    }
+    /// Built by the calling thread alone: see `pyramid`.
+    pub(super) fn bounds(&self, surface: &Surface) -> &Pyramid<TurnSpan> {
+        self.bounds.get_or_init(|| Pyramid::of_points(surface, |x, y| self.at(x, y)))
+    }
+}
+
+/// The smallest rectangle that holds the surface.
+fn covered(surface: &Surface) -> Rect {
+    let coverage = surface.coverage_plane();
+    let row = |y: usize| {
+        let row = coverage.row(y);
+        let first = row.iter().position(|c| *c > 0)? as i32;
+        let last = row.iter().rposition(|c| *c > 0)? as i32;
+        Some(Rect::new(first, y as i32, last + 1, y as i32 + 1))
+    };
+    (0..coverage.height()).filter_map(row).fold(Rect::EMPTY, Rect::union)
+}
+
+/// δ = D − q over a rectangle, x and y: the steps of MATH 8.
+fn solved(surface: &Surface, rect: Rect, settings: UnwrapSettings) -> [Vec<f32>; 2] {
+    let normals = smooth::normals(surface, rect, settings.smooth_px);
+    let metric = Metric::of(&normals, settings.amount);
+    let solver = SpringSolver::new(springs(surface, rect, &normals));
+    drop(normals);
+    let n = rect.width() * rect.height();
+    let mut moved = [filled_or_unwind(n, 0.0), filled_or_unwind(n, 0.0)];
+    let mut sources = [filled_or_unwind(n, 0.0), filled_or_unwind(n, 0.0)];
+    let mut scratch = SolveScratch::default();
+    for step in 0..=TURNS {
+        let before = (step > 0).then(|| moved.each_ref().map(|v| &v[..]));
+        steps::sources(solver.grid(), &metric, before, sources.each_mut().map(|v| &mut v[..]));
+        let effort = if step < TURNS { ROUGH } else { FINE };
+        for (v, b) in moved.iter_mut().zip(&sources) {
+            solver.solve(b, v, effort, &mut scratch);
+        }
+    }
+    let pieces = solver.pieces();
+    drop((solver, scratch, sources, metric));
+    settle::settle(surface, rect, &mut moved, pieces);
+    moved
+}
+
+impl Metric {
+    fn of(normals: &smooth::Normals, amount: f32) -> Self {
+        let [nx, ny, nz] = &normals.0;
+        let entries = |(nx, (ny, nz)): (&f32, (&f32, &f32))| {
+            let s = metric::stretch(vec2(*nx, *ny), *nz, amount);
+            (s.x_axis.x - 1.0, (s.x_axis.y, s.y_axis.y - 1.0))
+        };
+        let (xx, (xy, yy)) = nx.par_iter().zip(ny.par_iter().zip(nz)).map(entries).unzip();
+        Self { xx, xy, yy }
+    }
+}
+
+/// The links of MATH 8 as springs: `w = the mean of n_z × c_ij`, nothing across depth jumps and the mask's edge.
+fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGrid {
+    let (w, n) = (rect.width(), rect.width() * rect.height());
+    let [nx, ny, nz] = &normals.0;
+    let normal = |i: usize| crate::math::vec3(nx[i], -ny[i], nz[i]);
+    let facing = |i: usize| nz[i].max(metric::STEEPEST_NZ).min(1.0);
+    let plane = |bit: u8, step: usize, along: Vec2| {
+        let mut plane = filled_or_unwind(n, 0.0f32);
+        plane.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+            let linked = surface.links_plane().row(y + rect.y0 as usize);
+            for (x, (spring, linked)) in row.iter_mut().zip(&linked[rect.x0 as usize..]).enumerate() {
+                let i = y * w + x;
+                if linked & bit != 0 && i + step < n {
+                    let hollow = metric::hollow(normal(i), normal(i + step), along);
+                    *spring = 0.5 * (facing(i) + facing(i + step)) * hollow;
+                }
+            }
+        });
+        plane
+    };
+    SpringGrid::new(w, plane(links::RIGHT, 1, Vec2::X), plane(links::DOWN, w, Vec2::Y))
+}
+
+/// Pixels of all unwrappings kept, 8 bytes each.
+const KEPT_PX: usize = 32 << 20;
+
+impl Surface {
+    /// The surface unwrapped, cached. Call it once before going parallel: threads that ask at the same time may each
+    /// compute it. Settings that are not finite count as 0.
+    pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
+        let amount = settings.amount.max(0.0).min(2.0);
+        let smooth_px = settings.smooth_px.max(0.0).min(self.size().longer_side());
+        let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
+        let key = [amount.to_bits(), smooth_px.to_bits()];
+        self.unwrappings().get_or_compute(key, keep, |_| Unwrapping::new(self, UnwrapSettings { amount, smooth_px }))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,106 @@
+//! The surface's own metric, as its normals tell it in the picture: how long a step of a pixel is on the surface.
+//! Floor 2. Pure functions; each is an equation of MATH 8. Not here: solving for the deformation (`steps`).
+
+use crate::math::{Mat2, Vec2, Vec3};
+use crate::surface::operator::outer;
+
+/// Below this n_z the surface is seen edge-on: it counts as no steeper, so that no picture is stretched more than five
+/// times.
+pub const STEEPEST_NZ: f32 = 0.2;
+
+/// S(q) of MATH 8: `1 + (n_z^−a − 1) ĝ ĝᵀ`, the symmetric root of the surface's metric in the picture.
+///
+/// A height field with ∇h = −n̄/n_z has the metric 1 + ∇h ∇hᵀ, whose root stretches by √(1 + |∇h|²) = 1/n_z along the
+/// slope ĝ = n̄/|n̄| and not at all across it. Canvas px of the surface per px of the picture.
+///
+/// * `nbar`, `nz`: a unit normal, image axes; n_z is held ≥ 0.2.
+/// * `amount`: a, `[0, 2]`; 1 is the surface's own metric, 0 flat: the identity.
+pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
+    let along = nbar / nbar.length().max(1e-9);
+    Mat2::IDENTITY + outer(along, along) * (nz.max(STEEPEST_NZ).min(1.0).powf(-amount) - 1.0)
+}
+
+/// R(q) of MATH 8: the rotation in J S⁻¹, by which the solution turned the surface at a pixel.
+///
+/// `angle = atan2(M₂₁ − M₁₂, M₁₁ + M₂₂)`, M = J S⁻¹: of all rotations the nearest to M. The identity where M tells none.
+pub fn turn(jacobian: Mat2, stretch: Mat2) -> Mat2 {
+    let m = jacobian * stretch.inverse();
+    let (cos, sin) = (m.x_axis.x + m.y_axis.y, m.x_axis.y - m.y_axis.x);
+    let length = cos.hypot(sin);
+    if length > 0.0 && length.is_finite() {
+        Mat2::from_cols(Vec2::new(cos, sin), Vec2::new(-sin, cos)) * (1.0 / length)
+    } else {
+        Mat2::IDENTITY
+    }
+}
+
+/// The angle of a hollow at which a link pulls e times less, rad: 15°.
+const HOLLOW_RAD: f32 = 15.0 * std::f32::consts::PI / 180.0;
+/// What is left of the pull of the deepest hollows.
+const LEAST_PULL: f32 = 1e-3;
+
+/// c_ij of MATH 8: `max(e^(−(φ/15°)²), 10⁻³)` on hollow links, whose normals turn toward each other by φ; else 1.
+///
+/// Where objects touch in a hollow they hardly pull on each other; across raised edges, a cube's, the print goes on.
+///
+/// * `a`, `b`: unit normals of two neighbours, camera space.
+/// * `along`: from the first to the second; image axes.
+#[inline(always)]
+pub fn hollow(a: Vec3, b: Vec3, along: Vec2) -> f32 {
+    let turned = b - a;
+    // Image axes: y of normals points the other way.
+    if turned.x * along.x - turned.y * along.y >= 0.0 {
+        return 1.0;
+    }
+    // φ from its chord 2 sin(φ/2); at 60°, where nothing is left, the series is 0.1 % short.
+    let chord = turned.length_squared();
+    let squared = chord * (1.0 + chord * (1.0 / 12.0 + chord * (1.0 / 90.0)));
+    (-squared / (HOLLOW_RAD * HOLLOW_RAD)).exp().max(LEAST_PULL)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{vec2, vec3};
+
+    #[test]
+    fn the_root_squared_is_the_metric_of_the_slope() {
+        for (x, y) in [(0.3f32, 0.4f32), (-0.7, 0.1), (0.0, 0.9), (0.0, 0.0)] {
+            let nz = (1.0 - x * x - y * y).sqrt();
+            let root = stretch(vec2(x, y), nz, 1.0);
+            let slope = vec2(x, y) / nz;
+            let metric = Mat2::IDENTITY + outer(slope, slope);
+            assert!((root * root).abs_diff_eq(metric, 1e-4), "{:?} and {metric:?}", root * root);
+        }
+    }
+    #[test]
+    fn edge_on_it_is_held_and_flat_it_is_the_identity() {
+        let steep = stretch(vec2(1.0, 0.0), 0.001, 1.0);
+        assert!((steep.x_axis.x - 5.0).abs() < 1e-5 && (steep.y_axis.y - 1.0).abs() < 1e-6);
+        assert_eq!(stretch(vec2(0.6, 0.0), 0.8, 0.0), Mat2::IDENTITY);
+        assert!((stretch(vec2(0.6, 0.0), 0.8, 2.0).x_axis.x - 1.0 / 0.64).abs() < 1e-5);
+        assert!(stretch(vec2(0.6, 0.0), -0.8, 1.0).x_axis.x <= 5.0, "perspective maps lean away");
+    }
+    #[test]
+    fn the_rotation_of_a_stretched_turn_is_the_turn() {
+        let s = stretch(vec2(0.5, -0.3), (1.0f32 - 0.34).sqrt(), 1.0);
+        for angle in [0.0f32, 0.4, -2.0, 3.1] {
+            let r = Mat2::from_angle(angle);
+            assert!(turn(r * s, s).abs_diff_eq(r, 1e-5), "{angle}");
+        }
+        assert_eq!(turn(Mat2::ZERO, s), Mat2::IDENTITY);
+    }
+    #[test]
+    fn hollows_hardly_pull_and_edges_do() {
+        let leaning = |degrees: f32| vec3(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
+        // The right one leans left: a valley.
+        let valley = |degrees: f32| hollow(leaning(degrees / 2.0), leaning(-degrees / 2.0), Vec2::X);
+        assert!((valley(15.0) - (-1.0f32).exp()).abs() < 1e-4, "{}", valley(15.0));
+        assert!((valley(5.0) - (-1.0f32 / 9.0).exp()).abs() < 1e-4);
+        assert_eq!(valley(90.0), 1e-3);
+        assert_eq!(hollow(leaning(-40.0), leaning(40.0), Vec2::X), 1.0, "a ridge");
+        let (up, down) = (vec3(0.0, 0.5, 0.866), vec3(0.0, -0.5, 0.866));
+        assert_eq!(hollow(up, down, Vec2::Y), 1.0, "a roof: the upper side looks up");
+        assert_eq!(hollow(down, up, Vec2::Y), 1e-3, "a gutter");
+    }
+}
