@@ -7,7 +7,7 @@ use super::prepare::{Adjustment, PreparedDocument, in_parallel};
 use crate::math::fast;
 use crate::math::srgb::{decode, decode_fast, luminance};
 use crate::raster::{PlanarTile, TILE, TileAt, planar::PixelRow};
-use crate::shading::radiance::{BackdropStats, LuminanceSums};
+use crate::shading::radiance::{BackdropStats, GainLadder, LightSums};
 use crate::shading::{RadianceScaling, Reference};
 use crate::surface::Scene;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -47,12 +47,17 @@ impl PreparedDocument {
     }
     /// The factor that restores the mean luminance beneath the next adjustment.
     fn gain(&self, scaling: &RadianceScaling, scene: &Scene, brightest: f32, progress: &Progress) -> Option<f32> {
-        let of_tile = |at| {
-            let measured = self.beneath_next(at).map(|pixels| scaling.means_tile(scene, at, brightest, &pixels));
-            measured.unwrap_or_default()
+        let sums = |tried: GainLadder| {
+            let of_tile = |at| {
+                let pixels = self.beneath_next(at);
+                pixels.map(|pixels| scaling.means_tile(scene, at, brightest, &pixels, tried)).unwrap_or_default()
+            };
+            let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
+            Some(tiles.into_iter().fold(LightSums::default(), LightSums::plus))
         };
-        let tiles = in_parallel(&self.all_tiles(), progress, of_tile)?;
-        Some(tiles.into_iter().fold(LuminanceSums::default(), LuminanceSums::plus).gain())
+        // What is shown is clipped, so it does not grow as the factor does: steps, then finer ones.
+        let Some(finer) = sums(GainLadder::whole())?.finer(GainLadder::whole()) else { return Some(1.0) };
+        Some(sums(finer)?.gain(finer))
     }
     /// One tile of what lies beneath the next adjustment, in its own scope.
     fn beneath_next(&self, at: TileAt) -> Option<PlanarTile> {

@@ -45,25 +45,55 @@ impl Default for RadianceScaling {
 pub struct BackdropStats {
     /// Its greatest luminance over the surface, linear light.
     pub brightest: f32,
-    /// The factor that restores its mean luminance: [`LuminanceSums::gain`]; 1 if the mean need not be kept.
+    /// The factor that restores its mean luminance: [`LightSums::gain`]; 1 if the mean need not be kept.
     pub gain: f32,
 }
 
-/// Luminance of a part of the composite, added up before and after scaling. Add the parts in a fixed order.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LuminanceSums {
-    pub before: f64,
-    pub after: f64,
+/// Factors of the light that are tried at once.
+const GAINS: usize = 12;
+
+/// Even steps between two factors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GainLadder(pub [f32; GAINS]);
+
+impl GainLadder {
+    /// Everything within reason.
+    pub fn whole() -> Self {
+        Self::between(1.0 / 64.0, 64.0)
+    }
+    fn between(low: f32, high: f32) -> Self {
+        Self(std::array::from_fn(|k| low * (high / low).powf(k as f32 / (GAINS - 1) as f32)))
+    }
 }
 
-impl LuminanceSums {
-    pub fn plus(self, other: LuminanceSums) -> LuminanceSums {
-        LuminanceSums { before: self.before + other.before, after: self.after + other.after }
+/// Luminance of a part of the composite, added up before scaling, and after it for each factor: as it is shown, every
+/// channel clipped at 1. Add the parts in a fixed order.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LightSums {
+    pub before: f64,
+    pub after: [f64; GAINS],
+}
+
+impl LightSums {
+    pub fn plus(self, other: LightSums) -> LightSums {
+        LightSums { before: self.before + other.before, after: std::array::from_fn(|k| self.after[k] + other.after[k]) }
     }
-    /// The factor of the light that brings `after` back to `before`, within reason.
-    pub fn gain(self) -> f32 {
-        let gain = self.before / self.after;
-        if gain.is_finite() { (gain as f32).max(1.0 / 64.0).min(64.0) } else { 1.0 }
+    /// Between which steps the light after is that before: the index of the lower one, and how far beyond it.
+    fn bracket(&self) -> Option<(usize, f32)> {
+        let over = self.after.iter().position(|&after| after >= self.before)?;
+        let low = over.checked_sub(1)?;
+        let share = (self.before - self.after[low]) / (self.after[over] - self.after[low]);
+        share.is_finite().then_some((low, share as f32))
+    }
+    /// A finer ladder around the factor that keeps the light; `None` where none of these does.
+    pub fn finer(&self, tried: GainLadder) -> Option<GainLadder> {
+        let (low, _) = self.bracket()?;
+        Some(GainLadder::between(tried.0[low], tried.0[low + 1]))
+    }
+    /// The factor that keeps the light as it was; 1 where none of these does.
+    pub fn gain(&self, tried: GainLadder) -> f32 {
+        let between = |(low, share): (usize, f32)| tried.0[low] + (tried.0[low + 1] - tried.0[low]) * share;
+        self.bracket().map_or(1.0, between)
     }
 }
 
@@ -89,19 +119,29 @@ impl RadianceScaling {
             }
         });
     }
-    /// Luminance of one tile before and after scaling, weighed by alpha and by how far the surface covers each pixel.
-    pub fn means_tile(&self, scene: &Scene, at: TileAt, brightest: f32, pixels: &PlanarTile) -> LuminanceSums {
+    /// Luminance of one tile before scaling, and after it with each factor, weighed by alpha and by how far the surface
+    /// covers each pixel.
+    pub fn means_tile(
+        &self,
+        scene: &Scene,
+        at: TileAt,
+        brightest: f32,
+        pixels: &PlanarTile,
+        tried: GainLadder,
+    ) -> LightSums {
         let y_star = self.reference.resolve(brightest);
-        let mut means = LuminanceSums::default();
+        let mut sums = LightSums::default();
+        let mut light = RowLuminance { before: [0.0; TILE], after: [[0.0; TILE]; GAINS] };
         self.for_rows(scene, at, |y, kappa, coverage| {
             let Some(row) = pixels.rows().get(y) else { return };
-            let [before, after] = light_of_row(row, kappa, self.scaling, 1.0 / y_star);
-            for ((&before, &after), &coverage) in before.iter().zip(&after).zip(coverage) {
-                means.before += f64::from(coverage) * f64::from(before);
-                means.after += f64::from(coverage) * f64::from(after);
-            }
+            light_of_row(row, kappa, self.scaling, 1.0 / y_star, &tried.0, &mut light);
+            let sum = |values: &[f32; TILE]| -> f64 {
+                values.iter().zip(coverage).map(|(&v, &coverage)| f64::from(coverage) * f64::from(v)).sum()
+            };
+            sums.before += sum(&light.before);
+            sums.after.iter_mut().zip(&light.after).for_each(|(all, row)| *all += sum(row));
         });
-        means
+        sums
     }
     /// Calls with each row of the tile that meets the surface, κ along it (0 off the surface) and the surface's
     /// coverage.
@@ -126,18 +166,38 @@ impl RadianceScaling {
     }
 }
 
+/// Alpha × luminance of each pixel of a row.
+struct RowLuminance {
+    before: [f32; TILE],
+    after: [[f32; TILE]; GAINS],
+}
+
 crate::widest! {
-    /// Alpha × luminance of each pixel, before and after scaling.
-    fn light_of_row(row: &PixelRow, kappa: &[f32; TILE], scaling: Scaling, per_y_star: f32) -> [[f32; TILE]; 2] {
-        let [mut before, mut after] = [[0.0; TILE]; 2];
+    /// Alpha × luminance of each pixel, before scaling and after it with each factor, clipped as it is shown.
+    fn light_of_row(
+        row: &PixelRow,
+        kappa: &[f32; TILE],
+        scaling: Scaling,
+        per_y_star: f32,
+        gains: &[f32; GAINS],
+        out: &mut RowLuminance,
+    ) {
+        let [mut red, mut green, mut blue] = [[0.0; TILE]; 3];
         for x in 0..TILE {
             let per_a = 1.0 / fast::max(row.a[x], f32::MIN_POSITIVE);
             let light = |v: f32| srgb::decode_fast(fast::min(v * per_a, 1.0));
-            let luminance = srgb::luminance(light(row.rgb[0][x]), light(row.rgb[1][x]), light(row.rgb[2][x]));
-            before[x] = row.a[x] * luminance;
-            after[x] = before[x] * scaling.sigma_fast(kappa[x], luminance * per_y_star);
+            let (r, g, b) = (light(row.rgb[0][x]), light(row.rgb[1][x]), light(row.rgb[2][x]));
+            let luminance = srgb::luminance(r, g, b);
+            let sigma = scaling.sigma_fast(kappa[x], luminance * per_y_star);
+            out.before[x] = row.a[x] * luminance;
+            (red[x], green[x], blue[x]) = (r * sigma, g * sigma, b * sigma);
         }
-        [before, after]
+        for (after, &gain) in out.after.iter_mut().zip(gains) {
+            for x in 0..TILE {
+                let shown = |v: f32| fast::min(v * gain, 1.0);
+                after[x] = row.a[x] * srgb::luminance(shown(red[x]), shown(green[x]), shown(blue[x]));
+            }
+        }
     }
 }
 
