@@ -31,6 +31,18 @@ impl Placement {
     pub fn covering(canvas: Size) -> Self {
         Self { center: canvas.center(), scale: 1.0, rotation: 0.0 }
     }
+    /// Covers what the reflection operator looks up from anywhere on a shape that fits the canvas: `|D(q) − c| ≤ (½ +
+    /// |α|) L`, so that an angular map, of which only the inscribed disc is painted, leaves no holes.
+    ///
+    /// * `alpha`: of the operator, canvas lengths. `turn`: r̄ where the picture is pinned.
+    pub fn covering_mirror(canvas: Size, alpha: f32, turn: Vec2) -> Self {
+        let longer = canvas.longer_side();
+        // The picture covers the canvas at scale 1: its shorter side is the canvas's or longer.
+        let shorter = canvas.width.min(canvas.height) as f32;
+        let scale = (1.0 + 2.0 * alpha.abs()) * longer / shorter.max(1.0);
+        let center = canvas.center() - alpha * longer * turn;
+        Self { center, scale: scale.max(*Self::SCALE.start()).min(*Self::SCALE.end()), rotation: 0.0 }
+    }
     /// P⁻¹: texels of a picture from canvas px. A picture of the canvas's own size at scale 1 maps pixel for pixel.
     pub fn texels_from_canvas(&self, canvas: Size, picture: Size) -> Affine2 {
         let cover = (canvas.width as f32 / picture.width as f32).max(canvas.height as f32 / picture.height as f32);
@@ -245,6 +257,40 @@ mod tests {
         assert_eq!(bytes[(20 * 64 + 10) * 4..][..4], texels[7 * 64 + 40]);
     }
 
+    #[test]
+    fn an_angular_map_that_covers_the_mirror_leaves_no_holes() {
+        let size = Size::new(96, 80);
+        let on = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - size.center()) / 38.0;
+        let z = |x: usize, y: usize| (1.0 - on(x, y).length_squared()).max(0.0).sqrt();
+        let maps = Maps {
+            normals: Plane::from_fn(size, |x, y| crate::math::vec3(on(x, y).x, -on(x, y).y, z(x, y).max(0.01))),
+            depth: Plane::from_fn(size, |x, y| 1.0 - z(x, y)),
+            coverage: Plane::from_fn(size, |x, y| if on(x, y).length() < 1.0 { 255 } else { 0 }),
+        };
+        let scene = Scene { size, surface: Some(Arc::new(Surface::new(maps).unwrap())) };
+        // The inscribed disc of a square.
+        let disc = |i: u32| {
+            let from_middle = vec2((i % 64) as f32 + 0.5, (i / 64) as f32 + 0.5) - 32.0;
+            if from_middle.length() < 32.0 { [255; 4] } else { [0; 4] }
+        };
+        let map = Picture::srgb8(Size::new(64, 64), (0..64 * 64).map(disc).collect()).unwrap();
+        let at = vec2(62.0, 33.0);
+        let (x, y) = (at.x as usize, at.y as usize);
+        let turn = crate::surface::operator::reflection::mirrored(vec2(on(x, y).x, on(x, y).y), z(x, y));
+        let holes = |placement: Placement| {
+            let bend = Bend {
+                operator: Operator::Reflection { alpha: 1.0, detail: 0.0 },
+                anchors: vec![Anchor::fixed(at)],
+                ..Bend::default()
+            };
+            let image = PlacedImage { placement, bend, ..placed(map.clone(), size) };
+            let alphas = rendered(&image, &scene).into_iter().skip(3).step_by(4).enumerate();
+            let covered = |i: usize| on(i % 96, i / 96).length() < 1.0;
+            alphas.filter(|(i, a)| covered(*i) && *a < 250).count()
+        };
+        assert_eq!(holes(Placement::covering_mirror(size, 1.0, turn)), 0);
+        assert!(holes(Placement::covering(size)) > 400, "or else the test says nothing");
+    }
     #[test]
     fn a_picture_of_the_canvas_size_maps_pixel_for_pixel() {
         let size = Size::new(300, 200);

@@ -10,6 +10,7 @@ use crate::session::actions::layers::above;
 use crate::session::actions::pictures::{self, PicturePart};
 use crate::session::replay::actions;
 use crate::session::{OpenDocument, Session, brushes, storage};
+use crate::surface::operator::reflection;
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use crate::tools::brush::free_name;
 use crate::{Error, Result};
@@ -165,7 +166,7 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let at = at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
     let image = PlacedImage {
         source: PictureSource::new(free_file(document, name), picture, Adjust::default()),
-        placement: Placement::covering(document.size),
+        placement: placement(document, operator, at),
         outside: Outside::Mirror,
         bend: Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() },
         filter: ImageFilter::Antialias,
@@ -177,6 +178,18 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let next = document.with_inserted(layer, above(tab));
     if next.is_some_and(|next| tab.commit("Place image", next)) {
         tab.selected = Some(id);
+    }
+}
+
+/// Where a picture lies that is pinned at a point: over the canvas, or over all that a mirror looks up.
+fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
+    match (operator, &document.surface) {
+        (Operator::Reflection { alpha, .. }, Some(surface)) => {
+            let (x, y) = surface.pixel_of(at);
+            let turn = reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
+            Placement::covering_mirror(document.size, alpha, turn)
+        }
+        _ => Placement::covering(document.size),
     }
 }
 
