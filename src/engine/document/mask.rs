@@ -151,7 +151,7 @@ impl LayerMask {
         let (x, y) = (x as usize, y as usize);
         match (&self.kind, curvature) {
             (MaskKind::Region(region), _) => way(f32::from(surface.region(region).at(x as i32, y as i32)) / 255.0),
-            (&MaskKind::Fresnel { f0, power }, _) => way(fresnel(surface.normal(x, y).z, f0, power)),
+            (&MaskKind::Fresnel { f0, power }, _) => way(fresnel(surface.facing(x, y), f0, power)),
             (&MaskKind::Depth { from, to }, _) => way(ramp(surface.depth(x, y), from, to)),
             (&MaskKind::Curvature { scale, from, to, .. }, Some(curvature)) => {
                 way(ramp(curvature.kappa(x, y, scale), from, to))
@@ -176,9 +176,9 @@ impl LayerMask {
     }
 }
 
-/// Schlick's approximation f0 + (1 − f0)(1 − n_z)^power, `n_z` clamped to `[0, 1]` (SF fig. 12c).
-fn fresnel(nz: f32, f0: f32, power: f32) -> f32 {
-    f0 + (1.0 - f0) * (1.0 - nz.max(0.0).min(1.0)).powf(power)
+/// Schlick's approximation f0 + (1 − f0)(1 − n·v)^power, n·v clamped to `[0, 1]` (SF fig. 12c).
+fn fresnel(facing: f32, f0: f32, power: f32) -> f32 {
+    f0 + (1.0 - f0) * (1.0 - facing.max(0.0).min(1.0)).powf(power)
 }
 
 /// The tiles in which two masks differ, where both are pictures of one size that count alike; `None` where they are

@@ -103,7 +103,7 @@ pub enum Input {
     Distance,
     /// Random for every dab and property, uniformly distributed.
     Random,
-    /// 1 − n_z: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
+    /// 1 − n·v: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
     Slope,
     /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the surface.
     Curvature,

@@ -5,6 +5,8 @@ use super::{features::FeatureMap, scaling::Scaling};
 use crate::math::{Vec3, simd::prefetch, vec3};
 use crate::raster::TILE;
 use crate::surface::Surface;
+use crate::surface::view::{Eye, in_view};
+use std::borrow::Cow;
 
 /// One value for each pixel of a tile's row.
 pub type RowValues = [f32; TILE];
@@ -23,6 +25,16 @@ pub struct SurfaceRow<'a> {
     pub width: usize,
     /// Camera space: right, up, to the viewer.
     pub normal: [RowValues; 3],
+    /// Where the surface is seen from near by.
+    near: Option<Box<NearView>>,
+}
+
+/// A row seen from a point: every pixel from a direction of its own.
+struct NearView {
+    /// v, camera space.
+    view: [RowValues; 3],
+    /// n in the frame of v.
+    normal: [RowValues; 3],
 }
 
 /// The direction that κ is asked for.
@@ -43,7 +55,8 @@ impl<'a> SurfaceRow<'a> {
     /// The row of a tile that begins at canvas pixel (x0, y); `width` pixels of it lie on the canvas.
     pub fn new(surface: &'a Surface, features: &'a FeatureMap, x0: usize, y: usize, width: usize) -> Self {
         let normal = [[0.0; TILE], [0.0; TILE], [1.0; TILE]];
-        let mut surface_row = Self { surface, features, x0, y, width, normal };
+        let near = (surface.eye() != Eye::Afar).then(|| Box::new(NearView { view: normal, normal }));
+        let mut surface_row = Self { surface, features, x0, y, width, normal, near };
         surface_row.move_to(y);
         surface_row
     }
@@ -55,7 +68,34 @@ impl<'a> SurfaceRow<'a> {
         self.normal[0][..self.width].copy_from_slice(nbar_x);
         self.normal[2][..self.width].copy_from_slice(nz);
         self.normal[1].iter_mut().zip(nbar_y).for_each(|(up, down)| *up = -down);
+        if let Some(near) = &mut self.near {
+            for x in 0..self.width {
+                let (v, n) =
+                    (self.surface.view(self.x0 + x, y), vec3(self.normal[0][x], self.normal[1][x], self.normal[2][x]));
+                (near.view[0][x], near.view[1][x], near.view[2][x]) = v.into();
+                (near.normal[0][x], near.normal[1][x], near.normal[2][x]) = in_view(v, n).into();
+            }
+        }
         self.prefetch(y + 2);
+    }
+    /// v of a pixel of the row: the unit vector toward the eye, camera space.
+    #[inline(always)]
+    pub fn view_at(&self, x: usize) -> Vec3 {
+        self.near.as_ref().map_or(Vec3::Z, |near| vec3(near.view[0][x], near.view[1][x], near.view[2][x]))
+    }
+    /// The normals in each pixel's own frame, where its view is e = (0, 0, 1).
+    pub fn seen_normal(&self) -> &[RowValues; 3] {
+        self.near.as_ref().map_or(&self.normal, |near| &near.normal)
+    }
+    /// Directions in each pixel's own frame.
+    pub fn seen<'d>(&self, direction: &'d [RowValues; 3]) -> Cow<'d, [RowValues; 3]> {
+        let Some(near) = &self.near else { return Cow::Borrowed(direction) };
+        let mut seen = *direction;
+        for x in 0..self.width {
+            let at = |rows: &[RowValues; 3]| vec3(rows[0][x], rows[1][x], rows[2][x]);
+            (seen[0][x], seen[1][x], seen[2][x]) = in_view(at(&near.view), at(direction)).into();
+        }
+        Cow::Owned(seen)
     }
     /// Prefetches a row further down: it is a canvas's width away in memory.
     fn prefetch(&self, y: usize) {

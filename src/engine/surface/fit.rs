@@ -34,6 +34,7 @@ impl Surface {
             depth: read.map(|v| v.depth),
             coverage: read.map(|v| v.coverage),
         })
+        .map(|surface| surface.seen_by(self.eye().scaled(scale.x)))
     }
     /// The mean over the box of half sides `half` around a point of the map, cut at its border; beyond there is no
     /// surface.

@@ -9,6 +9,7 @@ use super::{
     objects::Objects,
     pyramid::MapPyramids,
     unwrap::Unwrapping,
+    view::Eye,
 };
 use crate::math::{Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::{CoverageGrid, Plane};
@@ -45,6 +46,8 @@ pub struct Surface {
     nz: Plane<f32>,
     depth: Plane<f32>,
     coverage: Plane<u8>,
+    /// From where it was seen.
+    pub(super) eye: Eye,
     /// Which neighbours belong to the same piece of surface (`links`).
     links: Plane<u8>,
     depth_range_px: f32,
@@ -118,6 +121,7 @@ impl Surface {
             nz,
             depth,
             coverage,
+            eye: Eye::Afar,
             links,
             depth_range_px,
             curvatures: RecentCache::default(),
@@ -157,6 +161,7 @@ impl Surface {
             nz: normals.map(|n| n.z),
             depth: self.depth.clone(),
             coverage: self.coverage.clone(),
+            eye: self.eye,
             links: self.links.clone(),
             depth_range_px: self.depth_range_px,
             curvatures: RecentCache::default(),
@@ -241,6 +246,20 @@ impl Surface {
     }
     pub(super) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
         &self.occlusions
+    }
+    /// The covered pixels whose centres lie around a point of the map, and their bilinear shares, which add up to 1;
+    /// none where none is covered.
+    pub fn around(&self, q: Vec2) -> impl Iterator<Item = (usize, usize, f32)> + use<> {
+        let corner = (q - 0.5).floor();
+        let part = q - 0.5 - corner;
+        let pixel = |dx: f32, dy: f32| {
+            let (x, y) = self.pixel_of(corner + vec2(dx, dy));
+            let share = (if dx > 0.0 { part.x } else { 1.0 - part.x }) * if dy > 0.0 { part.y } else { 1.0 - part.y };
+            (x, y, if self.coverage(x, y) > 0 { share } else { 0.0 })
+        };
+        let pixels = [pixel(0.0, 0.0), pixel(1.0, 0.0), pixel(0.0, 1.0), pixel(1.0, 1.0)];
+        let sum: f32 = pixels.iter().map(|(.., share)| share).sum();
+        pixels.into_iter().filter(|(.., share)| *share > 0.0).map(move |(x, y, share)| (x, y, share / sum))
     }
     /// The pixel that holds a canvas point, clamped into the map.
     pub fn pixel_of(&self, q: Vec2) -> (usize, usize) {

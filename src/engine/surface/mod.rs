@@ -27,6 +27,7 @@ pub mod scene;
 mod springs;
 pub mod support;
 pub mod unwrap;
+pub mod view;
 
 pub use anchor::{Anchor, Bend, Weights};
 pub use combine::DetailMap;

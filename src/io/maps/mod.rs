@@ -27,6 +27,7 @@ use crate::document::source::{DepthConvention, DepthEncoding, MapSource, MaskSou
 use crate::math::{Size, Vec3, srgb};
 use crate::memory;
 use crate::raster::{Asset, Plane};
+use crate::surface::view::Eye;
 use crate::surface::{Maps, Surface, differentiate, integrate};
 use crate::{Error, Result};
 use std::collections::BTreeMap;
@@ -78,7 +79,9 @@ fn read(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<Im
     let understood = understand(normal.as_ref(), depth.as_ref(), coverage, &overrides, &mut findings)?;
     // What is left to do takes the most memory; what the files store is not asked any more.
     drop((normal, depth));
+    let eye = Eye::of_fov(understood.fov_degrees, understood.inside.size());
     let surface = Surface::new(complete(understood, &overrides, &mut findings)).map_err(|e| Error::decode(file, e))?;
+    let surface = surface.seen_by(eye);
     Ok(ImportedSurface { surface, findings, files: files.assets() })
 }
 

@@ -41,7 +41,7 @@ pub fn add_matt(
     let (rd, rs) = (diffuse.linear(), mirrored_color(shading));
     let kept: [f32; 3] = std::array::from_fn(|c| rd[c] * (1.0 - rs[c]));
     let (mut rho, mut delta) = ([0.0; TILE], [0.0; TILE]);
-    matt_row(&surface_row.normal, &lit.direction, &mut rho, &mut delta);
+    matt_row(surface_row.seen_normal(), &surface_row.seen(&lit.direction), &mut rho, &mut delta);
     if diffuse.is_scaled() {
         relief.turn(surface_row, lit.toward());
         lobes::scale(&mut rho, diffuse.scaling, relief.exponentials(diffuse.scaling), &delta);
@@ -51,7 +51,8 @@ pub fn add_matt(
 
 fn add_glossy(shading: &Shading, surface_row: &SurfaceRow, lit: &RowLight, relief: &mut RowRelief, light: &mut Light3) {
     let mut row = GlossyRow { rho: [0.0; TILE], white: [0.0; TILE], delta: [0.0; TILE] };
-    glossy_row(&surface_row.normal, &lit.direction, shading.nu, shading.nv, &mut row);
+    let (normal, direction) = (surface_row.seen_normal(), surface_row.seen(&lit.direction));
+    glossy_row(normal, &direction, shading.nu, shading.nv, &mut row);
     let specular = &shading.specular;
     if specular.is_scaled() {
         relief.turn(surface_row, lit.toward());

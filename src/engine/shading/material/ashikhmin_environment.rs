@@ -9,6 +9,7 @@ use crate::math::{Vec3, vec3};
 use crate::shading::environment::EnvironmentLight;
 use crate::shading::light::RowLight;
 use crate::shading::surface_row::{Light3, LightDirection, RowRelief, SurfaceRow};
+use crate::surface::view::{from_view, in_view};
 use std::f32::consts::PI;
 
 /// Directions that the matt term is lit from.
@@ -63,7 +64,9 @@ impl EnvironmentSamples {
     /// With half vectors drawn in proportion to the lobe, light arrives weighed by F (n·ℓ)₊ / max(n·ℓ, n·e), never
     /// above 1.
     fn glossy(&self, shading: &Shading, surface_row: &SurfaceRow, x: usize, kappa: f32) -> Vec3 {
-        let (term, n) = (&shading.specular, surface_row.normal_at(x));
+        let (term, view) = (&shading.specular, surface_row.view_at(x));
+        // In the frame of the pixel's view, where that is (0, 0, 1).
+        let n = in_view(view, surface_row.normal_at(x));
         let rs = Vec3::from(term.linear()).min(Vec3::ONE);
         let u = (Vec3::X - n.x * n).normalize_or(Vec3::Y);
         let v = n.cross(u);
@@ -75,6 +78,7 @@ impl EnvironmentSamples {
             if n_l <= 0.0 || h.z <= 0.0 {
                 continue;
             }
+            let l = from_view(view, l);
             let fresnel = rs + (Vec3::ONE - rs) * ashikhmin::whiteness(h.z);
             // Of ℓ: dω_h / dω_ℓ = 1 / (4 h·e). A little more than its share, so that neighbours overlap.
             let solid_angle = 4.0 * h.z / (half.density * HALVES as f32);
@@ -162,7 +166,7 @@ mod tests {
         let all: Vec<Vec3> = (0..2000).map(|i| crate::shading::environment::projection::spread(i, 2000)).collect();
         assert_shows(&matt, 3.0, |surface, x, y| {
             let n = surface.normal(x, y);
-            let from = |l: &Vec3| if l.y > 0.0 { 0.9 } else { 0.1 } * ashikhmin::matt(n.dot(*l), n.z);
+            let from = |l: &Vec3| if l.y > 0.0 { 0.9 } else { 0.1 } * ashikhmin::matt(n.dot(*l), surface.facing(x, y));
             Vec3::splat(0.6 * 4.0 * all.iter().map(from).sum::<f32>() / 2000.0)
         });
     }

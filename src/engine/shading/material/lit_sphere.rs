@@ -50,7 +50,7 @@ fn looked_up(
     kappa: &RowValues,
 ) -> Light3 {
     let mut shown = [[0.0; TILE]; 3];
-    let [nx, ny, _] = &surface_row.normal;
+    let [nx, ny, _] = surface_row.seen_normal();
     for x in 0..surface_row.width {
         let nbar = vec2(nx[x], -ny[x]);
         let mut color = convex.at(nbar);

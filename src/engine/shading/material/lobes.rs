@@ -78,7 +78,8 @@ crate::widest! {
             *rho = fast::max(dot(normal, direction, x), 0.0);
         }
     }
-    /// Phong's ρ_s = (r·ℓ)₊^η with r = 2(n·e)n − e the mirrored view, e = (0, 0, 1) (RS sec. 5.1).
+    /// Phong's ρ_s = (r·ℓ)₊^η with r = 2(n·e)n − e the mirrored view, e = (0, 0, 1) (RS sec. 5.1). Normals and
+    /// directions are those of each pixel's view.
     pub fn glossy(normal: &[RowValues; 3], direction: &[RowValues; 3], shininess: f32, rho: &mut RowValues) {
         for (x, rho) in rho.iter_mut().enumerate() {
             // r·ℓ = 2 n_z (n·ℓ) − ℓ_z.

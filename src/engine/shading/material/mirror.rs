@@ -7,40 +7,40 @@ use crate::raster::TILE;
 use crate::shading::surface_row::{Light3, LightDirection, SurfaceRow};
 use crate::surface::{Surface, links};
 
-/// The mirrored view r = 2(n·e)n − e, e = (0, 0, 1) (MATH 5).
+/// The mirrored view r = 2(n·v)n − v, v toward the eye (MATH 5).
 #[inline(always)]
-pub fn mirrored(n: Vec3) -> Vec3 {
-    2.0 * n.z * n - Vec3::Z
+pub fn mirrored(n: Vec3, v: Vec3) -> Vec3 {
+    2.0 * n.dot(v) * n - v
 }
 
-/// The refracted view: Snell's law for the view ray −e entering a matter of refractive index `index` > 0 (MATH 5).
+/// The refracted view: Snell's law for the view ray −v entering a matter of refractive index `index` > 0 (MATH 5).
 ///
 /// Total internal reflection (`index` < 1 at a flat angle) mirrors it.
 #[inline(always)]
-pub fn refracted(n: Vec3, index: f32) -> Vec3 {
+pub fn refracted(n: Vec3, v: Vec3, index: f32) -> Vec3 {
     let eta = 1.0 / index;
-    let cos = n.z.max(0.0);
+    let cos = n.dot(v).max(0.0);
     let under_root = 1.0 - eta * eta * (1.0 - cos * cos);
     if under_root < 0.0 {
-        return mirrored(n);
+        return mirrored(n, v);
     }
-    (eta * cos - under_root.sqrt()) * n - eta * Vec3::Z
+    (eta * cos - under_root.sqrt()) * n - eta * v
 }
 
 /// Adds L_env(r), scaled with δ = L_env(r) / max L_env, as the specular term.
 pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
     let (Some(environment), term) = (&shading.environment, &shading.specular) else { return };
     let environment_light = environment.environment_light();
-    let ray = |n: Vec3| match shading.model {
-        Model::Refraction => refracted(n, shading.index),
-        _ => mirrored(n),
+    let ray = |n: Vec3, v: Vec3| match shading.model {
+        Model::Refraction => refracted(n, v, shading.index),
+        _ => mirrored(n, v),
     };
     let per_brightest = 1.0 / shading.reference.resolve(environment_light.brightest());
     let tint = Vec3::from(term.linear());
     let mut incoming: Light3 = [[0.0; TILE]; 3];
     let [mut delta, mut toward_x, mut toward_y] = [[0.0; TILE]; 3];
     for x in (0..surface_row.width).filter(|&x| surface_row.coverage()[x] > 0) {
-        let r = ray(surface_row.normal_at(x));
+        let r = ray(surface_row.normal_at(x), surface_row.view_at(x));
         let (dx, dy) = changes(surface_row.surface, surface_row.x0 + x, surface_row.y, r, ray);
         let radiance = environment_light.over(r, dx, dy);
         (toward_x[x], toward_y[x]) = (r.x, r.y);
@@ -55,11 +55,12 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
 }
 
 /// How a ray changes from pixel to pixel along x and y; differences do not cross depth jumps or the mask's edge.
-fn changes(surface: &Surface, x: usize, y: usize, r: Vec3, ray: impl Fn(Vec3) -> Vec3) -> (Vec3, Vec3) {
+fn changes(surface: &Surface, x: usize, y: usize, r: Vec3, ray: impl Fn(Vec3, Vec3) -> Vec3) -> (Vec3, Vec3) {
     let joined = surface.links_plane().at(x, y);
+    let ray = |x: usize, y: usize| ray(surface.normal(x, y), surface.view(x, y));
     let change = |back: u8, forth: u8, step: (usize, usize)| {
-        let before = (joined & back != 0).then(|| ray(surface.normal(x - step.0, y - step.1)));
-        let after = (joined & forth != 0).then(|| ray(surface.normal(x + step.0, y + step.1)));
+        let before = (joined & back != 0).then(|| ray(x - step.0, y - step.1));
+        let after = (joined & forth != 0).then(|| ray(x + step.0, y + step.1));
         match (before, after) {
             (Some(a), Some(b)) => (b - a) * 0.5,
             (Some(a), None) => r - a,
@@ -80,28 +81,33 @@ mod tests {
 
     #[test]
     fn mirrored_rays_leave_as_steeply_as_they_came() {
-        assert_eq!(mirrored(Vec3::Z), Vec3::Z);
+        assert_eq!(mirrored(Vec3::Z, Vec3::Z), Vec3::Z);
         // Half-way up: the sky's zenith.
-        let up = mirrored(vec3(0.0, 0.5f32.sqrt(), 0.5f32.sqrt()));
+        let up = mirrored(vec3(0.0, 0.5f32.sqrt(), 0.5f32.sqrt()), Vec3::Z);
         assert!((up - Vec3::Y).length() < 1e-6, "{up}");
         let n = vec3(0.3, -0.5, 0.7).normalize();
-        assert!((mirrored(n).dot(n) - n.z).abs() < 1e-6);
+        for v in [Vec3::Z, vec3(0.4, 0.1, 0.8).normalize()] {
+            let r = mirrored(n, v);
+            assert!((r.dot(n) - n.dot(v)).abs() < 1e-6 && n.cross(v).dot(r).abs() < 1e-6, "{v}");
+        }
     }
     #[test]
     fn refracted_rays_obey_snell() {
-        assert_eq!(refracted(Vec3::Z, 1.5), Vec3::NEG_Z);
+        assert_eq!(refracted(Vec3::Z, Vec3::Z, 1.5), Vec3::NEG_Z);
         for (n, index) in [(vec3(0.3, -0.5, 0.7), 1.5), (vec3(-0.2, 0.1, 0.9), 0.8), (vec3(0.9, 0.0, 0.1), 2.4)] {
             let n = n.normalize();
-            let r = refracted(n, index);
-            assert!((r.length() - 1.0).abs() < 1e-5);
-            // sin θ = index · sin θ′, both on the same plane, on the far side.
-            assert!((n.cross(r).length() * index - n.cross(Vec3::Z).length()).abs() < 1e-5);
-            assert!(n.cross(r).dot(n.cross(Vec3::NEG_Z)) >= 0.0 && r.dot(n) < 0.0);
+            for v in [Vec3::Z, vec3(0.1, -0.2, 0.9).normalize()] {
+                let r = refracted(n, v, index);
+                assert!((r.length() - 1.0).abs() < 1e-5);
+                // sin θ = index · sin θ′, both on the same plane, on the far side.
+                assert!((n.cross(r).length() * index - n.cross(v).length()).abs() < 1e-5);
+                assert!(n.cross(r).dot(n.cross(-v)) >= 0.0 && r.dot(n) < 0.0);
+            }
         }
         let n = vec3(0.6, 0.0, 0.8);
-        assert!((refracted(n, 1.0) - Vec3::NEG_Z).length() < 1e-6, "nothing bends without another matter");
-        assert_eq!(refracted(n, 0.5), mirrored(n), "past the critical angle it is a mirror");
-        assert!(refracted(vec3(0.999, 0.0, -0.04), 1.5).is_finite());
+        assert!((refracted(n, Vec3::Z, 1.0) - Vec3::NEG_Z).length() < 1e-6, "nothing bends without another matter");
+        assert_eq!(refracted(n, Vec3::Z, 0.5), mirrored(n, Vec3::Z), "past the critical angle it is a mirror");
+        assert!(refracted(vec3(0.999, 0.0, -0.04), Vec3::Z, 1.5).is_finite());
     }
     /// Bright above, dim below, and red at the right.
     fn environment_light() -> Environment {
@@ -127,8 +133,8 @@ mod tests {
                 ..Shading::new(model)
             };
             assert_shows(&shading, 2.0, |surface, x, y| {
-                let n = surface.normal(x, y);
-                let r = if model == Model::Mirror { mirrored(n) } else { refracted(n, 1.5) };
+                let (n, v) = (surface.normal(x, y), surface.view(x, y));
+                let r = if model == Model::Mirror { mirrored(n, v) } else { refracted(n, v, 1.5) };
                 let incoming = environment_light().environment_light();
                 let radiance = incoming.along(r);
                 let delta = srgb::luminance(radiance.x, radiance.y, radiance.z) / incoming.brightest();

@@ -61,7 +61,8 @@ impl PhongTerms {
                     (&shading.diffuse, lights[i].toward())
                 }
                 Lobe::Glossy(i) => {
-                    lobes::glossy(&surface_row.normal, &lights[i].direction, shading.shininess, rho);
+                    let direction = surface_row.seen(&lights[i].direction);
+                    lobes::glossy(surface_row.seen_normal(), &direction, shading.shininess, rho);
                     (&shading.specular, lights[i].toward())
                 }
             };

@@ -2,6 +2,7 @@ use super::*;
 use crate::math::{Size, Vec3, srgb, vec3};
 use crate::raster::{Plane, TILE, TileAt};
 use crate::shading::{FeatureScale, Features, LightKind};
+use crate::surface::view::{Eye, in_view};
 use crate::surface::{Maps, Scene, Surface};
 use std::sync::Arc;
 
@@ -20,18 +21,31 @@ pub(super) fn ball() -> Scene {
     Scene { size: SIZE, surface: Some(Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())) }
 }
 
-/// Every fifth pixel of the ball, as the layer shows it and as `expected` says (linear light), within `bytes`.
+/// The same ball seen from near by, through a lens of 60°.
+pub(super) fn near_ball() -> Scene {
+    let surface = ball().surface.and_then(Arc::into_inner).unwrap();
+    Scene { size: SIZE, surface: Some(Arc::new(surface.seen_by(Eye::of_fov(Some(60.0), SIZE)))) }
+}
+
+/// Every fifth pixel of the ball, from afar and from near by, as the layer shows it and as `expected` says (linear
+/// light), within `bytes`.
 pub(super) fn assert_shows(shading: &Shading, bytes: f32, expected: impl Fn(&Surface, usize, usize) -> Vec3) {
-    let scene = ball();
+    [ball(), near_ball()].iter().for_each(|scene| assert_shows_on(scene, shading, bytes, &expected));
+}
+fn assert_shows_on(scene: &Scene, shading: &Shading, bytes: f32, expected: impl Fn(&Surface, usize, usize) -> Vec3) {
     let surface = scene.surface.as_deref().unwrap();
     let mut seen = 0;
     for at in TileAt::covering(SIZE.rect()) {
-        let Some(tile) = shading.render_tile(&scene, at) else { continue };
+        let Some(tile) = shading.render_tile(scene, at) else { continue };
         for i in (0..TILE * TILE).step_by(5) {
             let (x, y) = ((at.col * 64) as usize + i % TILE, (at.row * 64) as usize + i / TILE);
             let found = &tile.bytes()[i * 4..i * 4 + 4];
             if surface.coverage(x, y) == 0 {
                 assert_eq!(found, [0; 4]);
+                continue;
+            }
+            // What turns from a near eye is not seen.
+            if surface.facing(x, y) < 0.1 && surface.eye() != Eye::Afar {
                 continue;
             }
             seen += 1;
@@ -97,7 +111,8 @@ fn phong_at(shading: &Shading, surface: &Surface, x: usize, y: usize, zeta: f32)
         let l = direction_at(surface, light, x, y);
         let kappa = features.at(x, y, l);
         let radiance = Vec3::from(light.color.linear()) * light.intensity;
-        let r = 2.0 * n.z * n - Vec3::Z;
+        let v = surface.view(x, y);
+        let r = 2.0 * n.dot(v) * n - v;
         sum += part(&shading.diffuse, kappa, n.dot(l).max(0.0).powf(zeta), radiance);
         sum += part(&shading.specular, kappa, r.dot(l).max(0.0).powf(shading.shininess), radiance);
     }
@@ -122,14 +137,17 @@ fn the_sub_lambertian_term_is_a_power_of_the_matt_one() {
 }
 /// Ashikhmin and Shirley (2000) at a pixel, in vectors.
 fn ashikhmin_at(shading: &Shading, surface: &Surface, x: usize, y: usize) -> Vec3 {
-    let (n, e) = (surface.normal(x, y), Vec3::Z);
+    // In the frame of the pixel's own view.
+    let view = surface.view(x, y);
+    let (n, e) = (in_view(view, surface.normal(x, y)), Vec3::Z);
     let features = shading.features.on(surface);
     let (rd, rs) = (Vec3::from(shading.diffuse.linear()), Vec3::from(shading.specular.linear()).min(Vec3::ONE));
     let u = (Vec3::X - n.x * n).normalize();
     let v = n.cross(u);
     let mut sum = Vec3::ZERO;
     for light in &shading.lights {
-        let l = direction_at(surface, light, x, y);
+        let toward = direction_at(surface, light, x, y);
+        let l = in_view(view, toward);
         let h = (l + e).normalize();
         let (n_l, n_h) = (n.dot(l).max(0.0), n.dot(h));
         let lifted = |cosine: f32| 1.0 - (1.0 - cosine / 2.0).powi(5);
@@ -138,7 +156,7 @@ fn ashikhmin_at(shading: &Shading, surface: &Surface, x: usize, y: usize) -> Vec
         let lobe = ((shading.nu + 1.0) * (shading.nv + 1.0)).sqrt() / 8.0 * n_h.max(0.0).powf(exponent);
         let fresnel = rs + (1.0 - rs) * (1.0 - h.dot(e)).powi(5);
         let glossy = lobe * n_l / (h.dot(e) * n_l.max(n.z)) * fresnel;
-        let kappa = features.at(x, y, l);
+        let kappa = features.at(x, y, toward);
         let scaled =
             shading.diffuse.scaling.sigma(kappa, n_l) * matt + shading.specular.scaling.sigma(kappa, n_h) * glossy;
         sum += scaled * Vec3::from(light.color.linear()) * light.intensity;
@@ -170,6 +188,11 @@ fn a_highlight_stretches_along_the_direction_of_the_smaller_exponent() {
     assert!((seen(50.0, 50.0, beside) - seen(50.0, 50.0, above)).abs() < 1e-5);
 }
 
+/// n̄ of a pixel in the frame of its view.
+fn seen_nbar(surface: &Surface, x: usize, y: usize) -> crate::math::Vec2 {
+    let n = in_view(surface.view(x, y), surface.normal(x, y));
+    crate::math::vec2(n.x, -n.y)
+}
 /// A sphere that shows red by x and green by y.
 fn painted_sphere(blue: f32) -> LitSphere {
     let color = |i: u32| [(i % 64) as f32 / 64.0, (i / 64) as f32 / 64.0, blue, 1.0];
@@ -193,7 +216,7 @@ fn two_lit_spheres_are_blended_by_curvature_and_scaled_by_their_luminance() {
     assert!(most > concave.brightest());
     assert_shows(&shading, 1.0, |surface, x, y| {
         let kappa = shading.features.on(surface).at(x, y, Vec3::Z);
-        let at = |sphere: &crate::shading::sphere::SphereLight| Vec3::from(sphere.at(surface.nbar(x, y)));
+        let at = |sphere: &crate::shading::sphere::SphereLight| Vec3::from(sphere.at(seen_nbar(surface, x, y)));
         let shown = at(concave).lerp(at(convex), 0.5 + 0.5 * kappa);
         let delta = srgb::luminance(shown.x, shown.y, shown.z) / most;
         0.8 * shown * shading.specular.scaling.sigma(kappa, delta)
@@ -202,7 +225,7 @@ fn two_lit_spheres_are_blended_by_curvature_and_scaled_by_their_luminance() {
 #[test]
 fn a_lit_sphere_that_names_no_picture_is_clay() {
     let shading = Shading::new(Model::LitSphere);
-    assert_shows(&shading, 1.0, |surface, x, y| Vec3::from(LitSphere::clay().light().at(surface.nbar(x, y))));
+    assert_shows(&shading, 1.0, |surface, x, y| Vec3::from(LitSphere::clay().light().at(seen_nbar(surface, x, y))));
 }
 #[test]
 fn without_a_surface_there_is_nothing_to_light() {
