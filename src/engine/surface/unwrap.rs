@@ -4,11 +4,13 @@
 
 pub mod metric;
 mod place;
+mod seen;
 mod settle;
 mod smooth;
 mod steps;
 
 pub use place::PlanePlace;
+pub use seen::PlaneView;
 
 use super::pyramid::{Pyramid, TurnSpan};
 use super::springs::{Effort, SolveScratch, SpringGrid, SpringSolver};

@@ -12,6 +12,7 @@ use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, RecipeSource};
 use crate::io::{Budget, RecipeFolder, UserFiles};
 use crate::math::{Size, srgb::Color};
+use crate::paint::Placement;
 use crate::raster::{Picture, TileGrid, picture::Texels};
 use crate::{Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -30,7 +31,8 @@ pub struct ViewArgs {
     /// Where the picture goes; a folder gets one picture for every view
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The layer whose anchors or operator are shown; else the topmost that has any
+    /// The layer whose anchors or operator are shown, else the topmost that has any; with “unwrapped” the layer that is
+    /// shown, else the whole painting
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
     /// The normal map, whatever its name
@@ -102,6 +104,14 @@ pub fn run(args: &ViewArgs) -> Result<()> {
         }
         let target = OutputFile::new(&args.output, args.force.export(reads.clone()))?;
         match args.show {
+            ShowArg::One(SurfaceView::Unwrapped) => {
+                let (picture, placement) = view::unwrapped(&document, layer)
+                    .map_err(|why| Error::invalid(named_file(args), "--show unwrapped", why))?;
+                write(&target, &picture)?;
+                // What lays the picture back: for the recipe of an image layer.
+                println!("{}", placement_line(placement));
+                Ok(())
+            }
             ShowArg::One(view) => write(&target, &draw(view)?),
             ShowArg::Sheet => {
                 let views = view::available(&document, layer).into_iter().map(draw).collect::<Result<Vec<_>>>()?;
@@ -110,6 +120,13 @@ pub fn run(args: &ViewArgs) -> Result<()> {
             }
         }
     })
+}
+
+/// The fields of an image layer that put a picture of the unwrapped plane where it was seen.
+fn placement_line(placement: Placement) -> String {
+    let Placement { center, scale, .. } = placement;
+    let center = format!("[{}, {}]", center.x, center.y);
+    format!(r#""placement": {{ "center": {center}, "scale": {scale} }}, "outside": "none""#)
 }
 
 /// The file named in errors about the whole command.

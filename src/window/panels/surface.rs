@@ -74,6 +74,7 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::Weights => "How the anchors of the selected layer share the surface",
         SurfaceView::FlowDepth => "How a texture on the surface is compressed",
         SurfaceView::FlowNormals => "How a reflection is compressed",
+        SurfaceView::Unwrapped => "The painting as it lies in the plane of the surface unwrapped",
         SurfaceView::FlowOperator => "How the selected layer's operator compresses its image",
         SurfaceView::Scaling => {
             "Radiance scaling: how much light of each brightness is raised on convex and lowered on concave parts"

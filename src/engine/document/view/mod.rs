@@ -5,9 +5,11 @@ mod flows;
 mod maps;
 mod scaling;
 mod sheet;
+mod unwrapped;
 mod weights;
 
 pub use sheet::sheet;
+pub use unwrapped::unwrapped;
 pub use weights::color_of as anchor_color;
 
 use super::{Document, Layer};
@@ -42,6 +44,8 @@ pub enum SurfaceView {
     FlowOperator,
     /// σ over δ for several κ, at α = 0.2 and 0.8 (RS fig. 2): needs no document.
     Scaling,
+    /// The painting, or one layer, as it lies in the plane of the surface unwrapped: what D_s prints from.
+    Unwrapped,
     /// The surface and a ball beside it under one light: if they agree, the maps are read the right way round.
     Lit,
 }
@@ -61,6 +65,7 @@ impl SurfaceView {
         (SurfaceView::FlowNormals, "flow-normals"),
         (SurfaceView::FlowOperator, "flow-operator"),
         (SurfaceView::Scaling, "scaling"),
+        (SurfaceView::Unwrapped, "unwrapped"),
         (SurfaceView::Lit, "lit"),
     ];
     pub fn name(self) -> &'static str {
@@ -99,6 +104,8 @@ impl Default for ViewOptions {
 pub enum ViewUnavailable {
     #[error("the document has no surface to show")]
     NoSurface,
+    #[error("no two neighbouring pixels of the surface lie in the plane")]
+    NothingUnwrapped,
     #[error("there is no memory for the picture")]
     NoMemory,
     #[error("the document has no layer with anchors")]
@@ -124,6 +131,7 @@ pub fn draw(
         SurfaceView::CurvatureGrey => maps::curvature_grey(surface()?, options),
         SurfaceView::Lit => maps::lit(surface()?),
         SurfaceView::Scaling => scaling::plots().ok_or(ViewUnavailable::NoMemory)?,
+        SurfaceView::Unwrapped => unwrapped(document, layer)?.0,
         SurfaceView::Directions => flows::directions(surface()?, options),
         SurfaceView::FlowDepth => flows::of_depth(surface()?, options),
         SurfaceView::FlowNormals => flows::of_normals(surface()?, options),
@@ -139,8 +147,8 @@ pub fn available(document: &Document, layer: Option<&Layer>) -> Vec<SurfaceView>
     let can = |view: SurfaceView| match view {
         SurfaceView::Weights => bend(document, layer).is_ok(),
         SurfaceView::FlowOperator => bend(document, layer).is_ok(),
-        // It shows nothing for this document.
-        SurfaceView::Scaling => false,
+        // One shows nothing of this document, the other has a size of its own: they stand alone.
+        SurfaceView::Scaling | SurfaceView::Unwrapped => false,
         _ => document.surface.is_some(),
     };
     SurfaceView::ALL.iter().map(|(view, _)| *view).filter(|&view| can(view)).collect()

@@ -2,7 +2,8 @@ use super::*;
 use crate::document::{Content, Layer, Live};
 use crate::math::{Size, Vec3, srgb::Color, vec2, vec3};
 use crate::paint::gradient::GradientStop;
-use crate::paint::{Gradient, ImageFilter};
+use crate::paint::{Adjust, Gradient, ImageFilter, PictureSource, PlacedImage};
+use crate::raster::Outside;
 use crate::raster::picture::Texels;
 use crate::surface::{Maps, Operator};
 use std::sync::Arc;
@@ -43,11 +44,11 @@ fn every_view_has_a_name_of_its_own_and_a_picture_of_the_canvas() {
     for (view, name) in SurfaceView::ALL {
         assert_eq!(SurfaceView::from_name(name), Some(*view));
         assert_eq!(view.name(), *name);
-        if !view.is_of_nothing() {
+        if !view.is_of_nothing() && *view != SurfaceView::Unwrapped {
             assert_eq!(drawn(*view).size, Size::new(160, 160), "{name}");
         }
     }
-    assert_eq!(available(&ball(), None).len(), SurfaceView::ALL.len() - 1, "all but the one of no document");
+    assert_eq!(available(&ball(), None).len(), SurfaceView::ALL.len() - 2, "all but those that stand alone");
 }
 #[test]
 fn the_top_of_a_ball_shows_green_in_the_normals_and_is_near_in_the_middle() {
@@ -98,4 +99,30 @@ fn a_sheet_holds_every_picture_in_order() {
     assert_eq!(pixel(&sheet, 8 + 80, 8 + 80), [255; 4]);
     assert_eq!(pixel(&sheet, 8 + 80, 8 + 168 + 80), [255; 4]);
     assert!(super::sheet(&[]).is_none());
+}
+#[test]
+fn a_picture_of_the_unwrapped_plane_lies_on_the_surface_as_what_it_was_taken_from() {
+    let mut document = ball();
+    let (plane, placement) = unwrapped(&document, None).unwrap();
+    assert!(
+        plane.size.width > 150 && plane.size.height > 150,
+        "a ball of 120 px is longer along its surface: {}",
+        plane.size
+    );
+    let before = crate::document::flatten(&document, &crate::document::Progress::default()).unwrap();
+    let image = PlacedImage {
+        source: PictureSource::new("plane.png".into(), plane, Adjust::default()),
+        placement,
+        outside: Outside::None,
+        bend: Bend { operator: Operator::Surface { amount: 1.0, smooth: 0.0 }, ..Bend::default() },
+        filter: ImageFilter::Bilinear,
+        frame: Default::default(),
+    };
+    document.layers = vec![Arc::new(Layer::new("print", Content::Image(Live::new(image))))];
+    let after = crate::document::flatten(&document, &crate::document::Progress::default()).unwrap();
+    for (x, y) in [(80, 80), (60, 80), (100, 60), (80, 125), (40, 70)] {
+        let (a, b) = (before.pixel(x, y), after.pixel(x, y));
+        let most = (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap();
+        assert!(most <= 6, "({x}, {y}): {a:?} and {b:?}");
+    }
 }
