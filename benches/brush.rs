@@ -23,11 +23,12 @@ const SIZE: Size = Size::new(2048, 2048);
 const DABS: usize = 128;
 const RADII: [f32; 3] = [32.0, 64.0, 128.0];
 
-const OPERATORS: [(&str, Operator); 4] = [
+const OPERATORS: [(&str, Operator); 5] = [
     ("flat", Operator::None),
     ("D_n", Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 }),
     ("D_p", Operator::Depth { gamma: 1.0 }),
     ("D_r", Operator::Reflection { alpha: 0.5, detail: 0.0 }),
+    ("D_s", Operator::Surface { amount: 1.0, smooth: 0.0 }),
 ];
 
 /// A ball that nearly fills the canvas, with bumps.

@@ -44,16 +44,19 @@ fn image(operator: Operator, filter: ImageFilter, anchors: usize) -> PlacedImage
     }
 }
 
+const D_S: Operator = Operator::Surface { amount: 1.0, smooth: 0.0 };
 const D_N: Operator = Operator::Normal { alpha: 0.5, beta: 0.0, detail: 0.0 };
 
 /// Name, operator, filter, number of anchors.
-const CASES: [(&str, Operator, ImageFilter, usize); 7] = [
+const CASES: [(&str, Operator, ImageFilter, usize); 9] = [
     ("D_n bilinear", D_N, ImageFilter::Bilinear, 1),
     ("D_n antialias", D_N, ImageFilter::Antialias, 1),
     ("D_n bilinear, 3 anchors", D_N, ImageFilter::Bilinear, 3),
     ("D_n antialias, 3 anchors", D_N, ImageFilter::Antialias, 3),
     ("D_p bilinear", Operator::Depth { gamma: 1.0 }, ImageFilter::Bilinear, 1),
     ("D_r bilinear", Operator::Reflection { alpha: 0.5, detail: 0.0 }, ImageFilter::Bilinear, 1),
+    ("D_s bilinear", D_S, ImageFilter::Bilinear, 1),
+    ("D_s bilinear, 3 anchors", D_S, ImageFilter::Bilinear, 3),
     ("unbent", Operator::None, ImageFilter::Bilinear, 1),
 ];
 

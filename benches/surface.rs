@@ -1,11 +1,15 @@
 //! What knowing the shape costs: the curvature tensor of a map of 3840 × 2160, beside a copy of the same bytes.
 //!
+//! And what unwrapping a map of 1024 × 1024 costs.
+//!
 //! `cargo bench --bench surface`. Figures are per map; divide by 8.29 million for ns per pixel. `threads = 0` is all.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use rilievo_engine::math::{Size, vec3};
+use rilievo_engine::math::{Size, vec2, vec3};
 use rilievo_engine::raster::Plane;
-use rilievo_engine::surface::{Maps, Surface};
+use rilievo_engine::surface::deformation::DeformedRect;
+use rilievo_engine::surface::unwrap::{UnwrapSettings, Unwrapping};
+use rilievo_engine::surface::{Anchor, Bend, Deformation, Maps, Operator, Surface, Weights};
 
 fn main() {
     divan::main();
@@ -50,5 +54,54 @@ fn curvature(bencher: Bencher, (threads, blur_px): (usize, f32)) {
         with_threads(threads, || {
             black_box(surface.curvature((blur_px + hair).abs()));
         });
+    });
+}
+
+const UNWRAPPED: Size = Size::new(1024, 1024);
+
+/// A ball of bumps before a wavy wall.
+fn ball_before_a_wall() -> Surface {
+    let at = |x: usize, y: usize| {
+        let (dx, dy) = (x as f32 - 512.0, y as f32 - 512.0);
+        let z2 = 1.0 - (dx * dx + dy * dy) / (400.0 * 400.0);
+        let (bump_x, bump_y) = (0.2 * (x as f32 * 0.11).sin(), 0.2 * (y as f32 * 0.13).cos());
+        match z2 > 0.0 {
+            true => (vec3(dx / 400.0 + bump_x, -dy / 400.0 + bump_y, z2.sqrt()), 0.5 - 0.4 * z2.sqrt()),
+            false => (vec3(bump_x, bump_y, 1.0), 1.0),
+        }
+    };
+    let maps = Maps {
+        normals: Plane::from_fn(UNWRAPPED, |x, y| at(x, y).0),
+        depth: Plane::from_fn(UNWRAPPED, |x, y| at(x, y).1),
+        coverage: Plane::filled(UNWRAPPED, 255),
+    };
+    Surface::new(maps).expect("a surface")
+}
+
+/// D_s of a map solved from nothing. Arguments: threads.
+#[divan::bench(sample_count = 5, sample_size = 1, args = [1, 2])]
+fn unwrapping(bencher: Bencher, threads: usize) {
+    let surface = ball_before_a_wall();
+    let settings = UnwrapSettings { amount: 1.0, smooth_px: 0.0 };
+    bencher.counter(ItemsCount::new(UNWRAPPED.area())).bench_local(|| {
+        with_threads(threads, || drop(black_box(Unwrapping::new(&surface, settings))));
+    });
+}
+
+/// D over the whole canvas by one thread after an anchor was moved, the surface being unwrapped. Arguments: anchors.
+#[divan::bench(sample_count = 9, sample_size = 1, args = [1, 3])]
+fn unwrapped_under_a_moved_anchor(bencher: Bencher, anchors: usize) {
+    let surface = ball_before_a_wall();
+    let at = [vec2(512.5, 512.5), vec2(300.5, 400.5), vec2(700.5, 600.5)];
+    let mut bend = Bend {
+        operator: Operator::Surface { amount: 1.0, smooth: 0.0 },
+        anchors: at[..anchors].iter().map(|&at| Anchor::fixed(at)).collect(),
+        weights: Weights::default(),
+    };
+    let mut deformed = DeformedRect::default();
+    Deformation::new(Some(&surface), UNWRAPPED, &bend).fill(UNWRAPPED.rect(), &mut deformed);
+    bencher.counter(ItemsCount::new(UNWRAPPED.area())).bench_local(|| {
+        bend.anchors[0].at.x += 1.0;
+        Deformation::new(Some(&surface), UNWRAPPED, &bend).fill(UNWRAPPED.rect(), black_box(&mut deformed));
     });
 }
