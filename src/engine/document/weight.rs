@@ -3,6 +3,7 @@
 
 use super::{Content, Document, Layer, MaskKind, StrokeList};
 use crate::math::Rect;
+use crate::surface::region::RegionKind;
 use std::sync::Arc;
 
 /// Of a tile, bytes a pixel.
@@ -11,6 +12,18 @@ const TILE_BYTES: u64 = 4;
 const CURVATURE_BYTES: u64 = 15;
 /// A surface that other normals were put on, bytes a pixel.
 const SURFACE_BYTES: u64 = 18;
+
+/// What finding a region takes, bytes a pixel: how much each differs, its steps, what is covered, and what they follow
+/// from.
+fn region_bytes(kind: RegionKind) -> u64 {
+    9 + match kind {
+        RegionKind::Curvature => CURVATURE_BYTES,
+        // Tensors, blurred in four channels.
+        RegionKind::Flow => 56,
+        RegionKind::Object => 8,
+        RegionKind::Direction | RegionKind::Depth | RegionKind::Shine => 0,
+    }
+}
 
 impl Document {
     /// Bytes that flattening takes at most: the picture, the tiles that live layers are rendered to, and what is
@@ -28,6 +41,7 @@ fn of_layers(layers: &[Arc<Layer>], canvas: Rect, area: u64) -> u64 {
 fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
     let mask = match layer.mask.as_ref().map(|mask| &mask.kind) {
         Some(MaskKind::Curvature { .. }) => area * CURVATURE_BYTES,
+        Some(MaskKind::Region(region)) => area * region_bytes(region.kind),
         _ => 0,
     };
     mask + match &layer.content {

@@ -26,7 +26,7 @@ impl Selection {
     /// from a surface have it.
     pub fn of_region(region: SurfaceRegion, scene: &Scene) -> Self {
         let coverage = match &scene.surface {
-            Some(surface) => region.on(surface),
+            Some(surface) => CoverageGrid::clone(&surface.region(&region)),
             None => CoverageGrid::filled(scene.size.rect()),
         };
         Self { coverage, made: Some(region) }

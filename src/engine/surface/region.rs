@@ -12,6 +12,7 @@ use crate::math::{Range, UNIT, Vec2};
 use crate::raster::coverage::CoverageGrid;
 use crate::raster::flood::{Flooded, OpenTile, TileBits, TileLinks};
 use crate::raster::{Plane, TILE, TileAt};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// What pixels of a region have in common with its point.
@@ -122,6 +123,8 @@ pub struct RegionField {
     deviation: Plane<f32>,
     /// Half the step of v from pixel to pixel: a sharper edge would show steps.
     half_step: Plane<f32>,
+    /// How the surface joins the pixels of each tile, row by row.
+    joined: Vec<Box<TileLinks>>,
 }
 
 impl RegionField {
@@ -132,7 +135,8 @@ impl RegionField {
         covered.filter(|c| *c > 0)?;
         let deviation = deviation::of(surface, kind, (pixel.x as usize, pixel.y as usize));
         let half_step = half_steps(surface, &deviation);
-        Some(Self { surface: surface.clone(), at: (pixel.x, pixel.y), deviation, half_step })
+        let joined = links_of(surface);
+        Some(Self { surface: surface.clone(), at: (pixel.x, pixel.y), deviation, half_step, joined })
     }
     /// The region of this field's point and kind with a tolerance, softness and contiguity.
     pub fn region(&self, told: &SurfaceRegion) -> CoverageGrid {
@@ -176,27 +180,52 @@ impl RegionField {
     fn opened(&self, at: TileAt, t: f32, soft: f32) -> OpenTile {
         let (tile, area) = (at.rect(), at.rect().intersect(self.surface.size().rect()));
         let mut open = [0; TILE];
-        let none = [0; TILE];
-        let mut joined = TileLinks { from_left: none, from_right: none, from_above: none, from_below: none };
         let columns = area.x0 as usize..area.x1 as usize;
         for y in area.y0..area.y1 {
-            let row = (y - tile.y0) as usize;
-            let (v, step) = (&self.deviation.row(y as usize)[columns.clone()], self.half_step.row(y as usize));
-            let linked = &self.surface.links_plane().row(y as usize)[columns.clone()];
-            for (x, ((v, step), linked)) in v.iter().zip(&step[columns.clone()]).zip(linked).enumerate() {
-                let bit = |is: bool| u64::from(is) << x;
-                open[row] |= bit(*v < t + soft.max(*step));
-                joined.from_left[row] |= bit(linked & links::LEFT != 0);
-                joined.from_right[row] |= bit(linked & links::RIGHT != 0);
-                joined.from_above[row] |= bit(linked & links::UP != 0);
-                joined.from_below[row] |= bit(linked & links::DOWN != 0);
-            }
+            let v = &self.deviation.row(y as usize)[columns.clone()];
+            let step = &self.half_step.row(y as usize)[columns.clone()];
+            open[(y - tile.y0) as usize] = open_row(v, step, t, soft);
         }
-        OpenTile { open, links: Some(Box::new(joined)) }
+        let columns = self.surface.size().width.div_ceil(TILE as u32) as i32;
+        OpenTile { open, links: self.joined.get((at.row * columns + at.col) as usize).cloned() }
     }
 }
 
+/// From which sides the pixels of each tile of a surface are linked, row by row.
+fn links_of(surface: &Surface) -> Vec<Box<TileLinks>> {
+    let tiles: Vec<TileAt> = TileAt::covering(surface.size().rect()).collect();
+    let of_tile = |at: &TileAt| {
+        let (tile, area) = (at.rect(), at.rect().intersect(surface.size().rect()));
+        let none = [0; TILE];
+        let mut joined = TileLinks { from_left: none, from_right: none, from_above: none, from_below: none };
+        for y in area.y0..area.y1 {
+            let row = (y - tile.y0) as usize;
+            let linked = &surface.links_plane().row(y as usize)[area.x0 as usize..area.x1 as usize];
+            for (x, linked) in linked.iter().enumerate() {
+                let bit = |side: u8| u64::from(linked & side != 0) << x;
+                joined.from_left[row] |= bit(links::LEFT);
+                joined.from_right[row] |= bit(links::RIGHT);
+                joined.from_above[row] |= bit(links::UP);
+                joined.from_below[row] |= bit(links::DOWN);
+            }
+        }
+        Box::new(joined)
+    };
+    tiles.par_iter().map(of_tile).collect()
+}
+
 crate::widest! {
+    /// A bit for every pixel of a row that a region covers at all.
+    fn open_row(v: &[f32], step: &[f32], t: f32, soft: f32) -> u64 {
+        let n = v.len().min(TILE);
+        let (v, step) = (&v[..n], &step[..n]);
+        let mut open = [0u8; TILE];
+        for x in 0..n {
+            let delta = if soft > step[x] { soft } else { step[x] };
+            open[x] = u8::from(v[x] < t + delta);
+        }
+        open.iter().rev().fold(0, |bits, open| bits << 1 | u64::from(*open))
+    }
     fn fill_row(v: &[f32], step: &[f32], covered: &[u8], t: f32, soft: f32, to: &mut [u8]) {
         let n = to.len();
         let (v, step, covered) = (&v[..n], &step[..n], &covered[..n]);

@@ -94,7 +94,7 @@ impl PictureCache {
         Ok(map)
     }
     /// Counts the pixels of a document: many pictures, each within its own limit, could fill the memory together.
-    fn spend(&mut self, source: RecipeSource, size: Size, bytes: usize) -> Result<()> {
+    pub(super) fn spend(&mut self, source: RecipeSource, size: Size, bytes: usize) -> Result<()> {
         self.used_bytes += bytes as u64;
         source.budget.room(source.file, "what its layers hold", self.used_bytes)?;
         self.used_px += size.area() as u64;

@@ -61,7 +61,11 @@ impl LayerReader<'_> {
     fn selection(&mut self, node: &JsonNode, scene: &Scene) -> Result<Selection> {
         let mut fields = node.fields()?;
         let selection = match fields.get("kind") {
-            Some(kind) => Selection::of_region(region(kind.one_of(&RegionKind::ALL)?, &mut fields)?, scene),
+            // Each takes as long as a picture of the canvas.
+            Some(kind) => {
+                self.pictures.spend(self.source, self.size, self.size.area())?;
+                Selection::of_region(region(kind.one_of(&RegionKind::ALL)?, &mut fields)?, scene)
+            }
             None => {
                 let mut side = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
                 let (x, y) = (side("x")? as i32, side("y")? as i32);

@@ -18,6 +18,8 @@ const DASHES_PT: f32 = 8.0;
 const PACE_PT: f32 = 16.0;
 /// Between two frames of them.
 const FRAME: Duration = Duration::from_millis(60);
+/// Pieces drawn in a frame, more or less.
+const MOST_PIECES: usize = 24_000;
 /// Outlines of tiles that are kept.
 const KEPT: usize = 20_000;
 
@@ -30,6 +32,10 @@ pub struct Ants {
     dashes: Option<TextureHandle>,
     /// What is selected, canvas px.
     covered: Option<Rect>,
+    /// Levels that a ragged outline is drawn coarser, so that a frame takes no longer.
+    coarser: u32,
+    /// The level that the zoom asked for last.
+    finest: u32,
 }
 
 impl Ants {
@@ -47,7 +53,11 @@ impl Ants {
         }
         let scale = screen_from_canvas.matrix2.x_axis.length();
         // Blocks of at least a screen point.
-        let level = (1.0 / scale.max(1e-6)).log2().floor().max(0.0) as u32;
+        let finest = (1.0 / scale.max(1e-6)).log2().floor().max(0.0) as u32;
+        if finest != self.finest {
+            (self.finest, self.coarser) = (finest, 0);
+        }
+        let level = finest + self.coarser;
         let bounds = grid.bounds();
         let reach = Rect { x1: bounds.x1 + 1, y1: bounds.y1 + 1, ..bounds }.intersect(visible);
         let time_secs = painter.ctx().input(|input| input.time) as f32;
@@ -57,6 +67,10 @@ impl Ants {
             for run in self.runs_of(grid, at, level).iter() {
                 line(&mut mesh, run, screen_from_canvas, phase);
             }
+        }
+        // Four corners a piece.
+        if mesh.vertices.len() > 4 * MOST_PIECES && level < contour::COARSEST {
+            self.coarser += 1;
         }
         painter.add(Shape::mesh(mesh));
         painter.ctx().request_repaint_after(FRAME);
@@ -71,7 +85,7 @@ impl Ants {
             return;
         }
         self.runs.retain(|key, _| key.is_of(grid));
-        (self.grid, self.covered) = (grid.clone(), Some(grid.covered()));
+        (self.grid, self.covered, self.coarser) = (grid.clone(), Some(grid.covered()), 0);
     }
     fn runs_of(&mut self, grid: &CoverageGrid, at: TileAt, level: u32) -> Arc<Vec<Run>> {
         if self.runs.len() > KEPT {

@@ -1,7 +1,7 @@
 //! The outline of coverage: the sides of pixels between those covered by half or more and the others, tile by tile, so
 //! that it can be cached. Floor 1. Not here: how it is drawn (`window`).
 
-use super::{CoverageGrid, CoverageTile};
+use super::CoverageGrid;
 use crate::raster::flood::TileBits;
 use crate::raster::{TILE, TileAt};
 use std::sync::Arc;
@@ -53,8 +53,11 @@ pub fn key(grid: &CoverageGrid, at: TileAt, level: u32) -> RunsKey {
 /// * `level`: blocks of 2^level pixels a side, at most [`COARSEST`], count as covered where one of theirs is.
 pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
     let level = level.min(COARSEST);
-    let (here, left, top) = (bits(grid, at, level), bits(grid, left_of(at), level), bits(grid, above(at), level));
     let n = TILE >> level;
+    let here = bits(grid, at, level, 0);
+    // Of the tile above the last row of blocks, of the one at the left their last column.
+    let above_here = bits(grid, above(at), level, n - 1)[n - 1];
+    let left = last_column(grid, left_of(at), level);
     let mut vertical = [0u64; TILE];
     let mut out = Vec::new();
     let (corner, step) = (at.rect(), 1 << level);
@@ -63,9 +66,9 @@ pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
         out.push(Run { x, y, length: length as i32 * step, is_vertical });
     };
     for y in 0..n {
-        let before = if y > 0 { here[y - 1] } else { top[n - 1] };
+        let before = if y > 0 { here[y - 1] } else { above_here };
         stretches(here[y] ^ before, |x, length| add(x, y, length, false));
-        let beside = here[y] << 1 | left[y] >> (n - 1) & 1;
+        let beside = here[y] << 1 | left >> y & 1;
         let sides = (here[y] ^ beside) & mask(n);
         (0..n).filter(|x| sides >> x & 1 != 0).for_each(|x| vertical[x] |= 1 << y);
     }
@@ -85,25 +88,48 @@ fn mask(n: usize) -> u64 {
     if n >= 64 { u64::MAX } else { (1 << n) - 1 }
 }
 
-/// The blocks of a tile that are covered, a row a number.
-fn bits(grid: &CoverageGrid, at: TileAt, level: u32) -> TileBits {
+/// The blocks of a tile that are covered, a row a number, from a row of blocks on.
+fn bits(grid: &CoverageGrid, at: TileAt, level: u32, from: usize) -> TileBits {
     let mut out = [0; TILE];
     let n = TILE >> level;
     match grid.tile(at) {
         None => {}
-        Some(tile) if tile.is_whole() => out[..n].fill(mask(n)),
+        Some(tile) if tile.is_whole() => out[from..n].fill(mask(n)),
         Some(tile) => {
-            for (y, row) in tile_bits(tile).iter().enumerate() {
-                out[y >> level] |= (0..64).filter(|x| row >> x & 1 != 0).fold(0, |bits, x| bits | 1 << (x >> level));
+            for (y, row) in tile.bytes().as_chunks::<TILE>().0.iter().enumerate().skip(from << level) {
+                out[y >> level] |= row_bits(row);
             }
+            out[from..n].iter_mut().for_each(|row| *row = in_blocks(*row, level));
         }
     }
     out
 }
 
-fn tile_bits(tile: &CoverageTile) -> TileBits {
-    let rows = tile.bytes().as_chunks::<TILE>().0;
-    std::array::from_fn(|y| rows[y].iter().rev().fold(0, |bits, c| bits << 1 | u64::from(*c >= 128)))
+/// The last column of blocks of a tile, a row a bit.
+fn last_column(grid: &CoverageGrid, at: TileAt, level: u32) -> u64 {
+    let Some(tile) = grid.tile(at) else { return 0 };
+    if tile.is_whole() {
+        return mask(TILE >> level);
+    }
+    let block = TILE - (1 << level);
+    let rows = tile.bytes().as_chunks::<TILE>().0.iter().enumerate();
+    rows.fold(0, |bits, (y, row)| bits | u64::from(row[block..].iter().any(|&c| c >= 128)) << (y >> level))
+}
+
+/// A bit for every block of a row of pixels in which one is set.
+fn in_blocks(row: u64, level: u32) -> u64 {
+    if level == 0 {
+        return row;
+    }
+    let block = mask(1 << level);
+    (0..TILE >> level).fold(0, |bits, x| bits | u64::from(row >> (x << level) & block != 0) << x)
+}
+
+crate::widest! {
+    /// A bit for every pixel that is covered by half or more.
+    fn row_bits(row: &[u8; TILE]) -> u64 {
+        row.iter().rev().fold(0, |bits, c| bits << 1 | u64::from(*c >> 7))
+    }
 }
 
 /// The first bit and the length of every stretch of set bits.

@@ -13,7 +13,7 @@ use super::{Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext
 use crate::document::Document;
 use crate::math::{Range, Vec2};
 use crate::paint::{Fill, Selection};
-use crate::raster::coverage::Combine;
+use crate::raster::coverage::{Combine, CoverageGrid};
 use crate::surface::region::{RegionKind, SurfaceRegion};
 
 /// The settings of the selection tools.
@@ -85,7 +85,10 @@ pub fn closed(document: &Document, points: &[Vec2], settings: &SelectSettings) -
 /// Whether the pen takes hold of the selection that there is: it comes down within it, and would replace it.
 fn moves(context: &ToolContext, pen: PenSample) -> bool {
     let at = pen.place().floor().as_ivec2();
-    let is_in = context.document.selected().is_some_and(|grid| grid.at(at.x, at.y) >= 128);
+    let document = context.document;
+    // All of the canvas is taken hold of by nobody who drags a rectangle in it.
+    let is_all = |grid: &CoverageGrid| grid.area_px() >= document.size.area() as f64;
+    let is_in = document.selected().is_some_and(|grid| grid.at(at.x, at.y) >= 128 && !is_all(grid));
     is_in && pen.place().is_finite() && context.select.how(pen.keys) == Combine::Replace
 }
 

@@ -65,6 +65,10 @@ fn a_drag_within_the_selection_moves_it_and_a_click_beside_it_lets_go() {
     let one = drawn(ToolKind::SelectRectangle, &bands(), NONE, &[vec2(20.0, 30.0), vec2(80.0, 90.0)]).unwrap();
     let moved = drawn(ToolKind::SelectRectangle, &one, NONE, &[vec2(50.0, 50.0), vec2(75.4, 39.6)]).unwrap();
     assert_eq!(covered(&moved), Rect::new(45, 20, 105, 80));
+    let all = bands().with_selection(Some(Selection::new(CoverageGrid::filled(SIZE.rect()))));
+    let drag = [vec2(50.0, 50.0), vec2(75.0, 90.0)];
+    let anew = drawn(ToolKind::SelectRectangle, &all, NONE, &drag).unwrap();
+    assert_eq!(covered(&anew), Rect::new(50, 50, 75, 90), "in all of the canvas it begins anew");
     let click = [vec2(150.0, 100.0), vec2(151.0, 100.0)];
     assert!(drawn(ToolKind::SelectRectangle, &one, NONE, &click).unwrap().selected().is_none());
     let shift = ModifierKeys { shift: true, ..NONE };
