@@ -3,6 +3,7 @@
 
 pub mod deep;
 pub mod layers;
+pub mod shape;
 
 use crate::document::Progress;
 use crate::fs::Disk;

@@ -23,7 +23,7 @@ pub mod replace;
 pub mod save;
 
 // The floors beneath, under their own names.
-use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, surface};
+use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface};
 
 pub use budget::Budget;
 pub use files::{Files, RecipeFolder, UserFiles};

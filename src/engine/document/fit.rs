@@ -43,7 +43,8 @@ impl Document {
                 fit = layer_fits(layer, was.map(|was| &**was), self.size).map_err(|why| named(layer, &why));
             }
         });
-        fit.and_then(|()| selections::fit(self, before)).and_then(|()| total.fits().map_err(|why| format!("{why}.")))
+        let values = || total.fits().map_err(|why| format!("{why}."));
+        fit.and_then(|()| selections::fit(self, before)).and_then(|()| self.parts_fit()).and_then(|()| values())
     }
 }
 

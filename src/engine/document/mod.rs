@@ -15,6 +15,7 @@ pub mod live;
 pub mod mask;
 mod measure;
 pub mod normals;
+pub mod parts;
 mod prepare;
 pub mod progress;
 mod same;
@@ -36,6 +37,7 @@ pub use layer::{Layer, LayerId, LayerLock};
 pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
 pub use normals::{DetailSource, NormalLayer};
+pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};
 pub use prepare::PreparedDocument;
 pub use progress::Progress;
 pub use scale::DocumentReducer;
@@ -56,6 +58,8 @@ pub struct Document {
     pub surface_source: Option<Arc<SurfaceSource>>,
     /// The files that `surface_source` names, by their names, where they are known.
     pub surface_files: Arc<BTreeMap<String, Asset>>,
+    /// The parts that the surface is made of, with the maps beneath them.
+    pub parts: Arc<Parts>,
     pub layers: Vec<Arc<Layer>>,
     /// Those kept by name; each name stands once.
     pub selections: Vec<NamedSelection>,
@@ -70,6 +74,7 @@ impl Document {
             surface: None,
             surface_source: None,
             surface_files: Arc::default(),
+            parts: Arc::default(),
             layers: Vec::new(),
             selections: Vec::new(),
             active_selection: None,

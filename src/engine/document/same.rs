@@ -14,7 +14,11 @@ impl Document {
         if self.size != other.size {
             return Some("the size of the canvas".into());
         }
-        surface(self, other).or_else(|| layers(&self.layers, &other.layers)).or_else(|| selections(self, other))
+        let parts = self.parts.list != other.parts.list;
+        surface(self, other)
+            .or_else(|| parts.then(|| "the parts of its shape".into()))
+            .or_else(|| layers(&self.layers, &other.layers))
+            .or_else(|| selections(self, other))
     }
 }
 
@@ -35,7 +39,7 @@ fn selections(a: &Document, b: &Document) -> Option<String> {
 }
 
 fn surface(a: &Document, b: &Document) -> Option<String> {
-    let is_same = match (&a.surface, &b.surface) {
+    let is_same = match (a.maps_surface(), b.maps_surface()) {
         (None, None) => true,
         (Some(x), Some(y)) => {
             let source = a.surface_source.as_deref().filter(|source| has_files(source, a));

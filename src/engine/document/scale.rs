@@ -7,7 +7,7 @@ mod selections;
 pub use reducer::DocumentReducer;
 
 use super::cache::LayerCache;
-use super::{Document, Layer, MaskKind, PixelLayer};
+use super::{Document, Layer, MaskKind, Part, PixelLayer};
 use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
 use crate::paint::{Sample, Selection, Stroke};
 use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
@@ -27,7 +27,8 @@ impl Document {
         let surface = self.surface.as_ref().map(|s| s.stretched(scale.to).map(Arc::new)).transpose()?;
         let layers = scale.layers(&self.layers);
         let scaled = Document { size: scale.to, surface, layers, ..scale.selected(self) };
-        Ok(scaled.with_selections_found())
+        let shaped = if self.parts.is_empty() { scaled } else { scale.parts(self, scaled)? };
+        Ok(shaped.with_selections_found())
     }
 }
 
@@ -52,6 +53,14 @@ impl CanvasScale {
         }
         let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
         Some(Self { per_axis, length: factor, from, to, selections: Mutex::default() })
+    }
+    /// Parts with their lengths scaled, and the surface that they make on the new canvas.
+    fn parts(&self, old: &Document, new: Document) -> Result<Document, SurfaceError> {
+        let part = |part: &Arc<Part>| Arc::new(part.scaled(self.per_axis, self.length, |plane| self.plane(plane)));
+        let list = old.parts.list.iter().map(part).collect();
+        let maps = old.maps_surface().map(|maps| maps.stretched(self.to).map(Arc::new)).transpose()?;
+        let bare = Document { surface: maps, parts: Arc::default(), ..new };
+        Ok(bare.with_parts(list))
     }
     pub fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()

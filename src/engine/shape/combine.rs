@@ -145,13 +145,27 @@ impl Relief {
             })
         })
     }
-    /// The most that anything beneath rises above a form where they overlap, and a gap; 0 where they do not.
+    /// The most that anything beneath rises above a form where they overlap or touch, and a gap; 0 where they do not.
     fn offset(&self, form: &Form) -> f32 {
-        let rise = self
-            .pairs(form)
-            .map(|(beneath, own, _)| beneath - own)
-            .fold(None, |most: Option<f32>, rise| Some(most.map_or(rise, |most| most.max(rise))));
+        let overlaps = self.pairs(form).map(|(beneath, own, _)| beneath - own);
+        let rises = overlaps.chain(self.touching(form));
+        let rise = rises.fold(None, |most: Option<f32>, rise| Some(most.map_or(rise, |most| most.max(rise))));
         rise.map_or(0.0, |rise| (rise + GAP * self.height.size().longer_side()).max(0.0))
+    }
+    /// How far what lies beside a form's rim rises above that rim: flats of a drawing touch and do not overlap.
+    fn touching<'a>(&'a self, form: &'a Form) -> impl Iterator<Item = f32> + 'a {
+        const FAR: i32 = 2;
+        let own = |x: i32, y: i32| form.coverage.get(x - form.corner.0, y - form.corner.1).unwrap_or(0) >= 128;
+        let rect = form.rect().intersect(self.height.size().rect());
+        let rim = (rect.y0..rect.y1)
+            .flat_map(move |y| (rect.x0..rect.x1).map(move |x| (x, y)))
+            .filter(move |&(x, y)| own(x, y) && !(own(x - 1, y) && own(x + 1, y) && own(x, y - 1) && own(x, y + 1)));
+        rim.flat_map(move |(x, y)| {
+            let height = form.height.at((x - form.corner.0) as usize, (y - form.corner.1) as usize);
+            let around = (-FAR..=FAR).flat_map(move |dy| (-FAR..=FAR).map(move |dx| (x + dx, y + dy)));
+            let beside = around.filter(move |&(x, y)| !own(x, y) && self.coverage.get(x, y).unwrap_or(0) >= 128);
+            beside.map(move |(x, y)| self.height.at(x as usize, y as usize) - height)
+        })
     }
     /// What brings the rim of a form to the mean height of what lies beneath that rim.
     fn level(&self, form: &Form) -> f32 {

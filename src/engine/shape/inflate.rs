@@ -22,7 +22,7 @@ pub fn inflate(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&P
     if outline.size().area() > MOST_UNKNOWNS && joined.is_none() {
         return doubled(&inflate_halved(outline), outline);
     }
-    let rim = joined.map_or_else(|| Rim::silhouette(outline), |joined| Rim::joined(outline, joined));
+    let rim = Rim::of(outline, joined);
     let inside = outline.inside();
     let source = inside.map(|i| if i { 4.0 } else { 0.0 });
     let u = rim.equation(|_, _| 0.0).solve(&source, start, GOAL);

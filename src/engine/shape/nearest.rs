@@ -17,9 +17,16 @@ pub struct RimDistance {
 impl RimDistance {
     /// Exact to where the rim crosses the links between pixels, and near it to the line between those crossings.
     pub fn of(outline: &Outline) -> Self {
+        Self::silhouette_of(outline, None)
+    }
+    /// As [`RimDistance::of`], of the rim that is not toward pixels of `joined` (as `Rim::joined` has it). Without any
+    /// other, no pixel is farther from it than the plane is long.
+    pub fn silhouette_of(outline: &Outline, joined: Option<&Plane<bool>>) -> Self {
         let inside = outline.inside();
-        let upright = nearest_crossings(outline, false);
-        let across = nearest_crossings(outline, true);
+        let joined = joined.filter(|joined| joined.size() == outline.size());
+        let upright = nearest_crossings(outline, joined, false);
+        let across = nearest_crossings(outline, joined, true);
+        let farthest = outline.size().longer_side();
         let both = Plane::from_fn(outline.size(), |x, y| {
             if !inside.at(x, y) {
                 return (0.0, Vec2::ZERO);
@@ -28,7 +35,8 @@ impl RimDistance {
             let (a, b) = (upright.at(x, y), across.at(y, x));
             let b = vec2(b.y, b.x);
             let nearer = if here.distance_squared(b) < here.distance_squared(a) { b } else { a };
-            toward(outline, here, nearer)
+            let (distance, way) = toward(outline, here, nearer);
+            if distance <= farthest { (distance, way) } else { (farthest, Vec2::ZERO) }
         });
         Self { distance: both.map(|v| v.0), inward: both.map(|v| v.1) }
     }
@@ -59,13 +67,15 @@ fn toward(outline: &Outline, here: Vec2, crossing: Vec2) -> (f32, Vec2) {
 /// For each pixel the nearest crossing of the rim with a link up or down (`swapped`: left or right; then the plane is
 /// the outline's mirrored at its diagonal). Points in px from the centre of the first pixel; far away where there is
 /// none.
-fn nearest_crossings(outline: &Outline, swapped: bool) -> Plane<Vec2> {
+fn nearest_crossings(outline: &Outline, joined: Option<&Plane<bool>>, swapped: bool) -> Plane<Vec2> {
     let size = outline.size();
     let size = if swapped { Size::new(size.height, size.width) } else { size };
     let (w, h) = (size.width as usize, size.height as usize);
     let inside = |x: usize, y: usize| {
         if swapped { outline.inside().at(y, x) } else { outline.inside().at(x, y) }
     };
+    let is_free =
+        |x: usize, y: usize| joined.is_some_and(|joined| if swapped { joined.at(y, x) } else { joined.at(x, y) });
     // Where the rim crosses the link from a pixel to the one beneath it.
     let crossing = |x: usize, y: usize| -> Option<f32> {
         let (a, b) = (inside(x, y), inside(x, y + 1));
@@ -74,8 +84,8 @@ fn nearest_crossings(outline: &Outline, swapped: bool) -> Plane<Vec2> {
             outline.crossing(at, step)
         };
         match (a, b) {
-            (true, false) => Some(y as f32 + theta(y, 1)),
-            (false, true) => Some((y + 1) as f32 - theta(y + 1, -1)),
+            (true, false) if !is_free(x, y + 1) => Some(y as f32 + theta(y, 1)),
+            (false, true) if !is_free(x, y) => Some((y + 1) as f32 - theta(y + 1, -1)),
             _ => None,
         }
     };

@@ -31,6 +31,10 @@ impl<'a> Rim<'a> {
     pub fn joined(outline: &'a Outline, joined: &'a Plane<bool>) -> Self {
         Self { outline, joined: (joined.size() == outline.size()).then_some(joined) }
     }
+    /// A silhouette, or one that is joined in part.
+    pub fn of(outline: &'a Outline, joined: Option<&'a Plane<bool>>) -> Self {
+        joined.map_or_else(|| Self::silhouette(outline), |joined| Self::joined(outline, joined))
+    }
     fn is_free(&self, x: i32, y: i32) -> bool {
         self.joined.is_some_and(|joined| joined.get(x, y).unwrap_or(false))
     }

@@ -69,7 +69,7 @@ fn an_ellipse_rises_to_its_apex_and_a_strip_to_root_two_or_as_a_tube_to_its_half
     };
     let fat = across(&pillow(&strip));
     assert!((fat / (2.0f32.sqrt() * w) - 1.0).abs() < 0.005, "{fat}");
-    let limb = across(&Form::of_squares(&strip, &tube(&strip, None), &Rim::silhouette(&strip), SILHOUETTE));
+    let limb = across(&Form::of_squares(&strip, &tube(&strip, None, None), &Rim::silhouette(&strip), SILHOUETTE));
     println!("strip of half width {w}: pillow {fat}, tube {limb}");
     assert!((limb / w - 1.0).abs() < 0.015, "{limb} and not {w}");
 }
@@ -117,7 +117,7 @@ fn turning_shifting_and_scaling_an_outline_does_so_to_its_normals() {
     let (still, turned) = (creature(300.0, 0.0, Vec2::ZERO), creature(300.0, turn, shift));
     let map = |p: Vec2| Vec2::from_angle(turn).rotate(p - 150.0) + 150.0 + shift;
     let (small, large) = (creature(256.0, 0.0, Vec2::ZERO), creature(1024.0, 0.0, Vec2::ZERO));
-    let tubes = |o: &Outline| Form::of_squares(o, &tube(o, None), &Rim::silhouette(o), SILHOUETTE);
+    let tubes = |o: &Outline| Form::of_squares(o, &tube(o, None, None), &Rim::silhouette(o), SILHOUETTE);
     let by_turn = apart(&pillow(&still), &pillow(&turned), map, turn);
     let by_scale = apart(&pillow(&small), &pillow(&large), |p| p * 4.0, 0.0);
     let of_tubes = apart(&tubes(&still), &tubes(&turned), map, turn);
@@ -193,7 +193,7 @@ fn a_thousand_outlines_give_unit_normals_and_the_same_bytes_on_one_and_two_threa
     for seed in 0..1000 {
         let Some(outline) = Outline::new((3, -2), &random_mask(seed)) else { continue };
         let form = || {
-            let squares = tube::blend(&inflate(&outline, None, None), &tube(&outline, None), 0.4);
+            let squares = tube::blend(&inflate(&outline, None, None), &tube(&outline, None, None), 0.4);
             Form::of_squares(&outline, &squares, &Rim::silhouette(&outline), Roundness { puff: 0.8, rim_deg: 70.0 })
         };
         let (a, b) = (one.install(form), two.install(form));

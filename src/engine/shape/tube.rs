@@ -17,9 +17,10 @@ const LEAST_SMOOTHING_PX: f32 = 0.5;
 /// h, px², over the planes of an outline: the squared height of its maximal balls, smoothed, 0 at the rim.
 ///
 /// Raw it is max_c (r²(c) − |x − c|²), r the distance to the rim. Smoothed: h − t∇²h = h₀, √t a twelfth of the
-/// ball's radius. `start` as for `inflate`.
-pub fn tube(outline: &Outline, start: Option<&Plane<f32>>) -> Plane<f32> {
-    let reach = RimDistance::of(outline).distance;
+/// ball's radius. `joined` and `start` as for `inflate`.
+pub fn tube(outline: &Outline, joined: Option<&Plane<bool>>, start: Option<&Plane<f32>>) -> Plane<f32> {
+    let reach = RimDistance::silhouette_of(outline, joined).distance;
+    let rim = Rim::of(outline, joined);
     let raw = balls(outline, &reach);
     let inside = outline.inside();
     let screen = |x: usize, y: usize| {
@@ -27,7 +28,7 @@ pub fn tube(outline: &Outline, start: Option<&Plane<f32>>) -> Plane<f32> {
         1.0 / (length * length)
     };
     let source = Plane::from_fn(raw.size(), |x, y| if inside.at(x, y) { raw.at(x, y) * screen(x, y) } else { 0.0 });
-    let h = Rim::silhouette(outline).equation(screen).solve(&source, start.or(Some(&raw)), GOAL);
+    let h = rim.equation(screen).solve(&source, start.or(Some(&raw)), GOAL);
     h.updated(|x, y, h| if inside.at(x, y) && h.is_finite() { h.max(0.0) } else { 0.0 })
 }
 

@@ -7,7 +7,7 @@ use crate::document::cache::EncodedPixels;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };
-use crate::document::{Content, Document, Layer, LayerId, MaskKind, SelectionList};
+use crate::document::{Content, Document, Layer, LayerId, MaskKind, Part, Parts, SelectionList};
 use crate::exr;
 use crate::math::Rect;
 use crate::paint::Selection;
@@ -62,14 +62,27 @@ impl AssetList {
     }
     /// The document with every file under its name in the project.
     pub fn rename(&mut self, file: &Path, document: &Document, painted: &StoredPixels) -> Result<Document> {
-        let source = document.surface.as_ref().map(|surface| self.surface(file, surface, document)).transpose()?;
+        let source = document.maps_surface().map(|surface| self.surface(file, surface, document)).transpose()?;
         let layers = self.layers(file, &document.layers, painted)?;
         for (place, selection) in SelectionList::of(document).all().enumerate().filter(|(_, s)| s.made.is_none()) {
             let (name, mask) = (recipe::selection_file(place), self.made.selection(file, selection)?);
             self.taken.insert(name.to_lowercase());
             self.files.push((name, mask));
         }
-        Ok(Document { surface_source: source.map(Arc::new), layers, ..document.clone() })
+        let parts = self.parts(file, &document.parts)?;
+        Ok(Document { surface_source: source.map(Arc::new), layers, parts, ..document.clone() })
+    }
+    /// Parts with their pictures of coverage under their names in the project.
+    fn parts(&mut self, file: &Path, parts: &Arc<Parts>) -> Result<Arc<Parts>> {
+        let mut next = Parts::clone(parts);
+        for part in &mut next.list {
+            let mut named = Part::clone(part);
+            let Some(coverage) = named.files_mut() else { continue };
+            let asset = self.made.mask(file, &coverage.coverage)?;
+            coverage.file = self.add(&name_with_extension(&coverage.file, "outline", "png"), asset);
+            *part = Arc::new(named);
+        }
+        Ok(Arc::new(next))
     }
     fn layers(&mut self, file: &Path, layers: &[Arc<Layer>], painted: &StoredPixels) -> Result<Vec<Arc<Layer>>> {
         layers.iter().map(|layer| self.layer(file, layer, painted).map(Arc::new)).collect()

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `mod` | the document itself: format, version, canvas |
 //! | `surface` | normal map, depth map, mask and their conventions |
+//! | `parts` | the parts of a shape |
 //! | `layers` | what every layer has, and fills, pixels and groups |
 //! | `images` | placed images, gradients, normal layers: operator, anchors, placement |
 //! | `strokes` | strokes |
@@ -25,6 +26,7 @@ mod layers;
 mod masks;
 mod names;
 mod normals;
+pub mod parts;
 mod pictures;
 mod presets;
 mod samples;
@@ -130,7 +132,11 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     let mut root = JsonNode::root(source.file, value).fields()?;
     check_version(&mut root)?;
     let canvas = root.get("canvas").map(|node| canvas(&node, source)).transpose()?;
-    let own = root.get("surface").map(|node| Ok::<_, Error>((surface::read(&node)?, node))).transpose()?;
+    let surface_node = root.get("surface");
+    let own = match &surface_node {
+        Some(node) => surface::read(node)?.map(|own| (own, node.clone())),
+        None => None,
+    };
     let layers = root.get("layers");
     let (selections, active) = (root.get("selections"), root.get("active_selection"));
     root.finish()?;
@@ -144,8 +150,23 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     let selections = selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
     let active_selection = active.map(|node| reader.selection_of(&node)).transpose()?.filter(|found| !found.is_empty());
     let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
-    let surface_files = Arc::new(files);
-    let document = Document { size, surface, surface_source, surface_files, layers, selections, active_selection };
+    // Another object takes the place of the document's own, parts and all.
+    let parts = match surface_node.filter(|_| source.onto.is_none()) {
+        Some(node) => node.fields()?.get("parts").map(|node| reader.parts(&node)).transpose()?.unwrap_or_default(),
+        None => Vec::new(),
+    };
+    let (surface_files, no_parts) = (Arc::new(files), Arc::default());
+    let bare = Document {
+        size,
+        surface,
+        surface_source,
+        surface_files,
+        parts: no_parts,
+        layers,
+        selections,
+        active_selection,
+    };
+    let document = if parts.is_empty() { bare } else { bare.with_parts(parts).with_selections_found() };
     Ok((document, notes))
 }
 
@@ -173,8 +194,8 @@ pub fn put_onto(document: &Document, file: &Path, onto: OtherSurface, budget: &B
     let maps::ImportedSurface { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
     let surface = fitted(surface, document.size).map_err(|e| Error::unsupported(file, e))?;
     let surface_source = Some(Arc::new(onto.surface.clone()));
-    let surface_files = Arc::new(files);
-    let next = Document { surface: Some(surface), surface_source, surface_files, ..document.clone() };
+    let (surface_files, parts) = (Arc::new(files), Arc::default());
+    let next = Document { surface: Some(surface), surface_source, surface_files, parts, ..document.clone() };
     Ok(next.with_selections_found())
 }
 
@@ -263,7 +284,7 @@ pub fn print(document: &Document) -> String {
 
 /// Whether the first version has no words for something in a document.
 fn needs_second_version(document: &Document) -> bool {
-    document.walk().iter().any(|(_, layer)| layer.transform.is_some())
+    !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| layer.transform.is_some())
 }
 
 /// All but the layers.
@@ -273,7 +294,11 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
     let is_second = needs_second_version(document) || selections::is_needed(document, list) || unwraps(document);
     out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
-    out.said("surface", document.surface_source.as_deref(), surface::write);
+    let mut surface = document.surface_source.as_deref().map(surface::write).unwrap_or_default();
+    if !document.parts.is_empty() {
+        surface.set("parts", parts::write(&document.parts));
+    }
+    out.object("surface", surface);
     selections::write(&mut out, document, list);
     out
 }

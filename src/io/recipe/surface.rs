@@ -12,19 +12,24 @@ use serde_json::{Value, json};
 /// Stored values that mean "no surface".
 const MOST_BACKGROUNDS: usize = 64;
 
-/// Reads the object `surface`.
-pub fn read(node: &JsonNode) -> Result<SurfaceSource> {
+/// Reads the maps of the object `surface`; nothing where it has parts and no maps.
+pub fn read(node: &JsonNode) -> Result<Option<SurfaceSource>> {
     let mut fields = node.fields()?;
     let source = SurfaceSource {
         normal: fields.get("normal").map(|node| normal(&node)).transpose()?,
         depth: fields.get("depth").map(|node| depth(&node)).transpose()?,
         mask: fields.get("mask").map(|node| mask(&node)).transpose()?,
     };
+    // They are read once the canvas is known.
+    let has_parts = fields.get("parts").is_some();
     fields.finish()?;
     if source.normal.is_none() && source.depth.is_none() {
+        if has_parts && source.mask.is_none() {
+            return Ok(None);
+        }
         return Err(node.refused("names neither a normal map nor a depth map"));
     }
-    Ok(source)
+    Ok(Some(source))
 }
 
 fn normal(node: &JsonNode) -> Result<MapSource<NormalConvention>> {
@@ -128,8 +133,8 @@ fn channel(fields: &mut Fields) -> Result<Option<String>> {
     fields.get("channel").map(|node| node.text().map(str::to_owned)).transpose()
 }
 
-/// The object `surface` as JSON.
-pub fn write(source: &SurfaceSource) -> Value {
+/// The fields of the object `surface` that are maps.
+pub fn write(source: &SurfaceSource) -> JsonObject {
     let mut out = JsonObject::default();
     if let Some(normal) = &source.normal {
         let mut map = start(&normal.file, normal.channel.as_deref());
@@ -150,7 +155,7 @@ pub fn write(source: &SurfaceSource) -> Value {
             out.object("mask", map);
         }
     }
-    out.done()
+    out
 }
 
 fn start(file: &str, channel: Option<&str>) -> JsonObject {

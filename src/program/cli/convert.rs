@@ -53,7 +53,7 @@ pub struct ConvertArgs {
     limits: LimitArgs,
 }
 
-fn bits(text: &str) -> std::result::Result<u8, String> {
+pub(super) fn bits(text: &str) -> std::result::Result<u8, String> {
     let bits = text.parse().ok().filter(|bits| [8, 16].contains(bits));
     bits.ok_or_else(|| "a channel has 8 or 16 bits".to_owned())
 }

@@ -14,6 +14,7 @@ mod open;
 mod progress;
 mod render;
 mod replay;
+mod shape;
 mod view;
 
 pub use limits::LimitArgs;
@@ -43,6 +44,7 @@ enum CliCommand {
     Open(open::OpenArgs),
     Render(render::RenderArgs),
     Replay(replay::ReplayArgs),
+    Shape(shape::ShapeArgs),
     View(view::ViewArgs),
 }
 
@@ -77,6 +79,7 @@ fn dispatched(command: Option<CliCommand>, window: Option<OpenWindow>) -> Result
         Some(CliCommand::Open(args)) => open::run(args, window),
         Some(CliCommand::Render(args)) => render::run(&args),
         Some(CliCommand::Replay(args)) => replay::run(&args),
+        Some(CliCommand::Shape(args)) => shape::run(&args),
         Some(CliCommand::View(args)) => view::run(&args),
         None => print(&Arguments::command().render_help().to_string()),
     }

@@ -151,6 +151,8 @@ impl OpenDocument {
     pub fn commit(&mut self, label: impl Into<String>, document: Document) -> bool {
         self.preview = None;
         let mut is_kept = true;
+        // What parts are made of may have been painted on.
+        let document = document.reshaped();
         if !is_same(self.document(), &document) {
             match document.fits(Some(self.document())) {
                 Ok(()) => {
@@ -253,7 +255,9 @@ pub fn is_same(a: &Document, b: &Document) -> bool {
 pub fn looks_same(a: &Document, b: &Document) -> bool {
     let same_layers =
         a.layers.len() == b.layers.len() && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b));
-    same_layers && a.scene().is_same(&b.scene())
+    let (old, new) = (&a.parts.list, &b.parts.list);
+    let same_parts = old.len() == new.len() && old.iter().zip(new).all(|(a, b)| Arc::ptr_eq(a, b));
+    same_layers && same_parts && a.scene().is_same(&b.scene())
 }
 
 /// The document with what is not selected under red.

@@ -212,7 +212,8 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
         surface_files: Arc::new(if found == canvas { files } else { Default::default() }),
         ..tab.document().clone()
     };
-    if tab.commit("Replace maps", next.with_selections_found()) {
+    let maps = next.surface.clone();
+    if tab.commit("Replace maps", next.with_maps(maps).with_selections_found()) {
         tab.reads.extend(storage::map_files(source));
         session.notes.extend(notes);
     }

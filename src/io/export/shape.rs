@@ -1,0 +1,189 @@
+//! The maps of a shape as files for engines and other programs: normals, depth, height, mask and parts.
+//! Floor 5. PNG keeps the coverage as alpha; EXR holds the numbers as they are.
+
+use crate::exr::encode_channels;
+use crate::math::{Size, srgb::quantise};
+use crate::surface::Surface;
+use crate::{Error, Result};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use std::io::Cursor;
+use std::path::Path;
+
+/// One of the maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeMap {
+    /// Camera space.
+    Normals,
+    /// 0 near … 1 far over the surface.
+    Depth,
+    /// 1 near … 0 far; in an EXR px toward the viewer.
+    Height,
+    Mask,
+    /// The number of the part that is seen, from 1 on; 0 where there is none.
+    Parts,
+}
+
+impl ShapeMap {
+    /// Every map with what is added to a file's name, as engines expect it.
+    pub const ALL: [(ShapeMap, &'static str); 5] = [
+        (ShapeMap::Normals, "_n"),
+        (ShapeMap::Depth, "_d"),
+        (ShapeMap::Height, "_h"),
+        (ShapeMap::Mask, "_mask"),
+        (ShapeMap::Parts, "_id"),
+    ];
+}
+
+/// How maps are written.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeOptions {
+    /// Green points down, as Direct3D has it; else up.
+    pub is_directx: bool,
+    /// 16 bits a channel of a PNG in place of 8; masks have 8.
+    pub is_deep: bool,
+    /// EXR of 32 bits in place of PNG.
+    pub is_exr: bool,
+}
+
+/// The bytes of one map; `file` is for messages.
+pub fn encode(file: &Path, surface: &Surface, map: ShapeMap, options: &ShapeOptions) -> Result<Vec<u8>> {
+    if options.is_exr {
+        return exr(file, surface, map, options);
+    }
+    let texel = |i: usize| -> ([f32; 3], f32) {
+        let (x, y) = at(surface, i);
+        let covered = f32::from(surface.coverage(x, y)) / 255.0;
+        let value = match map {
+            ShapeMap::Normals => {
+                let n = surface.normal(x, y);
+                let up = if options.is_directx { -n.y } else { n.y };
+                let flat = if covered > 0.0 { [n.x, up, n.z] } else { [0.0, 0.0, 1.0] };
+                return (flat.map(|v| 0.5 + 0.5 * v), covered);
+            }
+            ShapeMap::Depth => surface.depth(x, y),
+            ShapeMap::Height => 1.0 - surface.depth(x, y),
+            ShapeMap::Mask => covered,
+            ShapeMap::Parts => part(surface, x, y) as f32 / 65535.0,
+        };
+        ([if covered > 0.0 { value } else { 0.0 }; 3], covered)
+    };
+    let count = surface.size().area();
+    match map {
+        ShapeMap::Mask => {
+            let bytes: Vec<u8> = (0..count).map(|i| quantise(texel(i).1)).collect();
+            png(file, &bytes, surface.size(), ExtendedColorType::L8)
+        }
+        // A number is no shade: no bit of it may be lost, and most programs show 16 bits.
+        ShapeMap::Parts => {
+            let bytes: Vec<u8> = (0..count).flat_map(|i| sixteen(texel(i).0[0])).collect();
+            png(file, &bytes, surface.size(), ExtendedColorType::L16)
+        }
+        ShapeMap::Normals if options.is_deep => {
+            let texels = (0..count).map(texel);
+            let bytes = texels.flat_map(|([r, g, b], a)| [r, g, b, a].into_iter().flat_map(sixteen));
+            png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::Rgba16)
+        }
+        ShapeMap::Normals => {
+            let bytes = (0..count).map(texel).flat_map(|([r, g, b], a)| [r, g, b, a].map(quantise));
+            png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::Rgba8)
+        }
+        ShapeMap::Depth | ShapeMap::Height if options.is_deep => {
+            let bytes = (0..count).map(texel).flat_map(|([v, ..], a)| [v, a].into_iter().flat_map(sixteen));
+            png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::La16)
+        }
+        ShapeMap::Depth | ShapeMap::Height => {
+            let bytes = (0..count).map(texel).flat_map(|([v, ..], a)| [v, a].map(quantise));
+            png(file, &bytes.collect::<Vec<u8>>(), surface.size(), ExtendedColorType::La8)
+        }
+    }
+}
+
+fn at(surface: &Surface, i: usize) -> (usize, usize) {
+    let width = surface.size().width as usize;
+    (i % width, i / width)
+}
+
+/// The part that a pixel shows, or its object where the surface is not made of parts.
+fn part(surface: &Surface, x: usize, y: usize) -> u32 {
+    surface.parts_plane().unwrap_or_else(|| surface.objects().labels()).at(x, y)
+}
+
+/// 16 bits in the machine's own order, as the encoder takes them.
+fn sixteen(v: f32) -> [u8; 2] {
+    ((v.max(0.0).min(1.0) * 65535.0).round() as u16).to_ne_bytes()
+}
+
+fn png(file: &Path, bytes: &[u8], size: Size, color: ExtendedColorType) -> Result<Vec<u8>> {
+    let mut out = Cursor::new(Vec::new());
+    let encoder = PngEncoder::new(&mut out);
+    encoder.write_image(bytes, size.width, size.height, color).map_err(|e| Error::unsupported(file, e))?;
+    Ok(out.into_inner())
+}
+
+fn exr(file: &Path, surface: &Surface, map: ShapeMap, options: &ShapeOptions) -> Result<Vec<u8>> {
+    let plane = |value: &dyn Fn(usize, usize) -> f32| -> Vec<f32> {
+        let covered = |x, y| surface.coverage(x, y) > 0;
+        let pixels = (0..surface.size().area()).map(|i| at(surface, i));
+        pixels.map(|(x, y)| if covered(x, y) { value(x, y) } else { 0.0 }).collect()
+    };
+    let alpha = plane(&|x, y| f32::from(surface.coverage(x, y)) / 255.0);
+    let sign = if options.is_directx { -1.0 } else { 1.0 };
+    let mut channels = match map {
+        ShapeMap::Normals => vec![
+            ("N.X", plane(&|x, y| surface.normal(x, y).x)),
+            ("N.Y", plane(&|x, y| sign * surface.normal(x, y).y)),
+            ("N.Z", plane(&|x, y| surface.normal(x, y).z)),
+        ],
+        ShapeMap::Depth => vec![("Z", plane(&|x, y| surface.depth(x, y)))],
+        ShapeMap::Height => vec![("Y", plane(&|x, y| (1.0 - surface.depth(x, y)) * surface.depth_range_px()))],
+        ShapeMap::Mask => vec![("Y", alpha.clone())],
+        ShapeMap::Parts => vec![("Y", plane(&|x, y| part(surface, x, y) as f32))],
+    };
+    channels.push(("A", alpha));
+    encode_channels(file, surface.size(), channels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vec2;
+    use crate::shape::{Combine, Primitive, Relief, primitive::Body};
+
+    fn ball() -> Surface {
+        let mut relief = Relief::empty(Size::new(64, 48));
+        let form = Primitive::new(Body::Sphere, vec2(32.0, 24.0), 20.0).form(1 << 16).unwrap();
+        relief.add(&form, Combine::Over, 7);
+        relief.surface().unwrap()
+    }
+    fn written(map: ShapeMap, is_directx: bool, is_deep: bool) -> image::DynamicImage {
+        let options = ShapeOptions { is_directx, is_deep, is_exr: false };
+        image::load_from_memory(&encode(Path::new("a.png"), &ball(), map, &options).unwrap()).unwrap()
+    }
+    #[test]
+    fn normals_have_their_green_where_the_engine_wants_it_and_keep_alpha() {
+        for (is_directx, above) in [(false, 191u8..=220), (true, 35..=64)] {
+            let normals = written(ShapeMap::Normals, is_directx, false).into_rgba8();
+            let p = normals.get_pixel(32, 12).0;
+            assert!(above.contains(&p[1]) && p[3] == 255, "{p:?}");
+            assert_eq!(normals.get_pixel(1, 1).0, [128, 128, 255, 0]);
+        }
+        let deep = written(ShapeMap::Normals, false, true).into_rgba16();
+        assert_eq!(deep.get_pixel(32, 24).0[3], 65535);
+    }
+    #[test]
+    fn depth_is_low_where_height_is_high_and_parts_keep_their_numbers() {
+        let depth = written(ShapeMap::Depth, false, true).into_luma_alpha16();
+        let height = written(ShapeMap::Height, false, true).into_luma_alpha16();
+        assert!(depth.get_pixel(32, 24).0[0] < 100 && height.get_pixel(32, 24).0[0] > 65000);
+        assert_eq!(written(ShapeMap::Parts, false, false).into_luma16().get_pixel(32, 24).0[0], 7);
+        assert_eq!(written(ShapeMap::Mask, false, false).into_luma8().get_pixel(32, 24).0[0], 255);
+    }
+    #[test]
+    fn an_exr_holds_normals_that_are_read_back() {
+        let options = ShapeOptions { is_directx: false, is_deep: false, is_exr: true };
+        for (map, _) in ShapeMap::ALL {
+            assert!(encode(Path::new("a.exr"), &ball(), map, &options).unwrap().len() > 500);
+        }
+    }
+}

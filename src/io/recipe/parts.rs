@@ -1,0 +1,227 @@
+//! Reads and writes the parts of a shape: `surface.parts`, the farthest first.
+//! Floor 5. Ranges and names are those of the types. The writer is `write`.
+
+mod write;
+
+pub use write::{write, write_part};
+
+use super::LayerReader;
+use crate::Result;
+use crate::document::parts::{CoverageFile, Inflation, OutlineSource, Part, PartKind, Parts};
+use crate::json::{Fields, JsonNode};
+use crate::math::{Affine2, COORDINATE, Range, Vec2, Vec3, vec2};
+use crate::shape::{Ball, Bevel, BevelCurve, Body, Combine, Detail, Primitive, SculptStroke, SculptTool, Touch};
+use std::sync::Arc;
+
+/// The defaults that stand in no type.
+const TOUCH_RADIUS: f32 = 6.0;
+const BODY_RADIUS: f32 = 50.0;
+const DAB_SIZE: f32 = 40.0;
+const DAB_HARDNESS: f32 = 0.5;
+const DAB_STRENGTH: f32 = 2.0;
+
+impl LayerReader<'_> {
+    /// The list of parts.
+    pub fn parts(&mut self, node: &JsonNode) -> Result<Vec<Arc<Part>>> {
+        let items = node.list(Parts::MOST)?;
+        let mut list: Vec<Arc<Part>> = Vec::with_capacity(items.len());
+        for (i, item) in items.iter().enumerate() {
+            let part = self.part(item, i)?;
+            if list.iter().any(|other| other.id == part.id) {
+                return Err(item.refused(format!("has the id “{}”, which another part has", part.id)));
+            }
+            list.push(Arc::new(part));
+        }
+        Ok(list)
+    }
+    fn part(&mut self, node: &JsonNode, index: usize) -> Result<Part> {
+        let mut fields = node.fields()?;
+        let kind = self.part_kind(&mut fields)?;
+        let id = fields.get("id").map_or(Ok(None), |id| id.text().map(|id| Some(id.to_owned())))?;
+        let id = id.unwrap_or_else(|| format!("part-{}", index + 1));
+        let plain = Part::new(id, kind);
+        let name = fields.get("name").map_or(Ok(None), |name| name.text().map(|name| Some(name.to_owned())))?;
+        let mut combine = fields.one_of("combine", &Combine::ALL, Combine::Over)?;
+        let smooth = fields.get("smooth").map(|node| node.number(Combine::SMOOTH)).transpose()?;
+        if let (Combine::Union { smooth: own }, Some(smooth)) = (&mut combine, smooth) {
+            *own = smooth;
+        }
+        let tilt = fields.get("tilt").map(|node| node.numbers(2, 2, Part::TILT)).transpose()?;
+        let matrix = fields.get("matrix").map(|node| node.numbers(6, 6, Part::MATRIX)).transpose()?;
+        let part = Part {
+            visible: fields.boolean("visible", true)?,
+            raise: fields.number("raise", 0.0, Part::RAISE)?,
+            tilt_deg: tilt.map_or(Vec2::ZERO, |v| vec2(v[0], v[1])),
+            matrix: matrix
+                .map_or(Affine2::IDENTITY, |m| Affine2::from_cols_array(&[m[0], m[1], m[2], m[3], m[4], m[5]])),
+            name: name.unwrap_or_else(|| plain.name.clone()),
+            combine,
+            ..plain
+        };
+        fields.finish()?;
+        part.fits().map_err(|why| node.refused(why))?;
+        Ok(part)
+    }
+    fn part_kind(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        type ReadKind = fn(&mut LayerReader<'_>, &mut Fields<'_>) -> Result<PartKind>;
+        const KINDS: [(ReadKind, &str); 8] = [
+            (|reader, fields| reader.inflate(fields), "inflate"),
+            (|reader, fields| reader.bevel(fields), "bevel"),
+            (|_, fields| Ok(PartKind::Primitive(primitive(fields)?)), "primitive"),
+            (|reader, fields| reader.lathe(fields), "lathe"),
+            (|_, fields| sweep(fields), "sweep"),
+            (|_, fields| touches(fields), "touches"),
+            (|_, fields| sculpt(fields), "sculpt"),
+            (|reader, fields| reader.relief(fields), "relief"),
+        ];
+        fields.required("kind")?.one_of(&KINDS)?(self, fields)
+    }
+    fn inflate(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let plain = Inflation::default();
+        let inflation = Inflation {
+            puff: fields.number("puff", plain.puff, Inflation::PUFF)?,
+            profile: fields.number("profile", plain.profile, Inflation::PROFILE)?,
+            rim_deg: fields.number("rim", plain.rim_deg, Inflation::RIM)?,
+        };
+        Ok(PartKind::Inflate { outline: self.outline(fields)?, inflation })
+    }
+    fn bevel(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let plain = Bevel::default();
+        let bevel = Bevel {
+            width: fields.number("width", plain.width, Bevel::WIDTH)?,
+            height: fields.number("height", plain.height, Bevel::HEIGHT)?,
+            curve: fields.get("curve").map_or(Ok(plain.curve), |node| curve(&node))?,
+        };
+        Ok(PartKind::Bevel { outline: self.outline(fields)?, bevel })
+    }
+    fn lathe(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let axis = fields.get("axis").map(|node| points(&node, 2)).transpose()?;
+        let axis = match axis.as_deref() {
+            None => None,
+            Some([a, b]) => Some([*a, *b]),
+            Some(_) => return Err(fields.node().refused("has an axis that is not two points")),
+        };
+        let puff = fields.number("puff", 1.0, Inflation::PUFF)?;
+        Ok(PartKind::Lathe { outline: self.outline(fields)?, axis, puff })
+    }
+    fn relief(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let plain = Detail::default();
+        let detail = Detail {
+            coarse: fields.number("coarse", plain.coarse, Detail::HEIGHT)?,
+            fine: fields.number("fine", plain.fine, Detail::HEIGHT)?,
+            radius: fields.number("radius", plain.radius, Detail::RADIUS)?,
+            edge: fields.number("edge", plain.edge, Detail::EDGE)?,
+        };
+        let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, self.size)?;
+        Ok(PartKind::Relief { on: on(fields)?, picture: CoverageFile { file, coverage }, detail })
+    }
+    fn outline(&mut self, fields: &mut Fields) -> Result<OutlineSource> {
+        let node = fields.required("outline")?;
+        let mut fields = node.fields()?;
+        let color = fields.get("color").map(|node| node.color()).transpose()?;
+        let source = if let Some(layer) = fields.get("layer") {
+            OutlineSource::Layer { layer: layer.text()?.to_owned(), color }
+        } else if let Some(file) = fields.get("file") {
+            let (file, coverage) = self.pictures.coverage(self.source, &file, self.size)?;
+            OutlineSource::File(CoverageFile { file, coverage })
+        } else if let Some(path) = fields.get("path") {
+            OutlineSource::Path(points(&path, OutlineSource::MOST_POINTS)?)
+        } else if let Some(object) = fields.get("object") {
+            OutlineSource::Object(object.whole(1..=u32::MAX)?)
+        } else {
+            return Err(node.refused("names no layer, file, path or object"));
+        };
+        if color.is_some() && !matches!(source, OutlineSource::Layer { .. }) {
+            return Err(node.refused("has a colour, but only a layer has colours"));
+        }
+        fields.finish()?;
+        Ok(source)
+    }
+}
+
+fn on(fields: &mut Fields) -> Result<String> {
+    fields.required("on")?.text().map(str::to_owned)
+}
+
+fn points(node: &JsonNode, most: usize) -> Result<Vec<Vec2>> {
+    node.list(most)?.iter().map(|item| item.point()).collect()
+}
+
+/// A word, or points (t, f).
+fn curve(node: &JsonNode) -> Result<BevelCurve> {
+    if node.value().is_string() {
+        let words: Vec<(usize, &str)> = BevelCurve::NAMED.iter().enumerate().map(|(i, (_, name))| (i, *name)).collect();
+        return Ok(BevelCurve::NAMED[node.one_of(&words)?].0.clone());
+    }
+    let points = points(node, BevelCurve::MOST_POINTS)?;
+    if points.len() < 2 || points.windows(2).any(|pair| pair[0].x > pair[1].x) {
+        return Err(node.refused("must have two points or more, each farther in than the one before"));
+    }
+    Ok(BevelCurve::Points(points))
+}
+
+fn primitive(fields: &mut Fields) -> Result<Primitive> {
+    let body = fields.required("shape")?.one_of(&Body::ALL)?;
+    let center = fields.required("center")?.point()?;
+    let radius = fields.number("radius", BODY_RADIUS, Primitive::LENGTH)?;
+    let plain = Primitive::new(body, center, radius);
+    let vector = |node: Option<JsonNode>, plain: Vec3, range: Range| node.map_or(Ok(plain), |node| node.vector(range));
+    Ok(Primitive {
+        half: vector(fields.get("half"), plain.half, Primitive::LENGTH)?,
+        length: fields.number("length", plain.length, Primitive::LENGTH)?,
+        tube: fields.number("tube", plain.tube, Primitive::LENGTH)?,
+        round: fields.number("round", plain.round, Primitive::ROUND)?,
+        turn_deg: vector(fields.get("turn"), plain.turn_deg, Primitive::TURN)?,
+        ..plain
+    })
+}
+
+fn sweep(fields: &mut Fields) -> Result<PartKind> {
+    let ball = |item: &JsonNode| {
+        let v = item.numbers(3, 3, COORDINATE)?;
+        Ok(Ball { at: vec2(v[0], v[1]), radius: v[2] })
+    };
+    let balls = fields.required("balls")?.list(Ball::MOST)?.iter().map(ball).collect::<Result<_>>()?;
+    Ok(PartKind::Sweep { balls, puff: fields.number("puff", 1.0, Inflation::PUFF)? })
+}
+
+fn touches(fields: &mut Fields) -> Result<PartKind> {
+    let touch = |item: &JsonNode| {
+        let mut fields = item.fields()?;
+        let touch = Touch {
+            at: fields.required("at")?.point()?,
+            radius: fields.number("radius", TOUCH_RADIUS, Touch::RADIUS)?,
+            normal: fields.required("normal")?.vector(-1.0..=1.0)?,
+            reach: fields.number("reach", 0.0, Touch::REACH)?,
+        };
+        fields.finish()?;
+        Ok(touch)
+    };
+    let touches = fields.required("touches")?.list(Touch::MOST)?.iter().map(touch).collect::<Result<_>>()?;
+    Ok(PartKind::Touches { on: on(fields)?, touches })
+}
+
+fn sculpt(fields: &mut Fields) -> Result<PartKind> {
+    let stroke = |item: &JsonNode| {
+        let mut fields = item.fields()?;
+        let sample = |item: &JsonNode| {
+            let v = item.numbers(2, 3, COORDINATE)?;
+            Ok((vec2(v[0], v[1]), v.get(2).copied().unwrap_or(1.0)))
+        };
+        let samples = fields.required("samples")?.list(SculptStroke::MOST)?;
+        let stroke = SculptStroke {
+            tool: fields.one_of("tool", &SculptTool::ALL, SculptTool::default())?,
+            size: fields.number("size", DAB_SIZE, SculptStroke::SIZE)?,
+            hardness: fields.number("hardness", DAB_HARDNESS, SculptStroke::HARDNESS)?,
+            strength: fields.number("strength", DAB_STRENGTH, SculptStroke::STRENGTH)?,
+            samples: samples.iter().map(sample).collect::<Result<_>>()?,
+        };
+        fields.finish()?;
+        Ok(stroke)
+    };
+    let strokes = fields.required("strokes")?.list(SculptStroke::MOST)?.iter().map(stroke).collect::<Result<_>>()?;
+    Ok(PartKind::Sculpt { on: on(fields)?, strokes })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,164 @@
+//! `rilievo shape`: maps for a drawing that has none.
+//! Floor 7. What a shape is made of is `document::parts`; the files are `io::export::shape`'s.
+
+use super::force::Force;
+use super::{LimitArgs, convert};
+use crate::document::parts::{Inflation, Part, flats};
+use crate::document::{Content, Document, Layer, PixelLayer};
+use crate::io::export::OutputFile;
+use crate::io::export::shape::{ShapeMap, ShapeOptions, encode};
+use crate::io::files::read_file;
+use crate::io::{Budget, picture};
+use crate::math::{Range, Size};
+use crate::raster::TileGrid;
+use crate::{Error, Result};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Make normals, depth and parts for a drawing that has no maps
+///
+/// The drawing's alpha is its outline. With --flats each flat colour is a part of its own, and parts that interrupt the
+/// outline of others lie in front of them. FOLDER gets DRAWING_n (normals), _d (depth, near is 0), _h (height), _mask
+/// and _id (the number of the part).
+#[derive(clap::Args)]
+pub struct ShapeArgs {
+    /// The drawing, on transparent ground
+    #[arg(value_name = "DRAWING")]
+    drawing: PathBuf,
+    /// A picture of the same size with a flat colour for each part
+    #[arg(long, value_name = "FILE")]
+    flats: Option<PathBuf>,
+    /// Where the maps go; made if it is not there
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+    /// How parts are rounded
+    #[arg(long, value_name = "PRESET", default_value = "pillow", value_parser = presets())]
+    preset: Inflation,
+    /// Factor of the height, in place of the preset's
+    #[arg(long, value_name = "FACTOR", value_parser = puff)]
+    puff: Option<f32>,
+    /// 0 a pillow to 1 a tube, in place of the preset's
+    #[arg(long, value_name = "SHARE", value_parser = profile)]
+    profile: Option<f32>,
+    /// Degrees that the rim turns, 90 for a silhouette, in place of the preset's
+    #[arg(long, value_name = "DEGREES", value_parser = rim)]
+    rim: Option<f32>,
+    /// Where green points in the normals: up (opengl) or down (directx)
+    #[arg(long, value_name = "WORD", default_value = "opengl", value_parser = ["opengl", "directx"])]
+    convention: String,
+    /// Bits a channel of a PNG: 8 or 16
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = convert::bits)]
+    bits: u8,
+    /// The kind of file: png, or exr with 32 bits a channel
+    #[arg(long, value_name = "FORMAT", default_value = "png", value_parser = ["png", "exr"])]
+    format: String,
+    #[command(flatten)]
+    force: Force,
+    #[command(flatten)]
+    limits: LimitArgs,
+}
+
+fn presets() -> impl TypedValueParser<Value = Inflation> {
+    let names = Inflation::PRESETS.iter().map(|(_, name)| PossibleValue::new(*name));
+    PossibleValuesParser::new(names).map(|word| {
+        Inflation::PRESETS.iter().find(|(_, name)| *name == word).map_or(Inflation::default(), |(preset, _)| *preset)
+    })
+}
+
+fn within(text: &str, range: &Range) -> std::result::Result<f32, String> {
+    let number = text.parse().ok().filter(|v| range.contains(v));
+    number.ok_or_else(|| format!("it must be between {} and {}", range.start(), range.end()))
+}
+
+fn puff(text: &str) -> std::result::Result<f32, String> {
+    within(text, &Inflation::PUFF)
+}
+
+fn profile(text: &str) -> std::result::Result<f32, String> {
+    within(text, &Inflation::PROFILE)
+}
+
+fn rim(text: &str) -> std::result::Result<f32, String> {
+    within(text, &Inflation::RIM)
+}
+
+pub fn run(args: &ShapeArgs) -> Result<()> {
+    args.limits.install(|| {
+        let document = shaped(args)?;
+        let nothing = || Error::unsupported(&args.drawing, "nothing in it is opaque enough to have a shape");
+        let surface = document.surface.as_ref().ok_or_else(nothing)?;
+        std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, e))?;
+        let stem = args.drawing.file_stem().unwrap_or_default().to_string_lossy();
+        let reads: Vec<PathBuf> = [Some(args.drawing.clone()), args.flats.clone()].into_iter().flatten().collect();
+        let target = |(map, suffix): &(ShapeMap, &str)| {
+            let file = args.output.join(format!("{stem}{suffix}.{}", args.format));
+            Ok((*map, OutputFile::new(&file, args.force.export(reads.clone()))?, file))
+        };
+        // All may be written, or none is.
+        let targets: Vec<_> = ShapeMap::ALL.iter().map(target).collect::<Result<_>>()?;
+        let options = ShapeOptions {
+            is_directx: args.convention == "directx",
+            is_deep: args.bits == 16,
+            is_exr: args.format == "exr",
+        };
+        targets.into_iter().try_for_each(|(map, target, file)| target.replace(&encode(&file, surface, map, &options)?))
+    })
+}
+
+/// The drawing as a document with parts.
+fn shaped(args: &ShapeArgs) -> Result<Document> {
+    let budget = args.limits.budget();
+    let inflation = Inflation {
+        puff: args.puff.unwrap_or(args.preset.puff),
+        profile: args.profile.unwrap_or(args.preset.profile),
+        rim_deg: args.rim.unwrap_or(args.preset.rim_deg),
+    };
+    let (size, drawing) = tiles(&args.drawing, &budget)?;
+    // Planes of the equation and its coarser grids, of the form, and of the surface.
+    const BYTES_A_PIXEL: u64 = 160;
+    budget.room(&args.drawing, &format!("the shape of {size} pixels"), size.area() as u64 * BYTES_A_PIXEL)?;
+    let (parts, layers) = match &args.flats {
+        None => {
+            refuse_opaque(&args.drawing, &drawing, size)?;
+            (vec![Part::of_layer("drawing", "Drawing", inflation)], vec![layer("Drawing", drawing)])
+        }
+        Some(file) => {
+            let (other, flats) = tiles(file, &budget)?;
+            if other != size {
+                return Err(Error::unsupported(file, format!("it has {other} pixels, the drawing {size}")));
+            }
+            let parts = flats::parts_of_flats(&flats, "Flats", inflation);
+            if parts.is_empty() {
+                return Err(Error::unsupported(file, "no flat colour in it covers enough to be a part"));
+            }
+            (parts, vec![layer("Flats", flats), layer("Drawing", drawing)])
+        }
+    };
+    let document = Document { layers, ..Document::empty(size) };
+    Ok(document.with_parts(parts.into_iter().map(Arc::new).collect()))
+}
+
+fn layer(name: &str, tiles: TileGrid) -> Arc<Layer> {
+    Arc::new(Layer::new(name, Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles })))
+}
+
+fn tiles(file: &Path, budget: &Budget) -> Result<(Size, TileGrid)> {
+    let picture = picture::decode(file, &read_file(file, budget.file_bytes)?, budget)?;
+    Ok((picture.size, picture::to_tiles(&picture, 0, 0)))
+}
+
+/// A drawing that fills its picture has no outline but the picture's.
+fn refuse_opaque(file: &Path, drawing: &TileGrid, size: Size) -> Result<()> {
+    let corners = [(0, 0), (size.width - 1, 0), (0, size.height - 1), (size.width - 1, size.height - 1)];
+    let is_full = size.area() > 1 && corners.iter().all(|(x, y)| drawing.pixel(*x as i32, *y as i32)[3] == 255);
+    let is_full =
+        is_full && (0..size.height as i32).all(|y| (0..size.width as i32).all(|x| drawing.pixel(x, y)[3] == 255));
+    match is_full {
+        true => Err(Error::unsupported(
+            file,
+            "it is opaque everywhere, so it has no outline; give it a transparent ground, or name its flats with --flats",
+        )),
+        false => Ok(()),
+    }
+}
