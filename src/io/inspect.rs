@@ -4,7 +4,7 @@
 use super::maps::{MapRole, fitting};
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::Result;
-use crate::math::Size;
+use crate::math::{Size, vec3};
 use std::path::Path;
 
 /// A layer of an EXR.
@@ -40,7 +40,8 @@ pub struct FileDescription {
     pub warning: Option<&'static str>,
 }
 
-/// Describes a file. EXR pixels are not decoded; other formats' are, so that damage shows.
+/// Describes a file. Of an EXR only some rows of colours that may be normals are decoded; other formats' pixels all
+/// are, so that damage shows.
 pub fn describe(file: &Path, bytes: &[u8], budget: &Budget) -> Result<FileDescription> {
     if ExrFile::is_exr(bytes) { describe_exr(file, bytes, budget) } else { describe_bitmap(file, bytes, budget) }
 }
@@ -102,8 +103,57 @@ fn texels(image: &image::DynamicImage) -> Vec<[f32; 3]> {
     rows.flat_map(|y| (0..w).step_by(step).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
 }
 
-/// Mean of | |2 v − 1| − 1 |.
+/// How far the vectors of these numbers are from length 1 in the mean, z about ½ as x and y are, or from 0 to 1.
 fn length_error(texels: &[[f32; 3]]) -> f32 {
-    let error = |t: &[f32; 3]| (t.iter().map(|v| (2.0 * v - 1.0).powi(2)).sum::<f32>().sqrt() - 1.0).abs();
-    texels.iter().map(error).sum::<f32>() / texels.len().max(1) as f32
+    let of = |z: fn(f32) -> f32| {
+        let error = |[r, g, b]: &[f32; 3]| (vec3(2.0 * r - 1.0, 2.0 * g - 1.0, z(*b)).length() - 1.0).abs();
+        texels.iter().map(error).sum::<f32>() / texels.len().max(1) as f32
+    };
+    of(|b| 2.0 * b - 1.0).min(of(|b| b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exr::encode_channels;
+    use crate::math::Vec3;
+
+    const SIDE: u32 = 32;
+
+    /// A dome's normals; none in the corners.
+    fn dome(i: usize) -> Option<Vec3> {
+        let at = |v: usize| (v as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
+        let (x, y) = (at(i % SIDE as usize), -at(i / SIDE as usize));
+        let square = x * x + y * y;
+        (square < 1.0).then(|| vec3(x, y, (1.0 - square).sqrt()))
+    }
+    fn described(names: [&str; 3], color: impl Fn(usize) -> Vec3) -> FileDescription {
+        let size = Size::new(SIDE, SIDE);
+        let colors: Vec<Vec3> = (0..size.area()).map(color).collect();
+        let channels = names.into_iter().enumerate().map(|(c, name)| (name, colors.iter().map(|v| v[c]).collect()));
+        let file = Path::new("a.exr");
+        describe(file, &encode_channels(file, size, channels.collect()).unwrap(), &Budget::default()).unwrap()
+    }
+    #[test]
+    fn colours_are_normals_where_they_have_length_1_and_a_finished_picture_is_none() {
+        let rgb = ["R", "G", "B"];
+        let signed = described(rgb, |i| dome(i).unwrap_or(Vec3::ZERO));
+        let biased = described(rgb, |i| dome(i).unwrap_or(Vec3::Z) * 0.5 + 0.5);
+        let sunny = described(rgb, |i| dome(i).map_or(Vec3::ZERO, |n| vec3(0.9, 0.7, 0.4) * n.y.max(0.05)));
+        assert_eq!([signed.normals.len(), biased.normals.len(), sunny.normals.len()], [1, 1, 0]);
+        // Nor is the red of colours depth.
+        assert_eq!([signed.depths.len(), sunny.depths.len()], [0, 0]);
+        let named = described(["N.R", "N.G", "N.B"], |i| dome(i).unwrap_or(Vec3::ZERO) * 0.3);
+        assert_eq!(named.normals, ["N"], "what is called so is one, whatever its length");
+    }
+    #[test]
+    fn a_map_whose_z_goes_from_0_to_1_is_one() {
+        let texels = |full_z: bool| -> Vec<[f32; 3]> {
+            let of = |n: Vec3| [n.x * 0.5 + 0.5, n.y * 0.5 + 0.5, if full_z { n.z } else { n.z * 0.5 + 0.5 }];
+            (0..(SIDE * SIDE) as usize).map(|i| of(dome(i).unwrap_or(Vec3::Z))).collect()
+        };
+        assert!(length_error(&texels(true)) < 0.01 && length_error(&texels(false)) < 0.01);
+        let sky: Vec<[f32; 3]> = (0..900).map(|i| [0.2 + i as f32 / 3000.0, 0.5, 0.9 - i as f32 / 2000.0]).collect();
+        assert!(length_error(&sky) > 0.06, "{}", length_error(&sky));
+    }
 }

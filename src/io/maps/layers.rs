@@ -3,6 +3,7 @@
 
 use super::stored::MapRole;
 use crate::exr::{ExrFile, ExrPass};
+use crate::math::vec3;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -20,7 +21,8 @@ pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> 
     let (channels, name) = match (told, role) {
         (Some(told), _) => named(exr, told, role).ok_or_else(|| missing(file, exr, told))?,
         (None, MapRole::Normals) => {
-            best(exr, normal_rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?
+            let rank = |pass: &ExrPass| normal_rank(pass).filter(|_| may_hold_normals(exr, pass));
+            best(exr, rank, vector_channels).ok_or_else(|| none(file, exr, "normals"))?
         }
         (None, MapRole::Depth) => best(exr, depth_rank, depth_channels).ok_or_else(|| none(file, exr, "depth"))?,
         (None, MapRole::Mask) => match alpha {
@@ -35,7 +37,7 @@ pub fn choose(file: &Path, exr: &ExrFile, told: Option<&str>, role: MapRole) -> 
 /// The layers that fit a role, best first: the window lists them for the user to choose.
 pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
     let rank = |p: &ExrPass| match role {
-        MapRole::Normals => normal_rank(p).filter(|_| vector_channels(p).is_some()),
+        MapRole::Normals => normal_rank(p).filter(|_| vector_channels(p).is_some() && may_hold_normals(exr, p)),
         MapRole::Depth => depth_rank(p).filter(|_| depth_channels(p).is_some()),
         MapRole::Mask => p.letters("a").map(|_| 0),
     };
@@ -43,6 +45,35 @@ pub fn fitting(exr: &ExrFile, role: MapRole) -> Vec<String> {
         exr.passes().iter().filter_map(|p| Some((rank(p)?, p.name.clone()))).collect();
     found.sort();
     found.into_iter().map(|(_, name)| name).collect()
+}
+
+/// Parts of a picture that are looked at, and how far their vectors may be from length 1 in the mean.
+const MOST_BANDS: usize = 8;
+const MOST_LENGTH_ERROR: f64 = 0.1;
+
+/// Colours under a name that speaks of no normals may be anything, such as the finished picture: whether they are
+/// vectors of length 1, as they are or about ½. Other layers go by their names.
+fn may_hold_normals(exr: &ExrFile, pass: &ExrPass) -> bool {
+    let colours = pass.letters("rgb").filter(|_| pass.letters("xyz").is_none());
+    let Some(colours) = colours.filter(|_| normal_rank(pass).is_some_and(|rank| rank > SURE_RANK)) else { return true };
+    let bands: Vec<_> = exr.bands().collect();
+    let step = bands.len().div_ceil(MOST_BANDS).max(1);
+    let (mut signed, mut biased, mut count) = (0.0, 0.0, 0u32);
+    for rows in bands.into_iter().step_by(step) {
+        let Ok(planes) = exr.read_rows(&colours, rows) else { return false };
+        let [x, y, z] = [0, 1, 2].map(|c| planes[c].values());
+        for ((x, y), z) in x.iter().zip(y).zip(z) {
+            let v = vec3(*x, *y, *z);
+            // Beyond the surface there is nothing.
+            if v.is_finite() && v.abs().max_element() > 0.0 {
+                let off = |length: f32| f64::from((length - 1.0).abs().min(1.0));
+                signed += off(v.length());
+                biased += off((2.0 * v - 1.0).length());
+                count += 1;
+            }
+        }
+    }
+    count >= 16 && signed.min(biased) / f64::from(count) < MOST_LENGTH_ERROR
 }
 
 fn best(
@@ -74,6 +105,9 @@ fn depth_channels(pass: &ExrPass) -> Option<Vec<usize>> {
         .or_else(|| vec_of_first(pass).filter(|_| pass.letters("a").is_none()))
 }
 
+/// The highest rank of a name that speaks of normals.
+const SURE_RANK: usize = 2;
+
 /// How likely a layer holds normals by its name, 0 surest.
 fn normal_rank(pass: &ExrPass) -> Option<usize> {
     let key = pass.key();
@@ -100,7 +134,7 @@ fn depth_rank(pass: &ExrPass) -> Option<usize> {
         "" if pass.letters("v").or(pass.letters("t")).is_some() => Some(4),
         "mist" => Some(5),
         "" if pass.letters("y").is_some() => Some(6),
-        "" if pass.letters("r").is_some() => Some(8),
+        "" if pass.letters("r").is_some() && pass.letters("g").is_none() => Some(8),
         k if k.contains("id") || k == "alpha" || k == "a" || k.contains("normal") || k == "n" => None,
         _ if pass.channels.len() == 1 || pass.letters("t").is_some() => Some(7),
         _ => None,

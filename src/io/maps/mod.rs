@@ -7,6 +7,7 @@ mod channel;
 mod depth;
 pub mod detail;
 mod encoding;
+mod evidence;
 pub mod findings;
 mod layers;
 mod normals;
