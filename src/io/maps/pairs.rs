@@ -60,6 +60,33 @@ pub fn part_of(file: &Path) -> Option<(String, MapPart)> {
     })
 }
 
+/// What conventions are called in names of files.
+const CONVENTIONS: [&str; 8] = ["gl", "dx", "ogl", "opengl", "directx", "srgb", "linear", "map"];
+
+/// What an object is called, by the file of one of its maps: its name without the words of maps and conventions, else
+/// the folder's. `pot_normal_gl.png` is “pot”, `bunny/normal_gl8.png` “bunny”.
+pub fn object_of(file: &Path) -> String {
+    const BREAKS: [char; 4] = ['_', '-', '.', ' '];
+    let is_map = |word: &str| SUFFIXES.iter().any(|(suffix, _)| *suffix == word);
+    let is_of_map = |word: &str| {
+        let word = word.to_lowercase();
+        let plain = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        let after_map = SUFFIXES.iter().find_map(|(suffix, _)| plain.strip_prefix(suffix).filter(|_| suffix.len() > 2));
+        is_map(plain) || CONVENTIONS.contains(&plain) || after_map.is_some_and(|rest| CONVENTIONS.contains(&rest))
+    };
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let mut name = stem.as_str();
+    while let Some((rest, _)) = name.rsplit_once(BREAKS).filter(|(_, word)| is_of_map(word)) {
+        name = rest;
+    }
+    while let Some((_, rest)) = name.split_once(BREAKS).filter(|(word, _)| is_of_map(word)) {
+        name = rest;
+    }
+    let folder = || file.parent().and_then(Path::file_name).map(|folder| folder.to_string_lossy().into_owned());
+    let says_nothing = is_of_map(name) || !name.chars().any(char::is_alphabetic);
+    says_nothing.then(folder).flatten().unwrap_or_else(|| if says_nothing { stem.clone() } else { name.to_owned() })
+}
+
 /// Groups files of the same folder and name; unrecognised files are left out, and so are sets of one file.
 pub fn sets(files: &[PathBuf]) -> Vec<MapSet> {
     let mut found: Vec<(PathBuf, MapSet)> = Vec::new();
@@ -86,6 +113,21 @@ pub fn sets(files: &[PathBuf]) -> Vec<MapSet> {
 mod tests {
     use super::*;
 
+    #[test]
+    fn an_object_is_called_as_its_file_or_its_folder() {
+        for (file, name) in [
+            ("/art/pot_n.png", "pot"),
+            ("/art/Old Pot_Normal_GL.png", "Old Pot"),
+            ("/art/Bricks102_1K-JPG_NormalGL.jpg", "Bricks102_1K-JPG"),
+            ("/art/bunny/normal_gl8.png", "bunny"),
+            ("/art/bunny/normal.png", "bunny"),
+            ("/art/turn/normal_007.png", "turn"),
+            ("/art/bunny.exr", "bunny"),
+            ("normal.png", "normal"),
+        ] {
+            assert_eq!(object_of(Path::new(file)), name, "{file}");
+        }
+    }
     #[test]
     fn endings_tell_the_part_and_the_rest_the_object() {
         let part = |name: &str| part_of(Path::new(name));

@@ -237,8 +237,8 @@ pub fn of_import(source: &SurfaceSource, import: maps::ImportedSurface) -> Opene
         ..Document::empty(size)
     };
     let file = source.normal.as_ref().map(|map| &map.file).or(source.depth.as_ref().map(|map| &map.file));
-    let stem = file.map(|file| Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned());
-    let mut tab = OpenDocument::new(stem.unwrap_or_default(), document, None);
+    let name = file.map(|file| pairs::object_of(Path::new(file))).unwrap_or_default();
+    let mut tab = OpenDocument::new(name, document, None);
     tab.reads = map_files(source);
     OpenedTab { tab, notes: findings.notes }
 }
