@@ -7,18 +7,39 @@ use crate::math::Vec2;
 use crate::paint::picking;
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    let layer = context.layer.and_then(|id| context.document.layer(id)).filter(|layer| layer.lock != LayerLock::All);
-    let Some(layer) = layer else { return (None, Outcome::Idle) };
-    let stroke = match &layer.content {
-        Content::Strokes(live) if !pen.keys.shift => {
-            let strokes = &live.params().strokes;
-            let scene = context.document.scene_of(layer.id).unwrap_or_else(|| context.document.scene());
-            picking::topmost_at(strokes, &scene, pen.place())
-        }
-        _ => None,
+    let layer = context.layer.and_then(|id| context.document.layer(id));
+    let held = layer.and_then(|layer| held(context.document, layer, pen.place(), pen.keys.shift));
+    let Some((layer, held)) = layer.zip(held) else { return (None, Outcome::Idle) };
+    let stroke = match held {
+        Held::Stroke(index) => Some(index),
+        Held::Layer => None,
     };
     let (document, id) = (context.document.clone(), layer.id);
     (Some(Box::new(MoveGesture { document, layer: id, stroke, from: pen.place(), by: Vec2::ZERO })), Outcome::Idle)
+}
+
+/// What the tool takes hold of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// One stroke of the layer.
+    Stroke(usize),
+    Layer,
+}
+
+/// What a press at a canvas point would hold: the topmost stroke there, or the whole layer; nothing of a locked one.
+/// `whole`: the layer in any case.
+pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option<Held> {
+    if layer.lock == LayerLock::All {
+        return None;
+    }
+    let stroke = match &layer.content {
+        Content::Strokes(live) if !whole => {
+            let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
+            picking::topmost_at(&live.params().strokes, &scene, at)
+        }
+        _ => None,
+    };
+    Some(stroke.map_or(Held::Layer, Held::Stroke))
 }
 
 struct MoveGesture {
@@ -105,5 +126,21 @@ mod tests {
         let Content::Strokes(live) = &moved.layers[0].content else { panic!("strokes") };
         let tops: Vec<f32> = live.params().strokes.iter().map(|stroke| stroke.samples()[0].at.y).collect();
         assert_eq!(tops, [30.0, 60.0]);
+    }
+    #[test]
+    fn a_press_holds_the_stroke_under_it_or_the_layer_and_nothing_of_a_locked_one() {
+        let stroke = |x: f32| {
+            let brush = Brush { size: 10.0, ..Brush::default() };
+            Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, vec![Sample::at(vec2(x, 20.0))]))
+        };
+        let list = StrokeList { strokes: vec![stroke(10.0), stroke(60.0)] };
+        let layers = vec![Arc::new(Layer::new("ink", Content::Strokes(Live::new(list))))];
+        let document = Document { layers, ..Document::empty(Size::new(80, 40)) };
+        let layer = &document.layers[0];
+        let at = |x: f32, whole| held(&document, layer, vec2(x, 20.0), whole);
+        assert_eq!([at(10.0, false), at(60.0, false)], [Some(Held::Stroke(0)), Some(Held::Stroke(1))]);
+        assert_eq!([at(35.0, false), at(60.0, true)], [Some(Held::Layer); 2]);
+        let locked = Layer { lock: LayerLock::All, ..Layer::clone(layer) };
+        assert_eq!(held(&document, &locked, vec2(10.0, 20.0), false), None);
     }
 }

@@ -1,9 +1,11 @@
 //! Overlays on the picture: the brush's bent footprint, anchors, a gradient's ends.
 //! Floor 7.
 
+mod held;
+
 use crate::document::Content;
 use crate::math::{Affine2, Vec2};
-use crate::paint::{BrushMode, Stroke as PaintStroke};
+use crate::paint::{BrushMode, Scene, Stroke as PaintStroke};
 use crate::session::Session;
 use crate::tools::{ToolKind, anchors, outline};
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
@@ -31,6 +33,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
         for stroke in [Stroke::new(2.4, Color32::from_black_alpha(130)), Stroke::new(1.1, Color32::WHITE)] {
             painter.add(Shape::line(line.clone(), stroke));
         }
+    }
+    if tool == ToolKind::Move {
+        held::draw(painter, session, under, &to_screen);
     }
     let (Some(at), Some(document)) = (under, session.shown()) else { return };
     match tool {
@@ -99,22 +104,35 @@ fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos
     let document = tab.shown();
     let strokes = document.strokes(layer.id);
     let chosen: Vec<&Arc<PaintStroke>> = tab.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
-    let looks = [Stroke::new(2.6, Color32::from_black_alpha(130)), Stroke::new(1.2, Color32::from_rgb(120, 200, 255))];
     if tab.is_previewing() {
-        for stroke in chosen {
-            let line: Vec<Pos2> = stroke.samples().iter().map(|sample| to_screen(sample.at)).collect();
-            painter.extend(looks.map(|look| Shape::line(line.clone(), look)));
-        }
-        return;
+        return chosen.into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
     }
+    let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
+    outlined(painter, chosen, &scene, to_screen);
+}
+
+/// Dark beneath light, so that it is visible on any picture.
+const LOOKS: [Stroke; 2] = [
+    Stroke { width: 2.6, color: Color32::from_black_alpha(130) },
+    Stroke { width: 1.2, color: Color32::from_rgb(120, 200, 255) },
+];
+
+/// The line through a stroke's samples.
+fn line_through(painter: &Painter, stroke: &PaintStroke, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let line: Vec<Pos2> = stroke.samples().iter().map(|sample| to_screen(sample.at)).collect();
+    painter.extend(LOOKS.map(|look| Shape::line(line.clone(), look)));
+}
+
+/// The outlines of strokes, kept as long as they are the same.
+fn outlined(painter: &Painter, strokes: Vec<&Arc<PaintStroke>>, scene: &Scene, to_screen: &impl Fn(Vec2) -> Pos2) {
     let id = eframe::egui::Id::unique("outlines of strokes");
     let old: OutlineCache = painter.ctx().data_mut(|data| data.get_temp(id).unwrap_or_default());
-    let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
     let kept = |stroke: &Arc<PaintStroke>| old.cache.iter().find(|(known, _)| Arc::ptr_eq(known, stroke)).cloned();
-    let made = |stroke: &Arc<PaintStroke>| (stroke.clone(), Arc::new(outline::of_stroke(stroke, &scene)));
-    let now =
-        OutlineCache { cache: chosen.into_iter().map(|stroke| kept(stroke).unwrap_or_else(|| made(stroke))).collect() };
-    for look in looks {
+    let made = |stroke: &Arc<PaintStroke>| (stroke.clone(), Arc::new(outline::of_stroke(stroke, scene)));
+    let now = OutlineCache {
+        cache: strokes.into_iter().map(|stroke| kept(stroke).unwrap_or_else(|| made(stroke))).collect(),
+    };
+    for look in LOOKS {
         let lines = now.cache.iter().flat_map(|(_, lines)| lines.iter());
         painter.extend(lines.map(|line| Shape::line_segment(line.map(to_screen), look)));
     }
