@@ -155,6 +155,7 @@ fn differs_in(blend: BlendMode) -> Option<&'static str> {
     match blend {
         BlendMode::SoftLight => Some("Krita and GIMP"),
         BlendMode::Hue | BlendMode::Saturation | BlendMode::Color | BlendMode::Luminosity => Some("GIMP 2.10"),
+        BlendMode::DarkerColor | BlendMode::LighterColor => Some("GIMP 2.10"),
         _ => None,
     }
 }

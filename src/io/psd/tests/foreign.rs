@@ -2,12 +2,46 @@
 
 use super::made::*;
 use super::read_back;
+use crate::Budget;
 use crate::document::{Content, Document, MaskKind, Progress, flatten};
+use crate::math::hash::mix;
 use crate::math::srgb::Color;
 use crate::project::ProjectContents;
+use std::path::Path;
 
 fn opened(made: &Made) -> ProjectContents {
-    read_back(&made.bytes())
+    let bytes = made.bytes();
+    attack(&bytes);
+    read_back(&bytes)
+}
+/// Each of these files in many damaged versions: read or refused, never a panic, nothing as large as a file claims.
+fn attack(bytes: &[u8]) {
+    let budget = Budget { area_px: 1 << 18, document_px: 1 << 20, side_px: 2048, ..Budget::default() };
+    let dice = |i: u32, j: u32| mix(i.wrapping_mul(31).wrapping_add(j)) as usize;
+    for i in 0..250 {
+        let mut broken = bytes.to_vec();
+        for j in 0..1 + i % 3 {
+            // Colours, resources and records come first; most of what may lie stands there.
+            let at = dice(i, 4 * j) % broken.len().min(if i % 2 == 0 { usize::MAX } else { 900 });
+            match dice(i, 4 * j + 1) % 5 {
+                0 => broken[at] ^= 1 << (dice(i, 4 * j + 2) % 8),
+                1 => broken[at] = [0, 1, 0x7f, 0x80, 0xff][dice(i, 4 * j + 2) % 5],
+                2 => {
+                    let figure = [0u32, 1, 0x7fff_ffff, 0xffff_ffff, 0x0001_0000][dice(i, 4 * j + 2) % 5];
+                    broken.iter_mut().skip(at).zip(figure.to_be_bytes()).for_each(|(byte, digit)| *byte = digit);
+                }
+                3 => drop(broken.drain(at..(at + dice(i, 4 * j + 2) % 9).min(broken.len()))),
+                _ => broken.truncate(at.max(30)),
+            }
+            if broken.is_empty() {
+                break;
+            }
+        }
+        match super::read(Path::new("a.psd"), &broken, &budget) {
+            Ok(read) => assert!(read.document.size.area() <= 1 << 18, "{i}"),
+            Err(error) => assert!(error.to_string().starts_with("a.psd"), "{i}: {error}"),
+        }
+    }
 }
 fn pixel(document: &Document, x: i32, y: i32) -> [u8; 4] {
     flatten(document, &Progress::default()).unwrap().pixel(x, y)
