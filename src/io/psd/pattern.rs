@@ -110,7 +110,9 @@ fn channel_of(list: &mut ByteCursor, mode: Mode, size: Size) -> Option<Option<Ve
     let rect = data.rect()?;
     let bits = data.u16()?;
     let compression = u16::from(data.u8()?);
-    let fits = [rect.width(), rect.height()] == [size.width as usize, size.height as usize];
+    // Whatever the numbers are: their difference may be beyond what they are counted in.
+    let side = |from: i32, to: i32| i64::from(to) - i64::from(from);
+    let fits = [side(rect.x0, rect.x1), side(rect.y0, rect.y1)] == [i64::from(size.width), i64::from(size.height)];
     let header = PsdHeader { large: false, size, channels: 1, bits, mode };
     Some(if fits && [8, 16, 32].contains(&bits) {
         channel::decode_as(&mut data, header.shape(size, true), compression)
