@@ -1,12 +1,13 @@
 //! Weighted Laplace equations on a grid of any shape: conjugate gradients, preconditioned by one multigrid V-cycle.
 //! Floor 2. Sums are formed row by row and added in order, so that the bits do not depend on the number of threads.
-//! `rows` holds the loops over the grid, `graph` the coarser levels. Not here: what the springs stand for (`integrate`,
-//! `unwrap`).
+//! `rows` holds the loops over the grid, `graph` the coarser levels, `merge` which unknowns these join. Not here: what
+//! the springs stand for (`integrate`, `unwrap`).
 //!
 //! Coarser levels are graphs, not grids: the pixels of a block of 2 × 2 become one unknown only as far as strong
 //! springs join them. So no level mixes what a cut or a row of weak springs parts, and cuts cost no convergence.
 
 mod graph;
+mod merge;
 mod rows;
 
 use crate::memory::filled_or_unwind;
@@ -50,9 +51,9 @@ impl SpringGrid {
     #[cfg(test)]
     fn pull(&self, v: &[f32], i: usize) -> (f32, f32) {
         let w = self.w;
-        let left = if i % w > 0 { (self.right[i - 1], v[i - 1]) } else { (0.0, 0.0) };
+        let left = if !i.is_multiple_of(w) { (self.right[i - 1], v[i - 1]) } else { (0.0, 0.0) };
         let up = if i >= w { (self.down[i - w], v[i - w]) } else { (0.0, 0.0) };
-        let right = (self.right[i], if (i + 1) % w > 0 { v[i + 1] } else { 0.0 });
+        let right = (self.right[i], if !(i + 1).is_multiple_of(w) { v[i + 1] } else { 0.0 });
         let down = (self.down[i], v.get(i + w).copied().unwrap_or(0.0));
         [left, right, up, down].iter().fold((0.0, 0.0), |sum, (k, v)| (sum.0 + k, sum.1 + k * v))
     }

@@ -5,7 +5,7 @@ use crate::math::hash;
 fn ragged(w: usize, h: usize) -> SpringGrid {
     let held = |x: usize, y: usize| {
         let (dx, dy) = (x as f32 / w as f32 - 0.5, y as f32 / h as f32 - 0.5);
-        dx.hypot(dy) < 0.45 && (x * 7 + y * 13) % 41 > 0 || y < 4
+        dx.hypot(dy) < 0.45 && !(x * 7 + y * 13).is_multiple_of(41) || y < 4
     };
     let spring = |x: usize, y: usize, dx: usize, dy: usize| {
         let there = x + dx < w && y + dy < h && held(x, y) && held(x + dx, y + dy);
