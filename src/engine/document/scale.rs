@@ -32,6 +32,9 @@ impl Document {
     }
 }
 
+/// Selections and what became of them, by the addresses of the old ones.
+type ScaledSelections = HashMap<usize, (Arc<Selection>, Arc<Selection>)>;
+
 /// From one canvas to another.
 pub(super) struct CanvasScale {
     /// For coordinates; the two differ only because the canvas is rounded.
@@ -41,7 +44,7 @@ pub(super) struct CanvasScale {
     from: Size,
     to: Size,
     /// Selections that were scaled, by their addresses.
-    selections: Mutex<HashMap<usize, (Arc<Selection>, Arc<Selection>)>>,
+    selections: Mutex<ScaledSelections>,
 }
 
 impl CanvasScale {

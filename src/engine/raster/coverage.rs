@@ -1,6 +1,6 @@
-//! Coverage in sparse tiles of one byte a pixel, cheap to clone and shared tile by tile: what a selection holds. Floor
-//! 1. `shapes` draws exact ones, `edges` moves and softens their edges, `contour` finds their outline. Not here: what a
-//! selection was made of (`paint::selection`).
+//! Coverage in sparse tiles of one byte a pixel, cheap to clone and shared tile by tile: what a selection holds.
+//! Floor 1. `shapes` draws exact ones, `edges` moves and softens their edges, `contour` finds their outline. Not here:
+//! what a selection was made of (`paint::selection`).
 
 pub mod contour;
 pub mod edges;

@@ -1,6 +1,6 @@
-//! Floods: all pixels that are joined to one over their four neighbours, tile by tile, a row of a tile at a time. Floor
-//! 1. Which pixels may be reached, and which neighbours are joined, the caller says; only tiles that are reached are
-//! asked for. The result does not depend on the order in which pixels are found.
+//! Floods: all pixels that are joined to one over their four neighbours, tile by tile, a row of a tile at a time.
+//! Floor 1. Which pixels may be reached, and which neighbours are joined, the caller says; only tiles that are reached
+//! are asked for. The result does not depend on the order in which pixels are found.
 
 use super::tile::{TILE, TileAt};
 use super::{CoverageGrid, CoverageTile};

@@ -124,7 +124,7 @@ pub struct RegionField {
     /// Half the step of v from pixel to pixel: a sharper edge would show steps.
     half_step: Plane<f32>,
     /// How the surface joins the pixels of each tile, row by row.
-    joined: Vec<Box<TileLinks>>,
+    joined: Vec<TileLinks>,
 }
 
 impl RegionField {
@@ -187,12 +187,12 @@ impl RegionField {
             open[(y - tile.y0) as usize] = open_row(v, step, t, soft);
         }
         let columns = self.surface.size().width.div_ceil(TILE as u32) as i32;
-        OpenTile { open, links: self.joined.get((at.row * columns + at.col) as usize).cloned() }
+        OpenTile { open, links: self.joined.get((at.row * columns + at.col) as usize).map(|joined| Box::new(*joined)) }
     }
 }
 
 /// From which sides the pixels of each tile of a surface are linked, row by row.
-fn links_of(surface: &Surface) -> Vec<Box<TileLinks>> {
+fn links_of(surface: &Surface) -> Vec<TileLinks> {
     let tiles: Vec<TileAt> = TileAt::covering(surface.size().rect()).collect();
     let of_tile = |at: &TileAt| {
         let (tile, area) = (at.rect(), at.rect().intersect(surface.size().rect()));
@@ -209,7 +209,7 @@ fn links_of(surface: &Surface) -> Vec<Box<TileLinks>> {
                 joined.from_below[row] |= bit(links::DOWN);
             }
         }
-        Box::new(joined)
+        joined
     };
     tiles.par_iter().map(of_tile).collect()
 }
