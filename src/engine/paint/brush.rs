@@ -180,18 +180,6 @@ impl Stabilizer {
     pub const WEIGHT: Range = UNIT;
     pub const LENGTH_PX: Range = 0.0..=10_000.0;
     pub const SECS: Range = 0.0..=10.0;
-
-    /// For a canvas `factor > 0` times as large.
-    pub fn scaled(self, factor: f32) -> Self {
-        match self {
-            Stabilizer::None => Stabilizer::None,
-            Stabilizer::String { length_px } => Stabilizer::String { length_px: length_px * factor },
-            // The same decay over a path that is this much longer.
-            Stabilizer::Average { weight } => Stabilizer::Average { weight: weight.max(0.0).powf(1.0 / factor) },
-            // Time is the same on every canvas.
-            Stabilizer::Lag { secs } => Stabilizer::Lag { secs },
-        }
-    }
 }
 
 /// What a dab looks like before it is bent.
@@ -259,50 +247,6 @@ impl Brush {
             *source = replace(source)?;
         }
         Ok(next)
-    }
-}
-
-impl Brush {
-    /// The same brush for a canvas `factor` times as large, `factor > 0` and finite: its strokes, their samples scaled
-    /// too, look the same there. Lengths in px are multiplied; ratios, angles, times and seeds stay.
-    ///
-    /// Every field is named, so that a new one has to say which it is.
-    pub fn scaled(&self, factor: f32) -> Self {
-        let Self { size, hardness, opacity, flow, spacing, overlap, falloff, rate, rotation, facing, .. } = *self;
-        let Self { softness, scatter, spread, size_jitter, offset, jitter, blend, erases, keeps_alpha, .. } = *self;
-        let Self { bounded, reach, mode, pickup, stabilizer, hand, cycle, seed, .. } = *self;
-        Self {
-            size: size * factor,
-            hardness,
-            opacity,
-            flow,
-            spacing,
-            overlap,
-            falloff,
-            rate,
-            rotation,
-            facing,
-            softness,
-            scatter,
-            spread,
-            size_jitter,
-            offset,
-            jitter,
-            blend,
-            erases,
-            keeps_alpha,
-            bounded,
-            reach,
-            mode,
-            pickup,
-            tip: self.tip.clone(),
-            grain: self.grain.as_ref().map(|grain| grain.scaled(factor)),
-            stabilizer: stabilizer.scaled(factor),
-            hand: hand.scaled(factor),
-            cycle,
-            dynamics: self.dynamics.clone(),
-            seed,
-        }
     }
 }
 

@@ -14,14 +14,14 @@ use super::patches::Patches;
 use super::profile::RoundProfile;
 use super::scene::Scene;
 use super::stamp::TipStamp;
-use super::stroke_tile::{DabPaint, StrokeTile};
+use super::stroke_tile::{CoveredRow, DabPaint, StrokeTile};
 use crate::math::{Rect, srgb::Color};
 use crate::raster::sampler::Antialias;
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::support::{BLOCK, DabExtent, SupportBounds, TileBlocks};
 use crate::surface::{DabReach, Surface};
-use round::{RoundTip, RowZones, bent_row, flat_row};
+use round::{RoundTip, RowPaint, RowZones, bent_row, flat_row};
 use std::ops::Range;
 
 /// One dab on the canvas it is painted on.
@@ -54,6 +54,8 @@ pub struct DabScratch {
     row: RowZones,
     /// Coverage of a row, or of a part of a tile.
     covered: Vec<f32>,
+    /// Which share of each of its pixels the dab reaches.
+    shares: Vec<f32>,
     /// The pixels that a picture tip paints on a part of a tile.
     stamped: Vec<[u8; 4]>,
 }
@@ -96,33 +98,41 @@ impl<'s> PlacedDab<'s> {
     fn paint(&self, color: Option<Color>) -> DabPaint {
         DabPaint { flow: self.dab.flow, ceiling: self.dab.ceiling, color }
     }
+    /// Of a picture, which has no rim of its own to be thinner.
+    fn stamp_paint(&self, color: Option<Color>) -> DabPaint {
+        DabPaint { flow: self.dab.flow * self.dab.thin, ..self.paint(color) }
+    }
     /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling c.
     pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
         let blocks = self.support.blocks(at);
         let area = touched(&blocks, at).intersect(self.scene.size.rect());
         let mut tip = RoundTip::new(&self.dab);
-        let DabScratch { deformed, covered, row, .. } = scratch;
+        let DabScratch { deformed, covered, shares, row, .. } = scratch;
         let field = self.bent_over.map(|surface| {
             self.fill_touched(&blocks, at, area, deformed);
             DeformationField { surface, rect: area.grown(1), d: deformed }
         });
-        let mut add = |span: PixelSpan, tip: &RoundTip, out: &mut [f32]| match &field {
+        let mut add = |span: PixelSpan, tip: &RoundTip, out: RowPaint| match &field {
             Some(field) => bent_row(field.around(span), tip, row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
-        if stroke_tile.is_one_color() {
+        if stroke_tile.is_plain() {
             for span in spans(&blocks, at, area) {
-                add(span, &tip, stroke_tile.coverage(span.start_in(at), span.n));
+                let (coverage, reach) = stroke_tile.plain_row(span.start_in(at), span.n);
+                add(span, &tip, RowPaint { coverage, reach });
             }
             return;
         }
         // The stroke tile applies the ceiling, because it knows the coverage.
         tip.ceiling = 1.0;
         for span in spans(&blocks, at, area) {
-            covered.clear();
-            covered.resize(span.n, 0.0);
-            add(span, &tip, covered);
-            stroke_tile.cover(span.start_in(at), covered, DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) });
+            for row in [&mut *covered, &mut *shares] {
+                row.clear();
+                row.resize(span.n, 0.0);
+            }
+            add(span, &tip, RowPaint { coverage: covered, reach: shares });
+            let paint = DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) };
+            stroke_tile.cover(span.start_in(at), CoveredRow { coverage: covered, shares }, paint);
         }
     }
     /// Adds a picture tip to a tile: its mean over the patch of the image plane under each pixel.
@@ -135,7 +145,7 @@ impl<'s> PlacedDab<'s> {
         transform(texels_from_canvas, &mut deformed.x, &mut deformed.y);
         let antialias = antialias.get_or_insert_default();
         row.resize(area.width(), [0; 4]);
-        let paint = self.paint((!stamp.is_colored).then_some(self.dab.color));
+        let paint = self.stamp_paint((!stamp.is_colored).then_some(self.dab.color));
         for span in spans(&blocks, at, area) {
             let patches = patches.row(self.scene, area, span.y, deformed, texels_from_canvas);
             antialias.row(stamp.texture(), patches, Outside::None, row);

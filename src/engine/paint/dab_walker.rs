@@ -9,6 +9,7 @@ mod walk;
 use super::brush::Brush;
 use super::curve::{CurveSegment, SAME_PX};
 use super::dynamics::DabInputs;
+use super::rim::Rim;
 use super::scene::Scene;
 use super::stroke::Sample;
 use crate::math::{Vec2, srgb::Color};
@@ -37,6 +38,10 @@ pub struct Dab {
     pub softness: f32,
     /// Coverage that it adds, `(0, 1]`.
     pub flow: f32,
+    /// How wide it is, of the least width that is drawn, `(0, 1]`: dabs thinner than a pixel reach a part of it.
+    pub thin: f32,
+    /// Where strokes of such dabs end.
+    pub rim: Rim,
     /// The coverage that it may bring a pixel to, `(0, 1]`.
     pub ceiling: f32,
     /// Of one-colour tips where the brush's colours vary; else the stroke's.
@@ -63,6 +68,8 @@ impl Dab {
             hardness: 1.0,
             softness: 0.0,
             flow: 1.0,
+            thin: 1.0,
+            rim: Rim::SOFT,
             ceiling: 1.0,
             color: Color::BLACK,
             operator: Operator::None,

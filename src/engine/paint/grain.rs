@@ -82,13 +82,6 @@ impl BrushGrain {
     pub const SIZE_PX: Range = 0.5..=20_000.0;
     pub const LEVEL: Range = -4.0..=4.0;
     pub const GAMMA: Range = 0.0..=8.0;
-
-    /// For a canvas `factor > 0` times as large. Every field is named, so that a new one has to say whether it is a
-    /// length.
-    pub fn scaled(&self, factor: f32) -> Self {
-        let Self { source, size_px, rotation, strength, levels, lies } = self.clone();
-        Self { source, size_px: size_px * factor, rotation, strength, levels, lies }
-    }
 }
 
 impl Default for BrushGrain {
@@ -102,6 +95,17 @@ impl Default for BrushGrain {
             lies: GrainSpace::default(),
         }
     }
+}
+
+/// What grain leaves of each pixel of a tile. A pixel may hold light and dark grain finer than itself: a stroke's dabs
+/// fill the light part sooner than the dark one, so a mean of both would be filled too soon. It is two parts, chosen so
+/// that mean and variance are right; where grain is black and white, the parts are.
+pub struct GrainTile {
+    /// The factor of F in either part, `[0, 1]`.
+    pub light: [f32; TILE_AREA],
+    pub dark: [f32; TILE_AREA],
+    /// How much of the pixel the lighter part is, `[0, 1]`.
+    pub share: [f32; TILE_AREA],
 }
 
 /// The grain under one stroke.
@@ -119,7 +123,7 @@ impl StrokeGrain {
     pub fn new(grain: &BrushGrain, start: Vec2) -> Self {
         let texture = grain.texture();
         let texels = match grain.source {
-            GrainSource::Pattern { .. } => Pattern::SIDE as f32 / Pattern::CELLS as f32,
+            GrainSource::Pattern { .. } => texture.size().longer_side() / Pattern::CELLS as f32,
             GrainSource::Picture(_) => texture.size().longer_side(),
         };
         // Comparisons that NaN fails give a pattern of one pixel.
@@ -138,9 +142,10 @@ impl StrokeGrain {
             strength: grain.strength.max(0.0).min(1.0),
         }
     }
-    /// The factors of F over a tile, row by row, in `[0, 1]`; 1 beyond the canvas.
-    pub fn tile(&self, scene: &Scene, at: TileAt) -> Box<[f32; TILE_AREA]> {
-        let mut out = Box::new([1.0; TILE_AREA]);
+    /// The factors of F over a tile, row by row; 1 beyond the canvas.
+    pub fn tile(&self, scene: &Scene, at: TileAt) -> Box<GrainTile> {
+        let whole = [1.0; TILE_AREA];
+        let mut out = Box::new(GrainTile { light: whole, dark: whole, share: whole });
         let area = at.rect().intersect(scene.size.rect());
         if area.is_empty() {
             return out;
@@ -155,12 +160,35 @@ impl StrokeGrain {
             let patches = patches.row(scene, area, y, &deformed, self.texels_from_canvas);
             antialias.row(&self.texture, patches, Outside::Repeat, &mut row);
             let start = (y - at.rect().y0) as usize * TILE + from;
-            for (factor, texel) in out[start..].iter_mut().zip(&row) {
-                *factor = factor_of(self.strength, f32::from(texel[3]) / 255.0);
+            for (i, texel) in (start..).zip(&row) {
+                let [grey, square, _, bare] = texel.map(|v| f32::from(v) / 255.0);
+                let [light, dark, share] = parts(grey, square, bare);
+                (out.light[i], out.dark[i]) = (factor_of(self.strength, light), factor_of(self.strength, dark));
+                out.share[i] = share;
             }
         }
         out
     }
+}
+
+/// Two greys and the share of the first, of a mean grey m, the mean of its square and the share p that is not black, all
+/// in `[0, 1]`. Where some is black, that is one part, since no paint ever fills it; else with σ² = ⟨G²⟩ − m²:
+///
+/// ```text
+/// p < 1:   light = m / p,                    dark = 0,                        share = p
+/// p = 1:   light = m + σ √((1 − m) / m),   dark = m − σ √(m / (1 − m)),   share = m
+/// ```
+pub fn parts(mean: f32, square: f32, share: f32) -> [f32; 3] {
+    if share < 1.0 {
+        return [if share > 0.0 { (mean / share).min(1.0) } else { 0.0 }, 0.0, share];
+    }
+    let variance = (square - mean * mean).max(0.0).min(mean * (1.0 - mean));
+    // What rounding to bytes may be.
+    if variance < 2.0 / 255.0 {
+        return [mean, mean, 1.0];
+    }
+    let (sigma, ratio) = (variance.sqrt(), (mean / (1.0 - mean)).sqrt());
+    [(mean + sigma / ratio).min(1.0), (mean - sigma * ratio).max(0.0), mean]
 }
 
 /// 1 − k (1 − G): the share of a dab's coverage that the grain leaves. `strength` k and `grey` G in `[0, 1]`.
@@ -172,17 +200,18 @@ pub fn factor_of(strength: f32, grey: f32) -> f32 {
 const KEPT: usize = 16;
 static MADE: Mutex<Vec<(PatternKey, Arc<Texture>)>> = Mutex::new(Vec::new());
 
-/// Which pattern, its seed, its levels.
-type PatternKey = (Pattern, u32, [u32; 2]);
+/// Which pattern, its seed, its levels, its side.
+type PatternKey = (Pattern, u32, [u32; 2], u32);
 
 impl BrushGrain {
-    /// G, its levels applied: every channel holds it.
+    /// G, its levels applied: red holds it, green its square, alpha whether it is not black.
     fn texture(&self) -> Arc<Texture> {
         let levels = self.levels.map(f32::to_bits);
         match &self.source {
             GrainSource::Pattern { pattern, seed } => {
-                let make = || of_greys(&pattern.plane(*seed), self.levels);
-                kept(&MADE, KEPT, (*pattern, *seed, levels), make)
+                let side = Pattern::side_of(self.size_px);
+                let make = || of_greys(&pattern.plane(*seed, side), self.levels);
+                kept(&MADE, KEPT, (*pattern, *seed, levels, side), make)
             }
             GrainSource::Picture(source) => {
                 let make = || of_greys(&luminance(source.texture()), self.levels);
@@ -212,12 +241,20 @@ pub fn kept<K: PartialEq, V>(made: &Mutex<Vec<(K, Arc<V>)>>, most: usize, key: K
     value
 }
 
+/// Grey bytes below this count as black: a stroke's dabs do not fill them.
+const BLACK: u8 = 10;
+
+fn square(v: u8) -> u8 {
+    ((u32::from(v) * u32::from(v) + 127) / 255) as u8
+}
+
 fn of_greys(plane: &Plane<f32>, [low, high]: [f32; 2]) -> Texture {
     let span = (high - low).max(1.0 / 256.0);
     let mut picture = grey(&plane.map(|v| (v - low) / span));
-    // Every channel the grey, premultiplied already: what is read is alpha.
+    // What is read: red, the grey, green, its square, and alpha: whether there is any.
     if let crate::raster::picture::Texels::Srgb8(texels) = &picture.texels {
-        let greys: Vec<[u8; 4]> = texels.iter().map(|&[v, ..]| [255, 255, 255, v]).collect();
+        let greys: Vec<[u8; 4]> =
+            texels.iter().map(|&[v, ..]| [v, square(v), 0, if v < BLACK { 0 } else { 255 }]).collect();
         picture.texels = crate::raster::picture::Texels::Srgb8(greys.into());
     }
     Texture::new(&picture)
@@ -252,7 +289,11 @@ mod tests {
     fn row(grain: &BrushGrain, scene: &Scene, y: usize) -> Vec<f32> {
         let laid = StrokeGrain::new(grain, vec2(64.0, 64.0));
         let tiles = [0, 1].map(|col| laid.tile(scene, TileAt::new(col, (y / TILE) as i32)));
-        tiles.iter().flat_map(|tile| tile[y % TILE * TILE..][..TILE].to_vec()).collect()
+        tiles.iter().flat_map(|tile| means(tile)[y % TILE * TILE..][..TILE].to_vec()).collect()
+    }
+    fn means(tile: &GrainTile) -> Vec<f32> {
+        let of = |i: usize| tile.dark[i] + (tile.light[i] - tile.dark[i]) * tile.share[i];
+        (0..TILE_AREA).map(of).collect()
     }
     fn lines(lies: GrainSpace) -> BrushGrain {
         let source = GrainSource::Pattern { pattern: Pattern::Lines, seed: 0 };
@@ -287,13 +328,31 @@ mod tests {
     }
     #[test]
     fn on_a_flat_surface_and_where_the_stroke_begins_it_is_the_canvas_s() {
-        let laid = |lies| StrokeGrain::new(&lines(lies), vec2(20.5, 20.5)).tile(&ramp(), TileAt::new(0, 0));
+        let laid = |lies| means(&StrokeGrain::new(&lines(lies), vec2(20.5, 20.5)).tile(&ramp(), TileAt::new(0, 0)));
         let (canvas, surface) = (laid(GrainSpace::Canvas), laid(GrainSpace::Surface { gamma: 2.0 }));
         let start = 20 * TILE + 20;
         assert!((canvas[start] - surface[start]).abs() < 0.02);
         let flat = Scene { size: SIZE, surface: None };
         let [a, b] = [GrainSpace::Canvas, GrainSpace::Surface { gamma: 2.0 }].map(|lies| row(&lines(lies), &flat, 30));
         assert_eq!(a, b);
+    }
+    #[test]
+    fn a_pixel_s_two_parts_have_its_mean_and_variance() {
+        for (mean, square) in [(0.5, 0.5), (0.3, 0.2), (0.8, 0.7), (0.5, 0.26), (0.02, 0.02), (0.99, 0.985)] {
+            let [light, dark, share] = parts(mean, square, 1.0);
+            assert!((0.0..=1.0).contains(&dark) && dark <= light && light <= 1.0, "{mean} {square}");
+            assert!((dark + (light - dark) * share - mean).abs() < 1e-5, "{mean} {square}");
+            let found = dark * dark + (light * light - dark * dark) * share;
+            assert!((found - square).abs() < 0.011, "{mean} {square}: {found}");
+        }
+        assert_eq!(parts(0.5, 0.5, 1.0), [1.0, 0.0, 0.5], "black and white");
+        assert_eq!(parts(0.5, 0.25, 1.0), [0.5, 0.5, 1.0], "grey");
+        assert_eq!(parts(0.2, 0.15, 0.5), [0.4, 0.0, 0.5], "half of it is black");
+        for (mean, square) in [(0.0, 0.0), (1.0, 1.0), (0.0, 1.0), (1.0, 0.0)] {
+            for share in [0.0, 0.01, 1.0] {
+                assert!(parts(mean, square, share).iter().all(|v| (0.0..=1.0).contains(v)), "{mean} {square} {share}");
+            }
+        }
     }
     #[test]
     fn what_is_not_a_number_still_gives_factors() {

@@ -108,24 +108,6 @@ impl Default for Hand {
     }
 }
 
-impl Hand {
-    /// For a canvas `factor > 0` times as large. Every field is named, so that a new one has to say whether it is a
-    /// length.
-    pub fn scaled(self, factor: f32) -> Self {
-        let Self { tremor, lag_dabs, lead_secs, direction_px, pace_secs, slow_pace_secs, pace_px, custom_dabs } = self;
-        Self {
-            tremor,
-            lag_dabs,
-            lead_secs,
-            direction_px: direction_px * factor,
-            pace_secs,
-            slow_pace_secs,
-            pace_px: pace_px * factor,
-            custom_dabs,
-        }
-    }
-}
-
 /// What the input *cycle* goes by: 0 where the pen begins to press, rising to 1 along the way, held there, and again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {

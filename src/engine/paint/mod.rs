@@ -19,6 +19,8 @@ pub mod picking;
 mod profile;
 mod ramp;
 pub mod retouch;
+mod rim;
+mod scaled;
 pub mod scene;
 pub mod selection;
 pub mod stabilizer;

@@ -32,15 +32,28 @@ impl Pattern {
     ];
     /// Features along the side of the square that repeats.
     pub const CELLS: u32 = 16;
-    /// Side of that square, texels.
-    pub const SIDE: u32 = 512;
+    /// Side of that square, texels, the least and the most.
+    pub const SIDES: [u32; 2] = [512, 2048];
 
+    /// The side that has a texel for every pixel where features are this large, so that a pattern is as sharp on a
+    /// large canvas as on a small one.
+    pub fn side_of(feature_px: f32) -> u32 {
+        let [least, most] = Self::SIDES;
+        // Comparisons that NaN fails.
+        let sides = std::iter::successors(Some(least), |side| Some(2 * side));
+        sides
+            .take_while(|side| *side <= most)
+            .find(|side| *side as f32 >= Self::CELLS as f32 * feature_px)
+            .unwrap_or(if feature_px > 0.0 { most } else { least })
+    }
     /// Greys in `[0, 1]`; opposite sides meet. In paper every grey covers the same area, so that a level is a share of
     /// the area.
-    pub fn plane(self, seed: u32) -> Plane<f32> {
-        let cells = Self::CELLS as f32;
-        let side = Size::new(Self::SIDE, Self::SIDE);
-        let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5) / Self::SIDE as f32;
+    ///
+    /// `side`: texels, see [`Pattern::side_of`].
+    pub fn plane(self, seed: u32, side: u32) -> Plane<f32> {
+        let (cells, texels) = (Self::CELLS as f32, side as f32);
+        let side = Size::new(side, side);
+        let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5) / texels;
         let raw = Plane::from_fn(side, |x, y| match self {
             Pattern::Paper => noise::octaves(at(x, y), Self::CELLS, 4, 0.6, seed),
             Pattern::Weave => weave(at(x, y) * cells, seed),
@@ -169,11 +182,11 @@ mod tests {
     #[test]
     fn every_pattern_is_made_of_greys_light_and_dark_and_repeats_without_seams() {
         for (pattern, name) in Pattern::ALL {
-            let plane = pattern.plane(3);
+            let plane = pattern.plane(3, Pattern::SIDES[0]);
             let (low, high) = plane.values().iter().fold((1.0f32, 0.0f32), |(a, b), &v| (a.min(v), b.max(v)));
             assert!((0.0..0.3).contains(&low) && (0.7..=1.0).contains(&high), "{name}: {low} to {high}");
             // Across the seam neighbours differ as they do within.
-            let last = Pattern::SIDE as usize - 1;
+            let last = Pattern::SIDES[0] as usize - 1;
             let jump = |a: usize, b: usize| {
                 (0..=last)
                     .map(|i| (plane.at(a, i) - plane.at(b, i)).abs() + (plane.at(i, a) - plane.at(i, b)).abs())
@@ -184,8 +197,25 @@ mod tests {
         }
     }
     #[test]
+    fn a_finer_plane_is_the_same_pattern() {
+        assert_eq!(
+            [2.0, 32.0, 32.1, 100.0, 1e9, f32::NAN, -1.0].map(Pattern::side_of),
+            [512, 512, 1024, 2048, 2048, 512, 512]
+        );
+        for (pattern, name) in Pattern::ALL {
+            let (coarse, fine) = (pattern.plane(5, 512), pattern.plane(5, 1024));
+            let mean = |x: usize, y: usize| {
+                [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(i, j)| fine.at(2 * x + i, 2 * y + j)).sum::<f32>() / 4.0
+            };
+            let apart = (0..512 * 512).map(|i| (coarse.at(i % 512, i / 512) - mean(i % 512, i / 512)).abs());
+            let mean = apart.sum::<f32>() / (512.0 * 512.0);
+            // Edges within a pattern are not averaged over texels.
+            assert!(mean < 0.04, "{name}: {mean}");
+        }
+    }
+    #[test]
     fn every_grey_of_paper_takes_the_same_area() {
-        let plane = Pattern::Paper.plane(0);
+        let plane = Pattern::Paper.plane(0, Pattern::SIDES[0]);
         for level in [0.1f32, 0.4, 0.8] {
             let below = plane.values().iter().filter(|v| **v < level).count() as f32 / plane.values().len() as f32;
             assert!((below - level).abs() < 0.001, "{below} below {level}");

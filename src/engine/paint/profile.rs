@@ -7,6 +7,11 @@ pub trait Profile {
     fn outer_radius(&self) -> f32;
     /// Mean coverage at distance `r ≥ 0` over a pixel whose width along the radius has this square, both in radii.
     fn mean(&self, r: f32, width_squared: f32) -> f32;
+    /// The same over a pixel that is as wide across the radius as `across_squared` says: its second dimension.
+    #[inline(always)]
+    fn mean_over(&self, r: f32, width_squared: f32, _across_squared: f32) -> f32 {
+        self.mean(r, width_squared)
+    }
 }
 
 impl Profile for RoundProfile {
@@ -16,6 +21,10 @@ impl Profile for RoundProfile {
     #[inline(always)]
     fn mean(&self, r: f32, width_squared: f32) -> f32 {
         RoundProfile::mean(self, r, width_squared)
+    }
+    #[inline(always)]
+    fn mean_over(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
+        RoundProfile::mean_over(self, r, width_squared, across_squared)
     }
 }
 
@@ -34,6 +43,8 @@ pub struct RoundProfile {
     blur_squared: f32,
     /// The integral up to the centre, where [`RoundProfile::integral`] starts.
     start: f32,
+    /// How long the tip's mean chord is: its area over its extent along a line through the centre.
+    chord: f32,
 }
 
 impl RoundProfile {
@@ -46,7 +57,9 @@ impl RoundProfile {
         let half = half.max(0.5 * Self::NARROW);
         let (end, length) = (middle + half, 2.0 * half);
         let (per_length, blur_squared) = (1.0 / length, softness * softness);
-        Self { end, length, per_length, blur_squared, start: smoothstep_integral(end * per_length) }
+        // ½ π of a disc, 0.942 of a smoothstep from the centre.
+        let chord = std::f32::consts::FRAC_PI_2 * (0.6 + 0.4 * hardness);
+        Self { end, length, per_length, blur_squared, start: smoothstep_integral(end * per_length), chord }
     }
     /// Beyond this distance coverage is 0, apart from the width of a pixel's footprint.
     pub fn outer_radius(&self) -> f32 {
@@ -62,6 +75,19 @@ impl RoundProfile {
         let (inner, outer) = (r - 0.5 * width, r + 0.5 * width);
         // The integral is odd, since the profile continues evenly beyond the centre.
         (self.integral(outer) - self.integral(inner.abs()).copysign(inner)) / width
+    }
+    /// Mean coverage over a pixel of two dimensions, u along the radius and v across it: `mean(r′, u²) · min(1, c / v)`
+    /// with `r′ = r + v²/24 · r / (r² + v²/4)`.
+    ///
+    /// Across the radius a pixel's points lie farther out, by v²/24r in the mean; and a tip narrower than the pixel
+    /// fills no more of it than its mean chord c. Within 28 of 255 of many samples for pixels of up to five radii, 3 in
+    /// the mean, where u alone is off by 81 and 16.
+    #[inline(always)]
+    pub fn mean_over(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
+        let across = if across_squared > 0.0 { across_squared } else { 0.0 };
+        let farther = r + across * (1.0 / 24.0) * r / (r * r + 0.25 * across + 1e-12);
+        let filled = self.chord / (across.sqrt() + 1e-6);
+        self.mean(farther, width_squared) * if filled < 1.0 { filled } else { 1.0 }
     }
     /// Between which distances coverage falls from 1 to 0 before the box; the first may lie below 0.
     pub fn falloff(&self) -> (f32, f32) {
@@ -132,6 +158,28 @@ mod tests {
                     .sum();
                 assert!((f64::from(tip.mean(r, width * width)) - sum / f64::from(n)).abs() < 1e-3);
             }
+        }
+    }
+    #[test]
+    fn a_pixel_wider_than_the_tip_is_filled_by_its_area() {
+        const SIDE: usize = 48;
+        let place = |i: usize| (i as f32 + 0.5) / SIDE as f32 - 0.5;
+        for hardness in [0.97, 0.6, 0.0] {
+            let tip = RoundProfile::new(hardness, 0.0);
+            let (mut sum, mut plain, mut n) = (0.0, 0.0, 0);
+            for width in [0.25f32, 0.5, 1.0, 1.33, 2.0, 3.0, 5.0] {
+                for step in 0..20 {
+                    let r = step as f32 / 20.0 * (1.0 + width);
+                    let points = (0..SIDE * SIDE).map(|i| (r + width * place(i % SIDE)).hypot(width * place(i / SIDE)));
+                    let truth = points.map(|r| tip.mean(r, 0.0)).sum::<f32>() / (SIDE * SIDE) as f32;
+                    let found = tip.mean_over(r, width * width, width * width);
+                    assert!((found - truth).abs() < 30.0 / 255.0, "{hardness} {width} at {r}: {found}, not {truth}");
+                    (sum, n) = (sum + (found - truth).abs(), n + 1);
+                    plain += (tip.mean(r, width * width) - truth).abs();
+                }
+            }
+            let (mean, plain) = (255.0 * sum / n as f32, 255.0 * plain / n as f32);
+            assert!(mean < 5.0 && plain > 2.0 * mean, "{hardness}: {mean}, of one dimension {plain}");
         }
     }
     #[test]

@@ -200,13 +200,14 @@ impl RetouchStroke {
             Some(selection) => Some(selection.tile(at)?),
         };
         let mut stroke_tile = StrokeTile::one_color();
-        let grain = self.stroke_dabs.grain(at);
-        self.stroke_dabs.add(placed, at, grain.as_deref(), &mut stroke_tile, scratch);
+        if let Some(grain) = self.stroke_dabs.grain(at) {
+            stroke_tile = stroke_tile.under(grain);
+        }
+        self.stroke_dabs.add(placed, at, &mut stroke_tile, scratch);
         if let Some(selected) = selected {
             stroke_tile.select(&selected);
         }
-        let mut coverage: Box<[f32; TILE_AREA]> = Box::new([0.0; TILE_AREA]);
-        coverage.copy_from_slice(stroke_tile.coverage(0, TILE_AREA));
+        let mut coverage = Box::new(*stroke_tile.coverage()?);
         let opaque = if self.brush.mode == BrushMode::Paint { f32::from(self.color.a) / 255.0 } else { 1.0 };
         let opacity = self.brush.opacity.max(0.0).min(1.0) * opaque;
         let (tile, part) = (at.rect(), self.limits());

@@ -180,10 +180,9 @@ impl Stroke {
                 tile => tile,
             },
         };
-        let mut stroke_tile = stroke_dabs.stroke_tile();
-        let grain = stroke_dabs.grain(at);
+        let mut stroke_tile = stroke_dabs.stroke_tile(stroke_dabs.grain(at));
         for dab in stroke_dabs.on_tile(at) {
-            stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, grain.as_deref(), &mut stroke_tile, scratch);
+            stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, &mut stroke_tile, scratch);
         }
         stroke_tile.limit_to(&self.part(scene), at);
         if let Some(selected) = selected {

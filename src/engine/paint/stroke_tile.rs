@@ -1,20 +1,52 @@
 //! What one stroke has painted on one tile: its dabs accumulate in f32 before the opacity caps them and the result is
 //! blended with the layer. Floor 3.
 
+mod rows;
+
+pub use rows::raise;
+
 use super::brush::Brush;
+use super::grain::GrainTile;
 use crate::math::srgb::Color;
-use crate::raster::planar::PixelRow;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{BlendMode, CoverageTile, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
 use crate::surface::objects::CanvasPart;
+use rows::{add_alpha, add_colors, add_covered, add_stamped, keep, lay_colors, lay_coverage, take_out_row};
+use std::sync::Arc;
 
 /// The accumulated paint of a stroke on a tile.
 #[derive(Clone)]
-pub enum StrokeTile {
+pub struct StrokeTile {
+    /// What the grain leaves of each pixel.
+    grain: Option<Arc<GrainTile>>,
+    sheet: PaintSheet,
+    /// Under grain each pixel has two parts, a lighter and a darker one: the second.
+    dark: Option<PaintSheet>,
+}
+
+/// Paint on one part of each pixel.
+#[derive(Clone)]
+struct PaintSheet {
+    paint: Paint,
+    /// M: which share of each pixel the dabs have reached (`rim`).
+    reach: Box<[f32; TILE_AREA]>,
+}
+
+#[derive(Clone)]
+enum Paint {
     /// Coverage by the stroke's one colour, `[0, 1]`, row by row.
     OneColor(Box<[f32; TILE_AREA]>),
     /// Premultiplied colours of stamps.
     Colors(PlanarTile),
+}
+
+/// A row of pixels that a dab covers.
+#[derive(Clone, Copy)]
+pub struct CoveredRow<'r> {
+    /// How much of each pixel, `[0, 1]`; no more than the share.
+    pub coverage: &'r [f32],
+    /// p: which share of each pixel the dab reaches at all, `[0, 1]`.
+    pub shares: &'r [f32],
 }
 
 /// What one dab adds to a stroke tile.
@@ -49,66 +81,139 @@ impl StrokeBlend {
     }
 }
 
-impl StrokeTile {
-    pub fn one_color() -> Self {
-        StrokeTile::OneColor(Box::new([0.0; TILE_AREA]))
+impl PaintSheet {
+    fn new(paint: Paint) -> Self {
+        Self { paint, reach: Box::new([0.0; TILE_AREA]) }
     }
-    pub fn colors() -> Self {
-        StrokeTile::Colors(PlanarTile::transparent())
-    }
-    pub fn is_one_color(&self) -> bool {
-        matches!(self, StrokeTile::OneColor(_))
-    }
-    /// Coverage of `n` pixels from the `start`th on; empty for a tile of colours.
-    pub fn coverage(&mut self, start: usize, n: usize) -> &mut [f32] {
-        match self {
-            StrokeTile::OneColor(coverage) => coverage.get_mut(start..start + n).unwrap_or_default(),
-            StrokeTile::Colors(_) => &mut [],
-        }
-    }
-    /// Adds one colour to a row from the `start`th pixel on, as far as each is `covered`: a ← a + f (c − a), f = flow ·
-    /// covered, up to the ceiling c.
-    pub fn cover(&mut self, start: usize, covered: &[f32], paint: DabPaint) {
-        match self {
-            StrokeTile::OneColor(_) => add_covered(covered, paint, self.coverage(start, covered.len())),
-            StrokeTile::Colors(tile) => {
-                if let Some(row) = tile.rows_mut().get_mut(start / TILE) {
+    fn cover(&mut self, start: usize, row: CoveredRow, paint: DabPaint) {
+        let n = row.coverage.len();
+        let Some(reach) = self.reach.get_mut(start..start + n) else { return };
+        match &mut self.paint {
+            Paint::OneColor(coverage) => add_covered(row, paint, &mut coverage[start..start + n], reach),
+            Paint::Colors(tile) => {
+                if let Some(pixels) = tile.rows_mut().get_mut(start / TILE) {
                     let [r, g, b, _] = paint.color.unwrap_or(Color::BLACK).to_f32();
-                    let source = |i: usize| (covered[i] * paint.flow, [r, g, b]);
-                    add_colors(covered.len(), source, paint.ceiling, start % TILE, row);
+                    let source = |i: usize| (row.coverage[i] * paint.flow, [r, g, b], row.shares[i]);
+                    add_colors(source, paint.ceiling, start % TILE, pixels, reach);
                 }
             }
         }
     }
-    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on, as [`StrokeTile::cover`] does.
-    pub fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
-        let flow = paint.flow / 255.0;
-        match self {
-            StrokeTile::OneColor(_) => add_alpha(stamped, flow, paint.ceiling, self.coverage(start, stamped.len())),
-            StrokeTile::Colors(tile) => {
+    fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
+        let (n, flow) = (stamped.len(), paint.flow / 255.0);
+        let Some(reach) = self.reach.get_mut(start..start + n) else { return };
+        // Pictures have rims of their own: they reach whole pixels.
+        reach.iter_mut().zip(stamped).filter(|(_, s)| s[3] > 0).for_each(|(reach, _)| *reach = 1.0);
+        match &mut self.paint {
+            Paint::OneColor(coverage) => add_alpha(stamped, flow, paint.ceiling, &mut coverage[start..start + n]),
+            Paint::Colors(tile) => {
                 let Some(row) = tile.rows_mut().get_mut(start / TILE) else { return };
                 match paint.color.map(Color::to_f32) {
                     Some([r, g, b, _]) => {
-                        let source = |i: usize| (flow * f32::from(stamped[i][3]), [r, g, b]);
-                        add_colors(stamped.len(), source, paint.ceiling, start % TILE, row);
+                        let source = |i: usize| (flow * f32::from(stamped[i][3]), [r, g, b], 1.0);
+                        add_colors(source, paint.ceiling, start % TILE, row, reach);
                     }
                     None => add_stamped(stamped, flow, paint.ceiling, start % TILE, row),
                 }
             }
         }
     }
-    /// Removes what lies outside a part of the canvas.
+    fn planes(&mut self) -> Vec<&mut [f32]> {
+        match &mut self.paint {
+            Paint::OneColor(coverage) => vec![&mut coverage[..]],
+            Paint::Colors(tile) => {
+                let rows = tile.rows_mut().iter_mut();
+                rows.flat_map(|row| row.rgb.iter_mut().chain([&mut row.a]).map(|plane| &mut plane[..])).collect()
+            }
+        }
+    }
+}
+
+impl StrokeTile {
+    pub fn one_color() -> Self {
+        Self::of(Paint::OneColor(Box::new([0.0; TILE_AREA])))
+    }
+    pub fn colors() -> Self {
+        Self::of(Paint::Colors(PlanarTile::transparent()))
+    }
+    fn of(paint: Paint) -> Self {
+        Self { grain: None, sheet: PaintSheet::new(paint), dark: None }
+    }
+    /// The same, empty, under grain.
+    pub fn under(self, grain: Arc<GrainTile>) -> Self {
+        Self { grain: Some(grain), dark: Some(self.sheet.clone()), ..self }
+    }
+    /// Whether rows may be taken as [`StrokeTile::plain_row`]: one colour, no grain.
+    pub fn is_plain(&self) -> bool {
+        self.grain.is_none() && matches!(self.sheet.paint, Paint::OneColor(_))
+    }
+    /// Coverage and reach of `n` pixels from the `start`th on; empty for a tile that is not plain.
+    pub fn plain_row(&mut self, start: usize, n: usize) -> (&mut [f32], &mut [f32]) {
+        match &mut self.sheet.paint {
+            Paint::OneColor(coverage) if self.grain.is_none() => (
+                coverage.get_mut(start..start + n).unwrap_or_default(),
+                self.sheet.reach.get_mut(start..start + n).unwrap_or_default(),
+            ),
+            _ => (&mut [], &mut []),
+        }
+    }
+    /// Coverage of every pixel, row by row, where it is of one colour.
+    pub fn coverage(&mut self) -> Option<&mut [f32; TILE_AREA]> {
+        self.join();
+        match &mut self.sheet.paint {
+            Paint::OneColor(coverage) => Some(coverage),
+            Paint::Colors(_) => None,
+        }
+    }
+    /// Makes one of the two parts of each pixel: no more can be painted.
+    fn join(&mut self) {
+        let Some((grain, mut dark)) = self.grain.take().zip(self.dark.take()) else { return };
+        let is_one_color = matches!(self.sheet.paint, Paint::OneColor(_));
+        for (i, (light, dark)) in self.sheet.planes().into_iter().zip(dark.planes()).enumerate() {
+            // Four planes a row of a tile of colours, one plane of a tile of one.
+            let shares = if is_one_color { &grain.share[..] } else { &grain.share[i / 4 * TILE..][..TILE] };
+            light.iter_mut().zip(dark).zip(shares).for_each(|((a, b), share)| *a = *b + (*a - *b) * share);
+        }
+    }
+    /// Adds one colour to a row from the `start`th pixel on, as far as each is covered, up to the ceiling: see
+    /// [`raise`].
+    pub fn cover(&mut self, start: usize, row: CoveredRow, paint: DabPaint) {
+        let Some((grain, dark)) = self.grain.as_deref().zip(self.dark.as_mut()) else {
+            return self.sheet.cover(start, row, paint);
+        };
+        let mut part = [0.0; TILE];
+        for (sheet, factors) in [(&mut self.sheet, &grain.light), (dark, &grain.dark)] {
+            let left = part.iter_mut().zip(row.coverage).zip(&factors[start..]);
+            left.for_each(|((part, covered), factor)| *part = covered * factor);
+            sheet.cover(start, CoveredRow { coverage: &part[..row.coverage.len().min(TILE)], ..row }, paint);
+        }
+    }
+    /// Adds a row of a stamp, premultiplied bytes, from the `start`th pixel on, as [`StrokeTile::cover`] does.
+    pub fn stamp(&mut self, start: usize, stamped: &[[u8; 4]], paint: DabPaint) {
+        let Some((grain, dark)) = self.grain.as_deref().zip(self.dark.as_mut()) else {
+            return self.sheet.stamp(start, stamped, paint);
+        };
+        let mut part = [[0; 4]; TILE];
+        for (sheet, factors) in [(&mut self.sheet, &grain.light), (dark, &grain.dark)] {
+            for ((part, texel), factor) in part.iter_mut().zip(stamped).zip(&factors[start..]) {
+                *part = texel.map(|v| (f32::from(v) * factor + 0.5) as u8);
+            }
+            sheet.stamp(start, &part[..stamped.len().min(TILE)], paint);
+        }
+    }
+    /// Removes what lies outside a part of the canvas; no more can be painted.
     pub fn limit_to(&mut self, part: &CanvasPart, at: TileAt) {
         if part.is_whole() {
             return;
         }
+        self.join();
         let corner = at.rect();
         for y in 0..TILE {
             for x in 0..TILE {
                 let share = part.coverage(corner.x0 + x as i32, corner.y0 + y as i32);
-                match self {
-                    StrokeTile::OneColor(coverage) => coverage[y * TILE + x] *= share,
-                    StrokeTile::Colors(tile) => {
+                match &mut self.sheet.paint {
+                    Paint::OneColor(coverage) => coverage[y * TILE + x] *= share,
+                    Paint::Colors(tile) => {
                         let row = &mut tile.rows_mut()[y];
                         row.rgb.iter_mut().chain([&mut row.a]).for_each(|plane| plane[x] *= share);
                     }
@@ -116,17 +221,18 @@ impl StrokeTile {
             }
         }
     }
-    /// Keeps of each pixel the share that is selected.
+    /// Keeps of each pixel the share that is selected; no more can be painted.
     pub fn select(&mut self, selected: &CoverageTile) {
         if selected.is_whole() {
             return;
         }
+        self.join();
         let shares = selected.bytes().as_chunks::<TILE>().0;
-        match self {
-            StrokeTile::OneColor(coverage) => {
+        match &mut self.sheet.paint {
+            Paint::OneColor(coverage) => {
                 coverage.as_chunks_mut::<TILE>().0.iter_mut().zip(shares).for_each(|(row, shares)| keep(shares, row));
             }
-            StrokeTile::Colors(tile) => {
+            Paint::Colors(tile) => {
                 for (row, shares) in tile.rows_mut().iter_mut().zip(shares) {
                     row.rgb.iter_mut().chain([&mut row.a]).for_each(|plane| keep(shares, plane));
                 }
@@ -134,7 +240,8 @@ impl StrokeTile {
         }
     }
     /// Lays the dried paint on the pixels of a tile.
-    pub fn blend_over(&self, pixels: &mut PlanarTile, at: TileAt, manner: StrokeBlend) {
+    pub fn blend_over(mut self, pixels: &mut PlanarTile, at: TileAt, manner: StrokeBlend) {
+        self.join();
         if manner.erases {
             // Paint that keeps its coverage cannot be erased.
             if !manner.keeps_alpha {
@@ -151,14 +258,14 @@ impl StrokeTile {
     }
     /// Source over. Of stamps only the colour's alpha counts.
     fn blend_over_normal(&self, pixels: &mut PlanarTile, color: Color, opacity: f32) {
-        match self {
-            StrokeTile::OneColor(coverage) => {
+        match &self.sheet.paint {
+            Paint::OneColor(coverage) => {
                 let color = color.premultiplied().map(|c| c * opacity);
                 for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut()) {
                     lay_coverage(coverage, color, row);
                 }
             }
-            StrokeTile::Colors(tile) => {
+            Paint::Colors(tile) => {
                 let opacity = opacity * f32::from(color.a) / 255.0;
                 for (from, row) in tile.rows().iter().zip(pixels.rows_mut()) {
                     lay_colors(from, opacity, row);
@@ -168,95 +275,17 @@ impl StrokeTile {
     }
     /// Destination out.
     fn erase_from(&self, pixels: &mut PlanarTile, opacity: f32) {
-        match self {
-            StrokeTile::OneColor(coverage) => {
+        match &self.sheet.paint {
+            Paint::OneColor(coverage) => {
                 for (coverage, row) in coverage.as_chunks::<TILE>().0.iter().zip(pixels.rows_mut()) {
                     take_out_row(coverage, opacity, row);
                 }
             }
-            StrokeTile::Colors(tile) => {
+            Paint::Colors(tile) => {
                 for (from, row) in tile.rows().iter().zip(pixels.rows_mut()) {
                     take_out_row(&from.a, opacity, row);
                 }
             }
         }
-    }
-}
-
-/// Adds coverage of weight f up to a ceiling; what is already above the ceiling stays.
-#[inline(always)]
-fn raised(coverage: f32, f: f32, ceiling: f32) -> f32 {
-    let room = ceiling - coverage;
-    coverage + f * if room > 0.0 { room } else { 0.0 }
-}
-
-/// One premultiplied pixel with a colour of weight f over it, up to a ceiling: colours mix as source over mixes them,
-/// coverage rises no further than the ceiling.
-#[inline(always)]
-fn mixed(p: [f32; 4], f: f32, source: [f32; 3], ceiling: f32) -> [f32; 4] {
-    let over = |c: usize| p[c] * (1.0 - f) + source[c];
-    let a_over = p[3] * (1.0 - f) + f;
-    let a = raised(p[3], f, ceiling);
-    let (part, whole) = if ceiling < 1.0 && a_over > 0.0 && a < a_over { (a, a_over) } else { (1.0, 1.0) };
-    // Multiplied first: what is as much as the coverage stays so to the bit, however often dabs mix.
-    [over(0), over(1), over(2), a_over].map(|v| v * part / whole)
-}
-
-crate::widest! {
-    fn keep(shares: &[u8; TILE], values: &mut [f32; TILE]) {
-        for (v, share) in values.iter_mut().zip(shares) {
-            *v *= f32::from(*share) * (1.0 / 255.0);
-        }
-    }
-    fn add_covered(covered: &[f32], paint: DabPaint, coverage: &mut [f32]) {
-        for (a, f) in coverage.iter_mut().zip(covered) {
-            *a = raised(*a, paint.flow * f, paint.ceiling);
-        }
-    }
-    fn add_alpha(stamped: &[[u8; 4]], flow: f32, ceiling: f32, coverage: &mut [f32]) {
-        for (a, s) in coverage.iter_mut().zip(stamped) {
-            *a = raised(*a, flow * f32::from(s[3]), ceiling);
-        }
-    }
-    /// `x`: column of the first pixel.
-    fn add_stamped(stamped: &[[u8; 4]], flow: f32, ceiling: f32, x: usize, row: &mut PixelRow) {
-        let PixelRow { rgb: [r, g, b], a } = row;
-        let (r, g, b, a) = (&mut r[x..], &mut g[x..], &mut b[x..], &mut a[x..]);
-        for (i, s) in stamped.iter().enumerate().take(a.len()) {
-            let source = [0, 1, 2].map(|c| flow * f32::from(s[c]));
-            [r[i], g[i], b[i], a[i]] = mixed([r[i], g[i], b[i], a[i]], flow * f32::from(s[3]), source, ceiling);
-        }
-    }
-    /// Blends one premultiplied colour over a row, weighted by each pixel's coverage.
-    fn lay_coverage(coverage: &[f32; TILE], color: [f32; 4], row: &mut PixelRow) {
-        for (plane, c) in row.rgb.iter_mut().chain([&mut row.a]).zip(color) {
-            for (p, a) in plane.iter_mut().zip(coverage) {
-                *p = *p * (1.0 - color[3] * a) + c * a;
-            }
-        }
-    }
-    fn lay_colors(from: &PixelRow, opacity: f32, row: &mut PixelRow) {
-        for (plane, over) in row.rgb.iter_mut().chain([&mut row.a]).zip(from.rgb.iter().chain([&from.a])) {
-            for ((p, s), a) in plane.iter_mut().zip(over).zip(&from.a) {
-                *p = *p * (1.0 - opacity * a) + opacity * s;
-            }
-        }
-    }
-    fn take_out_row(coverage: &[f32; TILE], opacity: f32, row: &mut PixelRow) {
-        for plane in row.rgb.iter_mut().chain([&mut row.a]) {
-            for (p, a) in plane.iter_mut().zip(coverage) {
-                *p *= 1.0 - opacity * a;
-            }
-        }
-    }
-}
-
-/// Adds one colour to `n` pixels of a row from column `x` on; `source`: the weight at each, and the straight colour.
-fn add_colors(n: usize, source: impl Fn(usize) -> (f32, [f32; 3]), ceiling: f32, x: usize, row: &mut PixelRow) {
-    let PixelRow { rgb: [r, g, b], a } = row;
-    for i in 0..n.min(TILE - x) {
-        let (f, color) = source(i);
-        let p = [r[x + i], g[x + i], b[x + i], a[x + i]];
-        [r[x + i], g[x + i], b[x + i], a[x + i]] = mixed(p, f, color.map(|c| c * f), ceiling);
     }
 }

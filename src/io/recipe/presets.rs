@@ -178,6 +178,9 @@ pub fn write_preset(preset: &Preset) -> Value {
 }
 
 #[cfg(test)]
+mod sizes;
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

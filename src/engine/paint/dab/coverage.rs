@@ -1,14 +1,14 @@
 //! A dab of any footprint, evaluated row by row as coverage before it is added, so that a texture or grain can be
 //! applied to it. Floor 3. Not here: the plain round tip (`dab`), which adds its coverage directly.
 
-use super::round::{RoundTip, bent_row, flat_row};
+use super::round::{RoundTip, RowPaint, bent_row, flat_row};
 use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, spans, touched};
 use crate::math::{Affine2, Mat2, Rect};
 use crate::paint::habits::Falloff;
 use crate::paint::image::transform;
 use crate::paint::stamp::{SoftenedStamps, TipStamp};
-use crate::paint::stroke_tile::StrokeTile;
-use crate::paint::tip::{GrainTile, TipShape, shape};
+use crate::paint::stroke_tile::{CoveredRow, StrokeTile};
+use crate::paint::tip::{TipShape, shape};
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::DeformedRect;
 use crate::surface::support::TileBlocks;
@@ -16,7 +16,6 @@ use crate::surface::support::TileBlocks;
 /// What a dab covers.
 #[derive(Clone, Copy)]
 pub enum Footprint<'t> {
-    Round,
     Shape(TipShape, Falloff),
     /// A round tip times a picture of its own coverage.
     Textured(&'t SoftenedStamps),
@@ -49,11 +48,10 @@ impl PlacedDab<'_> {
         let blocks = self.support.blocks(at);
         TilePart { at, blocks, area: touched(&blocks, at).intersect(self.scene.size.rect()) }
     }
-    /// Adds a dab to a tile: its flow times its footprint times what the grain leaves.
+    /// Adds a dab to a tile: its flow times its footprint.
     pub fn add_covered(
         &self,
         footprint: Footprint,
-        grain: Option<&GrainTile>,
         at: TileAt,
         stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
@@ -64,38 +62,36 @@ impl PlacedDab<'_> {
         }
         self.deformation.fill(part.area.grown(1), &mut scratch.deformed);
         let mut covered = std::mem::take(&mut scratch.covered);
-        covered.clear();
-        covered.resize(part.pixels(), 0.0);
+        let mut shares = std::mem::take(&mut scratch.shares);
+        for plane in [&mut covered, &mut shares] {
+            plane.clear();
+            plane.resize(part.pixels(), 0.0);
+        }
         match footprint {
             Footprint::Shape(shape, falloff) => {
-                self.cover_shape((shape, falloff), &part, &mut scratch.deformed, &mut covered)
+                self.cover_shape((shape, falloff), &part, &mut scratch.deformed, (&mut covered, &mut shares))
             }
-            Footprint::Round => self.cover_round(&part, scratch, &mut covered),
             Footprint::Textured(stamps) => {
-                self.cover_round(&part, scratch, &mut covered);
+                self.cover_round(&part, scratch, (&mut covered, &mut shares));
                 self.read(stamps, &part, scratch);
                 covered.iter_mut().zip(&scratch.stamped).for_each(|(c, s)| *c *= f32::from(s[3]) / 255.0);
             }
         }
         for span in part.spans() {
-            let row = &mut covered[part.range(span)];
-            if let Some(grain) = grain {
-                row.iter_mut().zip(&grain[span.start_in(at)..]).for_each(|(c, g)| *c *= g);
-            }
+            let row = CoveredRow { coverage: &covered[part.range(span)], shares: &shares[part.range(span)] };
             stroke_tile.cover(span.start_in(at), row, self.paint(Some(self.dab.color)));
         }
-        scratch.covered = covered;
+        (scratch.covered, scratch.shares) = (covered, shares);
     }
-    /// Adds a picture tip to a tile at the dab's own softness, times what the grain leaves.
+    /// Adds a picture tip to a tile at the dab's own softness.
     pub fn add_softened(
         &self,
         stamps: &SoftenedStamps,
-        grain: Option<&GrainTile>,
         at: TileAt,
         stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        if let (SoftenedStamps::One(stamp), None) = (stamps, grain) {
+        if let SoftenedStamps::One(stamp) = stamps {
             return self.add_stamp(stamp, at, stroke_tile, scratch);
         }
         let part = self.part(at);
@@ -104,24 +100,18 @@ impl PlacedDab<'_> {
         }
         self.deformation.fill(part.area.grown(1), &mut scratch.deformed);
         self.read(stamps, &part, scratch);
-        let paint = self.paint((!stamps.is_colored()).then_some(self.dab.color));
+        let paint = self.stamp_paint((!stamps.is_colored()).then_some(self.dab.color));
         for span in part.spans() {
-            let row = &mut scratch.stamped[part.range(span)];
-            if let Some(grain) = grain {
-                for (texel, factor) in row.iter_mut().zip(&grain[span.start_in(at)..]) {
-                    *texel = texel.map(|v| (f32::from(v) * factor + 0.5) as u8);
-                }
-            }
-            stroke_tile.stamp(span.start_in(at), row, paint);
+            stroke_tile.stamp(span.start_in(at), &scratch.stamped[part.range(span)], paint);
         }
     }
     /// The round tip over a part; D over it and the pixels around it is in `scratch.deformed`.
-    fn cover_round(&self, part: &TilePart, scratch: &mut DabScratch, covered: &mut [f32]) {
+    fn cover_round(&self, part: &TilePart, scratch: &mut DabScratch, (covered, shares): (&mut [f32], &mut [f32])) {
         let DabScratch { deformed, row, .. } = scratch;
         let tip = RoundTip::plain(&self.dab);
         let field = self.bent_over.map(|surface| DeformationField { surface, rect: part.area.grown(1), d: deformed });
         for span in part.spans() {
-            let out = &mut covered[part.range(span)];
+            let out = RowPaint { coverage: &mut covered[part.range(span)], reach: &mut shares[part.range(span)] };
             match &field {
                 Some(field) => bent_row(field.around(span), &tip, row, out),
                 None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, &tip, row, out),
@@ -134,13 +124,13 @@ impl PlacedDab<'_> {
         (shape, falloff): (TipShape, Falloff),
         part: &TilePart,
         deformed: &mut DeformedRect,
-        covered: &mut [f32],
+        (covered, shares): (&mut [f32], &mut [f32]),
     ) {
         let tip_from_canvas = shape.tip_from_canvas(&self.dab);
         transform(tip_from_canvas, &mut deformed.x, &mut deformed.y);
         for span in part.spans() {
             let around = self.around(span, part.area.grown(1), deformed, tip_from_canvas.matrix2);
-            shape.row(falloff, &self.dab, around, &mut covered[part.range(span)]);
+            shape.row(falloff, &self.dab, around, &mut covered[part.range(span)], &mut shares[part.range(span)]);
         }
     }
     fn around<'f>(

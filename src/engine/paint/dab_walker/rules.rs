@@ -7,6 +7,7 @@ use crate::math::{Mat2, Vec2, hash, srgb::Color, vec2};
 use crate::paint::brush::{Brush, Tip};
 use crate::paint::dynamics::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, pace_of, turns_of};
 use crate::paint::habits::{Bearing, Spread};
+use crate::paint::rim::{Rim, Rims};
 use crate::paint::scene::Scene;
 use crate::paint::tint;
 use crate::surface::{Curvature, Operator};
@@ -36,6 +37,7 @@ pub(super) struct DabRules {
     curvature: Option<Arc<Curvature>>,
     reads_surface: bool,
     varies_in_color: bool,
+    rims: Option<Arc<Rims>>,
 }
 
 /// What the walk knows where a dab is due.
@@ -88,6 +90,7 @@ impl DabRules {
             curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
             varies_in_color: tint::varies(brush),
+            rims: Rims::of(brush),
         }
     }
     pub fn inputs(&self, moment: &Moment) -> DabInputs {
@@ -123,9 +126,14 @@ impl DabRules {
             return nowhere;
         }
         let scale_px = surface.size().longer_side() / CURVATURE_SCALES;
-        let kappa = self.curvature.as_ref().map_or(0.0, |curvature| curvature.kappa(x, y, scale_px));
-        let slope = 1.0 - surface.normal(x, y).z.max(0.0).min(1.0);
-        DabInputs { slope, curvature: 0.5 + 0.5 * kappa, depth: surface.depth(x, y).max(0.0).min(1.0), ..inputs }
+        // Between pixels, so that a larger canvas reads the same there.
+        let (mut slope, mut kappa, mut depth) = (0.0, 0.0, 0.0);
+        for (x, y, share) in surface.around(at) {
+            slope += share * (1.0 - surface.facing(x, y).max(0.0).min(1.0));
+            kappa += share * self.curvature.as_ref().map_or(0.0, |curvature| curvature.kappa(x, y, scale_px));
+            depth += share * surface.depth(x, y);
+        }
+        DabInputs { slope, curvature: 0.5 + 0.5 * kappa, depth: depth.max(0.0).min(1.0), ..inputs }
     }
     fn value(&self, property: Property, plain: f32, inputs: &DabInputs) -> f32 {
         self.brush.dynamics.value(property, plain, inputs)
@@ -237,7 +245,8 @@ impl DabRules {
         let ceiling = unit(self.value(Property::Opacity, 1.0, &inputs));
         // Comparisons that NaN fails.
         let is_visible = radius > 0.01 && radius <= FAR_PX && flow > 0.0 && ceiling > 0.0;
-        // A dab smaller than a pixel is a fainter one of a pixel's size: what it covers is the same.
+        // A dab smaller than a pixel is a fainter one of a pixel's size: what it covers is the same. Along the stroke
+        // dabs add up, across it each reaches the same part of the pixel.
         let share = (radius / PIXEL_RADIUS_PX).min(1.0);
         is_visible.then(|| Dab {
             at,
@@ -247,7 +256,9 @@ impl DabRules {
             is_mirrored: brush.facing.is_mirrored,
             hardness: unit(self.value(Property::Hardness, brush.hardness, &inputs)),
             softness: unit(self.value(Property::Softness, brush.softness, &inputs)),
-            flow: unit(flow * share * share),
+            flow: unit(flow * share),
+            thin: share,
+            rim: self.rims.as_ref().map_or(Rim::SOFT, |rims| rims.at(flow)),
             ceiling,
             color: if self.varies_in_color { tint::of(brush, self.color, &inputs) } else { self.color },
             operator: self.operator(&inputs),

@@ -7,11 +7,11 @@ use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab, round_extent};
 use crate::paint::dab_walker::Dab;
 use crate::paint::dynamics::Property;
+use crate::paint::rim::Rim;
 use crate::paint::scene::Scene;
 use crate::paint::stroke::dabs::tiles_of;
 use crate::paint::stroke_tile::StrokeTile;
 use crate::paint::tint;
-use crate::raster::tile::TILE_AREA;
 use crate::raster::{TILE, TileAt};
 use rayon::prelude::*;
 
@@ -68,14 +68,16 @@ fn tinted(brush: &Brush, mixed: [f32; 4], dab: &Dab) -> [f32; 4] {
 /// The mean of what lies under a dab; `None` where it lies beside the canvas.
 fn taken_up(brush: &Brush, dab: &Dab, retouched: &RetouchPixels, scene: &Scene) -> Option<[f32; 4]> {
     let radius = (dab.radius * brush.pickup.radius).max(1.0);
-    let dab = Dab { radius, ratio: 1.0, hardness: SOFT, softness: 0.0, flow: 1.0, ceiling: 1.0, ..*dab };
+    let plain = Dab { hardness: SOFT, softness: 0.0, thin: 1.0, rim: Rim::SOFT, ..*dab };
+    let dab = Dab { radius, ratio: 1.0, flow: 1.0, ceiling: 1.0, ..plain };
     let placed = PlacedDab::new(dab, scene, round_extent(&dab));
     let stride = (radius * radius * std::f32::consts::PI / LOOKS).sqrt().max(1.0) as usize;
     let seen = |scratch: &mut DabScratch, at: &TileAt| {
         let mut stroke_tile = StrokeTile::one_color();
         placed.add_round(*at, &mut stroke_tile, scratch);
-        let (coverage, mut reader, corner) = (stroke_tile.coverage(0, TILE_AREA), retouched.reader(), at.rect());
         let mut sum = [0.0f32; 5];
+        let Some(coverage) = stroke_tile.coverage() else { return sum };
+        let (mut reader, corner) = (retouched.reader(), at.rect());
         for (y, x) in (0..TILE).step_by(stride).flat_map(|y| (0..TILE).step_by(stride).map(move |x| (y, x))) {
             let weight = coverage[y * TILE + x];
             if weight > 0.0 {

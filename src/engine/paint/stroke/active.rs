@@ -8,10 +8,10 @@ use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
 use crate::paint::dab_walker::DabWalker;
+use crate::paint::grain::GrainTile;
 use crate::paint::scene::Scene;
 use crate::paint::selection::StrokeSelection;
 use crate::paint::stroke_tile::{StrokeBlend, StrokeTile};
-use crate::paint::tip::GrainTile;
 use crate::raster::{Mix, PlanarTile, Tile, TileAt, TileCoverage, TileGrid, TilePaint};
 use crate::surface::Operator;
 use crate::surface::objects::CanvasPart;
@@ -61,7 +61,7 @@ struct ActiveTile {
     /// The settled dabs of each active stroke.
     stroke_tiles: Vec<Option<StrokeTile>>,
     /// What their grains leave of each pixel.
-    grains: Vec<Option<Box<GrainTile>>>,
+    grains: Vec<Option<Arc<GrainTile>>>,
 }
 
 /// What a batch of samples adds to one stroke.
@@ -125,7 +125,7 @@ impl ActiveStroke {
         &self,
         fresh: &NewDabs,
         at: TileAt,
-        (stroke_tile, grain): (&mut Option<StrokeTile>, &mut Option<Box<GrainTile>>),
+        (stroke_tile, grain): (&mut Option<StrokeTile>, &mut Option<Arc<GrainTile>>),
         scratch: &mut DabScratch,
     ) -> Option<StrokeTile> {
         let here = fresh.tiles.get(&at).map_or(&[][..], Vec::as_slice);
@@ -133,16 +133,17 @@ impl ActiveStroke {
         if grain.is_none() && !here.is_empty() {
             *grain = self.stroke_dabs.grain(at);
         }
+        let empty = || self.stroke_dabs.stroke_tile(grain.clone());
         let mut add = |dabs: &[usize], stroke_tile: &mut StrokeTile| {
-            dabs.iter().for_each(|&i| self.stroke_dabs.add(&fresh.dabs[i], at, grain.as_deref(), stroke_tile, scratch));
+            dabs.iter().for_each(|&i| self.stroke_dabs.add(&fresh.dabs[i], at, stroke_tile, scratch));
         };
         if !settled.is_empty() {
-            add(settled, stroke_tile.get_or_insert_with(|| self.stroke_dabs.stroke_tile()));
+            add(settled, stroke_tile.get_or_insert_with(empty));
         }
         if tail.is_empty() {
             return stroke_tile.clone();
         }
-        let mut shown = stroke_tile.clone().unwrap_or_else(|| self.stroke_dabs.stroke_tile());
+        let mut shown = stroke_tile.clone().unwrap_or_else(empty);
         add(tail, &mut shown);
         Some(shown)
     }

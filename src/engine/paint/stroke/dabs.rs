@@ -6,16 +6,17 @@ use crate::math::Rect;
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
 use crate::paint::dab_walker::{self, Dab};
-use crate::paint::grain::StrokeGrain;
+use crate::paint::grain::{GrainTile, StrokeGrain};
 use crate::paint::scene::Scene;
 use crate::paint::stroke::Sample;
 use crate::paint::stroke_tile::StrokeTile;
 use crate::paint::tint;
-use crate::paint::tip::{GrainTile, PreparedTip};
+use crate::paint::tip::PreparedTip;
 use crate::raster::{TILE, TileAt};
 use std::collections::HashMap;
 use std::mem::size_of;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A stroke's dabs, and which of them may touch which tile of a canvas.
 pub(in crate::paint) struct StrokeDabs {
@@ -74,8 +75,8 @@ impl StrokeDabs {
         }
     }
     /// What the grain leaves of each pixel of a tile.
-    pub fn grain(&self, at: TileAt) -> Option<Box<GrainTile>> {
-        self.grain.as_ref().map(|grain| grain.tile(&self.scene, at))
+    pub fn grain(&self, at: TileAt) -> Option<Arc<GrainTile>> {
+        self.grain.as_ref().map(|grain| grain.tile(&self.scene, at).into())
     }
     /// Adds a dab that may touch these tiles.
     pub fn push(&mut self, dab: Dab, tiles: &[TileAt]) {
@@ -101,20 +102,18 @@ impl StrokeDabs {
     pub fn place<'s>(&self, dab: Dab, scene: &'s Scene) -> PlacedDab<'s> {
         self.tip.place(dab, scene)
     }
-    /// An empty stroke tile for the stroke's dabs.
-    pub fn stroke_tile(&self) -> StrokeTile {
-        if self.varies_in_color || self.tip.brings_colors() { StrokeTile::colors() } else { StrokeTile::one_color() }
+    /// An empty stroke tile for the stroke's dabs. `grain`: of the tile.
+    pub fn stroke_tile(&self, grain: Option<Arc<GrainTile>>) -> StrokeTile {
+        let has_colors = self.varies_in_color || self.tip.brings_colors();
+        let tile = if has_colors { StrokeTile::colors() } else { StrokeTile::one_color() };
+        match grain {
+            Some(grain) => tile.under(grain),
+            None => tile,
+        }
     }
-    /// Adds a dab to a tile. `grain`: this tile's.
-    pub fn add(
-        &self,
-        dab: &PlacedDab,
-        at: TileAt,
-        grain: Option<&GrainTile>,
-        stroke_tile: &mut StrokeTile,
-        scratch: &mut DabScratch,
-    ) {
-        self.tip.add(dab, at, grain, stroke_tile, scratch);
+    /// Adds a dab to a tile.
+    pub fn add(&self, dab: &PlacedDab, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
+        self.tip.add(dab, at, stroke_tile, scratch);
     }
 }
 

@@ -15,7 +15,7 @@ pub mod shape;
 pub mod texture;
 
 pub use hose::{Hose, HoseRank, RankSelect};
-pub(super) use prepared::{GrainTile, PreparedTip};
+pub(super) use prepared::PreparedTip;
 pub use shape::TipShape;
 pub use texture::{Bristles, Noise, TipTexture};
 

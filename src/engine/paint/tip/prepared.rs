@@ -14,7 +14,6 @@ use crate::paint::scene::Scene;
 use crate::paint::stamp::SoftenedStamps;
 use crate::paint::stroke_tile::StrokeTile;
 use crate::raster::TileAt;
-use crate::raster::tile::TILE_AREA;
 use crate::surface::support::DabExtent;
 
 /// A prepared tip.
@@ -27,9 +26,6 @@ pub enum PreparedTip {
     /// One of the stamps each time.
     Hose(Hose, Vec<SoftenedStamps>),
 }
-
-/// What grain leaves of each pixel of a tile.
-pub type GrainTile = [f32; TILE_AREA];
 
 impl PreparedTip {
     pub fn of(brush: &Brush) -> Self {
@@ -54,7 +50,7 @@ impl PreparedTip {
             Self::Round | Self::Textured(_) => (dab, round_extent(&dab)),
             Self::Shape(shape, falloff) => {
                 let shape = shape.of_dab(&dab);
-                (Dab { flow: dab.flow * shape.thinness(&dab), ..dab }, shape.extent(*falloff, &dab))
+                (Dab { thin: dab.thin * shape.thinness(&dab), ..dab }, shape.extent(*falloff, &dab))
             }
             Self::Stamp(stamps) => (dab, stamps.extent(&dab)),
             Self::Hose(hose, stamps) => {
@@ -68,26 +64,18 @@ impl PreparedTip {
         PlacedDab::new(dab, scene, extent)
     }
     /// Paints a dab on a tile.
-    pub fn add(
-        &self,
-        dab: &PlacedDab,
-        at: TileAt,
-        grain: Option<&GrainTile>,
-        stroke_tile: &mut StrokeTile,
-        scratch: &mut DabScratch,
-    ) {
+    pub fn add(&self, dab: &PlacedDab, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
         match self {
-            Self::Round if grain.is_none() => dab.add_round(at, stroke_tile, scratch),
-            Self::Round => dab.add_covered(Footprint::Round, grain, at, stroke_tile, scratch),
+            Self::Round => dab.add_round(at, stroke_tile, scratch),
             Self::Shape(shape, falloff) => {
                 let footprint = Footprint::Shape(shape.of_dab(dab.dab()), *falloff);
-                dab.add_covered(footprint, grain, at, stroke_tile, scratch);
+                dab.add_covered(footprint, at, stroke_tile, scratch);
             }
-            Self::Textured(stamps) => dab.add_covered(Footprint::Textured(stamps), grain, at, stroke_tile, scratch),
-            Self::Stamp(stamps) => dab.add_softened(stamps, grain, at, stroke_tile, scratch),
+            Self::Textured(stamps) => dab.add_covered(Footprint::Textured(stamps), at, stroke_tile, scratch),
+            Self::Stamp(stamps) => dab.add_softened(stamps, at, stroke_tile, scratch),
             Self::Hose(hose, stamps) => {
                 if let Some(stamps) = stamps.get(choice(hose, dab.dab())) {
-                    dab.add_softened(stamps, grain, at, stroke_tile, scratch);
+                    dab.add_softened(stamps, at, stroke_tile, scratch);
                 }
             }
         }

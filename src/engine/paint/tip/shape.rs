@@ -8,6 +8,7 @@ use crate::paint::dab_walker::Dab;
 use crate::paint::habits::Falloff;
 use crate::paint::peaked::PeakedProfile;
 use crate::paint::profile::{Profile, RoundProfile};
+use crate::paint::rim::Rim;
 use crate::surface::links;
 use crate::surface::support::DabExtent;
 
@@ -38,7 +39,7 @@ impl TipShape {
         let drawn = ratio.max((LEAST_HALF_PX / radius).min(1.0));
         (drawn, ratio / drawn)
     }
-    /// The factor of a dab's flow: below 1 where it is thinner than a pixel.
+    /// What a dab reaches of a pixel's width: below 1 where it is thinner than a pixel.
     pub fn thinness(self, dab: &Dab) -> f32 {
         self.ratio(dab.radius).1
     }
@@ -77,62 +78,92 @@ pub struct TipSpanNeighbours<'f> {
     pub flat: Mat2,
 }
 
-/// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a width |Jᵀ p̂|.
+/// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a width |Jᵀ p̂|; and the
+/// share of the pixel that a stroke with this rim may reach.
 #[inline(always)]
-pub fn ellipse<P: Profile>(profile: &P, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) -> f32 {
+pub fn ellipse<P: Profile>(
+    profile: &P,
+    rim: Rim,
+    (x, y): (f32, f32),
+    across: (f32, f32),
+    along: (f32, f32),
+) -> (f32, f32) {
     // At the very centre there is no direction; the pixel beside it tells how wide this one is as well as any.
     let r2 = x * x + y * y + 1e-12;
     let (a, b) = (across.0 * x + across.1 * y, along.0 * x + along.1 * y);
-    profile.mean(r2.sqrt(), (a * a + b * b) / r2)
+    let (r, width_squared) = (r2.sqrt(), (a * a + b * b) / r2);
+    let wide = across.0 * across.0 + across.1 * across.1 + along.0 * along.0 + along.1 * along.1;
+    (profile.mean_over(r, width_squared, wide - width_squared), rim.share(r, width_squared.sqrt()))
 }
 
-/// Coverage of a square: F(|x|) F(|y|), each over the pixel's width along its own axis.
+/// Coverage of a square: F(|x|) F(|y|), each over the pixel's width along its own axis; and the share.
 #[inline(always)]
-pub fn square<P: Profile>(profile: &P, (x, y): (f32, f32), across: (f32, f32), along: (f32, f32)) -> f32 {
-    let of_x = profile.mean(x.abs(), across.0 * across.0 + along.0 * along.0);
-    of_x * profile.mean(y.abs(), across.1 * across.1 + along.1 * along.1)
+pub fn square<P: Profile>(
+    profile: &P,
+    rim: Rim,
+    (x, y): (f32, f32),
+    across: (f32, f32),
+    along: (f32, f32),
+) -> (f32, f32) {
+    let width_x = across.0 * across.0 + along.0 * along.0;
+    let width_y = across.1 * across.1 + along.1 * along.1;
+    let of =
+        |v: f32, width_squared: f32| (profile.mean(v.abs(), width_squared), rim.share(v.abs(), width_squared.sqrt()));
+    let (of_x, of_y) = (of(x, width_x), of(y, width_y));
+    (of_x.0 * of_y.0, of_x.1 * of_y.1)
 }
 
 impl TipShape {
-    /// Coverage of each pixel of a span, in `[0, 1]`; where D is not a number, none. `d`: in the tip space of this dab.
-    pub fn row(self, falloff: Falloff, dab: &Dab, d: TipSpanNeighbours, coverage: &mut [f32]) {
-        let Dab { hardness, softness, .. } = *dab;
+    /// Coverage of each pixel of a span, in `[0, 1]`, and the share that the stroke may reach; where D is not a number,
+    /// none. `d`: in the tip space of this dab.
+    pub fn row(self, falloff: Falloff, dab: &Dab, d: TipSpanNeighbours, coverage: &mut [f32], shares: &mut [f32]) {
+        let Dab { hardness, softness, rim, thin, .. } = *dab;
+        let out = (coverage, shares);
         match (self, falloff) {
             (TipShape::Ellipse { .. }, Falloff::Smooth) => {
-                ellipse_row(d, &RoundProfile::new(hardness, softness), coverage)
+                ellipse_row(d, &RoundProfile::new(hardness, softness), (rim, thin), out)
             }
             (TipShape::Square { .. }, Falloff::Smooth) => {
-                square_row(d, &RoundProfile::new(hardness, softness), coverage)
+                square_row(d, &RoundProfile::new(hardness, softness), (rim, thin), out)
             }
             (TipShape::Ellipse { .. }, Falloff::Peaked) => {
-                peaked_ellipse_row(d, &PeakedProfile::new(hardness, softness), coverage);
+                peaked_ellipse_row(d, &PeakedProfile::new(hardness, softness), (rim, thin), out);
             }
             (TipShape::Square { .. }, Falloff::Peaked) => {
-                peaked_square_row(d, &PeakedProfile::new(hardness, softness), coverage);
+                peaked_square_row(d, &PeakedProfile::new(hardness, softness), (rim, thin), out);
             }
         }
     }
 }
 
+/// Coverage and shares of a span.
+type Covered<'c> = (&'c mut [f32], &'c mut [f32]);
+
 crate::widest! {
-    fn ellipse_row(d: TipSpanNeighbours, profile: &RoundProfile, coverage: &mut [f32]) {
-        for_each(d, coverage, |p, across, along| ellipse(profile, p, across, along));
+    fn ellipse_row(d: TipSpanNeighbours, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
+        for_each(d, rim.1, out, |p, across, along| ellipse(profile, rim.0, p, across, along));
     }
-    fn square_row(d: TipSpanNeighbours, profile: &RoundProfile, coverage: &mut [f32]) {
-        for_each(d, coverage, |p, across, along| square(profile, p, across, along));
+    fn square_row(d: TipSpanNeighbours, profile: &RoundProfile, rim: (Rim, f32), out: Covered) {
+        for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
-    fn peaked_ellipse_row(d: TipSpanNeighbours, profile: &PeakedProfile, coverage: &mut [f32]) {
-        for_each(d, coverage, |p, across, along| ellipse(profile, p, across, along));
+    fn peaked_ellipse_row(d: TipSpanNeighbours, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
+        for_each(d, rim.1, out, |p, across, along| ellipse(profile, rim.0, p, across, along));
     }
-    fn peaked_square_row(d: TipSpanNeighbours, profile: &PeakedProfile, coverage: &mut [f32]) {
-        for_each(d, coverage, |p, across, along| square(profile, p, across, along));
+    fn peaked_square_row(d: TipSpanNeighbours, profile: &PeakedProfile, rim: (Rim, f32), out: Covered) {
+        for_each(d, rim.1, out, |p, across, along| square(profile, rim.0, p, across, along));
     }
 }
 
-/// Visits the pixels of a span with J by differences toward linked neighbours.
+/// Visits the pixels of a span with J by differences toward linked neighbours. `thin`: the dab's own.
 #[inline(always)]
-fn for_each(d: TipSpanNeighbours, coverage: &mut [f32], f: impl Fn((f32, f32), (f32, f32), (f32, f32)) -> f32) {
+fn for_each(
+    d: TipSpanNeighbours,
+    thin: f32,
+    (coverage, shares): Covered,
+    f: impl Fn((f32, f32), (f32, f32), (f32, f32)) -> (f32, f32),
+) {
     let n = coverage.len();
+    let shares = &mut shares[..n];
     let (cx, cy) = (&d.row.0[..n + 2], &d.row.1[..n + 2]);
     let (ax, ay) = (&d.above.0[..n + 2], &d.above.1[..n + 2]);
     let (bx, by) = (&d.below.0[..n + 2], &d.below.1[..n + 2]);
@@ -145,10 +176,11 @@ fn for_each(d: TipSpanNeighbours, coverage: &mut [f32], f: impl Fn((f32, f32), (
         let across = (slope(l, r, cx[i], x, cx[i + 2], flat_across.x), slope(l, r, cy[i], y, cy[i + 2], flat_across.y));
         let along =
             (slope(u, d, ax[i + 1], x, bx[i + 1], flat_along.x), slope(u, d, ay[i + 1], y, by[i + 1], flat_along.y));
-        let value = f((x, y), across, along);
+        let (value, share) = f((x, y), across, along);
         // The comparisons turn NaN into 0 and keep rounding errors within the range.
         let value = if value > 0.0 { value } else { 0.0 };
-        coverage[i] = if value < 1.0 { value } else { 1.0 };
+        coverage[i] = thin * if value < share { value } else { share };
+        shares[i] = thin * share;
     }
 }
 
@@ -169,7 +201,7 @@ mod tests {
             TipShape::Ellipse { .. } => ellipse::<RoundProfile>,
             TipShape::Square { .. } => square::<RoundProfile>,
         };
-        of(&profile, (p.x, p.y), (across.x, across.y), (along.x, along.y))
+        of(&profile, Rim::SOFT, (p.x, p.y), (across.x, across.y), (along.x, along.y)).0
     }
 
     #[test]

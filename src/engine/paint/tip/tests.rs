@@ -7,6 +7,7 @@ use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace, StrokeGrain};
 use crate::paint::pattern::Pattern;
 use crate::paint::profile::RoundProfile;
+use crate::paint::rim::Rim;
 use crate::paint::stroke::render_tile;
 use crate::paint::{Adjust, Brush, PictureSource, Sample, Scene, Stroke, Tip};
 use crate::raster::{Picture, Plane, TILE, TileAt, TileGrid};
@@ -73,7 +74,8 @@ fn defined(shape: TipShape, brush: &Brush, operator: Operator, scene: &Scene, (x
         TipShape::Square { .. } => shape::square,
     };
     let p = at(x, y);
-    of(&RoundProfile::new(dab.hardness, dab.softness), (p.x, p.y), across.into(), along.into())
+    let profile = RoundProfile::new(dab.hardness, dab.softness);
+    of(&profile, Rim::SOFT, (p.x, p.y), across.into(), along.into()).0
 }
 
 #[test]
@@ -127,7 +129,8 @@ fn grain_multiplies_each_dab() {
             let tiles: Vec<_> = TileAt::covering(SIZE.rect()).map(|at| (at, laid.tile(&scene, at))).collect();
             for (x, y) in pixels() {
                 let (_, tile) = tiles.iter().find(|(at, _)| at.rect().contains(x, y)).unwrap();
-                let factor = tile[y as usize % TILE * TILE + x as usize % TILE];
+                let i = y as usize % TILE * TILE + x as usize % TILE;
+                let factor = tile.dark[i] + (tile.light[i] - tile.dark[i]) * tile.share[i];
                 let (a, b) = (f32::from(without.pixel(x, y)[3]), f32::from(with.pixel(x, y)[3]));
                 assert!((a * factor - b).abs() <= 1.5, "({x}, {y}): {b} of {a} times {factor}");
             }
