@@ -81,7 +81,7 @@ impl RoundProfile {
     ///
     /// Across the radius a pixel's points lie farther out, by v²/24r in the mean; and a tip narrower than the pixel
     /// fills no more of it than its mean chord c. Within 28 of 255 of many samples for pixels of up to five radii, 3 in
-    /// the mean, where u alone is off by 81 and 16.
+    /// the mean, where u alone is off by 81 and 14.
     #[inline(always)]
     pub fn mean_over(&self, r: f32, width_squared: f32, across_squared: f32) -> f32 {
         let across = if across_squared > 0.0 { across_squared } else { 0.0 };
