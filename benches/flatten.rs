@@ -1,13 +1,18 @@
 //! Flattening 20 semi-transparent paint layers of 3840 × 2160, beside `tiny_skia::draw_pixmap` of the same layers and a
-//! plain byte loop, in the same run; and the price of each blend mode.
+//! plain byte loop, in the same run; the price of each blend mode; and scenes of few and of many contours.
 //!
 //! Read ratios, not times: `cargo bench --bench flatten`. Throughput counts pixels times layers, so ns per pixel and
 //! layer is 1 / (Gitem/s).
 
 use divan::{Bencher, counter::ItemsCount};
-use rilievo_engine::document::{Content, Document, Layer, PixelLayer, PreparedDocument, Progress};
-use rilievo_engine::math::{Size, hash};
-use rilievo_engine::raster::{BlendMode, TileAt, TileGrid};
+use rilievo_engine::document::{
+    Content, Document, Layer, LayerMask, Live, MaskKind, PixelLayer, PreparedDocument, Progress,
+};
+use rilievo_engine::math::{Size, Vec3, hash, srgb::Color, vec2, vec3};
+use rilievo_engine::paint::{Gradient, GradientStop, ImageFilter};
+use rilievo_engine::raster::{BlendMode, Plane, TileAt, TileGrid};
+use rilievo_engine::shading::{Model, Shading};
+use rilievo_engine::surface::{Maps, Operator, Surface};
 use std::sync::{Arc, LazyLock};
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
@@ -125,4 +130,70 @@ fn one_tile_of_20_layers(bencher: Bencher) {
     let prepared =
         PreparedDocument::new(&document(LAYERS, BlendMode::Normal), &Progress::default()).expect("not cancelled");
     bencher.counter(ItemsCount::new(64 * 64 * LAYERS)).bench_local(|| prepared.flatten_tile(TileAt::new(3, 3)));
+}
+
+const SCENE: Size = Size::new(2048, 2048);
+
+/// Balls in rows before a wall, each `side` px wide: their contours are seen by two populations. One as wide as the
+/// canvas has few.
+fn balls(side: f32) -> Arc<Surface> {
+    let at = |x: usize, y: usize| {
+        let center = |v: f32| ((v / side).floor() + 0.5) * side;
+        let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
+        let p = vec2(x - center(x), y - center(y)) / (0.48 * side);
+        let up = 1.0 - p.length_squared();
+        if up > 0.0 { (vec3(p.x, -p.y, up.sqrt()), 0.5 - 0.4 * up.sqrt()) } else { (Vec3::Z, 1.0) }
+    };
+    let normals = Plane::from_fn(SCENE, |x, y| at(x, y).0);
+    let depth = Plane::from_fn(SCENE, |x, y| at(x, y).1);
+    let maps = Maps { normals, depth, coverage: Plane::filled(SCENE, 255) };
+    Arc::new(Surface::new(maps).expect("a surface"))
+}
+
+/// A material, a gradient and four fills, two of them masked.
+fn painted(surface: &Arc<Surface>) -> Document {
+    let stops = [(0.0, Color::BLACK), (1.0, Color::WHITE)].map(|(t, color)| GradientStop { t, color }).to_vec();
+    let operator = Operator::Normal { alpha: 0.3, beta: 1.0, detail: 0.0 };
+    let (from, to) = (vec2(100.0, 100.0), vec2(1900.0, 1900.0));
+    let gradient = Gradient { from, to, stops, operator, filter: ImageFilter::Antialias, frame: Default::default() };
+    let contents = [
+        Content::Shading(Live::new(Shading::new(Model::Phong))),
+        Content::Gradient(Live::new(gradient)),
+        Content::Fill(Color { r: 200, g: 40, b: 40, a: 128 }),
+        Content::Fill(Color { r: 20, g: 140, b: 40, a: 128 }),
+        Content::Fill(Color { r: 20, g: 40, b: 140, a: 128 }),
+        Content::Fill(Color { r: 220, g: 210, b: 140, a: 128 }),
+    ];
+    let layer = |(i, content): (usize, Content)| {
+        let mask = (i > 3).then(|| LayerMask::new(MaskKind::Fresnel { f0: 0.1, power: 3.0 }));
+        Arc::new(Layer { mask, ..Layer::new(format!("{i}"), content) })
+    };
+    let layers = contents.into_iter().enumerate().map(layer).collect();
+    Document { surface: Some(surface.clone()), layers, ..Document::empty(SCENE) }
+}
+
+/// Sides of the balls: hardly any contour, some, many.
+const BALLS: [f32; 3] = [2048.0, 128.0, 32.0];
+
+/// The first time: live layers are rendered.
+#[divan::bench(args = BALLS, sample_count = 5, sample_size = 1)]
+fn balls_first(bencher: Bencher, side: f32) {
+    let surface = balls(side);
+    let flatten = |document: Document| rilievo_engine::document::flatten(&document, &Progress::default());
+    bencher.counter(ItemsCount::new(SCENE.area())).with_inputs(|| painted(&surface)).bench_local_values(flatten);
+}
+
+/// Again: they are known.
+#[divan::bench(args = BALLS, sample_count = 7, sample_size = 1)]
+fn balls_again(bencher: Bencher, side: f32) {
+    let document = painted(&balls(side));
+    rilievo_engine::document::flatten(&document, &Progress::default());
+    let flatten = || rilievo_engine::document::flatten(&document, &Progress::default());
+    bencher.counter(ItemsCount::new(SCENE.area())).bench_local(flatten);
+}
+
+/// A surface from its maps: what finding contours adds to it.
+#[divan::bench(args = BALLS, sample_count = 5, sample_size = 1)]
+fn surface_of_balls(bencher: Bencher, side: f32) {
+    bencher.counter(ItemsCount::new(SCENE.area())).bench_local(|| balls(side));
 }

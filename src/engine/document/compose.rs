@@ -1,10 +1,13 @@
-//! Composes one tile of a document: its layers from bottom to top, in f32. Floor 4. `prepare` selects the layers,
-//! `content` renders them, `raster::blend` mixes the pixels.
+//! Composes one tile of a document: its layers from bottom to top, in f32; and, by the same rules, what the other
+//! populations of its contour pixels see (`behind`). Floor 4. `prepare` selects the layers, `content` renders them,
+//! `raster::blend` mixes the pixels.
 
+use super::behind::{Behind, BehindScene};
 use super::content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
 use super::{Role, mask};
-use crate::raster::{BlendMode, Mix, PlanarTile, TileAt, TileCoverage, TilePaint};
+use crate::raster::{BlendMode, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
+use crate::shading::{RadianceScaling, radiance::BackdropStats};
 use std::ops::ControlFlow;
 
 /// Breaks with the composite so far when the sought adjustment is reached.
@@ -14,6 +17,8 @@ pub(super) type ComposeFlow<T = ()> = ControlFlow<PlanarTile, T>;
 pub(super) struct Composer<'a> {
     pub prepared: &'a PreparedDocument,
     pub at: TileAt,
+    /// The pixels that are composed, if not the tile's.
+    pub behind: Option<Behind<'a>>,
     /// The adjustment to end at, if this is to measure what lies beneath one.
     pub sought: Option<usize>,
 }
@@ -31,7 +36,10 @@ impl Composer<'_> {
     }
     /// Composes one layer, with those clipped to it, onto a tile. `atop`: it is itself clipped to what is there.
     fn node(&self, node: &PreparedLayer, onto: &mut PlanarTile, atop: bool) -> ComposeFlow {
-        let coverage = mask::coverage(node, self.at);
+        let coverage = match &self.behind {
+            Some(behind) => mask::coverage_behind(node, behind),
+            None => mask::coverage(node, self.at),
+        };
         if coverage.is_none() && !self.is_sought_in(node) {
             return ComposeFlow::Continue(());
         }
@@ -50,29 +58,49 @@ impl Composer<'_> {
         let painted = self.content(node)?;
         if node.clipped.is_empty() {
             if let Some(paint) = painted.as_paint() {
-                onto.blend(mix, paint, coverage);
+                self.blend(onto, mix, paint, coverage);
             }
             return ComposeFlow::Continue(());
         }
         // A clipping group: the run on the base's own pixels and in its shape, then the base's way to meet the
         // backdrop.
-        let mut own = PlanarTile::transparent();
+        let mut own = self.blank();
         if let Some(paint) = painted.as_paint() {
             own.blend(Mix::default(), paint, &coverage.mask_only());
         } else if !self.is_sought_in(node) {
             return ComposeFlow::Continue(());
         }
         self.clipped(node, &mut own)?;
-        onto.blend(mix, TilePaint::Planar(&own), &coverage.opacity_only());
+        self.blend(onto, mix, TilePaint::Planar(&own), &coverage.opacity_only());
         ComposeFlow::Continue(())
+    }
+    /// As many transparent pixels as are composed.
+    pub fn blank(&self) -> PlanarTile {
+        self.behind.map_or_else(PlanarTile::transparent, |behind| PlanarTile::of_rows(behind.rows()))
+    }
+    fn blend(&self, onto: &mut PlanarTile, mix: Mix, paint: TilePaint, coverage: &TileCoverage) {
+        let Some(behind) = self.behind.filter(|_| mix.mode == BlendMode::Dissolve) else {
+            return onto.blend(mix, paint, coverage);
+        };
+        // Noise is fixed to the canvas, and packed pixels lie anywhere on it. What is whole or nothing stays so.
+        let mut dissolved = self.blank();
+        dissolved.blend(Mix::default(), paint, coverage);
+        behind.dissolve(&mut dissolved);
+        onto.blend(mix, TilePaint::Planar(&dissolved), &TileCoverage::FULL);
     }
     fn content(&self, node: &PreparedLayer) -> ComposeFlow<TileContent> {
         if let Role::Groups(_) = node.layer.content.role() {
-            let mut pixels = PlanarTile::transparent();
+            let mut pixels = self.blank();
             self.stack(&node.children, &mut pixels)?;
             return ComposeFlow::Continue(TileContent::Group(pixels));
         }
-        ComposeFlow::Continue(node.layer.content.painted(&node.scene, self.at))
+        ComposeFlow::Continue(self.painted(node))
+    }
+    fn painted(&self, node: &PreparedLayer) -> TileContent {
+        match self.behind {
+            Some(behind) => node.layer.content.painted_behind(&node.seen_behind(behind)),
+            None => node.layer.content.painted(&node.scene, self.at),
+        }
     }
     fn clipped(&self, base: &PreparedLayer, own: &mut PlanarTile) -> ComposeFlow {
         base.clipped.iter().try_for_each(|node| self.node(node, own, true))
@@ -97,12 +125,16 @@ impl Composer<'_> {
         else {
             return ComposeFlow::Continue(());
         };
+        let apply = |pixels: &mut PlanarTile| match &self.behind {
+            Some(behind) => adjust_behind(scaling, &node.seen_behind(*behind), beneath, pixels),
+            None => scaling.apply_tile(&node.scene, self.at, beneath, pixels),
+        };
         if coverage.is_full() && node.clipped.is_empty() {
-            scaling.apply_tile(&node.scene, self.at, beneath, onto);
+            apply(onto);
             return ComposeFlow::Continue(());
         }
         let mut after = onto.clone();
-        scaling.apply_tile(&node.scene, self.at, beneath, &mut after);
+        apply(&mut after);
         self.clipped(node, &mut after)?;
         onto.mix_toward(&after, coverage);
         ComposeFlow::Continue(())
@@ -115,6 +147,26 @@ impl Composer<'_> {
         let layer = &node.layer;
         let may_hide = layer.blend == BlendMode::Normal && layer.opacity >= 1.0 && layer.mask.is_none();
         // Groups and adjustments are never known to hide before they are composed.
-        may_hide && mask::is_whole_on_surface(node, self.at) && layer.content.painted(&node.scene, self.at).is_opaque()
+        let is_whole = || match &self.behind {
+            Some(behind) => mask::is_whole_behind(node, behind),
+            None => mask::is_whole_on_surface(node, self.at),
+        };
+        may_hide && is_whole() && self.painted(node).is_opaque()
+    }
+}
+
+impl PreparedLayer {
+    fn seen_behind<'s>(&'s self, behind: Behind<'s>) -> BehindScene<'s> {
+        BehindScene { behind, front: &self.scene, sheet: self.behind.as_ref() }
+    }
+}
+
+/// An adjustment of what the other populations see.
+fn adjust_behind(scaling: &RadianceScaling, scene: &BehindScene, beneath: BackdropStats, pixels: &mut PlanarTile) {
+    let sheet = scene.sheet.and_then(|sheet| sheet.surface.as_deref());
+    let places: Vec<Option<(usize, usize)>> =
+        (0..scene.behind.rows() * TILE).map(|place| scene.behind.sheet_pixel(place)).collect();
+    if let Some(sheet) = sheet {
+        scaling.apply_packed(sheet, &places, beneath, pixels);
     }
 }

@@ -16,6 +16,7 @@ pub use group::Group;
 pub use pixels::PixelLayer;
 pub use strokes::StrokeList;
 
+use super::behind::{Behind, BehindScene, PackedTile};
 use super::scale::CanvasScale;
 use super::{LayerMap, Live, NormalLayer, Progress};
 use crate::Result;
@@ -67,6 +68,10 @@ trait LayerKind {
     }
     /// Renders one tile, or finds it rendered.
     fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
+        TileContent::Nothing
+    }
+    /// What the other populations of a tile's contour pixels see of it.
+    fn painted_behind(&self, _scene: &BehindScene) -> TileContent {
         TileContent::Nothing
     }
     /// Computes now what many tiles would otherwise compute at the same time.
@@ -224,6 +229,9 @@ impl Content {
     pub(super) fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         self.kind().painted(scene, at)
     }
+    pub(super) fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+        self.kind().painted_behind(scene)
+    }
     pub(super) fn warm(&self, scene: &Scene, progress: &Progress) {
         self.kind().warm(scene, progress);
     }
@@ -261,6 +269,7 @@ pub(super) enum TileContent {
     /// One premultiplied colour everywhere.
     Solid([f32; 4]),
     Tile(Arc<Tile>),
+    Packed(Arc<PackedTile>),
     Group(PlanarTile),
 }
 
@@ -272,7 +281,8 @@ impl TileContent {
         match self {
             TileContent::Nothing => None,
             TileContent::Solid(color) => Some(TilePaint::Solid(*color)),
-            TileContent::Tile(tile) => Some(TilePaint::Bytes(tile)),
+            TileContent::Tile(tile) => Some(TilePaint::Bytes(tile.bytes())),
+            TileContent::Packed(packed) => Some(TilePaint::Bytes(packed.bytes())),
             TileContent::Group(pixels) => Some(TilePaint::Planar(pixels)),
         }
     }
@@ -281,6 +291,7 @@ impl TileContent {
         match self {
             TileContent::Solid(color) => color[3] >= 1.0,
             TileContent::Tile(tile) => tile.is_opaque(),
+            TileContent::Packed(packed) => packed.is_opaque(),
             TileContent::Nothing | TileContent::Group(_) => false,
         }
     }

@@ -1,6 +1,7 @@
 //! Flattening: composes the layers of a document into one picture, tile by tile, in f32, quantised once. Floor 4. Tiles
 //! are independent, so they are composed in parallel, and the bytes do not depend on the number of threads.
 
+use super::behind::Behind;
 use super::compose::Composer;
 use super::prepare::in_parallel;
 use super::{Document, Layer, LayerId, PreparedDocument, Progress};
@@ -86,9 +87,18 @@ impl PreparedDocument {
         self.compose_tile(at).quantised().map(Arc::new)
     }
     fn compose_tile(&self, at: TileAt) -> PlanarTile {
-        let mut pixels = PlanarTile::transparent();
         // No adjustment is sought, so composing runs to its end.
-        let _ = Composer { prepared: self, at, sought: None }.stack(&self.stack, &mut pixels);
+        let composed = |behind: Option<Behind>| {
+            let composer = Composer { prepared: self, at, behind, sought: None };
+            let mut pixels = composer.blank();
+            let _ = composer.stack(&self.stack, &mut pixels);
+            pixels
+        };
+        let mut pixels = composed(None);
+        if let Some(contours) = self.contours.as_ref().and_then(|contours| contours.on(at)) {
+            let behind = Behind::new(at, contours);
+            behind.mix_into(&composed(Some(behind)), &mut pixels);
+        }
         pixels
     }
     /// The picture with some of its tiles composed again; `None` if cancelled.

@@ -1,6 +1,8 @@
 //! Live content: parameters together with the tiles rendered from them, valid until a parameter changes. Floor 4. The
 //! rendering of marks is in `paint` and `shading`.
 
+use super::behind::{BehindPixels, BehindScene};
+use super::content::TileContent;
 use crate::paint::Scene;
 use crate::raster::{Tile, TileAt};
 use std::sync::{Arc, Mutex, OnceLock};
@@ -23,17 +25,33 @@ struct TileCells {
     cols: i32,
     rows: i32,
     cells: Vec<OnceLock<Option<Arc<Tile>>>>,
+    /// What the other populations of contour pixels see.
+    behind: Vec<OnceLock<BehindPixels>>,
 }
 
 impl TileCells {
     fn for_scene(scene: &Scene) -> Self {
         let side = |n: u32| n.div_ceil(crate::raster::TILE as u32) as i32;
         let (cols, rows) = (side(scene.size.width), side(scene.size.height));
-        Self { cols, rows, cells: (0..cols * rows).map(|_| OnceLock::new()).collect() }
+        // Only where there are contours.
+        let contours = scene.surface.as_ref().filter(|surface| !surface.contours().is_empty());
+        let behind = contours.map_or(0, |_| cols * rows);
+        Self {
+            cols,
+            rows,
+            cells: (0..cols * rows).map(|_| OnceLock::new()).collect(),
+            behind: (0..behind).map(|_| OnceLock::new()).collect(),
+        }
+    }
+    fn index(&self, at: TileAt) -> Option<usize> {
+        let inside = (0..self.cols).contains(&at.col) && (0..self.rows).contains(&at.row);
+        inside.then_some((at.row * self.cols + at.col) as usize)
     }
     fn cell(&self, at: TileAt) -> Option<&OnceLock<Option<Arc<Tile>>>> {
-        let inside = (0..self.cols).contains(&at.col) && (0..self.rows).contains(&at.row);
-        inside.then(|| &self.cells[(at.row * self.cols + at.col) as usize])
+        self.cells.get(self.index(at)?)
+    }
+    fn behind_cell(&self, at: TileAt) -> Option<&OnceLock<BehindPixels>> {
+        self.behind.get(self.index(at)?)
     }
 }
 
@@ -54,12 +72,16 @@ impl<T> Live<T> {
                 if let (Some(from), Some(to)) = (old.cell(at).and_then(OnceLock::get), cells.cell(at)) {
                     let _ = to.set(from.clone());
                 }
+                if let (Some(from), Some(to)) = (old.behind_cell(at).and_then(OnceLock::get), cells.behind_cell(at)) {
+                    let _ = to.set(from.clone());
+                }
             }
             *next.lock() = Some((scene, Arc::new(cells)));
         }
         next
     }
-    /// New parameters whose tiles differ from these only in `tiles`, which are rendered already.
+    /// New parameters whose tiles differ from these only in `tiles`, which are rendered already. Behind contours they
+    /// count as the same until they are [`Live::settled`].
     ///
     /// * `scene`: what the layer sees. If it is not the rendered one, nothing is taken over.
     pub fn with_tiles(
@@ -71,6 +93,12 @@ impl<T> Live<T> {
         let (old, cells) = (self.cells(scene), TileCells::for_scene(scene));
         for (at, tile) in tiles {
             cells.cell(at).map(|cell| cell.set(tile));
+            cells.behind_cell(at).map(|cell| cell.set(BehindPixels::Same));
+        }
+        for (to, from) in cells.behind.iter().zip(&old.behind) {
+            if let (None, Some(behind)) = (to.get(), from.get()) {
+                let _ = to.set(behind.clone());
+            }
         }
         for (to, from) in cells.cells.iter().zip(&old.cells) {
             if let (None, Some(tile)) = (to.get(), from.get()) {
@@ -79,6 +107,21 @@ impl<T> Live<T> {
         }
         let next = Self::new(params);
         *next.lock() = Some((scene.clone(), Arc::new(cells)));
+        next
+    }
+    /// The same, to be rendered behind contours where it was only counted as the same there.
+    pub fn settled(&self) -> Self {
+        let next = Self { params: self.params.clone(), rendered: Arc::default() };
+        if let Some((scene, old)) = self.lock().clone() {
+            let mut cells = TileCells::for_scene(&scene);
+            cells.cells.clone_from(&old.cells);
+            let known = |cell: &OnceLock<BehindPixels>| match cell.get() {
+                Some(BehindPixels::Packed(packed)) => BehindPixels::Packed(packed.clone()).into(),
+                _ => OnceLock::new(),
+            };
+            cells.behind = old.behind.iter().map(known).collect();
+            *next.lock() = Some((scene, Arc::new(cells)));
+        }
         next
     }
     /// Whether a tile is known to look the same in both on this scene: rendered, and the very same pixels.
@@ -90,13 +133,61 @@ impl<T> Live<T> {
         let both = rendered(self).zip(rendered(other));
         move |at| {
             let tile = |cells: &TileCells| cells.cell(at)?.get().map(|tile| tile.as_ref().map(Arc::as_ptr));
-            both.as_ref().and_then(|(a, b)| Some(tile(a)? == tile(b)?)).unwrap_or(false)
+            let (Some(a), Some(b)) = (both.as_ref().map(|both| &both.0), both.as_ref().map(|both| &both.1)) else {
+                return false;
+            };
+            let behind = |cells: &TileCells| cells.behind_cell(at).and_then(OnceLock::get).cloned();
+            let same_behind = match (behind(a), behind(b)) {
+                (Some(a), Some(b)) => a.is_same(&b),
+                // Both are yet to be rendered, or one only counts as the same as its tile.
+                (a, b) => !matches!((a, b), (Some(BehindPixels::Same), None) | (None, Some(BehindPixels::Same))),
+            };
+            same_behind && tile(a).is_some_and(|tile_a| Some(tile_a) == tile(b))
         }
     }
     /// A tile of the layer on a scene, rendered by `render` if it is not cached.
     pub fn tile(&self, scene: &Scene, at: TileAt, render: impl FnOnce() -> Option<Tile>) -> Option<Arc<Tile>> {
         let cells = self.cells(scene);
         cells.cell(at)?.get_or_init(|| render().map(Arc::new)).clone()
+    }
+    /// The layer as the other populations of a tile's contour pixels see it, rendered by `render` if it is not cached.
+    ///
+    /// * `stays`: where they see no surface the tile's own pixels stay; else there are none.
+    pub(super) fn behind(
+        &self,
+        scene: &BehindScene,
+        stays: bool,
+        render: impl Fn(&Scene, TileAt) -> Option<Tile>,
+    ) -> TileContent {
+        let (behind, cells) = (scene.behind, self.cells(scene.front));
+        let own = || self.tile(scene.front, behind.at, || render(scene.front, behind.at));
+        let Some(cell) = cells.behind_cell(behind.at) else { return TileContent::Nothing };
+        let packed = || {
+            let on_sheet = scene.sheet.and_then(|sheet| render(sheet, behind.at));
+            let bare = if stays && behind.has_bare() { own() } else { None };
+            BehindPixels::Packed(Arc::new(behind.packed(on_sheet.as_ref(), bare.as_deref())))
+        };
+        match cell.get_or_init(packed) {
+            BehindPixels::Packed(packed) => TileContent::Packed(packed.clone()),
+            BehindPixels::Same => {
+                own().map_or(TileContent::Nothing, |tile| TileContent::Packed(Arc::new(behind.same(&tile))))
+            }
+        }
+    }
+    /// Takes in what was rendered behind the contours of a tile.
+    pub(super) fn set_behind(&self, scene: &BehindScene, on_sheet: Option<Tile>) {
+        let bare = if scene.behind.has_bare() { self.known(scene.front, scene.behind.at) } else { None };
+        let packed = BehindPixels::Packed(Arc::new(scene.behind.packed(on_sheet.as_ref(), bare.as_deref())));
+        self.cells(scene.front).behind_cell(scene.behind.at).map(|cell| cell.set(packed));
+    }
+    fn known(&self, scene: &Scene, at: TileAt) -> Option<Arc<Tile>> {
+        self.cells(scene).cell(at)?.get().cloned().flatten()
+    }
+    /// The tiles of the canvas that were not rendered behind their contours, of those with a surface there.
+    pub fn missing_behind(&self, scene: &Scene) -> Vec<TileAt> {
+        let (cells, contours) = (self.cells(scene), scene.surface.as_ref().map(|surface| surface.contours().clone()));
+        let is_missing = |at: &TileAt| cells.behind_cell(*at).is_some_and(|cell| cell.get().is_none());
+        contours.map_or(Vec::new(), |contours| contours.seen_tiles().filter(is_missing).collect())
     }
     /// The tiles of the canvas that were not rendered on a scene, row by row.
     pub fn missing(&self, scene: &Scene) -> Vec<TileAt> {

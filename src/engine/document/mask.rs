@@ -1,12 +1,13 @@
 //! A layer's mask: a picture of coverage, or one derived from the surface.
 //! Floor 4.
 
+use super::behind::Behind;
 use super::{Layer, Role, prepare, prepare::PreparedLayer};
 use crate::math::{Range, UNIT};
 use crate::paint::Scene;
 use crate::raster::{Plane, TileAt, TileCoverage};
 use crate::surface::region::SurfaceRegion;
-use crate::surface::{Curvature, Surface};
+use crate::surface::{ContourPixel, Curvature, Surface};
 use std::sync::Arc;
 
 /// What a layer's coverage is multiplied by.
@@ -33,7 +34,9 @@ pub enum MaskKind {
     Region(SurfaceRegion),
 }
 
-/// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is clipped to it.
+/// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is clipped to it. A
+/// pixel that the surface covers in part counts as covered: what is clipped to the surface is absent from the rest of
+/// it (`behind`), so that coverage acts once.
 pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
     let coverage = TileCoverage::uniform(node.layer.opacity);
     let coverage = match clip(node) {
@@ -43,7 +46,7 @@ pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
             TileCover::Whole => coverage,
             TileCover::Part => {
                 let plane = surface.coverage_plane();
-                coverage.times(pixels(at, |x, y| plane.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0)))
+                coverage.times(pixels(at, |x, y| if plane.get(x, y) > Some(0) { 1.0 } else { 0.0 }))
             }
         },
     };
@@ -56,6 +59,38 @@ pub(super) fn coverage(node: &PreparedLayer, at: TileAt) -> TileCoverage {
 /// The surface does not cut the node in this tile.
 pub(super) fn is_whole_on_surface(node: &PreparedLayer, at: TileAt) -> bool {
     clip(node).is_none_or(|surface| matches!(cover_of_tile(surface, at), TileCover::Whole))
+}
+
+/// The same for the other populations of a tile's contour pixels.
+pub(super) fn coverage_behind(node: &PreparedLayer, behind: &Behind) -> TileCoverage {
+    let mut coverage = TileCoverage::uniform(node.layer.opacity);
+    if clip(node).is_some() && behind.has_bare() {
+        coverage = coverage.times_values(behind.values(|_, pixel| if pixel.sees_surface() { 1.0 } else { 0.0 }));
+    }
+    let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.acts_on(&node.scene)) else { return coverage };
+    if let (MaskKind::Region(region), Some(surface)) = (&mask.kind, &node.scene.surface) {
+        // Of the other population's piece, nearby.
+        let grid = surface.region(region);
+        let way = |c: u8| f32::from(if mask.invert { 255 - c } else { c }) / 255.0;
+        let value = |_, pixel: &ContourPixel| match pixel.sees_surface() {
+            true => pixel.other_mean(|x, y| way(grid.at(x as i32, y as i32))),
+            false => way(grid.at(pixel.x, pixel.y)),
+        };
+        return coverage.times_values(behind.values(value));
+    }
+    let value = |place: usize, pixel: &ContourPixel| match (behind.sheet_pixel(place), &node.behind) {
+        // A picture lies on the canvas.
+        (Some((x, y)), Some(sheet)) if !matches!(mask.kind, MaskKind::File { .. }) => {
+            mask.at(sheet, node.behind_curvature.as_deref(), x as i32, y as i32)
+        }
+        _ => mask.at(&node.scene, node.curvature.as_deref(), pixel.x, pixel.y),
+    };
+    coverage.times_values(behind.values(value))
+}
+
+/// The surface does not cut the node behind the contours of a tile.
+pub(super) fn is_whole_behind(node: &PreparedLayer, behind: &Behind) -> bool {
+    clip(node).is_none() || !behind.has_bare()
 }
 
 /// The surface that a layer is clipped to, if any. A group is not clipped, because its layers clip themselves; clipping
@@ -79,7 +114,7 @@ fn cover_of_tile(surface: &Surface, at: TileAt) -> TileCover {
     let rows = || (inside.y0..inside.y1).map(|y| &plane.row(y as usize)[columns.clone()]);
     if rows().all(|row| row.iter().all(|&c| c == 0)) {
         TileCover::None
-    } else if rows().all(|row| row.iter().all(|&c| c == 255)) {
+    } else if rows().all(|row| row.iter().all(|&c| c > 0)) {
         TileCover::Whole
     } else {
         TileCover::Part
@@ -124,8 +159,7 @@ impl LayerMask {
         curvature: Option<&Curvature>,
         at: TileAt,
     ) -> TileCoverage {
-        let needs_surface = !matches!(self.kind, MaskKind::File { .. });
-        if self.disabled || (needs_surface && scene.surface.is_none()) {
+        if !self.acts_on(scene) {
             return coverage;
         }
         if let (MaskKind::Region(region), Some(surface)) = (&self.kind, &scene.surface) {
@@ -134,6 +168,11 @@ impl LayerMask {
             return coverage.times(pixels(at, |x, y| way(grid.at(x, y))));
         }
         coverage.times(pixels(at, |x, y| self.at(scene, curvature, x, y)))
+    }
+    /// It is shown, and what it is derived from is there.
+    fn acts_on(&self, scene: &Scene) -> bool {
+        let needs_surface = !matches!(self.kind, MaskKind::File { .. });
+        !self.disabled && !(needs_surface && scene.surface.is_none())
     }
     /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived from it.
     pub(super) fn at(&self, scene: &Scene, curvature: Option<&Curvature>, x: i32, y: i32) -> f32 {

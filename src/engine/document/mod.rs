@@ -1,6 +1,7 @@
 //! Floor 4: the document is a value. Cheap to clone, never changed while shared: an edit is a new document, undo a list
 //! of them, and what must be redrawn is what differs by pointer.
 
+mod behind;
 pub mod cache;
 mod compose;
 pub mod content;

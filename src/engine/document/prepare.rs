@@ -7,7 +7,7 @@ use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
 use crate::shading::{RadianceScaling, radiance::BackdropStats};
-use crate::surface::Curvature;
+use crate::surface::{Contours, Curvature};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub struct PreparedDocument {
     pub(super) size: Size,
     /// Bottom first.
     pub(super) stack: Vec<PreparedLayer>,
+    /// The pixels that two populations see.
+    pub(super) contours: Option<Arc<Contours>>,
     /// Measurements of the composite beneath each adjustment, in the order they apply.
     pub(super) beneath: Vec<BackdropStats>,
 }
@@ -29,6 +31,9 @@ pub(super) struct PreparedLayer {
     pub scene: Scene,
     /// For a mask derived from it.
     pub curvature: Option<Arc<Curvature>>,
+    /// What it sees behind contours.
+    pub behind: Option<Scene>,
+    pub behind_curvature: Option<Arc<Curvature>>,
     /// Of a group, bottom first.
     pub children: Vec<PreparedLayer>,
     /// The run of layers clipped to this one, bottom first.
@@ -52,7 +57,8 @@ impl PreparedDocument {
         let mut builder = StackBuilder { adjustments: Vec::new(), progress };
         let scope = Scope { beneath: &[], map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
-        let mut prepared = Self { size: document.size, stack, beneath: Vec::new() };
+        let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
+        let mut prepared = Self { size: document.size, stack, contours, beneath: Vec::new() };
         for adjustment in builder.adjustments {
             // Each may depend on those beneath it, which are measured by now.
             let beneath = prepared.measure(&adjustment, progress)?;
@@ -146,6 +152,10 @@ impl StackBuilder<'_> {
             _ => Vec::new(),
         };
         layer.content.warm(&visible_scene, self.progress);
+        let behind = visible_scene.behind();
+        if let Some(behind) = &behind {
+            layer.content.warm(behind, self.progress);
+        }
         if let Role::Adjusts(scaling) = layer.content.role() {
             let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), scope.beneath.to_vec());
             self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
@@ -157,6 +167,8 @@ impl StackBuilder<'_> {
         }
         PreparedLayer {
             curvature: curvature_of_mask(layer, &visible_scene),
+            behind_curvature: behind.as_ref().and_then(|behind| curvature_of_mask(layer, behind)),
+            behind,
             layer: layer.clone(),
             scene: visible_scene,
             children,

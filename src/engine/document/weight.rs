@@ -3,13 +3,14 @@
 
 use super::{Content, Document, Layer, MaskKind, StrokeList};
 use crate::math::Rect;
+use crate::surface::Contours;
 use crate::surface::region::RegionKind;
 use std::sync::Arc;
 
 /// Of a tile, bytes a pixel.
 const TILE_BYTES: u64 = 4;
-/// A tensor of curvature with its fade, and the map of κ made of it, bytes a pixel.
-const CURVATURE_BYTES: u64 = 15;
+/// A tensor of curvature, and the map of κ made of it, bytes a pixel.
+const CURVATURE_BYTES: u64 = 14;
 /// A surface that other normals were put on, bytes a pixel.
 const SURFACE_BYTES: u64 = 18;
 
@@ -30,7 +31,17 @@ impl Document {
     /// prepared of the surface for shading, scaling and masks.
     pub fn flattening_bytes(&self) -> u64 {
         let area = self.size.area() as u64;
-        area * TILE_BYTES + of_layers(&self.layers, self.size.rect(), area)
+        let of_all = area * TILE_BYTES + of_layers(&self.layers, self.size.rect(), area);
+        of_all + self.surface.as_ref().map_or(0, |surface| self.behind_bytes(surface.contours()))
+    }
+    /// What the other populations of contour pixels take: their readings, and the pixels of live layers, in whole rows
+    /// of a tile's width.
+    fn behind_bytes(&self, contours: &Contours) -> u64 {
+        let is_live = |layer: &Layer| {
+            layer.visible && !matches!(layer.content, Content::Fill(_) | Content::Pixels(_) | Content::Group(_))
+        };
+        let live = self.walk().into_iter().filter(|(_, layer)| is_live(layer)).count() as u64;
+        contours.bytes() + 2 * TILE_BYTES * contours.pixels().len() as u64 * live
     }
 }
 

@@ -32,6 +32,8 @@ pub struct PlacedDab<'s> {
     /// `None` where D is the identity.
     bent_over: Option<&'s Surface>,
     support: SupportBounds<'s>,
+    /// On a sheet: its blocks that the dab may touch.
+    sheet_blocks: TileBlocks,
 }
 
 /// Half a pixel's width on either side: the box of the round tip's filter.
@@ -75,9 +77,29 @@ impl<'s> PlacedDab<'s> {
         let surface = scene.surface.as_deref();
         let reach = DabReach::new(dab.at, dab.reach_px, PUSH_RADII * dab.radius);
         let deformation = Deformation::of_dab(surface, scene.size, dab.operator, dab.at).within(reach);
-        let bent_over = surface.filter(|_| !deformation.is_identity());
-        let support = SupportBounds::new(surface, scene.size, dab.operator, dab.at, extent).within(reach);
-        Self { dab, scene, deformation, bent_over, support }
+        // The pixels of a sheet lie where D tells, even if it is the identity.
+        let is_sheet = scene.sheet().is_some();
+        let bent_over = surface.filter(|_| is_sheet || !deformation.is_identity());
+        let bounding = surface.filter(|_| !is_sheet);
+        let support = SupportBounds::new(bounding, scene.size, dab.operator, dab.at, extent).within(reach);
+        Self { dab, scene, deformation, bent_over, support, sheet_blocks: TileBlocks::default() }
+    }
+    /// The same, painted on those blocks of a sheet.
+    pub fn on_blocks(self, sheet_blocks: TileBlocks) -> Self {
+        Self { sheet_blocks, ..self }
+    }
+    /// The blocks that the dab may touch of the pixels that stand for a tile.
+    fn touched(&self, at: TileAt) -> TouchedBlocks {
+        if self.scene.sheet().is_none() {
+            let tile = at.rect();
+            let (blocks, step) = (self.support.blocks(at), 1);
+            let area = touched(&blocks, tile).intersect(self.scene.size.rect());
+            return TouchedBlocks { tile, blocks, area, step };
+        }
+        let whole = self.scene.area(at);
+        let tile = Rect::new(0, whole.y0, TILE as i32, whole.y0 + TILE as i32);
+        let area = touched(&self.sheet_blocks, tile).intersect(whole);
+        TouchedBlocks { tile, blocks: self.sheet_blocks, area, step: 2 }
     }
     pub fn dab(&self) -> &Dab {
         &self.dab
@@ -85,11 +107,12 @@ impl<'s> PlacedDab<'s> {
     pub fn support(&self) -> &SupportBounds<'s> {
         &self.support
     }
-    /// D over the touched blocks of an area of a tile and the pixels around them, in rows of the area grown by one.
-    fn fill_touched(&self, blocks: &TileBlocks, at: TileAt, area: Rect, deformed: &mut DeformedRect) {
-        let touched = |y: i32| if (area.y0..area.y1).contains(&y) { row_of(blocks, at, y) } else { 0 };
+    /// D over the touched blocks of a tile and the pixels around them, in rows of their area grown by one.
+    fn fill_touched(&self, part: &TouchedBlocks, deformed: &mut DeformedRect) {
+        let TouchedBlocks { tile, ref blocks, area, .. } = *part;
+        let touched = |y: i32| if (area.y0..area.y1).contains(&y) { row_of(blocks, tile, y) } else { 0 };
         let columns = |y: i32| {
-            let columns = columns(touched(y - 1) | touched(y) | touched(y + 1), at);
+            let columns = columns(touched(y - 1) | touched(y) | touched(y + 1), tile);
             columns.start - 1..columns.end + 1
         };
         self.deformation.fill_spans(area.grown(1), columns, deformed);
@@ -104,41 +127,40 @@ impl<'s> PlacedDab<'s> {
     }
     /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling c.
     pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
-        let blocks = self.support.blocks(at);
-        let area = touched(&blocks, at).intersect(self.scene.size.rect());
+        let part = self.touched(at);
         let mut tip = RoundTip::new(&self.dab);
         let DabScratch { deformed, covered, shares, row, .. } = scratch;
         let field = self.bent_over.map(|surface| {
-            self.fill_touched(&blocks, at, area, deformed);
-            DeformationField { surface, rect: area.grown(1), d: deformed }
+            self.fill_touched(&part, deformed);
+            DeformationField { surface, rect: part.area.grown(1), d: deformed }
         });
         let mut add = |span: PixelSpan, tip: &RoundTip, out: RowPaint| match &field {
             Some(field) => bent_row(field.around(span), tip, row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
         if stroke_tile.is_plain() {
-            for span in spans(&blocks, at, area) {
-                let (coverage, reach) = stroke_tile.plain_row(span.start_in(at), span.n);
+            for span in part.spans() {
+                let (coverage, reach) = stroke_tile.plain_row(part.start_of(span), span.n);
                 add(span, &tip, RowPaint { coverage, reach });
             }
             return;
         }
         // The stroke tile applies the ceiling, because it knows the coverage.
         tip.ceiling = 1.0;
-        for span in spans(&blocks, at, area) {
+        for span in part.spans() {
             for row in [&mut *covered, &mut *shares] {
                 row.clear();
                 row.resize(span.n, 0.0);
             }
             add(span, &tip, RowPaint { coverage: covered, reach: shares });
             let paint = DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) };
-            stroke_tile.cover(span.start_in(at), CoveredRow { coverage: covered, shares }, paint);
+            stroke_tile.cover(part.start_of(span), CoveredRow { coverage: covered, shares }, paint);
         }
     }
     /// Adds a picture tip to a tile: its mean over the patch of the image plane under each pixel.
     pub fn add_stamp(&self, stamp: &TipStamp, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
-        let blocks = self.support.blocks(at);
-        let area = touched(&blocks, at).intersect(self.scene.size.rect());
+        let part = self.touched(at);
+        let area = part.area;
         let DabScratch { deformed, stamping: StampScratch { patches, antialias, row }, .. } = scratch;
         let texels_from_canvas = stamp.texels_from_canvas(&self.dab);
         self.deformation.fill(area.grown(1), deformed);
@@ -146,11 +168,11 @@ impl<'s> PlacedDab<'s> {
         let antialias = antialias.get_or_insert_default();
         row.resize(area.width(), [0; 4]);
         let paint = self.stamp_paint((!stamp.is_colored).then_some(self.dab.color));
-        for span in spans(&blocks, at, area) {
+        for span in part.spans() {
             let patches = patches.row(self.scene, area, span.y, deformed, texels_from_canvas);
             antialias.row(stamp.texture(), patches, Outside::None, row);
             let from = (span.x - area.x0) as usize;
-            stroke_tile.stamp(span.start_in(at), &row[from..from + span.n], paint);
+            stroke_tile.stamp(part.start_of(span), &row[from..from + span.n], paint);
         }
     }
 }
@@ -163,16 +185,37 @@ struct PixelSpan {
     n: usize,
 }
 
-impl PixelSpan {
-    fn start_in(self, at: TileAt) -> usize {
-        let tile = at.rect();
-        (self.y - tile.y0) as usize * TILE + (self.x - tile.x0) as usize
+/// The part of a tile that a dab may touch, or of what stands for one on a sheet.
+#[derive(Clone, Copy)]
+struct TouchedBlocks {
+    /// The pixels of the tile.
+    tile: Rect,
+    blocks: TileBlocks,
+    /// The smallest rectangle that holds the touched blocks.
+    area: Rect,
+    /// From one row that is painted to the next.
+    step: usize,
+}
+
+impl TouchedBlocks {
+    /// The rows of the area, each from its first to its last touched block.
+    fn spans(&self) -> impl Iterator<Item = PixelSpan> + use<> {
+        let TouchedBlocks { tile, blocks, area, step } = *self;
+        (area.y0..area.y1).step_by(step).filter_map(move |y| {
+            let columns = columns(row_of(&blocks, tile, y), tile);
+            let (x0, x1) = (columns.start.max(area.x0), columns.end.min(area.x1));
+            (x0 < x1).then(|| PixelSpan { x: x0, y, n: (x1 - x0) as usize })
+        })
+    }
+    /// Where a span begins among the pixels of the tile.
+    fn start_of(&self, span: PixelSpan) -> usize {
+        (span.y - self.tile.y0) as usize * TILE + (span.x - self.tile.x0) as usize
     }
 }
 
 /// The smallest rectangle that holds the touched blocks of a tile.
-fn touched(blocks: &TileBlocks, at: TileAt) -> Rect {
-    let (tile, side) = (at.rect(), BLOCK as i32);
+fn touched(blocks: &TileBlocks, tile: Rect) -> Rect {
+    let side = BLOCK as i32;
     let rows = blocks.iter().enumerate().filter(|(_, bits)| **bits != 0);
     rows.fold(Rect::EMPTY, |r, (row, bits)| {
         let y = tile.y0 + row as i32 * side;
@@ -183,25 +226,15 @@ fn touched(blocks: &TileBlocks, at: TileAt) -> Rect {
 }
 
 /// Which blocks of a row of pixels of a tile are touched.
-fn row_of(blocks: &TileBlocks, at: TileAt, y: i32) -> u8 {
-    blocks[(y - at.rect().y0) as usize / BLOCK]
+fn row_of(blocks: &TileBlocks, tile: Rect, y: i32) -> u8 {
+    blocks[(y - tile.y0) as usize / BLOCK]
 }
 
 /// The columns of a tile from the first of some blocks to the last; none where there are no blocks.
-fn columns(bits: u8, at: TileAt) -> Range<i32> {
-    let (x0, side) = (at.rect().x0, BLOCK as i32);
+fn columns(bits: u8, tile: Rect) -> Range<i32> {
+    let side = BLOCK as i32;
     let last = 8 - bits.leading_zeros() as i32;
-    x0 + (bits.trailing_zeros() as i32).min(last) * side..x0 + last * side
-}
-
-/// The rows of `area`, each from its first to its last touched block.
-fn spans(blocks: &TileBlocks, at: TileAt, area: Rect) -> impl Iterator<Item = PixelSpan> + use<> {
-    let blocks = *blocks;
-    (area.y0..area.y1).filter_map(move |y| {
-        let columns = columns(row_of(&blocks, at, y), at);
-        let (x0, x1) = (columns.start.max(area.x0), columns.end.min(area.x1));
-        (x0 < x1).then(|| PixelSpan { x: x0, y, n: (x1 - x0) as usize })
-    })
+    tile.x0 + (bits.trailing_zeros() as i32).min(last) * side..tile.x0 + last * side
 }
 
 /// D over a rectangle and the pixels around it.

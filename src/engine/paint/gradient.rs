@@ -43,21 +43,21 @@ impl Gradient {
     /// One tile of the layer. `None` where it is transparent, without stops, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let ramp = Ramp::new(&self.stops)?;
-        let area = at.rect().intersect(scene.size.rect());
+        let area = scene.area(at);
         if area.is_empty() {
             return None;
         }
         // One more pixel on every side, for the differences.
-        let field = RampPositions::over(self, scene, area.grown(1).intersect(scene.size.rect()));
+        let field = RampPositions::over(self, scene, area.grown(1).intersect(scene.pixels()));
         let mut pixels = transparent_f32();
-        for y in area.y0..area.y1 {
-            let row = (y - at.rect().y0) as usize * TILE;
+        for y in scene.rows(area) {
+            let row = (y - area.y0) as usize * TILE;
             for x in area.x0..area.x1 {
                 let color = match self.filter {
                     ImageFilter::Bilinear => ramp.at(field.at(x, y)),
                     ImageFilter::Antialias => ramp.mean(field.at(x, y), field.footprint(x, y, scene)),
                 };
-                pixels[row + (x - at.rect().x0) as usize] = color;
+                pixels[row + (x - area.x0) as usize] = color;
             }
         }
         Tile::quantised(&pixels)

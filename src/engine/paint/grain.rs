@@ -146,7 +146,7 @@ impl StrokeGrain {
     pub fn tile(&self, scene: &Scene, at: TileAt) -> Box<GrainTile> {
         let whole = [1.0; TILE_AREA];
         let mut out = Box::new(GrainTile { light: whole, dark: whole, share: whole });
-        let area = at.rect().intersect(scene.size.rect());
+        let area = scene.area(at);
         if area.is_empty() {
             return out;
         }
@@ -155,11 +155,10 @@ impl StrokeGrain {
         let deformation = Deformation::of_pattern(scene.surface.as_deref(), scene.size, self.operator, self.start);
         deformation.fill(area.grown(1), &mut deformed);
         transform(self.texels_from_canvas, &mut deformed.x, &mut deformed.y);
-        let from = (area.x0 - at.rect().x0) as usize;
-        for y in area.y0..area.y1 {
+        for y in scene.rows(area) {
             let patches = patches.row(scene, area, y, &deformed, self.texels_from_canvas);
             antialias.row(&self.texture, patches, Outside::Repeat, &mut row);
-            let start = (y - at.rect().y0) as usize * TILE + from;
+            let start = (y - area.y0) as usize * TILE;
             for (i, texel) in (start..).zip(&row) {
                 let [grey, square, _, bare] = texel.map(|v| f32::from(v) / 255.0);
                 let [light, dark, share] = parts(grey, square, bare);

@@ -104,7 +104,7 @@ pub struct PlacedImage {
 impl PlacedImage {
     /// One tile of the layer; `None` where it is transparent, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
-        let area = at.rect().intersect(scene.size.rect());
+        let area = scene.area(at);
         if area.is_empty() {
             return None;
         }
@@ -126,15 +126,17 @@ impl PlacedImage {
         let (width, texture) = (area.width(), self.source.texture());
         let (mut patches, mut bilinear, mut antialias) =
             (Patches::default(), Bilinear::default(), Antialias::default());
-        let first = |y: i32| (y - at.rect().y0) as usize * TILE + (area.x0 - at.rect().x0) as usize;
+        // Tiles begin at the canvas's corner, so an area does at its tile's.
+        let first = |y: i32| (y - area.y0) as usize * TILE;
         if margin == 0 && width == TILE {
             // The rows of a whole tile are contiguous: the next row is prefetched while this one is read.
             bilinear.row(texture, &positions.x, &positions.y, self.outside, &mut pixels[first(area.y0)..]);
             return Tile::from_pixels(pixels.into_flattened());
         }
-        for (row, y) in (area.y0..area.y1).enumerate() {
+        for y in scene.rows(area) {
             let out = &mut pixels[first(y)..first(y) + width];
             if margin == 0 {
+                let row = (y - area.y0) as usize;
                 let from = row * width..(row + 1) * width;
                 let (x, y) = (&positions.x[from.clone()], &positions.y[from]);
                 bilinear.row(texture, x, y, self.outside, out);

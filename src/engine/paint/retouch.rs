@@ -200,7 +200,7 @@ impl RetouchStroke {
             Some(selection) => Some(selection.tile(at)?),
         };
         let mut stroke_tile = StrokeTile::one_color();
-        if let Some(grain) = self.stroke_dabs.grain(at) {
+        if let Some(grain) = self.stroke_dabs.grain(self.stroke_dabs.scene(), at) {
             stroke_tile = stroke_tile.under(grain);
         }
         self.stroke_dabs.add(placed, at, &mut stroke_tile, scratch);

@@ -180,13 +180,28 @@ impl Stroke {
                 tile => tile,
             },
         };
-        let mut stroke_tile = stroke_dabs.stroke_tile(stroke_dabs.grain(at));
-        for dab in stroke_dabs.on_tile(at) {
-            stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, &mut stroke_tile, scratch);
-        }
-        stroke_tile.limit_to(&self.part(scene), at);
-        if let Some(selected) = selected {
-            stroke_tile.select(&selected);
+        let mut stroke_tile = stroke_dabs.stroke_tile(stroke_dabs.grain(scene, at));
+        match scene.sheet() {
+            None => {
+                for dab in stroke_dabs.on_tile(at) {
+                    stroke_dabs.add(&stroke_dabs.place(*dab, scene), at, &mut stroke_tile, scratch);
+                }
+                stroke_tile.limit_to(&self.part(scene), at);
+                if let Some(selected) = selected {
+                    stroke_tile.select(&selected);
+                }
+            }
+            Some(sheet) => {
+                // Which dabs come near is known of the canvas.
+                let front = scene.front();
+                for dab in stroke_dabs.on_tile(at) {
+                    let near = sheet.blocks_under(at, &stroke_dabs.place(*dab, &front).support().blocks(at));
+                    let Some(blocks) = near else { continue };
+                    let placed = stroke_dabs.place(*dab, scene).on_blocks(blocks);
+                    stroke_dabs.add(&placed, at, &mut stroke_tile, scratch);
+                }
+                stroke_tile.limit_on_sheet(&self.part(&front), selected.as_deref(), sheet, at);
+            }
         }
         stroke_tile.blend_over(pixels, at, self.manner());
     }
@@ -209,10 +224,11 @@ pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option
 
 /// The same before it is quantised; `None` where no stroke touches the tile.
 fn pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<PlanarTile> {
-    let mut here = strokes.iter().filter(|s| s.touches(scene, at)).peekable();
+    let front = scene.front();
+    let mut here = strokes.iter().filter(|s| s.touches(&front, at)).peekable();
     here.peek()?;
     let (mut pixels, mut scratch) = (PlanarTile::transparent(), DabScratch::default());
-    here.for_each(|stroke| stroke.paint(&stroke.stroke_dabs(scene), scene, at, &mut pixels, &mut scratch));
+    here.for_each(|stroke| stroke.paint(&stroke.stroke_dabs(&front), scene, at, &mut pixels, &mut scratch));
     Some(pixels)
 }
 

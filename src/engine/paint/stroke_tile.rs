@@ -10,6 +10,7 @@ use super::grain::GrainTile;
 use crate::math::srgb::Color;
 use crate::raster::tile::TILE_AREA;
 use crate::raster::{BlendMode, CoverageTile, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
+use crate::surface::contours::{SheetOf, place_of};
 use crate::surface::objects::CanvasPart;
 use rows::{add_alpha, add_colors, add_covered, add_stamped, keep, lay_colors, lay_coverage, take_out_row};
 use std::sync::Arc;
@@ -210,14 +211,31 @@ impl StrokeTile {
         let corner = at.rect();
         for y in 0..TILE {
             for x in 0..TILE {
-                let share = part.coverage(corner.x0 + x as i32, corner.y0 + y as i32);
-                match &mut self.sheet.paint {
-                    Paint::OneColor(coverage) => coverage[y * TILE + x] *= share,
-                    Paint::Colors(tile) => {
-                        let row = &mut tile.rows_mut()[y];
-                        row.rgb.iter_mut().chain([&mut row.a]).for_each(|plane| plane[x] *= share);
-                    }
-                }
+                self.lower((x, y), part.coverage(corner.x0 + x as i32, corner.y0 + y as i32));
+            }
+        }
+    }
+    /// The same on what stands for a tile on a sheet: there the other population's piece of surface counts.
+    /// `selected`: of the tile.
+    pub fn limit_on_sheet(&mut self, part: &CanvasPart, selected: Option<&CoverageTile>, sheet: &SheetOf, at: TileAt) {
+        let Some(contours) = sheet.contours().on(at) else { return };
+        let corner = at.rect();
+        for (i, pixel) in contours.pixels[..contours.seen].iter().enumerate() {
+            if !part.is_whole() {
+                self.lower(place_of(i), pixel.other_mean(|x, y| part.coverage(x as i32, y as i32)));
+            }
+            if let Some(selected) = selected {
+                let (x, y) = ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
+                self.lower(place_of(i), f32::from(selected.bytes()[y * TILE + x]) / 255.0);
+            }
+        }
+    }
+    fn lower(&mut self, (x, y): (usize, usize), share: f32) {
+        match &mut self.sheet.paint {
+            Paint::OneColor(coverage) => coverage[y * TILE + x] *= share,
+            Paint::Colors(tile) => {
+                let row = &mut tile.rows_mut()[y];
+                row.rgb.iter_mut().chain([&mut row.a]).for_each(|plane| plane[x] *= share);
             }
         }
     }

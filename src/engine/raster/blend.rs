@@ -8,7 +8,7 @@ mod rows;
 pub mod spec;
 
 use super::planar::PlanarTile;
-use super::tile::{TILE_AREA, Tile, TileAt};
+use super::tile::{TILE_AREA, TileAt};
 pub use modes::BlendMode;
 pub use spec::{blend_pixel, sane};
 
@@ -37,7 +37,8 @@ impl Mix {
 pub enum TilePaint<'a> {
     /// One premultiplied colour everywhere.
     Solid([f32; 4]),
-    Bytes(&'a Tile),
+    /// Premultiplied bytes, row by row; as many rows as are painted on.
+    Bytes(&'a [u8]),
     Planar(&'a PlanarTile),
 }
 
@@ -45,7 +46,7 @@ pub enum TilePaint<'a> {
 #[derive(Clone, Debug)]
 pub struct TileCoverage {
     opacity: f32,
-    /// `TILE_AREA` values in `[0, 1]`.
+    /// Values in `[0, 1]`: `TILE_AREA` of a tile.
     mask: Option<Box<[f32]>>,
 }
 
@@ -62,6 +63,15 @@ impl TileCoverage {
         for (i, m) in mask.iter_mut().enumerate() {
             *m *= value(i % super::TILE, i / super::TILE).max(0.0).min(1.0);
         }
+        self
+    }
+    /// Multiplies by one value for each pixel of some rows; each is clamped to `[0, 1]`, NaN is 0.
+    pub fn times_values(mut self, values: Vec<f32>) -> Self {
+        let values = values.into_iter().map(|v| v.max(0.0).min(1.0));
+        self.mask = Some(match self.mask {
+            Some(mask) => mask.iter().zip(values).map(|(m, v)| m * v).collect(),
+            None => values.collect(),
+        });
         self
     }
     /// Without the opacity: the mask alone.

@@ -27,7 +27,11 @@ pub struct PlanarTile {
 
 impl PlanarTile {
     pub fn transparent() -> Self {
-        Self { rows: vec![PixelRow::TRANSPARENT; TILE] }
+        Self::of_rows(TILE)
+    }
+    /// Fewer or more rows than a tile has, transparent.
+    pub fn of_rows(rows: usize) -> Self {
+        Self { rows: vec![PixelRow::TRANSPARENT; rows] }
     }
     /// Takes pixels in; values that are out of range or NaN are brought into range.
     pub fn from_pixels(pixels: &TileF32) -> Self {
@@ -48,7 +52,7 @@ impl PlanarTile {
             }
         }
     }
-    /// The `TILE` rows, the top one first.
+    /// The rows, `TILE` of a tile, the top one first.
     pub fn rows(&self) -> &[PixelRow] {
         &self.rows
     }

@@ -71,7 +71,7 @@ impl Features {
     }
 }
 
-/// κ of every pixel of one surface, in `[−1, 1]`: convex > 0, 0 off the surface, at its edge and at depth jumps.
+/// κ of every pixel of one surface, in `[−1, 1]`: convex > 0, 0 off the surface.
 pub enum FeatureMap {
     /// λ = 0: the same toward every light.
     Isotropic(Arc<Kappa>),
@@ -110,9 +110,8 @@ impl FeatureMap {
         match self {
             Self::Isotropic(kappa) => prefetch(kappa.steps(x0, y, width)),
             Self::Directional { parts, .. } => {
-                for TensorRow { hxx, hxy, hyy, fade } in parts.iter().map(|p| p.row(x0, y, width)) {
+                for TensorRow { hxx, hxy, hyy } in parts.iter().map(|p| p.row(x0, y, width)) {
                     [hxx, hxy, hyy].into_iter().for_each(prefetch);
-                    prefetch(fade);
                 }
             }
         }
@@ -154,41 +153,33 @@ struct TensorRow<'a> {
     hxx: &'a [f32],
     hxy: &'a [f32],
     hyy: &'a [f32],
-    /// 255 is 1.
-    fade: &'a [u8],
 }
 
 impl ScalePart {
     fn row(&self, x0: usize, y: usize, width: usize) -> TensorRow<'_> {
-        let Curvature { hxx, hxy, hyy, fade } = &*self.curvature;
+        let Curvature { hxx, hxy, hyy } = &*self.curvature;
         let [hxx, hxy, hyy] = [hxx, hxy, hyy].map(|plane| &plane.row(y)[x0..x0 + width]);
-        TensorRow { hxx, hxy, hyy, fade: &fade.row(y)[x0..x0 + width] }
+        TensorRow { hxx, hxy, hyy }
     }
 }
 
-/// share · fade, from a byte.
-#[inline(always)]
-fn faded(share: f32, fade: u8) -> f32 {
-    share * (1.0 / 255.0) * (i32::from(fade) as f32)
-}
-
 crate::widest! {
-    /// Adds share · fade · tanh(f · h) to each pixel.
+    /// Adds share · tanh(f · h) to each pixel.
     fn add_toward(tensor: TensorRow, factors: [f32; 3], share: f32, kappa: &mut [f32]) {
         let [fxx, fxy, fyy] = factors;
-        let pixels = tensor.hxx.iter().zip(tensor.hxy).zip(tensor.hyy).zip(tensor.fade).zip(kappa);
-        for ((((&hxx, &hxy), &hyy), &fade), kappa) in pixels {
-            *kappa += faded(share, fade) * fast::tanh(fxx * hxx + fxy * hxy + fyy * hyy);
+        let pixels = tensor.hxx.iter().zip(tensor.hxy).zip(tensor.hyy).zip(kappa);
+        for (((&hxx, &hxy), &hyy), kappa) in pixels {
+            *kappa += share * fast::tanh(fxx * hxx + fxy * hxy + fyy * hyy);
         }
     }
     /// As `add_toward`, with a direction for each pixel; `factors`: s, λ, share.
     fn add_along(tensor: TensorRow, light: [&[f32]; 2], factors: [f32; 3], kappa: &mut [f32]) {
         let [s, lambda, share] = factors;
-        let tensors = tensor.hxx.iter().zip(tensor.hxy).zip(tensor.hyy).zip(tensor.fade);
+        let tensors = tensor.hxx.iter().zip(tensor.hxy).zip(tensor.hyy);
         let toward = light[0].iter().zip(light[1]);
-        for (((((&hxx, &hxy), &hyy), &fade), (&lx, &ly)), kappa) in tensors.zip(toward).zip(kappa) {
+        for ((((&hxx, &hxy), &hyy), (&lx, &ly)), kappa) in tensors.zip(toward).zip(kappa) {
             let aniso = (hxx - hyy) * (lx * lx - ly * ly) + 4.0 * hxy * lx * ly;
-            *kappa += faded(share, fade) * fast::tanh(s * (hxx + hyy + lambda * aniso));
+            *kappa += share * fast::tanh(s * (hxx + hyy + lambda * aniso));
         }
     }
 }

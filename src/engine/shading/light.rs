@@ -4,6 +4,7 @@
 use super::surface_row::{LightDirection, RowValues, SurfaceRow};
 use crate::math::{Range, Vec3, fast, srgb::Color, vec3};
 use crate::raster::TILE;
+use crate::surface::contours::SheetOf;
 
 /// One light. It casts no shadows and does not weaken with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +73,21 @@ impl RowLight {
         let first =
             vec3(position.x - (surface_row.x0 as f32 + 0.5), surface_row.y as f32 + 0.5 - position.y, position.z);
         let depth = &surface.depth_plane().row(surface_row.y)[columns];
+        if let Some(sheet) = surface.sheet_of() {
+            return self.turn_on_sheet(surface_row, sheet, position);
+        }
         turn_to_point(first, surface.depth_range_px(), depth, &mut self.direction);
+    }
+    /// As `turn`, for a row of a sheet: its pixels lie anywhere on the canvas.
+    fn turn_on_sheet(&mut self, surface_row: &SurfaceRow, sheet: &SheetOf, position: Vec3) {
+        let SurfaceRow { surface, x0, y, width, .. } = *surface_row;
+        for x in 0..width {
+            let (px, py) = sheet.canvas_pixel((x0 + x) as i32, y as i32);
+            let first = vec3(position.x - (px as f32 + 0.5), py as f32 + 0.5 - position.y, position.z);
+            let mut direction = [[0.0; TILE]; 3];
+            turn_to_point(first, surface.depth_range_px(), &[surface.depth(x0 + x, y)], &mut direction);
+            self.direction.iter_mut().zip(direction).for_each(|(to, from)| to[x] = from[0]);
+        }
     }
     /// The direction for κ(ℓ).
     pub fn toward(&self) -> LightDirection<'_> {

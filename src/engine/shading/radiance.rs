@@ -9,7 +9,7 @@ use super::{
 };
 use crate::math::{Vec3, fast, srgb, vec3};
 use crate::raster::{PlanarTile, TILE, TileAt, planar::PixelRow};
-use crate::surface::Scene;
+use crate::surface::{Scene, Surface};
 use row::RowScaler;
 
 /// The parameters of a radiance-scaling layer, an adjustment of what lies beneath it in its group.
@@ -112,12 +112,38 @@ impl RadianceScaling {
             if gain != 1.0 {
                 // Off the surface the factor is 1.
                 let mut gains = [1.0; TILE];
-                gains.iter_mut().zip(coverage).for_each(|(g, &c)| *g += (gain - 1.0) * f32::from(c) / 255.0);
+                gains.iter_mut().zip(coverage).filter(|(_, c)| **c > 0).for_each(|(g, _)| *g = gain);
                 scaler.apply_with_gains(row, kappa, &gains);
             } else {
                 scaler.apply(row, kappa);
             }
         });
+    }
+    /// The same for rows of pixels that lie anywhere on a surface: `places` tells where, one for each pixel, or that it
+    /// is off it.
+    pub fn apply_packed(
+        &self,
+        surface: &Surface,
+        places: &[Option<(usize, usize)>],
+        beneath: BackdropStats,
+        pixels: &mut PlanarTile,
+    ) {
+        let gain = if self.keep_mean { beneath.gain } else { 1.0 };
+        if self.scaling.is_none() && gain == 1.0 {
+            return;
+        }
+        let mut scaler = RowScaler::new(self.scaling, self.reference.resolve(beneath.brightest));
+        let features = self.features.on(surface);
+        for (row, places) in pixels.rows_mut().iter_mut().zip(places.chunks_exact(TILE)) {
+            let (mut kappa, mut gains) = ([0.0; TILE], [1.0; TILE]);
+            for (x, place) in places.iter().enumerate() {
+                if let Some((px, py)) = *place {
+                    features.row_toward(px, py, self.light, &mut kappa[x..=x]);
+                    gains[x] = gain;
+                }
+            }
+            if gain == 1.0 { scaler.apply(row, &kappa) } else { scaler.apply_with_gains(row, &kappa, &gains) }
+        }
     }
     /// Luminance of one tile before scaling, and after it with each factor, weighed by alpha and by how far the surface
     /// covers each pixel.

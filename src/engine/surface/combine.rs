@@ -116,14 +116,22 @@ impl super::Surface {
     ///
     /// `detail`: the detail normal (y up, any length) and how strongly it counts at a pixel; `None` leaves the base.
     pub fn combined(self: &Arc<Self>, detail: impl Fn(usize, usize) -> Option<(Vec3, f32)> + Sync) -> Self {
-        let normals = Plane::from_fn(self.size(), |x, y| {
-            let base = self.normal(x, y);
-            match detail(x, y) {
-                Some((detail, strength)) if strength > 0.0 => reoriented(base, strengthened(detail, strength)),
-                _ => base,
-            }
+        let combined = |base: Vec3, x: usize, y: usize| match detail(x, y) {
+            Some((detail, strength)) if strength > 0.0 => reoriented(base, strengthened(detail, strength)),
+            _ => base,
+        };
+        let normals = Plane::from_fn(self.size(), |x, y| combined(self.normal(x, y), x, y));
+        let canvas = self.size().rect();
+        let of_sheet = self.sheet().map(|sheet| {
+            Plane::from_fn(sheet.size(), |x, y| {
+                let at = sheet.sheet_of().map(|sheet| sheet.canvas_pixel(x as i32, y as i32));
+                let base = sheet.normal(x, y);
+                let (x, y) = at.unwrap_or_default();
+                // The reading beside a pixel at the border lies beyond the canvas.
+                combined(base, x.min(canvas.x1 - 1) as usize, y.min(canvas.y1 - 1) as usize)
+            })
         });
-        self.with_normals(&normals)
+        self.with_normals(&normals, of_sheet)
     }
 }
 

@@ -5,6 +5,7 @@
 mod fill;
 mod plane;
 
+use super::contours::SheetOf;
 use super::operator::{MapSlopes, MapValues, Operator, outer};
 use super::unwrap::UnwrapSettings;
 use super::{Anchor, Bend, Curvature, DabReach, Surface, Weights, links};
@@ -55,7 +56,7 @@ pub const DETAIL_SCALE_PX: f32 = 4.0;
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors; an anchor off the surface reads the background: facing the viewer, farthest.
+    /// Reads the maps at the anchors, of a sheet those of its surface; an anchor off the surface reads the background: facing the viewer, farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
     /// * `size`: the canvas; its longer side is *L*.
@@ -93,13 +94,16 @@ impl<'a> Deformation<'a> {
         read: impl Fn(&Surface, Vec2) -> MapValues,
     ) -> Self {
         let near = |p: Vec2| p.clamp(Vec2::splat(-FARTHEST_PX), Vec2::splat(FARTHEST_PX));
+        // A sheet holds readings of single pixels; anchors stand on its surface.
+        let whole = surface.and_then(Surface::sheet_of).and_then(|sheet| sheet.surface());
+        let pinned = whole.as_deref().or(surface);
         let pins = bend
             .anchors
             .iter()
             .filter(|a| a.at.is_finite() && a.source.is_finite())
             .map(|a| {
                 let anchor = Anchor { at: near(a.at), source: near(a.source) };
-                Pin { anchor, map_values: surface.map_or(MapValues::default(), |s| read(s, anchor.at)) }
+                Pin { anchor, map_values: pinned.map_or(MapValues::default(), |s| read(s, anchor.at)) }
             })
             .collect();
         let operator = bend.operator.finite();
@@ -170,13 +174,33 @@ impl<'a> Deformation<'a> {
         out.x.resize(n, 0.0);
         out.y.resize(n, 0.0);
         fill::fill(self, rect, &columns, &mut out.x, &mut out.y);
-        if let Some(reach) = self.reach.filter(|reach| reach.is_near(rect)) {
+        if let Some(reach) = self.reach.filter(|reach| self.sheet().is_some() || reach.is_near(rect)) {
             for (y, row) in (rect.y0..rect.y1).enumerate() {
                 for x in columns(row).start.max(rect.x0)..columns(row).end.min(rect.x1) {
                     let i = y * rect.width() + (x - rect.x0) as usize;
-                    let q = vec2(x as f32, row as f32) + 0.5;
-                    (out.x[i], out.y[i]) = reach.limit(q, vec2(out.x[i], out.y[i])).into();
+                    let (mut q_x, mut q_y) = ([0.0], [0.0]);
+                    self.place(x, row, &mut q_x, &mut q_y);
+                    (out.x[i], out.y[i]) = reach.limit(vec2(q_x[0], q_y[0]), vec2(out.x[i], out.y[i])).into();
                 }
+            }
+        }
+    }
+    fn sheet(&self) -> Option<&'a SheetOf> {
+        self.surface.and_then(Surface::sheet_of)
+    }
+    /// The centres q of a row's pixels from column `x` on, canvas px; of a sheet where its readings are told.
+    fn place(&self, x: i32, y: i32, q_x: &mut [f32], q_y: &mut [f32]) {
+        match self.sheet() {
+            Some(sheet) if y >= 0 => {
+                for (x, (q_x, q_y)) in (x..).zip(q_x.iter_mut().zip(q_y)) {
+                    let (x, y) = sheet.canvas_pixel(x.max(0), y);
+                    (*q_x, *q_y) = (x as f32 + 0.5, y as f32 + 0.5);
+                }
+            }
+            _ => {
+                let first = x as f32 + 0.5;
+                q_x.iter_mut().enumerate().for_each(|(k, q)| *q = first + k as i32 as f32);
+                q_y.fill(y as f32 + 0.5);
             }
         }
     }

@@ -4,7 +4,8 @@
 use super::region::SurfaceRegion;
 use super::{
     cache::RecentCache,
-    curvature::{Curvature, Kappa},
+    contours::{self, ContourMaps, Contours, Found, SheetOf},
+    curvature::{Curvature, Kappa, Rims},
     grow, links,
     objects::Objects,
     pyramid::MapPyramids,
@@ -53,6 +54,8 @@ pub struct Surface {
     depth_range_px: f32,
     /// By blur.
     curvatures: RecentCache<u32, Curvature>,
+    /// Where curvature is continued.
+    rims: RecentCache<(), Rims>,
     /// By the scales that are weighed.
     kappas: RecentCache<Vec<[u32; 3]>, Kappa>,
     /// The surface that detail was combined onto, if any; what depends on depth alone is computed there.
@@ -66,6 +69,14 @@ pub struct Surface {
     objects: OnceLock<Objects>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
     parts: Option<Arc<Plane<u32>>>,
+    /// The pixels that two populations see.
+    contours: Arc<Contours>,
+    /// What the other populations read.
+    sheets: RecentCache<(), Surface>,
+    /// Their normals, where detail was combined onto them.
+    sheet_normals: Option<Plane<Vec3>>,
+    /// The surface that this one is the sheet of, if it is one.
+    sheet_of: Option<SheetOf>,
 }
 
 /// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never
@@ -109,13 +120,19 @@ impl Surface {
             grow::fill(&mut normals, &nearest);
             grow::fill(&mut depth, &nearest);
         }
-        drop(valid);
         let depth = depth.updated(|_, _, z| z.clamp(0.0, 1.0));
         let [nbar_x, nbar_y, nz] = apart(normals);
         let depth_range_px = links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
         let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
-        Ok(Self {
-            size,
+        let mut surface = Self::of_planes([nbar_x, nbar_y, nz, depth], [coverage, links], depth_range_px);
+        surface.find_contours(&valid);
+        Ok(surface)
+    }
+    /// n̄_x, n̄_y, n_z and depth; coverage and links.
+    fn of_planes(reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], depth_range_px: f32) -> Self {
+        let ([nbar_x, nbar_y, nz, depth], [coverage, links]) = (reading, bytes);
+        Self {
+            size: nz.size(),
             nbar_x,
             nbar_y,
             nz,
@@ -125,6 +142,7 @@ impl Surface {
             links,
             depth_range_px,
             curvatures: RecentCache::default(),
+            rims: RecentCache::default(),
             kappas: RecentCache::default(),
             base: None,
             occlusions: RecentCache::default(),
@@ -133,7 +151,11 @@ impl Surface {
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
             parts: None,
-        })
+            contours: Arc::default(),
+            sheets: RecentCache::default(),
+            sheet_normals: None,
+            sheet_of: None,
+        }
     }
     /// A surface made of parts, whose objects are known: no depth jump is needed to tell them apart.
     ///
@@ -150,30 +172,62 @@ impl Surface {
             piece_of.get(part as usize).copied().unwrap_or(part)
         });
         surface.parts = Some(Arc::new(parts));
+        // Where parts touch without a jump there are contours, too.
+        surface.contours = Arc::new(surface.with_contour_maps(None, contours::find).contours);
         Ok(surface)
     }
-    /// The same surface with other unit normals (y up), one for each pixel; what depends on depth alone is shared.
-    pub(super) fn with_normals(self: &Arc<Self>, normals: &Plane<Vec3>) -> Self {
-        Self {
-            size: self.size,
-            nbar_x: normals.map(|n| n.x),
-            nbar_y: normals.map(|n| -n.y),
-            nz: normals.map(|n| n.z),
-            depth: self.depth.clone(),
-            coverage: self.coverage.clone(),
-            eye: self.eye,
-            links: self.links.clone(),
-            depth_range_px: self.depth_range_px,
-            curvatures: RecentCache::default(),
-            kappas: RecentCache::default(),
-            base: Some(self.base.as_ref().unwrap_or(self).clone()),
-            occlusions: RecentCache::default(),
-            regions: RecentCache::default(),
-            unwrappings: RecentCache::default(),
-            bounds: MapPyramids::default(),
-            objects: OnceLock::new(),
-            parts: self.parts.clone(),
+    /// Finds the contours, and puts readings of one side where the maps hold some of neither.
+    fn find_contours(&mut self, valid: &Plane<bool>) {
+        let Found { contours, amended } = self.with_contour_maps(Some(valid), contours::find);
+        self.contours = Arc::new(contours);
+        let mut moved = false;
+        for (i, reading) in amended {
+            let z = &mut self.depth.values_mut()[i];
+            moved |= (*z - reading.depth).abs() * self.depth_range_px > 1.0;
+            *z = reading.depth;
+            let normal = [&mut self.nbar_x, &mut self.nbar_y, &mut self.nz].map(|plane| &mut plane.values_mut()[i]);
+            normal.into_iter().zip([reading.nbar.x, reading.nbar.y, reading.nz]).for_each(|(to, from)| *to = from);
         }
+        if moved {
+            let [nx, ny, nz] = [&self.nbar_x, &self.nbar_y, &self.nz];
+            self.links = links::find(nx, ny, nz, &self.depth, &self.coverage, self.depth_range_px);
+        }
+    }
+    /// Calls with the maps that contours are found in. `valid`: where the maps told something, if it is known.
+    pub(super) fn with_contour_maps<T>(&self, valid: Option<&Plane<bool>>, with: impl FnOnce(&ContourMaps) -> T) -> T {
+        let Self { size, nbar_x, nbar_y, depth, coverage, links, .. } = self;
+        with(&ContourMaps { size: *size, nbar: [nbar_x, nbar_y], depth, coverage, links, valid })
+    }
+    /// The sheet of a surface from its planes.
+    pub(super) fn sheet_of_planes(&self, reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], of: SheetOf) -> Self {
+        Self { eye: self.eye, sheet_of: Some(of), ..Self::of_planes(reading, bytes, self.depth_range_px) }
+    }
+    /// The same surface with other unit normals (y up), one for each pixel, and for each of its sheet; what depends on
+    /// depth alone is shared.
+    pub(super) fn with_normals(self: &Arc<Self>, normals: &Plane<Vec3>, of_sheet: Option<Plane<Vec3>>) -> Self {
+        let reading = [normals.map(|n| n.x), normals.map(|n| -n.y), normals.map(|n| n.z), self.depth.clone()];
+        Self {
+            base: Some(self.base.as_ref().unwrap_or(self).clone()),
+            eye: self.eye,
+            contours: self.contours.clone(),
+            parts: self.parts.clone(),
+            sheet_normals: of_sheet,
+            ..Self::of_planes(reading, [self.coverage.clone(), self.links.clone()], self.depth_range_px)
+        }
+    }
+    /// The pixels that two populations see.
+    pub fn contours(&self) -> &Arc<Contours> {
+        &self.contours
+    }
+    /// What this is the sheet of: its pixels are readings of other populations, not pixels of the canvas.
+    pub fn sheet_of(&self) -> Option<&SheetOf> {
+        self.sheet_of.as_ref()
+    }
+    pub(super) fn sheets(&self) -> &RecentCache<(), Surface> {
+        &self.sheets
+    }
+    pub(super) fn sheet_normals(&self) -> Option<&Plane<Vec3>> {
+        self.sheet_normals.as_ref()
     }
     pub fn size(&self) -> Size {
         self.size
@@ -226,6 +280,9 @@ impl Surface {
     }
     pub(super) fn curvatures(&self) -> &RecentCache<u32, Curvature> {
         &self.curvatures
+    }
+    pub(super) fn rims_cell(&self) -> &RecentCache<(), Rims> {
+        &self.rims
     }
     pub(super) fn kappas(&self) -> &RecentCache<Vec<[u32; 3]>, Kappa> {
         &self.kappas

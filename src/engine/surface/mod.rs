@@ -7,6 +7,7 @@
 pub mod anchor;
 mod cache;
 pub mod combine;
+pub mod contours;
 pub mod curvature;
 pub mod deformation;
 pub mod differentiate;
@@ -31,6 +32,7 @@ pub mod view;
 
 pub use anchor::{Anchor, Bend, Weights};
 pub use combine::DetailMap;
+pub use contours::{ContourPixel, Contours};
 pub use curvature::Curvature;
 pub use deformation::Deformation;
 pub use flow::{FlowField, StructureTensor};

@@ -1,7 +1,7 @@
 //! Objects: the pieces into which silhouette and depth jumps split a surface, and the limits they set to marks.
 //! Floor 2. Which neighbouring pixels belong together is found by `links`.
 
-use super::{Surface, links};
+use super::{ContourPixel, Surface, links};
 use crate::math::{Rect, Vec2};
 use crate::raster::Plane;
 use std::collections::BTreeMap;
@@ -26,6 +26,13 @@ impl Objects {
     /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts are known, if a path
     /// of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
+        if let Some(sheet) = surface.sheet_of() {
+            // Those of the other populations: nobody asks where they lie.
+            let whole = sheet.surface();
+            let label = |x: usize, y: usize| whole.as_ref().map_or(0, |whole| whole.objects().labels.at(x, y));
+            let of = |pixel: &ContourPixel| pixel.nearest_other().map_or(0, |(x, y)| label(x as usize, y as usize));
+            return Self { labels: sheet.map(surface.size(), of), rects: Vec::new() };
+        }
         if let Some(parts) = surface.parts_plane() {
             return Self::of_parts(surface, parts);
         }

@@ -2,10 +2,13 @@
 //! Floor 2, below both `paint` and `shading`.
 
 use super::Surface;
-use crate::math::Size;
+use super::contours::SheetOf;
+use crate::math::{Rect, Size};
+use crate::raster::TileAt;
 use std::sync::Arc;
 
-/// The canvas that a layer sees. `surface`, where present, has the size of the canvas.
+/// The canvas that a layer sees. `surface`, where present, has the size of the canvas, or is a sheet: then the pixels
+/// are those of the sheet, and what is rendered is what the other populations of contour pixels see.
 #[derive(Clone)]
 pub struct Scene {
     pub size: Size,
@@ -21,5 +24,39 @@ impl Scene {
             _ => false,
         };
         self.size == other.size && same_surface
+    }
+    /// What the other populations of contour pixels see; `None` where no pixel has another one on a surface.
+    pub fn behind(&self) -> Option<Scene> {
+        let sheet = self.surface.as_ref()?.sheet()?;
+        Some(Scene { size: self.size, surface: Some(sheet) })
+    }
+    /// The scene of the canvas itself: where strokes are laid.
+    pub fn front(&self) -> Scene {
+        match self.sheet() {
+            Some(sheet) => Scene { size: self.size, surface: sheet.surface() },
+            None => self.clone(),
+        }
+    }
+    /// Of what it is the sheet, if it is one.
+    pub fn sheet(&self) -> Option<&SheetOf> {
+        self.surface.as_deref()?.sheet_of()
+    }
+    /// The pixels that there are: of the canvas, or of the sheet.
+    pub fn pixels(&self) -> Rect {
+        match (self.sheet(), &self.surface) {
+            (Some(_), Some(sheet)) => sheet.size().rect(),
+            _ => self.size.rect(),
+        }
+    }
+    /// The pixels that stand for a tile of the canvas; of a sheet at most as many, from some row of it on.
+    pub fn area(&self, at: TileAt) -> Rect {
+        match self.sheet() {
+            Some(sheet) => sheet.contours().on(at).map_or(Rect::EMPTY, |contours| contours.sheet),
+            None => at.rect().intersect(self.size.rect()),
+        }
+    }
+    /// The rows of an area that are looked at: of a sheet every other one holds only what is differenced with.
+    pub fn rows(&self, area: Rect) -> impl Iterator<Item = i32> + use<> {
+        (area.y0..area.y1).step_by(if self.sheet().is_some() { 2 } else { 1 })
     }
 }

@@ -12,6 +12,7 @@ mod steps;
 pub use place::PlanePlace;
 pub use seen::PlaneView;
 
+use super::contours::SheetOf;
 use super::pyramid::{Pyramid, TurnSpan};
 use super::springs::{Effort, SolveScratch, SpringGrid, SpringSolver};
 use super::{Surface, links};
@@ -63,6 +64,14 @@ impl Unwrapping {
             }
         }
         let [x, y] = planes;
+        Self { x, y, bounds: OnceLock::new() }
+    }
+    /// What the other populations of contour pixels lie on.
+    fn on_sheet(size: Size, sheet: &SheetOf, settings: UnwrapSettings) -> Self {
+        let whole = sheet.surface().map(|surface| surface.unwrapped(settings));
+        let [x, y] = [0, 1].map(|axis| {
+            sheet.continued(size, |x, y| whole.as_ref().map_or(0.0, |whole| whole.planes()[axis].at(x, y)))
+        });
         Self { x, y, bounds: OnceLock::new() }
     }
     pub fn size(&self) -> Size {
@@ -159,13 +168,17 @@ const KEPT_PX: usize = 32 << 20;
 
 impl Surface {
     /// The surface unwrapped, cached. Call it once before going parallel: threads that ask at the same time may each
-    /// compute it. Settings that are not finite count as 0.
+    /// compute it. Settings that are not finite count as 0. Of a sheet it is that of its surface, continued.
     pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
         let amount = settings.amount.max(0.0).min(2.0);
         let smooth_px = settings.smooth_px.max(0.0).min(self.size().longer_side());
         let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
         let key = [amount.to_bits(), smooth_px.to_bits()];
-        self.unwrappings().get_or_compute(key, keep, |_| Unwrapping::new(self, UnwrapSettings { amount, smooth_px }))
+        let settings = UnwrapSettings { amount, smooth_px };
+        self.unwrappings().get_or_compute(key, keep, |_| match self.sheet_of() {
+            Some(sheet) => Unwrapping::on_sheet(self.size(), sheet, settings),
+            None => Unwrapping::new(self, settings),
+        })
     }
 }
 

@@ -58,7 +58,11 @@ impl Surface {
     /// v of a pixel: the unit vector toward the eye, camera space (y up).
     #[inline(always)]
     pub fn view(&self, x: usize, y: usize) -> Vec3 {
-        self.eye.toward(Vec2::new(x as f32 + 0.5, y as f32 + 0.5) - self.size().center())
+        let (at, size) = match self.sheet_of() {
+            Some(sheet) => (sheet.canvas_pixel(x as i32, y as i32), sheet.canvas()),
+            None => ((x as i32, y as i32), self.size()),
+        };
+        self.eye.toward(Vec2::new(at.0 as f32 + 0.5, at.1 as f32 + 0.5) - size.center())
     }
     /// n·v of a pixel: 1 faces the eye, 0 is seen edge-on.
     #[inline(always)]

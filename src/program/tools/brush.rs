@@ -210,7 +210,12 @@ impl Gesture for StrokeGesture {
         let rest = self.stabilized.finish().into_iter().collect();
         let tiles = self.draw(rest);
         let strokes = self.active.take().map_or(Vec::new(), ActiveWork::finish);
-        let Some(document) = self.with(strokes, tiles) else { return Outcome::Cancel };
+        let Some(mut document) = self.with(strokes, tiles) else { return Outcome::Cancel };
+        if let StrokeTarget::Strokes { shown, .. } = &self.target {
+            // Behind contours strokes are rendered once they are finished.
+            let content = Content::Strokes(shown.settled());
+            document = document.with_layer(self.layer, |layer| layer.content = content).unwrap_or(document);
+        }
         Outcome::Commit { label: self.label.into(), document, select: Some(self.layer) }
     }
 }

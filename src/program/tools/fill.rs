@@ -87,7 +87,7 @@ fn tile(
     }
     let mut pixels = PlanarTile::transparent();
     if let Some(base) = base {
-        pixels.blend(Mix::default(), TilePaint::Bytes(base), &TileCoverage::FULL);
+        pixels.blend(Mix::default(), TilePaint::Bytes(base.bytes()), &TileCoverage::FULL);
     }
     pixels.blend(mix, TilePaint::Solid(color.premultiplied()), &coverage);
     pixels.quantised().map(Arc::new)

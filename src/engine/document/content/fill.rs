@@ -1,7 +1,7 @@
 //! A fill: one colour everywhere.
 //! Floor 4.
 
-use super::{CanvasScale, Changed, Content, LayerKind, TileContent};
+use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
 use crate::math::srgb::Color;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -14,6 +14,9 @@ impl LayerKind for Color {
         "Fill"
     }
     fn painted(&self, _scene: &Scene, _at: TileAt) -> TileContent {
+        TileContent::Solid(self.premultiplied())
+    }
+    fn painted_behind(&self, _scene: &BehindScene) -> TileContent {
         TileContent::Solid(self.premultiplied())
     }
     fn scaled(&self, _scale: &CanvasScale) -> Content {

@@ -1,7 +1,7 @@
 //! A gradient, kept live.
 //! Floor 4. Its rendering is `paint::gradient`'s.
 
-use super::{CanvasScale, Changed, Content, LayerKind, TileContent};
+use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{Gradient, Scene};
@@ -17,6 +17,9 @@ impl LayerKind for Live<Gradient> {
     }
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
+    }
+    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+        self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
     }
     fn warm(&self, scene: &Scene, _: &Progress) {
         let bend = Bend { operator: self.params().operator, ..Bend::default() };

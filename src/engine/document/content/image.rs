@@ -1,7 +1,7 @@
 //! A placed image, kept live.
 //! Floor 4. Its rendering is `paint::image`'s.
 
-use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
+use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
@@ -18,6 +18,9 @@ impl LayerKind for Live<PlacedImage> {
     }
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
+    }
+    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+        self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
     }
     fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().source.texture();

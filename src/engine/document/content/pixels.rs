@@ -1,12 +1,13 @@
 //! A paint layer: pixels, and where they came from.
 //! Floor 4.
 
-use super::{CanvasScale, Changed, Content, LayerKind, TileContent, Touched};
+use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent, Touched};
 use crate::document::LayerMap;
 use crate::math::Vec2;
 use crate::paint::Scene;
 use crate::raster::warp::{PixelMap, warped};
 use crate::raster::{TileAt, TileGrid};
+use std::sync::Arc;
 
 /// A paint layer.
 #[derive(Clone, Default)]
@@ -28,6 +29,10 @@ impl LayerKind for PixelLayer {
     }
     fn painted(&self, _scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tiles.tile(at).cloned())
+    }
+    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+        let tile = self.tiles.tile(scene.behind.at);
+        tile.map_or(TileContent::Nothing, |tile| TileContent::Packed(Arc::new(scene.behind.same(tile))))
     }
     fn scaled(&self, scale: &CanvasScale) -> Content {
         Content::Pixels(scale.pixels(self))

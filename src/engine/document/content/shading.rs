@@ -1,7 +1,7 @@
 //! A material under light, kept live.
 //! Floor 4. Its rendering is `shading::material`'s.
 
-use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
+use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
 use crate::document::{LayerMap, Live, Progress};
 use crate::paint::Scene;
@@ -22,6 +22,10 @@ impl LayerKind for Live<Shading> {
     }
     fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tile(scene, at, || self.params().render_tile(scene, at)))
+    }
+    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+        // Off the surface it shows nothing.
+        self.behind(scene, false, |scene, at| self.params().render_tile(scene, at))
     }
     fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().warm(scene);

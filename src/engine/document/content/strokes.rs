@@ -1,7 +1,7 @@
 //! Strokes, kept live.
 //! Floor 4. Their rendering is `paint::stroke`'s; edits of single strokes are `document::strokes`'.
 
-use super::{CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
+use super::{Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
 use crate::Result;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
@@ -30,7 +30,13 @@ impl LayerKind for Live<StrokeList> {
     }
     /// Of strokes whose dabs are too many to be cached the tiles as well: tile by tile, each stroke would be laid again
     /// and again.
+    fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+        self.behind(scene, true, |scene, at| stroke::render_tile(&self.params().strokes, scene, at))
+    }
     fn warm(&self, scene: &Scene, progress: &Progress) {
+        if scene.sheet().is_some() {
+            return self.warm_behind(scene, progress);
+        }
         for stroke in &self.params().strokes {
             let bend = Bend { operator: stroke.operator(), ..Bend::default() };
             Deformation::new(scene.surface.as_deref(), scene.size, &bend);
@@ -115,6 +121,22 @@ impl LayerKind for Live<StrokeList> {
 }
 
 impl Live<StrokeList> {
+    /// As `warm`, for what is seen behind contours on a sheet.
+    fn warm_behind(&self, sheet: &Scene, progress: &Progress) {
+        let (front, is_wanted) = (sheet.front(), || !progress.is_cancelled());
+        let (missing, strokes) = (self.missing_behind(&front), &self.params().strokes);
+        if missing.is_empty() || stroke::are_heavy(strokes, &front, is_wanted) != Some(true) {
+            return;
+        }
+        let Some(of) = sheet.sheet() else { return };
+        let _ = stroke::render_tiles(strokes, sheet, &missing, is_wanted, |at, tile| {
+            let Some(contours) = of.contours().on(at) else { return };
+            self.set_behind(
+                &BehindScene { behind: Behind::new(at, contours), front: &front, sheet: Some(sheet) },
+                tile,
+            );
+        });
+    }
     fn with_each(&self, change: impl Fn(&Arc<Stroke>) -> Arc<Stroke>) -> Content {
         let strokes = self.params().strokes.iter().map(change).collect();
         Content::Strokes(Live::new(StrokeList { strokes }))

@@ -47,7 +47,7 @@ pub(super) fn directions(surface: &Surface, options: &ViewOptions) -> Picture {
         // The direction in which the surface turns most, whichever way: of a groove that is across it, where k_v < 0.
         let u = if ku.abs() >= kv.abs() { u } else { u.perp() };
         let u = vec2(u.x, -u.y);
-        FlowPixel { line: u, hue_of: u, magnitude: curvature.fade_at(x, y) * (ku.abs() - kv.abs()).abs() }
+        FlowPixel { line: u, hue_of: u, magnitude: (ku.abs() - kv.abs()).abs() }
     });
     shown(&marks, Some(surface))
 }

@@ -2,7 +2,7 @@
 //! applied to it. Floor 3. Not here: the plain round tip (`dab`), which adds its coverage directly.
 
 use super::round::{RoundTip, RowPaint, bent_row, flat_row};
-use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, spans, touched};
+use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, TouchedBlocks};
 use crate::math::{Affine2, Mat2, Rect};
 use crate::paint::habits::Falloff;
 use crate::paint::image::transform;
@@ -11,7 +11,6 @@ use crate::paint::stroke_tile::{CoveredRow, StrokeTile};
 use crate::paint::tip::{TipShape, shape};
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::DeformedRect;
-use crate::surface::support::TileBlocks;
 
 /// What a dab covers.
 #[derive(Clone, Copy)]
@@ -21,18 +20,7 @@ pub enum Footprint<'t> {
     Textured(&'t SoftenedStamps),
 }
 
-/// The part of a tile that a dab may touch.
-#[derive(Clone, Copy)]
-struct TilePart {
-    at: TileAt,
-    blocks: TileBlocks,
-    area: Rect,
-}
-
-impl TilePart {
-    fn spans(&self) -> impl Iterator<Item = PixelSpan> + use<> {
-        spans(&self.blocks, self.at, self.area)
-    }
+impl TouchedBlocks {
     /// Where a span lies among the pixels of the area, row by row.
     fn range(&self, span: PixelSpan) -> std::ops::Range<usize> {
         let start = (span.y - self.area.y0) as usize * self.area.width() + (span.x - self.area.x0) as usize;
@@ -44,10 +32,6 @@ impl TilePart {
 }
 
 impl PlacedDab<'_> {
-    fn part(&self, at: TileAt) -> TilePart {
-        let blocks = self.support.blocks(at);
-        TilePart { at, blocks, area: touched(&blocks, at).intersect(self.scene.size.rect()) }
-    }
     /// Adds a dab to a tile: its flow times its footprint.
     pub fn add_covered(
         &self,
@@ -56,7 +40,7 @@ impl PlacedDab<'_> {
         stroke_tile: &mut StrokeTile,
         scratch: &mut DabScratch,
     ) {
-        let part = self.part(at);
+        let part = self.touched(at);
         if part.area.is_empty() {
             return;
         }
@@ -79,7 +63,7 @@ impl PlacedDab<'_> {
         }
         for span in part.spans() {
             let row = CoveredRow { coverage: &covered[part.range(span)], shares: &shares[part.range(span)] };
-            stroke_tile.cover(span.start_in(at), row, self.paint(Some(self.dab.color)));
+            stroke_tile.cover(part.start_of(span), row, self.paint(Some(self.dab.color)));
         }
         (scratch.covered, scratch.shares) = (covered, shares);
     }
@@ -94,7 +78,7 @@ impl PlacedDab<'_> {
         if let SoftenedStamps::One(stamp) = stamps {
             return self.add_stamp(stamp, at, stroke_tile, scratch);
         }
-        let part = self.part(at);
+        let part = self.touched(at);
         if part.area.is_empty() {
             return;
         }
@@ -102,11 +86,11 @@ impl PlacedDab<'_> {
         self.read(stamps, &part, scratch);
         let paint = self.stamp_paint((!stamps.is_colored()).then_some(self.dab.color));
         for span in part.spans() {
-            stroke_tile.stamp(span.start_in(at), &scratch.stamped[part.range(span)], paint);
+            stroke_tile.stamp(part.start_of(span), &scratch.stamped[part.range(span)], paint);
         }
     }
     /// The round tip over a part; D over it and the pixels around it is in `scratch.deformed`.
-    fn cover_round(&self, part: &TilePart, scratch: &mut DabScratch, (covered, shares): (&mut [f32], &mut [f32])) {
+    fn cover_round(&self, part: &TouchedBlocks, scratch: &mut DabScratch, (covered, shares): (&mut [f32], &mut [f32])) {
         let DabScratch { deformed, row, .. } = scratch;
         let tip = RoundTip::plain(&self.dab);
         let field = self.bent_over.map(|surface| DeformationField { surface, rect: part.area.grown(1), d: deformed });
@@ -122,7 +106,7 @@ impl PlacedDab<'_> {
     fn cover_shape(
         &self,
         (shape, falloff): (TipShape, Falloff),
-        part: &TilePart,
+        part: &TouchedBlocks,
         deformed: &mut DeformedRect,
         (covered, shares): (&mut [f32], &mut [f32]),
     ) {
@@ -164,7 +148,7 @@ impl PlacedDab<'_> {
     }
     /// Reads the picture of a part at the dab's softness into `scratch.stamped`; `scratch.deformed` is converted to
     /// texels.
-    fn read(&self, stamps: &SoftenedStamps, part: &TilePart, scratch: &mut DabScratch) {
+    fn read(&self, stamps: &SoftenedStamps, part: &TouchedBlocks, scratch: &mut DabScratch) {
         let (stamp, above) = stamps.at(self.dab.softness);
         scratch.stamped.clear();
         scratch.stamped.resize(part.pixels(), [0; 4]);
@@ -183,7 +167,7 @@ impl PlacedDab<'_> {
         &self,
         stamp: &TipStamp,
         map: Affine2,
-        part: &TilePart,
+        part: &TouchedBlocks,
         scratch: &mut DabScratch,
         mix: impl Fn([u8; 4], [u8; 4]) -> [u8; 4],
     ) {

@@ -24,7 +24,7 @@ impl RetouchPixels {
         }
         let mut pixels = PlanarTile::transparent();
         if let Some(tile) = self.base.tile(at) {
-            pixels.blend(Mix::default(), TilePaint::Bytes(tile), &TileCoverage::FULL);
+            pixels.blend(Mix::default(), TilePaint::Bytes(tile.bytes()), &TileCoverage::FULL);
         }
         pixels
     }

@@ -131,7 +131,7 @@ impl ActiveStroke {
         let here = fresh.tiles.get(&at).map_or(&[][..], Vec::as_slice);
         let (settled, tail) = here.split_at(here.partition_point(|&i| i < fresh.settled));
         if grain.is_none() && !here.is_empty() {
-            *grain = self.stroke_dabs.grain(at);
+            *grain = self.stroke_dabs.grain(self.stroke_dabs.scene(), at);
         }
         let empty = || self.stroke_dabs.stroke_tile(grain.clone());
         let mut add = |dabs: &[usize], stroke_tile: &mut StrokeTile| {
@@ -234,7 +234,7 @@ impl Backdrop {
             Backdrop::Pixels(grid) => {
                 let mut pixels = PlanarTile::transparent();
                 if let Some(tile) = grid.tile(at) {
-                    pixels.blend(Mix::default(), TilePaint::Bytes(tile), &TileCoverage::FULL);
+                    pixels.blend(Mix::default(), TilePaint::Bytes(tile.bytes()), &TileCoverage::FULL);
                 }
                 pixels
             }

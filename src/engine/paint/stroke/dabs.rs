@@ -74,9 +74,9 @@ impl StrokeDabs {
             self.grain = Some(StrokeGrain::new(grain, start));
         }
     }
-    /// What the grain leaves of each pixel of a tile.
-    pub fn grain(&self, at: TileAt) -> Option<Arc<GrainTile>> {
-        self.grain.as_ref().map(|grain| grain.tile(&self.scene, at).into())
+    /// What the grain leaves of each pixel of a tile, or of what stands for it on a sheet.
+    pub fn grain(&self, scene: &Scene, at: TileAt) -> Option<Arc<GrainTile>> {
+        self.grain.as_ref().map(|grain| grain.tile(scene, at).into())
     }
     /// Adds a dab that may touch these tiles.
     pub fn push(&mut self, dab: Dab, tiles: &[TileAt]) {
@@ -93,6 +93,10 @@ impl StrokeDabs {
     }
     pub fn is_on(&self, scene: &Scene) -> bool {
         self.scene.is_same(scene)
+    }
+    /// What they were laid on.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
     }
     /// The dabs that may touch a tile, in their order.
     pub fn on_tile(&self, at: TileAt) -> impl Iterator<Item = &Dab> {

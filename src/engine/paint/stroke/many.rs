@@ -18,10 +18,11 @@ const TILES_IN_FLIGHT: usize = 1 << 10;
 /// Lays all strokes once, to know where they lie; whether some had to be forgotten, so that [`render_tiles`] is to be
 /// preferred. `None` if it is no longer wanted.
 pub fn are_heavy(strokes: &[Arc<Stroke>], scene: &Scene, is_wanted: impl Fn() -> bool + Sync) -> Option<bool> {
+    let front = scene.front();
     let heavy = |stroke: &Arc<Stroke>| {
         is_wanted().then(|| {
-            stroke.support(scene);
-            !stroke.is_laid(scene)
+            stroke.support(&front);
+            !stroke.is_laid(&front)
         })
     };
     strokes.par_iter().map(heavy).try_reduce(|| false, |a, b| Some(a | b))
@@ -35,18 +36,19 @@ pub fn render_tiles(
     is_wanted: impl Fn() -> bool,
     done: impl Fn(TileAt, Option<Tile>) + Sync,
 ) -> Option<()> {
+    let front = scene.front();
     for part in tiles.chunks(TILES_IN_FLIGHT) {
         let mut active_tiles: Vec<Wet> = part.iter().map(|&at| Wet { at, pixels: None }).collect();
         let here: Vec<(&Stroke, Arc<TileReach>)> = strokes
             .par_iter()
-            .map(|stroke| (stroke.as_ref(), stroke.support(scene)))
+            .map(|stroke| (stroke.as_ref(), stroke.support(&front)))
             .filter(|(_, support)| part.iter().any(|&at| support.touches(at)))
             .collect();
         for batch in batches(&here) {
             is_wanted().then_some(())?;
             let stroke_dabs: Vec<Flying> = batch
                 .par_iter()
-                .map(|(stroke, support)| Flying { stroke, support, stroke_dabs: stroke.stroke_dabs(scene) })
+                .map(|(stroke, support)| Flying { stroke, support, stroke_dabs: stroke.stroke_dabs(&front) })
                 .collect();
             active_tiles.par_iter_mut().for_each_init(DabScratch::default, |scratch, active_tiles| {
                 active_tiles.paint(&stroke_dabs, scene, scratch)

@@ -14,10 +14,10 @@ use crate::raster::tile::TILE;
 crate::widest! {
     /// Blends paint, weighted by its coverage, into all rows of a tile.
     pub fn blend_rows(rows: &mut [PixelRow], mix: Mix, paint: &TilePaint<'_>, coverage: &TileCoverage) {
-        if let (TilePaint::Bytes(tile), None, BlendMode::Normal, false, false) =
+        if let (TilePaint::Bytes(bytes), None, BlendMode::Normal, false, false) =
             (paint, coverage.mask(), mix.mode, mix.linear, mix.atop)
         {
-            for (row, bytes) in rows.iter_mut().zip(tile.bytes().chunks_exact(4 * TILE)) {
+            for (row, bytes) in rows.iter_mut().zip(bytes.chunks_exact(4 * TILE)) {
                 bytes_over(row, bytes, coverage.opacity());
             }
             return;
@@ -77,10 +77,10 @@ fn load(row: &mut PixelRow, paint: &TilePaint<'_>, y: usize, coverage: &TileCove
             let [r, g, b, a] = color.map(|v| v * k);
             *row = PixelRow { rgb: [[r; TILE], [g; TILE], [b; TILE]], a: [a; TILE] };
         }
-        TilePaint::Bytes(tile) => {
+        TilePaint::Bytes(bytes) => {
             let unit = k / 255.0;
             let PixelRow { rgb: [r, g, b], a } = &mut *row;
-            for (x, p) in tile.bytes()[y * 4 * TILE..].chunks_exact(4).enumerate().take(TILE) {
+            for (x, p) in bytes[y * 4 * TILE..].chunks_exact(4).enumerate().take(TILE) {
                 let p = i32::from_le_bytes([p[0], p[1], p[2], p[3]]);
                 r[x] = (p & 255) as f32 * unit;
                 g[x] = ((p >> 8) & 255) as f32 * unit;

@@ -210,7 +210,7 @@ fn coverage_is_opacity_times_mask_for_every_kind_of_paint() {
     let tile = PlanarTile::from_pixels(&one_pixel(color));
     let bytes = tile.quantised().unwrap();
     let coverage = TileCoverage::uniform(0.5).times(|x, _| if x < 32 { 1.0 } else { 0.5 });
-    for paint in [TilePaint::Solid(color), TilePaint::Bytes(&bytes), TilePaint::Planar(&tile)] {
+    for paint in [TilePaint::Solid(color), TilePaint::Bytes(bytes.bytes()), TilePaint::Planar(&tile)] {
         let mut onto = PlanarTile::transparent();
         onto.blend(Mix::default(), paint, &coverage);
         assert!(close(&onto.rows()[5].pixel(0), &[0.25, 0.125, 0.0, 0.25], 0.003));

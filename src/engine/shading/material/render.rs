@@ -19,7 +19,7 @@ impl Shading {
     /// [`Shading::warm`] does so in advance.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
         let surface = scene.surface.as_deref()?;
-        let inside = at.rect().intersect(surface.size().rect());
+        let inside = scene.area(at);
         let features = self.features.on(surface);
         let surface_row = |y: i32| SurfaceRow::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
         let mut bytes = vec![0; 4 * TILE_AREA];
@@ -34,7 +34,8 @@ impl Shading {
         } else if !inside.is_empty() {
             let mut surface_row = surface_row(inside.y0);
             let mut worker = RowShader::new(self);
-            for (row, y) in rows {
+            let looked_at = if scene.sheet().is_some() { 2 } else { 1 };
+            for (row, y) in rows.step_by(looked_at) {
                 surface_row.move_to(y as usize);
                 if surface_row.coverage().iter().any(|&c| c > 0) {
                     show(worker.light(&surface_row), surface_row.coverage(), row);

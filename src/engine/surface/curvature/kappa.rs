@@ -50,7 +50,7 @@ impl Kappa {
             for (curvature, scale) in parts {
                 let pixels = i * CHUNK..i * CHUNK + steps.len();
                 let [hxx, hyy] = [&curvature.hxx, &curvature.hyy].map(|plane| &plane.values()[pixels.clone()]);
-                add(hxx, hyy, &curvature.fade.values()[pixels], *scale, kappa);
+                add(hxx, hyy, *scale, kappa);
             }
             to_steps(kappa, steps);
         });
@@ -59,7 +59,7 @@ impl Kappa {
 }
 
 impl Surface {
-    /// Isotropic κ: Σ share · fade · tanh(s (k_u + k_v)) (MATH 4). Cached. Call it once before going parallel: threads
+    /// Isotropic κ: Σ share · tanh(s (k_u + k_v)) (MATH 4). Cached. Call it once before going parallel: threads
     /// that ask at the same time may each compute it.
     pub fn kappa(&self, scales: &[KappaScale]) -> Arc<Kappa> {
         let key = scales.iter().map(|s| [s.blur_px, s.curvature_scale_px, s.share].map(f32::to_bits)).collect();
@@ -72,11 +72,10 @@ impl Surface {
 }
 
 crate::widest! {
-    fn add(hxx: &[f32], hyy: &[f32], fade: &[u8], scale: KappaScale, kappa: &mut [f32]) {
+    fn add(hxx: &[f32], hyy: &[f32], scale: KappaScale, kappa: &mut [f32]) {
         let KappaScale { curvature_scale_px, share, .. } = scale;
-        let share = share * (1.0 / 255.0);
-        for (((&hxx, &hyy), &fade), kappa) in hxx.iter().zip(hyy).zip(fade).zip(kappa) {
-            *kappa += share * (i32::from(fade) as f32) * fast::tanh(curvature_scale_px * (hxx + hyy));
+        for ((&hxx, &hyy), kappa) in hxx.iter().zip(hyy).zip(kappa) {
+            *kappa += share * fast::tanh(curvature_scale_px * (hxx + hyy));
         }
     }
     fn to_steps(kappa: &[f32], steps: &mut [i16]) {

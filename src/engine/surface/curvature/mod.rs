@@ -2,16 +2,20 @@
 //! Floor 2. Here: what curvature is and its equations. Not here: the fast way to compute it over a whole map (`tiles`),
 //! or its uses (`shading::radiance`, the detail of D_n).
 
-mod fade;
+mod ends;
 mod kappa;
+mod rims;
+mod tile_rect;
 mod tiles;
 
 #[cfg(test)]
 mod reference;
 
 pub use kappa::{Kappa, KappaScale};
+pub use rims::Rims;
 
 use super::Surface;
+use super::contours::SheetOf;
 use crate::math::{Vec2, Vec3, vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
@@ -20,14 +24,11 @@ use std::sync::Arc;
 pub const GRAZING_NZ: f32 = 0.05;
 
 /// The curvature tensor H of every pixel: axes x right, y **up**; convex > 0; per pixel, before the curvature scale
-/// *s*.
+/// *s*. At the ends of the surface it is continued from beside; off the surface it is 0.
 pub struct Curvature {
     pub hxx: Plane<f32>,
     pub hxy: Plane<f32>,
     pub hyy: Plane<f32>,
-    /// 0 at the mask's edge, at depth jumps and off the surface; 255, which is 1, from three pixels on. Every κ is
-    /// multiplied by it.
-    pub fade: Plane<u8>,
 }
 
 /// The slope of the surface as seen: minus g of MATH 4, in image axes (y **down**).
@@ -53,12 +54,12 @@ pub fn tensor(dx_slope: (f32, f32), dy_slope: (f32, f32)) -> [f32; 3] {
 }
 
 impl Curvature {
-    /// κ = tanh(s (k_u + k_v)), faded: in (−1, 1), convex > 0 (MATH 4). `scale_px`: *s*.
+    /// κ = tanh(s (k_u + k_v)): in (−1, 1), convex > 0 (MATH 4). `scale_px`: *s*.
     #[inline(always)]
     pub fn kappa(&self, x: usize, y: usize, scale_px: f32) -> f32 {
-        self.fade_at(x, y) * (scale_px * (self.hxx.at(x, y) + self.hyy.at(x, y))).tanh()
+        (scale_px * (self.hxx.at(x, y) + self.hyy.at(x, y))).tanh()
     }
-    /// κ(ℓ) = tanh(s [(H + λA) ℓ_u² + (H − λA) ℓ_v² + H ℓ_z²]), faded (MATH 4).
+    /// κ(ℓ) = tanh(s [(H + λA) ℓ_u² + (H − λA) ℓ_v² + H ℓ_z²]) (MATH 4).
     ///
     /// * `lambda`: in `[−1, 1]`; 0 is isotropic.
     /// * `light`: ℓ, toward the light, camera space (y up), any length; zero counts as the view direction.
@@ -69,7 +70,7 @@ impl Curvature {
         let l = light.normalize_or(Vec3::Z);
         let [hxx, hxy, hyy] = self.tensor(x, y);
         let aniso = (hxx - hyy) * (l.x * l.x - l.y * l.y) + 4.0 * hxy * l.x * l.y;
-        self.fade_at(x, y) * (scale_px * (hxx + hyy + lambda * aniso)).tanh()
+        (scale_px * (hxx + hyy + lambda * aniso)).tanh()
     }
     /// Principal curvatures k_u ≥ k_v, per pixel, and the unit direction u (y up, sign arbitrary); v is u turned by
     /// 90°.
@@ -80,11 +81,6 @@ impl Curvature {
         let angle = 0.5 * hxy.atan2(half);
         (mean + radius, mean - radius, vec2(angle.cos(), angle.sin()))
     }
-    /// The fade of a pixel, in `[0, 1]`.
-    #[inline(always)]
-    pub fn fade_at(&self, x: usize, y: usize) -> f32 {
-        f32::from(self.fade.at(x, y)) * (1.0 / 255.0)
-    }
     /// `[h_xx, h_xy, h_yy]` of a pixel.
     #[inline(always)]
     pub fn tensor(&self, x: usize, y: usize) -> [f32; 3] {
@@ -92,20 +88,33 @@ impl Curvature {
     }
 }
 
-/// Pixels of all curvatures kept, 13 bytes each: a few scales weighed at once, or two on a large canvas.
+/// Pixels of all curvatures kept, 12 bytes each: a few scales weighed at once, or two on a large canvas.
 const KEPT_PX: usize = 16 << 20;
 
 impl Surface {
     /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at
     /// all).
     ///
-    /// Neither the blur nor the differences cross the mask's edge or a depth jump. Cached. Call it once before going
+    /// Neither the blur nor the differences cross the mask's edge or a depth jump. Of a sheet it is that of the other
+    /// populations' pixels nearby. Cached. Call it once before going
     /// parallel: threads that ask at the same time may each compute it.
     pub fn curvature(&self, blur_px: f32) -> Arc<Curvature> {
         // `max` first: NaN.max(0) is 0. Half the canvas flattens whatever is on it.
         let blur_px = blur_px.max(0.0).min(0.5 * self.size().longer_side());
         let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
-        self.curvatures().get_or_compute(blur_px.to_bits(), keep, |recycled| tiles::compute(self, blur_px, recycled))
+        let compute = |recycled| match self.sheet_of() {
+            Some(sheet) => self.of_sheet(sheet, blur_px),
+            None => tiles::compute(self, blur_px, recycled),
+        };
+        self.curvatures().get_or_compute(blur_px.to_bits(), keep, compute)
+    }
+    fn of_sheet(&self, sheet: &SheetOf, blur_px: f32) -> Curvature {
+        let whole = sheet.surface().map(|surface| surface.curvature(blur_px));
+        let [hxx, hxy, hyy] = [0, 1, 2].map(|i| {
+            let of = |x: usize, y: usize| whole.as_ref().map_or(0.0, |whole| whole.tensor(x, y)[i]);
+            sheet.map(self.size(), |pixel| pixel.other_mean(of))
+        });
+        Curvature { hxx, hxy, hyy }
     }
 }
 

@@ -1,8 +1,9 @@
 //! The curvature tensor pixel by pixel, as MATH 4 writes it: what the fast version is tested against.
 
-use super::{fade, slope, tensor};
+use super::{rims, slope, tensor};
 use crate::math::Vec3;
 use crate::raster::blur::half_kernel;
+use crate::surface::contours::mean_of;
 use crate::surface::{Surface, links};
 
 /// The neighbour of a pixel in a direction, if it continues its surface.
@@ -15,7 +16,17 @@ fn step(surface: &Surface, (x, y): (usize, usize), bit: u8) -> Option<(usize, us
     })
 }
 
-/// Σ_k w_k value(k steps away) in two opposite directions, as far as the links go.
+fn is_at_border(surface: &Surface, (x, y): (usize, usize), bit: u8) -> bool {
+    let size = surface.size();
+    match bit {
+        links::LEFT => x == 0,
+        links::RIGHT => x + 1 == size.width as usize,
+        links::UP => y == 0,
+        _ => y + 1 == size.height as usize,
+    }
+}
+
+/// Σ_k w_k value(k steps away) in two opposite directions, as far as the links go and the last value on.
 fn along(
     surface: &Surface,
     at: (usize, usize),
@@ -27,8 +38,12 @@ fn along(
     for bit in bits {
         let mut here = at;
         for &w in &taps[1..] {
-            let Some(next) = step(surface, here, bit) else { break };
-            here = next;
+            // Beyond an end the last value is repeated, beyond the canvas's border there is none.
+            here = match step(surface, here, bit) {
+                Some(next) => next,
+                None if is_at_border(surface, here, bit) => break,
+                None => here,
+            };
             sum += w * value(here);
         }
     }
@@ -44,8 +59,17 @@ fn slope_at(surface: &Surface, at: (usize, usize), taps: &[f32]) -> (f32, f32) {
     slope(n.x, n.y, n.z)
 }
 
-/// `[h_xx, h_xy, h_yy]` and the fade of a pixel.
-pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> ([f32; 3], u8) {
+/// `[h_xx, h_xy, h_yy]` of a pixel; at an end of the surface the mean of those beside that have all their neighbours.
+pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
+    match rims::members(surface, x as i32, y as i32) {
+        Some(members) if members != 0 => {
+            [0, 1, 2].map(|i| mean_of(members, (x as i32, y as i32), |x, y| differenced(surface, x, y, blur_px)[i]))
+        }
+        _ => differenced(surface, x, y, blur_px),
+    }
+}
+
+fn differenced(surface: &Surface, x: usize, y: usize, blur_px: f32) -> [f32; 3] {
     let taps = half_kernel(blur_px);
     // Central where both neighbours continue the surface, one-sided where one does, none where neither.
     let difference = |back: u8, forth: u8| {
@@ -54,15 +78,5 @@ pub fn tensor_at(surface: &Surface, x: usize, y: usize, blur_px: f32) -> ([f32; 
         let [a, b] = ends.map(|end| slope_at(surface, end.unwrap_or((x, y)), &taps));
         ((b.0 - a.0) / steps, (b.1 - a.1) / steps)
     };
-    let h = tensor(difference(links::LEFT, links::RIGHT), difference(links::UP, links::DOWN));
-    (h, fade_at(surface, x, y))
-}
-
-fn fade_at(surface: &Surface, x: usize, y: usize) -> u8 {
-    let (w, h) = (surface.size().width as usize, surface.size().height as usize);
-    let squared = |i: usize, j: usize| (i.abs_diff(x).pow(2) + j.abs_diff(y).pow(2)) as u32;
-    let near = |c: usize, n: usize| c.saturating_sub(fade::FADE_PX)..(c + fade::FADE_PX + 1).min(n);
-    let breaks =
-        near(y, h).flat_map(|j| near(x, w).map(move |i| (i, j))).filter(|&(i, j)| fade::is_break(surface, i, j));
-    fade::fade_at(breaks.map(|(i, j)| squared(i, j)).min().unwrap_or(u32::MAX))
+    tensor(difference(links::LEFT, links::RIGHT), difference(links::UP, links::DOWN))
 }

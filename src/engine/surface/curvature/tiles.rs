@@ -1,19 +1,21 @@
 //! The curvature tensor of a whole map, tile by tile: blur, slopes and differences while the tile is in the cache.
 //! Floor 2. The plain version that reads like the paper is `reference`.
 
-use super::{Curvature, fade, slope, tensor};
-use crate::math::{Size, simd::prefetch};
+use super::ends::EndBlur;
+use super::tile_rect::TileRect;
+use super::{Curvature, slope, tensor};
+use crate::math::simd::prefetch;
 use crate::raster::{Plane, blur::half_kernel};
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
 
 /// Columns of a tile's scratch: the tile and one pixel around it for the differences.
 const STRIDE: usize = 256;
-const TILE_COLS: usize = STRIDE - 2;
+pub(super) const TILE_COLS: usize = STRIDE - 2;
 /// Rows of a band: enough that few rows are blurred twice, once for each of two bands.
-const BAND_ROWS: usize = 64;
+pub(super) const BAND_ROWS: usize = 64;
 /// Pixels summed side by side in registers.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
 /// Chunks of a row of scratch.
 const CHUNKS: usize = STRIDE / LANES;
@@ -21,66 +23,42 @@ const CHUNKS: usize = STRIDE / LANES;
 /// sets of the first-level cache.
 const PITCH: usize = STRIDE + 16;
 
-/// Computes H and its fade for every pixel. `blur_px`: standard deviation, finite, `≥ 0`.
+/// Computes H for every pixel. `blur_px`: standard deviation, finite, `≥ 0`.
 ///
 /// `recycled`: planes of the same size that are no longer wanted. At 3840 × 2160, allocating costs as much as the work
 /// itself.
 pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvature>) -> Curvature {
     let size = surface.size();
     let taps = half_kernel(blur_px);
-    let (mut planes, mut fade) = match recycled {
-        Some(Curvature { hxx, hxy, hyy, fade }) => ([hxx, hxy, hyy].map(Plane::into_values), fade.into_values()),
-        None => (std::array::from_fn(|_| vec![0.0; size.area()]), vec![0; size.area()]),
+    let mut planes = match recycled {
+        Some(Curvature { hxx, hxy, hyy }) => [hxx, hxy, hyy].map(Plane::into_values),
+        None => std::array::from_fn(|_| vec![0.0; size.area()]),
     };
+    let rims = surface.rims();
+    let ends = EndBlur::new(surface, &rims, blur_px);
     let band = BAND_ROWS * size.width as usize;
     let [hxx, hxy, hyy] = planes.each_mut().map(|p| p.par_chunks_mut(band));
-    (hxx, hxy, hyy, fade.par_chunks_mut(band)).into_par_iter().enumerate().for_each_init(
+    (hxx, hxy, hyy).into_par_iter().enumerate().for_each_init(
         || TileScratch::new(taps.len() - 1),
-        |scratch, (i, (hxx, hxy, hyy, fading))| {
+        |scratch, (i, (hxx, hxy, hyy))| {
             for tile in TileRect::of_band(size, i * BAND_ROWS) {
                 if tile.is_empty(surface) {
                     [&mut *hxx, hxy, hyy].into_iter().for_each(|plane| tile.clear(plane, size, 0.0));
-                    tile.clear(fading, size, 0);
                 } else {
                     scratch.tensor_tile(surface, &taps, tile, [&mut *hxx, hxy, hyy]);
-                    fade::fill(surface, tile, fading);
+                    if let Some(ends) = &ends {
+                        ends.fill(tile, [&mut *hxx, hxy, hyy]);
+                    }
                 }
             }
         },
     );
-    let [hxx, hxy, hyy] = planes.map(|v| Plane::from_values(size, v).expect("one value per pixel"));
-    Curvature { hxx, hxy, hyy, fade: Plane::from_values(size, fade).expect("one value per pixel") }
-}
-
-/// The pixels of one tile.
-#[derive(Clone, Copy)]
-pub(super) struct TileRect {
-    pub x0: usize,
-    pub y0: usize,
-    pub cols: usize,
-    pub rows: usize,
-}
-
-impl TileRect {
-    /// The tiles of the band of rows that starts at `y0`.
-    fn of_band(size: Size, y0: usize) -> impl Iterator<Item = TileRect> {
-        let (width, rows) = (size.width as usize, BAND_ROWS.min(size.height as usize - y0));
-        (0..width).step_by(TILE_COLS).map(move |x0| TileRect { x0, y0, cols: TILE_COLS.min(width - x0), rows })
-    }
-    /// No pixel of the tile is linked to another: there is nothing to difference.
-    fn is_empty(&self, surface: &Surface) -> bool {
-        (0..self.rows).all(|y| surface.links_plane().row(self.y0 + y)[self.columns()].iter().all(|&l| l == 0))
-    }
-    fn clear<T: Copy>(&self, band: &mut [T], size: Size, nothing: T) {
-        (0..self.rows).for_each(|y| band[y * size.width as usize..][self.columns()].fill(nothing));
-    }
-    /// How many chunks hold the tile and a pixel at both sides.
-    fn chunks(&self) -> usize {
-        (self.cols + 2).div_ceil(LANES)
-    }
-    pub fn columns(&self) -> std::ops::Range<usize> {
-        self.x0..self.x0 + self.cols
-    }
+    let [hxx, hxy, hyy] = planes.map(|values| {
+        let mut plane = Plane::from_values(size, values).expect("one value per pixel");
+        rims.continue_in(&mut plane);
+        plane
+    });
+    Curvature { hxx, hxy, hyy }
 }
 
 /// What one thread reuses from tile to tile. Rows of it hold `STRIDE` pixels and begin one pixel left of the tile.
@@ -166,6 +144,9 @@ impl TileScratch {
             let last_row = y + 1 == surface.size().height as usize;
             let bit = |l: u8, bit: u8| f32::from(u8::from(l & bit != 0));
             copy_row(links, first, 1.0, &mut self.joined, |l| bit(l, links::RIGHT));
+            // The canvas's border is no end of the surface: what lies beyond is left out, not repeated.
+            let last = (links.len() as isize - 1 - first) as usize;
+            self.joined.get_mut(last).into_iter().for_each(|joined| *joined = 1.0);
             let down = |l: u8| if last_row { 1.0 } else { bit(l, links::DOWN) };
             copy_row(links, first + reach as isize, 1.0, &mut self.down[at.clone()], down);
             joined_chunks = std::array::from_fn(|i| all_set(&self.joined[i * LANES..(i + 1) * LANES + 2 * reach]));
@@ -224,7 +205,7 @@ fn sum_joined(values: &[f32], center: usize, step: usize, taps: &[f32]) -> [f32;
     sum
 }
 
-/// As [`sum_joined`]; a weight dies at the first broken link on the way.
+/// As [`sum_joined`]; beyond a broken link the last value before it is repeated.
 #[inline(always)]
 fn sum_broken(values: &[f32], joined: &[f32], center: usize, step: usize, taps: &[f32]) -> [f32; LANES] {
     let mut sum = *lanes(values, center);
@@ -232,6 +213,7 @@ fn sum_broken(values: &[f32], joined: &[f32], center: usize, step: usize, taps: 
         *v *= taps[0];
     }
     let (mut back, mut forth) = ([1.0f32; LANES], [1.0f32; LANES]);
+    let (mut last_a, mut last_b) = (*lanes(values, center), *lanes(values, center));
     for (k, &w) in taps.iter().enumerate().skip(1) {
         let (a, b) = (center - k * step, center + k * step);
         let (to_a, to_b) = (lanes(joined, a), lanes(joined, b - step));
@@ -239,7 +221,9 @@ fn sum_broken(values: &[f32], joined: &[f32], center: usize, step: usize, taps: 
         for l in 0..LANES {
             back[l] *= to_a[l];
             forth[l] *= to_b[l];
-            sum[l] += w * (back[l] * a[l] + forth[l] * b[l]);
+            last_a[l] = if back[l] > 0.0 { a[l] } else { last_a[l] };
+            last_b[l] = if forth[l] > 0.0 { b[l] } else { last_b[l] };
+            sum[l] += w * (last_a[l] + last_b[l]);
         }
     }
     sum

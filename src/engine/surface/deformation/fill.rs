@@ -34,8 +34,7 @@ pub(super) fn fill(
     if deformation.is_identity() {
         let rows = out_x.chunks_exact_mut(width).zip(out_y.chunks_exact_mut(width));
         for (y, (row_x, row_y)) in (rect.y0..).zip(rows) {
-            row_x.iter_mut().zip(rect.x0..).for_each(|(out, x)| *out = x as f32 + 0.5);
-            row_y.fill(y as f32 + 0.5);
+            deformation.place(rect.x0, y, row_x, row_y);
         }
         return;
     }
@@ -68,7 +67,9 @@ pub(super) fn fill(
                 .zip(maps)
                 .is_some_and(|((planes, surface), maps)| laid_span(planes, surface, maps, out_x, out_y));
             if !is_laid {
-                plan.span(maps, x as f32 + 0.5, y as f32 + 0.5, &mut scratch, out_x, out_y);
+                let [place_x, place_y] = &mut scratch.place;
+                deformation.place(x, y, &mut place_x[..n], &mut place_y[..n]);
+                plan.span(maps, &mut scratch, out_x, out_y);
             }
             if let Some(((planes, surface), maps)) = unwrapped.zip(maps).filter(|_| !is_laid) {
                 laid_over(planes, surface, maps, out_x, out_y);
@@ -122,6 +123,8 @@ impl MapSpan {
 
 /// Rows of intermediate values, one per pixel of a span.
 struct SpanScratch {
+    /// The pixels' centres.
+    place: [[f32; SPAN]; 2],
     /// r̄, where the operator asks for it.
     mirrored: [[f32; SPAN]; 2],
     /// 0 outside the surface, 1 + μκ on it.
@@ -137,7 +140,15 @@ struct SpanScratch {
 impl Default for SpanScratch {
     fn default() -> Self {
         let row = [0.0; SPAN];
-        Self { mirrored: [row; 2], gain: row, weight: row, weight_sum: row, nearest: row, moved: [row; 2] }
+        Self {
+            place: [row; 2],
+            mirrored: [row; 2],
+            gain: row,
+            weight: row,
+            weight_sum: row,
+            nearest: row,
+            moved: [row; 2],
+        }
     }
 }
 
@@ -230,18 +241,10 @@ impl<'d> FillPlan<'d> {
         }
         scratch
     }
-    /// D over a span whose first pixel has its centre at (x, y); `maps` is `None` beyond the maps.
-    fn span(
-        &self,
-        maps: Option<MapSpan>,
-        x: f32,
-        y: f32,
-        scratch: &mut SpanScratch,
-        out_x: &mut [f32],
-        out_y: &mut [f32],
-    ) {
+    /// D over a span whose pixels are placed in the scratch; `maps` is `None` beyond the maps.
+    fn span(&self, maps: Option<MapSpan>, scratch: &mut SpanScratch, out_x: &mut [f32], out_y: &mut [f32]) {
         let n = out_x.len();
-        let SpanScratch { mirrored, gain, weight, weight_sum, nearest, moved } = scratch;
+        let SpanScratch { place: [x, y], mirrored, gain, weight, weight_sum, nearest, moved } = scratch;
         let surface = self.deformation.surface;
         let (mut a, mut b) = (&NOTHING[..n], &NOTHING[..n]);
         let mut gains = &NOTHING[..n];
@@ -259,7 +262,7 @@ impl<'d> FillPlan<'d> {
                 }
             }
         }
-        let span = KernelSpan { x, y, a, b, gain: gains };
+        let span = KernelSpan { x: &x[..n], y: &y[..n], a, b, gain: gains };
         if let [pin] = &self.pins[..] {
             return match self.kernel {
                 Kernel::Still => still_one(span, pin, out_x, out_y),

@@ -50,9 +50,13 @@ impl<'a> LaidPlanes<'a> {
     /// ramp runs evenly over the surface between them.
     pub fn pinned(surface: &'a Surface, settings: UnwrapSettings, anchors: &[Anchor], weights: Weights) -> Self {
         let unwrapping = surface.unwrapped(settings);
+        // Anchors stand on the surface, also of a sheet.
+        let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
+        let pinned = whole.as_deref().unwrap_or(surface);
+        let laid = pinned.unwrapped(settings);
         let mut groups: Vec<(u32, Vec<(Vec2, Vec2)>)> = Vec::new();
         for anchor in anchors {
-            let PlanePlace { object, at, .. } = unwrapping.place(surface, anchor.at);
+            let PlanePlace { object, at, .. } = laid.place(pinned, anchor.at);
             match groups.iter_mut().find(|(known, _)| *known == object) {
                 Some((_, pairs)) => pairs.push((at, anchor.source)),
                 None => groups.push((object, vec![(at, anchor.source)])),
@@ -64,7 +68,9 @@ impl<'a> LaidPlanes<'a> {
     /// `D(q) − q_0 = R(q_0)ᵀ (U(q) − U(q_0))`: a decal, upright where it is put down.
     pub fn of_dab(surface: &'a Surface, settings: UnwrapSettings, at: Vec2) -> Self {
         let unwrapping = surface.unwrapped(settings);
-        let PlanePlace { object, at: there, turn } = unwrapping.place(surface, at);
+        let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
+        let pinned = whole.as_deref().unwrap_or(surface);
+        let PlanePlace { object, at: there, turn } = pinned.unwrapped(settings).place(pinned, at);
         let linear = turn.transpose();
         let fit = PlaneFit { object, linear, shift: at - linear * there, pins: Vec::new(), power: 2.0 };
         Self { unwrapping, objects: surface.objects().labels(), fits: vec![fit], is_bounded: true }

@@ -5,11 +5,11 @@ use super::FastPin;
 use crate::math::{Mat2, Vec2};
 use crate::surface::operator::{first_order, second_order};
 
-/// The pixels of a row: centre of the first, and what the maps hold.
+/// The pixels of a row: their centres, and what the maps hold.
 #[derive(Clone, Copy)]
 pub(super) struct KernelSpan<'s> {
-    pub(super) x: f32,
-    pub(super) y: f32,
+    pub(super) x: &'s [f32],
+    pub(super) y: &'s [f32],
     pub(super) a: &'s [f32],
     pub(super) b: &'s [f32],
     pub(super) gain: &'s [f32],
@@ -69,8 +69,9 @@ impl OffsetKernel for MirrorKernel {
 fn one(span: KernelSpan, pin: &FastPin, kernel: impl OffsetKernel, out_x: &mut [f32], out_y: &mut [f32]) {
     let n = out_x.len();
     let (a, b, gain, out_y) = (&span.a[..n], &span.b[..n], &span.gain[..n], &mut out_y[..n]);
+    let (x, y) = (&span.x[..n], &span.y[..n]);
     for k in 0..n {
-        let (x, y) = (span.x + k as i32 as f32, span.y);
+        let (x, y) = (x[k], y[k]);
         let (dx, dy) = kernel.offset(x - pin.x, y - pin.y, a[k], b[k], pin);
         out_x[k] = x + (gain[k] * dx + pin.move_x);
         out_y[k] = y + (gain[k] * dy + pin.move_y);
@@ -89,9 +90,9 @@ fn add(
 ) {
     let n = moved_x.len();
     let (a, b, gain, weight) = (&span.a[..n], &span.b[..n], &span.gain[..n], &weight[..n]);
-    let moved_y = &mut moved_y[..n];
+    let (x, y, moved_y) = (&span.x[..n], &span.y[..n], &mut moved_y[..n]);
     for k in 0..n {
-        let (x, y) = (span.x + k as i32 as f32, span.y);
+        let (x, y) = (x[k], y[k]);
         let (dx, dy) = kernel.offset(x - pin.x, y - pin.y, a[k], b[k], pin);
         moved_x[k] += weight[k] * (gain[k] * dx + pin.move_x);
         moved_y[k] += weight[k] * (gain[k] * dy + pin.move_y);
@@ -103,7 +104,7 @@ const AT_ANCHOR: f32 = 1e-12;
 
 #[inline(always)]
 fn distance_squared(span: KernelSpan, pin: &FastPin, k: usize) -> f32 {
-    let (dx, dy) = (span.x + k as i32 as f32 - pin.x, span.y - pin.y);
+    let (dx, dy) = (span.x[k] - pin.x, span.y[k] - pin.y);
     dx * dx + dy * dy
 }
 
@@ -205,7 +206,7 @@ crate::widest! {
             _ => (0.0, 0.0),
         };
         for (k, (w, sum)) in weight.iter_mut().zip(weight_sum).enumerate() {
-            let along = (span.x + k as i32 as f32 - first.x) * slope[0] + (span.y - first.y) * slope[1];
+            let along = (span.x[k] - first.x) * slope[0] + (span.y[k] - first.y) * slope[1];
             *w = offset + factor * along.max(0.0).min(1.0);
             *sum += *w;
         }
@@ -237,10 +238,11 @@ crate::widest! {
     ) {
         let n = out_x.len();
         let (moved_x, moved_y, weight_sum, out_y) = (&moved_x[..n], &moved_y[..n], &weight_sum[..n], &mut out_y[..n]);
+        let (x, y) = (&span.x[..n], &span.y[..n]);
         for k in 0..n {
             let share = if weight_sum[k] > 0.0 { 1.0 / weight_sum[k] } else { 0.0 };
-            out_x[k] = span.x + k as i32 as f32 + moved_x[k] * share;
-            out_y[k] = span.y + moved_y[k] * share;
+            out_x[k] = x[k] + moved_x[k] * share;
+            out_y[k] = y[k] + moved_y[k] * share;
         }
     }
     /// r̄ over a row: `reflection::mirrored` with a polynomial for the arc tangent.

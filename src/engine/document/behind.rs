@@ -1,0 +1,171 @@
+//! The other populations of a tile's contour pixels, packed into rows: as many pixels as there are, not as the tile has
+//! (MATH 10). Layers are rendered and composed on them like on a tile.
+//! Floor 4. Here: their order and their pixels. Not here: composing them (`compose`), rendering them (`content`).
+
+use crate::math::srgb;
+use crate::paint::Scene;
+use crate::raster::blend::spec;
+use crate::raster::{PlanarTile, TILE, Tile, TileAt};
+use crate::surface::contours::{ContourPixel, TileContours, place_of};
+use std::sync::Arc;
+
+/// The other populations of one tile. Rows of those that see a surface come first; rows of those that see none follow.
+#[derive(Clone, Copy)]
+pub struct Behind<'c> {
+    pub at: TileAt,
+    contours: TileContours<'c>,
+}
+
+/// Pixels of a layer as other populations see them: bytes as a tile's, a row after the other.
+pub struct PackedTile {
+    bytes: Box<[u8]>,
+    opaque: bool,
+}
+
+/// What a layer sees behind a contour, and before it.
+#[derive(Clone, Copy)]
+pub struct BehindScene<'s> {
+    pub behind: Behind<'s>,
+    pub front: &'s Scene,
+    /// `None` where no other population sees a surface.
+    pub sheet: Option<&'s Scene>,
+}
+
+impl<'c> Behind<'c> {
+    pub fn new(at: TileAt, contours: TileContours<'c>) -> Self {
+        Self { at, contours }
+    }
+    fn seen_rows(&self) -> usize {
+        self.contours.seen.div_ceil(TILE)
+    }
+    /// Rows of all.
+    pub fn rows(&self) -> usize {
+        self.seen_rows() + (self.contours.pixels.len() - self.contours.seen).div_ceil(TILE)
+    }
+    /// Every contour pixel with its place among the packed ones, row by row.
+    pub fn places(&self) -> impl Iterator<Item = (usize, &'c ContourPixel)> + use<'c> {
+        let (seen, first_bare) = (self.contours.seen, self.seen_rows() * TILE);
+        let place = move |i: usize| if i < seen { i } else { first_bare + i - seen };
+        self.contours.pixels.iter().enumerate().map(move |(i, pixel)| (place(i), pixel))
+    }
+    /// The pixel of the sheet that tells of a place; `None` where no surface is seen.
+    pub fn sheet_pixel(&self, place: usize) -> Option<(usize, usize)> {
+        let (x, y) = (place < self.contours.seen).then(|| place_of(place))?;
+        Some((self.contours.sheet.x0 as usize + x, self.contours.sheet.y0 as usize + y))
+    }
+    /// Some other population sees no surface.
+    pub fn has_bare(&self) -> bool {
+        self.contours.seen < self.contours.pixels.len()
+    }
+    /// One value for each place from its contour pixel; 0 at places that are not used.
+    pub fn values(&self, value: impl Fn(usize, &ContourPixel) -> f32) -> Vec<f32> {
+        let mut values = vec![0.0; self.rows() * TILE];
+        self.places().for_each(|(place, pixel)| values[place] = value(place, pixel));
+        values
+    }
+    /// Packs pixels: of what was rendered on the sheet, and for those that see no surface of the tile itself.
+    pub fn packed(&self, on_sheet: Option<&Tile>, bare: Option<&Tile>) -> PackedTile {
+        let corner = self.at.rect();
+        self.gathered(|place, pixel| {
+            let (tile, x, y) = match place < self.contours.seen {
+                true => {
+                    let (x, y) = place_of(place);
+                    (on_sheet, x, y)
+                }
+                false => (bare, (pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize),
+            };
+            tile.map_or([0; 4], |tile| pixel_of(tile, x, y))
+        })
+    }
+    /// Packs the pixels of a tile itself: both populations see the same.
+    pub fn same(&self, tile: &Tile) -> PackedTile {
+        let corner = self.at.rect();
+        self.gathered(|_, pixel| pixel_of(tile, (pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize))
+    }
+    fn gathered(&self, pixel: impl Fn(usize, &ContourPixel) -> [u8; 4]) -> PackedTile {
+        let mut bytes = vec![0; self.rows() * TILE * 4].into_boxed_slice();
+        let mut opaque = true;
+        for (place, contour) in self.places() {
+            let pixel = pixel(place, contour);
+            opaque &= pixel[3] == 255;
+            bytes[place * 4..place * 4 + 4].copy_from_slice(&pixel);
+        }
+        PackedTile { bytes, opaque }
+    }
+    /// Leaves each pixel wholly, or nothing of it, as dissolving paint does at its place on the canvas.
+    pub fn dissolve(&self, pixels: &mut PlanarTile) {
+        for (place, contour) in self.places() {
+            let row = &mut pixels.rows_mut()[place / TILE];
+            let x = place % TILE;
+            let kept = spec::dissolved(row.pixel(x), [contour.x, contour.y]);
+            let [r, g, b] = &mut row.rgb;
+            [r[x], g[x], b[x], row.a[x]] = kept;
+        }
+    }
+    /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10).
+    pub fn mix_into(&self, other: &PlanarTile, own: &mut PlanarTile) {
+        let corner = self.at.rect();
+        for (place, pixel) in self.places() {
+            let from = other.rows()[place / TILE].pixel(place % TILE);
+            let (x, y) = ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
+            let row = &mut own.rows_mut()[y];
+            let to = row.pixel(x);
+            if to != from {
+                let mixed = if pixel.sees_surface() { in_light } else { mixed };
+                let [r, g, b] = &mut row.rgb;
+                [r[x], g[x], b[x], row.a[x]] = mixed(to, from, 1.0 - pixel.share);
+            }
+        }
+    }
+}
+
+/// A share of one pixel in another, premultiplied: coverage, as opacity.
+fn mixed(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
+    std::array::from_fn(|i| to[i] + share * (from[i] - to[i]))
+}
+
+/// The same of their light: two parts of one surface are seen side by side.
+fn in_light(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
+    let light = |p: [f32; 4]| {
+        let per_a = 1.0 / p[3].max(f32::MIN_POSITIVE);
+        [0, 1, 2].map(|i| srgb::decode((p[i] * per_a).min(1.0)) * p[3])
+    };
+    let (a, b) = (light(to), light(from));
+    let alpha = to[3] + share * (from[3] - to[3]);
+    let per_alpha = 1.0 / alpha.max(f32::MIN_POSITIVE);
+    let encoded = |i: usize| srgb::encode(((a[i] + share * (b[i] - a[i])) * per_alpha).min(1.0)) * alpha;
+    [encoded(0), encoded(1), encoded(2), alpha]
+}
+
+fn pixel_of(tile: &Tile, x: usize, y: usize) -> [u8; 4] {
+    tile.bytes().as_chunks::<4>().0[y * TILE + x]
+}
+
+impl PackedTile {
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+    /// Every pixel that is used is.
+    pub fn is_opaque(&self) -> bool {
+        self.opaque
+    }
+}
+
+/// What is known of a live layer behind the contours of a tile.
+#[derive(Clone)]
+pub enum BehindPixels {
+    /// The same as the tile itself: of strokes that are still being drawn.
+    Same,
+    Packed(Arc<PackedTile>),
+}
+
+impl BehindPixels {
+    /// Known to be the same pixels.
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Same, Self::Same) => true,
+            (Self::Packed(a), Self::Packed(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}

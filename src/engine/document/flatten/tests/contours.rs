@@ -1,0 +1,175 @@
+//! Pixels that two populations see: coverage acts once, whatever is stacked; what is behind a contour shows in its share.
+
+use super::*;
+use crate::document::{Live, NormalLayer};
+use crate::math::srgb;
+use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, PictureSource, Placement, Sample, Stroke};
+use crate::raster::{Outside, Picture};
+use crate::shading::{Model, RadianceScaling, Scaling, Shading};
+use crate::surface::{DetailMap, Operator};
+
+/// Covered by the shares of the columns: 0 … 255 over and over.
+fn soft_surface() -> Arc<Surface> {
+    let coverage = Plane::from_fn(SIZE, |x, _| share(x));
+    let normals = Plane::filled(SIZE, vec3(0.6, 0.0, 0.8));
+    Arc::new(Surface::new(Maps { normals, depth: Plane::filled(SIZE, 0.5), coverage }).unwrap())
+}
+fn share(x: usize) -> u8 {
+    [0, 64, 128, 191, 255][x % 5]
+}
+fn on_soft(layers: Vec<Layer>) -> TileGrid {
+    flatten(&Document { surface: Some(soft_surface()), ..document(layers) }, &Progress::default()).unwrap()
+}
+fn unclipped(text: &str) -> Layer {
+    with(fill(text), |l| l.clip_to_surface = false)
+}
+/// Every pixel of the first columns is `c · covered + (1 − c) · bare`, premultiplied.
+fn assert_shared(found: &TileGrid, covered: [u8; 4], bare: [u8; 4], what: &str) {
+    for x in 0..10 {
+        let c = f32::from(share(x)) / 255.0;
+        let expected = std::array::from_fn(|i| c * f32::from(covered[i]) + (1.0 - c) * f32::from(bare[i]));
+        let pixel = found.pixel(x as i32, 7);
+        for i in 0..4 {
+            let expected: [f32; 4] = expected;
+            assert!((f32::from(pixel[i]) - expected[i]).abs() <= 1.0, "{what}, column {x}: {pixel:?} ≠ {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn opaque_fills_cover_as_the_mask_says_however_many_there_are() {
+    for n in [1, 2, 4, 8, 16] {
+        let p = on_soft((0..n).map(|_| fill("#ffffff")).collect());
+        assert_shared(&p, [255; 4], [0; 4], &format!("{n} fills"));
+    }
+}
+#[test]
+fn no_outline_shows_whatever_meets_on_the_rim() {
+    let white = || fill("#ffffff");
+    let mode = |l: Layer, mode| with(l, |l| l.blend = mode);
+    let clipped = |l: Layer| with(l, |l| l.clip_below = true);
+    let scaling = || {
+        let scaling = RadianceScaling { scaling: Scaling::new(0.2, 0.0), ..RadianceScaling::default() };
+        Layer::new("rs", Content::RadianceScaling(scaling))
+    };
+    let stacks: Vec<(&str, Vec<Layer>)> = vec![
+        ("multiply", vec![white(), mode(white(), BlendMode::Multiply), white()]),
+        ("groups", vec![group(vec![white(), group(vec![white()], true)], false), white()]),
+        ("clipping", vec![white(), clipped(white()), clipped(group(vec![white()], false))]),
+        ("screen", vec![white(), mode(white(), BlendMode::Screen), mode(white(), BlendMode::Normal)]),
+        ("adjustment", vec![white(), scaling(), white()]),
+        ("half", vec![white(), with(white(), |l| l.opacity = 0.5)]),
+    ];
+    for (name, stack) in stacks {
+        assert_shared(&on_soft(stack.clone()), [255; 4], [0; 4], name);
+        let on_white = std::iter::once(unclipped("#ffffff")).chain(stack).collect();
+        assert_shared(&on_soft(on_white), [255; 4], [255; 4], &format!("{name} on white"));
+    }
+}
+#[test]
+fn what_is_not_clipped_to_the_surface_stands_in_both() {
+    let stack = vec![unclipped("#204060"), fill("#ff8000"), with(unclipped("#ffffff"), |l| l.opacity = 0.5)];
+    let p = on_soft(stack);
+    assert_shared(&p, [255, 191, 127, 255], [143, 159, 175, 255], "over and under");
+    let paint = with(left_of(50, "#00ff00"), |l| l.clip_to_surface = false);
+    assert_shared(&on_soft(vec![fill("#ff0000"), paint]), [0, 255, 0, 255], [0, 255, 0, 255], "paint");
+}
+#[test]
+fn masks_and_normal_layers_leave_coverage_to_act_once() {
+    let detail = Arc::new(DetailMap::new(Plane::filled(Size::new(4, 4), vec3(0.1, 0.0, 1.0))));
+    let picture = Picture::srgb8(Size::new(1, 1), vec![[255; 4]]).unwrap();
+    let picture = PictureSource::new("d.png".into(), picture, Default::default());
+    let source = crate::document::DetailSource::Map { picture, convention: Default::default(), map: detail };
+    let placement = Placement::covering(SIZE);
+    let normals = NormalLayer { source, placement, outside: Outside::Repeat, strength: 1.0, frame: Default::default() };
+    let normals = Layer::new("cloth", Content::Normals(normals));
+    let masked = with(fill("#ffffff"), |l| l.mask = mask(MaskKind::Depth { from: 0.0, to: 1.0 }));
+    let p = on_soft(vec![normals, masked.clone(), with(masked, |l| l.mask = left_mask())]);
+    assert_shared(&p, [255; 4], [0; 4], "masked");
+}
+
+/// A near plate in the columns left of 40.5 before a farther one that leans; no mask.
+fn plates() -> Arc<Surface> {
+    let near = |x: usize| x < 40;
+    let normals = Plane::from_fn(SIZE, |x, _| if near(x) { Vec3::Z } else { vec3(0.6, 0.0, 0.8) });
+    let depth = Plane::from_fn(SIZE, |x, _| if near(x) { 0.0 } else { 0.5 + 0.0075 * (x as f32 - 40.0) });
+    Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap())
+}
+#[test]
+fn away_from_contours_every_byte_stays() {
+    // The contour lies between columns 39 and 40: only those two are mixed.
+    let clay = Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong))));
+    let doc = Document { surface: Some(plates()), ..document(vec![clay]) };
+    let picture = flatten(&doc, &Progress::default()).unwrap();
+    let far = picture.pixel(60, 30);
+    let near = picture.pixel(20, 30);
+    assert_ne!(far, near);
+    for x in [0, 10, 38] {
+        assert_eq!(picture.pixel(x, 30), near);
+    }
+    for x in [41, 50, 99] {
+        assert_eq!(picture.pixel(x, 30), far);
+    }
+}
+#[test]
+fn live_layers_are_rendered_for_both_sides_alike() {
+    // Beside a straight edge on the pixels' border both shares are whole, so that a slanted one is needed: below it the
+    // far plate, above it the near one; along it each pixel holds a mean of both.
+    let near = |x: usize, y: usize| (y as f32 + 0.5) < 20.0 + 0.31 * x as f32;
+    let normals = Plane::from_fn(SIZE, |x, y| if near(x, y) { Vec3::Z } else { vec3(0.0, 0.5, 0.866) });
+    let depth = Plane::from_fn(SIZE, |x, y| if near(x, y) { 0.1 } else { 0.6 + 0.0058 * y as f32 });
+    let surface = Arc::new(Surface::new(Maps { normals, depth, coverage: Plane::filled(SIZE, 255) }).unwrap());
+    let operator = Operator::Normal { alpha: 0.6, beta: 0.0, detail: 0.0 };
+    let stops =
+        vec![GradientStop { t: 0.0, color: color("#000000") }, GradientStop { t: 1.0, color: color("#ffffff") }];
+    let (from, to) = (crate::math::vec2(50.0, 2.0), crate::math::vec2(50.0, 68.0));
+    let gradient = Gradient { from, to, stops, operator, filter: ImageFilter::Antialias, frame: Default::default() };
+    let brush = Brush { size: 300.0, hardness: 1.0, ..Brush::default() };
+    let stroke = |operator| {
+        let samples = vec![Sample::at(crate::math::vec2(50.0, 5.0))];
+        let strokes = vec![Arc::new(Stroke::new(brush.clone(), operator, color("#3060c0"), samples))];
+        Layer::new("s", Content::Strokes(Live::new(crate::document::StrokeList { strokes })))
+    };
+    let layers = [
+        Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong)))),
+        Layer::new("g", Content::Gradient(Live::new(gradient))),
+        with(fill("#ff0000"), |l| l.mask = mask(MaskKind::Fresnel { f0: 0.0, power: 1.0 })),
+        with(fill("#ff0000"), |l| l.mask = mask(MaskKind::Depth { from: 0.0, to: 1.0 })),
+        stroke(Operator::None),
+        stroke(Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.0 }),
+    ];
+    for layer in layers {
+        let doc = Document { surface: Some(surface.clone()), ..document(vec![layer.clone()]) };
+        let picture = flatten(&doc, &Progress::default()).unwrap();
+        let name = layer.name;
+        let mut mixed = 0;
+        for at in TileAt::covering(SIZE.rect()) {
+            let Some(contours) = surface.contours().on(at) else { continue };
+            for pixel in contours.pixels.iter().filter(|p| p.x > 4 && p.x < 95 && p.share < 0.9) {
+                // Across the edge, from the pixels beyond it on both sides; light is what is mixed.
+                let value = |dy: i32| {
+                    let p = picture.pixel(pixel.x, pixel.y + dy).map(|v| f32::from(v) / 255.0);
+                    srgb::decode((p[0] / p[3].max(1e-3)).min(1.0)) * p[3] + 3.0 * p[3]
+                };
+                let (up, down) = (2.0 * value(-2) - value(-3), 2.0 * value(2) - value(3));
+                let is_near = near(pixel.x as usize, pixel.y as usize);
+                let (own, other) = if is_near { (up, down) } else { (down, up) };
+                let (expected, found) = (pixel.share * own + (1.0 - pixel.share) * other, value(0));
+                let room = 0.02 + 0.06 * (up - down).abs();
+                assert!((found - expected).abs() < room, "{name} at {pixel:?}: {found} ≠ {expected} ({up}, {down})");
+                mixed += 1;
+            }
+        }
+        assert!(mixed > 50, "{name}: {mixed}");
+    }
+}
+#[test]
+fn contours_do_not_depend_on_the_number_of_threads() {
+    let clay = Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong))));
+    let bytes = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let doc = Document { surface: Some(plates()), ..document(vec![clay.clone()]) };
+        pool.install(|| flatten(&doc, &Progress::default()).unwrap().to_straight_rgba(SIZE.rect()))
+    };
+    assert_eq!(bytes(1), bytes(2));
+}

@@ -1,0 +1,71 @@
+//! Maps continued from one side of a contour: by a plane through that side's pixels of the window (MATH 10).
+//! Floor 2.
+
+use super::ContourPixel;
+use super::line::{CONTINUED_WEIGHTS, NEAREST_WEIGHTS, PlaneFit, bits};
+use super::window::{Window, steps_of};
+use crate::math::{Vec2, vec2};
+
+/// Slopes are drawn toward 0 by this weight: few pixels, or a row of them, tell none.
+const RIDGE: f32 = 1e-2;
+/// Fewer pixels give their mean.
+const LEAST_FOR_A_PLANE: u32 = 6;
+/// The longest n̄ that a plane may give.
+const RIM_NBAR: f32 = 0.999;
+
+/// What a population reads at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Continued {
+    nbar: [PlaneFit; 2],
+    depth: PlaneFit,
+}
+
+impl Continued {
+    /// From the pixels of a window; `None` without any.
+    pub fn from(window: &Window, members: u64) -> Option<Self> {
+        let fit = |value: &dyn Fn(u32) -> f32| {
+            let ridge = if members.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
+            let weight_and_value = |i: u32| (CONTINUED_WEIGHTS.at(i), value(i));
+            PlaneFit::weighted(bits(members), ridge, weight_and_value)
+        };
+        let nbar = |axis: usize| fit(&|i| window.nbar(i)[axis]);
+        Some(Self { nbar: [nbar(0)?, nbar(1)?], depth: fit(&|i| window.depth(i))? })
+    }
+    /// n̄ at a distance from the pixel's centre, px, shortened to the disc where it leaves it.
+    pub fn nbar(&self, from_center: Vec2) -> Vec2 {
+        let [x, y] = self.nbar.map(|fit| fit.here + fit.slope.dot(from_center));
+        let n = vec2(x, y);
+        let length = n.length();
+        if length > RIM_NBAR { n * (RIM_NBAR / length) } else { n }
+    }
+    /// z at a distance from the pixel's centre, `[0, 1]`.
+    pub fn depth(&self, from_center: Vec2) -> f32 {
+        (self.depth.here + self.depth.slope.dot(from_center)).clamp(0.0, 1.0)
+    }
+}
+
+/// Any map of the canvas, continued likewise, at a distance from a contour pixel's centre, px.
+pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_center: Vec2) -> f32 {
+    let ridge = if pixel.others.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
+    let fitted = PlaneFit::weighted(bits(pixel.others), ridge, |i| {
+        let (dx, dy) = steps_of(i);
+        (CONTINUED_WEIGHTS.at(i), map((pixel.x + dx) as usize, (pixel.y + dy) as usize))
+    });
+    fitted.map_or(0.0, |fit| fit.here + fit.slope.dot(from_center))
+}
+
+/// n_z of an n̄ within the disc.
+pub fn nz_of(nbar: Vec2) -> f32 {
+    (1.0 - nbar.length_squared()).max(0.0).sqrt()
+}
+
+/// The mean of a map over members of the window around a canvas pixel, the nearest counting most.
+pub fn mean_of(members: u64, (x, y): (i32, i32), map: impl Fn(usize, usize) -> f32) -> f32 {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for i in bits(members) {
+        let ((dx, dy), w) = (steps_of(i), NEAREST_WEIGHTS.at(i));
+        sum += w * map((x + dx) as usize, (y + dy) as usize);
+        all += w;
+    }
+    if all > 0.0 { sum / all } else { 0.0 }
+}

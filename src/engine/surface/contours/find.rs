@@ -1,0 +1,238 @@
+//! Finds contour pixels, the share of each population, and readings that belong to neither (MATH 10).
+//! Floor 2.
+
+use super::continued::{Continued, nz_of};
+use super::line::ContourLine;
+use super::window::{ALL, BESIDE, Beside, CENTER, Window};
+use super::{ContourPixel, Contours};
+use crate::math::{Size, Vec2};
+use crate::raster::{Plane, TILE};
+use rayon::prelude::*;
+
+/// The maps that contours are found in.
+pub struct ContourMaps<'m> {
+    pub size: Size,
+    /// n̄_x, n̄_y.
+    pub nbar: [&'m Plane<f32>; 2],
+    pub depth: &'m Plane<f32>,
+    pub coverage: &'m Plane<u8>,
+    pub links: &'m Plane<u8>,
+    /// Where the maps told something, if it is known: elsewhere the nearest values were repeated.
+    pub valid: Option<&'m Plane<bool>>,
+}
+
+/// What was found.
+pub struct Found {
+    pub contours: Contours,
+    /// Readings to be put in place of those that belong to neither side, by the index of their pixel.
+    pub amended: Vec<(usize, AmendedReading)>,
+}
+
+/// A pixel's own reading, continued from its side.
+#[derive(Clone, Copy, Debug)]
+pub struct AmendedReading {
+    pub nbar: Vec2,
+    pub nz: f32,
+    pub depth: f32,
+}
+
+/// From this share on a pixel is seen by its own population alone.
+const WHOLLY: f32 = 0.998;
+/// Partly covered pixels for each pixel of a hard rim, from which on coverage tells the outer contours.
+const SOFT_SHARE: f32 = 0.25;
+/// A normal is mixed of both sides' where it lies this far from its own side's toward the other's, and at most this far
+/// beside the way, as ratios of the distance between both; and where that distance is large enough to tell.
+const MIXED_FROM: f32 = 0.2;
+const MIXED_BESIDE: f32 = 0.25;
+const MIXED_LEAST: f32 = 0.25;
+
+/// Finds the contours of a surface. The same whatever the number of threads: tiles are found one by one.
+pub fn find(maps: &ContourMaps) -> Found {
+    let is_soft = is_soft(maps.coverage);
+    let columns = maps.size.width.div_ceil(TILE as u32) as usize;
+    let rows = maps.size.height.div_ceil(TILE as u32) as usize;
+    let of_row = |row: usize| {
+        let mut tiles: Vec<Vec<ContourPixel>> = vec![Vec::new(); columns];
+        let mut amended = Vec::new();
+        for y in row * TILE..((row + 1) * TILE).min(maps.size.height as usize) {
+            for x in candidates(maps, y) {
+                let examined = Examined::at(maps, is_soft, x as i32, y as i32);
+                tiles[x / TILE].extend(examined.contour);
+                amended.extend(examined.amended.map(|reading| (y * maps.size.width as usize + x, reading)));
+            }
+        }
+        (tiles, amended)
+    };
+    let found: Vec<_> = (0..rows).into_par_iter().map(of_row).collect();
+    let (tiles, amended): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+    Found {
+        contours: Contours::of_tiles(maps.size, tiles.into_iter().flatten().collect()),
+        amended: amended.into_iter().flatten().collect(),
+    }
+}
+
+/// Whether the mask is one of shades: then it tells the outer contours itself.
+fn is_soft(coverage: &Plane<u8>) -> bool {
+    let hard = |row: &[u8]| row.windows(2).filter(|pair| pair[0].abs_diff(pair[1]) == 255).count();
+    let counts = (0..coverage.height()).into_par_iter().map(|y| {
+        let row = coverage.row(y);
+        let partly = row.iter().filter(|&&c| c > 0 && c < 255).count();
+        (partly, if partly == 0 && row.iter().all(|&c| c == row[0]) { 0 } else { hard(row) })
+    });
+    let (partly, hard) = counts.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    partly > 0 && partly as f32 >= SOFT_SHARE * hard as f32
+}
+
+/// The columns of a row at which a contour may be: where a link is missing, or beside covered pixels.
+fn candidates(maps: &ContourMaps, y: usize) -> impl Iterator<Item = usize> {
+    let (links, coverage) = (maps.links.row(y), maps.coverage.row(y));
+    let above = y.checked_sub(1).map(|y| maps.coverage.row(y));
+    let below = (y + 1 < maps.coverage.height()).then(|| maps.coverage.row(y + 1));
+    (0..links.len()).filter(move |&x| {
+        if coverage[x] > 0 {
+            return links[x] != 15 || coverage[x] < 255;
+        }
+        let covered = |row: Option<&[u8]>| row.is_some_and(|row| row[x] > 0);
+        covered(above) || covered(below) || x > 0 && coverage[x - 1] > 0 || coverage.get(x + 1).is_some_and(|&c| c > 0)
+    })
+}
+
+/// What was found at a pixel.
+#[derive(Default)]
+struct Examined {
+    contour: Option<ContourPixel>,
+    amended: Option<AmendedReading>,
+}
+
+/// What lies across a contour from a pixel.
+#[derive(Clone, Copy)]
+struct Across {
+    own: u64,
+    /// Empty where there is no surface.
+    other: u64,
+    is_near: bool,
+}
+
+impl Examined {
+    fn at(maps: &ContourMaps, is_soft: bool, x: i32, y: i32) -> Self {
+        let coverage = maps.coverage.at(x as usize, y as usize);
+        let window = Window::around(maps, x, y);
+        if coverage == 0 {
+            return if is_soft { Self::default() } else { Self::outside(&window, (x, y)) };
+        }
+        if coverage < 255 {
+            let contour = ContourPixel { x, y, share: f32::from(coverage) / 255.0, others: 0 };
+            let own = window.pieces(1 << CENTER, 0).0 & !(1 << CENTER);
+            let is_told = maps.valid.is_none_or(|valid| valid.at(x as usize, y as usize));
+            return Self { contour: Some(contour), amended: if is_told { None } else { continued(&window, own) } };
+        }
+        let linked = maps.links.at(x as usize, y as usize);
+        if linked == 0
+            && let Some(between) = Self::between(&window, (x, y))
+        {
+            return between;
+        }
+        let Some(across) = across(&window, linked, is_soft) else { return Self::default() };
+        let share = share(&window, across).filter(|&share| share < WHOLLY);
+        let contour = share.map(|share| ContourPixel { x, y, share, others: across.other });
+        Self { contour, amended: unmixed(&window, across) }
+    }
+    /// A pixel without surface beside one.
+    fn outside(window: &Window, (x, y): (i32, i32)) -> Self {
+        let seeds = BESIDE.map(|beside| 1u64 << beside.bit & window.covered);
+        let pieces = seeds.map(|seed| window.pieces(seed, 0).0);
+        let Some(&other) = pieces.iter().max_by_key(|piece| piece.count_ones()) else { return Self::default() };
+        if other == 0 {
+            return Self::default();
+        }
+        let share = share(window, Across { own: window.nothing(), other, is_near: false });
+        let contour = share.filter(|&share| share < WHOLLY).map(|share| ContourPixel { x, y, share, others: other });
+        Self { contour, amended: None }
+    }
+    /// A pixel that continues none of its neighbours, at a depth between theirs: a renderer mixed both sides in it.
+    fn between(window: &Window, (x, y): (i32, i32)) -> Option<Self> {
+        let mut beside: Vec<u32> =
+            BESIDE.iter().map(|beside| beside.bit).filter(|&i| window.covered >> i & 1 == 1).collect();
+        beside.sort_by(|&a, &b| window.depth(a).total_cmp(&window.depth(b)));
+        let (&near, &far) = (beside.first()?, beside.last()?);
+        let (front, here, back) = (window.depth(near), window.depth(CENTER), window.depth(far));
+        if !(front < here && here < back) {
+            return None;
+        }
+        let center = 1 << CENTER;
+        let (near, far) = window.pieces(1 << near, 1 << far);
+        let (near, far) = (near & !center, far & !center);
+        let guess = ContourLine::of_mask(near, window.inside & !center);
+        let line = guess.and_then(|guess| ContourLine::of_normals(window, near, window.inside & !center, guess));
+        // Depth is mixed in the same shares.
+        let by_depth = (back - here) / (back - front);
+        let share = line.map_or(by_depth, ContourLine::near_share);
+        let (own, others, share) = if share >= 0.5 { (near, far, share) } else { (far, near, 1.0 - share) };
+        let contour = (share < WHOLLY).then_some(ContourPixel { x, y, share, others });
+        Some(Self { contour, amended: continued(window, own) })
+    }
+}
+
+/// The piece that a covered pixel belongs to, and the largest that ends beside it.
+fn across(window: &Window, linked: u8, is_soft: bool) -> Option<Across> {
+    let center = 1u64 << CENTER;
+    let mut found: Option<(u32, Across)> = None;
+    for Beside { link, bit: i, .. } in BESIDE {
+        let there = 1u64 << i;
+        if linked & link != 0 || window.inside & there == 0 {
+            continue;
+        }
+        let across = if window.covered & there == 0 {
+            if is_soft {
+                continue;
+            }
+            Across { own: window.pieces(center, 0).0, other: 0, is_near: true }
+        } else {
+            let (own, other) = window.pieces(center, there);
+            Across { own, other, is_near: window.depth(CENTER) <= window.depth(i) }
+        };
+        let size = if across.other == 0 { window.nothing() } else { across.other }.count_ones();
+        // A single pixel is a mixed one, or noise.
+        if size > 1 && found.is_none_or(|(most, _)| size > most) {
+            found = Some((size, across));
+        }
+    }
+    found.map(|(_, across)| across)
+}
+
+/// The share of the middle pixel that its own population sees; `None` where no single edge passes.
+fn share(window: &Window, across: Across) -> Option<f32> {
+    let near = if across.is_near { across.own } else { across.other };
+    let guess = ContourLine::of_mask(near, window.inside)?;
+    let line = ContourLine::of_normals(window, near, window.inside, guess).unwrap_or(guess);
+    let share = line.with_center(across.is_near).near_share();
+    Some(if across.is_near { share } else { 1.0 - share })
+}
+
+/// The middle pixel's own reading, where its normal is mixed of both sides'.
+fn unmixed(window: &Window, Across { own, other, .. }: Across) -> Option<AmendedReading> {
+    let rest = own & !(1 << CENTER);
+    if other == 0 || rest.count_ones() < 4 {
+        return None;
+    }
+    let (mine, theirs) = (Continued::from(window, rest)?, Continued::from(window, other)?);
+    let normal = |nbar: Vec2| nbar.extend(nz_of(nbar));
+    let (a, b, n) = (normal(mine.nbar(Vec2::ZERO)), normal(theirs.nbar(Vec2::ZERO)), normal(window.nbar(CENTER)));
+    let way = b - a;
+    let squared = way.length_squared();
+    if squared < MIXED_LEAST * MIXED_LEAST {
+        return None;
+    }
+    let along = (n - a).dot(way) / squared;
+    let beside = (n - a - along * way).length();
+    let is_mixed = along > MIXED_FROM && beside < MIXED_BESIDE * squared.sqrt();
+    is_mixed.then(|| continued(window, rest)).flatten()
+}
+
+fn continued(window: &Window, members: u64) -> Option<AmendedReading> {
+    let continued = Continued::from(window, members)?;
+    let nbar = continued.nbar(Vec2::ZERO);
+    Some(AmendedReading { nbar, nz: nz_of(nbar), depth: continued.depth(Vec2::ZERO) })
+}
+
+const _: () = assert!(ALL >> CENTER & 1 == 1);

@@ -1,0 +1,250 @@
+//! The straight line by which a contour is told apart within a pixel's window, and the share of the pixel on its nearer
+//! side (MATH 10).
+//! Floor 2. Pure functions of a window; which pixels are looked at is `find`'s.
+
+use super::window::{SIDE, Window, offset_of};
+use crate::math::{Vec2, vec2};
+use std::sync::LazyLock;
+
+/// A contour near a pixel: a straight line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContourLine {
+    /// From the line to the pixel's centre, px; positive where the centre is on the nearer side.
+    pub distance_px: f32,
+    /// Unit, image axes: toward the nearer side.
+    pub toward_near: Vec2,
+}
+
+/// Standard deviations of the windows' Gaussians, px: of the mask's line, of the normals' line.
+const MASK_SIGMA: f32 = 1.2;
+const NORMALS_SIGMA: f32 = 1.5;
+/// Beyond this n_z² a pixel says little about where n_z² reaches 0.
+const RIM_NZ_SQUARED: f32 = 0.25;
+/// How far the normals' line may lie on the wrong side of a pixel's centre that it should explain, px; what is added by
+/// squared distance, since contours bend: so far a circle of 25 px is from its tangent; within what distance of the
+/// middle pixel; and how far from the mask's own line.
+const TOLERANCE_PX: f32 = 0.1;
+const BEND_PER_PX: f32 = 0.02;
+const EXPLAINED_PX: f32 = 2.24;
+const FARTHEST_PX: f32 = 0.7;
+/// Cosine of the greatest angle between both lines.
+const ALIKE: f32 = 0.7;
+/// The share of a straight edge's contrast that a mask must have to be taken for one.
+const LEAST_CONTRAST: f32 = 0.5;
+
+impl ContourLine {
+    /// The area of the unit pixel on the nearer side, `[0, 1]`: exact (MATH 10).
+    pub fn near_share(self) -> f32 {
+        let (g, d) = (self.toward_near.abs(), self.distance_px);
+        let (a, b) = (g.max_element(), g.min_element());
+        let s = d.abs().min(0.5 * (a + b));
+        // A slanted line cuts off a trapezium, or a triangle once it passes a corner.
+        let share = if b < 1e-6 || s <= 0.5 * (a - b) {
+            0.5 + s / a.max(1e-9)
+        } else {
+            1.0 - (0.5 * (a + b) - s).powi(2) / (2.0 * a * b)
+        };
+        let share = share.clamp(0.0, 1.0);
+        if d >= 0.0 { share } else { 1.0 - share }
+    }
+    /// The line that a binary mask of the nearer side tells: a Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹ of
+    /// it; its direction is that of the first moments. `None` where the mask is no single edge, such as at a thin wire.
+    ///
+    /// * `near`, `known`: bits of the window: on the nearer side; to be counted at all.
+    pub fn of_mask(near: u64, known: u64) -> Option<Self> {
+        let (mut all, mut ones) = (0.0, 0.0);
+        let (mut moment, mut shift) = (Vec2::ZERO, Vec2::ZERO);
+        for i in bits(known) {
+            let w = MASK_WEIGHTS.at(i);
+            let at = offset_of(i);
+            (all, shift) = (all + w, shift + w * at);
+            if near >> i & 1 == 1 {
+                (ones, moment) = (ones + w, moment + w * at);
+            }
+        }
+        let mean = (ones / all).clamp(1e-4, 1.0 - 1e-4);
+        let gradient = (moment - mean * shift) / all;
+        let quantile = normal_quantile(mean);
+        // A step at this distance has first moments of σ φ(d / σ).
+        let expected = MASK_SIGMA * (-0.5 * quantile * quantile).exp() / (2.0 * std::f32::consts::PI).sqrt();
+        let toward_near = gradient.try_normalize().filter(|_| gradient.length() > LEAST_CONTRAST * expected)?;
+        Some(Self { distance_px: MASK_SIGMA * quantile, toward_near })
+    }
+    /// The line that the nearer side's normals tell: at a smooth silhouette n_z² falls linearly to 0, so that the zero
+    /// of a plane fitted to it is the contour. `None` where it contradicts the mask: scanned and coarse meshes have
+    /// interpolated normals that never reach the rim.
+    ///
+    /// * `guess`: the mask's own line.
+    pub fn of_normals(window: &Window, near: u64, known: u64, guess: ContourLine) -> Option<Self> {
+        let fitted = PlaneFit::weighted(bits(near), 1e-9, |i| {
+            let nz2 = window.nz_squared(i);
+            (NORMALS_WEIGHTS.at(i) * (-nz2 / RIM_NZ_SQUARED).exp(), nz2)
+        })?;
+        let steepness = fitted.slope.length();
+        if near.count_ones() < 4 || steepness < 1e-5 {
+            return None;
+        }
+        let line = Self { distance_px: fitted.here / steepness, toward_near: fitted.slope / steepness };
+        let in_reach = (-1.2..1.5).contains(&line.distance_px) && line.toward_near.dot(guess.toward_near) >= ALIKE;
+        let explains = |i: u32| {
+            let at = offset_of(i);
+            let d = line.distance_px + line.toward_near.dot(at);
+            let away = at.length();
+            let tolerance = TOLERANCE_PX + BEND_PER_PX * away * away;
+            away > EXPLAINED_PX || if near >> i & 1 == 1 { d } else { -d } >= -tolerance
+        };
+        if !in_reach || !bits(known).all(explains) {
+            return None;
+        }
+        let distance_px = line.distance_px.clamp(guess.distance_px - FARTHEST_PX, guess.distance_px + FARTHEST_PX);
+        Some(Self { distance_px, ..line })
+    }
+    /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen on.
+    pub fn with_center(self, is_near: bool) -> Self {
+        let d = self.distance_px;
+        Self { distance_px: if is_near { d.max(0.0) } else { d.min(0.0) }, ..self }
+    }
+}
+
+/// A plane v(x, y) fitted to a window's values by weighted least squares.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneFit {
+    /// At the middle pixel's centre.
+    pub here: f32,
+    /// Per px, image axes.
+    pub slope: Vec2,
+}
+
+impl PlaneFit {
+    /// `ridge`: added to both slopes' weights, so that few pixels tell a flat plane. `None` without any weight.
+    pub fn weighted(
+        members: impl Iterator<Item = u32>,
+        ridge: f32,
+        weight_and_value: impl Fn(u32) -> (f32, f32),
+    ) -> Option<Self> {
+        let mut sums = [0.0f64; 9];
+        for i in members {
+            let (w, v) = weight_and_value(i);
+            let (w, v, at) = (f64::from(w), f64::from(v), offset_of(i).as_dvec2());
+            let terms = [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y, v, at.x * v, at.y * v];
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += w * term);
+        }
+        let [w, x, y, xx, xy, yy, v, xv, yv] = sums;
+        if w <= 1e-12 {
+            return None;
+        }
+        // Centred, the two slopes come of a 2 × 2 system.
+        let ridge = f64::from(ridge);
+        let (a, b, c) = (xx - x * x / w + ridge, xy - x * y / w, yy - y * y / w + ridge);
+        let (p, q) = (xv - x * v / w, yv - y * v / w);
+        let det = a * c - b * b;
+        let (sx, sy) = if det > 1e-18 { ((c * p - b * q) / det, (a * q - b * p) / det) } else { (0.0, 0.0) };
+        let here = (v - sx * x - sy * y) / w;
+        Some(Self { here: here as f32, slope: vec2(sx as f32, sy as f32) })
+    }
+}
+
+/// The numbers of the bits that are set, the lowest first.
+pub fn bits(mut set: u64) -> impl Iterator<Item = u32> {
+    std::iter::from_fn(move || {
+        let i = (set != 0).then(|| set.trailing_zeros())?;
+        set &= set - 1;
+        Some(i)
+    })
+}
+
+/// Φ⁻¹: the quantile of the standard normal distribution, within 4.5e-4 (Abramowitz and Stegun 1964, 26.2.23).
+/// `p`: in (0, 1).
+fn normal_quantile(p: f32) -> f32 {
+    let tail = p.min(1.0 - p).max(f32::MIN_POSITIVE);
+    let t = (-2.0 * tail.ln()).sqrt();
+    let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
+    let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
+    let z = t - above / below;
+    if p < 0.5 { -z } else { z }
+}
+
+/// A Gaussian over the window's pixels.
+pub struct Gaussian(LazyLock<[f32; (SIDE * SIDE) as usize]>);
+
+impl Gaussian {
+    /// The weight of a pixel of the window.
+    #[inline(always)]
+    pub fn at(&self, i: u32) -> f32 {
+        self.0[i as usize]
+    }
+}
+
+fn gaussian(sigma: f32) -> [f32; (SIDE * SIDE) as usize] {
+    std::array::from_fn(|i| (-offset_of(i as u32).length_squared() / (2.0 * sigma * sigma)).exp())
+}
+
+static MASK_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(MASK_SIGMA)));
+static NORMALS_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(NORMALS_SIGMA)));
+/// For maps that are continued as planes.
+pub static CONTINUED_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(2.0)));
+/// For what is carried over from the nearest pixels.
+pub static NEAREST_WEIGHTS: Gaussian = Gaussian(LazyLock::new(|| gaussian(1.0)));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::contours::window::ALL;
+
+    /// The share of 64 × 64 points of a pixel on the nearer side.
+    fn counted(line: ContourLine) -> f32 {
+        let at = |i: u32| (i as f32 + 0.5) / 64.0 - 0.5;
+        let is_near = |i: u32| line.distance_px + line.toward_near.dot(vec2(at(i % 64), at(i / 64))) > 0.0;
+        (0..4096).filter(|&i| is_near(i)).count() as f32 / 4096.0
+    }
+    #[test]
+    fn the_share_is_the_area_on_the_nearer_side() {
+        for turn in 0..24 {
+            let toward_near = Vec2::from_angle(turn as f32 * 0.27);
+            for d in [-0.8, -0.5, -0.31, -0.1, 0.0, 0.07, 0.4, 0.6, 0.75] {
+                let line = ContourLine { distance_px: d, toward_near };
+                let (share, counted) = (line.near_share(), counted(line));
+                assert!((share - counted).abs() < 0.012, "{line:?}: {share}, counted {counted}");
+            }
+        }
+    }
+    #[test]
+    fn a_straight_edge_is_found_again_in_its_binary_mask() {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for turn in 0..40 {
+            let toward_near = Vec2::from_angle(turn as f32 * 0.157);
+            for step in 0..10 {
+                let true_line = ContourLine { distance_px: step as f32 * 0.05 + 0.02, toward_near };
+                let near = (0..49).filter(|&i| true_line.distance_px + toward_near.dot(offset_of(i)) >= 0.0);
+                let near = near.fold(0, |set, i| set | 1 << i);
+                let found = ContourLine::of_mask(near, ALL).unwrap();
+                assert!(found.toward_near.dot(toward_near) > 0.93, "{found:?} for {true_line:?}");
+                sum += (found.with_center(true).near_share() - true_line.near_share()).abs();
+                count += 1.0;
+            }
+        }
+        // Without the line the error is 0.25; of an edge along the pixels a binary mask tells nothing.
+        assert!(sum / count < 0.12, "{}", sum / count);
+    }
+    #[test]
+    fn a_wire_is_no_edge() {
+        let column = |x: u32| (0..7).fold(0u64, |set, y| set | 1 << (y * 7 + x));
+        assert!(ContourLine::of_mask(column(3), ALL).is_none());
+        assert!(ContourLine::of_mask(column(3) | column(4) | column(5) | column(6), ALL).is_some());
+    }
+    #[test]
+    fn quantiles_are_those_of_the_table() {
+        for (p, z) in [(0.5, 0.0), (0.841_345, 1.0), (0.022_750, -2.0), (0.999, 3.090_232)] {
+            assert!((normal_quantile(p) - z).abs() < 5e-4, "{p}: {}", normal_quantile(p));
+        }
+    }
+    #[test]
+    fn a_plane_is_fitted_exactly() {
+        let value = |i: u32| (1.0, 3.0 + vec2(0.5, -0.25).dot(offset_of(i)));
+        let fit = PlaneFit::weighted(bits(0b1011 << 14), 0.0, value);
+        assert!(fit.is_some_and(|fit| fit.slope.y == 0.0), "one row tells nothing about y: {fit:?}");
+        let fit = PlaneFit::weighted(bits(ALL & !0xfff), 0.0, value).unwrap();
+        assert!((fit.here - 3.0).abs() < 1e-5 && (fit.slope - vec2(0.5, -0.25)).length() < 1e-5, "{fit:?}");
+        assert!(PlaneFit::weighted(bits(0), 1.0, value).is_none());
+    }
+}

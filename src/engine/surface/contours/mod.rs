@@ -1,0 +1,130 @@
+//! Contours: where one piece of the surface ends before another, or before nothing. A pixel there is seen by two
+//! populations: its own, whose readings the maps hold, and the other, for which the maps are continued from its side
+//! (MATH 10).
+//! Floor 2. Here: which pixels these are, the share of each population, and where the other one's readings are kept.
+//! Not here: mixing both (`document::compose`).
+
+mod continued;
+mod find;
+mod line;
+mod sheet;
+mod window;
+
+#[cfg(test)]
+mod tests;
+
+pub use sheet::{SheetOf, place_of};
+
+use crate::math::{Rect, Size};
+use crate::raster::TileAt;
+use std::ops::Range;
+
+pub(super) use continued::mean_of;
+pub(super) use find::{ContourMaps, Found, find};
+pub(super) use line::bits;
+pub(super) use window::{BESIDE, Window};
+
+/// A pixel that two populations see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContourPixel {
+    /// Canvas pixel.
+    pub x: i32,
+    pub y: i32,
+    /// The share that its own population sees, `[0, 1]`: the one whose readings the maps hold at the pixel, or no
+    /// surface where they hold none.
+    pub share: f32,
+    /// Which pixels of the window around it belong to the other population's piece of surface; none where it sees no
+    /// surface.
+    others: u64,
+}
+
+impl ContourPixel {
+    /// The other population sees a surface.
+    pub fn sees_surface(&self) -> bool {
+        self.others != 0
+    }
+}
+
+/// The contour pixels of a surface, tile by tile.
+#[derive(Default)]
+pub struct Contours {
+    /// Tiles across the canvas.
+    columns: i32,
+    /// Row by row.
+    tiles: Vec<TilePixels>,
+    pixels: Vec<ContourPixel>,
+    /// Tiles, by their number, of the blocks of rows of the sheet.
+    sheet_rows: Vec<Range<u32>>,
+}
+
+/// Where a tile's pixels lie among all: those whose other population sees a surface first.
+#[derive(Clone, Copy)]
+struct TilePixels {
+    start: u32,
+    seen: u32,
+    end: u32,
+    /// The first block of rows of the sheet.
+    sheet_row: u32,
+}
+
+/// The contour pixels of one tile.
+#[derive(Clone, Copy)]
+pub struct TileContours<'c> {
+    /// Those whose other population sees a surface first.
+    pub pixels: &'c [ContourPixel],
+    /// How many those are.
+    pub seen: usize,
+    /// Where their readings are on the sheet.
+    pub sheet: Rect,
+}
+
+impl Contours {
+    /// The most pixels of a tile whose other population sees a surface; of more, those most evenly shared are taken.
+    /// Their readings fill a tile of the sheet.
+    pub const MOST_SEEN: usize = 1024;
+
+    fn of_tiles(size: Size, found: Vec<Vec<ContourPixel>>) -> Self {
+        let columns = size.width.div_ceil(crate::raster::TILE as u32) as i32;
+        let mut contours =
+            Self { columns, tiles: Vec::with_capacity(found.len()), pixels: Vec::new(), sheet_rows: Vec::new() };
+        for mut tile in found {
+            let start = contours.pixels.len();
+            sheet::sort(&mut tile);
+            let seen = tile.partition_point(ContourPixel::sees_surface);
+            let sheet_row = contours.sheet_rows.len() as u32;
+            contours.pixels.extend(&tile);
+            contours.sheet_rows.extend(sheet::rows(start..start + seen));
+            let [start, seen, end] = [start, start + seen, contours.pixels.len()].map(|i| i as u32);
+            contours.tiles.push(TilePixels { start, seen, end, sheet_row });
+        }
+        contours.pixels.shrink_to_fit();
+        contours
+    }
+    /// There is none.
+    pub fn is_empty(&self) -> bool {
+        self.pixels.is_empty()
+    }
+    /// Every contour pixel, tile by tile.
+    pub fn pixels(&self) -> &[ContourPixel] {
+        &self.pixels
+    }
+    /// Those of a tile of the canvas; `None` where there are none.
+    pub fn on(&self, at: TileAt) -> Option<TileContours<'_>> {
+        let is_column = (0..self.columns).contains(&at.col) && at.row >= 0;
+        let tile = self.tiles.get((at.row * self.columns + at.col) as usize).filter(|_| is_column)?;
+        let pixels = &self.pixels[tile.start as usize..tile.end as usize];
+        let seen = (tile.seen - tile.start) as usize;
+        (!pixels.is_empty()).then(|| TileContours { pixels, seen, sheet: sheet::rect(tile.sheet_row, seen) })
+    }
+    /// The tiles with pixels whose other population sees a surface.
+    pub fn seen_tiles(&self) -> impl Iterator<Item = TileAt> + '_ {
+        let columns = self.columns.max(1);
+        let at = move |i: usize| TileAt::new(i as i32 % columns, i as i32 / columns);
+        self.tiles.iter().enumerate().filter(|(_, tile)| tile.seen > tile.start).map(move |(i, _)| at(i))
+    }
+    /// Bytes that they and the other populations' readings take.
+    pub fn bytes(&self) -> u64 {
+        let pixels = self.pixels.len() * size_of::<ContourPixel>();
+        (pixels + self.sheet_rows.len() * sheet::SHEET_SIDE * sheet::BLOCK * SheetOf::BYTES) as u64
+    }
+}

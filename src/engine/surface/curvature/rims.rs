@@ -1,0 +1,126 @@
+//! Curvature at the ends of a surface: continued from the pixels beside that have all their neighbours.
+//! Floor 2.
+
+use crate::raster::Plane;
+use crate::surface::Surface;
+use crate::surface::contours::{BESIDE, Window, bits, mean_of};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The pixels at which a neighbour is missing, and which pixels of the window around them their curvature is continued
+/// from. Differences there are one-sided: noisy, and of a normal that is seen edge-on.
+pub struct Rims {
+    pixels: Vec<RimPixel>,
+}
+
+#[derive(Clone, Copy)]
+struct RimPixel {
+    x: i32,
+    y: i32,
+    members: u64,
+}
+
+impl Surface {
+    /// Cached.
+    pub(super) fn rims(&self) -> Arc<Rims> {
+        self.rims_cell().get_or_compute((), 1, |_| Rims::of(self))
+    }
+}
+
+impl Rims {
+    fn of(surface: &Surface) -> Self {
+        let rows: Vec<Vec<RimPixel>> = (0..surface.size().height as i32)
+            .into_par_iter()
+            .map(|y| {
+                let links = surface.links_plane().row(y as usize);
+                let ends = (0..links.len()).filter(|&x| links[x] != 15);
+                ends.filter_map(|x| rim(surface, x as i32, y)).collect()
+            })
+            .collect();
+        Self { pixels: rows.concat() }
+    }
+    /// There is none.
+    pub fn is_empty(&self) -> bool {
+        self.pixels.is_empty()
+    }
+    /// Those of some rows.
+    fn rows(&self, rows: Range<usize>) -> &[RimPixel] {
+        let at = |y: usize| self.pixels.partition_point(|rim| (rim.y as usize) < y);
+        &self.pixels[at(rows.start)..at(rows.end)]
+    }
+    /// Whether there are any in a rectangle.
+    pub fn are_in(&self, columns: Range<usize>, rows: Range<usize>) -> bool {
+        self.rows(rows).iter().any(|rim| columns.contains(&(rim.x as usize)))
+    }
+    /// The distance of each pixel of a rectangle (from column and row to column and row) to the nearest in it, in thirds
+    /// of a pixel, steps counting 3 and diagonal ones 4.
+    pub fn distances(&self, [x0, y0, x1, y1]: [usize; 4]) -> Vec<u16> {
+        let width = x1 - x0;
+        let mut distance = vec![u16::MAX / 2; width * (y1 - y0)];
+        for rim in self.rows(y0..y1).iter().filter(|rim| (x0..x1).contains(&(rim.x as usize))) {
+            distance[(rim.y as usize - y0) * width + rim.x as usize - x0] = 0;
+        }
+        let mut sweep = |i: usize, beside: [Option<usize>; 4]| {
+            let away = beside.into_iter().zip([3, 4, 3, 4]).filter_map(|(j, step)| Some(distance[j?] + step));
+            distance[i] = away.fold(distance[i], u16::min);
+        };
+        let is_left = |i: usize| i % width > 0;
+        let is_right = |i: usize| i % width + 1 < width;
+        for i in 0..width * (y1 - y0) {
+            let above = i.checked_sub(width);
+            let (left, right) = (is_left(i).then_some(1), is_right(i).then_some(1));
+            let beside =
+                [left.map(|_| i - 1), above.zip(left).map(|(j, _)| j - 1), above, above.zip(right).map(|(j, _)| j + 1)];
+            sweep(i, beside);
+        }
+        for i in (0..width * (y1 - y0)).rev() {
+            let below = Some(i + width).filter(|&j| j < width * (y1 - y0));
+            let (left, right) = (is_left(i).then_some(1), is_right(i).then_some(1));
+            let beside = [
+                right.map(|_| i + 1),
+                below.zip(right).map(|(j, _)| j + 1),
+                below,
+                below.zip(left).map(|(j, _)| j - 1),
+            ];
+            sweep(i, beside);
+        }
+        distance
+    }
+    /// Puts the means of their members into a map.
+    pub fn continue_in(&self, plane: &mut Plane<f32>) {
+        let mean = |rim: &RimPixel| mean_of(rim.members, (rim.x, rim.y), |x, y| plane.at(x, y));
+        // Members are no rims themselves, so the order does not matter.
+        let means: Vec<f32> = self.pixels.par_iter().with_min_len(1024).map(mean).collect();
+        // Where a piece is too thin to have members, such as a wire, its own differences stay.
+        for (rim, mean) in self.pixels.iter().zip(means).filter(|(rim, _)| rim.members != 0) {
+            plane.set(rim.x as usize, rim.y as usize, mean);
+        }
+    }
+}
+
+/// A covered pixel that lacks a neighbour on the canvas.
+fn rim(surface: &Surface, x: i32, y: i32) -> Option<RimPixel> {
+    members(surface, x, y).map(|members| RimPixel { x, y, members })
+}
+
+/// The pixels around a rim's that belong to its piece and have all their neighbours; `None` of a pixel that is no rim.
+pub(super) fn members(surface: &Surface, x: i32, y: i32) -> Option<u64> {
+    let whole = |x: i32, y: i32| {
+        let links = surface.links_plane().at(x as usize, y as usize);
+        let on_canvas = |dx: i32, dy: i32| surface.size().rect().contains(x + dx, y + dy);
+        BESIDE.iter().all(|beside| links & beside.link != 0 || !on_canvas(beside.step.0, beside.step.1))
+    };
+    if surface.coverage(x as usize, y as usize) == 0 || whole(x, y) {
+        return None;
+    }
+    surface.with_contour_maps(None, |maps| {
+        let window = Window::around(maps, x, y);
+        let piece = window.piece_of_center();
+        let wholes = bits(piece).filter(|&i| {
+            let (x, y) = window.pixel(i);
+            whole(x as i32, y as i32)
+        });
+        Some(wholes.fold(0, |set, i| set | 1 << i))
+    })
+}
