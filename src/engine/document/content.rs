@@ -29,6 +29,7 @@ use std::sync::Arc;
 
 /// What a layer holds. Live content keeps its parameters and, beside them, the tiles rendered from them.
 #[derive(Clone)]
+#[expect(clippy::large_enum_variant, reason = "one stands in each layer, and layers stand behind `Arc`")]
 pub enum Content {
     Fill(Color),
     Pixels(PixelLayer),

@@ -132,7 +132,7 @@ impl<'a> PlacedDetail<'a> {
     }
     /// The detail normal at a canvas point, y up.
     fn normal(&self, q: Vec2) -> Option<Vec3> {
-        let Some((in_frame, jacobian)) = self.normals.frame.from_canvas(q) else { return None };
+        let (in_frame, jacobian) = self.normals.frame.from_canvas(q)?;
         let at = self.from_canvas.transform_point2(in_frame);
         let per_px = self.per_px * jacobian.determinant().abs().sqrt();
         let normal = match &self.normals.source {

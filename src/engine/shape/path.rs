@@ -59,7 +59,7 @@ impl Accumulator {
         let first = (left as usize).min(last);
         let end = (right.ceil() as usize).max(first + 1).min(last + 1);
         let mut before = 0.0;
-        for column in first..end {
+        for (column, sum) in (first..end).zip(&mut row[first..end]) {
             // How much of the row's height lies to the right of the edge within this column and all before it.
             let x = column as f32 + 1.0;
             let mean = if right - left < 1e-6 {
@@ -68,7 +68,7 @@ impl Accumulator {
                 let ramp = |v: f32| 0.5 * (v.max(left).min(right) - left).powi(2) / (right - left);
                 (ramp(x) - ramp(x - 1.0)) + (x - right.max(x - 1.0)).max(0.0)
             };
-            row[column] += height * (mean - before);
+            *sum += height * (mean - before);
             before = mean;
         }
         if let Some(next) = row.get_mut(end) {

@@ -232,8 +232,7 @@ impl Document {
             }
             PartKind::Touches { .. } | PartKind::Sculpt { .. } | PartKind::Relief { .. } => return None,
         };
-        let form =
-            upon.iter().fold(form, |form, other| changed(form, &body.outline, other, still, apart(part.matrix).1));
+        let form = upon.iter().fold(form, |form, other| changed(form, &body.outline, other, still));
         let form = form.tilted(part.tilt_deg).raised(part.raise);
         Some((Arc::new(body), form))
     }
@@ -309,11 +308,11 @@ fn formed(body: &Body, inflation: Inflation) -> Form {
 }
 
 /// A form with what another part does to it. Its marks lie in the frame of the part that they are on.
-fn changed(form: Form, outline: &Outline, part: &Part, still: Affine2, moved: (i32, i32)) -> Form {
+fn changed(form: Form, outline: &Outline, part: &Part, still: Affine2) -> Form {
     if form.height.size() != outline.size() {
         // A primitive's planes reach beyond its outline; cut to it they fit.
         let cut = cut_to(&form, outline);
-        return if cut.height.size() == outline.size() { changed(cut, outline, part, still, moved) } else { form };
+        return if cut.height.size() == outline.size() { changed(cut, outline, part, still) } else { form };
     }
     match &part.kind {
         PartKind::Touches { touches: list, .. } => {

@@ -126,7 +126,7 @@ fn every_kind_makes_a_surface() {
         let name = kind.name();
         let shaped = flat.with_parts(vec![Arc::new(Part::new("p", kind))]);
         let surface = shaped.surface.unwrap_or_else(|| panic!("{name} has no surface"));
-        assert!(surface.coverage_plane().values().iter().any(|c| *c == 255), "{name}");
+        assert!(surface.coverage_plane().values().contains(&255), "{name}");
         assert!(surface.normal_planes()[2].values().iter().all(|z| z.is_finite()), "{name}");
     }
     // What lies on another part changes it.

@@ -348,7 +348,7 @@ mod tests {
             carried.textured(Path::new("a.abr"), patterns, &mut TipNames::default());
             (carried.brush.grain, carried.notes)
         };
-        let (grain, notes) = textured(&values(b"Mltp"), &[pattern.clone()]);
+        let (grain, notes) = textured(&values(b"Mltp"), std::slice::from_ref(&pattern));
         let grain = grain.unwrap();
         assert_eq!((grain.size_px, grain.strength, notes.len()), (3.0, 0.6, 0));
         assert_eq!(textured(&values(b"CBrn"), &[pattern]).1.len(), 1, "another way to take paint away");
