@@ -172,7 +172,7 @@ impl LayerMask {
     /// It is shown, and what it is derived from is there.
     fn acts_on(&self, scene: &Scene) -> bool {
         let needs_surface = !matches!(self.kind, MaskKind::File { .. });
-        !self.disabled && !(needs_surface && scene.surface.is_none())
+        !(self.disabled || needs_surface && scene.surface.is_none())
     }
     /// The mask at a pixel of the canvas, `[0, 1]`; `curvature`: the surface's, for a mask derived from it.
     pub(super) fn at(&self, scene: &Scene, curvature: Option<&Curvature>, x: i32, y: i32) -> f32 {

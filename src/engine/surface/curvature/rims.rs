@@ -65,7 +65,7 @@ impl Rims {
             let away = beside.into_iter().zip([3, 4, 3, 4]).filter_map(|(j, step)| Some(distance[j?] + step));
             distance[i] = away.fold(distance[i], u16::min);
         };
-        let is_left = |i: usize| i % width > 0;
+        let is_left = |i: usize| !i.is_multiple_of(width);
         let is_right = |i: usize| i % width + 1 < width;
         for i in 0..width * (y1 - y0) {
             let above = i.checked_sub(width);
