@@ -19,7 +19,7 @@ const CALLS: &str =
     "openat,read,write,pwrite64,statx,fsync,close,rename,renameat2,link,linkat,unlink,unlinkat,fchmodat,chmod";
 
 fn convert(folder: &Path, from: &str, to: &str) {
-    let done = Command::new(PROGRAM).args(["convert", from, to]).current_dir(folder).output().unwrap();
+    let done = Command::new(PROGRAM).args(["convert", from, to, "--force"]).current_dir(folder).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
 }
 /// Two recipes, and what each becomes.

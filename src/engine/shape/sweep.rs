@@ -1,5 +1,5 @@
-//! Bodies that are drawn: sweeps (balls along a pen's stroke, joined by round cones) and lathes (an outline turned about
-//! an axis). Both give squared heights, which `form` makes forms of.
+//! Bodies that are drawn: sweeps (balls along a pen's stroke, joined by round cones) and lathes (an outline turned
+//! about an axis). Both give squared heights, which `form` makes forms of.
 //! Floor 3.
 
 use super::Outline;

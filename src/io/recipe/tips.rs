@@ -235,7 +235,7 @@ mod tests {
               "levels": [0.25, 0.75],
                                "lies": "surface", "gamma": 2 } }),
             json!({ "grain": { "file": "canvas.png", "size": 200 } }),
-            json!({ "grain": { "size": 9, "lies": "unwrapped" } }),
+            json!({ "grain": { "kind": "paper", "size": 9, "lies": "unwrapped" } }),
         ] {
             let brush = read_brush(&text).unwrap();
             let mut out = JsonObject::default();

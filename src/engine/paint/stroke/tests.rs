@@ -41,7 +41,7 @@ fn white(brush: Brush, operator: Operator, samples: Vec<Sample>) -> Stroke {
     Stroke::new(brush, operator, Color::WHITE, samples)
 }
 
-/// Coverage of a dab at a pixel: F(A⁻¹(D(q) − q_0)) averaged over the pixel's width toward the centre.
+/// Coverage of a dab at a pixel: F(A⁻¹(D(q) − q_0)) averaged over the pixel, no more than the share on the stroke's rim.
 fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
     let d = Deformation::of_dab(scene.surface.as_deref(), scene.size, operator, dab.at);
     let from_center = d.at(x, y) - dab.at;
@@ -54,10 +54,15 @@ fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
             n => (d.at(x + r * dx, y + r * dy) - d.at(x - l * dx, y - l * dy)) / n as f32,
         }
     };
-    let across = difference(links::LEFT, links::RIGHT, 1, 0, Vec2::X).dot(toward);
-    let along = difference(links::UP, links::DOWN, 0, 1, Vec2::Y).dot(toward);
-    let width_squared = (across * across + along * along) / (dab.radius * dab.radius);
-    dab.flow * RoundProfile::new(dab.hardness, dab.softness).mean(from_center.length() / dab.radius, width_squared)
+    let sides = [
+        difference(links::LEFT, links::RIGHT, 1, 0, Vec2::X) / dab.radius,
+        difference(links::UP, links::DOWN, 0, 1, Vec2::Y) / dab.radius,
+    ];
+    let width_squared = sides.iter().map(|side| side.dot(toward).powi(2)).sum::<f32>();
+    let across_squared = sides.iter().map(|side| side.length_squared()).sum::<f32>() - width_squared;
+    let r = from_center.length() / dab.radius;
+    let mean = RoundProfile::new(dab.hardness, dab.softness).mean_over(r, width_squared, across_squared);
+    dab.flow * mean.max(0.0).min(dab.rim.share(r, width_squared.sqrt()))
 }
 fn reference(stroke: &Stroke, scene: &Scene) -> Plane<f32> {
     let dabs = dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);

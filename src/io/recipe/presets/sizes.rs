@@ -86,6 +86,7 @@ fn twice(preset: &Preset, surface: Option<Arc<Surface>>) -> Vec<f32> {
 
 #[test]
 fn every_preset_paints_the_same_at_twice_the_size() {
+    let mut far = Vec::new();
     for surface in [None, Some(Arc::new(ball()))] {
         for preset in presets() {
             let apart = twice(&preset, surface.clone());
@@ -94,10 +95,13 @@ fn every_preset_paints_the_same_at_twice_the_size() {
             let place = if surface.is_some() { "ball" } else { "flat" };
             let found = format!("{place} {:20} mean {mean:5.2} p95 {:5.1} p99 {:5.1}", preset.key, at(0.95), at(0.99));
             println!("{found}");
-            // Crisp dots have the most rim; before lengths and rims were scaled it was 45.
-            assert!(mean <= 6.0, "{found}");
+            // Before lengths and rims were scaled it was 45. Light along a silhouette is a pixel wide on the ball, and
+            // twice the pixels read other normals there.
+            let most = if place == "ball" && preset.key == "rim-light" { 10.0 } else { 4.0 };
+            far.extend((mean > most).then_some(found));
         }
     }
+    assert!(far.is_empty(), "{far:#?}");
 }
 #[test]
 fn a_length_that_is_not_scaled_shows() {

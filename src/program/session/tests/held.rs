@@ -81,7 +81,7 @@ const PROPERTIES: [&str; 44] = [
     r#"{"do":"anchors","anchors":[{"at":[#,2],"source":[3,#]},{"at":[5,6],"source":[7,8]}]}"#,
     r#"{"do":"anchors","anchors":[]}"#,
     r#"{"do":"power","to":#}"#,
-    r#"{"do":"transform","transform":{"matrix":[#,0.5,-0.25,#,#,3],"filter":"sharp"}}"#,
+    r#"{"do":"transform","transform":{"matrix":[0.75,0.5,-0.25,0.5,12.5,-3],"filter":"sharp"}}"#,
     r#"{"do":"transform","transform":{"quad":[[0.25,1],[40,3],[38,29.5],[2,30.125]]}}"#,
     r#"{"do":"transform","transform":null}"#,
     r#"{"do":"placement","placement":{"center":[#,5],"scale":1,"rotation":#}}"#,
