@@ -14,7 +14,8 @@ const BAND: usize = 16;
 /// a grid holds: Chebyshev's polynomial over [½, 2].
 const STEPS: [f32; 2] = [0.561_7, 1.389_5];
 /// A rim is nearer to the middle of a block than to those of its pixels, but less than twice: of what holds the pixels
-/// this share holds the block. Measured on discs and ragged stars: 0.75 takes the fewest steps; 0.5 three times as many.
+/// this share holds the block. Measured on discs and ragged stars: 0.75 takes the fewest steps, 0.5 three times as
+/// many.
 const HELD_BY_RIM: f32 = 0.75;
 /// Steps of conjugate gradients at most.
 const MOST_STEPS: usize = 60;

@@ -53,6 +53,9 @@ const BEYOND: u32 = 1;
 const WITHIN: u32 = 2;
 const FALLOFF: u32 = 4;
 
+/// Sum of the squares of a pixel's widths, in radii, below which its second dimension does not show in the falloff.
+const NARROW_SQUARED: f32 = 2.0 / (12.0 * 12.0);
+
 /// Added to squared distances, px²: the centre itself has no direction toward it.
 const AT_CENTER: f32 = 1e-12;
 
@@ -94,7 +97,9 @@ impl RoundTip {
         let first = if start > 0.0 { start } else { 0.0 };
         let beyond = if inner > self.falloff.1 { BEYOND } else { 0 };
         let within = if outer < start { WITHIN } else { 0 };
-        let falls = if (inner > first) & (outer < end) { FALLOFF } else { 0 };
+        // There a pixel counts as narrow across the radius: of a wider one that is more than a third of a byte.
+        let is_narrow = widest < NARROW_SQUARED;
+        let falls = if (inner > first) & (outer < end) & is_narrow { FALLOFF } else { 0 };
         // What is thinner than a pixel reaches a part of it wherever it lies.
         if self.thin < 1.0 { beyond } else { beyond | within | falls }
     }
