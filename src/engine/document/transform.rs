@@ -6,6 +6,9 @@
 //! many transforms there were.
 
 mod apply;
+mod extent;
+
+pub use extent::FrameBox;
 
 use super::{Content, Group, Layer, LayerMask, MaskKind};
 use crate::math::plane_map::PixelMove;

@@ -57,6 +57,10 @@ impl PlaneMap {
     /// The perspective in which the corners of a canvas (upper left, upper right, lower right, lower left) go to four
     /// points. `None` unless these form a convex quadrilateral.
     pub fn quad(canvas: Size, corners: [DVec2; 4]) -> Option<Self> {
+        Self::rect_to_quad(DVec2::ZERO, dvec2(f64::from(canvas.width), f64::from(canvas.height)), corners)
+    }
+    /// The same for the corners of a box.
+    pub fn rect_to_quad(low: DVec2, high: DVec2, corners: [DVec2; 4]) -> Option<Self> {
         let convex = (0..4).map(|i| {
             let [a, b, c] = [corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]];
             (b - a).perp_dot(c - b)
@@ -72,8 +76,7 @@ impl PlaneMap {
         let (g, h) = (s.perp_dot(d2) / det, d1.perp_dot(s) / det);
         let (right, down) = (p1 - p0 + p1 * g, p3 - p0 + p3 * h);
         let unit = DMat3::from_cols(right.extend(g), down.extend(h), p0.extend(1.0));
-        let size = dvec2(f64::from(canvas.width), f64::from(canvas.height));
-        Self::of(unit * DMat3::from_scale(size.recip()))
+        Self::of(unit * DMat3::from_scale((high - low).recip()) * DMat3::from_translation(-low))
     }
     fn of(forward: DMat3) -> Option<Self> {
         // Scaled so that the least and the greatest determinants count alike on every canvas.

@@ -16,6 +16,7 @@ mod retouch;
 pub mod select;
 pub mod strokes;
 pub mod symmetry;
+pub mod transform;
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
@@ -35,6 +36,7 @@ pub enum ToolKind {
     Image,
     Anchors,
     Move,
+    Transform,
     Strokes,
     SelectRectangle,
     SelectEllipse,
@@ -61,7 +63,7 @@ pub struct ToolRow {
 }
 
 impl ToolKind {
-    pub const ALL: [ToolRow; 16] = [
+    pub const ALL: [ToolRow; 17] = [
         ToolRow {
             kind: ToolKind::Brush,
             name: "brush",
@@ -110,6 +112,14 @@ impl ToolKind {
             label: "Move",
             key: 'V',
             hint: "Drag the selected layer; on a stroke layer, the stroke under the pen (Shift: all of them)",
+        },
+        ToolRow {
+            kind: ToolKind::Transform,
+            name: "transform",
+            label: "Transform",
+            key: 'T',
+            hint: "Drag corners, edges, the inside to move, the outside to turn. Shift keeps aspect or steps, Alt the \
+                   middle, Ctrl skews and distorts; Enter applies it",
         },
         ToolRow {
             kind: ToolKind::Strokes,
@@ -315,6 +325,7 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Image => image::press(context, pen),
         ToolKind::Anchors => anchors::press(context, pen),
         ToolKind::Move => move_content::press(context, pen),
+        ToolKind::Transform => transform::press(context, pen),
         ToolKind::Strokes => strokes::press(context, pen),
         ToolKind::SelectRectangle
         | ToolKind::SelectEllipse

@@ -1,9 +1,10 @@
 //! The move tool: moves a layer, or one stroke of a stroke layer, on the canvas.
 //! Floor 5.
 
+use super::transform;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock};
-use crate::math::Vec2;
+use crate::math::{PlaneMap, Vec2};
 use crate::paint::picking;
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
@@ -55,6 +56,10 @@ impl MoveGesture {
     fn with(&self) -> Option<Document> {
         match self.stroke {
             Some(index) => self.document.with_moved_strokes(self.layer, &[index], self.by),
+            // Where the layer's frame lies elsewhere, the frame is moved.
+            None if self.document.map_of(self.layer).is_some_and(|map| !map.is_none()) => {
+                transform::mapped(&self.document, self.layer, PlaneMap::translation(self.by))
+            }
             None => self.document.with_layer(self.layer, |layer| *layer = moved(layer, self.by)),
         }
     }

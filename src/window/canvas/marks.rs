@@ -23,6 +23,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     if matches!(tool, ToolKind::Brush | ToolKind::Eraser) {
         axes(painter, session, &to_screen);
     }
+    if tool == ToolKind::Transform {
+        super::frame::draw(painter, session, &to_screen);
+    }
     if tool == ToolKind::Strokes {
         chosen(painter, session, &to_screen);
     }

@@ -4,6 +4,7 @@
 
 mod ants;
 mod blocks;
+mod frame;
 mod marks;
 mod overlay;
 mod pointer;

@@ -2,7 +2,6 @@
 //! Floor 7.
 
 use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_layer, key, row};
-use crate::document::Content;
 use crate::requests::WindowRequest;
 use crate::session::Action;
 use crate::session::actions::{ClipboardAction, EditAction, HandAction, LayerAction};
@@ -58,15 +57,11 @@ pub const COMMANDS: &[MenuCommand] = &[
     ),
     LINE,
     row(
-        "Move, scale and turn",
+        "Transform",
         &[ctrl(Key::T)],
-        "Selects the image tool for an image layer (drag moves, Shift scales, Ctrl turns), else the move tool",
+        "A frame around the selected layer or group: move, scale, turn, skew and distort it, live",
         has_layer,
-        |session, requests| {
-            let is_image = session.layer().is_some_and(|layer| matches!(layer.content, Content::Image(_)));
-            let tool = if is_image { ToolKind::Image } else { ToolKind::Move };
-            requests.act(Action::Hand(HandAction::Tool { tool }));
-        },
+        |_, requests| requests.act(Action::Hand(HandAction::Tool { tool: ToolKind::Transform })),
     ),
     row(
         "Clear layer",

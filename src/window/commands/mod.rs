@@ -9,6 +9,7 @@ mod paint;
 mod row;
 mod select;
 mod shading;
+mod transform;
 mod view;
 
 pub use row::MenuCommand;
@@ -25,12 +26,14 @@ pub const MENUS: [(&str, &[MenuCommand]); 7] = [
 ];
 /// A menu within Layer.
 pub const SHADING: &[MenuCommand] = shading::COMMANDS;
+/// A menu within Edit.
+pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
 
 /// Every command, menu by menu.
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
     const EVERY: [(&str, &[MenuCommand]); 7] = MENUS;
     let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
-    menus.chain(SHADING).filter(|command| !command.is_line())
+    menus.chain(SHADING).chain(TRANSFORMS).filter(|command| !command.is_line())
 }
 
 /// A command by its name.

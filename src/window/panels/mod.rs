@@ -21,6 +21,7 @@ pub mod status;
 pub mod strokes;
 pub mod surface;
 pub mod tools;
+mod transform;
 
 /// A panel that can stand beside the canvas or in a window of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

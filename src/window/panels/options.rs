@@ -1,7 +1,7 @@
 //! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
-use super::{brush_mode, fill, select};
+use super::{brush_mode, fill, select, transform};
 use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
@@ -78,6 +78,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
         tool if tool.selects() => select::options(ui, session, requests),
+        ToolKind::Transform => transform::options(ui, session, requests),
         tool => drop(ui.weak(tool.row().hint)),
     }
 }

@@ -60,7 +60,13 @@ fn handed_down(group: &Arc<Layer>, canvas: Size) -> Option<Layer> {
     Some(Layer { content, mask: seen.mask.clone(), transform: None, ..Layer::clone(group) })
 }
 
-/// A map as a transform.
+impl LayerTransform {
+    /// A map of the plane as a transform; `None` of a perspective whose horizon crosses the canvas.
+    pub fn of_map(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Self> {
+        said(map, filter, canvas)
+    }
+}
+
 fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<LayerTransform> {
     if let Some(coefficients) = map.coefficients() {
         return Some(LayerTransform { shape: TransformShape::Matrix(coefficients), filter });

@@ -13,6 +13,7 @@ use crate::session::{LayerPath, OpenDocument, Property, Session};
 use crate::shading::{Model, RadianceScaling, Shading};
 use crate::surface::NoiseRelief;
 use crate::tools::brush::free_name;
+use crate::tools::transform;
 use std::sync::Arc;
 
 /// Kinds of new layers.
@@ -73,6 +74,10 @@ actions! {
         "on mask" OnMask { layer: LayerPath, on: bool }
         /// The layer's transform is applied for good: its frame becomes the canvas.
         "apply transform" ApplyTransform { layer: LayerPath }
+        /// Mirrored about the middle of what it holds: left and right, or up and down.
+        "mirror" Mirror { layer: LayerPath, upright: bool }
+        /// Turned about the middle of what it holds, counter-clockwise.
+        "turn" Turn { layer: LayerPath, degrees: f32 }
         /// Into a group of its own.
         "group" Group { layer: LayerPath }
         "ungroup" Ungroup { layer: LayerPath }
@@ -195,6 +200,14 @@ impl LayerAction {
                 let place = document.place_of(id)?;
                 let index = place.index.saturating_add_signed(*by as isize);
                 ("Move layer", document.with_moved(id, LayerSlot { index, ..place })?, Some(id))
+            }
+            LayerAction::Mirror { layer: path, upright } => {
+                let mirror = transform::mirror(*upright);
+                ("Mirror layer", transform::about_middle(document, layer(path)?.id, mirror)?, None)
+            }
+            LayerAction::Turn { layer: path, degrees } => {
+                let turn = transform::turn(f64::from(*degrees))?;
+                ("Turn layer", transform::about_middle(document, layer(path)?.id, turn)?, None)
             }
             LayerAction::ApplyTransform { layer: path } => {
                 ("Apply transform", document.with_transform_applied(layer(path)?.id)?, None)

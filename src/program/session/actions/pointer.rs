@@ -1,7 +1,7 @@
 //! The pen on the canvas, passed on to the current tool.
 //! Floor 6.
 
-use crate::document::Document;
+use crate::document::{Content, Document};
 use crate::math::vec2;
 use crate::paint::{BrushMode, Sample};
 use crate::session::replay::{ReplayValue, actions, record};
@@ -116,7 +116,13 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
 /// The document for a tool that works on the selected layer where it shows: with the layer's transform applied.
 fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'static str> {
     let document = tab.document();
-    let looks_only = matches!(tool, ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom);
+    let is_moved_whole = tool == ToolKind::Move
+        && tab
+            .selected
+            .and_then(|id| document.layer(id))
+            .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_)));
+    let looks_only =
+        is_moved_whole || matches!(tool, ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom | ToolKind::Transform);
     let Some(layer) = tab.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());

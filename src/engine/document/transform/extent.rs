@@ -1,0 +1,82 @@
+//! The box around what a layer holds, in its own frame: what a transform's handles stand around.
+//! Floor 4.
+
+use super::LayerMap;
+use crate::document::{Content, Document, Layer, LayerId};
+use crate::math::{Rect, Vec2, vec2};
+use crate::paint::Scene;
+use crate::raster::{TILE, TileGrid};
+
+/// A box with sides along the axes, px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameBox {
+    pub low: Vec2,
+    pub high: Vec2,
+}
+
+impl FrameBox {
+    fn of(rect: Rect) -> Option<Self> {
+        let corner = |x: i32, y: i32| vec2(x as f32, y as f32);
+        (!rect.is_empty()).then(|| Self { low: corner(rect.x0, rect.y0), high: corner(rect.x1, rect.y1) })
+    }
+    fn around(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+    /// Upper left, upper right, lower right, lower left.
+    pub fn corners(self) -> [Vec2; 4] {
+        let Self { low, high } = self;
+        [low, vec2(high.x, low.y), high, vec2(low.x, high.y)]
+    }
+    pub fn center(self) -> Vec2 {
+        (self.low + self.high) * 0.5
+    }
+}
+
+impl Document {
+    /// The box around the content of a layer in its own frame: paint and strokes exactly or a little more, what has no
+    /// end the canvas. `None` of an empty layer.
+    pub fn frame_box(&self, id: LayerId) -> Option<FrameBox> {
+        let scene = self.scene_of(id)?;
+        box_of(self.layer(id)?, &scene)
+    }
+}
+
+fn box_of(layer: &Layer, scene: &Scene) -> Option<FrameBox> {
+    match &layer.content {
+        Content::Pixels(pixels) => FrameBox::of(painted(&pixels.tiles)),
+        Content::Strokes(live) => {
+            let bounds = live.params().strokes.iter().map(|stroke| stroke.bounds(scene));
+            FrameBox::of(bounds.fold(Rect::EMPTY, Rect::union))
+        }
+        Content::Group(group) => {
+            let around = LayerMap::none(scene.size);
+            let seen = group.layers.iter().filter_map(|layer| {
+                let (inner, map) = (box_of(layer, scene)?, around.within(layer));
+                let corners = inner.corners().map(|corner| map.point(corner));
+                let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min);
+                Some(FrameBox { low, high: corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) })
+            });
+            seen.reduce(FrameBox::around)
+        }
+        _ => FrameBox::of(scene.size.rect()),
+    }
+}
+
+/// The pixels of a grid that are not wholly transparent.
+fn painted(tiles: &TileGrid) -> Rect {
+    let of_tile = |(at, tile): (crate::raster::TileAt, &std::sync::Arc<crate::raster::Tile>)| {
+        let origin = at.rect();
+        let rows = tile.bytes().chunks_exact(TILE * 4).zip(origin.y0..);
+        rows.fold(Rect::EMPTY, |all, (row, y)| {
+            let is_painted = |p: &[u8]| p[3] > 0;
+            let (first, last) = (row.chunks_exact(4).position(is_painted), row.chunks_exact(4).rposition(is_painted));
+            match first.zip(last) {
+                Some((first, last)) => {
+                    all.union(Rect::new(origin.x0 + first as i32, y, origin.x0 + last as i32 + 1, y + 1))
+                }
+                None => all,
+            }
+        })
+    };
+    tiles.iter().map(of_tile).fold(Rect::EMPTY, Rect::union)
+}

@@ -1,0 +1,118 @@
+use super::*;
+use crate::document::{Content, Group, Layer, PixelLayer, TransformShape};
+use crate::math::Size;
+use crate::paint::Brush;
+use crate::raster::TileGrid;
+use crate::tools::ModifierKeys;
+use std::sync::Arc;
+
+/// A square of paint from (40, 30) to (80, 50).
+fn document() -> Document {
+    let tiles = TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(40 * 20), 40, 20, 40, 30);
+    let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+    Document { layers: vec![Arc::new(paint)], ..Document::empty(Size::new(200, 100)) }
+}
+fn pen(at: Vec2, keys: ModifierKeys) -> PenSample {
+    PenSample { keys, ..PenSample::at(at) }
+}
+fn dragged(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
+    let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
+    let context = ToolContext { layer, ..ToolContext::new(document, &brush) };
+    let mut gesture = press(&context, pen(from, keys)).0?;
+    gesture.drag(&[pen(to, keys)]);
+    match gesture.release() {
+        Outcome::Commit { document, .. } => Some(document),
+        _ => None,
+    }
+}
+fn corners(document: &Document) -> [Vec2; 4] {
+    TransformFrame::of(document, document.layers[0].id).unwrap().corners
+}
+fn close(a: [Vec2; 4], b: [(f32, f32); 4]) {
+    for (a, (x, y)) in a.into_iter().zip(b) {
+        assert!(a.distance(vec2(x, y)) < 1e-2, "{a}, not ({x}, {y})");
+    }
+}
+const NONE: ModifierKeys = ModifierKeys { shift: false, ctrl: false, alt: false };
+
+#[test]
+fn the_frame_is_the_box_around_the_paint() {
+    close(corners(&document()), [(40.0, 30.0), (80.0, 30.0), (80.0, 50.0), (40.0, 50.0)]);
+}
+#[test]
+fn the_inside_moves_by_whole_pixels_and_back_leaves_no_transform() {
+    let moved = dragged(&document(), vec2(60.0, 40.0), vec2(67.4, 37.1), NONE).unwrap();
+    close(corners(&moved), [(47.0, 27.0), (87.0, 27.0), (87.0, 47.0), (47.0, 47.0)]);
+    let back = dragged(&moved, vec2(60.0, 40.0), vec2(53.0, 43.0), NONE).unwrap();
+    assert_eq!(back.layers[0].transform, None);
+    assert!(dragged(&document(), vec2(60.0, 40.0), vec2(60.2, 40.0), NONE).is_none(), "nothing was moved");
+}
+#[test]
+fn a_corner_goes_where_the_pen_goes_and_the_opposite_one_stays() {
+    let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(100.0, 70.0), NONE).unwrap();
+    close(corners(&scaled), [(40.0, 30.0), (100.0, 30.0), (100.0, 70.0), (40.0, 70.0)]);
+    let about_middle = ModifierKeys { alt: true, ..NONE };
+    let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(90.0, 60.0), about_middle).unwrap();
+    close(corners(&scaled), [(30.0, 20.0), (90.0, 20.0), (90.0, 60.0), (30.0, 60.0)]);
+    let kept_aspect = ModifierKeys { shift: true, ..NONE };
+    let scaled = dragged(&document(), vec2(80.0, 50.0), vec2(120.0, 52.0), kept_aspect).unwrap();
+    close(corners(&scaled), [(40.0, 30.0), (120.0, 30.0), (120.0, 70.0), (40.0, 70.0)]);
+}
+#[test]
+fn an_edge_stretches_one_side_and_with_ctrl_it_skews() {
+    let wider = dragged(&document(), vec2(80.0, 40.0), vec2(120.0, 90.0), NONE).unwrap();
+    close(corners(&wider), [(40.0, 30.0), (120.0, 30.0), (120.0, 50.0), (40.0, 50.0)]);
+    let skew = ModifierKeys { ctrl: true, ..NONE };
+    let skewed = dragged(&document(), vec2(60.0, 30.0), vec2(70.0, 30.0), skew).unwrap();
+    close(corners(&skewed), [(50.0, 30.0), (90.0, 30.0), (80.0, 50.0), (40.0, 50.0)]);
+}
+#[test]
+fn outside_turns_about_the_middle_in_steps_with_shift() {
+    // From the right to above: a quarter turn counter-clockwise as seen.
+    let turned = dragged(&document(), vec2(160.0, 40.0), vec2(62.0, -40.0), ModifierKeys { shift: true, ..NONE });
+    close(corners(&turned.unwrap()), [(50.0, 60.0), (50.0, 20.0), (70.0, 20.0), (70.0, 60.0)]);
+}
+#[test]
+fn a_corner_with_ctrl_gives_a_perspective_and_no_crossed_one() {
+    let distort = ModifierKeys { ctrl: true, ..NONE };
+    let distorted = dragged(&document(), vec2(80.0, 50.0), vec2(95.0, 58.0), distort).unwrap();
+    close(corners(&distorted), [(40.0, 30.0), (80.0, 30.0), (95.0, 58.0), (40.0, 50.0)]);
+    assert!(matches!(distorted.layers[0].transform.unwrap().shape, TransformShape::Quad(_)));
+    assert!(dragged(&document(), vec2(80.0, 50.0), vec2(41.0, 31.0), distort).is_none(), "it would be folded");
+}
+#[test]
+fn within_a_transformed_group_the_pen_still_leads() {
+    let inner = document().layers[0].clone();
+    let id = inner.id;
+    let group = Layer {
+        transform: Some(LayerTransform {
+            shape: TransformShape::Matrix([0.0, -0.5, 0.5, 0.0, 30.0, 90.0]),
+            filter: Default::default(),
+        }),
+        ..Layer::new("g", Content::Group(Group { layers: vec![inner], pass_through: false }))
+    };
+    let document = Document { layers: vec![Arc::new(group)], ..document() };
+    let before = TransformFrame::of(&document, id).unwrap();
+    let brush = Brush::default();
+    let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &brush) };
+    for (from, by) in [(before.pivot(), vec2(10.0, -6.0)), (before.corners[2], vec2(5.0, -4.0))] {
+        let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
+        gesture.drag(&[PenSample::at(from + by)]);
+        let Outcome::Commit { document, .. } = gesture.release() else { panic!("moved") };
+        let after = TransformFrame::of(&document, id).unwrap();
+        assert!(after.corners[2].distance(before.corners[2] + by) < 1e-2, "{:?}", after.corners);
+    }
+}
+
+#[test]
+fn two_mirrors_and_four_quarter_turns_leave_no_transform() {
+    let document = document();
+    let id = document.layers[0].id;
+    for (map, times) in [(mirror(false), 2), (mirror(true), 2), (turn(90.0).unwrap(), 4), (turn(36.0).unwrap(), 10)] {
+        let once = about_middle(&document, id, map).unwrap();
+        assert!(once.layers[0].transform.is_some());
+        let all = (1..times).fold(once, |document, _| about_middle(&document, id, map).unwrap());
+        let left = all.map_of(id).unwrap();
+        assert!(left.is_none(), "{:?}", left.plane);
+    }
+}
