@@ -1,6 +1,7 @@
 //! The keyboard: commands and tools by their keys.
 //! Floor 7. The keys are in `keymap`.
 
+use super::commands::MenuCommand;
 use super::keymap::{KeyTarget, Keymap};
 use super::requests::UiRequests;
 use crate::session::actions::HandAction;
@@ -22,12 +23,15 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut 
             std::cmp::Reverse(u8::from(alt) + u8::from(shift) + u8::from(command))
         });
         for (keys, keyed) in all {
-            if !ctx.input_mut(|i| i.consume_shortcut(&keys)) {
+            // A key without effect is left to others: Enter also closes a lasso.
+            let can = |command: &MenuCommand| (command.can)(session);
+            if matches!(keyed, KeyTarget::Command(command) if !can(command))
+                || !ctx.input_mut(|i| i.consume_shortcut(&keys))
+            {
                 continue;
             }
             match keyed {
-                KeyTarget::Command(command) if (command.can)(session) => (command.run)(session, requests),
-                KeyTarget::Command(_) => {}
+                KeyTarget::Command(command) => (command.run)(session, requests),
                 KeyTarget::Tool(row) => requests.act(Action::Hand(HandAction::Tool { tool: row.kind })),
             }
         }

@@ -151,6 +151,6 @@ fn keys_that_other_painting_programs_taught_do_the_same_here() {
     assert_eq!(layers(&harness), ["Background"]);
     key(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
     assert_eq!(layers(&harness), ["Background", "Strokes"]);
-    command(&mut harness, "Move, scale and turn");
-    assert_eq!(session(&harness).tool, rilievo_program::tools::ToolKind::Move);
+    command(&mut harness, "Transform");
+    assert_eq!(session(&harness).tool, rilievo_program::tools::ToolKind::Transform);
 }

@@ -84,8 +84,8 @@ trait LayerKind {
     fn moved(&self, _by: Vec2) -> Option<Content> {
         None
     }
-    /// As it lies on the canvas, its frame taken there by `map`; `None` of what has no place. `last`: other content, and
-    /// what became of it under the same map.
+    /// As it lies on the canvas, its frame taken there by `map`; `None` of what has no place. `last`: other content,
+    /// and what became of it under the same map.
     fn on_canvas(&self, _map: &LayerMap, _last: Option<(&Content, &Content)>) -> Option<Content> {
         None
     }
@@ -200,7 +200,8 @@ impl Content {
     }
     /// The same content where a map takes its frame.
     ///
-    /// * `last`: other content of the layer and what became of it under this map: what did not change is not made again.
+    /// * `last`: other content of the layer and what became of it under this map: what did not change is not made
+    ///   again.
     pub fn on_canvas(&self, map: &LayerMap, last: Option<(&Content, &Content)>) -> Content {
         match last {
             Some((own, seen)) if self.is_identical(own) => seen.clone(),

@@ -1,9 +1,9 @@
 //! Transforms: where a layer's own frame lies on the canvas. Floor 4.
 //!
-//! Whatever a layer holds (samples, anchors, placements, ramps, lights, pixels, its mask) lies in the layer's own frame.
-//! A transform takes that frame to the canvas, one of a group takes along all layers in it. Layers are seen through
-//! their transforms when they are prepared: live ones with their parameters taken along, pixels sampled once, however
-//! many transforms there were.
+//! Whatever a layer holds (samples, anchors, placements, ramps, lights, pixels, its mask) lies in the layer's own
+//! frame. A transform takes that frame to the canvas, one of a group takes along all layers in it. Layers are seen
+//! through their transforms when they are prepared: live ones with their parameters taken along, pixels sampled once,
+//! however many transforms there were.
 
 mod apply;
 mod extent;

@@ -170,8 +170,8 @@ impl StrokeGrain {
     }
 }
 
-/// Two greys and the share of the first, of a mean grey m, the mean of its square and the share p that is not black, all
-/// in `[0, 1]`. Where some is black, that is one part, since no paint ever fills it; else with σ² = ⟨G²⟩ − m²:
+/// Two greys and the share of the first, of a mean grey m, the mean of its square and the share p that is not black,
+/// all in `[0, 1]`. Where some is black, that is one part, since no paint ever fills it; else with σ² = ⟨G²⟩ − m²:
 ///
 /// ```text
 /// p < 1:   light = m / p,                    dark = 0,                        share = p

@@ -9,8 +9,8 @@ use crate::surface::integrate::depth_from_normals;
 
 /// How firmly a touch holds, against the springs between pixels, which are 1.
 const FIRM: f32 = 1e3;
-/// The residual, squared, as a part of the right-hand side, which the firm springs rule: a ten thousandth of what is left
-/// where the search begins.
+/// The residual, squared, as a part of the right-hand side, which the firm springs rule: a ten thousandth of what is
+/// left where the search begins.
 const GOAL: f64 = 1e-14;
 
 /// One touch of the normal brush.

@@ -1,6 +1,6 @@
-//! Evaluates D: the operator, its anchors and weights applied to a surface.
-//! Floor 2. [`Deformation::at`] and [`Deformation::jacobian`] read like the paper; [`Deformation::fill`] is the same
-//! over whole rows (`fill`), tested against it. `plane` is the operator that unwraps the surface. Not here: looking up a picture at D(q) (`paint`).
+//! Evaluates D: the operator, its anchors and weights applied to a surface. Floor 2. [`Deformation::at`] and
+//! [`Deformation::jacobian`] read like the paper; [`Deformation::fill`] is the same over whole rows (`fill`), tested
+//! against it. `plane` is the operator that unwraps the surface. Not here: looking up a picture at D(q) (`paint`).
 
 mod fill;
 mod plane;
@@ -56,7 +56,8 @@ pub const DETAIL_SCALE_PX: f32 = 4.0;
 pub const DETAIL_BLUR_PX: f32 = 1.0;
 
 impl<'a> Deformation<'a> {
-    /// Reads the maps at the anchors, of a sheet those of its surface; an anchor off the surface reads the background: facing the viewer, farthest.
+    /// Reads the maps at the anchors, of a sheet those of its surface; an anchor off the surface reads the background:
+    /// facing the viewer, farthest.
     ///
     /// * `surface`: of the canvas's size; without one only moved anchors move anything.
     /// * `size`: the canvas; its longer side is *L*.

@@ -23,8 +23,8 @@ pub struct Objects {
 pub struct ObjectId(u32);
 
 impl Objects {
-    /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts are known, if a path
-    /// of linked neighbours joins them.
+    /// Splits a surface: pixels belong to one object if they show the same part, or, where no parts are known, if a
+    /// path of linked neighbours joins them.
     fn new(surface: &Surface) -> Self {
         if let Some(sheet) = surface.sheet_of() {
             // Those of the other populations: nobody asks where they lie.

@@ -121,7 +121,8 @@ impl Join for DepthSpan {
     }
 }
 
-/// n̄, r̄ or a point of the unwrapped plane over a block and the pixels around it, and the largest norm of its derivative in it.
+/// n̄, r̄ or a point of the unwrapped plane over a block and the pixels around it, and the largest norm of its
+/// derivative in it.
 #[derive(Clone, Copy)]
 pub(super) struct TurnSpan {
     pub(super) low: Vec2,

@@ -1,5 +1,6 @@
-//! From where a surface was seen: from afar, or from a point through a lens of some field of view.
-//! Floor 2. Pure functions but for the surface's own pixels. Not here: files that tell the field of view (`io::maps`), what materials make of it (`shading`).
+//! From where a surface was seen: from afar, or from a point through a lens of some field of view. Floor 2. Pure
+//! functions but for the surface's own pixels. Not here: files that tell the field of view (`io::maps`), what materials
+//! make of it (`shading`).
 
 use super::Surface;
 use crate::math::{Size, Vec2, Vec3, vec3};

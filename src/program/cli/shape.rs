@@ -157,7 +157,8 @@ fn refuse_opaque(file: &Path, drawing: &TileGrid, size: Size) -> Result<()> {
     match is_full {
         true => Err(Error::unsupported(
             file,
-            "it is opaque everywhere, so it has no outline; give it a transparent ground, or name its flats with --flats",
+            "it is opaque everywhere, so it has no outline; give it a transparent ground, or name its flats \
+             with --flats",
         )),
         false => Ok(()),
     }

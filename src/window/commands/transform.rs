@@ -40,8 +40,9 @@ pub const COMMANDS: &[MenuCommand] = &[
     }),
 ];
 
+/// There is a transform, and Enter closes no lasso.
 fn is_transformed(session: &Session) -> bool {
-    session.layer().is_some_and(|layer| layer.transform.is_some())
+    session.lasso.is_empty() && session.layer().is_some_and(|layer| layer.transform.is_some())
 }
 
 fn with_selected(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPath) -> LayerAction) {

@@ -10,8 +10,9 @@ use std::sync::Arc;
 
 impl Document {
     /// The same picture with the frame of a layer on the canvas, as far as its kind can say: pixels are sampled for
-    /// good, strokes, ramps, lights and placements take new numbers. The transforms of groups around it go to the layers
-    /// in them. An image or a ramp that is skewed or in perspective keeps its transform. `None` if there is no such layer.
+    /// good, strokes, ramps, lights and placements take new numbers. The transforms of groups around it go to the
+    /// layers in them. An image or a ramp that is skewed or in perspective keeps its transform. `None` if there is no
+    /// such layer.
     pub fn with_transform_applied(&self, id: LayerId) -> Option<Document> {
         if self.map_of(id)?.is_none() && self.layer(id)?.transform.is_none() {
             return Some(self.clone());

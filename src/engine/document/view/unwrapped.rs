@@ -1,5 +1,5 @@
-//! The unwrapped view: a painting as it lies in the plane of the surface. A picture painted there, placed where the view
-//! says and bent by D_s, lies on the surface where it was seen. Floor 4.
+//! The unwrapped view: a painting as it lies in the plane of the surface. A picture painted there, placed where the
+//! view says and bent by D_s, lies on the surface where it was seen. Floor 4.
 
 use super::ViewUnavailable;
 use crate::document::{Document, Layer, Progress, flatten, flatten_layer};

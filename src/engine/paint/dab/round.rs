@@ -124,8 +124,8 @@ impl RoundTip {
         let room = self.ceiling - *coverage;
         *coverage += f * if room > 0.0 { room } else { 0.0 };
     }
-    /// On the rim: [`raise`] of the share that the stroke may reach. The squares are the pixel's widths along the radius
-    /// and across it.
+    /// On the rim: [`raise`] of the share that the stroke may reach. The squares are the pixel's widths along the
+    /// radius and across it.
     #[inline(always)]
     fn raise_share(&self, coverage: &mut f32, reach: &mut f32, r: f32, width_squared: f32, across_squared: f32) {
         let mean = self.profile.mean_over(r, width_squared, across_squared);

@@ -41,7 +41,8 @@ fn white(brush: Brush, operator: Operator, samples: Vec<Sample>) -> Stroke {
     Stroke::new(brush, operator, Color::WHITE, samples)
 }
 
-/// Coverage of a dab at a pixel: F(A⁻¹(D(q) − q_0)) averaged over the pixel, no more than the share on the stroke's rim.
+/// Coverage of a dab at a pixel: F(A⁻¹(D(q) − q_0)) averaged over the pixel, no more than the share on the stroke's
+/// rim.
 fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
     let d = Deformation::of_dab(scene.surface.as_deref(), scene.size, operator, dab.at);
     let from_center = d.at(x, y) - dab.at;

@@ -90,8 +90,8 @@ crate::widest! {
     }
 }
 
-/// Adds colours to a row from column `x` on, as many as `reach` has pixels; `source`: how much of each pixel is covered,
-/// the straight colour, and which share is reached.
+/// Adds colours to a row from column `x` on, as many as `reach` has pixels; `source`: how much of each pixel is
+/// covered, the straight colour, and which share is reached.
 pub(super) fn add_colors(
     source: impl Fn(usize) -> (f32, [f32; 3], f32),
     ceiling: f32,

@@ -78,8 +78,8 @@ pub struct TipSpanNeighbours<'f> {
     pub flat: Mat2,
 }
 
-/// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a width |Jᵀ p̂|; and the
-/// share of the pixel that a stroke with this rim may reach.
+/// Coverage of an ellipse at (x, y) in tip space, J's columns `across` and `along`: F(|p|) over a width |Jᵀ p̂|; and
+/// the share of the pixel that a stroke with this rim may reach.
 #[inline(always)]
 pub fn ellipse<P: Profile>(
     profile: &P,

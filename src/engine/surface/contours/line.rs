@@ -47,8 +47,9 @@ impl ContourLine {
         let share = share.clamp(0.0, 1.0);
         if d >= 0.0 { share } else { 1.0 - share }
     }
-    /// The line that a binary mask of the nearer side tells: a Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹ of
-    /// it; its direction is that of the first moments. `None` where the mask is no single edge, such as at a thin wire.
+    /// The line that a binary mask of the nearer side tells: a Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹
+    /// of it; its direction is that of the first moments. `None` where the mask is no single edge, such as at a thin
+    /// wire.
     ///
     /// * `near`, `known`: bits of the window: on the nearer side; to be counted at all.
     pub fn of_mask(near: u64, known: u64) -> Option<Self> {

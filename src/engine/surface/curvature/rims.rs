@@ -53,8 +53,8 @@ impl Rims {
     pub fn are_in(&self, columns: Range<usize>, rows: Range<usize>) -> bool {
         self.rows(rows).iter().any(|rim| columns.contains(&(rim.x as usize)))
     }
-    /// The distance of each pixel of a rectangle (from column and row to column and row) to the nearest in it, in thirds
-    /// of a pixel, steps counting 3 and diagonal ones 4.
+    /// The distance of each pixel of a rectangle (from column and row to column and row) to the nearest in it, in
+    /// thirds of a pixel, steps counting 3 and diagonal ones 4.
     pub fn distances(&self, [x0, y0, x1, y1]: [usize; 4]) -> Vec<u16> {
         let width = x1 - x0;
         let mut distance = vec![u16::MAX / 2; width * (y1 - y0)];

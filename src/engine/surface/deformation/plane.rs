@@ -43,8 +43,8 @@ pub(super) const OUT_OF_REACH_PX: f32 = 1e6;
 const MET_PX: f32 = 1e-3;
 
 impl<'a> LaidPlanes<'a> {
-    /// D(q_i) = s_i at every anchor. Two or more on one object turn its plane as a whole, so that they are met as nearly
-    /// as a turn can; what each still lacks is shared by their weights, measured in the plane.
+    /// D(q_i) = s_i at every anchor. Two or more on one object turn its plane as a whole, so that they are met as
+    /// nearly as a turn can; what each still lacks is shared by their weights, measured in the plane.
     ///
     /// With `Weights::Segment`, the gradient tool's, the plane is scaled as well: its two ends are met exactly, and the
     /// ramp runs evenly over the surface between them.

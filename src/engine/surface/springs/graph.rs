@@ -1,6 +1,6 @@
 //! The coarser levels of springs: unknowns that stand for blocks of finer ones, joined by springs in any shape.
-//! Floor 2. Their springs, and the V-cycle below the grid. Not here: which unknowns become one (`merge`), the grid itself
-//! (`springs`).
+//! Floor 2. Their springs, and the V-cycle below the grid. Not here: which unknowns become one (`merge`), the grid
+//! itself (`springs`).
 
 use super::SpringGrid;
 use super::merge::{children, in_series, is_strong, join, number_rows, numbered, springs_at};

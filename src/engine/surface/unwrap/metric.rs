@@ -22,7 +22,8 @@ pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
 
 /// R(q) of MATH 8: the rotation in J S⁻¹, by which the solution turned the surface at a pixel.
 ///
-/// `angle = atan2(M₂₁ − M₁₂, M₁₁ + M₂₂)`, M = J S⁻¹: of all rotations the nearest to M. The identity where M tells none.
+/// `angle = atan2(M₂₁ − M₁₂, M₁₁ + M₂₂)`, M = J S⁻¹: of all rotations the nearest to M. The identity where M tells
+/// none.
 pub fn turn(jacobian: Mat2, stretch: Mat2) -> Mat2 {
     let m = jacobian * stretch.inverse();
     let (cos, sin) = (m.x_axis.x + m.y_axis.y, m.x_axis.y - m.y_axis.x);

@@ -17,8 +17,8 @@ pub struct PlaneView {
 const FARTHEST_CANVASES: i32 = 2;
 
 impl PlaneView {
-    /// The plane that `deformed`, D over the whole canvas, lays the surface on. Where two pieces lie over each other the
-    /// nearer one is seen. `None` where there is nothing to see.
+    /// The plane that `deformed`, D over the whole canvas, lays the surface on. Where two pieces lie over each other
+    /// the nearer one is seen. `None` where there is nothing to see.
     pub fn of(surface: &Surface, deformed: &DeformedRect) -> Option<Self> {
         let canvas = surface.size().rect();
         if deformed.rect != Some(canvas) {

@@ -5,7 +5,8 @@ use crate::math::Rect;
 use crate::surface::Surface;
 use rayon::prelude::*;
 
-/// Pieces smaller than this many pixels are crumbs of a ragged edge or a speckled mask: they lie as their neighbours do.
+/// Pieces smaller than this many pixels are crumbs of a ragged edge or a speckled mask: they lie as their neighbours
+/// do.
 const CRUMB_PX: usize = 64;
 /// The number of a pixel that no spring joins to any other.
 const NONE: u32 = u32::MAX;

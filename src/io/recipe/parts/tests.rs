@@ -39,7 +39,8 @@ fn every_kind() -> Value {
           "touches": [{ "at": [20, 20], "radius": 3, "normal": [0.6, 0, 0.8], "reach": 9 }] },
         { "id": "g", "kind": "sculpt", "on": "body", "strokes": [
           { "tool": "pinch", "size": 9, "hardness": 0.2, "strength": 0.4, "samples": [[9, 9], [20, 12, 0.5]] }] },
-        { "id": "h", "kind": "relief", "on": "body", "file": "mask.png", "coarse": 2, "fine": 1, "radius": 5, "edge": 0.1 },
+        { "id": "h", "kind": "relief", "on": "body", "file": "mask.png", "coarse": 2, "fine": 1,
+           "radius": 5, "edge": 0.1 },
     ])
 }
 

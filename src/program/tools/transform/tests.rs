@@ -17,7 +17,8 @@ fn pen(at: Vec2, keys: ModifierKeys) -> PenSample {
 }
 fn dragged(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
     let (brush, layer) = (Brush::default(), Some(document.layers[0].id));
-    let context = ToolContext { layer, ..ToolContext::new(document, &brush) };
+    // Zoomed in, so that the handles of the small square lie apart.
+    let context = ToolContext { layer, px_per_pt: 0.3, ..ToolContext::new(document, &brush) };
     let mut gesture = press(&context, pen(from, keys)).0?;
     gesture.drag(&[pen(to, keys)]);
     match gesture.release() {
@@ -75,8 +76,8 @@ fn outside_turns_about_the_middle_in_steps_with_shift() {
 #[test]
 fn a_corner_with_ctrl_gives_a_perspective_and_no_crossed_one() {
     let distort = ModifierKeys { ctrl: true, ..NONE };
-    let distorted = dragged(&document(), vec2(80.0, 50.0), vec2(95.0, 58.0), distort).unwrap();
-    close(corners(&distorted), [(40.0, 30.0), (80.0, 30.0), (95.0, 58.0), (40.0, 50.0)]);
+    let distorted = dragged(&document(), vec2(80.0, 50.0), vec2(82.0, 51.0), distort).unwrap();
+    close(corners(&distorted), [(40.0, 30.0), (80.0, 30.0), (82.0, 51.0), (40.0, 50.0)]);
     assert!(matches!(distorted.layers[0].transform.unwrap().shape, TransformShape::Quad(_)));
     assert!(dragged(&document(), vec2(80.0, 50.0), vec2(41.0, 31.0), distort).is_none(), "it would be folded");
 }
@@ -94,7 +95,7 @@ fn within_a_transformed_group_the_pen_still_leads() {
     let document = Document { layers: vec![Arc::new(group)], ..document() };
     let before = TransformFrame::of(&document, id).unwrap();
     let brush = Brush::default();
-    let context = ToolContext { layer: Some(id), ..ToolContext::new(&document, &brush) };
+    let context = ToolContext { layer: Some(id), px_per_pt: 0.1, ..ToolContext::new(&document, &brush) };
     for (from, by) in [(before.pivot(), vec2(10.0, -6.0)), (before.corners[2], vec2(5.0, -4.0))] {
         let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
         gesture.drag(&[PenSample::at(from + by)]);

@@ -1,4 +1,5 @@
-//! Pixels that two populations see: coverage acts once, whatever is stacked; what is behind a contour shows in its share.
+//! Pixels that two populations see: coverage acts once, whatever is stacked; what is behind a contour shows in its
+//! share.
 
 use super::*;
 use crate::document::{Live, NormalLayer};
