@@ -73,19 +73,19 @@ fn a_flat_colour_stays_one_however_it_is_turned_or_reduced() {
 fn a_zone_plate_at_half_size_is_what_supersampling_gives() {
     let half = affine([0.5, 0.0, 0.0, 0.5, 0.0, 0.0]);
     let shown = seen(&picture(rings), half, Resampling::Smooth);
-    let (mut own, mut bilinear) = (0.0f64, 0.0f64);
+    let (mut own, mut unfiltered) = (0.0f64, 0.0f64);
     for y in 0..SIDE / 2 {
         for x in 0..SIDE / 2 {
             let at = |k: i32| (k as f32 + 0.5) / 4.0;
             let truth: f32 = (0..64).map(|k| rings(2.0 * x as f32 + at(k % 8), 2.0 * y as f32 + at(k / 8))).sum();
             let truth = truth / 64.0;
-            // The mean of four pixels is what one bilinear look between them gives; a look at a corner gives one.
+            // What one look without a filter gives.
             let point = rings(2.0 * x as f32 + 0.5, 2.0 * y as f32 + 0.5);
             own += f64::from(f32::from(shown.pixel(x, y)[0]) / 255.0 - truth).powi(2);
-            bilinear += f64::from(point - truth).powi(2);
+            unfiltered += f64::from(point - truth).powi(2);
         }
     }
-    let ratio = (own / bilinear).sqrt();
+    let ratio = (own / unfiltered).sqrt();
     assert!(ratio < 0.17, "{ratio} of unfiltered");
 }
 #[test]
