@@ -19,7 +19,7 @@ fn source(
     mask: bool,
 ) -> SurfaceSource {
     let mask = mask.then(|| MaskSource::File { file: "m.png".into(), channel: None, invert: false });
-    SurfaceSource { normal, depth, mask }
+    SurfaceSource { normal, depth, mask, matrix: None }
 }
 
 fn map<C: Default>(file: &str) -> Option<MapSource<C>> {

@@ -106,7 +106,7 @@ fn a_map_takes_no_more_than_is_asked_for_with_its_depth_derived() {
     let file = folder.path().join("flat.png");
     std::fs::write(&file, png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, &[])).unwrap();
     let normal = MapSource { file: file.to_string_lossy().into_owned(), ..MapSource::default() };
-    let source = SurfaceSource { normal: Some(normal), depth: None, mask: None };
+    let source = SurfaceSource { normal: Some(normal), ..SurfaceSource::default() };
     let (read, peak) = watched(|| maps::import(&source, &UserFiles::default(), &Budget::default()).unwrap());
     assert_eq!(read.surface.size(), size);
     assert!(peak < 100 * size.area(), "{} bytes a pixel", peak / size.area());

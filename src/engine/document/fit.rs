@@ -44,7 +44,16 @@ impl Document {
             }
         });
         let values = || total.fits().map_err(|why| format!("{why}."));
-        fit.and_then(|()| selections::fit(self, before)).and_then(|()| self.parts_fit()).and_then(|()| values())
+        fit.and_then(|()| selections::fit(self, before))
+            .and_then(|()| self.surface_fits())
+            .and_then(|()| self.parts_fit())
+            .and_then(|()| values())
+    }
+}
+
+impl Document {
+    fn surface_fits(&self) -> Fit {
+        self.surface_source.as_ref().map_or(Ok(()), |source| source.fits().map_err(|why| format!("Surface: {why}.")))
     }
 }
 

@@ -1,12 +1,32 @@
 //! What a document says about its surface: its files and what their numbers mean.
 //! Floor 4. Plain data with the names they have in JSON; reading the files is `io::maps`' work.
 
+use super::{LayerTransform, TransformShape};
+use crate::math::PlaneMap;
+use crate::raster::Resampling;
+
 /// The `"surface"` object. At least one of `normal` and `depth`; the importer derives the other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SurfaceSource {
     pub normal: Option<MapSource<NormalConvention>>,
     pub depth: Option<MapSource<DepthConvention>>,
     pub mask: Option<MaskSource>,
+    /// `"matrix"`: canvas from the pixels of the maps, a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f. Without
+    /// one the maps are as large as the canvas allows, centred.
+    pub matrix: Option<[f64; 6]>,
+}
+
+impl SurfaceSource {
+    /// The matrix as a map; `None` where there is none, or one that cannot be inverted.
+    pub fn map(&self) -> Option<PlaneMap> {
+        PlaneMap::affine(self.matrix?)
+    }
+    /// Refuses a matrix that no file gives back; in a sentence.
+    pub fn fits(&self) -> Result<(), String> {
+        let Some(matrix) = self.matrix else { return Ok(()) };
+        let transform = LayerTransform { shape: TransformShape::Matrix(matrix), filter: Resampling::default() };
+        transform.fits().map_err(|why| format!("the matrix of the maps: {why}"))
+    }
 }
 
 /// A file and how to read it.

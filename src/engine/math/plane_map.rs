@@ -135,6 +135,14 @@ impl PlaneMap {
     pub fn is_identity_on(&self, canvas: Size) -> bool {
         self.pixel_move_on(canvas) == Some(PixelMove::NONE)
     }
+    /// Whether it takes every point of a frame where another map does, to far less than a byte shows.
+    pub fn is_same_on(&self, other: &PlaneMap, frame: Size) -> bool {
+        let (w, h) = (frame.width as f32, frame.height as f32);
+        [vec2(0.0, 0.0), vec2(w, 0.0), vec2(w, h), vec2(0.0, h)].into_iter().all(|corner| {
+            let both = self.to_canvas(corner).zip(other.to_canvas(corner));
+            both.is_some_and(|(a, b)| (a - b).abs().max_element() <= SAME_PX as f32)
+        })
+    }
     /// The move of whole pixels that it is on a canvas: a shift, quarter turns, mirrors.
     pub fn pixel_move_on(&self, canvas: Size) -> Option<PixelMove> {
         let [a, b, c, d, e, f] = self.coefficients()?;
@@ -162,6 +170,15 @@ impl PixelMove {
         let (dx, dy) = (2 * (x - self.origin.0) + 1, 2 * (y - self.origin.1) + 1);
         let along = |axis: (i32, i32)| (axis.0 * dx + axis.1 * dy - 1).div_euclid(2);
         (along(self.right), along(self.down))
+    }
+    /// Where a pixel of the frame goes: the inverse of [`PixelMove::source`].
+    pub fn target(&self, x: i32, y: i32) -> (i32, i32) {
+        let (dx, dy) = self.turned(2 * x + 1, 2 * y + 1);
+        ((dx + 2 * self.origin.0 - 1).div_euclid(2), (dy + 2 * self.origin.1 - 1).div_euclid(2))
+    }
+    /// A step of the frame as one of the canvas.
+    pub fn turned(&self, dx: i32, dy: i32) -> (i32, i32) {
+        (self.right.0 * dx + self.down.0 * dy, self.right.1 * dx + self.down.1 * dy)
     }
 }
 
@@ -198,6 +215,9 @@ mod tests {
         assert_eq!(turn.source(10, 0), (99, 10));
         let mirror = PlaneMap::affine([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0]).unwrap().pixel_move_on(CANVAS).unwrap();
         assert_eq!(mirror.source(0, 7), (99, 7));
+        for by in [turn, mirror] {
+            assert_eq!(by.target(by.source(31, 8).0, by.source(31, 8).1), (31, 8));
+        }
         let shift = PlaneMap::translation(vec2(7.0, -3.0)).pixel_move_on(CANVAS).unwrap();
         assert_eq!(shift.source(7, 0), (0, 3));
         assert_eq!(PlaneMap::translation(vec2(0.5, 0.0)).pixel_move_on(CANVAS), None);

@@ -38,7 +38,7 @@ impl Surface {
     }
     /// The mean over the box of half sides `half` around a point of the map, cut at its border; beyond there is no
     /// surface.
-    fn mean_over(&self, center: Vec2, half: Vec2) -> MeanTexel {
+    pub(super) fn mean_over(&self, center: Vec2, half: Vec2) -> MeanTexel {
         let border = vec2(self.size().width as f32, self.size().height as f32);
         if center.min_element() < 0.0 || center.x >= border.x || center.y >= border.y {
             return MeanTexel::default();
@@ -85,10 +85,10 @@ impl Surface {
 
 /// What a new pixel reads; no surface by default.
 #[derive(Clone, Copy)]
-struct MeanTexel {
-    normal: Vec3,
-    depth: f32,
-    coverage: u8,
+pub(super) struct MeanTexel {
+    pub normal: Vec3,
+    pub depth: f32,
+    pub coverage: u8,
 }
 
 impl Default for MeanTexel {

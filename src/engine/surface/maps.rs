@@ -9,6 +9,7 @@ use super::{
     grow, links,
     objects::Objects,
     pyramid::MapPyramids,
+    through::Origin,
     unwrap::Unwrapping,
     view::Eye,
 };
@@ -35,6 +36,8 @@ pub enum SurfaceError {
     SizesDiffer { normals: Size, other: &'static str, size: Size },
     #[error("there is no surface at all: every pixel is background")]
     Empty,
+    #[error("a surface cannot be seen in a perspective")]
+    Perspective,
 }
 
 /// A picture of an object's shape. Every value is finite; where coverage is 0, the nearest surface values are repeated,
@@ -68,15 +71,17 @@ pub struct Surface {
     bounds: MapPyramids,
     objects: OnceLock<Objects>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
-    parts: Option<Arc<Plane<u32>>>,
+    pub(super) parts: Option<Arc<Plane<u32>>>,
     /// The pixels that two populations see.
-    contours: Arc<Contours>,
+    pub(super) contours: Arc<Contours>,
     /// What the other populations read.
     sheets: RecentCache<(), Surface>,
     /// Their normals, where detail was combined onto them.
     sheet_normals: Option<Plane<Vec3>>,
     /// The surface that this one is the sheet of, if it is one.
     sheet_of: Option<SheetOf>,
+    /// What this one was seen through a map of, if it was.
+    pub(super) origin: Option<Origin>,
 }
 
 /// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never
@@ -102,6 +107,10 @@ fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
 impl Surface {
     /// Normalises the normals, drops what is not finite, grows the valid values outward and finds the depth jumps.
     pub fn new(maps: Maps) -> Result<Self, SurfaceError> {
+        Self::with_depth_range(maps, None)
+    }
+    /// The same of maps whose depth range is known, px.
+    pub(super) fn with_depth_range(maps: Maps, range_px: Option<f32>) -> Result<Self, SurfaceError> {
         let Maps { mut normals, mut depth, mut coverage } = maps;
         let size = normals.size();
         for (other, s) in [("depth", depth.size()), ("mask", coverage.size())] {
@@ -122,14 +131,15 @@ impl Surface {
         }
         let depth = depth.updated(|_, _, z| z.clamp(0.0, 1.0));
         let [nbar_x, nbar_y, nz] = apart(normals);
-        let depth_range_px = links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
+        let estimated = || links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
+        let depth_range_px = range_px.unwrap_or_else(estimated);
         let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
         let mut surface = Self::of_planes([nbar_x, nbar_y, nz, depth], [coverage, links], depth_range_px);
         surface.find_contours(&valid);
         Ok(surface)
     }
     /// n̄_x, n̄_y, n_z and depth; coverage and links.
-    fn of_planes(reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], depth_range_px: f32) -> Self {
+    pub(super) fn of_planes(reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], depth_range_px: f32) -> Self {
         let ([nbar_x, nbar_y, nz, depth], [coverage, links]) = (reading, bytes);
         Self {
             size: nz.size(),
@@ -155,6 +165,7 @@ impl Surface {
             sheets: RecentCache::default(),
             sheet_normals: None,
             sheet_of: None,
+            origin: None,
         }
     }
     /// A surface made of parts, whose objects are known: no depth jump is needed to tell them apart.

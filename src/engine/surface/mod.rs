@@ -27,6 +27,7 @@ pub mod region;
 pub mod scene;
 mod springs;
 pub mod support;
+pub mod through;
 pub mod unwrap;
 pub mod view;
 

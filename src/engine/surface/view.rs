@@ -11,8 +11,8 @@ pub enum Eye {
     /// Infinitely far: every pixel is seen along e = (0, 0, 1).
     #[default]
     Afar,
-    /// Before the middle of the map, as many of its px away from the picture plane.
-    At { focal_px: f32 },
+    /// As many px of the map away from the picture plane, before a point so far from the map's middle.
+    At { focal_px: f32, beside: Vec2 },
 }
 
 impl Eye {
@@ -22,7 +22,7 @@ impl Eye {
     pub fn of_fov(degrees: Option<f32>, map: Size) -> Self {
         let focal_px = |degrees: f32| 0.5 * map.width as f32 / (0.5 * degrees.to_radians()).tan();
         match degrees.filter(|degrees| *degrees > 0.0 && *degrees < 180.0).map(focal_px) {
-            Some(focal_px) if focal_px.is_finite() && focal_px > 0.0 => Eye::At { focal_px },
+            Some(focal_px) if focal_px.is_finite() && focal_px > 0.0 => Eye::At { focal_px, beside: Vec2::ZERO },
             _ => Eye::Afar,
         }
     }
@@ -30,19 +30,32 @@ impl Eye {
     pub(super) fn scaled(self, factor: f32) -> Self {
         match self {
             Eye::Afar => Eye::Afar,
-            Eye::At { focal_px } => Eye::At { focal_px: focal_px * factor },
+            Eye::At { focal_px, beside } => Eye::At { focal_px: focal_px * factor, beside: beside * factor },
+        }
+    }
+    /// The eye of a map that another one became.
+    ///
+    /// * `factor`: how much longer lengths became.
+    /// * `moved`: where a point beside the old map's middle went, from the new one's, px.
+    pub(super) fn moved(self, factor: f32, moved: impl Fn(Vec2) -> Vec2) -> Self {
+        match self {
+            Eye::Afar => Eye::Afar,
+            Eye::At { focal_px, beside } => Eye::At { focal_px: focal_px * factor, beside: moved(beside) },
         }
     }
     /// v: the unit vector toward the eye from what is seen at a point; camera space (y up).
     ///
-    /// MATH 1: `v = (−x, y, f) / |…|`, (x, y) from the middle of the map, y down. Afar it is e.
+    /// MATH 1: `v = (−x, y, f) / |…|`, (x, y) from the point before the eye, y down. Afar it is e.
     ///
     /// * `from_middle`: map px.
     #[inline(always)]
     pub fn toward(self, from_middle: Vec2) -> Vec3 {
         match self {
             Eye::Afar => Vec3::Z,
-            Eye::At { focal_px } => vec3(-from_middle.x, from_middle.y, focal_px).normalize_or(Vec3::Z),
+            Eye::At { focal_px, beside } => {
+                let at = from_middle - beside;
+                vec3(-at.x, at.y, focal_px).normalize_or(Vec3::Z)
+            }
         }
     }
 }

@@ -143,6 +143,7 @@ impl AssetList {
             }),
             depth: Some(MapSource { file: maps, channel: Some("Z".into()), convention: depth }),
             mask: Some(MaskSource::File { file: mask, channel: None, invert: false }),
+            matrix: None,
         })
     }
     fn picture(&mut self, file: &Path, name: &str, picture: &Picture) -> Result<String> {

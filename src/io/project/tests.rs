@@ -4,8 +4,9 @@ mod held;
 use super::sample::{assert_same, everything, png};
 use super::*;
 use crate::Budget;
-use crate::document::{Content, Layer, MaskKind};
-use crate::math::srgb::Color;
+use crate::document::{Content, Layer, MaskKind, SurfaceSource};
+use crate::math::{PlaneMap, srgb::Color};
+use crate::raster::Plane;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -199,6 +200,33 @@ fn a_surface_that_came_from_no_file_comes_back() {
     }
     assert!(a.coverage_plane().values() == b.coverage_plane().values());
     assert!((a.depth_range_px() - b.depth_range_px()).abs() < 1e-2);
+}
+#[test]
+fn maps_that_were_turned_come_back_as_their_files_and_a_matrix() {
+    let plain = everything(64);
+    assert!(!text_of(&written(&plain)).contains("\"matrix\""), "nothing of it where it is not used");
+    let turn = PlaneMap::rotation(30.0, plain.size.center());
+    let surface = plain.surface.as_ref().unwrap().through(plain.size, &turn).unwrap();
+    let source =
+        SurfaceSource { matrix: turn.coefficients(), ..SurfaceSource::clone(plain.surface_source.as_ref().unwrap()) };
+    let document = Document { surface_source: Some(Arc::new(source)), surface: Some(surface.clone()), ..plain.clone() };
+    let bytes = written(&document);
+    let back = read_back(&bytes).document;
+    assert_same(&document, &back);
+    let again = back.surface.unwrap();
+    assert!(surface.normal_planes().map(Plane::values) == again.normal_planes().map(Plane::values));
+    assert!(surface.depth_plane().values() == again.depth_plane().values());
+    let names = |bytes: &[u8]| entries(bytes).into_iter().map(|(name, _)| name).collect::<Vec<_>>();
+    assert_eq!(names(&bytes), names(&written(&plain)), "the files of the maps");
+    assert!(text_of(&bytes).contains("\"version\": 2"));
+    let flat = SurfaceSource { matrix: Some([1.0, 2.0, 2.0, 4.0, 0.0, 0.0]), ..SurfaceSource::default() };
+    let refused = Document { surface_source: Some(Arc::new(flat)), ..plain }.fits(None).unwrap_err();
+    assert!(refused.contains("cannot be inverted"), "{refused}");
+}
+/// The recipe in a project.
+fn text_of(bytes: &[u8]) -> String {
+    let found = entries(bytes).into_iter().find(|(name, _)| name == DOCUMENT).unwrap_or_else(|| panic!("no recipe"));
+    String::from_utf8(found.1).unwrap()
 }
 #[test]
 fn an_empty_document_and_an_empty_layer_come_back() {

@@ -142,7 +142,7 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     root.finish()?;
 
     let CanvasAndSurface { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
-    let surface_source = source.onto.map(|onto| onto.surface.clone()).or(own.map(|(own, _)| own)).map(Arc::new);
+    let surface_source = source.onto.map(fitted_source).or(own.map(|(own, _)| own)).map(Arc::new);
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *source.budget;
     let pictures = PictureCache::knowing(tiles);
     let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections: HashMap::new() };
@@ -192,8 +192,8 @@ fn canvas(node: &JsonNode, source: RecipeSource) -> Result<Size> {
 /// Puts a document on another object; the canvas stays, the maps are fitted to it.
 pub fn put_onto(document: &Document, file: &Path, onto: OtherSurface, budget: &Budget) -> Result<Document> {
     let maps::ImportedSurface { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
-    let surface = fitted(surface, document.size).map_err(|e| Error::unsupported(file, e))?;
-    let surface_source = Some(Arc::new(onto.surface.clone()));
+    let surface = Arc::new(surface).onto(document.size, None).map_err(|e| Error::unsupported(file, e))?;
+    let surface_source = Some(Arc::new(fitted_source(onto)));
     let (surface_files, parts) = (Arc::new(files), Arc::default());
     let next = Document { surface: Some(surface), surface_source, surface_files, parts, ..document.clone() };
     Ok(next.with_selections_found())
@@ -213,6 +213,7 @@ fn shape(
     own: Option<&(SurfaceSource, JsonNode)>,
     source: RecipeSource,
 ) -> Result<CanvasAndSurface> {
+    let own_map = own.and_then(|(own, _)| own.map());
     // Another object keeps the document's canvas, so its own maps are read only if they determine the size.
     let own = match own {
         Some((own, node)) if canvas.is_none() || source.onto.is_none() => {
@@ -237,12 +238,14 @@ fn shape(
         Some(node) => node.refused(e),
         None => Error::unsupported(source.file, e),
     };
-    let surface = Some(fitted(surface, size).map_err(refused)?);
+    let map = node.and_then(|_| own_map);
+    let surface = Some(Arc::new(surface).onto(size, map.as_ref()).map_err(refused)?);
     Ok(CanvasAndSurface { size, surface, files, notes: findings.notes })
 }
 
-fn fitted(map: Surface, canvas: Size) -> std::result::Result<Arc<Surface>, SurfaceError> {
-    Ok(Arc::new(if map.size() == canvas { map } else { map.fitted(canvas)? }))
+/// Another object is fitted to the canvas, wherever its maps lay on its own.
+fn fitted_source(onto: OtherSurface) -> SurfaceSource {
+    SurfaceSource { matrix: None, ..onto.surface.clone() }
 }
 
 /// Reads layers, once the canvas is known.
@@ -284,7 +287,8 @@ pub fn print(document: &Document) -> String {
 
 /// Whether the first version has no words for something in a document.
 fn needs_second_version(document: &Document) -> bool {
-    !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| layer.transform.is_some())
+    let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
+    has_matrix || !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| layer.transform.is_some())
 }
 
 /// All but the layers.

@@ -1,5 +1,6 @@
 //! Reads and writes the surface: its maps and what their numbers mean. Floor 5. `io::maps` detects what is not given.
 
+use super::transforms;
 use crate::Result;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, NormalSpace,
@@ -19,17 +20,24 @@ pub fn read(node: &JsonNode) -> Result<Option<SurfaceSource>> {
         normal: fields.get("normal").map(|node| normal(&node)).transpose()?,
         depth: fields.get("depth").map(|node| depth(&node)).transpose()?,
         mask: fields.get("mask").map(|node| mask(&node)).transpose()?,
+        matrix: fields.get("matrix").map(|node| matrix(&node)).transpose()?,
     };
     // They are read once the canvas is known.
     let has_parts = fields.get("parts").is_some();
     fields.finish()?;
     if source.normal.is_none() && source.depth.is_none() {
-        if has_parts && source.mask.is_none() {
+        if has_parts && source.mask.is_none() && source.matrix.is_none() {
             return Ok(None);
         }
         return Err(node.refused("names neither a normal map nor a depth map"));
     }
     Ok(Some(source))
+}
+
+fn matrix(node: &JsonNode) -> Result<[f64; 6]> {
+    let matrix = transforms::matrix_of(node)?;
+    let source = SurfaceSource { matrix: Some(matrix), ..SurfaceSource::default() };
+    source.fits().map(|()| matrix).map_err(|why| node.refused(why))
 }
 
 fn normal(node: &JsonNode) -> Result<MapSource<NormalConvention>> {
@@ -155,6 +163,7 @@ pub fn write(source: &SurfaceSource) -> JsonObject {
             out.object("mask", map);
         }
     }
+    out.said("matrix", source.matrix, |matrix| json!(matrix));
     out
 }
 

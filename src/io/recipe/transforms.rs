@@ -25,7 +25,8 @@ pub fn read(node: &JsonNode) -> Result<LayerTransform> {
     Ok(transform)
 }
 
-fn matrix_of(node: &JsonNode) -> Result<[f64; 6]> {
+/// A matrix, with the range of each number.
+pub fn matrix_of(node: &JsonNode) -> Result<[f64; 6]> {
     let items = node.list(6)?;
     let [a, b, c, d, e, f] = &items[..] else {
         return Err(node.refused(format!("has {} numbers; it must have 6: a, b, c, d, e, f", items.len())));

@@ -209,6 +209,7 @@ impl MapFiles {
             normal: normal.map(map),
             depth: depth.map(map),
             mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
+            matrix: None,
         };
         Self { name: name.into(), files, source }
     }

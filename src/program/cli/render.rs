@@ -160,6 +160,7 @@ fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSourc
             convention: DepthConvention { near: args.near, ..DepthConvention::default() },
         }),
         mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
+        matrix: None,
     })
 }
 

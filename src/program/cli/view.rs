@@ -212,6 +212,7 @@ fn source(parts: [Option<PathBuf>; 3], files: &mut UserFiles) -> SurfaceSource {
         normal: normal.map(|file| MapSource { file, ..MapSource::default() }),
         depth: depth.map(|file| MapSource { file, ..MapSource::default() }),
         mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
+        matrix: None,
     }
 }
 

@@ -120,7 +120,7 @@ pub fn maps_of(normal: Option<&Path>, depth: Option<&Path>) -> SurfaceSource {
     SurfaceSource {
         normal: normal.map(|file| MapSource { file: name(file), ..MapSource::default() }),
         depth: depth.map(|file| MapSource { file: name(file), ..MapSource::default() }),
-        mask: None,
+        ..SurfaceSource::default()
     }
 }
 

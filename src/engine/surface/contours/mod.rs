@@ -7,6 +7,7 @@
 mod continued;
 mod find;
 mod line;
+mod moved;
 mod sheet;
 mod window;
 

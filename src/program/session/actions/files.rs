@@ -200,16 +200,20 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
     let Some(tab) = session.active_mut() else { return Ok(()) };
     let (canvas, found) = (tab.document().size, surface.size());
     let mut notes = findings.notes;
-    let surface = if found == canvas {
-        surface
+    let placed = source.map();
+    let surface = if found == canvas && placed.is_none() {
+        Arc::new(surface)
+    } else if let Some(map) = &placed {
+        Arc::new(surface).onto(canvas, Some(map)).map_err(|error| Error::unsupported("maps", error))?
     } else {
         notes.push(format!("The maps have {found} pixels and were stretched to the canvas, {canvas}."));
-        surface.stretched(canvas).map_err(|error| Error::unsupported("maps", error))?
+        Arc::new(surface.stretched(canvas).map_err(|error| Error::unsupported("maps", error))?)
     };
+    let is_whole = found == canvas || placed.is_some();
     let next = Document {
-        surface: Some(Arc::new(surface)),
-        surface_source: (found == canvas).then(|| Arc::new(source.clone())),
-        surface_files: Arc::new(if found == canvas { files } else { Default::default() }),
+        surface: Some(surface),
+        surface_source: is_whole.then(|| Arc::new(source.clone())),
+        surface_files: Arc::new(if is_whole { files } else { Default::default() }),
         ..tab.document().clone()
     };
     let maps = next.surface.clone();
