@@ -64,6 +64,18 @@ fn every_format_keeps_the_picture() {
     assert_eq!(worst(&at("ours.png"), &at("rendered.png")), 0.0);
     done(folder.path(), &["convert", "a.ora", "deep.png", "--bits", "16", "--dpi", "300"]);
     assert_eq!(image::open(at("deep.png")).unwrap().color(), image::ColorType::Rgba16);
+    done(folder.path(), &["render", "a.ora", "-o", "deep.tif", "--bits", "16"]);
+    assert_eq!(image::open(at("deep.tif")).unwrap().color(), image::ColorType::Rgba16);
+    done(folder.path(), &["render", "a.ora", "-o", "half.exr"]);
+    done(folder.path(), &["render", "a.ora", "-o", "whole.exr", "--bits", "32"]);
+    let told = |name: &str| done(folder.path(), &["info", "--json", name]);
+    assert!(told("half.exr") != told("whole.exr"), "{}", told("whole.exr"));
+    for wrong in [["a.exr", "8"], ["a.png", "32"], ["a.jpg", "16"]] {
+        let said = said(folder.path(), &["render", "a.ora", "-o", wrong[0], "--bits", wrong[1]]);
+        assert!(said.contains("bits a channel, not"), "{said}");
+    }
+    done(folder.path(), &["convert", "a.ora", "fine.png", "--layers", "--bits", "16"]);
+    assert_eq!(image::open(at("fine-01-tint-ü.png")).unwrap().color(), image::ColorType::Rgba16);
     done(folder.path(), &["convert", "a.ora", "half.png", "--scale", "0.5"]);
     assert_eq!(image::image_dimensions(at("half.png")).unwrap(), (24, 20));
     done(folder.path(), &["convert", "a.ora", "each.png", "--layers"]);

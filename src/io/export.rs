@@ -5,28 +5,28 @@ pub mod deep;
 pub mod layers;
 pub mod shape;
 
-use crate::document::Progress;
+use crate::document::{Document, Progress};
 use crate::fs::Disk;
 use crate::math::{Rect, Size, srgb, srgb::Color};
 use crate::project::pixels::strips;
 use crate::raster::TileGrid;
 use crate::replace::{Terms, check, replace};
-use crate::{Error, Remedy, Result};
+use crate::{Budget, Error, Remedy, Result};
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 /// A kind of file that a picture can be written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExportFormat {
-    /// 8 bits, straight alpha, marked as sRGB.
+    /// Straight alpha, marked as sRGB.
     Png,
     /// 8 bits, opaque.
     Jpeg,
     /// Lossless.
     WebP,
-    /// 8 bits, straight alpha.
+    /// Straight alpha.
     Tiff,
-    /// Linear light, half floats, premultiplied.
+    /// Linear light, premultiplied.
     Exr,
 }
 
@@ -42,6 +42,23 @@ impl ExportFormat {
         (ExportFormat::Tiff, "tiff"),
     ];
 
+    /// Bits a channel that it can have, the usual one first. Those of an EXR are floats.
+    pub fn depths(self) -> &'static [u8] {
+        match self {
+            ExportFormat::Png | ExportFormat::Tiff => &[8, 16],
+            ExportFormat::Exr => &[16, 32],
+            ExportFormat::Jpeg | ExportFormat::WebP => &[8],
+        }
+    }
+    /// The bits a channel that a picture is written with; `file` is for messages. Fails where the format has none such.
+    pub fn bits(self, file: &Path, asked: Option<u8>) -> Result<u8> {
+        let depths = self.depths();
+        let bits = asked.unwrap_or(depths[0]);
+        depths.contains(&bits).then_some(bits).ok_or_else(|| {
+            let known: Vec<String> = depths.iter().map(u8::to_string).collect();
+            Error::unsupported(file, format!("such a file has {} bits a channel, not {bits}", known.join(" or ")))
+        })
+    }
     /// The format for a file name.
     pub fn of(file: &Path) -> Result<ExportFormat> {
         let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -64,11 +81,13 @@ pub struct ExportOptions {
     pub dots_per_inch: Option<f32>,
     /// The part that is written; all of the canvas by default.
     pub crop: Option<Rect>,
+    /// Bits a channel, one of [`ExportFormat::depths`]; the format's usual one by default.
+    pub bits: Option<u8>,
 }
 
 impl Default for ExportOptions {
     fn default() -> Self {
-        Self { background: None, quality: 92, dots_per_inch: None, crop: None }
+        Self { background: None, quality: 92, dots_per_inch: None, crop: None, bits: None }
     }
 }
 
@@ -107,6 +126,17 @@ impl OutputFile {
         Output::of(named)?;
         check(&Disk, named, &terms)?;
         Ok(Self { named: named.into(), terms })
+    }
+    /// Flattens a document and writes it, with as many bits as are asked for; nothing if cancelled.
+    pub fn write_document(
+        &self,
+        document: &Document,
+        options: &ExportOptions,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<()> {
+        let bytes = deep::encode_document(&self.named, document, options, budget, progress)?;
+        bytes.map_or(Ok(()), |bytes| self.replace(&bytes))
     }
     /// Encodes and writes the part of a flattened picture that the canvas shows.
     pub fn write(&self, pixels: &TileGrid, canvas: Size, options: &ExportOptions) -> Result<()> {
@@ -232,7 +262,7 @@ fn webp(file: &Path, rgba: &[u8], size: Size) -> Result<Vec<u8>> {
 }
 
 fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
-    deep::exr(size, |i| {
+    deep::exr(size, 16, |i| {
         let [r, g, b, a] = std::array::from_fn(|c| rgba[4 * i + c]);
         let alpha = f32::from(a) / 255.0;
         let light = |c: u8| srgb::decode_u8(c) * alpha;
@@ -243,7 +273,7 @@ fn exr(rgba: &[u8], size: Size) -> Result<Vec<u8>, exr::error::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, Overwrite, picture};
+    use crate::{Overwrite, picture};
 
     fn checker() -> (TileGrid, Size) {
         let size = Size::new(70, 3);

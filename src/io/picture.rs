@@ -22,15 +22,26 @@ use std::path::Path;
 /// * `file`: for messages (and for TGA, which only its name tells).
 ///
 /// Integer files become sRGB bytes (through their ICC profile where it says something else), float files linear light.
-/// EXR gives its colour layer, straight alpha. Fails with a sentence on anything damaged, unknown or beyond `budget`.
+/// EXR gives its colour layer, straight alpha; integers of 16 bits are kept beside the bytes. Fails with a sentence on anything damaged, unknown or beyond `budget`.
 /// The picture keeps `bytes`, so that a project can store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let is_exr = ExrFile::is_exr(bytes);
-    let picture = if is_exr { light::decode(file, bytes, budget) } else { decode_bitmap(file, bytes, budget) }?;
+    let picture = if is_exr {
+        light::decode(file, bytes, budget)
+    } else {
+        decode_bitmap(file, bytes, budget, Kept::SixteenBits)
+    }?;
     Ok(Picture { encoded: Some(Asset::from(bytes.to_vec())), ..picture })
 }
 
-fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
+/// What is kept of integers of 16 bits.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kept {
+    Bytes,
+    SixteenBits,
+}
+
+fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget, kept: Kept) -> Result<Picture> {
     let mut bitmap = bitmap::decode(file, bytes, budget)?;
     bitmap.image.apply_orientation(bitmap.orientation);
     let size = Size::new(bitmap.image.width(), bitmap.image.height());
@@ -40,13 +51,38 @@ fn decode_bitmap(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> 
             let profiled = bitmap.icc.as_deref().and_then(|icc| light_through_profile(&texels, icc));
             Picture::linear(size, profiled.unwrap_or(texels))
         }
+        image if kept == Kept::SixteenBits && is_sixteen_bits(image) => {
+            // Beside what was decoded: texels of both kinds.
+            let asked = image.as_bytes().len() as u64 + 12 * size.area() as u64;
+            budget.room(file, &format!("a picture of {size} pixels of 16 bits a channel"), asked)?;
+            let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
+            let plain = || bitmap.image.into_rgba16().into_raw().as_chunks().0.to_vec();
+            let deep = profiled.unwrap_or_else(plain);
+            Picture::srgb8(size, deep.iter().map(|t| t.map(byte)).collect()).map(|picture| picture.with_deep(deep))
+        }
         image => {
             let profiled = bitmap.icc.as_deref().and_then(|icc| through_profile(image, icc));
+            let profiled = profiled.map(|texels| texels.iter().map(|t| t.map(byte)).collect());
             let plain = || bitmap.image.into_rgba8().into_raw().as_chunks().0.to_vec();
             Picture::srgb8(size, profiled.unwrap_or_else(plain))
         }
     };
     picture.ok_or_else(|| Error::decode(file, "the picture has no pixels"))
+}
+
+fn is_sixteen_bits(image: &DynamicImage) -> bool {
+    matches!(
+        image,
+        DynamicImage::ImageLuma16(_)
+            | DynamicImage::ImageLumaA16(_)
+            | DynamicImage::ImageRgb16(_)
+            | DynamicImage::ImageRgba16(_)
+    )
+}
+
+/// The byte nearest to a value of 16 bits.
+fn byte(v: u16) -> u8 {
+    ((u32::from(v) + 128) / 257) as u8
 }
 
 /// A picture as the tiles of a paint layer, its corner at a canvas pixel; light beyond white is clipped, as a texture
@@ -149,16 +185,16 @@ pub fn to_srgb(size: Size, rgba: Vec<u8>, is_grey: bool, icc: &[u8]) -> Vec<u8> 
         DynamicImage::ImageRgba8(image)
     };
     match through_profile(&image, icc) {
-        Some(texels) => texels.into_flattened(),
+        Some(texels) => texels.into_flattened().into_iter().map(byte).collect(),
         None => image.into_rgba8().into_raw(),
     }
 }
 
-/// Straight sRGB bytes of an integer image in the colours of its ICC profile.
+/// Straight sRGB of an integer image in the colours of its ICC profile, 16 bits a channel.
 ///
 /// `None` where the profile is sRGB as far as a byte can tell (so that such files keep their bytes), does not belong to
 /// the image's kind of colour, or cannot be used.
-fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u8; 4]>> {
+fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u16; 4]>> {
     let profile = ColorProfile::new_from_slice(icc).ok()?;
     let grey = matches!(
         image,
@@ -178,7 +214,6 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u8; 4]>> {
         let mut out = vec![0u16; source.len() / layout.channels() * 4];
         transform.transform(source, &mut out).ok().map(|()| out)
     };
-    let byte = |v: u16| ((u32::from(v) + 128) / 257) as u8;
     let probe = probe(layout);
     let moved = run(&probe)?.as_chunks::<4>().0.iter().zip(probe.chunks(layout.channels())).any(|(to, from)| {
         let from = if grey { [from[0]; 3] } else { [from[0], from[1], from[2]] };
@@ -188,7 +223,7 @@ fn through_profile(image: &DynamicImage, icc: &[u8]) -> Option<Vec<[u8; 4]>> {
     let mut texels = Vec::with_capacity(image.width() as usize * image.height() as usize);
     for strip in strips(image) {
         let source = if grey { strip.into_luma_alpha16().into_raw() } else { strip.into_rgba16().into_raw() };
-        texels.extend(run(&source)?.as_chunks::<4>().0.iter().map(|t| t.map(byte)));
+        texels.extend_from_slice(run(&source)?.as_chunks::<4>().0);
     }
     Some(texels)
 }
@@ -276,6 +311,26 @@ mod tests {
         for (format, name) in formats {
             assert_eq!(texels(&encoded(&image, format), name), expected, "{name}");
         }
+    }
+    #[test]
+    fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
+        let deep =
+            image::ImageBuffer::from_fn(300, 2, |x, y| image::Rgba([x as u16 * 211, 7, 40000, 65535 - y as u16]));
+        for (format, name) in [(ImageFormat::Png, "a.png"), (ImageFormat::Tiff, "a.tif")] {
+            let bytes = encoded(&DynamicImage::ImageRgba16(deep.clone()), format);
+            let picture = decode(Path::new(name), &bytes, &Budget::default()).unwrap();
+            let kept = picture.deep.as_ref().unwrap();
+            assert!(kept.iter().zip(deep.pixels()).all(|(kept, pixel)| *kept == pixel.0), "{name}");
+            let Texels::Srgb8(texels) = &picture.texels else { panic!("bytes") };
+            let nearest = |v: u16| (f32::from(v) / 257.0).round() as u8;
+            assert!(kept.iter().zip(texels.iter()).all(|(deep, byte)| deep.map(nearest) == *byte), "{name}");
+        }
+        assert!(
+            decode(Path::new("b.png"), &encoded(&opaque(), ImageFormat::Png), &Budget::default())
+                .unwrap()
+                .deep
+                .is_none()
+        );
     }
     #[test]
     fn a_mask_is_luminance_times_alpha() {

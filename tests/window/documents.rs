@@ -44,6 +44,18 @@ fn a_picture_is_exported_and_a_project_saved_with_the_windows_own_dialogs() {
     assert!(ora.is_file() && !session(&harness).active().unwrap().is_dirty());
 }
 #[test]
+fn a_picture_of_sixteen_bits_is_exported_where_that_is_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let png = folder.path().join("deep.png");
+    let mut harness = window();
+    command(&mut harness, "Export…");
+    press(&mut harness, "16 bits");
+    press(&mut harness, "Export…");
+    choose(&mut harness, &png);
+    until(&mut harness, |harness| harness.query_by_label_contains("Exported").is_some());
+    assert_eq!(image::open(&png).unwrap().color(), image::ColorType::Rgba16);
+}
+#[test]
 fn quitting_asks_for_each_document_with_unsaved_work_and_saves_it_where_it_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("kept.ora");

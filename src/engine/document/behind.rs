@@ -77,6 +77,23 @@ impl<'c> Behind<'c> {
             tile.map_or([0; 4], |tile| pixel_of(tile, x, y))
         })
     }
+    /// The same of pixels that are not rounded to bytes.
+    pub fn packed_deep(&self, on_sheet: Option<&PlanarTile>, bare: Option<&PlanarTile>) -> PlanarTile {
+        let (mut packed, corner) = (PlanarTile::of_rows(self.rows()), self.at.rect());
+        for (place, contour) in self.places() {
+            let (tile, x, y) = match place < self.contours.seen {
+                true => {
+                    let (x, y) = place_of(place);
+                    (on_sheet, x, y)
+                }
+                false => (bare, (contour.x - corner.x0) as usize, (contour.y - corner.y0) as usize),
+            };
+            if let Some(row) = tile.and_then(|tile| tile.rows().get(y)) {
+                packed.rows_mut()[place / TILE].set(place % TILE, row.pixel(x));
+            }
+        }
+        packed
+    }
     /// Packs the pixels of a tile itself: both populations see the same.
     pub fn same(&self, tile: &Tile) -> PackedTile {
         let corner = self.at.rect();
@@ -97,13 +114,13 @@ impl<'c> Behind<'c> {
         for (place, contour) in self.places() {
             let row = &mut pixels.rows_mut()[place / TILE];
             let x = place % TILE;
-            let kept = spec::dissolved(row.pixel(x), [contour.x, contour.y]);
-            let [r, g, b] = &mut row.rgb;
-            [r[x], g[x], b[x], row.a[x]] = kept;
+            row.set(x, spec::dissolved(row.pixel(x), [contour.x, contour.y]));
         }
     }
     /// Mixes both populations of each contour pixel: c · own + (1 − c) · other (MATH 10).
-    pub fn mix_into(&self, other: &PlanarTile, own: &mut PlanarTile) {
+    ///
+    /// * `brightest`: the straight encoded colour above which light is clipped; 1 is white.
+    pub fn mix_into(&self, other: &PlanarTile, own: &mut PlanarTile, brightest: f32) {
         let corner = self.at.rect();
         for (place, pixel) in self.places() {
             let from = other.rows()[place / TILE].pixel(place % TILE);
@@ -111,9 +128,12 @@ impl<'c> Behind<'c> {
             let row = &mut own.rows_mut()[y];
             let to = row.pixel(x);
             if to != from {
-                let mixed = if pixel.sees_surface() { in_light } else { mixed };
-                let [r, g, b] = &mut row.rgb;
-                [r[x], g[x], b[x], row.a[x]] = mixed(to, from, 1.0 - pixel.share);
+                let share = 1.0 - pixel.share;
+                let mixed = match pixel.sees_surface() {
+                    true => in_light(to, from, share, brightest),
+                    false => mixed(to, from, share),
+                };
+                row.set(x, mixed);
             }
         }
     }
@@ -125,15 +145,15 @@ fn mixed(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
 }
 
 /// The same of their light: two parts of one surface are seen side by side.
-fn in_light(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
+fn in_light(to: [f32; 4], from: [f32; 4], share: f32, brightest: f32) -> [f32; 4] {
     let light = |p: [f32; 4]| {
         let per_a = 1.0 / p[3].max(f32::MIN_POSITIVE);
-        [0, 1, 2].map(|i| srgb::decode((p[i] * per_a).min(1.0)) * p[3])
+        [0, 1, 2].map(|i| srgb::decode((p[i] * per_a).min(brightest)) * p[3])
     };
     let (a, b) = (light(to), light(from));
     let alpha = to[3] + share * (from[3] - to[3]);
     let per_alpha = 1.0 / alpha.max(f32::MIN_POSITIVE);
-    let encoded = |i: usize| srgb::encode(((a[i] + share * (b[i] - a[i])) * per_alpha).min(1.0)) * alpha;
+    let encoded = |i: usize| srgb::encode((a[i] + share * (b[i] - a[i])) * per_alpha).min(brightest) * alpha;
     [encoded(0), encoded(1), encoded(2), alpha]
 }
 

@@ -4,10 +4,12 @@
 
 use super::behind::{Behind, BehindScene};
 use super::content::TileContent;
+use super::deep::DeepTiles;
 use super::prepare::{PreparedDocument, PreparedLayer};
 use super::{Role, mask};
 use crate::raster::{BlendMode, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
-use crate::shading::{RadianceScaling, radiance::BackdropStats};
+use crate::shading::RadianceScaling;
+use crate::shading::radiance::{BackdropStats, Exactness};
 use std::ops::ControlFlow;
 
 /// Breaks with the composite so far when the sought adjustment is reached.
@@ -21,6 +23,8 @@ pub(super) struct Composer<'a> {
     pub behind: Option<Behind<'a>>,
     /// The adjustment to end at, if this is to measure what lies beneath one.
     pub sought: Option<usize>,
+    /// What live layers are composed of, if not of the bytes that they are rendered to.
+    pub deep: Option<&'a DeepTiles>,
 }
 
 impl Composer<'_> {
@@ -80,7 +84,10 @@ impl Composer<'_> {
     }
     fn blend(&self, onto: &mut PlanarTile, mix: Mix, paint: TilePaint, coverage: &TileCoverage) {
         let Some(behind) = self.behind.filter(|_| mix.mode == BlendMode::Dissolve) else {
-            return onto.blend(mix, paint, coverage);
+            return match self.deep {
+                Some(_) => onto.blend_bright(mix, paint, coverage),
+                None => onto.blend(mix, paint, coverage),
+            };
         };
         // Noise is fixed to the canvas, and packed pixels lie anywhere on it. What is whole or nothing stays so.
         let mut dissolved = self.blank();
@@ -97,6 +104,9 @@ impl Composer<'_> {
         ComposeFlow::Continue(self.painted(node))
     }
     fn painted(&self, node: &PreparedLayer) -> TileContent {
+        if let (Some(deep), Some(marks)) = (self.deep, node.layer.content.marks()) {
+            return deep.content(node, marks, self.at, self.behind);
+        }
         match self.behind {
             Some(behind) => node.layer.content.painted_behind(&node.seen_behind(behind)),
             None => node.layer.content.painted(&node.scene, self.at),
@@ -125,9 +135,10 @@ impl Composer<'_> {
         else {
             return ComposeFlow::Continue(());
         };
+        let exactness = self.deep.map_or(Exactness::Fast, DeepTiles::exactness);
         let apply = |pixels: &mut PlanarTile| match &self.behind {
-            Some(behind) => adjust_behind(scaling, &node.seen_behind(*behind), beneath, pixels),
-            None => scaling.apply_tile(&node.scene, self.at, beneath, pixels),
+            Some(behind) => adjust_behind(scaling, &node.seen_behind(*behind), beneath, exactness, pixels),
+            None => scaling.apply_at(&node.scene, self.at, beneath, exactness, pixels),
         };
         if coverage.is_full() && node.clipped.is_empty() {
             apply(onto);
@@ -151,7 +162,9 @@ impl Composer<'_> {
             Some(behind) => mask::is_whole_behind(node, behind),
             None => mask::is_whole_on_surface(node, self.at),
         };
-        may_hide && is_whole() && self.painted(node).is_opaque()
+        // In floats a layer is rendered once, for what it shows.
+        let is_known = self.deep.is_none() || node.layer.content.marks().is_none();
+        may_hide && is_known && is_whole() && self.painted(node).is_opaque()
     }
 }
 
@@ -162,11 +175,17 @@ impl PreparedLayer {
 }
 
 /// An adjustment of what the other populations see.
-fn adjust_behind(scaling: &RadianceScaling, scene: &BehindScene, beneath: BackdropStats, pixels: &mut PlanarTile) {
+fn adjust_behind(
+    scaling: &RadianceScaling,
+    scene: &BehindScene,
+    beneath: BackdropStats,
+    exactness: Exactness,
+    pixels: &mut PlanarTile,
+) {
     let sheet = scene.sheet.and_then(|sheet| sheet.surface.as_deref());
     let places: Vec<Option<(usize, usize)>> =
         (0..scene.behind.rows() * TILE).map(|place| scene.behind.sheet_pixel(place)).collect();
     if let Some(sheet) = sheet {
-        scaling.apply_packed(sheet, &places, beneath, pixels);
+        scaling.apply_packed(sheet, &places, beneath, exactness, pixels);
     }
 }

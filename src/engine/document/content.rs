@@ -17,6 +17,7 @@ pub use pixels::PixelLayer;
 pub use strokes::StrokeList;
 
 use super::behind::{Behind, BehindScene, PackedTile};
+use super::deep::Marks;
 use super::scale::CanvasScale;
 use super::{LayerMap, Live, NormalLayer, Progress};
 use crate::Result;
@@ -74,6 +75,10 @@ trait LayerKind {
     /// What the other populations of a tile's contour pixels see of it.
     fn painted_behind(&self, _scene: &BehindScene) -> TileContent {
         TileContent::Nothing
+    }
+    /// What it is rendered from, if it is live.
+    fn marks(&self) -> Option<&dyn Marks> {
+        None
     }
     /// Computes now what many tiles would otherwise compute at the same time.
     /// Ends soon once it is cancelled.
@@ -233,6 +238,10 @@ impl Content {
     }
     pub(super) fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.kind().painted_behind(scene)
+    }
+    /// What it is rendered from without rounding to bytes; `None` of what is not live.
+    pub(super) fn marks(&self) -> Option<&dyn Marks> {
+        self.kind().marks()
     }
     pub(super) fn warm(&self, scene: &Scene, progress: &Progress) {
         self.kind().warm(scene, progress);

@@ -3,6 +3,7 @@
 
 use super::behind::Behind;
 use super::compose::Composer;
+use super::deep::{DeepTiles, Highlights};
 use super::prepare::in_parallel;
 use super::{Document, Layer, LayerId, PreparedDocument, Progress};
 use crate::memory::filled_or_unwind;
@@ -15,16 +16,19 @@ pub fn flatten(document: &Document, progress: &Progress) -> Option<TileGrid> {
     prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
 }
 
-/// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row. `None` if cancelled.
-pub fn flatten_deep(document: &Document, progress: &Progress) -> Option<Vec<[f32; 4]>> {
+/// Flattens the whole document without rounding to bytes: premultiplied, sRGB-encoded, row by row; colours are above
+/// their alpha where `highlights` are kept. `None` if cancelled.
+pub fn flatten_deep(document: &Document, highlights: Highlights, progress: &Progress) -> Option<Vec<[f32; 4]>> {
     // So many tiles, in f32, are held beside the picture.
     const AT_A_TIME: usize = 256;
     let prepared = PreparedDocument::new(document, progress)?;
     let tiles = prepared.all_tiles();
+    let mut deep = DeepTiles::new(&prepared, highlights);
     let canvas = document.size.rect();
     let mut pixels = filled_or_unwind(document.size.area(), [0.0; 4]);
     for part in tiles.chunks(AT_A_TIME) {
-        let composed = in_parallel(part, progress, |at| prepared.compose_tile(at))?;
+        deep.render(&prepared, part, progress);
+        let composed = in_parallel(part, progress, |at| prepared.compose_tile(at, Some(&deep)))?;
         for (at, tile) in part.iter().zip(composed) {
             let (rect, inside) = (at.rect(), at.rect().intersect(canvas));
             for (y, row) in (inside.y0..inside.y1).zip(tile.rows()) {
@@ -46,8 +50,15 @@ pub fn flatten_layer(document: &Document, id: LayerId, progress: &Progress) -> O
 /// As [`flatten_layer`], for some layers of one list composed with each other. A layer stays clipped if its base is
 /// among them.
 pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
-    let layers = alone(&document.layers, ids)?;
-    flatten(&Document { layers, ..document.clone() }, progress)
+    flatten(&document.with_only(ids)?, progress)
+}
+
+impl Document {
+    /// With some layers of one list alone, shown or not, without the opacity and masks of the groups around them;
+    /// `None` if there are none of them.
+    pub fn with_only(&self, ids: &[LayerId]) -> Option<Document> {
+        Some(Document { layers: alone(&self.layers, ids)?, ..self.clone() })
+    }
 }
 
 /// The layers with all but some hidden; `None` if none of those is among them.
@@ -84,12 +95,12 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
 impl PreparedDocument {
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
-        self.compose_tile(at).quantised().map(Arc::new)
+        self.compose_tile(at, None).quantised().map(Arc::new)
     }
-    fn compose_tile(&self, at: TileAt) -> PlanarTile {
+    fn compose_tile(&self, at: TileAt, deep: Option<&DeepTiles>) -> PlanarTile {
         // No adjustment is sought, so composing runs to its end.
         let composed = |behind: Option<Behind>| {
-            let composer = Composer { prepared: self, at, behind, sought: None };
+            let composer = Composer { prepared: self, at, behind, sought: None, deep };
             let mut pixels = composer.blank();
             let _ = composer.stack(&self.stack, &mut pixels);
             pixels
@@ -97,7 +108,7 @@ impl PreparedDocument {
         let mut pixels = composed(None);
         if let Some(contours) = self.contours.as_ref().and_then(|contours| contours.on(at)) {
             let behind = Behind::new(at, contours);
-            behind.mix_into(&composed(Some(behind)), &mut pixels);
+            behind.mix_into(&composed(Some(behind)), &mut pixels, deep.map_or(1.0, DeepTiles::brightest));
         }
         pixels
     }

@@ -61,7 +61,7 @@ impl PreparedDocument {
     }
     /// One tile of what lies beneath the next adjustment, in its own scope.
     fn beneath_next(&self, at: TileAt) -> Option<PlanarTile> {
-        let composer = Composer { prepared: self, at, behind: None, sought: Some(self.beneath.len()) };
+        let composer = Composer { prepared: self, at, behind: None, sought: Some(self.beneath.len()), deep: None };
         match composer.stack(&self.stack, &mut PlanarTile::transparent()) {
             ComposeFlow::Break(beneath) => Some(beneath),
             ComposeFlow::Continue(()) => None,

@@ -6,6 +6,7 @@ pub mod cache;
 mod compose;
 pub mod content;
 pub mod cut;
+mod deep;
 pub mod diff;
 pub mod edit;
 mod fit;
@@ -30,6 +31,7 @@ pub mod view;
 mod weight;
 
 pub use content::{Content, Group, PixelLayer, Role, StrokeList};
+pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers};

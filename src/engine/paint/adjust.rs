@@ -3,6 +3,7 @@
 
 use crate::math::{Mat3, Size, Vec3, srgb, vec3};
 use crate::raster::picture::Texels;
+use crate::raster::planar::BRIGHTEST;
 use crate::raster::{Picture, blur};
 
 /// Applied in this order: blur, exposure (linear light), then hue, saturation, brightness, contrast (encoded values).
@@ -47,24 +48,52 @@ impl Adjust {
         if *self == Self::default() {
             return picture.clone();
         }
-        let mut texels = match &picture.texels {
-            Texels::Srgb8(t) => t.iter().map(|t| t.map(|v| f32::from(v) / 255.0)).collect(),
-            Texels::Linear(t) => t.to_vec(),
-        };
-        if self.blur > 0.0 {
-            texels = blurred(picture.size, texels, self.blur);
-        }
         let is_linear = matches!(picture.texels, Texels::Linear(_));
-        let tone = TexelAdjust::new(self, is_linear);
-        for t in &mut texels {
-            *t = tone.apply(*t);
-        }
+        let texels = self.adjusted(picture.size, floats(&picture.texels), is_linear);
         let adjusted = if is_linear {
             Picture::linear(picture.size, texels)
         } else {
             Picture::srgb8(picture.size, texels.into_iter().map(|t| t.map(srgb::quantise)).collect())
         };
         adjusted.unwrap_or_else(|| picture.clone())
+    }
+    /// The texels of the adjusted picture without rounding, of 16 bits where it has them: straight, encoded, light that
+    /// is brighter than white above 1.
+    pub fn apply_deep(&self, picture: &Picture) -> Vec<[f32; 4]> {
+        let is_linear = matches!(picture.texels, Texels::Linear(_));
+        let mut texels = match &picture.deep {
+            Some(deep) => deep.iter().map(|t| t.map(|v| f32::from(v) / 65535.0)).collect(),
+            None => floats(&picture.texels),
+        };
+        if *self != Self::default() {
+            texels = self.adjusted(picture.size, texels, is_linear);
+        }
+        for [r, g, b, a] in &mut texels {
+            for v in [r, g, b] {
+                *v = if is_linear { srgb::encode(*v) } else { *v }.max(0.0).min(BRIGHTEST);
+            }
+            *a = a.max(0.0).min(1.0);
+        }
+        texels
+    }
+    /// Straight texels in their own kind of light.
+    fn adjusted(&self, size: Size, mut texels: Vec<[f32; 4]>, is_linear: bool) -> Vec<[f32; 4]> {
+        if self.blur > 0.0 {
+            texels = blurred(size, texels, self.blur);
+        }
+        let tone = TexelAdjust::new(self, is_linear);
+        for t in &mut texels {
+            *t = tone.apply(*t);
+        }
+        texels
+    }
+}
+
+/// Straight texels as they are stored, bytes in `[0, 1]`.
+fn floats(texels: &Texels) -> Vec<[f32; 4]> {
+    match texels {
+        Texels::Srgb8(t) => t.iter().map(|t| t.map(|v| f32::from(v) / 255.0)).collect(),
+        Texels::Linear(t) => t.to_vec(),
     }
 }
 

@@ -6,7 +6,7 @@ use super::ramp::Ramp;
 use super::scene::{ImageFilter, Scene};
 use crate::math::{Affine2, PlaneMap, Rect, Vec2, srgb::Color};
 use crate::raster::tile::{TILE, transparent_f32};
-use crate::raster::{Tile, TileAt};
+use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::{Anchor, Bend, Operator, Weights, links};
 
@@ -42,6 +42,10 @@ impl Gradient {
     }
     /// One tile of the layer. `None` where it is transparent, without stops, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
+        self.render_pixels(scene, at)?.quantised()
+    }
+    /// The same before it is rounded to bytes.
+    pub fn render_pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
         let ramp = Ramp::new(&self.stops)?;
         let area = scene.area(at);
         if area.is_empty() {
@@ -60,7 +64,7 @@ impl Gradient {
                 pixels[row + (x - area.x0) as usize] = color;
             }
         }
-        Tile::quantised(&pixels)
+        Some(PlanarTile::from_pixels(&pixels))
     }
 }
 

@@ -1,5 +1,7 @@
 //! The image tool: a whole picture bent over the surface (SF sec. 5.2).
-//! Floor 3.
+//! Floor 3. Here: rendered as bytes. Without rounding: `deep`.
+
+mod deep;
 
 use super::{
     adjust::Adjust,
@@ -9,9 +11,9 @@ use super::{
 };
 use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::sampler::{Antialias, Bilinear};
-use crate::raster::{Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
+use crate::raster::{DeepTexture, Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
 use crate::surface::{Bend, Deformation, deformation::DeformedRect};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, Weak};
 
 /// P: where the picture lies on the canvas before it is bent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +64,8 @@ pub struct PictureSource {
     pub picture: Picture,
     pub adjust: Adjust,
     texture: Arc<OnceLock<Texture>>,
+    /// The same in floats, as long as somebody holds it.
+    deep: Arc<Mutex<Weak<DeepTexture>>>,
     /// The stamps made of it when it is a brush's tip.
     stamps: Arc<StampCache>,
 }
@@ -75,7 +79,7 @@ impl PartialEq for PictureSource {
 
 impl PictureSource {
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
-        Self { file, picture, adjust, texture: Arc::default(), stamps: Arc::default() }
+        Self { file, picture, adjust, texture: Arc::default(), deep: Arc::default(), stamps: Arc::default() }
     }
     pub(super) fn stamps(&self) -> &StampCache {
         &self.stamps
@@ -109,20 +113,7 @@ impl PlacedImage {
             return None;
         }
         let mut pixels = vec![[0u8; 4]; TILE_AREA];
-        let texels_from_frame = self.placement.texels_from_canvas(scene.size, self.source.texture().size());
-        let bent_frame = BentFrame::of(&self.frame, area);
-        let texels_from_canvas = texels_from_frame * bent_frame.linear;
-        let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
-        let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;
-        // One more pixel on every side, where differences are taken.
-        let margin = if self.filter == ImageFilter::Bilinear || is_exact { 0 } else { 1 };
-        let mut positions = DeformedRect::default();
-        deformation.fill(area.grown(margin), &mut positions);
-        if bent_frame.apply(&mut positions.x, &mut positions.y) {
-            transform(texels_from_frame, &mut positions.x, &mut positions.y);
-        } else if texels_from_canvas != Affine2::IDENTITY {
-            transform(texels_from_canvas, &mut positions.x, &mut positions.y);
-        }
+        let Placed { positions, margin, texels_from_canvas } = self.placed(scene, area);
         let (width, texture) = (area.width(), self.source.texture());
         let (mut patches, mut bilinear, mut antialias) =
             (Patches::default(), Bilinear::default(), Antialias::default());
@@ -147,6 +138,33 @@ impl PlacedImage {
         }
         Tile::from_pixels(pixels.into_flattened())
     }
+    /// Where each pixel of an area is read.
+    fn placed(&self, scene: &Scene, area: Rect) -> Placed {
+        let texels_from_frame = self.placement.texels_from_canvas(scene.size, self.source.picture.size);
+        let bent_frame = BentFrame::of(&self.frame, area);
+        let texels_from_canvas = texels_from_frame * bent_frame.linear;
+        let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
+        let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;
+        // One more pixel on every side, where differences are taken.
+        let margin = if self.filter == ImageFilter::Bilinear || is_exact { 0 } else { 1 };
+        let mut positions = DeformedRect::default();
+        deformation.fill(area.grown(margin), &mut positions);
+        if bent_frame.apply(&mut positions.x, &mut positions.y) {
+            transform(texels_from_frame, &mut positions.x, &mut positions.y);
+        } else if texels_from_canvas != Affine2::IDENTITY {
+            transform(texels_from_canvas, &mut positions.x, &mut positions.y);
+        }
+        Placed { positions, margin, texels_from_canvas }
+    }
+}
+
+/// P⁻¹(D(q)) of an area.
+struct Placed {
+    /// Texels; of the area grown by `margin`.
+    positions: DeformedRect,
+    /// 1 where each pixel is averaged over its patch, 0 where the picture is read at its centre.
+    margin: i32,
+    texels_from_canvas: Affine2,
 }
 
 /// The way back from the canvas into the frame of what is placed in it.

@@ -166,7 +166,7 @@ fn softened(level: &MipLevel, is_colored: bool, sigma: f32) -> Picture {
 /// A transparent picture in place of one that cannot be made: nothing is painted.
 fn transparent() -> Picture {
     let texels: Arc<[[u8; 4]]> = Arc::new([[0; 4]]);
-    Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels), encoded: None }
+    Picture { size: Size::new(1, 1), texels: crate::raster::picture::Texels::Srgb8(texels), deep: None, encoded: None }
 }
 
 #[cfg(test)]

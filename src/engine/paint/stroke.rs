@@ -6,7 +6,7 @@ pub(super) mod dabs;
 mod many;
 
 pub use active::{ActiveStrokes, Backdrop};
-pub use many::{are_heavy, render_tiles};
+pub use many::{are_heavy, render_many, render_tiles};
 
 use super::brush::Brush;
 use super::dab::DabScratch;
@@ -219,11 +219,11 @@ impl Stroke {
 ///
 /// Each stroke accumulates in f32; the tile is quantised once.
 pub fn render_tile(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<Tile> {
-    pixels(strokes, scene, at)?.quantised()
+    render_pixels(strokes, scene, at)?.quantised()
 }
 
 /// The same before it is quantised; `None` where no stroke touches the tile.
-fn pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<PlanarTile> {
+pub fn render_pixels(strokes: &[Arc<Stroke>], scene: &Scene, at: TileAt) -> Option<PlanarTile> {
     let front = scene.front();
     let mut here = strokes.iter().filter(|s| s.touches(&front, at)).peekable();
     here.peek()?;

@@ -3,6 +3,7 @@
 //! `modes` is the table: a mode is one row of it, one formula of `spec` and one picture of `tests/goldens`. `spec`
 //! reads like the specification; `rows` is fast.
 
+mod bright;
 mod modes;
 mod rows;
 pub mod spec;

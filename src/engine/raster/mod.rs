@@ -24,6 +24,6 @@ pub use grid::TileGrid;
 pub use picture::Picture;
 pub use planar::PlanarTile;
 pub use plane::Plane;
-pub use texture::{Outside, Texture};
+pub use texture::{DeepTexture, Outside, Texture};
 pub use tile::{TILE, Tile, TileAt};
 pub use warp::Resampling;

@@ -10,6 +10,8 @@ use std::sync::Arc;
 pub struct Picture {
     pub size: Size,
     pub texels: Texels,
+    /// What the bytes were rounded from, where a file holds 16 bits a channel: straight, encoded, one for each texel.
+    pub deep: Option<Arc<[[u16; 4]]>>,
     /// The file it was decoded from, so that a project can keep the original bytes; `None` for a picture made here.
     pub encoded: Option<Asset>,
 }
@@ -36,7 +38,12 @@ impl PartialEq for Texels {
 impl PartialEq for Picture {
     /// The same texels, from whatever file.
     fn eq(&self, other: &Self) -> bool {
-        self.size == other.size && self.texels == other.texels
+        let same_deep = match (&self.deep, &other.deep) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a == b,
+            (None, None) => true,
+            _ => false,
+        };
+        self.size == other.size && self.texels == other.texels && same_deep
     }
 }
 
@@ -62,7 +69,21 @@ impl Picture {
         (size.area() > 0 && texels.len() == size.area()).then(|| Self::made(size, Texels::Linear(texels.into())))
     }
     fn made(size: Size, texels: Texels) -> Self {
-        Self { size, texels, encoded: None }
+        Self { size, texels, deep: None, encoded: None }
+    }
+    /// The same picture, of which every texel is also known in 16 bits; bytes alone if there are not as many.
+    pub fn with_deep(self, deep: Vec<[u16; 4]>) -> Self {
+        let fits = matches!(self.texels, Texels::Srgb8(_)) && deep.len() == self.size.area();
+        Self { deep: fits.then(|| deep.into()), ..self }
+    }
+    /// Bytes that its texels take.
+    pub fn bytes(&self) -> usize {
+        let texel = match &self.texels {
+            Texels::Srgb8(_) => size_of::<[u8; 4]>(),
+            Texels::Linear(_) => size_of::<[f32; 4]>(),
+        };
+        let deep = self.deep.as_ref().map_or(0, |_| size_of::<[u16; 4]>());
+        self.size.area() * (texel + deep)
     }
     /// Linear light of one texel, straight alpha.
     pub fn linear_at(&self, x: usize, y: usize) -> [f32; 4] {

@@ -9,7 +9,7 @@ use crate::math::srgb::quantise;
 /// One row of a tile, premultiplied, encoded. A KiB, so that a row and what meets it stay in the first-level cache.
 #[derive(Clone, Copy)]
 pub struct PixelRow {
-    /// Red, green, blue, each in `[0, alpha]`.
+    /// Red, green, blue, each in `[0, alpha]`; above it only where a picture keeps light that is brighter than white.
     pub rgb: [[f32; TILE]; 3],
     /// Alpha, `[0, 1]`.
     pub a: [f32; TILE],
@@ -18,6 +18,9 @@ pub struct PixelRow {
 impl PixelRow {
     pub const TRANSPARENT: PixelRow = PixelRow { rgb: [[0.0; TILE]; 3], a: [0.0; TILE] };
 }
+
+/// The brightest encoded colour: light that a half float still holds is below it.
+pub const BRIGHTEST: f32 = 128.0;
 
 /// A tile of accumulated pixels.
 #[derive(Clone)]
@@ -43,6 +46,26 @@ impl PlanarTile {
             }
         }
         tile
+    }
+    /// The same, but colours may be brighter than white: above alpha.
+    pub fn from_bright(pixels: &TileF32) -> Self {
+        let mut tile = Self::transparent();
+        for (row, pixels) in tile.rows.iter_mut().zip(pixels.chunks_exact(TILE)) {
+            for (x, [r, g, b, a]) in pixels.iter().enumerate() {
+                let bounded = |v: f32| v.max(0.0).min(BRIGHTEST);
+                let PixelRow { rgb: [red, green, blue], a: alpha } = row;
+                (red[x], green[x], blue[x], alpha[x]) = (bounded(*r), bounded(*g), bounded(*b), a.max(0.0).min(1.0));
+            }
+        }
+        tile
+    }
+    /// Lowers colours that are brighter than white to it.
+    pub fn clip_to_white(&mut self) {
+        for PixelRow { rgb, a } in &mut self.rows {
+            for channel in rgb {
+                channel.iter_mut().zip(a.iter()).for_each(|(v, a)| *v = v.min(*a));
+            }
+        }
     }
     /// Writes every pixel out.
     pub fn to_pixels(&self, pixels: &mut TileF32) {
@@ -75,6 +98,12 @@ impl PixelRow {
     #[inline(always)]
     pub fn pixel(&self, x: usize) -> [f32; 4] {
         [self.rgb[0][x], self.rgb[1][x], self.rgb[2][x], self.a[x]]
+    }
+    /// Writes one premultiplied pixel; `x < TILE`.
+    #[inline(always)]
+    pub fn set(&mut self, x: usize, pixel: [f32; 4]) {
+        let [r, g, b] = &mut self.rgb;
+        [r[x], g[x], b[x], self.a[x]] = pixel;
     }
 }
 

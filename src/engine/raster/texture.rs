@@ -1,5 +1,5 @@
-//! A texture: a picture ready to be sampled, premultiplied 8-bit sRGB with its mip levels.
-//! Floor 1. Never edited; shared by `Arc`. Sampling is `sampler`.
+//! A texture: a picture ready to be sampled, premultiplied sRGB with its mip levels: bytes as a rule, floats for
+//! pictures of more than 8 bits a channel. Floor 1. Never edited; shared by `Arc`. Sampling is `sampler`.
 
 use super::picture::{Picture, Texels};
 use crate::math::{Size, srgb};
@@ -38,19 +38,50 @@ impl Outside {
     }
 }
 
+/// What a texture holds of a texel, premultiplied and sRGB-encoded.
+pub trait Texel: Copy + Send + Sync + Default {
+    /// In the unit of the kind: 0 … 255 of bytes, 0 … 1 and beyond of floats.
+    fn value(self) -> [f32; 4];
+    /// The nearest that can be held.
+    fn of(value: [f32; 4]) -> Self;
+}
+
+impl Texel for [u8; 4] {
+    #[inline(always)]
+    fn value(self) -> [f32; 4] {
+        self.map(f32::from)
+    }
+    fn of(value: [f32; 4]) -> Self {
+        value.map(|v| (v + 0.5) as u8)
+    }
+}
+
+impl Texel for [f32; 4] {
+    #[inline(always)]
+    fn value(self) -> [f32; 4] {
+        self
+    }
+    fn of(value: [f32; 4]) -> Self {
+        value
+    }
+}
+
 /// One mip level.
 #[derive(Clone)]
-pub struct MipLevel {
+pub struct MipLevel<T = [u8; 4]> {
     pub size: Size,
     /// Premultiplied RGBA, sRGB-encoded, row by row.
-    pub texels: Vec<[u8; 4]>,
+    pub texels: Vec<T>,
 }
 
 /// A mip chain; level 0 is the picture itself, each next one half as large down to 1 × 1.
 #[derive(Clone)]
-pub struct Texture {
-    levels: Vec<MipLevel>,
+pub struct Texture<T = [u8; 4]> {
+    levels: Vec<MipLevel<T>>,
 }
+
+/// A texture of floats; light brighter than white is above 1.
+pub type DeepTexture = Texture<[f32; 4]>;
 
 impl Texture {
     /// Encodes scene-referred pictures (clipped at 1), premultiplies, and builds the mip chain.
@@ -65,7 +96,20 @@ impl Texture {
                 })
                 .collect(),
         };
-        let mut levels = vec![MipLevel { size: picture.size, texels }];
+        Self::of_texels(picture.size, texels)
+    }
+}
+
+impl DeepTexture {
+    /// Of straight encoded texels, one for each pixel.
+    pub fn deep(size: Size, straight: Vec<[f32; 4]>) -> Self {
+        Self::of_texels(size, straight.into_iter().map(|[r, g, b, a]| [r * a, g * a, b * a, a]).collect())
+    }
+}
+
+impl<T: Texel> Texture<T> {
+    fn of_texels(size: Size, texels: Vec<T>) -> Self {
+        let mut levels = vec![MipLevel { size, texels }];
         while let Some(next) = levels.last().and_then(halved) {
             levels.push(next);
         }
@@ -75,7 +119,7 @@ impl Texture {
         self.levels[0].size
     }
     /// Level 0 is the picture; there is always at least one.
-    pub fn levels(&self) -> &[MipLevel] {
+    pub fn levels(&self) -> &[MipLevel<T>] {
         &self.levels
     }
 }
@@ -88,7 +132,7 @@ fn premultiplied_u8(straight: [u8; 4]) -> [u8; 4] {
 
 /// The next mip level: each texel the mean of the texels it covers (2 × 2, or 3 wide where the side is odd, weighted by
 /// area).
-fn halved(level: &MipLevel) -> Option<MipLevel> {
+fn halved<T: Texel>(level: &MipLevel<T>) -> Option<MipLevel<T>> {
     let Size { width: w, height: h } = level.size;
     if w == 1 && h == 1 {
         return None;
@@ -101,13 +145,13 @@ fn halved(level: &MipLevel) -> Option<MipLevel> {
             let mut sum = [0.0f32; 4];
             for &(j, wy) in y {
                 for &(i, wx) in x {
-                    let t = level.texels[(j * w + i) as usize];
+                    let t = level.texels[(j * w + i) as usize].value();
                     for c in 0..4 {
-                        sum[c] += wx * wy * f32::from(t[c]);
+                        sum[c] += wx * wy * t[c];
                     }
                 }
             }
-            texels.push(sum.map(|v| (v + 0.5) as u8));
+            texels.push(T::of(sum));
         }
     }
     Some(MipLevel { size, texels })

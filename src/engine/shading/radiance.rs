@@ -8,7 +8,8 @@ use super::{
     scaling::{Reference, Scaling},
 };
 use crate::math::{Vec3, fast, srgb, vec3};
-use crate::raster::{PlanarTile, TILE, TileAt, planar::PixelRow};
+use crate::raster::planar::{BRIGHTEST, PixelRow};
+use crate::raster::{PlanarTile, TILE, TileAt};
 use crate::surface::{Scene, Surface};
 use row::RowScaler;
 
@@ -47,6 +48,17 @@ pub struct BackdropStats {
     pub brightest: f32,
     /// The factor that restores its mean luminance: [`LightSums::gain`]; 1 if the mean need not be kept.
     pub gain: f32,
+}
+
+/// How pixels are scaled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exactness {
+    /// To within a quarter of a byte, and clipped at white.
+    Fast,
+    /// Without approximations, clipped at white.
+    Exact,
+    /// Light that is brighter than white stays so.
+    ExactLight,
 }
 
 /// Factors of the light that are tried at once.
@@ -100,13 +112,19 @@ impl LightSums {
 impl RadianceScaling {
     /// Scales one tile of the composite. Alpha and hue stay, as does what is off the surface; γ = 0 changes nothing.
     pub fn apply_tile(&self, scene: &Scene, at: TileAt, beneath: BackdropStats, pixels: &mut PlanarTile) {
-        let gain = if self.keep_mean { beneath.gain } else { 1.0 };
-        if self.scaling.is_none() && gain == 1.0 {
-            return;
-        }
-        let y_star = self.reference.resolve(beneath.brightest);
+        self.apply_at(scene, at, beneath, Exactness::Fast, pixels);
+    }
+    /// The same, as exactly as is asked for.
+    pub fn apply_at(
+        &self,
+        scene: &Scene,
+        at: TileAt,
+        beneath: BackdropStats,
+        exactness: Exactness,
+        pixels: &mut PlanarTile,
+    ) {
+        let Some((mut scaler, gain)) = self.scaler(beneath, exactness) else { return };
         let rows = pixels.rows_mut();
-        let mut scaler = RowScaler::new(self.scaling, y_star);
         self.for_rows(scene, at, |y, kappa, coverage| {
             let Some(row) = rows.get_mut(y) else { return };
             if gain != 1.0 {
@@ -126,13 +144,10 @@ impl RadianceScaling {
         surface: &Surface,
         places: &[Option<(usize, usize)>],
         beneath: BackdropStats,
+        exactness: Exactness,
         pixels: &mut PlanarTile,
     ) {
-        let gain = if self.keep_mean { beneath.gain } else { 1.0 };
-        if self.scaling.is_none() && gain == 1.0 {
-            return;
-        }
-        let mut scaler = RowScaler::new(self.scaling, self.reference.resolve(beneath.brightest));
+        let Some((mut scaler, gain)) = self.scaler(beneath, exactness) else { return };
         let features = self.features.on(surface);
         for (row, places) in pixels.rows_mut().iter_mut().zip(places.chunks_exact(TILE)) {
             let (mut kappa, mut gains) = ([0.0; TILE], [1.0; TILE]);
@@ -144,6 +159,20 @@ impl RadianceScaling {
             }
             if gain == 1.0 { scaler.apply(row, &kappa) } else { scaler.apply_with_gains(row, &kappa, &gains) }
         }
+    }
+    /// What scales rows, and the factor that keeps the mean; `None` where nothing would change.
+    fn scaler(&self, beneath: BackdropStats, exactness: Exactness) -> Option<(RowScaler, f32)> {
+        let gain = if self.keep_mean { beneath.gain } else { 1.0 };
+        if self.scaling.is_none() && gain == 1.0 {
+            return None;
+        }
+        let y_star = self.reference.resolve(beneath.brightest);
+        let scaler = match exactness {
+            Exactness::Fast => RowScaler::new(self.scaling, y_star),
+            Exactness::Exact => RowScaler::exact(self.scaling, y_star, 1.0),
+            Exactness::ExactLight => RowScaler::exact(self.scaling, y_star, BRIGHTEST),
+        };
+        Some((scaler, gain))
     }
     /// Luminance of one tile before scaling, and after it with each factor, weighed by alpha and by how far the surface
     /// covers each pixel.

@@ -1,12 +1,50 @@
-//! Pictures of more than 8 bits: PNG and TIFF of 16, EXR of half floats, from what was composed without rounding.
-//! Floor 5.
+//! Pictures of more than 8 bits: PNG and TIFF of 16, EXR of half floats or whole ones, from what was composed without
+//! rounding. Floor 5.
 
 use super::{ExportFormat, ExportOptions, png};
+use crate::document::{Document, Highlights, Progress, flatten, flatten_deep};
 use crate::math::{Size, srgb};
-use crate::{Error, Result};
+use crate::project::Cancellable;
+use crate::{Budget, Error, Result};
 use image::DynamicImage;
 use std::io::Cursor;
 use std::path::Path;
+
+/// The bytes of a picture file of a document, of bytes or of more, as is asked for; `None` if cancelled. `file` is for
+/// messages.
+pub fn encode_document(
+    file: &Path,
+    document: &Document,
+    options: &ExportOptions,
+    budget: &Budget,
+    progress: &Progress,
+) -> Cancellable<Vec<u8>> {
+    let format = ExportFormat::of(file)?;
+    if format.bits(file, options.bits)? == 8 {
+        let pixels = flatten(document, progress);
+        return pixels.map(|pixels| super::encode(file, format, &pixels, document.size, options)).transpose();
+    }
+    let Some(pixels) = flattened(file, document, highlights(format), budget, progress)? else { return Ok(None) };
+    encode(file, format, &pixels, document.size, options).map(Some)
+}
+
+/// A document flattened without rounding, if there is memory for it and for its file; `None` if cancelled.
+pub(super) fn flattened(
+    file: &Path,
+    document: &Document,
+    highlights: Highlights,
+    budget: &Budget,
+    progress: &Progress,
+) -> Cancellable<Vec<[f32; 4]>> {
+    let asked = document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64 + document.deep_bytes();
+    budget.room(file, "a picture of more than 8 bits", asked)?;
+    Ok(flatten_deep(document, highlights, progress))
+}
+
+/// A file of light keeps what is brighter than white.
+fn highlights(format: ExportFormat) -> Highlights {
+    if format == ExportFormat::Exr { Highlights::Kept } else { Highlights::Clipped }
+}
 
 /// The bytes of a picture file, of pixels as [`crate::document::flatten_deep`] gives them; `file` is for messages.
 ///
@@ -37,7 +75,10 @@ pub fn encode(
             let image = image::ImageBuffer::from_raw(size.width, size.height, values);
             tiff(file, image.map(DynamicImage::ImageRgba16))
         }
-        ExportFormat::Exr => exr(size, |i| light(&part[i])).map_err(|e| Error::unsupported(file, e)),
+        ExportFormat::Exr => {
+            let bits = format.bits(file, options.bits)?;
+            exr(size, bits, |i| light(&part[i])).map_err(|e| Error::unsupported(file, e))
+        }
         ExportFormat::Jpeg | ExportFormat::WebP => {
             Err(Error::unsupported(file, "this format has 8 bits a channel; PNG, TIFF and EXR have more"))
         }
@@ -64,36 +105,47 @@ pub(super) fn tiff(file: &Path, image: Option<DynamicImage>) -> Result<Vec<u8>> 
     Ok(bytes.into_inner())
 }
 
-/// A half-float EXR of a picture, one part.
+/// An EXR of a picture, one part, of 16 or 32 bits a channel.
 ///
 /// `light`: of the pixel with a number, row by row: linear, multiplied by alpha.
-pub(super) fn exr(size: Size, light: impl Fn(usize) -> [f32; 4] + Sync) -> Result<Vec<u8>, exr::error::Error> {
+pub(super) fn exr(
+    size: Size,
+    bits: u8,
+    light: impl Fn(usize) -> [f32; 4] + Sync,
+) -> Result<Vec<u8>, exr::error::Error> {
     use exr::prelude::*;
-    let width = size.width as usize;
-    let channels = SpecificChannels::rgba(|at: Vec2<usize>| {
-        let [r, g, b, a] = light(at.y() * width + at.x()).map(f16::from_f32);
-        (r, g, b, a)
-    });
     // Lines are written in order, so that the bytes do not depend on the threads.
     let encoding =
         Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
-    let layer = Layer::new((width, size.height as usize), LayerAttributes::default(), encoding, channels);
+    let (extent, attributes) = ((size.width as usize, size.height as usize), LayerAttributes::default());
+    let light = |at: Vec2<usize>| light(at.y() * extent.0 + at.x());
     let mut bytes = Cursor::new(Vec::new());
-    Image::from_layer(layer).write().to_buffered(&mut bytes)?;
+    if bits == 32 {
+        let channels = SpecificChannels::rgba(|at: Vec2<usize>| <(f32, f32, f32, f32)>::from(light(at)));
+        Image::from_layer(Layer::new(extent, attributes, encoding, channels)).write().to_buffered(&mut bytes)?;
+    } else {
+        let half = |at: Vec2<usize>| <(f16, f16, f16, f16)>::from(light(at).map(f16::from_f32));
+        let channels = SpecificChannels::rgba(half);
+        Image::from_layer(Layer::new(extent, attributes, encoding, channels)).write().to_buffered(&mut bytes)?;
+    }
     Ok(bytes.into_inner())
 }
 
-/// Linear light, multiplied by alpha, of an encoded premultiplied pixel.
+/// Linear light, multiplied by alpha, of an encoded premultiplied pixel; what a half float can hold of it.
 pub(super) fn light(&[r, g, b, a]: &[f32; 4]) -> [f32; 4] {
-    let light = |v: f32| if a > 0.0 { srgb::decode((v / a).max(0.0).min(1.0)) * a } else { 0.0 };
+    const HALF_MAX: f32 = 65504.0;
+    let light = |v: f32| if a > 0.0 { (srgb::decode((v / a).max(0.0)) * a).min(HALF_MAX) } else { 0.0 };
     [light(r), light(g), light(b), a]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Rect;
-    use crate::{Budget, picture};
+    use crate::document::{Content, Layer, Live};
+    use crate::math::{Rect, srgb::Color, vec2};
+    use crate::paint::{Gradient, GradientStop, ImageFilter};
+    use crate::picture;
+    use crate::surface::Operator;
 
     /// A ramp finer than bytes.
     fn ramp() -> (Vec<[f32; 4]>, Size) {
@@ -108,6 +160,56 @@ mod tests {
             let image = image::load_from_memory(&bytes).unwrap().to_rgba16();
             let [r, g, b, a] = image.get_pixel(100, 1).0;
             assert_eq!([r, g, b, a], [(100.0 / 511.0 * 65535.0f32).round() as u16, 32768, 0, 32768], "{name}");
+        }
+    }
+    #[test]
+    fn a_gradient_of_4096_pixels_has_4000_levels_in_every_deep_file() {
+        let document = gradient_4096();
+        let distinct = |values: Vec<u32>| values.into_iter().collect::<std::collections::BTreeSet<u32>>().len();
+        let written = |name: &str, bits| {
+            let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
+            let (file, budget) = (Path::new(name), Budget::default());
+            encode_document(file, &document, &options, &budget, &Progress::default()).unwrap().unwrap()
+        };
+        for name in ["a.png", "a.tif"] {
+            let image = image::load_from_memory(&written(name, 16)).unwrap().to_rgba16();
+            let found = distinct(image.pixels().take(4096).map(|p| p.0[0].into()).collect());
+            assert!(found >= 4000, "{name}: {found}");
+            assert_eq!(image::load_from_memory(&written(name, 8)).unwrap().color(), image::ColorType::Rgba8);
+        }
+        for bits in [16, 32] {
+            let read = picture::decode(Path::new("a.exr"), &written("a.exr", bits), &Budget::default()).unwrap();
+            let found = distinct((0..4096).map(|x| read.linear_at(x, 0)[0].to_bits()).collect());
+            assert!(found >= 4000, "EXR of {bits} bits: {found}");
+        }
+        let options = ExportOptions { bits: Some(32), ..ExportOptions::default() };
+        let said = encode_document(Path::new("a.png"), &document, &options, &Budget::default(), &Progress::default());
+        assert!(said.unwrap_err().to_string().contains("has 8 or 16 bits a channel, not 32"));
+    }
+    fn gradient_4096() -> Document {
+        let stop = |t, color| GradientStop { t, color };
+        let gradient = Gradient {
+            from: vec2(0.0, 1.0),
+            to: vec2(4096.0, 1.0),
+            stops: vec![stop(0.0, Color::BLACK), stop(1.0, Color::WHITE)],
+            operator: Operator::None,
+            filter: ImageFilter::Antialias,
+            frame: Default::default(),
+        };
+        let layer = Layer::new("gradient", Content::Gradient(Live::new(gradient)));
+        Document { layers: vec![layer.into()], ..Document::empty(Size::new(4096, 2)) }
+    }
+    #[test]
+    fn an_exr_keeps_light_that_is_brighter_than_white() {
+        let size = Size::new(2, 1);
+        let pixels = [[srgb::encode(9.0), 0.5, 0.0, 1.0], [srgb::encode(9.0) * 0.5, 0.0, 0.0, 0.5]];
+        for bits in [16, 32] {
+            let options = ExportOptions { bits: Some(bits), ..ExportOptions::default() };
+            let bytes = encode(Path::new("a.exr"), ExportFormat::Exr, &pixels, size, &options).unwrap();
+            let read = picture::decode(Path::new("a.exr"), &bytes, &Budget::default()).unwrap();
+            for x in 0..2 {
+                assert!((read.linear_at(x, 0)[0] - 9.0).abs() < 0.01, "{:?}", read.linear_at(x, 0));
+            }
         }
     }
     #[test]

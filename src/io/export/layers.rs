@@ -1,29 +1,37 @@
 //! A document as a multilayer EXR: one group of channels a layer, and the surface's normals and depth.
 //! Floor 5. Names and conventions are those that compositing programs expect: `LAYER.R`, `normal.X`, `depth.Z`.
 
-use super::deep::light;
-use crate::document::{Document, Progress, flatten, flatten_layer};
+use super::deep::{flattened, light};
+use crate::document::{Document, Highlights, Progress};
 use crate::math::Size;
 use crate::project::Cancellable;
-use crate::raster::TileGrid;
-use crate::{Error, Result};
+use crate::{Budget, Error, Result};
 use exr::prelude::*;
 use std::collections::BTreeSet;
 use std::io::Cursor;
 use std::path::Path;
 
-/// The bytes of the EXR; `None` if cancelled. The whole picture is in R, G, B and A; colours are linear half floats
-/// multiplied by alpha, each layer with its own opacity and mask; normals and depth are 32 bits.
-pub fn encode(file: &Path, document: &Document, progress: &Progress) -> Cancellable<Vec<u8>> {
+/// The bytes of the EXR; `None` if cancelled. The whole picture is in R, G, B and A; colours are linear floats of 16
+/// or 32 `bits`, multiplied by alpha, each layer with its own opacity and mask; normals and depth have 32 bits.
+pub fn encode(
+    file: &Path,
+    document: &Document,
+    bits: u8,
+    budget: &Budget,
+    progress: &Progress,
+) -> Cancellable<Vec<u8>> {
     let size = document.size;
+    let seen = |document: &Document| flattened(file, document, Highlights::Kept, budget, progress);
     let mut channels = Vec::new();
-    let Some(whole) = flatten(document, progress) else { return Ok(None) };
-    push_picture(&mut channels, "", &whole, size);
+    let Some(whole) = seen(document)? else { return Ok(None) };
+    push_picture(&mut channels, "", whole, bits);
     let mut taken = BTreeSet::from(["normal".to_owned(), "depth".to_owned()]);
     for (_, layer) in document.walk() {
         if layer.visible && layer.content.paints() {
-            let Some(tiles) = flatten_layer(document, layer.id, progress) else { return Ok(None) };
-            push_picture(&mut channels, &format!("{}.", free_name(&layer.name, &mut taken)), &tiles, size);
+            let Some(pixels) = document.with_only(&[layer.id]).map_or(Ok(None), |alone| seen(&alone))? else {
+                return Ok(None);
+            };
+            push_picture(&mut channels, &format!("{}.", free_name(&layer.name, &mut taken)), pixels, bits);
         }
     }
     if let Some(surface) = document.surface.as_deref() {
@@ -38,16 +46,15 @@ pub fn encode(file: &Path, document: &Document, progress: &Progress) -> Cancella
     written(size, channels).map(Some).map_err(|e| Error::unsupported(file, e))
 }
 
-fn push_picture(channels: &mut Vec<AnyChannel<FlatSamples>>, prefix: &str, tiles: &TileGrid, size: Size) {
-    let bytes = tiles.to_straight_rgba(size.rect());
-    let premultiplied = |p: &[u8; 4]| {
-        let [r, g, b, a] = p.map(|v| f32::from(v) / 255.0);
-        light(&[r * a, g * a, b * a, a])
-    };
-    let pixels: Vec<[f32; 4]> = bytes.as_chunks().0.iter().map(premultiplied).collect();
+fn push_picture(channels: &mut Vec<AnyChannel<FlatSamples>>, prefix: &str, mut pixels: Vec<[f32; 4]>, bits: u8) {
+    pixels.iter_mut().for_each(|pixel| *pixel = light(pixel));
     for (c, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
-        let values = pixels.iter().map(|p| f16::from_f32(p[c])).collect();
-        channels.push(AnyChannel::new(format!("{prefix}{name}").as_str(), FlatSamples::F16(values)));
+        let values = pixels.iter().map(|p| p[c]);
+        let samples = match bits {
+            32 => FlatSamples::F32(values.collect()),
+            _ => FlatSamples::F16(values.map(f16::from_f32).collect()),
+        };
+        channels.push(AnyChannel::new(format!("{prefix}{name}").as_str(), samples));
     }
 }
 
@@ -74,12 +81,13 @@ fn written(size: Size, channels: Vec<AnyChannel<FlatSamples>>) -> Result<Vec<u8>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, exr::ExrFile, project::sample::everything};
+    use crate::{exr::ExrFile, project::sample::everything};
 
     #[test]
     fn every_visible_layer_and_the_surface_have_channels() {
         let document = everything(32);
-        let bytes = encode(Path::new("a.exr"), &document, &Progress::default()).unwrap().unwrap();
+        let bytes =
+            encode(Path::new("a.exr"), &document, 16, &Budget::default(), &Progress::default()).unwrap().unwrap();
         let budget = Budget::default();
         let file = ExrFile::open(Path::new("a.exr"), &bytes, &budget).unwrap();
         let names: Vec<&str> = file.channels().iter().map(|channel| channel.name.as_str()).collect();

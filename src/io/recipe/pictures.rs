@@ -8,7 +8,6 @@ use crate::maps::detail;
 use crate::math::{Size, Vec3};
 use crate::paint::{Adjust, PictureSource};
 use crate::picture::Painted;
-use crate::raster::picture::Texels;
 use crate::raster::{CoverageGrid, Picture, Plane, TileGrid, blur};
 use crate::surface::DetailMap;
 use crate::{Error, Result};
@@ -62,12 +61,8 @@ impl PictureCache {
         let bytes = bytes(source, name)?;
         let path = source.files.path(name.text()?);
         let picture = picture::decode(&path, &bytes, source.budget).map_err(|e| name.led_to(e))?;
-        let texel = match picture.texels {
-            Texels::Srgb8(_) => size_of::<[u8; 4]>(),
-            Texels::Linear(_) => size_of::<[f32; 4]>(),
-        };
         // Beside it stands the texture that it is read through, of bytes and with its smaller copies.
-        self.spend(source, picture.size, picture.size.area() * (texel + 6))?;
+        self.spend(source, picture.size, picture.bytes() + picture.size.area() * 6)?;
         self.pictures.insert(name.text()?.to_owned(), picture.clone());
         Ok(picture)
     }

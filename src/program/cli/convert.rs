@@ -4,8 +4,8 @@
 use super::force::Force;
 use super::{LimitArgs, progress, render};
 use crate::Result;
-use crate::document::{Document, flatten, flatten_deep, flatten_layer};
-use crate::io::export::{ExportFormat, ExportOptions, Output, OutputFile, deep, layers};
+use crate::document::Document;
+use crate::io::export::{ExportFormat, ExportOptions, Output, OutputFile, layers};
 use crate::io::fs::Disk;
 use crate::io::replace::{Terms, check};
 use crate::io::{OpenedDocument, open, save};
@@ -34,9 +34,9 @@ pub struct ConvertArgs {
     /// own
     #[arg(long)]
     layers: bool,
-    /// Bits a channel of a .png or .tif: 8 or 16
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = bits)]
-    bits: u8,
+    /// Bits a channel: 8 or 16 of a .png or .tif (8 where absent), 16 or 32 of an .exr (16)
+    #[arg(long, value_name = "N", value_parser = depth)]
+    bits: Option<u8>,
     /// Dots per inch that a .png says it is printed at
     #[arg(long, value_name = "N", value_parser = dots_per_inch)]
     dpi: Option<f32>,
@@ -56,6 +56,12 @@ pub struct ConvertArgs {
 pub(super) fn bits(text: &str) -> std::result::Result<u8, String> {
     let bits = text.parse().ok().filter(|bits| [8, 16].contains(bits));
     bits.ok_or_else(|| "a channel has 8 or 16 bits".to_owned())
+}
+
+/// Of a picture; which of them it may have is its format's.
+pub(super) fn depth(text: &str) -> std::result::Result<u8, String> {
+    let bits = text.parse().ok().filter(|bits| [8, 16, 32].contains(bits));
+    bits.ok_or_else(|| "a channel has 8, 16 or 32 bits".to_owned())
 }
 
 fn dots_per_inch(text: &str) -> std::result::Result<f32, String> {
@@ -106,24 +112,26 @@ fn whole(to: &Path, document: &Document, terms: &Terms) -> Result<()> {
 
 fn picture(args: &ConvertArgs, document: &Document, format: ExportFormat, terms: Terms) -> Result<()> {
     let crop = args.crop_to_surface.then(|| covered(document)).flatten();
-    let options = ExportOptions { background: args.background, quality: args.quality, dots_per_inch: args.dpi, crop };
+    let options = ExportOptions {
+        background: args.background,
+        quality: args.quality,
+        dots_per_inch: args.dpi,
+        crop,
+        bits: args.bits,
+    };
+    // Before the work that it takes to paint.
+    let bits = format.bits(&args.to, args.bits)?;
+    let budget = args.limits.budget();
     let is_exr = format == ExportFormat::Exr;
     if args.layers && !is_exr {
         return each_layer(args, document, &options, &terms);
     }
     let target = OutputFile::new(&args.to, terms)?;
     if args.layers {
-        let bytes = progress::shown(|progress| layers::encode(&args.to, document, progress))?;
+        let bytes = progress::shown(|progress| layers::encode(&args.to, document, bits, &budget, progress))?;
         return target.replace(&bytes.unwrap_or_default());
     }
-    if is_exr || args.bits == 16 {
-        let bytes = document.size.area() as u64 * 2 * size_of::<[f32; 4]>() as u64;
-        args.limits.budget().room(&args.from, "a picture of more than 8 bits", bytes)?;
-        let pixels = progress::shown(|progress| flatten_deep(document, progress)).unwrap_or_default();
-        return target.replace(&deep::encode(&args.to, format, &pixels, document.size, &options)?);
-    }
-    let pixels = progress::shown(|progress| flatten(document, progress)).unwrap_or_default();
-    target.write(&pixels, document.size, &options)
+    progress::shown(|progress| target.write_document(document, &options, &budget, progress))
 }
 
 /// Every layer with pixels, hidden ones too, beside the name that was asked for: `out-00-sky.png`. None where one of
@@ -142,8 +150,8 @@ fn each_layer(args: &ConvertArgs, document: &Document, options: &ExportOptions, 
         targets.push((OutputFile::new(&file, terms.clone())?, layer.id));
     }
     for (target, layer) in targets {
-        let pixels = progress::shown(|progress| flatten_layer(document, layer, progress)).unwrap_or_default();
-        target.write(&pixels, document.size, options)?;
+        let Some(alone) = document.with_only(&[layer]) else { continue };
+        progress::shown(|progress| target.write_document(&alone, options, &args.limits.budget(), progress))?;
     }
     Ok(())
 }

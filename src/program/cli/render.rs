@@ -4,14 +4,13 @@
 use super::force::Force;
 use super::{LimitArgs, convert, progress};
 use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
-use crate::document::{Document, SurfaceSource, flatten, flatten_layer};
+use crate::document::{Document, SurfaceSource};
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::open::FileKind;
 use crate::io::recipe::{self, OtherSurface, RecipeSource};
 use crate::io::{RecipeFolder, UserFiles, open};
 use crate::math::srgb::Color;
-use crate::raster::TileGrid;
 use crate::{Error, Result};
 use clap::ArgGroup;
 use std::path::{Path, PathBuf};
@@ -54,6 +53,9 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,
           value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
+    /// Bits a channel: 8 or 16 of a .png or .tif (8 where absent), 16 or 32 of an .exr (16)
+    #[arg(long, value_name = "N", value_parser = convert::depth)]
+    bits: Option<u8>,
     #[command(flatten)]
     force: Force,
     #[command(flatten)]
@@ -80,24 +82,22 @@ pub(super) fn color(text: &str) -> std::result::Result<Color, String> {
 
 pub fn run(args: &RenderArgs) -> Result<()> {
     // A misspelt extension is reported before the work, not after it.
-    ExportFormat::of(&args.output)?;
+    ExportFormat::of(&args.output)?.bits(&args.output, args.bits)?;
     args.limits.install(|| {
         let LoadedDocument { document, notes, reads } = load(args)?;
         refuse_incomplete(&args.document, &document)?;
         let target = OutputFile::new(&args.output, args.force.export(reads))?;
         let document = scaled(&args.document, args.scale, &args.limits, document)?;
         args.limits.room_to_paint(&args.document, &document)?;
-        let pixels = progress::shown(|progress| match &args.layer {
-            None => Ok(flatten(&document, progress)),
-            Some(name) => Ok(flatten_layer(&document, named(args, &document, name)?, progress)),
-        })?;
-        // Nothing here cancels, so there always is a picture.
-        let pixels: TileGrid = pixels.unwrap_or_default();
-        target.write(
-            &pixels,
-            document.size,
-            &ExportOptions { background: args.background, quality: args.quality, ..ExportOptions::default() },
-        )?;
+        let alone = args.layer.as_ref().map(|name| named(args, &document, name)).transpose()?;
+        let shown = alone.and_then(|layer| document.with_only(&[layer])).unwrap_or(document);
+        let options = ExportOptions {
+            background: args.background,
+            quality: args.quality,
+            bits: args.bits,
+            ..ExportOptions::default()
+        };
+        progress::shown(|progress| target.write_document(&shown, &options, &args.limits.budget(), progress))?;
         // Beside an error, notes would only hide it.
         convert::tell(&args.document, &notes);
         Ok(())

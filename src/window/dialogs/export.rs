@@ -2,11 +2,13 @@
 //! Floor 7.
 
 use super::{DialogAnswer, buttons};
+use crate::io::export::ExportFormat;
 use crate::math::{Size, srgb::Color};
 use crate::requests::WindowRequest;
 use crate::session::Session;
 use crate::theme;
 use eframe::egui::{Color32, Rect, Role, Sense, Slider, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2};
+use std::path::Path;
 
 /// The choices, kept for the next time.
 #[derive(Clone)]
@@ -14,17 +16,20 @@ pub struct ExportDialog {
     pub extension: &'static str,
     pub background: Option<Color>,
     pub quality: u8,
+    /// Bits a channel; the format's usual ones if it cannot have these.
+    pub bits: Option<u8>,
 }
 
 impl Default for ExportDialog {
     fn default() -> Self {
-        Self { extension: "png", background: None, quality: 92 }
+        Self { extension: "png", background: None, quality: 92, bits: None }
     }
 }
 
-const FORMATS: [(&str, &str); 5] = [
-    ("png", "PNG: 8 bits, keeps transparency"),
-    ("exr", "EXR: linear light, half floats"),
+const FORMATS: [(&str, &str); 6] = [
+    ("png", "PNG: keeps transparency"),
+    ("tif", "TIFF: keeps transparency"),
+    ("exr", "EXR: linear light, keeps what is brighter than white"),
     ("jpg", "JPEG: small, opaque"),
     ("webp", "WebP: lossless, small"),
     ("psd", "PSD: the layers for Photoshop, live ones as pixels"),
@@ -44,6 +49,7 @@ impl ExportDialog {
         for (extension, about) in FORMATS {
             ui.radio_value(&mut self.extension, extension, about);
         }
+        self.depth(ui);
         let mut opaque = self.background.is_some() || self.extension == "jpg";
         let can_choose = !["jpg", "psd"].contains(&self.extension);
         ui.add_enabled_ui(can_choose, |ui| ui.checkbox(&mut opaque, "Lay it on white"));
@@ -56,6 +62,28 @@ impl ExportDialog {
             Some(false) => DialogAnswer::Close,
             None => DialogAnswer::Open,
         }
+    }
+    /// The bits a channel that a file of this name gets, if they are not the format's usual ones.
+    pub fn bits_for(&self, file: &Path) -> Option<u8> {
+        let format = ExportFormat::of(file).ok()?;
+        self.bits.filter(|bits| format.depths().contains(bits))
+    }
+    /// Where the format can have more than one depth.
+    fn depth(&mut self, ui: &mut Ui) {
+        let format = ExportFormat::ALL.iter().find(|(_, extension)| *extension == self.extension);
+        let depths = format.map_or(&[][..], |(format, _)| format.depths());
+        let usual = depths.first().copied();
+        ui.add_enabled_ui(depths.len() > 1, |ui| {
+            ui.horizontal(|ui| {
+                ui.label("Bits a channel");
+                for &depth in depths {
+                    let is_chosen = self.bits.filter(|bits| depths.contains(bits)).or(usual) == Some(depth);
+                    if ui.radio(is_chosen, format!("{depth} bits")).clicked() {
+                        self.bits = Some(depth);
+                    }
+                }
+            });
+        });
     }
     /// The picture on its background: white or none.
     fn preview(&self, ui: &mut Ui, preview: TextureId, canvas: Size) {

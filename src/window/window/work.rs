@@ -76,6 +76,7 @@ impl MainWindow {
         let options = ExportOptions {
             background: self.export.background,
             quality: self.export.quality,
+            bits: self.export.bits_for(&file),
             ..ExportOptions::default()
         };
         let terms = Terms::export(over, self.session.reads());

@@ -2,11 +2,18 @@
 //! Floor 4. Its rendering is `paint::gradient`'s.
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
+use crate::document::deep::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{Gradient, Scene};
-use crate::raster::TileAt;
+use crate::raster::{PlanarTile, TileAt};
 use crate::surface::{Bend, Deformation};
+
+impl Marks for Gradient {
+    fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
+        self.render_pixels(scene, at)
+    }
+}
 
 impl LayerKind for Live<Gradient> {
     fn name(&self) -> &'static str {
@@ -20,6 +27,9 @@ impl LayerKind for Live<Gradient> {
     }
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
+    }
+    fn marks(&self) -> Option<&dyn Marks> {
+        Some(self.params())
     }
     fn warm(&self, scene: &Scene, _: &Progress) {
         let bend = Bend { operator: self.params().operator, ..Bend::default() };

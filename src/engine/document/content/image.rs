@@ -3,11 +3,26 @@
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
+use crate::document::deep::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{PlacedImage, Placement, Scene};
-use crate::raster::TileAt;
+use crate::raster::{DeepTexture, PlanarTile, TileAt};
 use crate::surface::{Anchor, Bend, Deformation};
+use std::sync::Arc;
+
+impl Marks for PlacedImage {
+    fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
+        self.render_pixels(scene, at)
+    }
+    fn texture(&self) -> Option<Arc<DeepTexture>> {
+        Some(self.source.deep_texture())
+    }
+    fn texture_bytes(&self) -> u64 {
+        // Smaller copies add a third; while it is made the straight texels stand beside it.
+        self.source.picture.size.area() as u64 * 3 * size_of::<[f32; 4]>() as u64
+    }
+}
 
 impl LayerKind for Live<PlacedImage> {
     fn name(&self) -> &'static str {
@@ -21,6 +36,9 @@ impl LayerKind for Live<PlacedImage> {
     }
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
+    }
+    fn marks(&self) -> Option<&dyn Marks> {
+        Some(self.params())
     }
     fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().source.texture();

@@ -3,14 +3,25 @@
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
+use crate::document::deep::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::paint::Scene;
-use crate::raster::TileAt;
+use crate::raster::{PlanarTile, TileAt};
 use crate::shading::{LightKind, LitSphere, Shading};
 
 /// The lit spheres of a material.
 fn spheres(shading: &Shading) -> impl Iterator<Item = &LitSphere> {
     [&shading.sphere, &shading.sphere_concave].into_iter().flatten()
+}
+
+impl Marks for Shading {
+    fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
+        self.render_pixels(scene, at)
+    }
+    /// Off the surface it shows nothing.
+    fn stay(&self) -> bool {
+        false
+    }
 }
 
 impl LayerKind for Live<Shading> {
@@ -26,6 +37,9 @@ impl LayerKind for Live<Shading> {
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         // Off the surface it shows nothing.
         self.behind(scene, false, |scene, at| self.params().render_tile(scene, at))
+    }
+    fn marks(&self) -> Option<&dyn Marks> {
+        Some(self.params())
     }
     fn warm(&self, scene: &Scene, _: &Progress) {
         self.params().warm(scene);

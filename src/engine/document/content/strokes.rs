@@ -3,11 +3,12 @@
 
 use super::{Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
 use crate::Result;
+use crate::document::deep::{Done, Marks};
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{Scene, Selection, Stroke, StrokeSelection, stroke};
 use crate::raster::warp::warped_plane;
-use crate::raster::{CoverageGrid, TileAt};
+use crate::raster::{CoverageGrid, PlanarTile, TileAt};
 use crate::surface::{Bend, Deformation};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -16,6 +17,21 @@ use std::sync::Arc;
 #[derive(Clone, Default)]
 pub struct StrokeList {
     pub strokes: Vec<Arc<Stroke>>,
+}
+
+impl Marks for StrokeList {
+    fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
+        stroke::render_pixels(&self.strokes, scene, at)
+    }
+    /// Strokes whose dabs are too many to be kept would be laid again for every tile.
+    fn together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
+        let is_wanted = || !progress.is_cancelled();
+        let seen: Vec<TileAt> = tiles.iter().copied().filter(|&at| !scene.area(at).is_empty()).collect();
+        if !seen.is_empty() && stroke::are_heavy(&self.strokes, &scene.front(), is_wanted) == Some(true) {
+            // Cancelled, nothing is asked for any more.
+            let _ = stroke::render_many(&self.strokes, scene, &seen, is_wanted, done);
+        }
+    }
 }
 
 impl LayerKind for Live<StrokeList> {
@@ -32,6 +48,9 @@ impl LayerKind for Live<StrokeList> {
     /// and again.
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| stroke::render_tile(&self.params().strokes, scene, at))
+    }
+    fn marks(&self) -> Option<&dyn Marks> {
+        Some(self.params())
     }
     fn warm(&self, scene: &Scene, progress: &Progress) {
         if scene.sheet().is_some() {

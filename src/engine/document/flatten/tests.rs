@@ -202,7 +202,7 @@ fn what_an_opaque_layer_hides_is_never_asked_for() {
     );
     let prepared = prepared.unwrap();
     let mut pixels = PlanarTile::transparent();
-    let composer = Composer { prepared: &prepared, at: TileAt::new(0, 0), behind: None, sought: None };
+    let composer = Composer { prepared: &prepared, at: TileAt::new(0, 0), behind: None, sought: None, deep: None };
     assert_eq!(composer.first_visible(&prepared.stack), 1);
     assert!(composer.stack(&prepared.stack, &mut pixels).is_continue());
     assert_eq!(pixels.rows()[0].pixel(20), [1.0, 0.0, 0.0, 1.0]);

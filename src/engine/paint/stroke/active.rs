@@ -3,7 +3,7 @@
 //! Floor 3. Not here: the pen (`tools`).
 
 use super::dabs::{StrokeDabs, tiles_of};
-use super::{Sample, Stroke, StrokeCache, pixels};
+use super::{Sample, Stroke, StrokeCache, render_pixels};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::brush::Brush;
 use crate::paint::dab::{DabScratch, PlacedDab};
@@ -240,7 +240,7 @@ impl Backdrop {
             }
             Backdrop::Strokes(strokes) if strokes.is_empty() => PlanarTile::transparent(),
             Backdrop::Strokes(strokes) => {
-                let paint = || pixels(strokes, scene, at).unwrap_or_else(PlanarTile::transparent);
+                let paint = || render_pixels(strokes, scene, at).unwrap_or_else(PlanarTile::transparent);
                 cached.get_or_insert_with(paint).clone()
             }
         }

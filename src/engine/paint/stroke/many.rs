@@ -36,6 +36,17 @@ pub fn render_tiles(
     is_wanted: impl Fn() -> bool,
     done: impl Fn(TileAt, Option<Tile>) + Sync,
 ) -> Option<()> {
+    render_many(strokes, scene, tiles, is_wanted, |at, pixels| done(at, pixels.and_then(|pixels| pixels.quantised())))
+}
+
+/// The same before they are quantised.
+pub fn render_many(
+    strokes: &[Arc<Stroke>],
+    scene: &Scene,
+    tiles: &[TileAt],
+    is_wanted: impl Fn() -> bool,
+    done: impl Fn(TileAt, Option<PlanarTile>) + Sync,
+) -> Option<()> {
     let front = scene.front();
     for part in tiles.chunks(TILES_IN_FLIGHT) {
         let mut active_tiles: Vec<Wet> = part.iter().map(|&at| Wet { at, pixels: None }).collect();
@@ -54,9 +65,7 @@ pub fn render_tiles(
                 active_tiles.paint(&stroke_dabs, scene, scratch)
             });
         }
-        active_tiles
-            .into_par_iter()
-            .for_each(|active_tiles| done(active_tiles.at, active_tiles.pixels.and_then(|pixels| pixels.quantised())));
+        active_tiles.into_par_iter().for_each(|active_tiles| done(active_tiles.at, active_tiles.pixels));
     }
     Some(())
 }

@@ -106,6 +106,7 @@ pub fn grey(plane: &Plane<f32>) -> Picture {
     let none = || Picture {
         size: Size::new(1, 1),
         texels: crate::raster::picture::Texels::Srgb8([[0; 4]].into()),
+        deep: None,
         encoded: None,
     };
     Picture::srgb8(plane.size(), texels.collect()).unwrap_or_else(none)

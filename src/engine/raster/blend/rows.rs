@@ -70,7 +70,7 @@ fn bytes_over(row: &mut PixelRow, bytes: &[u8], opacity: f32) {
 
 /// Row `y` of the paint, times its coverage.
 #[inline(always)]
-fn load(row: &mut PixelRow, paint: &TilePaint<'_>, y: usize, coverage: &TileCoverage) {
+pub(super) fn load(row: &mut PixelRow, paint: &TilePaint<'_>, y: usize, coverage: &TileCoverage) {
     let k = coverage.opacity();
     match paint {
         TilePaint::Solid(color) => {

@@ -102,6 +102,36 @@ impl Antialias {
             }
         }
     }
+    /// Tells each patch's number, its mip level and its taps, in texels of level 0; in any order.
+    pub(super) fn for_each_grid(
+        &mut self,
+        patches: PatchRow,
+        n: usize,
+        last_level: u32,
+        mut tell: impl FnMut(usize, u32, &[[f32; 2]]),
+    ) {
+        for from in (0..n).step_by(SPAN) {
+            let len = (n - from).min(SPAN);
+            let part = patches.part(from, len);
+            self.choose_grids(part, len, last_level);
+            let in_groups = self.groups.iter().flat_map(|(group, grid)| {
+                let first = usize::from(group.first);
+                (first..first + GROUP).map(|k| (k, *grid))
+            });
+            let lone = self.lone.iter().map(|(k, grid)| (usize::from(*k), *grid));
+            for (k, grid) in in_groups.chain(lone) {
+                let [left, right, up, down] = part.edges;
+                let [a, b, c, d] = lattice::of(grid);
+                let place = |axis: usize, center: f32, i: usize| {
+                    center
+                        + (a[i] * left[axis][k] + b[i] * right[axis][k])
+                        + (c[i] * up[axis][k] + d[i] * down[axis][k])
+                };
+                let taps: [[f32; 2]; LANES] = std::array::from_fn(|i| [place(0, part.x[k], i), place(1, part.y[k], i)]);
+                tell(from + k, grid.level, &taps[..grid.taps().min(LANES)]);
+            }
+        }
+    }
     /// Fills `groups` and `lone`: every pixel is in one of them.
     fn choose_grids(&mut self, patches: PatchRow, n: usize, last_level: u32) {
         self.cells.count(patches, n);

@@ -6,7 +6,8 @@ use super::{
     phong::PhongTerms, toon,
 };
 use crate::math::{fast, srgb};
-use crate::raster::{TILE, Tile, TileAt, tile::TILE_AREA};
+use crate::raster::planar::{BRIGHTEST, PixelRow};
+use crate::raster::{PlanarTile, TILE, Tile, TileAt, tile::TILE_AREA};
 use crate::shading::environment::Environment;
 use crate::shading::light::{Light, RowLight};
 use crate::shading::surface_row::{Light3, RowRelief, SurfaceRow};
@@ -18,19 +19,39 @@ impl Shading {
     /// What many tiles share (curvature, prefiltered environments, occlusion) is computed by the first and cached:
     /// [`Shading::warm`] does so in advance.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {
+        let mut bytes = vec![0; 4 * TILE_AREA];
+        let rows = bytes.as_chunks_mut::<{ 4 * TILE }>().0;
+        self.shade_rows(scene, at, |y, light, coverage| show(light, coverage, &mut rows[y]))?;
+        Tile::from_pixels(bytes)
+    }
+    /// The same without rounding to bytes; light may be brighter than white.
+    pub fn render_pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile> {
+        let mut pixels = PlanarTile::transparent();
+        self.shade_rows(scene, at, |y, light, coverage| {
+            let PixelRow { rgb, a } = &mut pixels.rows_mut()[y];
+            for (x, _) in coverage.iter().enumerate().filter(|(_, c)| **c > 0) {
+                for (channel, light) in rgb.iter_mut().zip(light) {
+                    channel[x] = srgb::encode(light[x].max(0.0)).min(BRIGHTEST);
+                }
+                a[x] = 1.0;
+            }
+        })?;
+        Some(pixels)
+    }
+    /// Tells the linear light of each row of a tile that is looked at, and the surface's coverage of it; `None` without
+    /// a surface.
+    fn shade_rows(&self, scene: &Scene, at: TileAt, mut tell: impl FnMut(usize, &Light3, &[u8])) -> Option<()> {
         let surface = scene.surface.as_deref()?;
         let inside = scene.area(at);
         let features = self.features.on(surface);
         let surface_row = |y: i32| SurfaceRow::new(surface, &features, inside.x0 as usize, y as usize, inside.width());
-        let mut bytes = vec![0; 4 * TILE_AREA];
-        let rows = bytes.chunks_exact_mut(4 * TILE).zip(inside.y0..inside.y1);
+        let rows = (0..TILE).zip(inside.y0..inside.y1);
         if self.model == Model::Toon {
             let surface_rows: Vec<SurfaceRow> = (inside.y0..inside.y1).map(surface_row).collect();
             let mut light = vec![[[0.0; TILE]; 3]; surface_rows.len()];
             toon::shade_tile(self, &surface_rows, &mut light);
-            rows.zip(&surface_rows)
-                .zip(&light)
-                .for_each(|(((row, _), surface_row), light)| show(light, surface_row.coverage(), row));
+            let shaded = surface_rows.iter().zip(&light).take(TILE).enumerate();
+            shaded.for_each(|(row, (surface_row, light))| tell(row, light, surface_row.coverage()));
         } else if !inside.is_empty() {
             let mut surface_row = surface_row(inside.y0);
             let mut worker = RowShader::new(self);
@@ -38,11 +59,11 @@ impl Shading {
             for (row, y) in rows.step_by(looked_at) {
                 surface_row.move_to(y as usize);
                 if surface_row.coverage().iter().any(|&c| c > 0) {
-                    show(worker.light(&surface_row), surface_row.coverage(), row);
+                    tell(row, worker.light(&surface_row), surface_row.coverage());
                 }
             }
         }
-        Tile::from_pixels(bytes)
+        Some(())
     }
     /// Fills the caches that many tiles would otherwise compute at the same time.
     pub fn warm(&self, scene: &Scene) {

@@ -23,15 +23,41 @@ pub(super) struct RowScaler {
     factors: LuminanceRow,
     /// The factors' 5/12th powers: what sRGB's curve makes of a factor of the light.
     roots: LuminanceRow,
+    /// Without approximations: the brightest straight colour that is left.
+    exact: Option<f32>,
 }
 
 impl RowScaler {
     pub fn new(scaling: Scaling, y_star: f32) -> Self {
         let none = [0.0; TILE];
-        Self { scaling, per_y_star: 1.0 / y_star, per_a: none, delta: none, factors: none, roots: none }
+        Self { scaling, per_y_star: 1.0 / y_star, per_a: none, delta: none, factors: none, roots: none, exact: None }
+    }
+    /// For pictures of more than 8 bits: nothing is approximated.
+    ///
+    /// * `brightest`: above it, encoded, light is clipped; 1 is white.
+    pub fn exact(scaling: Scaling, y_star: f32, brightest: f32) -> Self {
+        Self { exact: Some(brightest), ..Self::new(scaling, y_star) }
+    }
+    /// One pixel after another, by the definition.
+    fn scale_exactly(&self, brightest: f32, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
+        let PixelRow { rgb, a } = row;
+        for x in 0..TILE {
+            if a[x] <= 0.0 {
+                continue;
+            }
+            let light = [0, 1, 2].map(|c| srgb::decode(rgb[c][x] / a[x]));
+            let delta = srgb::luminance(light[0], light[1], light[2]) * self.per_y_star;
+            let factor = gains[x] * self.scaling.sigma(kappa[x], delta);
+            for (channel, light) in rgb.iter_mut().zip(light) {
+                channel[x] = srgb::encode(light * factor).max(0.0).min(brightest) * a[x];
+            }
+        }
     }
     /// Multiplies the light of each pixel by σ(κ, Y / Y*).
     pub fn apply(&mut self, row: &mut PixelRow, kappa: &LuminanceRow) {
+        if let Some(brightest) = self.exact {
+            return self.scale_exactly(brightest, row, kappa, &[1.0; TILE]);
+        }
         // What the polynomials of `find_gentle` are made for.
         if self.scaling.gamma_convex <= 2.0 && self.scaling.gamma_concave <= 2.0 {
             apply_gentle(self, row, kappa);
@@ -41,7 +67,10 @@ impl RowScaler {
     }
     /// Multiplies the light of each pixel by its gain and σ(κ, Y / Y*).
     pub fn apply_with_gains(&mut self, row: &mut PixelRow, kappa: &LuminanceRow, gains: &LuminanceRow) {
-        apply_strong(self, row, kappa, gains);
+        match self.exact {
+            Some(brightest) => self.scale_exactly(brightest, row, kappa, gains),
+            None => apply_strong(self, row, kappa, gains),
+        }
     }
 }
 

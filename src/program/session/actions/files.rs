@@ -1,6 +1,6 @@
 //! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
 
-use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource, flatten};
+use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource};
 use crate::io::export::{ExportOptions, Output, OutputFile};
 use crate::io::{Budget, Overwrite, Terms, files::read_file, maps, picture, save};
 use crate::math::{Size, Vec2, srgb::Color};
@@ -35,7 +35,8 @@ actions! {
         /// One of the user's own, by its key, is gone.
         "remove brush" RemoveBrush { name: String }
         "save" Save { file: PathBuf }
-        "export" Export { file: PathBuf, background: Option<Color>, quality: u8 }
+        /// `bits`: a channel; the format's usual ones where absent.
+        "export" Export { file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8> }
         /// A picture that the selected layer is made of.
         "use" Use { part: PicturePart, file: PathBuf }
         /// The document's surface anew, of these maps: what is live bends over it.
@@ -83,9 +84,10 @@ impl FileAction {
                     tab.mark_saved(document, file.clone(), stamp);
                 }
             }
-            FileAction::Export { file, background, quality } => {
+            FileAction::Export { file, background, quality, bits } => {
                 let Some(tab) = session.active() else { return Ok(()) };
-                let options = ExportOptions { background: *background, quality: *quality, ..ExportOptions::default() };
+                let (background, quality, bits) = (*background, *quality, *bits);
+                let options = ExportOptions { background, quality, bits, ..ExportOptions::default() };
                 let terms = Terms::export(unless_forced(session, Overwrite::Nothing), session.reads());
                 let notes = export(tab.document(), file, &options, terms, &Progress::default())?;
                 session.notes.extend(notes);
@@ -133,9 +135,7 @@ pub fn export(
 ) -> Result<Vec<String>> {
     let target = OutputFile::new(file, terms)?;
     if let Output::Picture(_) = Output::of(file)? {
-        if let Some(pixels) = flatten(document, progress) {
-            target.write(&pixels, document.size, options)?;
-        }
+        target.write_document(document, options, &Budget::of_this_machine(), progress)?;
         return Ok(Vec::new());
     }
     let Some(encoded) = save::encode(document, file, progress)? else { return Ok(Vec::new()) };

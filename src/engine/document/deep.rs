@@ -1,0 +1,137 @@
+//! Composing without rounding to bytes: live layers are rendered anew, in floats, for files of more than 8 bits. Floor 4.
+//! The rendering of marks is in `paint` and `shading`; how layers meet is `compose`'s.
+
+use super::behind::Behind;
+use super::content::TileContent;
+use super::prepare::{PreparedDocument, PreparedLayer};
+use super::{Document, Layer, LayerId, Progress};
+use crate::paint::Scene;
+use crate::raster::planar::BRIGHTEST;
+use crate::raster::{DeepTexture, PlanarTile, TileAt};
+use crate::shading::radiance::Exactness;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+impl Document {
+    /// Bytes that flattening it in floats takes beside the picture: the textures that images are read from.
+    pub fn deep_bytes(&self) -> u64 {
+        let of_layer = |layer: &Arc<Layer>| layer.content.marks().map_or(0, Marks::texture_bytes);
+        self.walk().into_iter().map(|(_, layer)| layer).filter(|layer| layer.visible).map(of_layer).sum()
+    }
+}
+
+/// What becomes of light that is brighter than white.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Highlights {
+    /// Each layer is clipped at white, as a screen shows it: for pictures of 16 bits.
+    Clipped,
+    /// Pictures, materials and radiance scaling keep it: for files of light. Blend modes whose formula ends at white
+    /// clip what they mix.
+    Kept,
+}
+
+/// What a live layer is rendered from.
+pub(super) trait Marks {
+    /// One tile, not rounded to bytes; `None` where there is nothing. Colours may be brighter than white.
+    fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile>;
+    /// Where another population of a contour pixel sees no surface the tile's own pixels stay.
+    fn stay(&self) -> bool {
+        true
+    }
+    /// The texture that tiles are read from, to be held while they are.
+    fn texture(&self) -> Option<Arc<DeepTexture>> {
+        None
+    }
+    /// What that takes.
+    fn texture_bytes(&self) -> u64 {
+        0
+    }
+    /// Renders tiles that cost less together than one by one, if they do.
+    fn together(&self, _scene: &Scene, _tiles: &[TileAt], _progress: &Progress, _done: &Done) {}
+}
+
+/// Takes a rendered tile.
+pub(super) type Done<'d> = dyn Fn(TileAt, Option<PlanarTile>) + Sync + 'd;
+
+/// What is ready of live layers while tiles are composed.
+pub(super) struct DeepTiles {
+    highlights: Highlights,
+    /// Held, so that each is made once.
+    _textures: Vec<Arc<DeepTexture>>,
+    /// Tiles that were rendered together, by layer and place; of what is seen behind contours (`true`) or on the canvas.
+    together: HashMap<(LayerId, TileAt, bool), Option<PlanarTile>>,
+}
+
+impl DeepTiles {
+    pub fn new(prepared: &PreparedDocument, highlights: Highlights) -> Self {
+        let mut textures = Vec::new();
+        for_each(&prepared.stack, &mut |node| {
+            textures.extend(node.layer.content.marks().and_then(Marks::texture));
+        });
+        Self { highlights, _textures: textures, together: HashMap::new() }
+    }
+    /// Textures that are held: how many.
+    #[cfg(test)]
+    pub fn held(&self) -> usize {
+        self._textures.len()
+    }
+    /// Renders what is to be rendered together on some tiles, and forgets what was on others.
+    pub fn render(&mut self, prepared: &PreparedDocument, tiles: &[TileAt], progress: &Progress) {
+        let found = Mutex::new(HashMap::new());
+        for_each(&prepared.stack, &mut |node| {
+            let Some(marks) = node.layer.content.marks() else { return };
+            for scene in std::iter::once(&node.scene).chain(&node.behind) {
+                let (id, is_behind) = (node.layer.id, scene.sheet().is_some());
+                let done = |at, tile| {
+                    found.lock().unwrap_or_else(PoisonError::into_inner).insert((id, at, is_behind), tile);
+                };
+                marks.together(scene, tiles, progress, &done);
+            }
+        });
+        self.together = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    }
+    /// A live layer's pixels on a tile, or behind its contours.
+    pub fn content(&self, node: &PreparedLayer, marks: &dyn Marks, at: TileAt, behind: Option<Behind>) -> TileContent {
+        let pixels = |scene: &Scene| match self.together.get(&(node.layer.id, at, scene.sheet().is_some())) {
+            Some(known) => known.clone(),
+            None => marks.pixels(scene, at),
+        };
+        let found = match behind {
+            None => pixels(&node.scene),
+            Some(behind) => {
+                let on_sheet = node.behind.as_ref().and_then(pixels);
+                let bare = if marks.stay() && behind.has_bare() { pixels(&node.scene) } else { None };
+                Some(behind.packed_deep(on_sheet.as_ref(), bare.as_ref()))
+            }
+        };
+        let Some(mut found) = found else { return TileContent::Nothing };
+        if self.highlights == Highlights::Clipped {
+            found.clip_to_white();
+        }
+        TileContent::Group(found)
+    }
+    /// The straight encoded colour above which light is clipped.
+    pub fn brightest(&self) -> f32 {
+        match self.highlights {
+            Highlights::Clipped => 1.0,
+            Highlights::Kept => BRIGHTEST,
+        }
+    }
+    pub fn exactness(&self) -> Exactness {
+        match self.highlights {
+            Highlights::Clipped => Exactness::Exact,
+            Highlights::Kept => Exactness::ExactLight,
+        }
+    }
+}
+
+fn for_each(nodes: &[PreparedLayer], tell: &mut impl FnMut(&PreparedLayer)) {
+    for node in nodes {
+        tell(node);
+        for_each(&node.children, tell);
+        for_each(&node.clipped, tell);
+    }
+}
+
+#[cfg(test)]
+mod tests;
