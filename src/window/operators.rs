@@ -86,7 +86,7 @@ pub fn set(requests: &mut UiRequests, whose: &OperatorOwner, operator: ValueChan
     requests.act(match whose {
         OperatorOwner::Hand => Action::Hand(HandAction::Operator { operator: to }),
         OperatorOwner::Layer(layer) => {
-            Action::Layer(LayerAction::Set { layer: layer.clone(), to: Property::Bend { operator: to }, done })
+            Action::Layer(LayerAction::Set { layer: layer.clone().into(), to: Property::Bend { operator: to }, done })
         }
     });
 }

@@ -76,7 +76,7 @@ impl Document {
         })
     }
     /// Changes the list of layers that a place is in.
-    fn with_siblings(
+    pub(super) fn with_siblings(
         &self,
         place: LayerSlot,
         change: impl FnOnce(&mut Vec<Arc<Layer>>, usize) -> Option<()>,

@@ -6,7 +6,7 @@ mod light;
 mod marks;
 mod selections;
 
-use super::{Content, DetailSource, Document, Layer, LayerMask, MaskKind, PixelLayer};
+use super::{Assistant, Content, DetailSource, Document, Layer, LayerMask, MaskKind, PixelLayer};
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, Size};
 use crate::raster::{Picture, TILE};
@@ -44,7 +44,8 @@ impl Document {
             }
         });
         let values = || total.fits().map_err(|why| format!("{why}."));
-        fit.and_then(|()| selections::fit(self, before))
+        fit.and_then(|()| self.aids_fit())
+            .and_then(|()| selections::fit(self, before))
             .and_then(|()| self.surface_fits())
             .and_then(|()| self.parts_fit())
             .and_then(|()| values())
@@ -52,6 +53,9 @@ impl Document {
 }
 
 impl Document {
+    fn aids_fit(&self) -> Fit {
+        self.guides.fits().and_then(|()| Assistant::all_fit(&self.assistants)).map_err(|why| format!("{why}."))
+    }
     fn surface_fits(&self) -> Fit {
         self.surface_source.as_ref().map_or(Ok(()), |source| source.fits().map_err(|why| format!("Surface: {why}.")))
     }

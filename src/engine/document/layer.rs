@@ -2,6 +2,7 @@
 //! Floor 4.
 
 use super::{Content, LayerTransform, cache::LayerCache, mask::LayerMask};
+use crate::math::srgb::Color;
 use crate::math::{Range, UNIT};
 use crate::raster::BlendMode;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -33,6 +34,8 @@ pub struct Layer {
     pub clip_below: bool,
     pub lock: LayerLock,
     pub mask: Option<LayerMask>,
+    /// A colour by which it is found in the list.
+    pub label: LayerLabel,
     /// Paint nothing outside the surface.
     pub clip_to_surface: bool,
     /// Where the frame that content and mask lie in stands on the canvas; absent: it is the canvas.
@@ -59,6 +62,7 @@ impl Layer {
             clip_below: false,
             lock: LayerLock::None,
             mask: None,
+            label: LayerLabel::None,
             clip_to_surface: true,
             transform: None,
             content,
@@ -74,4 +78,56 @@ pub enum LayerLock {
     None,
     Alpha,
     All,
+}
+
+/// The colour of a layer's label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum LayerLabel {
+    #[default]
+    None,
+    Blue,
+    Green,
+    Yellow,
+    Orange,
+    Brown,
+    Red,
+    Purple,
+    Grey,
+}
+
+impl LayerLabel {
+    /// Every label with its name in documents.
+    pub const ALL: [(LayerLabel, &'static str); 9] = [
+        (LayerLabel::None, "none"),
+        (LayerLabel::Blue, "blue"),
+        (LayerLabel::Green, "green"),
+        (LayerLabel::Yellow, "yellow"),
+        (LayerLabel::Orange, "orange"),
+        (LayerLabel::Brown, "brown"),
+        (LayerLabel::Red, "red"),
+        (LayerLabel::Purple, "purple"),
+        (LayerLabel::Grey, "grey"),
+    ];
+
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(label, _)| *label == self).map_or("none", |(_, name)| name)
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known)| *known == name).map(|(label, _)| *label)
+    }
+    /// What it is shown as.
+    pub fn color(self) -> Option<Color> {
+        let rgb = match self {
+            LayerLabel::None => return None,
+            LayerLabel::Blue => [86, 160, 230],
+            LayerLabel::Green => [120, 190, 70],
+            LayerLabel::Yellow => [235, 215, 70],
+            LayerLabel::Orange => [245, 160, 60],
+            LayerLabel::Brown => [165, 110, 70],
+            LayerLabel::Red => [228, 70, 66],
+            LayerLabel::Purple => [175, 110, 205],
+            LayerLabel::Grey => [130, 130, 130],
+        };
+        Some(Color { r: rgb[0], g: rgb[1], b: rgb[2], a: 255 })
+    }
 }

@@ -1,6 +1,7 @@
 //! Floor 4: the document is a value. Cheap to clone, never changed while shared: an edit is a new document, undo a list
 //! of them, and what must be redrawn is what differs by pointer.
 
+pub mod assistants;
 mod behind;
 pub mod cache;
 mod compose;
@@ -11,6 +12,7 @@ pub mod diff;
 pub mod edit;
 mod fit;
 pub mod flatten;
+pub mod guides;
 pub mod history;
 pub mod layer;
 pub mod live;
@@ -24,19 +26,22 @@ mod same;
 pub mod scale;
 mod scenes;
 pub mod selections;
+mod several;
 pub mod source;
 mod strokes;
 pub mod transform;
 pub mod view;
 mod weight;
 
+pub use assistants::{Assistant, AssistantKind};
 pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers};
+pub use guides::Guides;
 pub use history::History;
-pub use layer::{Layer, LayerId, LayerLock};
+pub use layer::{Layer, LayerId, LayerLabel, LayerLock};
 pub use live::Live;
 pub use mask::{LayerMask, MaskKind};
 pub use normals::{DetailSource, NormalLayer};
@@ -68,6 +73,10 @@ pub struct Document {
     pub selections: Vec<NamedSelection>,
     /// What marks may change; absent: everything. Never empty.
     pub active_selection: Option<Arc<Selection>>,
+    /// Lines that the hand keeps to; no part of the picture.
+    pub guides: Arc<Guides>,
+    /// What strokes are drawn along; no part of the picture.
+    pub assistants: Arc<Vec<Assistant>>,
 }
 
 impl Document {
@@ -81,6 +90,8 @@ impl Document {
             layers: Vec::new(),
             selections: Vec::new(),
             active_selection: None,
+            guides: Arc::default(),
+            assistants: Arc::default(),
         }
     }
     /// The canvas as the bottom layer sees it.

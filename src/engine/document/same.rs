@@ -19,6 +19,8 @@ impl Document {
             .or_else(|| parts.then(|| "the parts of its shape".into()))
             .or_else(|| layers(&self.layers, &other.layers))
             .or_else(|| selections(self, other))
+            .or_else(|| (self.guides != other.guides).then(|| "the guides".into()))
+            .or_else(|| (self.assistants != other.assistants).then(|| "the assistants".into()))
     }
 }
 
@@ -103,7 +105,7 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
     let what = if a.name != b.name {
         "name"
     } else if !meets_alike(a, b) {
-        "opacity, blend mode, clipping or lock"
+        "opacity, blend mode, clipping, lock or label"
     } else if !same_mask(a.mask.as_ref(), b.mask.as_ref()) {
         "mask"
     } else {
@@ -114,7 +116,7 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
 
 fn meets_alike(a: &Layer, b: &Layer) -> bool {
     let meets = |l: &Layer| {
-        (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below, l.lock, l.clip_to_surface, l.transform)
+        (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below, l.lock, l.clip_to_surface, l.transform, l.label)
     };
     meets(a) == meets(b)
 }

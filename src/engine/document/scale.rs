@@ -26,7 +26,9 @@ impl Document {
         let Some(scale) = CanvasScale::of(self.size, factor) else { return Ok(self.clone()) };
         let surface = self.surface.as_ref().map(|s| s.stretched(scale.to).map(Arc::new)).transpose()?;
         let layers = scale.layers(&self.layers);
-        let scaled = Document { size: scale.to, surface, layers, ..scale.selected(self) };
+        let guides = Arc::new(self.guides.scaled(scale.per_axis));
+        let assistants = Arc::new(self.assistants.iter().map(|assistant| assistant.scaled(scale.per_axis)).collect());
+        let scaled = Document { size: scale.to, surface, layers, guides, assistants, ..scale.selected(self) };
         let shaped = if self.parts.is_empty() { scaled } else { scale.parts(self, scaled)? };
         Ok(shaped.with_selections_found())
     }

@@ -4,7 +4,7 @@
 use super::LayerReader;
 use super::names::{BLEND_SPACES, LOCKS};
 use super::{images, masks, normals, shading, strokes, transforms};
-use crate::document::{Content, Group, Layer, LayerLock, Live, PixelLayer, SelectionList};
+use crate::document::{Content, Group, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
@@ -46,13 +46,15 @@ impl LayerReader<'_> {
         let blend_linear = fields.one_of("blend_space", &BLEND_SPACES, false)?;
         let clip_below = fields.boolean("clip_below", false)?;
         let lock = fields.one_of("lock", &LOCKS, LayerLock::None)?;
+        let label = fields.one_of("label", &LayerLabel::ALL, LayerLabel::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
         let transform = fields.get("transform").map(|node| transforms::read(&node)).transpose()?;
         let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);
-        Ok(Layer { visible, opacity, blend, blend_linear, clip_below, lock, mask, clip_to_surface, transform, ..layer })
+        let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
+        Ok(Layer { label, mask, clip_to_surface, transform, ..layer })
     }
     fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
         let mut offset = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
@@ -120,6 +122,7 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     out.word("blend_space", &BLEND_SPACES, layer.blend_linear, false);
     out.flag("clip_below", layer.clip_below, false);
     out.word("lock", &LOCKS, layer.lock, LayerLock::None);
+    out.word("label", &LayerLabel::ALL, layer.label, LayerLabel::None);
     out.flag("clip_to_surface", layer.clip_to_surface, true);
     if let Some(mask) = &layer.mask {
         out.set("mask", masks::write(mask));

@@ -17,9 +17,11 @@
 //! | `masks` | layer masks |
 //! | `transforms` | where the frames of layers lie |
 //! | `selections` | selections |
+//! | `guides` | guides and assistants |
 //! | `pictures` | the files that layers name, each decoded once |
 
 mod brush;
+pub mod guides;
 mod habits;
 mod images;
 mod layers;
@@ -47,7 +49,7 @@ pub use strokes::write_stroke;
 
 use super::json::{Fields, JsonNode, JsonObject, Printer};
 use super::{Budget, Files, RecipeFolder, files, maps};
-use crate::document::{Content, Document, Layer, SelectionList, SurfaceSource};
+use crate::document::{Content, Document, Guides, Layer, LayerLabel, SelectionList, SurfaceSource};
 use crate::math::Size;
 use crate::paint::grain::GrainSpace;
 use crate::paint::{Scene, Selection};
@@ -139,6 +141,8 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     };
     let layers = root.get("layers");
     let (selections, active) = (root.get("selections"), root.get("active_selection"));
+    let guides = root.get("guides").map_or(Ok(Guides::default()), |node| guides::read(&node))?;
+    let assistants = root.get("assistants").map_or(Ok(Vec::new()), |node| guides::read_assistants(&node))?;
     root.finish()?;
 
     let CanvasAndSurface { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
@@ -165,6 +169,8 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
         layers,
         selections,
         active_selection,
+        guides: Arc::new(guides),
+        assistants: Arc::new(assistants),
     };
     let document = if parts.is_empty() { bare } else { bare.with_parts(parts).with_selections_found() };
     Ok((document, notes))
@@ -288,14 +294,18 @@ pub fn print(document: &Document) -> String {
 /// Whether the first version has no words for something in a document.
 fn needs_second_version(document: &Document) -> bool {
     let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
-    has_matrix || !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| layer.transform.is_some())
+    let is_new = |layer: &Layer| layer.transform.is_some() || layer.label != LayerLabel::None;
+    has_matrix || !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| is_new(layer))
 }
 
 /// All but the layers.
 fn head(document: &Document, list: &SelectionList) -> JsonObject {
     let mut out = JsonObject::default();
     out.set("format", "rilievo".into());
-    let is_second = needs_second_version(document) || selections::is_needed(document, list) || unwraps(document);
+    let is_second = needs_second_version(document)
+        || selections::is_needed(document, list)
+        || unwraps(document)
+        || guides::is_needed(document);
     out.set("version", if is_second { VERSION } else { 1 }.into());
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     let mut surface = document.surface_source.as_deref().map(surface::write).unwrap_or_default();
@@ -304,5 +314,6 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
     }
     out.object("surface", surface);
     selections::write(&mut out, document, list);
+    guides::write(&mut out, document);
     out
 }

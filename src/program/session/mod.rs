@@ -4,6 +4,7 @@
 pub mod actions;
 pub mod autosave;
 pub mod brushes;
+pub mod chosen;
 pub mod first_look;
 mod open_document;
 mod path;
@@ -17,7 +18,7 @@ pub use actions::Action;
 pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
 pub use open_document::{CloneSource, Edit, OpenDocument, is_same, looks_same};
-pub use path::LayerPath;
+pub use path::{LayerPath, LayerPaths};
 pub use property::Property;
 pub use view::CanvasView;
 
@@ -31,6 +32,7 @@ use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
 use crate::tools::select::SelectSettings;
+use crate::tools::snap::{SnapLines, ViewAids};
 use crate::tools::{Gesture, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -62,6 +64,8 @@ pub struct Session {
     pub fill: Fill,
     /// The settings of the selection tools.
     pub select: SelectSettings,
+    /// What the pen snaps to, and what is shown of it.
+    pub aids: ViewAids,
     /// The corners of the lasso that is being set.
     pub lasso: Vec<Vec2>,
     /// The outline of the selection is not drawn.
@@ -109,6 +113,7 @@ impl Default for Session {
             symmetry: Symmetry::None,
             fill: Fill::default(),
             select: SelectSettings::default(),
+            aids: ViewAids::default(),
             lasso: Vec::new(),
             hides_selection: false,
             copied: None,
@@ -150,9 +155,22 @@ impl Session {
         let tab = self.active()?;
         LayerPath::of(tab.document(), tab.selected?)
     }
+    /// The paths of the chosen layers, without those in a group that is chosen.
+    pub fn layer_paths(&self) -> LayerPaths {
+        let chosen = self.active().map(|tab| LayerPaths::of(tab.document(), &tab.outermost_chosen()));
+        chosen.unwrap_or_default()
+    }
     /// Whether a tool is between press and release.
     pub fn is_drawing(&self) -> bool {
         self.gesture.is_some()
+    }
+    /// The lines that what is dragged snapped to.
+    pub fn snap_lines(&self) -> SnapLines {
+        self.gesture.as_ref().map_or_else(SnapLines::default, |gesture| gesture.snap_lines())
+    }
+    /// Whether a guide is being dragged.
+    pub fn drags_guide(&self) -> bool {
+        self.gesture.as_ref().is_some_and(|gesture| gesture.is_guide())
     }
     pub fn add_document(&mut self, tab: OpenDocument) {
         self.drop_gesture();

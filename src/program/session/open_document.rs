@@ -1,6 +1,7 @@
 //! An open document: its history, selection, file and view.
 //! Floor 6.
 
+use super::chosen::ChosenLayers;
 use super::first_look::FirstLook;
 use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind};
@@ -18,7 +19,8 @@ const STEPS: usize = 200;
 pub struct Edit {
     pub label: &'static str,
     pub document: Document,
-    pub select: Option<LayerId>,
+    /// Chosen from now on, the primary one last; none: those that were.
+    pub select: Vec<LayerId>,
 }
 
 /// An open document.
@@ -28,7 +30,9 @@ pub struct OpenDocument {
     pub history: History,
     /// The preview during a gesture: not a step yet.
     preview: Option<Preview>,
+    /// The primary one of the chosen layers: what the brush paints on.
     pub selected: Option<LayerId>,
+    pub(super) chosen_layers: ChosenLayers,
     /// Where it was opened from or saved to.
     pub file: Option<PathBuf>,
     /// Its name while it has no file.
@@ -87,6 +91,7 @@ impl OpenDocument {
             history: History::new(document, STEPS),
             preview: None,
             selected,
+            chosen_layers: ChosenLayers::default(),
             file,
             stamp: None,
             reads: Vec::new(),
@@ -175,7 +180,7 @@ impl OpenDocument {
     pub fn take(&mut self, edit: Edit) {
         let Edit { label, document, select } = edit;
         if self.commit(label, document) {
-            self.selected = select.or(self.selected);
+            self.choose_layers(select);
         }
     }
     /// Adds the preview as a step.
@@ -248,7 +253,8 @@ pub fn is_same(a: &Document, b: &Document) -> bool {
             .iter()
             .zip(&b.selections)
             .all(|(a, b)| a.name == b.name && Arc::ptr_eq(&a.selection, &b.selection));
-    same_active && same_kept && looks_same(a, b)
+    let same_aids = a.guides == b.guides && a.assistants == b.assistants;
+    same_active && same_kept && same_aids && looks_same(a, b)
 }
 
 /// Whether both show the same picture, whatever is selected.

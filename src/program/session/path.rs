@@ -33,6 +33,49 @@ impl LayerPath {
     }
 }
 
+/// The paths of the layers that an action is done to. Of one it is written as that path, as it always was.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LayerPaths(Vec<LayerPath>);
+
+impl LayerPaths {
+    /// Of some layers; those that are gone are left out.
+    pub fn of(document: &Document, ids: &[LayerId]) -> Self {
+        Self(ids.iter().filter_map(|id| LayerPath::of(document, *id)).collect())
+    }
+    /// The layers at the paths; `None` where one leads nowhere, or there are none.
+    pub fn find(&self, document: &Document) -> Option<Vec<LayerId>> {
+        let found: Option<Vec<_>> = self.0.iter().map(|path| path.find(document).map(|layer| layer.id)).collect();
+        found.filter(|found| !found.is_empty())
+    }
+    pub fn is_several(&self) -> bool {
+        self.0.len() > 1
+    }
+}
+
+impl From<LayerPath> for LayerPaths {
+    fn from(path: LayerPath) -> Self {
+        Self(vec![path])
+    }
+}
+
+impl From<&LayerPath> for LayerPaths {
+    fn from(path: &LayerPath) -> Self {
+        Self::from(path.clone())
+    }
+}
+
+impl ReplayValue for LayerPaths {
+    fn written(&self) -> Value {
+        match &self.0[..] {
+            [one] => one.written(),
+            all => Value::Array(all.iter().map(ReplayValue::written).collect()),
+        }
+    }
+    fn read(value: &Value) -> Result<Self, String> {
+        if value.is_array() { Vec::read(value).map(Self) } else { LayerPath::read(value).map(Self::from) }
+    }
+}
+
 impl ReplayValue for LayerPath {
     fn written(&self) -> Value {
         self.0.iter().map(ToString::to_string).collect::<Vec<_>>().join(".").into()
@@ -60,5 +103,18 @@ mod tests {
         assert_eq!(path.written(), "1.1");
         assert_eq!(LayerPath::read(&path.written()).unwrap().find(&document).unwrap().name, "c");
         assert!(LayerPath(vec![0, 1]).find(&document).is_none());
+    }
+    #[test]
+    fn one_layer_is_written_as_its_path_and_several_as_a_list() {
+        let fill = |name: &str| Arc::new(Layer::new(name, Content::Fill(Color::BLACK)));
+        let document = Document { layers: vec![fill("a"), fill("b")], ..Document::empty(Size::new(4, 4)) };
+        let ids: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
+        let [one, both] = [&ids[1..], &ids[..]].map(|ids| LayerPaths::of(&document, ids));
+        assert_eq!((one.written(), both.written()), (Value::from("1"), serde_json::json!(["0", "1"])));
+        for paths in [one, both] {
+            assert_eq!(LayerPaths::read(&paths.written()), Ok(paths));
+        }
+        assert_eq!(LayerPaths::read(&"7".into()).unwrap().find(&document), None, "there is no such layer");
+        assert_eq!(LayerPaths::default().find(&document), None);
     }
 }

@@ -2,6 +2,7 @@
 
 mod held;
 mod selecting;
+mod several;
 mod steps;
 
 use super::actions::{Action, LayerAction};
@@ -81,7 +82,7 @@ fn layers_are_made_grouped_moved_and_merged() {
 fn baking_changes_what_a_layer_is_and_no_pixel() {
     let mut session = told(&format!("{PAPER}{STROKE}"));
     let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
-    let bake = Action::Layer(LayerAction::Bake { layer: session.layer_path().unwrap() });
+    let bake = Action::Layer(LayerAction::Bake { layer: session.layer_paths() });
     bake.apply(&mut session).unwrap();
     let after = session.active().unwrap().document();
     assert!(matches!(after.layers[1].content, Content::Pixels(_)));

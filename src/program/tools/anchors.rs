@@ -73,7 +73,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         (Content::Gradient(live), Some(index)) => {
             let end = if index == 0 { GradientEnd::From } else { GradientEnd::To };
             let gradient = live.params().clone();
-            gradient::drag_end(document, layer.id, gradient, end)
+            gradient::drag_end(context, layer.id, gradient, end)
         }
         (Content::Shading(live), Some(index)) => {
             let (layer, shading) = (layer.id, live.params().clone());

@@ -2,6 +2,7 @@
 //! Floor 5.
 
 use super::brush::free_name;
+use super::snap::{SnapLines, SnapTargets};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live};
 use crate::math::Vec2;
@@ -28,21 +29,23 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let end =
             [(GradientEnd::To, gradient.to), (GradientEnd::From, gradient.from)].into_iter().find(|(_, p)| near(*p));
         if let Some((end, _)) = end {
-            return drag_end(context.document.clone(), layer.id, gradient, end);
+            return drag_end(context, layer.id, gradient, end);
         }
     }
     let stops =
         vec![GradientStop { t: 0.0, color: context.color }, GradientStop { t: 1.0, color: context.second_color }];
+    let from = context.snap.point(at).at;
     let gradient = Gradient {
-        from: at,
-        to: at,
+        from,
+        to: from,
         stops,
         operator: context.operator,
         filter: ImageFilter::Antialias,
         frame: Default::default(),
     };
     let place = selected.and_then(|layer| context.document.place_of(layer.id));
-    let laid = NewGradientGesture { document: context.document.clone(), place, gradient, layer: None };
+    let (document, snap, lines) = (context.document.clone(), context.snap.clone(), SnapLines::default());
+    let laid = NewGradientGesture { document, place, gradient, layer: None, snap, lines };
     (Some(Box::new(laid)), Outcome::Idle)
 }
 
@@ -53,6 +56,8 @@ struct NewGradientGesture {
     place: Option<LayerSlot>,
     gradient: Gradient,
     layer: Option<Layer>,
+    snap: SnapTargets,
+    lines: SnapLines,
 }
 
 impl NewGradientGesture {
@@ -70,7 +75,11 @@ impl NewGradientGesture {
 impl Gesture for NewGradientGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        self.gradient.to = if pen.keys.shift { upright(self.gradient.from, pen.place()) } else { pen.place() };
+        let found = self.snap.point(pen.place());
+        (self.gradient.to, self.lines) = match pen.keys.shift {
+            true => (upright(self.gradient.from, pen.place()), SnapLines::default()),
+            false => (found.at, found.lines),
+        };
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
     fn release(&mut self) -> Outcome {
@@ -79,6 +88,9 @@ impl Gesture for NewGradientGesture {
         }
         let Some(document) = self.with() else { return Outcome::Cancel };
         Outcome::Commit { label: "Gradient".into(), document, select: self.layer.as_ref().map(|layer| layer.id) }
+    }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
     }
 }
 
@@ -90,8 +102,9 @@ fn upright(from: Vec2, to: Vec2) -> Vec2 {
 }
 
 /// Starts dragging one end of a gradient.
-pub(super) fn drag_end(document: Document, layer: LayerId, gradient: Gradient, end: GradientEnd) -> GestureStart {
-    (Some(Box::new(GradientEndGesture { document, layer, gradient, end, moved: false })), Outcome::Idle)
+pub(super) fn drag_end(context: &ToolContext, layer: LayerId, gradient: Gradient, end: GradientEnd) -> GestureStart {
+    let (document, snap, lines) = (context.document.clone(), context.snap.clone(), SnapLines::default());
+    (Some(Box::new(GradientEndGesture { document, layer, gradient, end, moved: false, snap, lines })), Outcome::Idle)
 }
 
 /// One end of a gradient being dragged.
@@ -101,6 +114,8 @@ struct GradientEndGesture {
     gradient: Gradient,
     end: GradientEnd,
     moved: bool,
+    snap: SnapTargets,
+    lines: SnapLines,
 }
 
 impl GradientEndGesture {
@@ -114,7 +129,12 @@ impl Gesture for GradientEndGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let fixed = if self.end == GradientEnd::From { self.gradient.to } else { self.gradient.from };
-        let at = if pen.keys.shift { upright(fixed, pen.place()) } else { pen.place() };
+        let found = self.snap.point(pen.place());
+        let (at, lines) = match pen.keys.shift {
+            true => (upright(fixed, pen.place()), SnapLines::default()),
+            false => (found.at, found.lines),
+        };
+        self.lines = lines;
         match self.end {
             GradientEnd::From => self.gradient.from = at,
             GradientEnd::To => self.gradient.to = at,
@@ -129,6 +149,9 @@ impl Gesture for GradientEndGesture {
             }
             _ => Outcome::Cancel,
         }
+    }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
     }
 }
 

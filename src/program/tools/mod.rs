@@ -4,9 +4,11 @@
 
 pub mod anchors;
 pub mod brush;
+mod context;
 pub mod eyedropper;
 pub mod fill;
 pub mod gradient;
+pub mod guides;
 pub mod image;
 pub mod lights;
 pub mod mask;
@@ -14,15 +16,17 @@ pub mod move_content;
 pub mod outline;
 mod retouch;
 pub mod select;
+pub mod snap;
 pub mod strokes;
 pub mod symmetry;
 pub mod transform;
 
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
-use crate::paint::{Brush, Fill, Sample};
-use crate::surface::Operator;
+use crate::paint::Sample;
+pub use context::ToolContext;
 pub use select::SelectSettings;
+use snap::SnapLines;
 pub use symmetry::Symmetry;
 
 /// The tools.
@@ -183,6 +187,11 @@ impl ToolKind {
         const ROWS: &[ToolRow] = &ToolKind::ALL;
         ROWS.iter().find(|row| row.kind == self).unwrap_or(&ROWS[0])
     }
+    /// The pen snaps to guides, the grid and edges.
+    pub fn snaps(self) -> bool {
+        use ToolKind::{Brush, Eraser, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
+        matches!(self, Brush | Eraser | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
+    }
     /// It makes selections.
     pub fn selects(self) -> bool {
         use ToolKind::{Lasso, SelectEllipse, SelectRectangle, SurfaceWand, Wand};
@@ -219,57 +228,6 @@ impl PenSample {
     }
     pub fn place(&self) -> Vec2 {
         self.sample.at
-    }
-}
-
-/// Everything a tool works with, as it is when the pen comes down.
-pub struct ToolContext<'a> {
-    pub document: &'a Document,
-    /// The selected layer.
-    pub layer: Option<LayerId>,
-    pub brush: &'a Brush,
-    /// The foreground and the background colour.
-    pub color: Color,
-    pub second_color: Color,
-    /// How new marks follow the surface.
-    pub operator: Operator,
-    /// Canvas px per screen point, for hit tests.
-    pub px_per_pt: f32,
-    /// Where the last stroke ended.
-    pub last_end: Option<Vec2>,
-    /// How strokes repeat.
-    pub symmetry: Symmetry,
-    /// The settings of the fill tool.
-    pub fill: Fill,
-    /// The settings of the selection tools.
-    pub select: SelectSettings,
-    /// The corners of the lasso that is being set.
-    pub lasso: &'a [Vec2],
-    /// The strokes of the selected layer that are chosen.
-    pub strokes: &'a [usize],
-    /// From a pixel to what a clone brush copies onto it, px; `None` before it was set.
-    pub clone_offset: Option<Vec2>,
-}
-
-impl<'a> ToolContext<'a> {
-    /// The initial context: no layer, black and white, no operator, one pixel per point.
-    pub fn new(document: &'a Document, brush: &'a Brush) -> Self {
-        Self {
-            document,
-            layer: None,
-            brush,
-            color: Color::BLACK,
-            second_color: Color::WHITE,
-            operator: Operator::None,
-            px_per_pt: 1.0,
-            last_end: None,
-            symmetry: Symmetry::None,
-            fill: Fill::default(),
-            select: SelectSettings::default(),
-            lasso: &[],
-            strokes: &[],
-            clone_offset: None,
-        }
     }
 }
 
@@ -310,6 +268,14 @@ pub trait Gesture: Send {
     /// The pen's samples since the last call, in order.
     fn drag(&mut self, pens: &[PenSample]) -> Outcome;
     fn release(&mut self) -> Outcome;
+    /// The lines that it snapped to, to be shown.
+    fn snap_lines(&self) -> SnapLines {
+        SnapLines::default()
+    }
+    /// Whether it moves a guide, which is taken away where it is dropped on a ruler.
+    fn is_guide(&self) -> bool {
+        false
+    }
 }
 
 /// The start of a gesture, and its first outcome.

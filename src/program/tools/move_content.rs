@@ -1,13 +1,17 @@
 //! The move tool: moves a layer, or one stroke of a stroke layer, on the canvas.
 //! Floor 5.
 
-use super::transform;
+use super::snap::{SnapLines, SnapTargets};
+use super::transform::{self, TransformFrame};
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock};
 use crate::math::{PlaneMap, Vec2};
 use crate::paint::picking;
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    if let several @ [_, _, ..] = context.chosen() {
+        return press_several(context, several, pen);
+    }
     let layer = context.layer.and_then(|id| context.document.layer(id));
     let held = layer.and_then(|layer| held(context.document, layer, pen.place(), pen.keys.shift));
     let Some((layer, held)) = layer.zip(held) else { return (None, Outcome::Idle) };
@@ -15,8 +19,17 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         Held::Stroke(index) => Some(index),
         Held::Layer => None,
     };
-    let (document, id) = (context.document.clone(), layer.id);
-    (Some(Box::new(MoveGesture { document, layer: id, stroke, from: pen.place(), by: Vec2::ZERO })), Outcome::Idle)
+    (Some(Box::new(MoveGesture::begin(context, vec![layer.id], stroke, pen))), Outcome::Idle)
+}
+
+/// Several layers are moved whole, whatever they hold.
+fn press_several(context: &ToolContext, layers: &[LayerId], pen: PenSample) -> GestureStart {
+    let document = context.document;
+    let is_locked = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.lock == LayerLock::All);
+    if layers.iter().any(is_locked) {
+        return (None, Outcome::Refused("One of the layers is locked."));
+    }
+    (Some(Box::new(MoveGesture::begin(context, layers.to_vec(), None, pen))), Outcome::Idle)
 }
 
 /// What the tool takes hold of.
@@ -45,41 +58,69 @@ pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option
 
 struct MoveGesture {
     document: Document,
-    layer: LayerId,
-    /// One stroke alone.
+    layers: Vec<LayerId>,
+    /// One stroke of the only layer alone.
     stroke: Option<usize>,
     from: Vec2,
     by: Vec2,
+    /// The box around what is moved, if anything can snap.
+    frame: Option<[Vec2; 2]>,
+    snap: SnapTargets,
+    lines: SnapLines,
 }
 
 impl MoveGesture {
+    fn begin(context: &ToolContext, layers: Vec<LayerId>, stroke: Option<usize>, pen: PenSample) -> Self {
+        let (document, snap) = (context.document.clone(), context.snap.clone());
+        let snaps = stroke.is_none() && !snap.is_empty();
+        let frame = snaps.then(|| TransformFrame::around(&document, &layers)).flatten().map(|frame| frame.bounds());
+        let (from, by, lines) = (pen.place(), Vec2::ZERO, SnapLines::default());
+        Self { document, layers, stroke, from, by, frame, snap, lines }
+    }
     fn with(&self) -> Option<Document> {
-        match self.stroke {
-            Some(index) => self.document.with_moved_strokes(self.layer, &[index], self.by),
-            // Where the layer's frame lies elsewhere, the frame is moved.
-            None if self.document.map_of(self.layer).is_some_and(|map| !map.is_none()) => {
-                transform::mapped(&self.document, self.layer, PlaneMap::translation(self.by))
-            }
-            None => self.document.with_layer(self.layer, |layer| *layer = moved(layer, self.by)),
+        match (self.stroke, &self.layers[..]) {
+            (Some(index), [layer]) => self.document.with_moved_strokes(*layer, &[index], self.by),
+            (_, layers) => layers.iter().try_fold(self.document.clone(), |next, id| with_moved(&next, *id, self.by)),
         }
     }
+}
+
+/// A document with a layer moved on the canvas; `by` in whole pixels.
+fn with_moved(document: &Document, layer: LayerId, by: Vec2) -> Option<Document> {
+    // Where the layer's frame lies elsewhere, the frame is moved.
+    if document.map_of(layer).is_some_and(|map| !map.is_none()) {
+        return transform::mapped(document, layer, PlaneMap::translation(by));
+    }
+    document.with_layer(layer, |layer| *layer = moved(layer, by))
 }
 
 impl Gesture for MoveGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
+        let mut by = pen.place() - self.from;
+        if let Some([low, high]) = self.frame {
+            let shift = self.snap.shift(low + by, high + by);
+            (by, self.lines) = (by + shift.at, shift.lines);
+        }
         // Whole pixels, so that paint is not resampled.
-        self.by = (pen.place() - self.from).round();
+        self.by = by.round();
         self.with().map_or(Outcome::Idle, Outcome::Preview)
     }
     fn release(&mut self) -> Outcome {
         match self.with() {
             Some(document) if self.by != Vec2::ZERO => {
-                let label = if self.stroke.is_some() { "Move stroke" } else { "Move layer" };
+                let label = match (self.stroke, self.layers.len()) {
+                    (Some(_), _) => "Move stroke",
+                    (None, 1) => "Move layer",
+                    (None, _) => "Move layers",
+                };
                 Outcome::Commit { label: label.into(), document, select: None }
             }
             _ => Outcome::Cancel,
         }
+    }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
     }
 }
 

@@ -1,16 +1,17 @@
-//! The transform tool: a frame with handles around the selected layer or group, which stays live until it is applied.
+//! The transform tool: a frame with handles around the chosen layers and groups, which stay live until it is applied.
 //! Floor 5. What a layer becomes under its transform is `document::transform`'s.
 
+use super::snap::{SnapLines, SnapTargets};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::transform::FrameBox;
-use crate::document::{Document, LayerId, LayerLock, LayerMap, LayerTransform};
+use crate::document::{Document, Layer, LayerId, LayerLock, LayerMap, LayerTransform};
 use crate::math::{PlaneMap, Size, Vec2, vec2};
 use crate::raster::Resampling;
 
-/// A layer's frame on the canvas.
+/// The frame of a layer, or of several, on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransformFrame {
-    /// In the layer's own frame.
+    /// In the layer's own frame; that of several is the canvas.
     pub inner: FrameBox,
     /// From there to the canvas, groups included.
     pub map: LayerMap,
@@ -37,6 +38,23 @@ impl TransformFrame {
         let [a, b, c, d] = inner.corners().map(|corner| map.plane.to_canvas(corner));
         Some(Self { inner, map, corners: [a?, b?, c?, d?] })
     }
+    /// Around layers: of one its own frame, of several a box on the canvas. `None` if all are empty.
+    pub fn around(document: &Document, layers: &[LayerId]) -> Option<Self> {
+        if let [layer] = layers {
+            return Self::of(document, *layer);
+        }
+        let frames = layers.iter().filter_map(|layer| Self::of(document, *layer));
+        let corners: Vec<Vec2> = frames.flat_map(|frame| frame.corners).collect();
+        let low = corners.iter().copied().reduce(Vec2::min)?;
+        let high = corners.iter().copied().reduce(Vec2::max)?;
+        let inner = FrameBox { low, high };
+        Some(Self { inner, map: LayerMap::none(document.size), corners: inner.corners() })
+    }
+    /// The upper left and the lower right corner of the box around it, canvas px.
+    pub fn bounds(&self) -> [Vec2; 2] {
+        let [a, b, c, d] = self.corners;
+        [a.min(b).min(c).min(d), a.max(b).max(c).max(d)]
+    }
     /// The middle of the side from a corner to the next.
     pub fn edge(&self, index: usize) -> Vec2 {
         (self.corners[index % 4] + self.corners[(index + 1) % 4]) * 0.5
@@ -62,23 +80,24 @@ impl TransformFrame {
 }
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
-    let Some(layer) = context.layer.and_then(|id| context.document.layer(id)) else { return (None, Outcome::Idle) };
-    if layer.lock == LayerLock::All {
-        return (None, Outcome::Refused("The layer is locked."));
+    let document = context.document;
+    let layers: Vec<&Layer> = context.chosen().iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
+    if layers.is_empty() {
+        return (None, Outcome::Idle);
     }
-    let Some(frame) = TransformFrame::of(context.document, layer.id) else {
+    if layers.iter().any(|layer| layer.lock == LayerLock::All) {
+        let is_one = layers.len() == 1;
+        return (None, Outcome::Refused(if is_one { "The layer is locked." } else { "One of the layers is locked." }));
+    }
+    let Some(frame) = TransformFrame::around(document, context.chosen()) else {
         return (None, Outcome::Refused("The layer is empty: there is nothing to transform."));
     };
     let handle = frame.handle_at(pen.place(), GRAB_PT * context.px_per_pt);
-    let gesture = TransformGesture {
-        document: context.document.clone(),
-        layer: layer.id,
-        own: layer.transform,
-        frame,
-        handle,
-        from: pen.place(),
-        found: None,
-    };
+    let held = |layer: &&Layer| Some(HeldLayer { id: layer.id, own: layer.transform, map: document.map_of(layer.id)? });
+    let layers = layers.iter().filter_map(held).collect();
+    let (document, snap) = (document.clone(), context.snap.clone());
+    let (from, lines) = (pen.place(), SnapLines::default());
+    let gesture = TransformGesture { document, layers, frame, handle, from, found: None, snap, lines };
     (Some(Box::new(gesture)), Outcome::Idle)
 }
 
@@ -93,13 +112,13 @@ pub fn turn(degrees: f64) -> Option<PlaneMap> {
     degrees.is_finite().then(|| PlaneMap::rotation(degrees, Vec2::ZERO))
 }
 
-/// A layer with what it shows mapped about its middle. `None` of an empty layer, or where that cannot be said.
-pub fn about_middle(document: &Document, layer: LayerId, map: PlaneMap) -> Option<Document> {
-    let pivot = TransformFrame::of(document, layer)?.pivot();
+/// Layers with what they show mapped about the middle of it. `None` of empty layers, or where that cannot be said.
+pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> Option<Document> {
+    let pivot = TransformFrame::around(document, layers)?.pivot();
     // A middle between pixels along one axis alone would move pixels by halves when they are turned.
     let pivot = if map.coefficients().is_some_and(|c| c[1] != 0.0) { pivot.round() } else { pivot };
     let on_canvas = PlaneMap::translation(-pivot).then(&map).then(&PlaneMap::translation(pivot));
-    mapped(document, layer, on_canvas)
+    layers.iter().try_fold(document.clone(), |next, layer| mapped(&next, *layer, on_canvas))
 }
 
 /// A layer with what it shows taken along by a map of the canvas; `None` where that cannot be said.
@@ -127,37 +146,83 @@ fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Option<Layer
     transform.fits().ok().map(|()| Some(transform))
 }
 
+/// A layer that is dragged, as it was before.
+struct HeldLayer {
+    id: LayerId,
+    own: Option<LayerTransform>,
+    map: LayerMap,
+}
+
 struct TransformGesture {
     document: Document,
-    layer: LayerId,
-    /// Before the drag.
-    own: Option<LayerTransform>,
+    layers: Vec<HeldLayer>,
     frame: TransformFrame,
     handle: FrameHandle,
     from: Vec2,
-    /// The transform as it was last dragged; inner `None`: the layer stands where it was made.
-    found: Option<Option<LayerTransform>>,
+    /// The transforms as they were last dragged, one a layer; inner `None`: it stands where it was made.
+    found: Option<Vec<Option<LayerTransform>>>,
+    snap: SnapTargets,
+    lines: SnapLines,
+}
+
+/// What a drag does to all that is in the frame.
+enum FrameMap {
+    OnCanvas(PlaneMap),
+    /// Before the frame's own map.
+    InFrame(PlaneMap),
 }
 
 impl TransformGesture {
-    /// The layer's own transform with the handle at the pen; `None` where that is no map.
-    fn dragged(&self, pen: &PenSample) -> Option<Option<LayerTransform>> {
-        let canvas = self.document.size;
-        let own = self.own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
-        let plane = match self.handle {
-            FrameHandle::Inside => taken_along(own, &self.frame.map.plane, PlaneMap::translation(self.moved_by(pen))),
-            FrameHandle::Outside => taken_along(own, &self.frame.map.plane, self.turned_by(pen)?),
-            FrameHandle::Corner(corner) if pen.keys.ctrl => self.distorted(own, corner, pen.place())?,
-            FrameHandle::Edge(edge) if pen.keys.ctrl => self.skewed(edge, pen.place())?.then(&own),
-            FrameHandle::Corner(corner) => self.scaled(self.frame.inner.corners()[corner], [true; 2], pen)?.then(&own),
+    /// The layers' own transforms with the handle at the pen; `None` where one of them is no map.
+    fn dragged(&self, pen: &PenSample) -> Option<Vec<Option<LayerTransform>>> {
+        let map = match self.handle {
+            FrameHandle::Inside => FrameMap::OnCanvas(PlaneMap::translation(self.moved_by(pen))),
+            FrameHandle::Outside => FrameMap::OnCanvas(self.turned_by(pen)?),
+            FrameHandle::Corner(corner) if pen.keys.ctrl => FrameMap::OnCanvas(self.distorted(corner, pen.place())?),
+            FrameHandle::Edge(edge) if pen.keys.ctrl => FrameMap::InFrame(self.skewed(edge, pen.place())?),
+            FrameHandle::Corner(corner) => {
+                FrameMap::InFrame(self.scaled(self.frame.inner.corners()[corner], [true; 2], pen)?)
+            }
             FrameHandle::Edge(edge) => {
                 let [a, b] = [edge % 4, (edge + 1) % 4].map(|i| self.frame.inner.corners()[i]);
                 // The upper and the lower edge are dragged up and down.
                 let along_y = edge.is_multiple_of(2);
-                self.scaled((a + b) * 0.5, [!along_y, along_y], pen)?.then(&own)
+                FrameMap::InFrame(self.scaled((a + b) * 0.5, [!along_y, along_y], pen)?)
             }
         };
-        said(&plane, self.own.map_or(self.frame.map.filter, |own| own.filter), canvas)
+        self.layers.iter().map(|layer| self.dragged_layer(layer, &map)).collect()
+    }
+    fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap) -> Option<Option<LayerTransform>> {
+        let canvas = self.document.size;
+        let own = layer.own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
+        let plane = match map {
+            FrameMap::OnCanvas(map) => taken_along(own, &layer.map.plane, *map),
+            // The frame of one layer is its own.
+            FrameMap::InFrame(map) if self.layers.len() == 1 => map.then(&own),
+            FrameMap::InFrame(map) => taken_along(own, &layer.map.plane, *map),
+        };
+        said(&plane, layer.own.map_or(layer.map.filter, |own| own.filter), canvas)
+    }
+    /// The pen where it snaps: with a handle itself, with the inside so that the frame does.
+    fn snapped(&mut self, pen: &PenSample) -> PenSample {
+        let at = pen.place();
+        let (at, lines) = match self.handle {
+            FrameHandle::Inside => {
+                let by = at - self.from;
+                let [low, high] = self.frame.bounds().map(|corner| corner + by);
+                let shift = self.snap.shift(low, high);
+                (at + shift.at, shift.lines)
+            }
+            FrameHandle::Corner(_) | FrameHandle::Edge(_) => {
+                let found = self.snap.point(at);
+                (found.at, found.lines)
+            }
+            FrameHandle::Outside => (at, SnapLines::default()),
+        };
+        self.lines = lines;
+        let mut snapped = *pen;
+        snapped.sample.at = at;
+        snapped
     }
     fn moved_by(&self, pen: &PenSample) -> Vec2 {
         // Whole pixels, so that paint is not sampled where it need not be.
@@ -212,17 +277,19 @@ impl TransformGesture {
         let k = by.y / (a.x - opposite.x);
         PlaneMap::affine([1.0, k, 0.0, 1.0, 0.0, -k * opposite.x])
     }
-    /// A perspective that takes one corner to the pen and leaves the others.
-    fn distorted(&self, own: PlaneMap, corner: usize, at: Vec2) -> Option<PlaneMap> {
-        let around = own.inverse().then(&self.frame.map.plane);
+    /// A perspective of the canvas that takes one corner to the pen and leaves the others.
+    fn distorted(&self, corner: usize, at: Vec2) -> Option<PlaneMap> {
         let mut corners = self.frame.corners;
         corners[corner] = at;
         let FrameBox { low, high } = self.frame.inner;
         let whole = PlaneMap::rect_to_quad(low.as_dvec2(), high.as_dvec2(), corners.map(|c| c.as_dvec2()))?;
-        Some(whole.then(&around.inverse()))
+        Some(self.frame.map.plane.inverse().then(&whole))
     }
-    fn with(&self, transform: Option<LayerTransform>) -> Option<Document> {
-        self.document.with_layer(self.layer, |layer| layer.transform = transform)
+    fn with(&self, transforms: &[Option<LayerTransform>]) -> Option<Document> {
+        let all = self.layers.iter().zip(transforms);
+        all.into_iter().try_fold(self.document.clone(), |next, (held, transform)| {
+            next.with_layer(held.id, |layer| layer.transform = *transform)
+        })
     }
 }
 
@@ -232,9 +299,11 @@ const STEP_DEGREES: f64 = 15.0;
 impl Gesture for TransformGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
+        let pen = &self.snapped(pen);
         let Some(found) = self.dragged(pen) else { return Outcome::Idle };
+        let shown = self.with(&found);
         self.found = Some(found);
-        self.with(found).map_or(Outcome::Idle, Outcome::Preview)
+        shown.map_or(Outcome::Idle, Outcome::Preview)
     }
     fn release(&mut self) -> Outcome {
         let label = match self.handle {
@@ -242,10 +311,14 @@ impl Gesture for TransformGesture {
             FrameHandle::Outside => "Turn",
             FrameHandle::Corner(_) | FrameHandle::Edge(_) => "Transform",
         };
-        match self.found.filter(|found| *found != self.own).and_then(|found| self.with(found)) {
+        let is_other = |found: &Vec<_>| found.iter().zip(&self.layers).any(|(found, held)| *found != held.own);
+        match self.found.as_ref().filter(|found| is_other(found)).and_then(|found| self.with(found)) {
             Some(document) => Outcome::Commit { label: label.into(), document, select: None },
             None => Outcome::Cancel,
         }
+    }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
     }
 }
 

@@ -9,10 +9,10 @@ use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2
 /// Side of a handle, points.
 const HANDLE_PT: f32 = 9.0;
 
-/// Draws the frame around the selected layer.
+/// Draws the frame around the chosen layers.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let (Some(document), Some(layer)) = (session.shown(), session.layer()) else { return };
-    let Some(frame) = TransformFrame::of(document, layer.id) else { return };
+    let Some(tab) = session.active() else { return };
+    let Some(frame) = TransformFrame::around(tab.shown(), &tab.outermost_chosen()) else { return };
     let corners = frame.corners.map(to_screen);
     let dark = Stroke::new(3.0, Color32::from_black_alpha(110));
     let light = Stroke::new(1.2, Color32::from_rgb(120, 200, 255));

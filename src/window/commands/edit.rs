@@ -1,7 +1,7 @@
 //! The Edit menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_layer, key, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_shift, has_document, has_layer, key, row};
 use crate::requests::WindowRequest;
 use crate::session::Action;
 use crate::session::actions::{ClipboardAction, EditAction, HandAction, LayerAction};
@@ -59,19 +59,15 @@ pub const COMMANDS: &[MenuCommand] = &[
     row(
         "Transform",
         &[ctrl(Key::T)],
-        "A frame around the selected layer or group: move, scale, turn, skew and distort it, live",
+        "A frame around the chosen layers and groups: move, scale, turn, skew and distort it, live",
         has_layer,
         |_, requests| requests.act(Action::Hand(HandAction::Tool { tool: ToolKind::Transform })),
     ),
     row(
         "Clear layer",
         &[key(Key::Delete)],
-        "Removes the paint or the strokes of the selected layer where you selected; without a selection all of them",
-        has_layer,
-        |session, requests| {
-            if let Some(layer) = session.layer_path() {
-                requests.act(Action::Layer(LayerAction::Clear { layer }));
-            }
-        },
+        "Removes the paint or the strokes of the chosen layers where you selected; without a selection all of them",
+        has_document,
+        |session, requests| requests.act(Action::Layer(LayerAction::Clear { layer: session.layer_paths() })),
     ),
 ];

@@ -40,7 +40,7 @@ pub const COMMANDS: &[MenuCommand] = &[
     ),
     row(
         "Export…",
-        &[ctrl(Key::E)],
+        &[ctrl_alt(Key::E)],
         "The finished picture as PNG, EXR, JPEG or WebP, or the layers for Photoshop",
         has_document,
         |_, requests| requests.request(WindowRequest::ExportDialog),

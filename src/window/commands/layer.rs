@@ -7,15 +7,22 @@ use crate::files::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::pictures::PicturePart;
 use crate::session::actions::{ClipboardAction, LayerAction, NewLayer};
-use crate::session::{Action, LayerPath, Property, Session};
+use crate::session::chosen::{neighbour, range};
+use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use eframe::egui::Key;
 
+/// Does something with all chosen layers; where there are none, that is said.
+fn with_chosen(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPaths) -> LayerAction) {
+    if session.active().is_some() {
+        requests.act(Action::Layer(action(session.layer_paths())));
+    }
+}
 /// Does something with the selected layer.
 fn with_selected(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPath) -> LayerAction) {
     requests.actions.extend(session.layer_path().map(action).map(Action::Layer));
 }
 fn set(session: &Session, requests: &mut UiRequests, to: Property) {
-    with_selected(session, requests, |layer| LayerAction::Set { layer, to, done: true });
+    with_chosen(session, requests, |layer| LayerAction::Set { layer, to, done: true });
 }
 fn add(requests: &mut UiRequests, kind: NewLayer) {
     requests.act(Action::Layer(LayerAction::Add { kind }));
@@ -25,12 +32,19 @@ fn toggle_lock(session: &Session, requests: &mut UiRequests, lock: LayerLock) {
     set(session, requests, Property::Locked { lock });
 }
 
+/// Goes on to the next layer, or takes it in.
+fn step(session: &Session, requests: &mut UiRequests, by: i32, extends: bool) {
+    let Some((tab, primary)) = session.active().and_then(|tab| Some((tab, tab.selected?))) else { return };
+    let to = neighbour(tab.document(), primary, by);
+    let anchor = tab.range_start().filter(|_| extends);
+    let listed: Vec<_> = tab.document().walk().iter().map(|(_, layer)| layer.id).collect();
+    let ids = anchor.map_or_else(|| vec![to], |anchor| range(&listed, anchor, to));
+    requests.actions.extend(LayerAction::choosing(tab.document(), &ids, anchor).map(Action::Layer));
+}
+
 /// Whether something is so of the selected layer.
 fn layer_is(session: &Session, is: impl FnOnce(&Layer) -> bool) -> bool {
     session.layer().is_some_and(|layer| is(layer))
-}
-fn is_group(session: &Session) -> bool {
-    layer_is(session, |layer| layer.content.group().is_some())
 }
 fn is_live(session: &Session) -> bool {
     layer_is(session, |layer| !matches!(layer.content, Content::Pixels(_) | Content::RadianceScaling(_)))
@@ -106,46 +120,86 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_layer,
         |_, requests| requests.act(Action::Clipboard(ClipboardAction::LayerVia { cut: true })),
     ),
-    row("Duplicate layer", &[], "A copy above it", has_layer, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Duplicate { layer })
+    row("Duplicate layer", &[], "Copies of the chosen layers above them", has_document, |session, requests| {
+        with_chosen(session, requests, |layer| LayerAction::Duplicate { layer })
     }),
-    row("Delete layer", &[shift(Key::Delete)], "Including its contents", has_layer, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Delete { layer })
-    }),
-    row("Group layer", &[ctrl(Key::G)], "Puts the selected layer into a new group", has_layer, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Group { layer })
-    }),
+    row(
+        "Delete layer",
+        &[shift(Key::Delete)],
+        "The chosen layers and what is in them",
+        has_document,
+        |session, requests| with_chosen(session, requests, |layer| LayerAction::Delete { layer }),
+    ),
+    row(
+        "Group layer",
+        &[ctrl(Key::G)],
+        "Puts the chosen layers into a new group",
+        has_document,
+        |session, requests| with_chosen(session, requests, |layer| LayerAction::Group { layer }),
+    ),
     row(
         "Ungroup",
         &[ctrl_shift(Key::G)],
-        "Takes the layers out of the selected group",
-        is_group,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Ungroup { layer }),
+        "Takes the layers out of the chosen groups",
+        has_document,
+        |session, requests| with_chosen(session, requests, |layer| LayerAction::Ungroup { layer }),
     ),
-    row("Move layer up", &[ctrl(Key::PageUp)], "Moves the layer above the next one", has_layer, |session, requests| {
-        with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: 1 })
-    }),
+    row(
+        "Move layer up",
+        &[ctrl(Key::PageUp)],
+        "Moves the chosen layers above the next one",
+        has_layer,
+        |session, requests| with_chosen(session, requests, |layer| LayerAction::Nudge { layer, by: 1 }),
+    ),
     row(
         "Move layer down",
         &[ctrl(Key::PageDown)],
-        "Moves the layer below the next one",
+        "Moves the chosen layers below the next one",
         has_layer,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
+        |session, requests| with_chosen(session, requests, |layer| LayerAction::Nudge { layer, by: -1 }),
+    ),
+    row(
+        "Layer above",
+        &[key(Key::PageUp)],
+        "Selects the next layer of the list upward",
+        has_layer,
+        |session, requests| step(session, requests, 1, false),
+    ),
+    row(
+        "Layer below",
+        &[key(Key::PageDown)],
+        "Selects the next layer of the list downward",
+        has_layer,
+        |session, requests| step(session, requests, -1, false),
+    ),
+    row(
+        "Choose up to layer above",
+        &[shift(Key::PageUp)],
+        "Extends the chosen layers upward",
+        has_layer,
+        |session, requests| step(session, requests, 1, true),
+    ),
+    row(
+        "Choose down to layer below",
+        &[shift(Key::PageDown)],
+        "Extends the chosen layers downward",
+        has_layer,
+        |session, requests| step(session, requests, -1, true),
     ),
     LINE,
     row(
         "Merge down",
-        &[ctrl_shift(Key::M)],
-        "This layer and the one beneath it become one paint layer",
-        has_layer,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::MergeDown { layer }),
+        &[ctrl(Key::E), ctrl_shift(Key::M)],
+        "This layer and the one beneath it, or all chosen ones, become one paint layer",
+        has_document,
+        |session, requests| with_chosen(session, requests, |layer| LayerAction::MergeDown { layer }),
     ),
     row(
         "Bake layer",
         &[ctrl_shift(Key::B)],
         "Turns a live layer into paint: it keeps its look and no longer follows the surface",
         is_live,
-        |session, requests| with_selected(session, requests, |layer| LayerAction::Bake { layer }),
+        |session, requests| with_chosen(session, requests, |layer| LayerAction::Bake { layer }),
     ),
     row(
         "Flatten picture",

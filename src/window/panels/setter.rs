@@ -17,7 +17,7 @@ pub struct LayerSetter<'a> {
 
 impl LayerSetter<'_> {
     pub fn set(&mut self, to: Property, done: bool) {
-        self.requests.act(Action::Layer(LayerAction::Set { layer: self.layer.clone(), to, done }));
+        self.requests.act(Action::Layer(LayerAction::Set { layer: self.layer.clone().into(), to, done }));
     }
     /// Does something else to the layer.
     pub fn act(&mut self, action: impl FnOnce(LayerPath) -> LayerAction) {

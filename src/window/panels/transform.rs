@@ -24,7 +24,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         let is_on = transform.filter == filter;
         if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
             let to = Property::Transformed { transform: Some(LayerTransform { filter, ..transform }) };
-            requests.act(Action::Layer(LayerAction::Set { layer: layer.clone(), to, done: true }));
+            requests.act(Action::Layer(LayerAction::Set { layer: layer.clone().into(), to, done: true }));
         }
     }
 }

@@ -116,6 +116,10 @@ impl MainWindow {
         self.session.drop_gesture();
         let Some(tab) = self.session.active_mut() else { return true };
         tab.forget_preview();
+        if let Some(why) = action.refusal(tab.document()) {
+            self.session.say(why);
+            return true;
+        }
         let (key, from, action) = (tab.key, tab.document().clone(), LayerAction::clone(action));
         self.jobs.start(name.into(), JobKind::Editing, move |progress| match action.flattened(&from, progress) {
             Some(edit) => JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit })),

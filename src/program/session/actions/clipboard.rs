@@ -3,7 +3,9 @@
 
 use super::layers::{LayerAction, above};
 use crate::document::cut::taken;
-use crate::document::{Content, Document, Layer, LayerLock, LayerSlot, PixelLayer, Progress, flatten, flatten_layer};
+use crate::document::{
+    Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, Progress, flatten, flatten_layer,
+};
 use crate::math::{Rect, Size};
 use crate::raster::{CoverageGrid, TileGrid};
 use crate::session::replay::actions;
@@ -13,7 +15,7 @@ use std::sync::Arc;
 
 actions! {
     ClipboardAction {
-        /// Of the selected layer, or of all that shows.
+        /// Of the chosen layers, or of all that shows.
         "copy" Copy { merged: bool }
         "cut" Cut {}
         /// In place, above the selected layer.
@@ -28,12 +30,19 @@ actions! {
 /// What was copied last.
 #[derive(Clone)]
 pub struct Copied {
-    /// As a layer of its own kind.
-    layer: Layer,
+    /// As layers of their own kinds, bottom first.
+    layers: Vec<Layer>,
     canvas: Size,
     /// The same for other programs: straight RGBA, where it lies.
     pub rect: Rect,
     pub rgba: Arc<Vec<u8>>,
+}
+
+impl Copied {
+    /// Of one layer that holds all of it.
+    fn name(&self) -> String {
+        self.layers.last().map_or_else(String::new, |layer| layer.name.clone())
+    }
 }
 
 impl ClipboardAction {
@@ -46,7 +55,7 @@ impl ClipboardAction {
         let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
         tab.forget_preview();
         let said = match self {
-            ClipboardAction::Copy { merged } => match copy(tab.document(), tab.selected, *merged) {
+            ClipboardAction::Copy { merged } => match copy(tab.document(), &tab.outermost_chosen(), *merged) {
                 Ok(copied) => {
                     session.copied = Some(copied);
                     return session.say("Copied.");
@@ -80,62 +89,77 @@ fn covered(document: &Document) -> CoverageGrid {
     document.selected().cloned().unwrap_or_else(|| CoverageGrid::filled(document.size.rect()))
 }
 
-fn copy(document: &Document, layer: Option<crate::document::LayerId>, merged: bool) -> Result<Copied, &'static str> {
+fn copy(document: &Document, ids: &[LayerId], merged: bool) -> Result<Copied, &'static str> {
     let (covered, progress) = (covered(document), Progress::default());
-    let (layer, tiles) = if merged {
+    let (layers, tiles) = if merged {
         let tiles = taken(&flatten(document, &progress).ok_or(NOTHING_THERE)?, &covered);
         let pixels = PixelLayer { tiles: tiles.clone(), ..PixelLayer::default() };
-        (Layer { clip_to_surface: false, ..Layer::new("Copy", Content::Pixels(pixels)) }, tiles)
-    } else {
-        let id = layer.ok_or(NO_LAYER)?;
+        (vec![Layer { clip_to_surface: false, ..Layer::new("Copy", Content::Pixels(pixels)) }], tiles)
+    } else if let [id] = *ids {
         let copied = document.copied_from(id, &covered).ok_or(NOTHING_THERE)?;
         let look = document.with_layer(id, |layer| {
             (layer.opacity, layer.visible, layer.clip_below) = (1.0, true, false);
         });
         let painted = look.and_then(|look| flatten_layer(&look, id, &progress)).ok_or(NOTHING_THERE)?;
-        (copied, taken(&painted, &covered))
+        (vec![copied], taken(&painted, &covered))
+    } else {
+        let copies: Vec<Layer> = ids.iter().filter_map(|id| document.copied_from(*id, &covered)).collect();
+        if copies.is_empty() {
+            return Err(if ids.is_empty() { NO_LAYER } else { "The layers have nothing where you selected." });
+        }
+        let layers = copies.iter().cloned().map(Arc::new).collect();
+        let alone = Document { layers, ..document.clone() };
+        (copies, taken(&flatten(&alone, &progress).ok_or(NOTHING_THERE)?, &covered))
     };
     let rect = CoverageGrid::of_alpha(&tiles).covered().intersect(document.size.rect());
     if rect.is_empty() && merged {
         return Err("Nothing shows where you selected.");
     }
     let rgba = Arc::new(tiles.to_straight_rgba(rect));
-    Ok(Copied { layer, canvas: document.size, rect, rgba })
+    Ok(Copied { layers, canvas: document.size, rect, rgba })
 }
 
 fn cut(tab: &mut OpenDocument) -> Result<Copied, &'static str> {
     let document = tab.document();
-    let id = tab.selected.ok_or(NO_LAYER)?;
-    if document.layer(id).is_some_and(|layer| layer.lock != LayerLock::None) {
-        return Err(LOCKED);
+    let ids = tab.outermost_chosen();
+    if ids.iter().any(|id| document.layer(*id).is_some_and(|layer| layer.lock != LayerLock::None)) {
+        return Err(if ids.len() > 1 { "One of the layers is locked: unlock it to cut from it." } else { LOCKED });
     }
-    let copied = copy(document, Some(id), false)?;
-    let next = document.with_cleared(id, &covered(document)).ok_or(LOCKED)?;
+    let copied = copy(document, &ids, false)?;
+    let covered = covered(document);
+    let cleared = |next: Document, id: &LayerId| next.with_cleared(*id, &covered);
+    let next = ids.iter().try_fold(document.clone(), cleared).ok_or(LOCKED)?;
     tab.commit("Cut", next);
     Ok(copied)
 }
 
 fn paste(tab: &mut OpenDocument, copied: &Copied) {
-    let layer = pasted(copied, tab.document());
-    let (id, slot) = (layer.id, above(tab));
-    let next = tab.document().with_inserted(layer, slot);
-    if next.is_some_and(|next| tab.commit("Paste", next)) {
-        tab.selected = Some(id);
+    let slot = above(tab);
+    let (mut next, mut ids) = (tab.document().clone(), Vec::new());
+    for (i, layer) in pasted(copied, &next).into_iter().enumerate() {
+        let layer = Layer { name: free_name(&next, &layer.name), ..layer };
+        let slot = LayerSlot { index: slot.index.saturating_add(i), ..slot };
+        ids.push(layer.id);
+        let Some(with) = next.with_inserted(layer, slot) else { return };
+        next = with;
+    }
+    if tab.commit("Paste", next) {
+        tab.choose_layers(ids);
     }
 }
 
-/// What was copied as a new layer of a document; on a canvas of another size masks, which have their canvas's, become
+/// What was copied as new layers of a document; on a canvas of another size masks, which have their canvas's, become
 /// pixels.
-fn pasted(copied: &Copied, document: &Document) -> Layer {
-    let name = free_name(document, &copied.layer.name);
-    let is_plain = copied.layer.mask.is_none() && copied.layer.content.group().is_none();
-    if copied.canvas != document.size && !is_plain {
+fn pasted(copied: &Copied, document: &Document) -> Vec<Layer> {
+    let is_plain = |layer: &Layer| layer.mask.is_none() && layer.content.group().is_none();
+    if copied.canvas != document.size && !copied.layers.iter().all(is_plain) {
         let Rect { x0, y0, .. } = copied.rect;
         let tiles = TileGrid::from_straight_rgba(&copied.rgba, copied.rect.width(), copied.rect.height(), x0, y0);
-        return Layer::new(name, Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+        let content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
+        return vec![Layer::new(copied.name(), content)];
     }
-    // Pasted twice, it is two layers.
-    Layer { name, ..super::layers::copied(&copied.layer, "") }
+    // Pasted twice, they are other layers.
+    copied.layers.iter().map(|layer| super::layers::copied(layer, &layer.name)).collect()
 }
 
 fn paste_new(session: &mut Session) {
@@ -145,7 +169,7 @@ fn paste_new(session: &mut Session) {
     let (width, height) = (copied.rect.width(), copied.rect.height());
     let size = Size::new(width as u32, height as u32);
     let tiles = TileGrid::from_straight_rgba(&copied.rgba, width, height, 0, 0);
-    let layer = Layer::new(copied.layer.name.clone(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+    let layer = Layer::new(copied.name(), Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
     let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
     let name = session.untitled();
     let mut tab = OpenDocument::new(name, document, None);
@@ -165,8 +189,8 @@ fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
         if cut {
             return Err("Nothing is selected.");
         }
-        let path = crate::session::LayerPath::of(document, id).ok_or(NO_LAYER)?;
-        LayerAction::Duplicate { layer: path }.step_on(tab);
+        let layer = crate::session::LayerPaths::of(document, &tab.outermost_chosen());
+        LayerAction::Duplicate { layer }.step_on(tab);
         return Ok(());
     };
     let mut layer = document.copied_from(id, selected).ok_or(NOTHING_THERE)?;

@@ -21,14 +21,20 @@ impl LayerAction {
     /// Performs a long edit on a document; `None` for any other edit, if it is impossible, or if it was cancelled.
     pub fn flattened(&self, document: &Document, progress: &Progress) -> Option<Edit> {
         match self {
-            LayerAction::MergeDown { layer } => merged(document, layer.find(document)?, progress),
+            LayerAction::MergeDown { layer } => match &document.outermost(&layer.find(document)?)[..] {
+                [one] if !layer.is_several() => merged(document, *one, progress),
+                several => merged_several(document, several, progress),
+            },
             LayerAction::Bake { layer } => {
-                let document = baked(document, layer.find(document)?, progress)?;
-                Some(Edit { label: "Bake layer", document, select: None })
+                let ids = document.outermost(&layer.find(document)?);
+                let label = if ids.len() > 1 { "Bake layers" } else { "Bake layer" };
+                let baked = |next: Document, id| baked(&next, next.layer(id)?, progress);
+                let document = ids.into_iter().try_fold(document.clone(), baked)?;
+                Some(Edit { label, document, select: Vec::new() })
             }
             LayerAction::Flatten {} => {
                 let flat = painted("Picture", flatten(document, progress)?);
-                let select = Some(flat.id);
+                let select = vec![flat.id];
                 let document = Document { layers: vec![Arc::new(flat)], ..document.clone() };
                 Some(Edit { label: "Flatten picture", document, select })
             }
@@ -57,10 +63,10 @@ fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Docu
 }
 
 /// A layer and the one beneath it as one paint layer.
-fn merged(document: &Document, layer: &Layer, progress: &Progress) -> Option<Edit> {
+fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
     // Groups around hand their transforms down, so that what is merged lies as it shows.
-    let document = &document.with_transform_applied(layer.id)?;
-    let layer = document.layer(layer.id)?;
+    let document = &document.with_transform_applied(id)?;
+    let layer = document.layer(id)?;
     let place = document.place_of(layer.id)?;
     let beneath: LayerId = sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })?;
     let beneath = document.layer(beneath)?.clone();
@@ -73,5 +79,22 @@ fn merged(document: &Document, layer: &Layer, progress: &Progress) -> Option<Edi
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
         (layer.opacity, layer.mask, layer.transform) = (1.0, None, None);
     })?;
-    Some(Edit { label: "Merge down", document, select: Some(beneath.id) })
+    Some(Edit { label: "Merge down", document, select: vec![beneath.id] })
+}
+
+/// Layers, bottom first, as one paint layer where the topmost of them stood; it has the name and the blend mode of the
+/// bottom one.
+fn merged_several(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<Edit> {
+    let in_place = |next: Document, id: &LayerId| next.with_transform_applied(*id);
+    let document = &ids.iter().try_fold(document.clone(), in_place)?;
+    let mut layers: Vec<Arc<Layer>> = ids.iter().map(|id| document.layer(*id).cloned()).collect::<Option<_>>()?;
+    let bottom = layers.first()?.clone();
+    layers[0] = Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&bottom) });
+    let visible = layers.iter().any(|layer| layer.visible);
+    let tiles = flatten(&Document { layers, ..document.clone() }, progress)?;
+    let Layer { name, blend, blend_linear, clip_below, clip_to_surface, .. } = Layer::clone(&bottom);
+    let one = Layer { visible, blend, blend_linear, clip_below, clip_to_surface, ..painted(&name, tiles) };
+    let select = vec![one.id];
+    let document = document.with_one_for(ids, one)?;
+    Some(Edit { label: "Merge layers", document, select })
 }

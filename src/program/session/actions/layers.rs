@@ -1,71 +1,43 @@
-//! Actions on the layer tree and its layers. Floor 6. The edits themselves are in `document::edit`.
+//! Actions on the layer tree and its layers. Floor 6. The edits themselves are in `document::edit` and
+//! `document::several`, new layers in `new_layers`.
 
-use crate::document::{
-    Content, DetailSource, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, NormalLayer,
-    PixelLayer, Progress, StrokeList,
-};
-use crate::math::vec2;
-use crate::paint::{Gradient, GradientStop, ImageFilter, Placement};
-use crate::raster::{Outside, Plane};
+pub(super) use super::layer_steps::copied;
+use super::layer_steps::{cleared, duplicated, kept, moves, ungrouped};
+pub use super::new_layers::NewLayer;
+use super::new_layers::{made, model_name, selecting};
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress};
+use crate::math::{PlaneMap, vec2};
+use crate::paint::{Gradient, GradientStop, ImageFilter};
+use crate::raster::Plane;
 use crate::session::open_document::Edit;
-use crate::session::replay::{actions, names};
-use crate::session::{LayerPath, OpenDocument, Property, Session};
-use crate::shading::{Model, RadianceScaling, Shading};
-use crate::surface::NoiseRelief;
+use crate::session::replay::actions;
+use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
+use crate::shading::{Model, Shading};
 use crate::tools::brush::free_name;
 use crate::tools::transform;
 use std::sync::Arc;
 
-/// Kinds of new layers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NewLayer {
-    Paint,
-    Strokes,
-    Fill,
-    Gradient,
-    Shading,
-    RadianceScaling,
-    Normals,
-    Group,
-}
-
-names!(NewLayer, [
-    NewLayer::Paint => "paint", NewLayer::Strokes => "strokes", NewLayer::Fill => "fill",
-    NewLayer::Gradient => "gradient", NewLayer::Shading => "shading",
-    NewLayer::RadianceScaling => "radiance scaling", NewLayer::Normals => "normals", NewLayer::Group => "group",
-]);
-
-impl NewLayer {
-    /// Every kind with its name in replays.
-    pub const ALL: [(NewLayer, &'static str); 8] = [
-        (NewLayer::Paint, "Paint layer"),
-        (NewLayer::Strokes, "Stroke layer"),
-        (NewLayer::Fill, "Fill layer"),
-        (NewLayer::Gradient, "Gradient layer"),
-        (NewLayer::Shading, "Shading layer"),
-        (NewLayer::RadianceScaling, "Radiance scaling"),
-        (NewLayer::Normals, "Detail normals"),
-        (NewLayer::Group, "Group"),
-    ];
-}
-
 actions! {
-    /// `layer` is always the path before the action.
+    /// `layer` is always the path before the action; where it may be several, what is in a group among them goes along.
     LayerAction {
         "select" Select { layer: LayerPath }
+        /// These are chosen, the primary one too; `anchor`: where a range begins that is extended later.
+        "choose" Choose { layer: LayerPaths, primary: LayerPath, anchor: Option<LayerPath> }
         /// Above the selected layer; into it, if it is a group.
         "add" Add { kind: NewLayer }
-        "delete" Delete { layer: LayerPath }
-        "duplicate" Duplicate { layer: LayerPath }
-        /// Into a group (or, without one, the document) so that so many layers lie beneath it, not counting itself.
-        "move" Move { layer: LayerPath, group: Option<LayerPath>, index: usize }
+        "delete" Delete { layer: LayerPaths }
+        /// Copies of several stand together above the topmost of them.
+        "duplicate" Duplicate { layer: LayerPaths }
+        /// Into a group (or, without one, the document) so that so many layers lie beneath, not counting themselves.
+        "move" Move { layer: LayerPaths, group: Option<LayerPath>, index: usize }
         /// One place up (positive) or down among its siblings.
-        "nudge" Nudge { layer: LayerPath, by: i32 }
-        "merge down" MergeDown { layer: LayerPath }
+        "nudge" Nudge { layer: LayerPaths, by: i32 }
+        /// One layer with the one beneath it; several with each other.
+        "merge down" MergeDown { layer: LayerPaths }
         /// Everything visible becomes one paint layer.
         "flatten" Flatten {}
         /// A live layer becomes paint.
-        "bake" Bake { layer: LayerPath }
+        "bake" Bake { layer: LayerPaths }
         /// A shading layer of a model, with the material it begins with.
         "add shading" AddShading { model: Model }
         /// Adds a paintable mask that shows all of the layer, or hides it; an existing mask becomes paintable.
@@ -73,24 +45,33 @@ actions! {
         /// Selects whether the brush paints on the mask or on the layer.
         "on mask" OnMask { layer: LayerPath, on: bool }
         /// The layer's transform is applied for good: its frame becomes the canvas.
-        "apply transform" ApplyTransform { layer: LayerPath }
-        /// Mirrored about the middle of what it holds: left and right, or up and down.
-        "mirror" Mirror { layer: LayerPath, upright: bool }
-        /// Turned about the middle of what it holds, counter-clockwise.
-        "turn" Turn { layer: LayerPath, degrees: f32 }
-        /// Into a group of its own.
-        "group" Group { layer: LayerPath }
-        "ungroup" Ungroup { layer: LayerPath }
+        "apply transform" ApplyTransform { layer: LayerPaths }
+        /// Mirrored about the middle of what they hold: left and right, or up and down.
+        "mirror" Mirror { layer: LayerPaths, upright: bool }
+        /// Turned about the middle of what they hold, counter-clockwise.
+        "turn" Turn { layer: LayerPaths, degrees: f32 }
+        /// Into a group of their own, where the topmost stood.
+        "group" Group { layer: LayerPaths }
+        "ungroup" Ungroup { layer: LayerPaths }
         /// Shown alone, or no longer.
         "solo" Solo { layer: LayerPath }
         /// A property; shown only, until it is `done`.
-        "set" Set { layer: LayerPath, to: Property, done: bool }
+        "set" Set { layer: LayerPaths, to: Property, done: bool }
         /// The strokes or pixels are taken out of a layer, or what is selected of them.
-        "clear" Clear { layer: LayerPath }
+        "clear" Clear { layer: LayerPaths }
     }
 }
 
 impl LayerAction {
+    /// That chooses some layers, the primary one last; `None` where there are none.
+    pub fn choosing(document: &Document, ids: &[LayerId], anchor: Option<LayerId>) -> Option<Self> {
+        let primary = LayerPath::of(document, *ids.last()?)?;
+        if ids.len() == 1 {
+            return Some(LayerAction::Select { layer: primary });
+        }
+        let anchor = anchor.and_then(|id| LayerPath::of(document, id));
+        Some(LayerAction::Choose { layer: LayerPaths::of(document, ids), primary, anchor })
+    }
     pub fn apply(&self, session: &mut Session) {
         let gradient_settings = Gradient {
             from: vec2(0.0, 0.0),
@@ -112,11 +93,18 @@ impl LayerAction {
         let id = |path: &LayerPath| path.find(tab.document()).map(|layer| layer.id);
         match self {
             LayerAction::Select { layer } => {
-                tab.selected = id(layer).or(tab.selected);
+                tab.choose_layers(id(layer).into_iter().collect());
+                tab.on_mask = false;
+            }
+            LayerAction::Choose { layer, primary, anchor } => {
+                let (Some(mut ids), Some(primary)) = (layer.find(tab.document()), id(primary)) else { return };
+                ids.retain(|id| *id != primary);
+                ids.push(primary);
+                tab.choose_range(ids, anchor.as_ref().and_then(id));
                 tab.on_mask = false;
             }
             LayerAction::OnMask { layer, on } => {
-                tab.selected = id(layer).or(tab.selected);
+                tab.choose_layers(id(layer).into_iter().collect());
                 tab.on_mask = *on;
                 // Only if there is one to paint on.
                 tab.repair();
@@ -126,12 +114,46 @@ impl LayerAction {
                 tab.solo = if tab.solo == id { None } else { id };
             }
             _ => {
-                if let Some(edit) = self.edit(tab, &gradient_settings) {
-                    tab.take(edit);
-                    tab.on_mask = matches!(self, LayerAction::PaintMask { .. });
+                let refusal = self.refusal(tab.document());
+                let edit = if refusal.is_none() { self.edit(tab, &gradient_settings) } else { None };
+                match edit {
+                    Some(edit) => {
+                        tab.take(edit);
+                        tab.on_mask = matches!(self, LayerAction::PaintMask { .. });
+                    }
+                    None => session.said.extend(refusal.map(str::to_owned)),
                 }
             }
         }
+    }
+    /// Why there is nothing to act on, in a sentence for the user.
+    pub fn refusal(&self, document: &Document) -> Option<&'static str> {
+        let is_group = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.content.group().is_some());
+        let lies_lowest = |id: &LayerId| document.place_of(*id).is_none_or(|place| place.index == 0);
+        let chosen = |layer: &LayerPaths| layer.find(document).ok_or("Choose a layer first.");
+        let refusal = match self {
+            LayerAction::Delete { layer }
+            | LayerAction::Duplicate { layer }
+            | LayerAction::Move { layer, .. }
+            | LayerAction::Nudge { layer, .. }
+            | LayerAction::Bake { layer }
+            | LayerAction::ApplyTransform { layer }
+            | LayerAction::Mirror { layer, .. }
+            | LayerAction::Turn { layer, .. }
+            | LayerAction::Group { layer }
+            | LayerAction::Set { layer, .. }
+            | LayerAction::Clear { layer } => chosen(layer).map(drop),
+            LayerAction::Ungroup { layer } => chosen(layer).and_then(|ids| match ids.iter().any(is_group) {
+                true => Ok(()),
+                false => Err("There is no group among the chosen layers."),
+            }),
+            LayerAction::MergeDown { layer } => chosen(layer).and_then(|ids| match &ids[..] {
+                [one] if lies_lowest(one) => Err("There is no layer beneath to merge with."),
+                _ => Ok(()),
+            }),
+            _ => Ok(()),
+        };
+        refusal.err()
     }
     /// Does an edit that needs no settings on an open document.
     pub(super) fn step_on(&self, tab: &mut OpenDocument) {
@@ -151,17 +173,18 @@ impl LayerAction {
     fn edit(&self, tab: &OpenDocument, gradient_settings: &Gradient) -> Option<Edit> {
         let document = tab.document();
         let layer = |path: &LayerPath| path.find(document).cloned();
+        let chosen = |layer: &LayerPaths| layer.find(document).map(|ids| document.outermost(&ids));
         let (label, document, select) = match self {
             LayerAction::Add { kind } => {
                 let new = selecting(document, made(*kind, document, gradient_settings));
                 let id = new.id;
-                ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
+                ("Add layer", document.with_inserted(new, above(tab))?, vec![id])
             }
             LayerAction::AddShading { model } => {
                 let content = Content::Shading(Live::new(Shading::new(*model)));
                 let new = selecting(document, Layer::new(free_name(document, &model_name(*model)), content));
                 let id = new.id;
-                ("Add layer", document.with_inserted(new, above(tab))?, Some(id))
+                ("Add layer", document.with_inserted(new, above(tab))?, vec![id])
             }
             LayerAction::PaintMask { layer: path, hides } => {
                 let layer = layer(path)?;
@@ -173,78 +196,55 @@ impl LayerAction {
                     }
                 };
                 let id = layer.id;
-                ("Layer mask", document.with_layer(id, |layer| layer.mask = Some(mask))?, Some(id))
+                ("Layer mask", document.with_layer(id, |layer| layer.mask = Some(mask))?, vec![id])
             }
-            LayerAction::Delete { layer: path } => {
-                let layer = layer(path)?;
-                let place = document.place_of(layer.id)?;
-                let next = document.without_layer(layer.id)?;
+            LayerAction::Delete { layer } => {
+                let ids = chosen(layer)?;
+                let place = document.place_of(*ids.first()?)?;
+                let next = document.without_layers(&ids)?;
                 let neighbour = sibling(&next, LayerSlot { index: place.index.saturating_sub(1), ..place });
-                ("Delete layer", next, neighbour)
+                let label = if ids.len() > 1 { "Delete layers" } else { "Delete layer" };
+                (label, next, neighbour.into_iter().collect())
             }
-            LayerAction::Duplicate { layer: path } => {
-                let layer = layer(path)?;
-                let place = document.place_of(layer.id)?;
-                let copy = copied(&layer, &free_name(document, &format!("{} copy", layer.name)));
-                let id = copy.id;
-                let next = document.with_inserted(copy, LayerSlot { index: place.index + 1, ..place })?;
-                ("Duplicate layer", next, Some(id))
-            }
-            LayerAction::Move { layer: path, group, index } => {
+            LayerAction::Duplicate { layer } => duplicated(document, &chosen(layer)?)?,
+            LayerAction::Move { layer: paths, group, index } => {
                 let group = group.as_ref().map(|path| layer(path).map(|layer| layer.id).ok_or(())).transpose().ok()?;
-                let id = layer(path)?.id;
-                ("Move layer", document.with_moved(id, LayerSlot { group, index: *index })?, Some(id))
+                let ids = chosen(paths)?;
+                let next = document.with_moved_layers(&ids, LayerSlot { group, index: *index })?;
+                (moves(&ids), next, kept(tab, ids))
             }
-            LayerAction::Nudge { layer: path, by } => {
-                let id = layer(path)?.id;
-                let place = document.place_of(id)?;
-                let index = place.index.saturating_add_signed(*by as isize);
-                ("Move layer", document.with_moved(id, LayerSlot { index, ..place })?, Some(id))
+            LayerAction::Nudge { layer, by } => {
+                let ids = chosen(layer)?;
+                (moves(&ids), document.with_nudged_layers(&ids, *by)?, kept(tab, ids))
             }
-            LayerAction::Mirror { layer: path, upright } => {
+            LayerAction::Mirror { layer, upright } => {
                 let mirror = transform::mirror(*upright);
-                ("Mirror layer", transform::about_middle(document, layer(path)?.id, mirror)?, None)
+                ("Mirror layer", transform::about_middle(document, &chosen(layer)?, mirror)?, Vec::new())
             }
-            LayerAction::Turn { layer: path, degrees } => {
-                let turn = transform::turn(f64::from(*degrees))?;
-                ("Turn layer", transform::about_middle(document, layer(path)?.id, turn)?, None)
+            LayerAction::Turn { layer, degrees } => {
+                let turn: PlaneMap = transform::turn(f64::from(*degrees))?;
+                ("Turn layer", transform::about_middle(document, &chosen(layer)?, turn)?, Vec::new())
             }
-            LayerAction::ApplyTransform { layer: path } => {
-                ("Apply transform", document.with_transform_applied(layer(path)?.id)?, None)
+            LayerAction::ApplyTransform { layer } => {
+                let applied = |next: Document, id| next.with_transform_applied(id);
+                ("Apply transform", chosen(layer)?.into_iter().try_fold(document.clone(), applied)?, Vec::new())
             }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
                 return self.flattened(document, &Progress::default());
             }
-            LayerAction::Group { layer: path } => {
-                let layer = layer(path)?;
-                let place = document.place_of(layer.id)?;
-                let group = Group { layers: vec![layer.clone()], pass_through: false };
-                let group = Layer::new(free_name(document, "Group"), Content::Group(group));
+            LayerAction::Group { layer } => {
+                let ids = chosen(layer)?;
+                let layers = ids.iter().filter_map(|id| document.layer(*id).cloned()).collect();
+                let group = Content::Group(Group { layers, pass_through: false });
+                let group = Layer::new(free_name(document, "Group"), group);
                 let id = group.id;
-                ("Group layer", document.without_layer(layer.id)?.with_inserted(group, place)?, Some(id))
+                let label = if ids.len() > 1 { "Group layers" } else { "Group layer" };
+                (label, document.with_one_for(&ids, group)?, vec![id])
             }
-            LayerAction::Ungroup { layer: path } => {
-                let document = &document.with_transform_applied(layer(path)?.id)?;
-                let layer = path.find(document)?.clone();
-                let group = layer.content.group()?;
-                let place = document.place_of(layer.id)?;
-                let mut next = document.without_layer(layer.id)?;
-                for (i, inner) in group.layers.iter().enumerate() {
-                    next = next.with_inserted(Layer::clone(inner), LayerSlot { index: place.index + i, ..place })?;
-                }
-                ("Ungroup", next, group.layers.last().map(|layer| layer.id))
-            }
-            LayerAction::Clear { layer: path } => {
-                let layer = layer(path)?;
-                match document.selected() {
-                    Some(selected) => ("Clear", document.with_cleared(layer.id, selected)?, None),
-                    None => {
-                        let empty = layer.content.emptied()?;
-                        ("Clear layer", document.with_layer(layer.id, |layer| layer.content = empty)?, None)
-                    }
-                }
-            }
+            LayerAction::Ungroup { layer } => ungrouped(document, &chosen(layer)?)?,
+            LayerAction::Clear { layer } => cleared(document, &chosen(layer)?)?,
             LayerAction::Select { .. }
+            | LayerAction::Choose { .. }
             | LayerAction::Solo { .. }
             | LayerAction::OnMask { .. }
             | LayerAction::Set { .. } => return None,
@@ -253,16 +253,9 @@ impl LayerAction {
     }
 }
 
-/// A new layer that covers the canvas covers what is selected, by a mask.
-fn selecting(document: &Document, layer: Layer) -> Layer {
-    let covers =
-        !matches!(layer.content, Content::Pixels(_) | Content::Strokes(_) | Content::Group(_) | Content::Normals(_));
-    Layer { mask: if covers { document.selection_as_mask() } else { None }, ..layer }
-}
-
-fn set(tab: &mut OpenDocument, layer: &LayerPath, to: &Property, done: bool) {
-    let Some(id) = layer.find(tab.document()).map(|layer| layer.id) else { return tab.forget_preview() };
-    let Some(document) = tab.document().with_layer(id, |layer| to.apply(layer)) else { return };
+fn set(tab: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
+    let Some(ids) = layers.find(tab.document()) else { return tab.forget_preview() };
+    let Some(document) = tab.document().with_layers(&ids, |layer| to.apply(layer)) else { return };
     if done {
         tab.commit(to.label(), document);
     } else {
@@ -288,52 +281,4 @@ pub(super) fn sibling(document: &Document, place: LayerSlot) -> Option<LayerId> 
         Some(group) => &document.layer(group)?.content.group()?.layers,
     };
     layers.get(place.index).map(|layer| layer.id).or(place.group)
-}
-
-/// “ambient-occlusion” as a layer is called.
-fn model_name(model: Model) -> String {
-    let spaced = model.name().replace('-', " ");
-    let mut letters = spaced.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> Layer {
-    let size = document.size;
-    let (name, content) = match kind {
-        NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),
-        NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
-        NewLayer::Fill => (
-            "Fill",
-            Content::Fill(gradient_settings.stops.first().map_or(crate::math::srgb::Color::BLACK, |stop| stop.color)),
-        ),
-        NewLayer::Gradient => {
-            let middle = size.center();
-            let reach = vec2(0.0, 0.35 * size.height as f32);
-            let gradient = Gradient { from: middle - reach, to: middle + reach, ..gradient_settings.clone() };
-            ("Gradient", Content::Gradient(Live::new(gradient)))
-        }
-        NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
-        NewLayer::RadianceScaling => ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default())),
-        NewLayer::Normals => {
-            let normals = NormalLayer {
-                source: DetailSource::Grain(NoiseRelief::default()),
-                placement: Placement { center: size.center(), scale: 1.0, rotation: 0.0 },
-                outside: Outside::Repeat,
-                strength: 0.5,
-                frame: Default::default(),
-            };
-            ("Detail normals", Content::Normals(normals))
-        }
-        NewLayer::Group => ("Group", Content::Group(Group::default())),
-    };
-    Layer::new(free_name(document, name), content)
-}
-
-/// A copy under fresh ids.
-pub(super) fn copied(layer: &Layer, name: &str) -> Layer {
-    let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
-    if let Some(group) = copy.content.group_mut() {
-        group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
-    }
-    copy
 }

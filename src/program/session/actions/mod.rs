@@ -5,8 +5,11 @@ pub mod clipboard;
 pub mod edit;
 pub mod files;
 mod flattening;
+pub mod guides;
 pub mod hand;
+mod layer_steps;
 pub mod layers;
+mod new_layers;
 pub mod pictures;
 pub mod pointer;
 pub mod selection;
@@ -16,6 +19,7 @@ pub mod views;
 pub use clipboard::ClipboardAction;
 pub use edit::EditAction;
 pub use files::FileAction;
+pub use guides::GuideAction;
 pub use hand::HandAction;
 pub use layers::{LayerAction, NewLayer};
 pub use pointer::PointerAction;
@@ -34,6 +38,7 @@ pub enum Action {
     Clipboard(ClipboardAction),
     Edit(EditAction),
     File(FileAction),
+    Guide(GuideAction),
     Hand(HandAction),
     Layer(LayerAction),
     Pointer(PointerAction),
@@ -51,6 +56,7 @@ impl Action {
             Action::Clipboard(action) => action.apply(session),
             Action::Edit(action) => action.apply(session),
             Action::File(action) => done = action.apply(session),
+            Action::Guide(action) => action.apply(session),
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),
@@ -69,6 +75,7 @@ impl ReplayValue for Action {
             Action::Clipboard(action) => ("clipboard", action.written()),
             Action::Edit(action) => ("edit", action.written()),
             Action::File(action) => ("file", action.written()),
+            Action::Guide(action) => ("guide", action.written()),
             Action::Hand(action) => ("hand", action.written()),
             Action::Layer(action) => ("layer", action.written()),
             Action::Pointer(action) => ("pointer", action.written()),
@@ -86,6 +93,7 @@ impl ReplayValue for Action {
             Some("clipboard") => Action::Clipboard(ReplayValue::read(value)?),
             Some("edit") => Action::Edit(ReplayValue::read(value)?),
             Some("file") => Action::File(ReplayValue::read(value)?),
+            Some("guide") => Action::Guide(ReplayValue::read(value)?),
             Some("hand") => Action::Hand(ReplayValue::read(value)?),
             Some("layer") => Action::Layer(ReplayValue::read(value)?),
             Some("pointer") => Action::Pointer(ReplayValue::read(value)?),
@@ -93,7 +101,7 @@ impl ReplayValue for Action {
             Some("stroke") => Action::Stroke(ReplayValue::read(value)?),
             Some("view") => Action::View(ReplayValue::read(value)?),
             _ => {
-                let rooms = "clipboard, edit, file, hand, layer, pointer, selection, stroke or view";
+                let rooms = "clipboard, edit, file, guide, hand, layer, pointer, selection, stroke or view";
                 return Err(format!("“in” must be {rooms}"));
             }
         })

@@ -1,13 +1,15 @@
 //! The pen on the canvas, passed on to the current tool.
 //! Floor 6.
 
-use crate::document::{Content, Document};
+use crate::document::{Content, Document, LayerId};
 use crate::math::vec2;
 use crate::paint::{BrushMode, Sample};
 use crate::session::replay::{ReplayValue, actions, record};
 use crate::session::{CloneSource, OpenDocument, Session};
 use crate::tools::brush::StrokePurpose;
-use crate::tools::{self, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
+use crate::tools::guides::GuideAt;
+use crate::tools::snap::{SnapTargets, ViewAids};
+use crate::tools::{self, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
 use serde_json::Value;
 
 record!(ModifierKeys { shift, ctrl, alt });
@@ -77,14 +79,33 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         _ => None,
     };
     let Some(tab) = session.active() else { return };
-    let strokes = tab.chosen_strokes();
+    let (strokes, layers) = (tab.chosen_strokes(), tab.outermost_chosen());
     let document = match works_in_place(tool, tab) {
         Ok(document) => document,
         Err(why) => return session.notes.push(why.into()),
     };
+    let moving: &[LayerId] = if matches!(tool, ToolKind::Move | ToolKind::Transform) { &layers } else { &[] };
+    let snap = match tool.snaps() {
+        true => SnapTargets::of(&document, &session.aids, moving, px_per_pt),
+        false => SnapTargets::default(),
+    };
+    // Straight lines end where they snap.
+    let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser) && pen.keys.shift && tab.last_end.is_some();
+    let pen = if is_line {
+        PenSample { sample: Sample { at: snap.point(pen.place()).at, ..pen.sample }, ..pen }
+    } else {
+        pen
+    };
+    if let Some(guide) = guide_under(session, &document, tool, pen, px_per_pt) {
+        let to = SnapTargets::of(&document, &ViewAids { to_guides: false, ..session.aids }, &[], px_per_pt);
+        let (gesture, outcome) = tools::guides::hold(tab.document(), guide, to);
+        session.gesture = gesture;
+        return take(session, outcome);
+    }
     let context = ToolContext {
         document: &document,
         layer: tab.selected,
+        layers: &layers,
         brush: &session.brush,
         color: session.color,
         second_color: session.second_color,
@@ -96,6 +117,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         select: session.select,
         lasso: &session.lasso,
         strokes: &strokes,
+        snap: &snap,
         clone_offset,
     };
     let (gesture, outcome) = match tool {
@@ -113,14 +135,37 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
     take(session, outcome);
 }
 
+/// A gesture that something else than a press of the pen on the canvas began.
+pub(super) fn begin(session: &mut Session, (gesture, outcome): GestureStart) {
+    session.gesture = gesture;
+    take(session, outcome);
+}
+
+/// The guide that the move tool takes hold of.
+fn guide_under(
+    session: &Session,
+    document: &Document,
+    tool: ToolKind,
+    pen: PenSample,
+    px_per_pt: f32,
+) -> Option<GuideAt> {
+    let can = tool == ToolKind::Move && session.aids.guides && !session.aids.locked;
+    let near_px = GUIDE_PT * px_per_pt;
+    can.then(|| tools::guides::guide_at(&document.guides, pen.place(), near_px)).flatten()
+}
+
+/// How near to a guide the move tool takes hold of it, screen points.
+const GUIDE_PT: f32 = 4.0;
+
 /// The document for a tool that works on the selected layer where it shows: with the layer's transform applied.
 fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'static str> {
     let document = tab.document();
     let is_moved_whole = tool == ToolKind::Move
-        && tab
-            .selected
-            .and_then(|id| document.layer(id))
-            .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_)));
+        && (tab.has_several()
+            || tab
+                .selected
+                .and_then(|id| document.layer(id))
+                .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
     let looks_only =
         is_moved_whole || matches!(tool, ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom | ToolKind::Transform);
     let Some(layer) = tab.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };

@@ -7,7 +7,7 @@ pub use values::{DerivedMask, DerivedMaskNumbers};
 
 use super::actions::pictures::PicturePart;
 use super::replay::actions;
-use crate::document::{Content, DetailSource, Layer, LayerLock, LayerTransform, Live, NormalLayer};
+use crate::document::{Content, DetailSource, Layer, LayerLabel, LayerLock, LayerTransform, Live, NormalLayer};
 use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
@@ -27,6 +27,7 @@ actions! {
         "linear" BlendLinear { on: bool }
         "clip" ClipBelow { on: bool }
         "lock" Locked { lock: LayerLock }
+        "label" Labelled { label: LayerLabel }
         "clip to surface" ClipToSurface { on: bool }
         /// Where the layer's frame lies on the canvas; none: it is the canvas.
         "transform" Transformed { transform: Option<LayerTransform> }
@@ -84,6 +85,7 @@ impl Property {
             Property::Blend { .. } | Property::BlendLinear { .. } => "Blend mode",
             Property::ClipBelow { .. } => "Clip to layer below",
             Property::Locked { .. } => "Lock layer",
+            Property::Labelled { .. } => "Label",
             Property::ClipToSurface { .. } => "Clip to surface",
             Property::Transformed { .. } => "Transform",
             Property::PassThrough { .. } => "Pass through",
@@ -126,6 +128,7 @@ impl Property {
             Property::BlendLinear { on } => layer.blend_linear = *on,
             Property::ClipBelow { on } => layer.clip_below = *on,
             Property::Locked { lock } => layer.lock = *lock,
+            Property::Labelled { label } => layer.label = *label,
             Property::ClipToSurface { on } => layer.clip_to_surface = *on,
             Property::Mask { mask } => set_mask(layer, *mask),
             Property::MaskInverted { on } => {

@@ -1,7 +1,7 @@
 //! The values of properties in replays.
 //! Floor 6.
 
-use crate::document::{Layer, LayerLock, LayerMask, LayerTransform, MaskKind};
+use crate::document::{Layer, LayerLabel, LayerLock, LayerMask, LayerTransform, MaskKind};
 use crate::io::json::JsonNode;
 use crate::io::recipe::transforms;
 use crate::math::Vec3;
@@ -14,6 +14,7 @@ use crate::surface::region::SurfaceRegion;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
 names!(BlendMode);
+names!(LayerLabel);
 names!(LayerLock, [LayerLock::None => "none", LayerLock::Alpha => "alpha", LayerLock::All => "all"]);
 names!(ImageFilter, [ImageFilter::Antialias => "antialias", ImageFilter::Bilinear => "bilinear"]);
 names!(Outside, [

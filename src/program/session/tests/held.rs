@@ -64,7 +64,7 @@ const NUMBERS: [f32; 22] = [
     -2e6, 1e30, -1e30,
 ];
 /// Edits with `#` for a number and `%` for a whole one; the property of a layer, or an action.
-const PROPERTIES: [&str; 44] = [
+const PROPERTIES: [&str; 45] = [
     r#"{"do":"mask","mask":{"region":{"kind":"shine","at":[5,#],"tolerance":#,"softness":#,"contiguous":false}}}"#,
     r#"{"do":"opacity","to":#}"#,
     r#"{"do":"linear","on":true}"#,
@@ -72,6 +72,7 @@ const PROPERTIES: [&str; 44] = [
     r#"{"do":"clip to surface","on":false}"#,
     r#"{"do":"visible","on":false}"#,
     r#"{"do":"lock","lock":"alpha"}"#,
+    r#"{"do":"label","label":"orange"}"#,
     r#"{"do":"pass through","on":true}"#,
     r#"{"do":"blend","mode":"exclusion"}"#,
     r##"{"do":"fill","color":"#10203040"}"##,

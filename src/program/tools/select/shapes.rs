@@ -2,9 +2,11 @@
 
 use super::{SLOP_PT, begin, combined, step};
 use crate::document::Document;
-use crate::math::Vec2;
+use crate::math::{Rect, Vec2};
 use crate::paint::Selection;
+use crate::raster::CoverageGrid;
 use crate::raster::coverage::{Combine, shapes};
+use crate::tools::snap::{SnapLines, SnapTargets};
 use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 
 #[derive(Clone, Copy, PartialEq)]
@@ -16,8 +18,9 @@ pub enum Shape {
 pub fn press(context: &ToolContext, pen: PenSample, shape: Shape) -> GestureStart {
     let (document, how) = (context.document.clone(), context.select.how(pen.keys));
     let slop_px = SLOP_PT * context.px_per_pt;
-    let from = pen.place();
-    (Some(Box::new(ShapeGesture { document, shape, how, from, to: from, slop_px })), Outcome::Idle)
+    let (snap, lines) = (context.snap.clone(), SnapLines::default());
+    let from = snap.point(pen.place()).at;
+    (Some(Box::new(ShapeGesture { document, shape, how, from, to: from, slop_px, snap, lines })), Outcome::Idle)
 }
 
 struct ShapeGesture {
@@ -27,6 +30,8 @@ struct ShapeGesture {
     from: Vec2,
     to: Vec2,
     slop_px: f32,
+    snap: SnapTargets,
+    lines: SnapLines,
 }
 
 impl ShapeGesture {
@@ -48,7 +53,9 @@ impl ShapeGesture {
 impl Gesture for ShapeGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
-        let by = pen.place() - self.from;
+        let found = self.snap.point(pen.place());
+        self.lines = found.lines;
+        let by = found.at - self.from;
         // With Ctrl as wide as high.
         let even = Vec2::splat(by.abs().max_element()).copysign(by);
         self.to = self.from + if pen.keys.ctrl { even } else { by };
@@ -66,17 +73,23 @@ impl Gesture for ShapeGesture {
             false => Outcome::Cancel,
         }
     }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
+    }
 }
 
 /// Takes hold of the selection; its pixels stay.
 pub fn moving(context: &ToolContext, pen: PenSample) -> GestureStart {
-    begin(MoveOutline { document: context.document.clone(), from: pen.place(), by: Vec2::ZERO }, pen)
+    let (snap, lines) = (context.snap.clone(), SnapLines::default());
+    begin(MoveOutline { document: context.document.clone(), from: pen.place(), by: Vec2::ZERO, snap, lines }, pen)
 }
 
 struct MoveOutline {
     document: Document,
     from: Vec2,
     by: Vec2,
+    snap: SnapTargets,
+    lines: SnapLines,
 }
 
 impl MoveOutline {
@@ -90,7 +103,12 @@ impl Gesture for MoveOutline {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(pen) = pens.last() else { return Outcome::Idle };
         let by = |v: f32| crate::math::range::held(v, &crate::math::COORDINATE).round();
-        let moved = pen.place() - self.from;
+        let mut moved = pen.place() - self.from;
+        if let Some(Rect { x0, y0, x1, y1 }) = self.document.selected().map(CoverageGrid::covered) {
+            let corner = |x: i32, y: i32| Vec2::new(x as f32, y as f32) + moved;
+            let shift = self.snap.shift(corner(x0, y0), corner(x1, y1));
+            (moved, self.lines) = (moved + shift.at, shift.lines);
+        }
         self.by = Vec2::new(by(moved.x), by(moved.y));
         self.with().filter(|_| self.by != Vec2::ZERO).map_or(Outcome::Idle, Outcome::Preview)
     }
@@ -99,5 +117,8 @@ impl Gesture for MoveOutline {
             Some(document) => Outcome::Commit { label: "Move selection".into(), document, select: None },
             None => Outcome::Cancel,
         }
+    }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
     }
 }

@@ -110,10 +110,60 @@ fn two_mirrors_and_four_quarter_turns_leave_no_transform() {
     let document = document();
     let id = document.layers[0].id;
     for (map, times) in [(mirror(false), 2), (mirror(true), 2), (turn(90.0).unwrap(), 4), (turn(36.0).unwrap(), 10)] {
-        let once = about_middle(&document, id, map).unwrap();
+        let once = about_middle(&document, &[id], map).unwrap();
         assert!(once.layers[0].transform.is_some());
-        let all = (1..times).fold(once, |document, _| about_middle(&document, id, map).unwrap());
+        let all = (1..times).fold(once, |document, _| about_middle(&document, &[id], map).unwrap());
         let left = all.map_of(id).unwrap();
         assert!(left.is_none(), "{:?}", left.plane);
     }
+}
+
+/// Two pieces of paint apart: a square at the left, a square at the right.
+fn two() -> Document {
+    let square = |name: &str, x: i32| {
+        let tiles = TileGrid::from_straight_rgba(&[200; 20 * 20 * 4], 20, 20, x, 40);
+        Arc::new(Layer::new(name, Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() })))
+    };
+    Document { layers: vec![square("left", 20), square("right", 120)], ..document() }
+}
+fn dragged_both(document: &Document, from: Vec2, to: Vec2, keys: ModifierKeys) -> Option<Document> {
+    let ids: Vec<LayerId> = document.layers.iter().map(|layer| layer.id).collect();
+    let brush = Brush::default();
+    let context = ToolContext { layer: Some(ids[0]), layers: &ids, ..ToolContext::new(document, &brush) };
+    let mut gesture = press(&context, PenSample::at(from)).0?;
+    gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
+    match gesture.release() {
+        Outcome::Commit { document, .. } => Some(document),
+        _ => None,
+    }
+}
+fn corners_of(document: &Document, index: usize) -> [Vec2; 4] {
+    TransformFrame::of(document, document.layers[index].id).unwrap().corners
+}
+
+#[test]
+fn several_layers_have_one_frame_and_each_goes_along_in_its_own() {
+    let both = two();
+    let ids: Vec<LayerId> = both.layers.iter().map(|layer| layer.id).collect();
+    let frame = TransformFrame::around(&both, &ids).unwrap();
+    close(frame.corners, [(20.0, 40.0), (140.0, 40.0), (140.0, 60.0), (20.0, 60.0)]);
+    // The lower right corner: half as wide, twice as high.
+    let scaled = dragged_both(&both, vec2(140.0, 60.0), vec2(80.0, 80.0), NONE).unwrap();
+    close(corners_of(&scaled, 0), [(20.0, 40.0), (30.0, 40.0), (30.0, 80.0), (20.0, 80.0)]);
+    close(corners_of(&scaled, 1), [(70.0, 40.0), (80.0, 40.0), (80.0, 80.0), (70.0, 80.0)]);
+    let moved = dragged_both(&scaled, vec2(50.0, 60.0), vec2(55.0, 50.0), NONE).unwrap();
+    close(corners_of(&moved, 1), [(75.0, 30.0), (85.0, 30.0), (85.0, 70.0), (75.0, 70.0)]);
+    let distort = ModifierKeys { ctrl: true, ..NONE };
+    let distorted = dragged_both(&both, vec2(140.0, 60.0), vec2(150.0, 70.0), distort).unwrap();
+    assert!(corners_of(&distorted, 1)[2].distance(vec2(150.0, 70.0)) < 1e-2);
+    assert!(corners_of(&distorted, 0)[0].distance(vec2(20.0, 40.0)) < 1e-2);
+    let about = about_middle(&both, &ids, mirror(false)).unwrap();
+    close(corners_of(&about, 0), [(140.0, 40.0), (120.0, 40.0), (120.0, 60.0), (140.0, 60.0)]);
+}
+#[test]
+fn a_locked_layer_among_several_keeps_all_of_them() {
+    let both = two();
+    let id = both.layers[1].id;
+    let locked = both.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
+    assert!(dragged_both(&locked, vec2(50.0, 50.0), vec2(60.0, 50.0), NONE).is_none());
 }

@@ -24,6 +24,10 @@ struct Last {
 /// `under`: the canvas point under the pointer.
 pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
+    if tab.has_several() {
+        let all = tab.outermost_chosen().into_iter().filter_map(|id| tab.shown().layer(id));
+        return all.for_each(|layer| bounds(painter, layer, tab.shown().size, to_screen));
+    }
     let id = Id::unique("held by the move tool");
     let last: Option<Last> = painter.ctx().data_mut(|data| data.get_temp(id));
     let last = last.filter(|last| last.layer == layer.id);

@@ -1,10 +1,10 @@
-//! Dragging a layer to another position of the list.
+//! Dragging layers to another position of the list.
 //! Floor 7.
 
-use crate::document::{Document, Layer, LayerId};
+use crate::document::{Layer, LayerId};
 use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
-use crate::session::{Action, LayerPath};
+use crate::session::{Action, LayerPath, LayerPaths, OpenDocument};
 use crate::theme::ACCENT;
 use eframe::egui::{self, Rect, Response, Stroke, Ui};
 use std::sync::Arc;
@@ -12,15 +12,18 @@ use std::sync::Arc;
 /// The dragged row, and the rows it can be dropped between or into.
 pub fn show(
     ui: &Ui,
-    document: &Document,
+    tab: &OpenDocument,
     layer: &Arc<Layer>,
     response: &Response,
     rect: Rect,
     requests: &mut UiRequests,
 ) {
+    let document = tab.shown();
+    // A chosen row takes all chosen ones along.
+    let held = |id: LayerId| if tab.is_chosen(id) { tab.outermost_chosen() } else { vec![id] };
     response.dnd_set_drag_payload(layer.id);
-    if let Some(held) = response.dnd_hover_payload::<LayerId>()
-        && *held != layer.id
+    if let Some(row) = response.dnd_hover_payload::<LayerId>()
+        && !held(*row).contains(&layer.id)
         && let Some(pointer) = ui.input(|i| i.pointer.hover_pos())
     {
         let stroke = Stroke::new(2.0, ACCENT);
@@ -30,9 +33,10 @@ pub fn show(
             LayerDrop::Into => drop(ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside)),
         }
     }
-    let Some(held) = response.dnd_release_payload::<LayerId>().filter(|held| **held != layer.id) else { return };
+    let Some(held) = response.dnd_release_payload::<LayerId>().map(|row| held(*row)) else { return };
     let Some(pointer) = ui.input(|i| i.pointer.interact_pos()) else { return };
-    let Some(rest) = document.without_layer(*held) else { return };
+    let Some(rest) = document.without_layers(&held) else { return };
+    // Where the row goes along itself there is no such place.
     let Some(place) = rest.place_of(layer.id) else { return };
     let (group, index) = match drop_at(layer, rect, pointer.y) {
         LayerDrop::Above => (place.group, place.index + 1),
@@ -40,9 +44,8 @@ pub fn show(
         LayerDrop::Into => (Some(layer.id), usize::MAX >> 1),
     };
     let group = group.and_then(|group| LayerPath::of(document, group));
-    if let Some(layer) = LayerPath::of(document, *held) {
-        requests.act(Action::Layer(LayerAction::Move { layer, group, index }));
-    }
+    let layer = LayerPaths::of(document, &held);
+    requests.act(Action::Layer(LayerAction::Move { layer, group, index }));
 }
 
 enum LayerDrop {

@@ -1,21 +1,23 @@
-//! The context menu of a layer.
+//! The context menu of a layer: of all chosen ones where it is among them.
 //! Floor 7.
 
-use super::set;
-use crate::document::Layer;
+use super::{color_of, set};
+use crate::document::{Layer, LayerLabel};
 use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
-use crate::session::{Action, LayerPath, Property};
-use eframe::egui::{Id, Ui};
+use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
+use eframe::egui::{Button, Id, Ui};
 
-pub fn show(ui: &mut Ui, layer: &Layer, path: &LayerPath, requests: &mut UiRequests) {
-    type MenuAction = fn(LayerPath) -> LayerAction;
+pub fn show(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, requests: &mut UiRequests) {
+    let is_chosen = session.active().is_some_and(|tab| tab.is_chosen(layer.id));
+    let paths = if is_chosen { session.layer_paths() } else { path.into() };
+    type MenuAction = fn(LayerPaths) -> LayerAction;
     let entries: [(&str, MenuAction); 7] = [
         ("Duplicate", |layer| LayerAction::Duplicate { layer }),
         ("Group", |layer| LayerAction::Group { layer }),
-        ("Merge down", |layer| LayerAction::MergeDown { layer }),
+        ("Ungroup", |layer| LayerAction::Ungroup { layer }),
+        (if paths.is_several() { "Merge" } else { "Merge down" }, |layer| LayerAction::MergeDown { layer }),
         ("Bake", |layer| LayerAction::Bake { layer }),
-        ("Paint on a mask", |layer| LayerAction::PaintMask { layer, hides: false }),
         ("Clear", |layer| LayerAction::Clear { layer }),
         ("Delete", |layer| LayerAction::Delete { layer }),
     ];
@@ -25,12 +27,26 @@ pub fn show(ui: &mut Ui, layer: &Layer, path: &LayerPath, requests: &mut UiReque
     }
     for (label, make) in entries {
         if ui.button(label).clicked() {
-            requests.act(Action::Layer(make(path.clone())));
+            requests.act(Action::Layer(make(paths.clone())));
             ui.close();
         }
     }
-    if ui.button(if layer.visible { "Hide" } else { "Show" }).clicked() {
-        set(requests, path, Property::Visible { on: !layer.visible }, true);
+    if ui.button("Paint on a mask").clicked() {
+        requests.act(Action::Layer(LayerAction::PaintMask { layer: path.clone(), hides: false }));
         ui.close();
     }
+    if ui.button(if layer.visible { "Hide" } else { "Show" }).clicked() {
+        set(requests, &paths, Property::Visible { on: !layer.visible }, true);
+        ui.close();
+    }
+    ui.menu_button("Label", |ui| {
+        for (label, name) in LayerLabel::ALL {
+            let text = eframe::egui::RichText::new(name);
+            let text = color_of(label).map_or(text.clone(), |color| text.strong().color(color));
+            if ui.add(Button::selectable(layer.label == label, text)).clicked() {
+                set(requests, &paths, Property::Labelled { label }, true);
+                ui.close();
+            }
+        }
+    });
 }

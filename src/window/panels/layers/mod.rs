@@ -1,22 +1,22 @@
-//! The layer list, the topmost first, with controls of the selected layer above and below. Floor 7. `row` shows one
-//! layer, `drag` handles dragging, `menu` the context menu.
+//! The layer list, the topmost first, with controls of the chosen layers above and below. Floor 7. `row` shows one
+//! layer, `drag` handles dragging, `menu` the context menu, `filter` the field that finds layers.
 
 mod drag;
+mod filter;
 mod menu;
 mod row;
 
-use crate::document::{Content, Document, Group, Layer, LayerLock};
+use crate::document::{Content, LayerId, LayerLabel, LayerLock};
 use crate::icons::{Icon, icon_button};
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, NewLayer};
-use crate::session::{Action, LayerPath, Property, Session};
+use crate::session::{Action, LayerPath, LayerPaths, Property, Session};
 use crate::thumbnails::Thumbnails;
 use crate::tools::ToolKind;
 use crate::widgets::{NumberField, choice};
-use eframe::egui::{self, Ui};
+use eframe::egui::{self, Color32, Ui};
 use row::LayerRow;
-use std::sync::Arc;
 
 pub fn kind_icon(content: &Content) -> Icon {
     match content {
@@ -32,8 +32,13 @@ pub fn kind_icon(content: &Content) -> Icon {
     }
 }
 
-fn set(requests: &mut UiRequests, layer: &LayerPath, to: Property, done: bool) {
-    requests.act(Action::Layer(LayerAction::Set { layer: layer.clone(), to, done }));
+fn set(requests: &mut UiRequests, layers: &LayerPaths, to: Property, done: bool) {
+    requests.act(Action::Layer(LayerAction::Set { layer: layers.clone(), to, done }));
+}
+
+/// What a label is shown as.
+fn color_of(label: LayerLabel) -> Option<Color32> {
+    label.color().map(|color| Color32::from_rgb(color.r, color.g, color.b))
 }
 
 pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
@@ -42,27 +47,37 @@ pub fn show(ui: &mut Ui, session: &Session, thumbnails: &mut Thumbnails, request
         return;
     };
     head(ui, session, requests);
+    filter::show(ui, document);
     foot(ui, session, requests);
     let height = ui.available_height();
     egui::ScrollArea::vertical().id_salt("layers").max_height(height).auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        rows(ui, session, document, &document.layers, 0, thumbnails, requests);
+        let rows = filter::current(ui).listed(document, |group| row::is_folded(ui, group));
+        let listed: Vec<LayerId> = rows.iter().map(|(layer, _)| layer.id).collect();
+        for (layer, depth) in &rows {
+            let Some(path) = LayerPath::of(document, layer.id) else { continue };
+            let row = LayerRow { session, document, layer, path, depth: *depth, listed: &listed };
+            row.show(ui, thumbnails, requests);
+        }
         if document.layers.is_empty() {
             ui.weak("No layers yet: paint, or drop a picture.");
+        } else if rows.is_empty() {
+            ui.weak("No layer is called so; Escape in the field shows all.");
         }
     });
 }
 
-/// Blend mode and opacity of the selected layer.
+/// Blend mode and opacity of the chosen layers, as the primary one has them.
 fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (Some(layer), Some(path)) = (session.layer(), session.layer_path()) else { return };
+    let chosen = session.active().map(|tab| LayerPaths::of(tab.document(), &tab.chosen_layers())).unwrap_or_default();
     ui.horizontal(|ui| {
         if let Some(mode) = choice(ui, "Blend mode", layer.blend, &BlendMode::LABELS) {
-            set(requests, &path, Property::Blend { mode }, true);
+            set(requests, &chosen, Property::Blend { mode }, true);
         }
         let number = NumberField::new("Opacity", 0.0..=1.0, "Of the whole layer");
         if let Some(changed) = number.inline(ui, layer.opacity, (ui.available_width() - 112.0).max(30.0)) {
-            set(requests, &path, Property::Opacity { to: changed.to }, changed.done);
+            set(requests, &chosen, Property::Opacity { to: changed.to }, changed.done);
         }
     });
     ui.horizontal(|ui| {
@@ -79,7 +94,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                     Icon::Lock => lock(LayerLock::All),
                     _ => Property::ClipBelow { on: !is_on },
                 };
-                set(requests, &path, to, true);
+                set(requests, &chosen, to, true);
             }
         }
         let is_alone = session.active().is_some_and(|tab| tab.solo == Some(layer.id));
@@ -100,8 +115,10 @@ fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
                 }
             }
         });
-        let Some(path) = session.layer_path() else { return };
-        type ButtonAction = fn(LayerPath) -> LayerAction;
+        if session.layer().is_none() {
+            return;
+        }
+        type ButtonAction = fn(LayerPaths) -> LayerAction;
         let buttons: [(Icon, &str, ButtonAction); 6] = [
             (Icon::Duplicate, "Duplicate layer", |layer| LayerAction::Duplicate { layer }),
             (Icon::Up, "Move layer up", |layer| LayerAction::Nudge { layer, by: 1 }),
@@ -113,29 +130,8 @@ fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         for (icon, label, make) in buttons {
             let hint = crate::commands::named(label).map_or(label, |command| command.hint);
             if icon_button(ui, icon, label, false).on_hover_text(format!("{label}\n{hint}")).clicked() {
-                requests.act(Action::Layer(make(path.clone())));
+                requests.act(Action::Layer(make(session.layer_paths())));
             }
         }
     });
-}
-
-fn rows(
-    ui: &mut Ui,
-    session: &Session,
-    document: &Document,
-    layers: &[Arc<Layer>],
-    depth: usize,
-    thumbnails: &mut Thumbnails,
-    requests: &mut UiRequests,
-) {
-    for layer in layers.iter().rev() {
-        let Some(path) = LayerPath::of(document, layer.id) else { continue };
-        let row = LayerRow { session, document, layer, path, depth };
-        row.show(ui, thumbnails, requests);
-        if let Some(Group { layers, .. }) = layer.content.group()
-            && !row::is_folded(ui, layer.id)
-        {
-            rows(ui, session, document, layers, depth + 1, thumbnails, requests);
-        }
-    }
 }

@@ -1,23 +1,27 @@
 //! A layer's row: eye, thumbnails of the layer and its mask, name, and flags.
 //! Floor 7.
 
-use super::{drag, kind_icon, menu, set};
+use super::{color_of, drag, kind_icon, menu, set};
 use crate::document::{Document, Layer, LayerId, LayerLock, MaskKind};
 use crate::icons::{Icon, sized_button};
 use crate::raster::BlendMode;
 use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, SelectionAction};
-use crate::session::{Action, LayerPath, Property, Session};
+use crate::session::chosen::range;
+use crate::session::{Action, LayerPath, OpenDocument, Property, Session};
 use crate::theme::ACCENT;
 use crate::thumbnails::Thumbnails;
 use crate::tools::ModifierKeys;
 use eframe::egui::{
-    self, Align2, Color32, Id, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui, pos2, vec2,
+    self, Align2, Color32, Id, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextEdit, TextStyle, Ui, pos2,
+    vec2,
 };
 use std::sync::Arc;
 
 const ROW_PT: f32 = 38.0;
 const INDENT_PT: f32 = 14.0;
+/// Of the strip of a label's colour.
+const LABEL_PT: f32 = 4.0;
 
 /// A layer in its place.
 pub struct LayerRow<'a> {
@@ -27,6 +31,12 @@ pub struct LayerRow<'a> {
     pub path: LayerPath,
     /// Groups around it.
     pub depth: usize,
+    /// All rows, the topmost first.
+    pub listed: &'a [LayerId],
+}
+
+fn row_id(layer: LayerId) -> Id {
+    Id::unique(("layer row", layer))
 }
 
 fn folded(layer: LayerId) -> Id {
@@ -40,10 +50,12 @@ pub fn is_folded(ui: &Ui, layer: LayerId) -> bool {
 
 impl LayerRow<'_> {
     pub fn show(&self, ui: &mut Ui, thumbnails: &mut Thumbnails, requests: &mut UiRequests) {
-        let LayerRow { session, document, layer, path, depth } = self;
-        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_PT), Sense::click_and_drag());
-        let is_selected = session.active().is_some_and(|tab| tab.selected == Some(layer.id));
-        let label = format!("Layer {}", layer.name);
+        let LayerRow { session, document, layer, path, depth, .. } = self;
+        let Some(tab) = session.active() else { return };
+        let (_, rect) = ui.allocate_space(vec2(ui.available_width(), ROW_PT));
+        let response = ui.interact(rect, row_id(layer.id), Sense::click_and_drag());
+        let is_selected = tab.is_chosen(layer.id);
+        let label = format!("Layer {}{}", layer.name, if is_selected { ", chosen" } else { "" });
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &label));
         let fill = match (is_selected, response.hovered()) {
             (true, _) => ui.visuals().selection.bg_fill,
@@ -51,33 +63,80 @@ impl LayerRow<'_> {
             _ => ui.visuals().faint_bg_color,
         };
         ui.painter().rect_filled(rect, 4.0, fill);
+        if let Some(color) = color_of(layer.label) {
+            ui.painter().rect_filled(rect.with_max_x(rect.left() + LABEL_PT), 2.0, color);
+        }
+        if tab.has_several() && tab.selected == Some(layer.id) {
+            // The brush paints on this one.
+            ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.4, ACCENT), StrokeKind::Inside);
+        }
+        if response.has_focus() {
+            ui.painter().rect_stroke(rect, 4.0, ui.visuals().selection.stroke, StrokeKind::Inside);
+        }
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
         inner.spacing_mut().item_spacing.x = 3.0;
-        inner.add_space(2.0 + *depth as f32 * INDENT_PT);
+        inner.add_space(2.0 + LABEL_PT + *depth as f32 * INDENT_PT);
         self.switches(&mut inner, requests);
         let thumbnail = picture(&mut inner, document, layer, thumbnails);
         self.mask(&mut inner, thumbnails, requests);
         name(&mut inner, session, layer, path, &response, requests);
-        drag::show(ui, document, layer, &response, rect, requests);
+        drag::show(ui, tab, layer, &response, rect, requests);
         let keys = ui.input(|input| input.modifiers);
         let is_on_picture = response.interact_pointer_pos().is_some_and(|at| thumbnail.contains(at));
         if response.clicked() && keys.command && is_on_picture {
             let settings = session.select;
             let how = settings.how(ModifierKeys { shift: keys.shift, ctrl: true, alt: keys.alt });
             requests.act(Action::Selection(SelectionAction::Layer { layer: path.clone(), how }));
+        } else if response.clicked() && keys.command {
+            self.choose(&tab.toggled(layer.id), None, requests);
         } else if response.clicked() {
-            requests.act(Action::Layer(LayerAction::Select { layer: path.clone() }));
+            self.extend(tab, layer.id, keys.shift, requests);
         }
-        response.context_menu(|ui| menu::show(ui, layer, path, requests));
+        self.arrows(ui, tab, &response, requests);
+        response.context_menu(|ui| menu::show(ui, session, layer, path, requests));
+    }
+    fn choose(&self, ids: &[LayerId], anchor: Option<LayerId>, requests: &mut UiRequests) {
+        requests.actions.extend(LayerAction::choosing(self.document, ids, anchor).map(Action::Layer));
+    }
+    /// Selects a row, or all between it and where the range begins.
+    fn extend(&self, tab: &OpenDocument, to: LayerId, extends: bool, requests: &mut UiRequests) {
+        let anchor = tab.range_start().filter(|_| extends);
+        let ids = anchor.map_or_else(|| vec![to], |anchor| range(self.listed, anchor, to));
+        self.choose(&ids, anchor, requests);
+    }
+    /// Arrows in a row that has the focus go on to the next one; with Shift they take it in.
+    fn arrows(&self, ui: &Ui, tab: &OpenDocument, row: &Response, requests: &mut UiRequests) {
+        if !row.has_focus() {
+            return;
+        }
+        let filter = egui::EventFilter { vertical_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(row.id, filter));
+        let pressed =
+            |key| ui.input_mut(|i| i.consume_key(Modifiers::NONE, key) || i.consume_key(Modifiers::SHIFT, key));
+        let extends = ui.input(|i| i.modifiers.shift);
+        let here = self.listed.iter().position(|id| *id == self.layer.id);
+        let to = match (pressed(egui::Key::ArrowUp), pressed(egui::Key::ArrowDown)) {
+            (true, _) => here.and_then(|at| at.checked_sub(1)),
+            (_, true) => here.map(|at| at + 1),
+            _ => None,
+        };
+        if let Some(to) = to.and_then(|at| self.listed.get(at)) {
+            self.extend(tab, *to, extends, requests);
+            ui.memory_mut(|memory| memory.request_focus(row_id(*to)));
+        }
     }
     /// The eye, a group's fold, and the sign of being clipped.
     fn switches(&self, ui: &mut Ui, requests: &mut UiRequests) {
         let layer = self.layer;
         let eye = if layer.visible { Icon::Shown } else { Icon::Hidden };
         let eye = sized_button(ui, eye, &format!("Show {}", layer.name), layer.visible, 22.0);
-        if eye.on_hover_text("Show or hide").clicked() {
-            set(requests, &self.path, Property::Visible { on: !layer.visible }, true);
+        if eye.on_hover_text("Show or hide; with Alt this layer alone, or all again").clicked() {
+            if ui.input(|input| input.modifiers.alt) {
+                requests.act(Action::Layer(LayerAction::Solo { layer: self.path.clone() }));
+            } else {
+                set(requests, &self.path.clone().into(), Property::Visible { on: !layer.visible }, true);
+            }
         }
         if layer.content.group().is_some() {
             let is_folded = is_folded(ui, layer.id);
@@ -123,7 +182,7 @@ impl LayerRow<'_> {
         let is_picture = matches!(mask.kind, MaskKind::File { .. });
         let (layer, path) = (self.path.clone(), &self.path);
         if ui.input(|i| i.modifiers.shift) {
-            set(requests, path, Property::MaskDisabled { on: !mask.disabled }, true);
+            set(requests, &path.into(), Property::MaskDisabled { on: !mask.disabled }, true);
         } else if is_picture {
             requests.act(Action::Layer(LayerAction::OnMask { layer, on: !is_on }));
         } else {
@@ -162,7 +221,7 @@ fn name(ui: &mut Ui, session: &Session, layer: &Layer, path: &LayerPath, row: &R
             ui.data_mut(|data| data.remove::<(LayerId, String)>(renaming));
             let is_kept = !ui.input(|i| i.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
             if is_kept && text != layer.name {
-                set(requests, path, Property::Name { name: text.trim().to_owned() }, true);
+                set(requests, &path.into(), Property::Name { name: text.trim().to_owned() }, true);
             }
         } else {
             response.request_focus();

@@ -1,0 +1,97 @@
+//! Guides and assistants as they are set, pulled out and cleared; what snaps to them and what of them is shown.
+//! Floor 6. Guides that lie on the canvas are moved by the pen: `tools::guides`.
+
+use crate::document::{Assistant, Document, Guides};
+use crate::io::json::JsonNode;
+use crate::io::recipe::guides as written;
+use crate::math::UNIT;
+use crate::math::range::held;
+use crate::session::Session;
+use crate::session::replay::{ReplayValue, actions, record};
+use crate::tools::PenSample;
+use crate::tools::guides::pull;
+use crate::tools::snap::{Grid, SnapTargets, ViewAids};
+use serde_json::Value;
+use std::path::Path;
+use std::sync::Arc;
+
+record!(Grid { spacing, subdivisions, offset });
+record!(ViewAids {
+    rulers,
+    guides,
+    locked,
+    grid_shown,
+    grid,
+    snaps,
+    to_guides,
+    to_grid,
+    to_canvas,
+    to_layers,
+    magnetism,
+});
+record!(Guides { vertical, horizontal });
+
+/// As a document says it.
+impl ReplayValue for Assistant {
+    fn written(&self) -> Value {
+        written::write_assistant(self)
+    }
+    fn read(value: &Value) -> Result<Self, String> {
+        let node = JsonNode::root(Path::new("assistant"), value);
+        written::read_assistant(&node).map_err(|error| error.to_string())
+    }
+}
+
+actions! {
+    GuideAction {
+        /// Out of a ruler; drags and a release of the pointer follow, and beyond the canvas it is let go of.
+        "pull" Pull { vertical: bool, pen: PenSample, px_per_pt: f32 }
+        /// All of them.
+        "set" Set { guides: Guides }
+        "clear" Clear {}
+        "assistants" Assistants { assistants: Vec<Assistant> }
+        /// What is shown and what the pen snaps to; no step.
+        "aids" Aids { aids: ViewAids }
+    }
+}
+
+impl GuideAction {
+    pub fn apply(&self, session: &mut Session) {
+        session.drop_gesture();
+        match self {
+            GuideAction::Aids { aids } => {
+                session.aids = ViewAids { grid: aids.grid.held(), magnetism: held(aids.magnetism, &UNIT), ..*aids };
+            }
+            GuideAction::Pull { vertical, pen, px_per_pt } => {
+                // What is pulled out is to be seen.
+                session.aids.guides = true;
+                let Some(tab) = session.active() else { return session.say("There is no document.") };
+                let aids = ViewAids { to_guides: false, ..session.aids };
+                let targets = SnapTargets::of(tab.document(), &aids, &[], *px_per_pt);
+                let start = pull(tab.document(), *vertical, targets, *pen);
+                super::pointer::begin(session, start);
+            }
+            GuideAction::Set { guides } => {
+                commit(session, "Guides", |document| Document { guides: Arc::new(guides.clone()), ..document })
+            }
+            GuideAction::Clear {} => {
+                let is_empty = session.active().is_none_or(|tab| tab.document().guides.is_empty());
+                if is_empty {
+                    return session.say("There are no guides.");
+                }
+                commit(session, "Clear guides", |document| Document { guides: Arc::default(), ..document });
+            }
+            GuideAction::Assistants { assistants } => commit(session, "Assistants", |document| Document {
+                assistants: Arc::new(assistants.clone()),
+                ..document
+            }),
+        }
+    }
+}
+
+fn commit(session: &mut Session, label: &str, change: impl FnOnce(Document) -> Document) {
+    if let Some(tab) = session.active_mut() {
+        let document = change(tab.document().clone());
+        tab.commit(label, document);
+    }
+}

@@ -1,0 +1,78 @@
+//! Steps of several layers: what becomes of the document, and which layers are chosen then.
+//! Floor 6.
+
+use crate::document::{Document, Layer, LayerId, LayerSlot};
+use crate::session::OpenDocument;
+use crate::tools::brush::free_name;
+use std::sync::Arc;
+
+/// A step: its name, the document, and what is chosen then.
+pub(super) type Step = (&'static str, Document, Vec<LayerId>);
+
+pub(super) fn moves(ids: &[LayerId]) -> &'static str {
+    if ids.len() > 1 { "Move layers" } else { "Move layer" }
+}
+
+/// What was moved is chosen; where that was already, the primary one stays it.
+pub(super) fn kept(tab: &OpenDocument, ids: Vec<LayerId>) -> Vec<LayerId> {
+    if tab.outermost_chosen() == ids { Vec::new() } else { ids }
+}
+
+/// Copies above the topmost layer.
+pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<Step> {
+    let place = document.place_of(*ids.last()?)?;
+    let mut next = document.clone();
+    let mut copies = Vec::new();
+    for (i, id) in ids.iter().enumerate() {
+        let layer = document.layer(*id)?;
+        let copy = copied(layer, &free_name(&next, &format!("{} copy", layer.name)));
+        copies.push(copy.id);
+        next = next.with_inserted(copy, LayerSlot { index: place.index + 1 + i, ..place })?;
+    }
+    let label = if ids.len() > 1 { "Duplicate layers" } else { "Duplicate layer" };
+    Some((label, next, copies))
+}
+
+/// The groups among some layers dissolved.
+pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<Step> {
+    let (mut next, mut freed) = (document.clone(), Vec::new());
+    for id in ids {
+        let Some(group) = next.layer(*id)?.content.group().map(|_| next.with_transform_applied(*id)) else { continue };
+        let applied = group?;
+        let group = applied.layer(*id)?.content.group()?.clone();
+        let place = applied.place_of(*id)?;
+        next = applied.without_layer(*id)?;
+        for (i, inner) in group.layers.iter().enumerate() {
+            next = next.with_inserted(Layer::clone(inner), LayerSlot { index: place.index + i, ..place })?;
+            freed.push(inner.id);
+        }
+    }
+    Some(("Ungroup", next, freed))
+}
+
+/// What is selected taken out of layers, or all that they hold; a layer that cannot be cleared stays as it is.
+pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<Step> {
+    let (mut next, mut is_any) = (document.clone(), false);
+    for id in ids {
+        let cleared = match document.selected() {
+            Some(selected) => next.with_cleared(*id, selected),
+            None => {
+                let empty = next.layer(*id)?.content.emptied();
+                empty.and_then(|empty| next.with_layer(*id, |layer| layer.content = empty))
+            }
+        };
+        is_any |= cleared.is_some();
+        next = cleared.unwrap_or(next);
+    }
+    let label = if document.selected().is_some() { "Clear" } else { "Clear layer" };
+    is_any.then_some((label, next, Vec::new()))
+}
+
+/// A copy under fresh ids.
+pub(super) fn copied(layer: &Layer, name: &str) -> Layer {
+    let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
+    if let Some(group) = copy.content.group_mut() {
+        group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();
+    }
+    copy
+}

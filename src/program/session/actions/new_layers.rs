@@ -1,0 +1,90 @@
+//! New layers of every kind, as they begin.
+//! Floor 6.
+
+use crate::document::{Content, DetailSource, Document, Group, Layer, Live, NormalLayer, PixelLayer, StrokeList};
+use crate::math::vec2;
+use crate::paint::{Gradient, Placement};
+use crate::raster::Outside;
+use crate::session::replay::names;
+use crate::shading::{Model, RadianceScaling, Shading};
+use crate::surface::NoiseRelief;
+use crate::tools::brush::free_name;
+
+/// Kinds of new layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NewLayer {
+    Paint,
+    Strokes,
+    Fill,
+    Gradient,
+    Shading,
+    RadianceScaling,
+    Normals,
+    Group,
+}
+
+names!(NewLayer, [
+    NewLayer::Paint => "paint", NewLayer::Strokes => "strokes", NewLayer::Fill => "fill",
+    NewLayer::Gradient => "gradient", NewLayer::Shading => "shading",
+    NewLayer::RadianceScaling => "radiance scaling", NewLayer::Normals => "normals", NewLayer::Group => "group",
+]);
+
+impl NewLayer {
+    /// Every kind with its name in replays.
+    pub const ALL: [(NewLayer, &'static str); 8] = [
+        (NewLayer::Paint, "Paint layer"),
+        (NewLayer::Strokes, "Stroke layer"),
+        (NewLayer::Fill, "Fill layer"),
+        (NewLayer::Gradient, "Gradient layer"),
+        (NewLayer::Shading, "Shading layer"),
+        (NewLayer::RadianceScaling, "Radiance scaling"),
+        (NewLayer::Normals, "Detail normals"),
+        (NewLayer::Group, "Group"),
+    ];
+}
+
+/// A new layer that covers the canvas covers what is selected, by a mask.
+pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {
+    let covers =
+        !matches!(layer.content, Content::Pixels(_) | Content::Strokes(_) | Content::Group(_) | Content::Normals(_));
+    Layer { mask: if covers { document.selection_as_mask() } else { None }, ..layer }
+}
+
+/// “ambient-occlusion” as a layer is called.
+pub(super) fn model_name(model: Model) -> String {
+    let spaced = model.name().replace('-', " ");
+    let mut letters = spaced.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+pub(super) fn made(kind: NewLayer, document: &Document, gradient_settings: &Gradient) -> Layer {
+    let size = document.size;
+    let (name, content) = match kind {
+        NewLayer::Paint => ("Paint", Content::Pixels(PixelLayer::default())),
+        NewLayer::Strokes => ("Strokes", Content::Strokes(Live::new(StrokeList::default()))),
+        NewLayer::Fill => (
+            "Fill",
+            Content::Fill(gradient_settings.stops.first().map_or(crate::math::srgb::Color::BLACK, |stop| stop.color)),
+        ),
+        NewLayer::Gradient => {
+            let middle = size.center();
+            let reach = vec2(0.0, 0.35 * size.height as f32);
+            let gradient = Gradient { from: middle - reach, to: middle + reach, ..gradient_settings.clone() };
+            ("Gradient", Content::Gradient(Live::new(gradient)))
+        }
+        NewLayer::Shading => ("Shading", Content::Shading(Live::new(Shading::new(Model::Phong)))),
+        NewLayer::RadianceScaling => ("Radiance scaling", Content::RadianceScaling(RadianceScaling::default())),
+        NewLayer::Normals => {
+            let normals = NormalLayer {
+                source: DetailSource::Grain(NoiseRelief::default()),
+                placement: Placement { center: size.center(), scale: 1.0, rotation: 0.0 },
+                outside: Outside::Repeat,
+                strength: 0.5,
+                frame: Default::default(),
+            };
+            ("Detail normals", Content::Normals(normals))
+        }
+        NewLayer::Group => ("Group", Content::Group(Group::default())),
+    };
+    Layer::new(free_name(document, name), content)
+}

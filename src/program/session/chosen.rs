@@ -1,0 +1,148 @@
+//! Which layers are chosen: one is the primary one, which the brush paints on; what is done to layers is done to all.
+//! Floor 6. No part of the document: choosing is no step.
+
+use super::OpenDocument;
+use crate::document::{Document, LayerId};
+
+/// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone lets go
+/// of the others.
+#[derive(Clone, Debug, Default)]
+pub struct ChosenLayers {
+    ids: Vec<LayerId>,
+    /// Where a range begins that Shift extends.
+    anchor: Option<LayerId>,
+}
+
+impl OpenDocument {
+    /// The chosen layers as they lie in the tree, bottom first, the primary one among them.
+    pub fn chosen_layers(&self) -> Vec<LayerId> {
+        let document = self.shown();
+        let Some(primary) = self.selected.filter(|id| document.layer(*id).is_some()) else { return Vec::new() };
+        if !self.chosen_layers.ids.contains(&primary) {
+            return vec![primary];
+        }
+        let all = document.walk();
+        all.iter().map(|(_, layer)| layer.id).filter(|id| self.chosen_layers.ids.contains(id)).collect()
+    }
+    /// Those of them that stand in no other one: what is in a chosen group goes along with it.
+    pub fn outermost_chosen(&self) -> Vec<LayerId> {
+        self.shown().outermost(&self.chosen_layers())
+    }
+    pub fn is_chosen(&self, layer: LayerId) -> bool {
+        let also = |primary| self.chosen_layers.ids.contains(&primary) && self.chosen_layers.ids.contains(&layer);
+        self.selected == Some(layer) || self.selected.is_some_and(also)
+    }
+    /// Whether more than one layer is chosen.
+    pub fn has_several(&self) -> bool {
+        self.chosen_layers().len() > 1
+    }
+    /// Where a range begins that Shift extends.
+    pub fn range_start(&self) -> Option<LayerId> {
+        self.chosen_layers.anchor.filter(|id| self.is_chosen(*id)).or(self.selected)
+    }
+    /// Chooses layers; the primary one is the last of them. None of them: all stays as it is.
+    pub fn choose_layers(&mut self, ids: Vec<LayerId>) {
+        if let Some(primary) = ids.last().copied() {
+            self.selected = Some(primary);
+            self.chosen_layers = ChosenLayers { ids, anchor: Some(primary) };
+        }
+    }
+    /// The same, with the beginning of the range to extend.
+    pub fn choose_range(&mut self, ids: Vec<LayerId>, anchor: Option<LayerId>) {
+        self.choose_layers(ids);
+        self.chosen_layers.anchor = anchor.or(self.chosen_layers.anchor);
+    }
+    /// With a layer added to those chosen, or taken away from them, the primary one last. The last one stays.
+    pub fn toggled(&self, layer: LayerId) -> Vec<LayerId> {
+        let mut ids = self.chosen_layers();
+        match ids.iter().position(|id| *id == layer) {
+            Some(_) if ids.len() == 1 => {}
+            Some(at) => {
+                ids.remove(at);
+                // The primary one stays it, if it is left.
+                if let Some(primary) = self.selected.filter(|primary| *primary != layer) {
+                    ids.retain(|id| *id != primary);
+                    ids.push(primary);
+                }
+            }
+            None => ids.push(layer),
+        }
+        ids
+    }
+}
+
+/// The layers from one to another as they are listed, the other last. `listed`: in any direction.
+pub fn range(listed: &[LayerId], from: LayerId, to: LayerId) -> Vec<LayerId> {
+    let place = |id: LayerId| listed.iter().position(|other| *other == id);
+    let (Some(a), Some(b)) = (place(from), place(to)) else { return vec![to] };
+    let mut ids = listed[a.min(b)..=a.max(b)].to_vec();
+    ids.retain(|id| *id != to);
+    ids.push(to);
+    ids
+}
+
+/// The layer above (positive) or beneath another one, groups opened and counted after what is in them: the one itself
+/// at an end.
+pub fn neighbour(document: &Document, layer: LayerId, by: i32) -> LayerId {
+    let all: Vec<LayerId> = document.walk().iter().map(|(_, layer)| layer.id).collect();
+    let at = all.iter().position(|id| *id == layer).unwrap_or(0);
+    let to = at.saturating_add_signed(by as isize).min(all.len().saturating_sub(1));
+    all.get(to).copied().unwrap_or(layer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Content, Layer};
+    use crate::math::{Size, srgb::Color};
+    use std::sync::Arc;
+
+    fn tab() -> (OpenDocument, Vec<LayerId>) {
+        let fill = |i: usize| Arc::new(Layer::new(i.to_string(), Content::Fill(Color::BLACK)));
+        let document = Document { layers: (0..5).map(fill).collect(), ..Document::empty(Size::new(4, 4)) };
+        let ids = document.layers.iter().map(|layer| layer.id).collect();
+        (OpenDocument::new("five", document, None), ids)
+    }
+
+    #[test]
+    fn a_click_with_ctrl_adds_a_layer_and_a_second_takes_it_away() {
+        let (mut tab, ids) = tab();
+        tab.choose_layers(vec![ids[1]]);
+        tab.choose_layers(tab.toggled(ids[3]));
+        assert_eq!((tab.chosen_layers(), tab.selected), (vec![ids[1], ids[3]], Some(ids[3])));
+        tab.choose_layers(tab.toggled(ids[1]));
+        assert_eq!((tab.chosen_layers(), tab.selected), (vec![ids[3]], Some(ids[3])));
+        tab.choose_layers(tab.toggled(ids[3]));
+        assert_eq!(tab.chosen_layers(), [ids[3]], "one is always chosen");
+    }
+    #[test]
+    fn a_range_keeps_its_beginning_while_its_end_moves() {
+        let (mut tab, ids) = tab();
+        tab.choose_layers(vec![ids[2]]);
+        for (end, chosen) in [(4, 2..5), (1, 1..3), (2, 2..3)] {
+            let start = tab.range_start().unwrap();
+            tab.choose_range(range(&ids, start, ids[end]), Some(start));
+            assert_eq!((tab.chosen_layers(), tab.selected), (ids[chosen].to_vec(), Some(ids[end])));
+        }
+    }
+    #[test]
+    fn selecting_another_layer_lets_go_of_the_others() {
+        let (mut tab, ids) = tab();
+        tab.choose_layers(ids.clone());
+        assert!(tab.has_several() && tab.is_chosen(ids[0]));
+        tab.selected = Some(LayerId::fresh());
+        tab.repair();
+        tab.choose_layers(vec![ids[1]]);
+        assert!(!tab.has_several() && !tab.is_chosen(ids[0]));
+    }
+    #[test]
+    fn a_layer_that_is_gone_is_chosen_no_more() {
+        let (mut tab, ids) = tab();
+        tab.choose_layers(vec![ids[0], ids[1], ids[2]]);
+        let next = tab.document().without_layer(ids[1]).unwrap();
+        tab.commit("Delete layer", next);
+        assert_eq!(tab.chosen_layers(), [ids[0], ids[2]]);
+        assert_eq!(neighbour(tab.document(), ids[2], -1), ids[0]);
+        assert_eq!(neighbour(tab.document(), ids[4], 1), ids[4]);
+    }
+}
