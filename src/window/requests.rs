@@ -46,6 +46,7 @@ pub enum WindowRequest {
     Quit,
     EdgeDialog(EdgeChange),
     KeepDialog,
+    GridDialog,
     Paste,
     Palette,
     Shortcuts,

@@ -9,6 +9,8 @@ use super::panels::PanelKind;
 use crate::document::Progress;
 use crate::io::fs::Disk;
 use crate::io::replace::{Overwrite, replace};
+use crate::session::replay::ReplayValue;
+use crate::tools::snap::ViewAids;
 use crate::{Error, Result};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -33,6 +35,8 @@ pub struct Settings {
     pub keymap: Keymap,
     /// Whether the three hints of the first start were completed or dismissed.
     pub is_hint_done: bool,
+    /// What is shown over the canvas, and what the pen snaps to.
+    pub aids: ViewAids,
 }
 
 impl Settings {
@@ -56,6 +60,7 @@ impl Settings {
                 "width": width_pt.round(),
             },
             "keys": self.keymap.to_json(),
+            "aids": self.aids.written(),
         })
     }
     /// Unknown values keep their defaults.
@@ -81,7 +86,9 @@ impl Settings {
         let recent = texts(value.get("recent")).into_iter().take(RECENT).map(PathBuf::from).collect();
         let keymap = Keymap::from_json(object("keys"));
         let scale = value.get("scale").and_then(Value::as_f64).map(|scale| (scale as f32).max(0.5).min(4.0));
-        Self { recent, is_light: flag(value, "light"), scale, layout, keymap, is_hint_done: flag(value, "hint done") }
+        let aids = value.get("aids").and_then(|aids| ViewAids::read(aids).ok()).unwrap_or_default();
+        let (is_light, is_hint_done) = (flag(value, "light"), flag(value, "hint done"));
+        Self { recent, is_light, scale, layout, keymap, is_hint_done, aids }
     }
     /// Reads a settings file; none is an empty one. Fails where it is not JSON, or not to be read.
     pub fn read(file: &Path) -> Result<Self> {
@@ -177,7 +184,8 @@ mod tests {
             apart: vec![PanelKind::Navigator],
             width_pt: 300.0,
         };
-        let mut settings = Settings { is_light: true, layout, is_hint_done: true, ..Settings::default() };
+        let aids = ViewAids { rulers: true, locked: true, ..ViewAids::default() };
+        let mut settings = Settings { is_light: true, layout, is_hint_done: true, aids, ..Settings::default() };
         (0..20).for_each(|i| settings.recent_is(PathBuf::from(format!("{i}.ora"))));
         settings.write(&file).unwrap();
         let read = Settings::read(&file).unwrap();

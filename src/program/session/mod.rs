@@ -134,6 +134,10 @@ impl Default for Session {
 }
 
 impl Session {
+    /// The same with other settings of what is shown and snapped to.
+    pub fn with_aids(self, aids: ViewAids) -> Self {
+        Self { aids, ..self }
+    }
     /// The document in front.
     pub fn active(&self) -> Option<&OpenDocument> {
         self.open_documents.get(self.current)

@@ -5,9 +5,12 @@
 mod ants;
 mod blocks;
 mod frame;
+mod frame_input;
+mod guides;
 mod marks;
 mod overlay;
 mod pointer;
+mod rulers;
 mod sheet;
 
 pub use marks::color32;
@@ -99,7 +102,9 @@ impl Canvas {
     }
     /// Draws the canvas and requests what the pen does.
     pub fn show(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let whole = ui.available_rect_before_wrap();
+        let rect = egui::Rect::from_min_max(whole.min + egui::Vec2::splat(rulers::room_pt(session)), whole.max);
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
         let area_before_pt = std::mem::replace(&mut self.area_pt, vec2(rect.width(), rect.height()));
         let dark = ui.visuals().dark_mode;
@@ -138,6 +143,12 @@ impl Canvas {
         let under = pointer.map(|p| inverse.transform_point2(vec2(p.x, p.y)));
         self.under = under.filter(|p| canvas.contains(p.x.floor() as i32, p.y.floor() as i32));
         let tool = self.hand.tool(session);
+        let to_screen = |p: Vec2| {
+            let p = screen_from_canvas.transform_point2(p);
+            pos2(p.x, p.y)
+        };
+        guides::draw(&painter, session, &to_screen, visible_rect(&view, rect), view.zoom);
+        rulers::draw(ui, session, rect, screen_from_canvas, under);
         self.ants.draw(&painter, session, screen_from_canvas, visible_rect(&view, rect));
         marks::draw(&painter, session, screen_from_canvas, under, tool);
         lasso_keys(ui, session, actions);

@@ -1,13 +1,15 @@
 //! Turns events of pen and mouse on the canvas into actions. Strokes are made of events, one sample each, never of the
 //! pointer's position when a frame is drawn. Floor 7.
 
-use crate::math::{Vec2, vec2};
+use super::frame_input::{FrameInput, wheel};
+use super::rulers;
+use crate::math::{COORDINATE, Vec2, vec2};
 use crate::paint::Sample;
 use crate::pen::{FilteredReport, PenPhase, PenReport, PenSource, ReportFilter, SharedTablet, WindowPen};
-use crate::session::actions::{EditAction, HandAction, PointerAction, ViewAction};
+use crate::session::actions::{EditAction, GuideAction, HandAction, PointerAction, ViewAction};
 use crate::session::{Action, CanvasView, Session};
 use crate::tools::{ModifierKeys, PenSample, ToolKind};
-use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Response, TouchPhase, Ui};
+use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, TouchPhase, Ui};
 
 /// What the pointer is doing between press and release.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -34,7 +36,6 @@ const TAP_SECS: f64 = 0.35;
 const TAP_PT: f32 = 12.0;
 
 /// The state between frames.
-#[derive(Default)]
 pub struct PointerState {
     holding: PointerGesture,
     last: Pos2,
@@ -45,6 +46,26 @@ pub struct PointerState {
     tap: Option<(f64, f32)>,
     keys: Modifiers,
     space: bool,
+    /// The canvas's area of the window.
+    area: Rect,
+    /// A guide is pulled out of a ruler.
+    pulls: bool,
+}
+
+impl Default for PointerState {
+    fn default() -> Self {
+        Self {
+            holding: PointerGesture::default(),
+            last: Pos2::ZERO,
+            pen: WindowPen::default(),
+            watch: None,
+            tap: None,
+            keys: Modifiers::NONE,
+            space: false,
+            area: Rect::NOTHING,
+            pulls: false,
+        }
+    }
 }
 
 impl PointerState {
@@ -99,7 +120,9 @@ impl PointerState {
             && !ui.ctx().egui_wants_keyboard_input();
         self.keys = ui.input(|i| i.modifiers);
         let mut listening = FrameInput { session, view: *view, middle, actions, pens: Vec::new() };
-        let ours = |pos: Pos2| canvas.rect.contains(pos) && ui.ctx().layer_id_at(pos) == Some(canvas.layer_id);
+        let is_in_front = |pos: Pos2| ui.ctx().layer_id_at(pos) == Some(canvas.layer_id);
+        let ours = |pos: Pos2| canvas.rect.contains(pos) && is_in_front(pos);
+        self.area = canvas.rect;
         if let Some(touch) = ui.input(|i| i.multi_touch()).filter(|touch| canvas.rect.contains(touch.center_pos)) {
             self.two_fingers(
                 touch.translation_delta,
@@ -118,6 +141,11 @@ impl PointerState {
                 match report.phase {
                     PenPhase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
                         self.press(&report, button, &mut listening);
+                    }
+                    PenPhase::Down(PointerButton::Primary)
+                        if rulers::is_on(canvas.rect, session, report.at) && is_in_front(report.at) =>
+                    {
+                        self.pull(&report, canvas.rect, &mut listening);
                     }
                     PenPhase::Down(_) => {}
                     PenPhase::Move => self.moved(&report, &mut listening),
@@ -192,6 +220,18 @@ impl PointerState {
             _ => PointerGesture::Nothing,
         };
     }
+    /// A guide out of a ruler.
+    fn pull(&mut self, report: &PenReport, area: Rect, listening: &mut FrameInput) {
+        if self.holding != PointerGesture::Nothing {
+            return;
+        }
+        let Some((watch, reading)) = ReportFilter::begin(report, false) else { return };
+        (self.last, self.watch, self.pulls) = (report.at, Some(watch), true);
+        let (pen, px_per_pt) = (self.reading(reading, listening), 1.0 / listening.view.zoom);
+        let vertical = rulers::pulls_upright(area, &listening.view, report.at);
+        listening.actions.push(Action::Guide(GuideAction::Pull { vertical, pen, px_per_pt }));
+        self.holding = PointerGesture::Drawing;
+    }
     fn moved(&mut self, report: &PenReport, listening: &mut FrameInput) {
         let (pos, by) = (report.at, report.at - self.last);
         if by == eframe::egui::Vec2::ZERO {
@@ -225,6 +265,11 @@ impl PointerState {
     fn release(&mut self, listening: &mut FrameInput) {
         match self.holding {
             PointerGesture::Drawing => {
+                let is_guide = std::mem::take(&mut self.pulls) || listening.session.drags_guide();
+                if is_guide && rulers::is_on(self.area, listening.session, self.last) {
+                    // A guide that is dropped on a ruler leaves the canvas.
+                    listening.pens.push(PenSample::at(Vec2::splat(*COORDINATE.start())));
+                }
                 listening.flush();
                 listening.actions.push(Action::Pointer(PointerAction::Release {}));
             }
@@ -266,67 +311,5 @@ impl PointerState {
         };
         let keys = ModifierKeys { shift: self.keys.shift, ctrl: self.keys.command, alt: self.keys.alt };
         PenSample { sample, keys }
-    }
-}
-
-/// The input of one frame.
-struct FrameInput<'a> {
-    session: &'a Session,
-    /// The view after the actions so far.
-    view: CanvasView,
-    middle: Pos2,
-    actions: &'a mut Vec<Action>,
-    /// Samples not yet sent: all of a frame go together.
-    pens: Vec<PenSample>,
-}
-
-impl FrameInput<'_> {
-    fn about_view_center(&self, pos: Pos2) -> Vec2 {
-        vec2(pos.x - self.middle.x, pos.y - self.middle.y)
-    }
-    fn on_canvas(&self, pos: Pos2) -> Vec2 {
-        self.view.canvas_from_screen().transform_point2(self.about_view_center(pos))
-    }
-    fn view(&mut self, action: ViewAction) {
-        self.actions.push(Action::View(action));
-    }
-    fn zoom(&mut self, factor: f32, about: Pos2) {
-        if factor.is_finite() && factor > 0.0 && factor != 1.0 {
-            let about = self.about_view_center(about);
-            self.view = self.view.zoomed(factor, about);
-            self.view(ViewAction::Zoom { factor, about });
-        }
-    }
-    fn flush(&mut self) {
-        let pens = std::mem::take(&mut self.pens);
-        if !pens.is_empty() {
-            self.actions.push(Action::Pointer(PointerAction::Drag { pens }));
-        }
-    }
-}
-
-/// The wheel zooms to the pointer; with Shift it pans sideways, with Alt up and down; a trackpad's fingers pan.
-fn wheel(
-    unit: eframe::egui::MouseWheelUnit,
-    delta: eframe::egui::Vec2,
-    keys: Modifiers,
-    at: Pos2,
-    listening: &mut FrameInput,
-) {
-    use eframe::egui::MouseWheelUnit::{Line, Page, Point};
-    let points = match unit {
-        Line => delta * 40.0,
-        Page => delta * 400.0,
-        Point => delta,
-    };
-    let is_trackpad = unit == Point && !keys.command;
-    if is_trackpad {
-        listening.view(ViewAction::Pan { by: vec2(points.x, points.y) });
-    } else if keys.shift {
-        listening.view(ViewAction::Pan { by: vec2(points.x + points.y, 0.0) });
-    } else if keys.alt {
-        listening.view(ViewAction::Pan { by: vec2(0.0, points.x + points.y) });
-    } else {
-        listening.zoom((points.y * 0.005).exp(), at);
     }
 }

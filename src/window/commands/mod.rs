@@ -3,6 +3,7 @@
 
 mod edit;
 mod file;
+mod guides;
 mod help;
 mod layer;
 mod paint;
@@ -26,6 +27,8 @@ pub const MENUS: [(&str, &[MenuCommand]); 7] = [
 ];
 /// A menu within Layer.
 pub const SHADING: &[MenuCommand] = shading::COMMANDS;
+/// A menu within View.
+pub const GUIDES: &[MenuCommand] = guides::COMMANDS;
 /// A menu within Edit.
 pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
 
@@ -33,7 +36,7 @@ pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
     const EVERY: [(&str, &[MenuCommand]); 7] = MENUS;
     let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
-    menus.chain(SHADING).chain(TRANSFORMS).filter(|command| !command.is_line())
+    menus.chain(SHADING).chain(TRANSFORMS).chain(GUIDES).filter(|command| !command.is_line())
 }
 
 /// A command by its name.

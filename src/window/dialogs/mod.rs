@@ -3,6 +3,7 @@
 
 pub mod edge;
 pub mod export;
+pub mod grid;
 pub mod help;
 pub mod import;
 pub mod losses;
@@ -30,6 +31,7 @@ pub enum Dialog {
     New(new::NewDialog),
     Edge(edge::EdgeDialog),
     Keep(edge::KeepDialog),
+    Grid,
     Export(export::ExportDialog),
     Import(Box<import::ImportDialog>),
     Path(path::PathDialog),
@@ -96,6 +98,7 @@ impl Dialog {
                     let names: Vec<String> = kept.iter().map(|kept| kept.name.clone()).collect();
                     keep.show(ui, &names, requests)
                 }
+                Dialog::Grid => grid::show(ui, session, requests),
                 Dialog::Export(export) => export.show(ui, session, preview),
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),

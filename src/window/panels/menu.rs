@@ -1,7 +1,7 @@
 //! The menu bar and the documents' tabs.
 //! Floor 7.
 
-use crate::commands::{MENUS, MenuCommand, SHADING, TRANSFORMS};
+use crate::commands::{GUIDES, MENUS, MenuCommand, SHADING, TRANSFORMS};
 use crate::icons::{Icon, sized_button};
 use crate::keymap::shown;
 use crate::requests::{UiRequests, WindowRequest};
@@ -28,6 +28,9 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                             })),
                             "Transform" => drop(ui.menu_button("Transform layer", |ui| {
                                 TRANSFORMS.iter().for_each(|command| entry(ui, session, settings, command, requests));
+                            })),
+                            "Mirror view" => drop(ui.menu_button("Guides and grid", |ui| {
+                                GUIDES.iter().for_each(|command| entry(ui, session, settings, command, requests));
                             })),
                             "Open…" => recent_files(ui, &settings.recent, requests),
                             "Keep selection…" => kept_selections(ui, session, requests),

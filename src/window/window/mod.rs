@@ -23,9 +23,10 @@ use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
 use crate::advice::with_advice;
 use crate::document::Progress;
-use crate::session::actions::ViewAction;
+use crate::session::actions::{GuideAction, ViewAction};
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
+use crate::tools::snap::ViewAids;
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
 use std::path::PathBuf;
@@ -78,7 +79,7 @@ impl MainWindow {
         let (settings, keeper, trouble) = SettingsFile::new(file);
         ctx.set_theme(if settings.is_light { egui::Theme::Light } else { egui::Theme::Dark });
         Self {
-            session: Session::default(),
+            session: Session::default().with_aids(settings.aids),
             canvas: Canvas::new(ctx),
             thumbnails: Thumbnails::new(ctx),
             swatches: Swatches::default(),
@@ -107,7 +108,10 @@ impl MainWindow {
     }
     /// A window that records its actions, see [`MainWindow::recorded`].
     pub fn recording(self) -> Self {
-        Self { recorded: Some(Vec::new()), ..self }
+        // What is snapped to was remembered, and no action of this window.
+        let aids = Action::Guide(GuideAction::Aids { aids: self.session.aids });
+        let is_plain = self.session.aids == ViewAids::default();
+        Self { recorded: Some(Some(aids).filter(|_| !is_plain).into_iter().collect()), ..self }
     }
     /// The recorded actions as a replay file, one line each. Documents with corrected maps, pasted pictures and
     /// recovered drawings do not come from files, and are not in it.
@@ -157,6 +161,7 @@ impl MainWindow {
         self.do_requests(ui.ctx(), requests);
         self.session.keep();
         self.set_title(ui.ctx());
+        self.settings.aids = self.session.aids;
         self.keeper.keep(&self.settings);
     }
     /// Collects the errors of the window's threads.
@@ -251,6 +256,7 @@ impl MainWindow {
             WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             WindowRequest::EdgeDialog(change) => self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change))),
             WindowRequest::KeepDialog => self.dialogs.push(Dialog::Keep(edge::KeepDialog::default())),
+            WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),
             WindowRequest::Paste => self.paste(),
             WindowRequest::Palette => self.dialogs.push(Dialog::Palette(palette::CommandPalette::default())),
             WindowRequest::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default())),

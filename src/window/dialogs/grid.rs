@@ -1,0 +1,55 @@
+//! The numbers of the grid, and what the pen snaps to. Each change is seen at once.
+//! Floor 7.
+
+use super::{DialogAnswer, close};
+use crate::requests::UiRequests;
+use crate::session::actions::GuideAction;
+use crate::session::{Action, Session};
+use crate::tools::snap::{Grid, ViewAids};
+use crate::widgets::check;
+use eframe::egui::{DragValue, Ui};
+
+pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
+    ui.set_width(320.0);
+    ui.heading("Grid and snapping");
+    let mut aids = session.aids;
+    grid(ui, &mut aids.grid);
+    ui.separator();
+    for (label, hint, get) in CHOICES {
+        if let Some(on) = check(ui, label, hint, *get(&mut aids)) {
+            *get(&mut aids) = on;
+        }
+    }
+    if aids != session.aids {
+        requests.act(Action::Guide(GuideAction::Aids { aids }));
+    }
+    close(ui)
+}
+
+/// A setting of the snapping, to be read and written.
+type Choice = fn(&mut ViewAids) -> &mut bool;
+
+const CHOICES: [(&str, &str, Choice); 6] = [
+    ("Show grid", "Lines at equal distances over the picture", |aids| &mut aids.grid_shown),
+    ("Snap", "What is dragged goes to lines that come within eight points", |aids| &mut aids.snaps),
+    ("To guides", "As long as they are shown", |aids| &mut aids.to_guides),
+    ("To the grid", "As long as it is shown", |aids| &mut aids.to_grid),
+    ("To the canvas", "Its edges and its middle", |aids| &mut aids.to_canvas),
+    ("To layers", "The edges and middles of what other layers hold", |aids| &mut aids.to_layers),
+];
+
+fn grid(ui: &mut Ui, grid: &mut Grid) {
+    let mut number = |label: &str, value: &mut f32, range: std::ops::RangeInclusive<f32>| {
+        ui.horizontal(|ui| {
+            let label = ui.label(label);
+            ui.add(DragValue::new(value).range(range).speed(0.5).suffix(" px")).labelled_by(label.id);
+        });
+    };
+    number("Spacing", &mut grid.spacing, Grid::SPACING);
+    number("Offset x", &mut grid.offset.x, crate::math::COORDINATE);
+    number("Offset y", &mut grid.offset.y, crate::math::COORDINATE);
+    ui.horizontal(|ui| {
+        let label = ui.label("Subdivisions");
+        ui.add(DragValue::new(&mut grid.subdivisions).range(Grid::SUBDIVISIONS).speed(0.05)).labelled_by(label.id);
+    });
+}
