@@ -10,6 +10,7 @@ mod panels;
 mod recovery;
 mod replayed;
 mod selecting;
+mod several;
 
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;

@@ -33,6 +33,7 @@ use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
 use crate::tools::select::SelectSettings;
 use crate::tools::snap::{SnapLines, ViewAids};
+use crate::tools::symmetry::SymmetryAxes;
 use crate::tools::{Gesture, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,6 +61,8 @@ pub struct Session {
     pub operator: Operator,
     /// How strokes repeat.
     pub symmetry: Symmetry,
+    /// Where its axes stand.
+    pub axes: SymmetryAxes,
     /// The settings of the fill tool.
     pub fill: Fill,
     /// The settings of the selection tools.
@@ -111,6 +114,7 @@ impl Default for Session {
             recent_colors: Vec::new(),
             operator: Operator::None,
             symmetry: Symmetry::None,
+            axes: SymmetryAxes::default(),
             fill: Fill::default(),
             select: SelectSettings::default(),
             aids: ViewAids::default(),

@@ -62,7 +62,7 @@ pub fn press(context: &ToolContext, pen: PenSample, purpose: StrokePurpose) -> G
         brush.seed = hash::mix(pen.place().x.to_bits() ^ hash::mix(pen.place().y.to_bits()));
     }
     let color = if is_eraser { Color { a: 255, ..context.color } } else { context.color };
-    let images = context.symmetry.images(document.size);
+    let images = context.symmetry.images_about(document.size, context.axes);
     let like = |image: &SymmetryImage| {
         Stroke::new(image.brush(&brush), context.operator, color, Vec::new())
             .within(context.document.stroke_selection())

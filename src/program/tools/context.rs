@@ -1,7 +1,8 @@
 //! What tools are told when the pen comes down.
 //! Floor 5.
 
-use super::snap::SnapTargets;
+use super::snap::{SnapTargets, ViewAids};
+use super::symmetry::SymmetryAxes;
 use super::{SelectSettings, Symmetry};
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
@@ -35,8 +36,12 @@ pub struct ToolContext<'a> {
     pub lasso: &'a [Vec2],
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
+    /// Where the axes of symmetry stand.
+    pub axes: SymmetryAxes,
     /// What the pen snaps to.
     pub snap: &'a SnapTargets,
+    /// What is snapped to and drawn along.
+    pub aids: ViewAids,
     /// From a pixel to what a clone brush copies onto it, px; `None` before it was set.
     pub clone_offset: Option<Vec2>,
 }
@@ -59,12 +64,90 @@ impl<'a> ToolContext<'a> {
             select: SelectSettings::default(),
             lasso: &[],
             strokes: &[],
+            axes: SymmetryAxes::default(),
             snap: SnapTargets::none(),
+            aids: ViewAids::default(),
             clone_offset: None,
         }
     }
     /// The chosen layers: where none are told, the selected one.
     pub fn chosen(&self) -> &[LayerId] {
         if self.layers.is_empty() { self.layer.as_slice() } else { self.layers }
+    }
+}
+
+/// A context that outlasts the press, for gestures that begin with a later sample.
+pub struct KeptContext {
+    document: Document,
+    layer: Option<LayerId>,
+    layers: Vec<LayerId>,
+    brush: Brush,
+    lasso: Vec<Vec2>,
+    strokes: Vec<usize>,
+    snap: SnapTargets,
+    /// All that is no reference.
+    plain: PlainContext,
+}
+
+#[derive(Clone, Copy)]
+struct PlainContext {
+    colors: [Color; 2],
+    operator: Operator,
+    px_per_pt: f32,
+    last_end: Option<Vec2>,
+    symmetry: Symmetry,
+    axes: SymmetryAxes,
+    fill: Fill,
+    select: SelectSettings,
+    aids: ViewAids,
+    clone_offset: Option<Vec2>,
+}
+
+impl KeptContext {
+    pub fn of(context: &ToolContext) -> Self {
+        let ToolContext { color, second_color, operator, px_per_pt, last_end, symmetry, axes, .. } = *context;
+        let ToolContext { fill, select, aids, clone_offset, .. } = *context;
+        let colors = [color, second_color];
+        let plain =
+            PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, select, aids, clone_offset };
+        Self {
+            document: context.document.clone(),
+            layer: context.layer,
+            layers: context.layers.to_vec(),
+            brush: context.brush.clone(),
+            lasso: context.lasso.to_vec(),
+            strokes: context.strokes.to_vec(),
+            snap: context.snap.clone(),
+            plain,
+        }
+    }
+    /// Canvas px per screen point.
+    pub fn px_per_pt(&self) -> f32 {
+        self.plain.px_per_pt
+    }
+    /// The context as it was.
+    pub fn lend<T>(&self, to: impl FnOnce(&ToolContext) -> T) -> T {
+        let PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, select, aids, clone_offset } =
+            self.plain;
+        to(&ToolContext {
+            document: &self.document,
+            layer: self.layer,
+            layers: &self.layers,
+            brush: &self.brush,
+            color: colors[0],
+            second_color: colors[1],
+            operator,
+            px_per_pt,
+            last_end,
+            symmetry,
+            axes,
+            fill,
+            select,
+            lasso: &self.lasso,
+            strokes: &self.strokes,
+            snap: &self.snap,
+            aids,
+            clone_offset,
+        })
     }
 }

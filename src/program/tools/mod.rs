@@ -3,6 +3,7 @@
 //! (`session`), screen coordinates (`window`).
 
 pub mod anchors;
+pub mod assistants;
 pub mod brush;
 mod context;
 pub mod eyedropper;
@@ -41,6 +42,7 @@ pub enum ToolKind {
     Anchors,
     Move,
     Transform,
+    Assistants,
     Strokes,
     SelectRectangle,
     SelectEllipse,
@@ -67,7 +69,7 @@ pub struct ToolRow {
 }
 
 impl ToolKind {
-    pub const ALL: [ToolRow; 17] = [
+    pub const ALL: [ToolRow; 18] = [
         ToolRow {
             kind: ToolKind::Brush,
             name: "brush",
@@ -124,6 +126,14 @@ impl ToolKind {
             key: 'T',
             hint: "Drag corners, edges, the inside to move, the outside to turn. Shift keeps aspect or steps, Alt the \
                    middle, Ctrl skews and distorts; Enter applies it",
+        },
+        ToolRow {
+            kind: ToolKind::Assistants,
+            name: "assistants",
+            label: "Assistants",
+            key: 'Y',
+            hint: "Drag to lay an assistant, or a handle of one or of the symmetry's axes; Alt-click takes one away. \
+                   Strokes go along them",
         },
         ToolRow {
             kind: ToolKind::Strokes,
@@ -189,8 +199,8 @@ impl ToolKind {
     }
     /// The pen snaps to guides, the grid and edges.
     pub fn snaps(self) -> bool {
-        use ToolKind::{Brush, Eraser, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
-        matches!(self, Brush | Eraser | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
+        use ToolKind::{Assistants, Brush, Eraser, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
+        matches!(self, Assistants | Brush | Eraser | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
     }
     /// It makes selections.
     pub fn selects(self) -> bool {
@@ -257,6 +267,8 @@ pub enum Outcome {
     CloneFrom(Vec2),
     /// Nothing was started, for a reason to show.
     Refused(&'static str),
+    /// The axes of symmetry stand here from now on.
+    Axes(symmetry::SymmetryAxes),
     /// A colour was picked.
     Picked(Color),
     /// The preview is to be dropped.
@@ -292,6 +304,7 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Anchors => anchors::press(context, pen),
         ToolKind::Move => move_content::press(context, pen),
         ToolKind::Transform => transform::press(context, pen),
+        ToolKind::Assistants => assistants::press(context, pen),
         ToolKind::Strokes => strokes::press(context, pen),
         ToolKind::SelectRectangle
         | ToolKind::SelectEllipse

@@ -3,7 +3,7 @@
 //! Floor 5. Pure functions; which tools ask is theirs, what is drawn of it the window's.
 
 use super::transform::TransformFrame;
-use crate::document::{Content, Document, LayerId};
+use crate::document::{AssistantKind, Content, Document, LayerId};
 use crate::math::range::{Range, held};
 use crate::math::{COORDINATE, Vec2, vec2};
 
@@ -29,6 +29,8 @@ pub struct ViewAids {
     pub to_layers: bool,
     /// How strongly assistants draw strokes to them: 0 not at all, 1 wholly.
     pub magnetism: f32,
+    /// What the tool *Assistants* sets.
+    pub assistant: AssistantKind,
 }
 
 /// Level and upright lines at equal distances.
@@ -79,6 +81,7 @@ impl Default for ViewAids {
             to_canvas: true,
             to_layers: false,
             magnetism: 1.0,
+            assistant: AssistantKind::Line,
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Symmetry: every stroke of the brush with its mirror images, each a stroke of its own over its own part of the
 //! surface. Floor 5.
 
-use crate::math::{Mat2, Size, Vec2};
+use crate::math::range::held;
+use crate::math::{COORDINATE, Mat2, Size, TURNS, Vec2, vec2};
 use crate::paint::{Brush, Sample, StrokeFrame};
 
-/// How strokes repeat about the middle of the canvas.
+/// How strokes repeat about a point, which is the middle of the canvas unless it was moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Symmetry {
     #[default]
@@ -22,7 +23,68 @@ pub enum Symmetry {
 /// The most times round.
 pub const MOST_ROUND: u32 = 64;
 
-/// Where one of the strokes goes: turned or mirrored about the canvas's centre.
+/// Where the axes stand.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct SymmetryAxes {
+    /// The point about which strokes repeat; without one the middle of the canvas.
+    pub center: Option<Vec2>,
+    /// How far both axes are turned, counter-clockwise, degrees.
+    pub turn: f32,
+}
+
+/// What the hand takes hold of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisHandle {
+    Middle,
+    /// Up the upright axis.
+    End,
+}
+
+/// How far the handle that turns stands from the middle, screen points.
+const HANDLE_PT: f32 = 90.0;
+/// Turns with Shift go from one multiple of this to the next.
+const STEP_DEGREES: f32 = 15.0;
+
+impl SymmetryAxes {
+    pub fn middle(&self, canvas: Size) -> Vec2 {
+        self.center.unwrap_or(canvas.center())
+    }
+    /// With its numbers in their ranges.
+    pub fn held(self) -> Self {
+        let place = |p: Vec2| vec2(held(p.x, &COORDINATE), held(p.y, &COORDINATE));
+        Self { center: self.center.map(place), turn: held(self.turn, &TURNS) }
+    }
+    fn rotation(&self) -> Mat2 {
+        // y points down, so counter-clockwise as seen is a negative angle.
+        if self.turn == 0.0 { Mat2::IDENTITY } else { Mat2::from_angle(-self.turn.to_radians()) }
+    }
+    /// The middle, and the end of the upright axis, canvas px.
+    pub fn handles(&self, canvas: Size, px_per_pt: f32) -> [Vec2; 2] {
+        let middle = self.middle(canvas);
+        [middle, middle - self.rotation() * Vec2::Y * HANDLE_PT * px_per_pt]
+    }
+    /// The handle at a point, where there are axes at all.
+    pub fn handle_at(&self, symmetry: Symmetry, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<AxisHandle> {
+        let [middle, end] = self.handles(canvas, px_per_pt);
+        let near = |handle: Vec2| symmetry != Symmetry::None && handle.distance(at) <= super::GRAB_PT * px_per_pt;
+        if near(end) { Some(AxisHandle::End) } else { near(middle).then_some(AxisHandle::Middle) }
+    }
+    /// The axes with a handle at a point; `steps`: only turns by whole steps.
+    pub fn dragged(&self, handle: AxisHandle, canvas: Size, at: Vec2, steps: bool) -> Self {
+        let next = match handle {
+            AxisHandle::Middle => Self { center: Some(at), ..*self },
+            AxisHandle::End => {
+                let by = at - self.middle(canvas);
+                let turn = if by.length() < 1.0 { self.turn } else { (-by.x).atan2(-by.y).to_degrees() };
+                let turn = if steps { (turn / STEP_DEGREES).round() * STEP_DEGREES } else { turn };
+                Self { turn, ..*self }
+            }
+        };
+        next.held()
+    }
+}
+
+/// Where one of the strokes goes: turned or mirrored about the middle of the axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymmetryImage {
     center: Vec2,
@@ -32,7 +94,22 @@ pub struct SymmetryImage {
 
 impl Symmetry {
     /// The images of a stroke, the stroke itself first.
-    pub fn images(self, canvas: Size) -> Vec<SymmetryImage> {
+    pub fn images_about(self, canvas: Size, axes: SymmetryAxes) -> Vec<SymmetryImage> {
+        let (center, rotation) = (axes.middle(canvas), axes.rotation());
+        let turned = |image: SymmetryImage| {
+            let turn = if axes.turn == 0.0 { image.turn } else { rotation * image.turn * rotation.transpose() };
+            SymmetryImage { center, turn: if image.turn == Mat2::IDENTITY { image.turn } else { turn } }
+        };
+        self.images(canvas).into_iter().map(turned).collect()
+    }
+    /// The lines across which strokes repeat, or that part the turns; canvas px, as far as the canvas reaches.
+    pub fn lines_about(self, canvas: Size, axes: SymmetryAxes) -> Vec<[Vec2; 2]> {
+        let (center, rotation) = (axes.middle(canvas), axes.rotation());
+        let moved = |point: Vec2| center + rotation * (point - canvas.center());
+        self.axes(canvas).into_iter().map(|line| line.map(moved)).collect()
+    }
+    /// About the middle of the canvas.
+    fn images(self, canvas: Size) -> Vec<SymmetryImage> {
         let mirror = |x: f32, y: f32| Mat2::from_diagonal(Vec2::new(x, y));
         let turns = match self {
             Symmetry::None => vec![Mat2::IDENTITY],
@@ -46,8 +123,8 @@ impl Symmetry {
         };
         turns.into_iter().map(|turn| SymmetryImage { center: canvas.center(), turn }).collect()
     }
-    /// The lines across which strokes repeat, or that part the turns; canvas px, as far as the canvas's corners.
-    pub fn axes(self, canvas: Size) -> Vec<[Vec2; 2]> {
+    /// The lines about the middle of the canvas.
+    fn axes(self, canvas: Size) -> Vec<[Vec2; 2]> {
         let (middle, reach) = (canvas.center(), canvas.center().length());
         let across = |direction: Vec2| [middle - direction * canvas.center(), middle + direction * canvas.center()];
         match self {

@@ -20,12 +20,13 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
     if matches!(tool, ToolKind::Anchors | ToolKind::Gradient | ToolKind::Image) {
         handles(painter, session, &to_screen);
     }
-    if matches!(tool, ToolKind::Brush | ToolKind::Eraser) {
+    if matches!(tool, ToolKind::Brush | ToolKind::Eraser | ToolKind::Assistants) {
         axes(painter, session, &to_screen);
     }
     if tool == ToolKind::Transform {
         super::frame::draw(painter, session, &to_screen);
     }
+    super::assistants::draw(painter, session, &to_screen, tool == ToolKind::Assistants);
     if tool == ToolKind::Strokes {
         chosen(painter, session, &to_screen);
     }
@@ -71,7 +72,7 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
 /// The axes of symmetry.
 fn axes(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(document) = session.shown() else { return };
-    for axis in session.symmetry.axes(document.size) {
+    for axis in session.symmetry.lines_about(document.size, session.axes) {
         let ends = axis.map(to_screen);
         painter.line_segment(ends, Stroke::new(2.2, Color32::from_black_alpha(70)));
         let dashes = Stroke::new(1.0, Color32::from_rgb(120, 200, 255));

@@ -3,6 +3,7 @@
 //! come from the render thread.
 
 mod ants;
+mod assistants;
 mod blocks;
 mod frame;
 mod frame_input;

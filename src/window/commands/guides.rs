@@ -55,4 +55,18 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| set(session, requests, |aids| aids.snaps ^= true),
     )
     .ticked(|session, _| session.aids.snaps),
+    LINE,
+    row(
+        "Draw along assistants",
+        &[ctrl_shift(Key::L)],
+        "Strokes go along the lines of assistants, or freely",
+        always,
+        |session, requests| {
+            set(session, requests, |aids| aids.magnetism = if aids.magnetism > 0.0 { 0.0 } else { 1.0 })
+        },
+    )
+    .ticked(|session, _| session.aids.magnetism > 0.0),
+    row("Clear assistants", &[], "Takes all assistants away", has_document, |_, requests| {
+        requests.act(Action::Guide(GuideAction::Assistants { assistants: Vec::new() }))
+    }),
 ];

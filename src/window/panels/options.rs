@@ -1,7 +1,7 @@
 //! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
-use super::{brush_mode, fill, select, transform};
+use super::{assistants, brush_mode, fill, select, transform};
 use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
@@ -79,6 +79,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
         tool if tool.selects() => select::options(ui, session, requests),
         ToolKind::Transform => transform::options(ui, session, requests),
+        ToolKind::Assistants => assistants::options(ui, session, requests),
         tool => drop(ui.weak(tool.row().hint)),
     }
 }
@@ -105,7 +106,7 @@ fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     });
     menu.response
-        .on_hover_text("Repeats every stroke about the middle of the canvas; each copy bends at its own place");
+        .on_hover_text("Repeats every stroke about an axis or a point, which the tool Assistants moves; each copy bends at its own place");
 }
 
 /// The live sliders of an operator, in a bar.

@@ -1,13 +1,13 @@
 //! Guides and assistants as they are set, pulled out and cleared; what snaps to them and what of them is shown.
 //! Floor 6. Guides that lie on the canvas are moved by the pen: `tools::guides`.
 
-use crate::document::{Assistant, Document, Guides};
+use crate::document::{Assistant, AssistantKind, Document, Guides};
 use crate::io::json::JsonNode;
 use crate::io::recipe::guides as written;
 use crate::math::UNIT;
 use crate::math::range::held;
 use crate::session::Session;
-use crate::session::replay::{ReplayValue, actions, record};
+use crate::session::replay::{ReplayValue, actions, names, record};
 use crate::tools::PenSample;
 use crate::tools::guides::pull;
 use crate::tools::snap::{Grid, SnapTargets, ViewAids};
@@ -15,6 +15,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
 
+names!(AssistantKind);
 record!(Grid { spacing, subdivisions, offset });
 record!(ViewAids {
     rulers,
@@ -28,6 +29,7 @@ record!(ViewAids {
     to_canvas,
     to_layers,
     magnetism,
+    assistant,
 });
 record!(Guides { vertical, horizontal });
 

@@ -3,12 +3,12 @@
 
 use crate::io::recipe::read_brush;
 use crate::math::range::held;
-use crate::math::{TURNS, UNIT, srgb::Color};
+use crate::math::{TURNS, UNIT, Vec2, srgb::Color};
 use crate::paint::{Brush, BrushMode, Fill, Property};
 use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, field, names, record};
 use crate::surface::{Operator, PaintLimit};
-use crate::tools::symmetry::MOST_ROUND;
+use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
 use crate::tools::{Symmetry, ToolKind};
 use serde_json::{Value, json};
 
@@ -84,6 +84,8 @@ actions! {
         "default colors" DefaultColors {}
         "operator" Operator { operator: Operator }
         "symmetry" Symmetry { symmetry: Symmetry }
+        /// Where the axes of symmetry stand; without a point about the middle of the canvas.
+        "axes" Axes { center: Option<Vec2>, turn: f32 }
         "fill" Fill { fill: Fill }
         /// Whether a mouse presses less the faster it moves.
         "press by speed" PressBySpeed { on: bool }
@@ -131,6 +133,7 @@ impl HandAction {
             HandAction::DefaultColors {} => (session.color, session.second_color) = (Color::BLACK, Color::WHITE),
             HandAction::Operator { operator } => session.operator = operator.held(),
             HandAction::Symmetry { symmetry } => session.symmetry = *symmetry,
+            HandAction::Axes { center, turn } => session.axes = SymmetryAxes { center: *center, turn: *turn }.held(),
             HandAction::Fill { fill } => session.fill = *fill,
             HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = mode.held(),

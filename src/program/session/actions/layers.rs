@@ -87,6 +87,10 @@ impl LayerAction {
         session.drop_gesture();
         let Some(tab) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
+            if let Some(why) = self.refusal(tab.document()) {
+                tab.forget_preview();
+                return session.say(why);
+            }
             return set(tab, layer, to, *done);
         }
         tab.forget_preview();

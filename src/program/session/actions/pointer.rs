@@ -6,6 +6,7 @@ use crate::math::vec2;
 use crate::paint::{BrushMode, Sample};
 use crate::session::replay::{ReplayValue, actions, record};
 use crate::session::{CloneSource, OpenDocument, Session};
+use crate::tools::assistants::StrokeStart;
 use crate::tools::brush::StrokePurpose;
 use crate::tools::guides::GuideAt;
 use crate::tools::snap::{SnapTargets, ViewAids};
@@ -113,19 +114,20 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         px_per_pt,
         last_end: tab.last_end,
         symmetry: session.symmetry,
+        axes: session.axes,
         fill: session.fill,
         select: session.select,
         lasso: &session.lasso,
         strokes: &strokes,
         snap: &snap,
+        aids: session.aids,
         clone_offset,
     };
-    let (gesture, outcome) = match tool {
-        ToolKind::Brush if tab.quick_mask => tools::mask::press_on_selection(&context, pen, StrokePurpose::Paint),
-        ToolKind::Eraser if tab.quick_mask => tools::mask::press_on_selection(&context, pen, StrokePurpose::Erase),
-        ToolKind::Brush if tab.on_mask => tools::mask::press(&context, pen, StrokePurpose::Paint),
-        ToolKind::Eraser if tab.on_mask => tools::mask::press(&context, pen, StrokePurpose::Erase),
-        _ => tools::press(tool, &context, pen),
+    let (gesture, outcome) = match stroke_start(tool, tab) {
+        // A line from the last stroke's end is straight already.
+        Some(start) if is_line => start(&context, pen),
+        Some(start) => tools::assistants::press_along(&context, pen, start),
+        None => tools::press(tool, &context, pen),
     };
     session.gesture = gesture;
     session.last_pen = Some(pen.sample.at);
@@ -133,6 +135,19 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         session.remember_color();
     }
     take(session, outcome);
+}
+
+/// How a stroke of the tool begins, if it makes strokes: on the layer, its mask or the selection.
+fn stroke_start(tool: ToolKind, tab: &OpenDocument) -> Option<StrokeStart> {
+    Some(match tool {
+        ToolKind::Brush if tab.quick_mask => |c, pen| tools::mask::press_on_selection(c, pen, StrokePurpose::Paint),
+        ToolKind::Eraser if tab.quick_mask => |c, pen| tools::mask::press_on_selection(c, pen, StrokePurpose::Erase),
+        ToolKind::Brush if tab.on_mask => |c, pen| tools::mask::press(c, pen, StrokePurpose::Paint),
+        ToolKind::Eraser if tab.on_mask => |c, pen| tools::mask::press(c, pen, StrokePurpose::Erase),
+        ToolKind::Brush => |c, pen| tools::press(ToolKind::Brush, c, pen),
+        ToolKind::Eraser => |c, pen| tools::press(ToolKind::Eraser, c, pen),
+        _ => return None,
+    })
 }
 
 /// A gesture that something else than a press of the pen on the canvas began.
@@ -166,8 +181,11 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
                 .selected
                 .and_then(|id| document.layer(id))
                 .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
-    let looks_only =
-        is_moved_whole || matches!(tool, ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom | ToolKind::Transform);
+    let looks_only = is_moved_whole
+        || matches!(
+            tool,
+            ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom | ToolKind::Transform | ToolKind::Assistants
+        );
     let Some(layer) = tab.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
@@ -209,6 +227,7 @@ fn take(session: &mut Session, outcome: Outcome) {
                 tab.choose_strokes(layer, strokes);
             }
         }
+        Outcome::Axes(axes) => session.axes = axes,
         Outcome::Picked(color) => session.color = color,
         Outcome::Cancel => tab.forget_preview(),
     }

@@ -112,7 +112,11 @@ const PROPERTIES: [&str; 45] = [
     r#"{"do":"reference","reference":#}"#,
     r#"{"do":"strength","to":#}"#,
 ];
-const OTHERS: [&str; 42] = [
+const OTHERS: [&str; 46] = [
+    r#"{"in":"guide","do":"set","guides":{"vertical":[#,3.5],"horizontal":[#]}}"#,
+    r#"{"in":"guide","do":"assistants","assistants":[{"kind":"ellipse","points":[[1,2],[#,4],[5,#]]}]}"#,
+    r#"{"in":"guide","do":"clear"}"#,
+    r#"{"in":"hand","do":"axes","center":[#,#],"turn":#}"#,
     r#"{"in":"selection","do":"all"}"#,
     r#"{"in":"selection","do":"region","region":{"kind":"direction","at":[20.5,#],"tolerance":#,"softness":#,
         "contiguous":true},"how":"replace"}"#,
