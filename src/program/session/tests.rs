@@ -3,6 +3,7 @@
 mod held;
 mod selecting;
 mod several;
+mod snapping;
 mod steps;
 
 use super::actions::{Action, LayerAction};

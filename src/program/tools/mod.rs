@@ -197,10 +197,10 @@ impl ToolKind {
         const ROWS: &[ToolRow] = &ToolKind::ALL;
         ROWS.iter().find(|row| row.kind == self).unwrap_or(&ROWS[0])
     }
-    /// The pen snaps to guides, the grid and edges.
+    /// The pen snaps to guides, the grid and edges, whatever is done with it.
     pub fn snaps(self) -> bool {
-        use ToolKind::{Assistants, Brush, Eraser, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
-        matches!(self, Assistants | Brush | Eraser | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
+        use ToolKind::{Assistants, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
+        matches!(self, Assistants | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
     }
     /// It makes selections.
     pub fn selects(self) -> bool {
@@ -283,6 +283,10 @@ pub trait Gesture: Send {
     /// The lines that it snapped to, to be shown.
     fn snap_lines(&self) -> SnapLines {
         SnapLines::default()
+    }
+    /// Where it was last drawn to, if that is not where the pen is.
+    fn end(&self) -> Option<Vec2> {
+        None
     }
     /// Whether it moves a guide, which is taken away where it is dropped on a ruler.
     fn is_guide(&self) -> bool {

@@ -105,8 +105,9 @@ fn symmetry(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
     });
-    menu.response
-        .on_hover_text("Repeats every stroke about an axis or a point, which the tool Assistants moves; each copy bends at its own place");
+    let hint = "Repeats every stroke about an axis or a point, which the tool Assistants moves; each copy bends at its \
+                own place";
+    menu.response.on_hover_text(hint);
 }
 
 /// The live sliders of an operator, in a bar.

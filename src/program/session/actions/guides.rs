@@ -83,6 +83,13 @@ impl GuideAction {
                 }
                 commit(session, "Clear guides", |document| Document { guides: Arc::default(), ..document });
             }
+            GuideAction::Assistants { assistants } if assistants.is_empty() => {
+                let is_empty = session.active().is_none_or(|tab| tab.document().assistants.is_empty());
+                if is_empty {
+                    return session.say("There are no assistants.");
+                }
+                commit(session, "Clear assistants", |document| Document { assistants: Arc::default(), ..document });
+            }
             GuideAction::Assistants { assistants } => commit(session, "Assistants", |document| Document {
                 assistants: Arc::new(assistants.clone()),
                 ..document

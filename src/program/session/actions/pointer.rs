@@ -57,7 +57,8 @@ impl PointerAction {
             PointerAction::Drag { pens } => {
                 let Some(gesture) = &mut session.gesture else { return };
                 let outcome = gesture.drag(pens);
-                session.last_pen = pens.last().map(|pen| pen.sample.at).or(session.last_pen);
+                let drawn = gesture.end().or(pens.last().map(|pen| pen.sample.at));
+                session.last_pen = drawn.or(session.last_pen);
                 take(session, outcome);
             }
             PointerAction::Release {} => {
@@ -85,18 +86,11 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         Ok(document) => document,
         Err(why) => return session.notes.push(why.into()),
     };
-    let moving: &[LayerId] = if matches!(tool, ToolKind::Move | ToolKind::Transform) { &layers } else { &[] };
-    let snap = match tool.snaps() {
-        true => SnapTargets::of(&document, &session.aids, moving, px_per_pt),
-        false => SnapTargets::default(),
-    };
-    // Straight lines end where they snap.
     let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser) && pen.keys.shift && tab.last_end.is_some();
-    let pen = if is_line {
-        PenSample { sample: Sample { at: snap.point(pen.place()).at, ..pen.sample }, ..pen }
-    } else {
-        pen
-    };
+    let snap = targets(session, &document, tool, &layers, is_line, px_per_pt);
+    // Straight lines end where they snap.
+    let at = if is_line { snap.point(pen.place()).at } else { pen.place() };
+    let pen = PenSample { sample: Sample { at, ..pen.sample }, ..pen };
     if let Some(guide) = guide_under(session, &document, tool, pen, px_per_pt) {
         let to = SnapTargets::of(&document, &ViewAids { to_guides: false, ..session.aids }, &[], px_per_pt);
         let (gesture, outcome) = tools::guides::hold(tab.document(), guide, to);
@@ -135,6 +129,22 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         session.remember_color();
     }
     take(session, outcome);
+}
+
+/// What the pen snaps to with a tool; strokes do where they are lines.
+fn targets(
+    session: &Session,
+    document: &Document,
+    tool: ToolKind,
+    chosen: &[LayerId],
+    is_line: bool,
+    px_per_pt: f32,
+) -> SnapTargets {
+    let moving = if matches!(tool, ToolKind::Move | ToolKind::Transform) { chosen } else { &[] };
+    match is_line || tool.snaps() {
+        true => SnapTargets::of(document, &session.aids, moving, px_per_pt),
+        false => SnapTargets::default(),
+    }
 }
 
 /// How a stroke of the tool begins, if it makes strokes: on the layer, its mask or the selection.

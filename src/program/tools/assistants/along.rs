@@ -26,7 +26,10 @@ pub fn press_along(context: &ToolContext, pen: PenSample, start: StrokeStart) ->
     }
     let waiting = Waiting { kept: KeptContext::of(context), start, paths, pens: vec![pen] };
     let magnetism = context.aids.magnetism;
-    (Some(Box::new(AlongGesture { waiting: Some(waiting), path: None, magnetism, stroke: None })), Outcome::Idle)
+    (
+        Some(Box::new(AlongGesture { waiting: Some(waiting), path: None, magnetism, stroke: None, end: None })),
+        Outcome::Idle,
+    )
 }
 
 /// A stroke that has not begun.
@@ -42,6 +45,8 @@ struct AlongGesture {
     path: Option<AssistantPath>,
     magnetism: f32,
     stroke: Option<Box<dyn Gesture>>,
+    /// Where it was drawn to.
+    end: Option<Vec2>,
 }
 
 impl AlongGesture {
@@ -53,6 +58,7 @@ impl AlongGesture {
     fn begin(&mut self) -> Outcome {
         let Some(Waiting { kept, start, pens, .. }) = self.waiting.take() else { return Outcome::Idle };
         let pens: Vec<PenSample> = pens.iter().map(|pen| self.drawn(pen)).collect();
+        self.end = pens.last().map(PenSample::place);
         let Some((first, rest)) = pens.split_first() else { return Outcome::Idle };
         let (stroke, outcome) = kept.lend(|context| start(context, *first));
         self.stroke = stroke;
@@ -71,9 +77,9 @@ fn nearest(paths: &[AssistantPath], from: Vec2, to: Vec2) -> Option<AssistantPat
 
 impl Gesture for AlongGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
-        if let Some(stroke) = &self.stroke {
-            let _ = stroke;
+        if self.stroke.is_some() {
             let pens: Vec<PenSample> = pens.iter().map(|pen| self.drawn(pen)).collect();
+            self.end = pens.last().map(PenSample::place).or(self.end);
             return self.stroke.as_mut().map_or(Outcome::Idle, |stroke| stroke.drag(&pens));
         }
         let Some(waiting) = &mut self.waiting else { return Outcome::Idle };
@@ -90,5 +96,8 @@ impl Gesture for AlongGesture {
         // A dot goes along nothing.
         let begun = self.begin();
         self.stroke.take().map_or(begun, |mut stroke| stroke.release())
+    }
+    fn end(&self) -> Option<Vec2> {
+        self.end
     }
 }
