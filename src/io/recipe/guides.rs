@@ -21,7 +21,7 @@ pub fn read_assistants(node: &JsonNode) -> Result<Vec<Assistant>> {
     node.list(Assistant::MOST)?.iter().map(read_assistant).collect()
 }
 
-pub fn read_assistant(node: &JsonNode) -> Result<Assistant> {
+fn read_assistant(node: &JsonNode) -> Result<Assistant> {
     let mut fields = node.fields()?;
     let kind = fields.required("kind")?.one_of(&AssistantKind::ALL)?;
     let points = fields.required("points")?;
@@ -41,7 +41,7 @@ pub fn write(out: &mut JsonObject, document: &Document) {
     }
 }
 
-pub fn write_guides(guides: &Guides) -> Value {
+fn write_guides(guides: &Guides) -> Value {
     let mut out = JsonObject::default();
     for (name, lines) in [("vertical", &guides.vertical), ("horizontal", &guides.horizontal)] {
         if !lines.is_empty() {
@@ -51,7 +51,7 @@ pub fn write_guides(guides: &Guides) -> Value {
     out.done()
 }
 
-pub fn write_assistant(assistant: &Assistant) -> Value {
+fn write_assistant(assistant: &Assistant) -> Value {
     let mut out = JsonObject::default();
     out.set("kind", assistant.kind.name().into());
     out.set("points", assistant.points.iter().map(|point| object::point(*point)).collect());

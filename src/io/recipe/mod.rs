@@ -21,7 +21,7 @@
 //! | `pictures` | the files that layers name, each decoded once |
 
 mod brush;
-pub mod guides;
+mod guides;
 mod habits;
 mod images;
 mod layers;

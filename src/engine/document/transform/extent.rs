@@ -62,12 +62,16 @@ fn box_of(layer: &Layer, scene: &Scene) -> Option<FrameBox> {
     }
 }
 
-/// The pixels of a grid that are not wholly transparent.
+/// The pixels of a grid that are not wholly transparent. Asked for with every frame that shows handles: a tile that lies
+/// within what is known is not looked at.
 fn painted(tiles: &TileGrid) -> Rect {
-    let of_tile = |(at, tile): (crate::raster::TileAt, &std::sync::Arc<crate::raster::Tile>)| {
+    let with_tile = |known: Rect, (at, tile): (crate::raster::TileAt, &std::sync::Arc<crate::raster::Tile>)| {
         let origin = at.rect();
+        if known.union(origin) == known {
+            return known;
+        }
         let rows = tile.bytes().chunks_exact(TILE * 4).zip(origin.y0..);
-        rows.fold(Rect::EMPTY, |all, (row, y)| {
+        rows.fold(known, |all, (row, y)| {
             let is_painted = |p: &[u8]| p[3] > 0;
             let (first, last) = (row.chunks_exact(4).position(is_painted), row.chunks_exact(4).rposition(is_painted));
             match first.zip(last) {
@@ -78,5 +82,26 @@ fn painted(tiles: &TileGrid) -> Rect {
             }
         })
     };
-    tiles.iter().map(of_tile).fold(Rect::EMPTY, Rect::union)
+    tiles.iter().fold(Rect::EMPTY, with_tile)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::hash;
+
+    #[test]
+    fn the_box_around_paint_holds_every_pixel_of_it_and_no_row_more() {
+        for seed in 0..20 {
+            let mut rgba = vec![0u8; 300 * 200 * 4];
+            let random = |i: u32, most: u32| hash::mix(seed * 31 + i) % most;
+            let mut expected = Rect::EMPTY;
+            for i in 0..3 + seed % 4 {
+                let (x, y) = (random(2 * i, 300), random(2 * i + 1, 200));
+                rgba[((y * 300 + x) * 4 + 3) as usize] = 9;
+                expected = expected.union(Rect::new(x as i32, y as i32, x as i32 + 1, y as i32 + 1));
+            }
+            assert_eq!(painted(&TileGrid::from_straight_rgba(&rgba, 300, 200, 0, 0)), expected);
+        }
+    }
 }

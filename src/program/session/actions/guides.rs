@@ -2,17 +2,13 @@
 //! Floor 6. Guides that lie on the canvas are moved by the pen: `tools::guides`.
 
 use crate::document::{Assistant, AssistantKind, Document, Guides};
-use crate::io::json::JsonNode;
-use crate::io::recipe::guides as written;
 use crate::math::UNIT;
 use crate::math::range::held;
 use crate::session::Session;
-use crate::session::replay::{ReplayValue, actions, names, record};
+use crate::session::replay::{actions, names, record};
 use crate::tools::PenSample;
 use crate::tools::guides::pull;
 use crate::tools::snap::{Grid, SnapTargets, ViewAids};
-use serde_json::Value;
-use std::path::Path;
 use std::sync::Arc;
 
 names!(AssistantKind);
@@ -32,17 +28,7 @@ record!(ViewAids {
     assistant,
 });
 record!(Guides { vertical, horizontal });
-
-/// As a document says it.
-impl ReplayValue for Assistant {
-    fn written(&self) -> Value {
-        written::write_assistant(self)
-    }
-    fn read(value: &Value) -> Result<Self, String> {
-        let node = JsonNode::root(Path::new("assistant"), value);
-        written::read_assistant(&node).map_err(|error| error.to_string())
-    }
-}
+record!(Assistant { kind, points });
 
 actions! {
     GuideAction {
