@@ -62,8 +62,8 @@ fn box_of(layer: &Layer, scene: &Scene) -> Option<FrameBox> {
     }
 }
 
-/// The pixels of a grid that are not wholly transparent. Asked for with every frame that shows handles: a tile that lies
-/// within what is known is not looked at.
+/// The pixels of a grid that are not wholly transparent. Asked for with every frame that shows handles: a tile that
+/// lies within what is known is not looked at.
 fn painted(tiles: &TileGrid) -> Rect {
     let with_tile = |known: Rect, (at, tile): (crate::raster::TileAt, &std::sync::Arc<crate::raster::Tile>)| {
         let origin = at.rect();
