@@ -1,5 +1,5 @@
-//! Composing without rounding to bytes: live layers are rendered anew, in floats, for files of more than 8 bits. Floor 4.
-//! The rendering of marks is in `paint` and `shading`; how layers meet is `compose`'s.
+//! Composing without rounding to bytes: live layers are rendered anew, in floats, for files of more than 8 bits.
+//! Floor 4. The rendering of marks is in `paint` and `shading`; how layers meet is `compose`'s.
 
 use super::behind::Behind;
 use super::content::TileContent;
@@ -58,7 +58,8 @@ pub(super) struct DeepTiles {
     highlights: Highlights,
     /// Held, so that each is made once.
     _textures: Vec<Arc<DeepTexture>>,
-    /// Tiles that were rendered together, by layer and place; of what is seen behind contours (`true`) or on the canvas.
+    /// Tiles that were rendered together, by layer and place; of what is seen behind contours (`true`), or on the
+    /// canvas.
     together: HashMap<(LayerId, TileAt, bool), Option<PlanarTile>>,
 }
 

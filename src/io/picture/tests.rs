@@ -1,0 +1,108 @@
+//! Pictures of every format, with profiles and without.
+
+use super::*;
+use image::{ImageFormat, RgbaImage};
+use std::io::Cursor;
+
+fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
+    let mut out = Cursor::new(Vec::new());
+    image.write_to(&mut out, format).unwrap();
+    out.into_inner()
+}
+fn sample() -> RgbaImage {
+    RgbaImage::from_fn(9, 5, |x, y| image::Rgba([x as u8 * 20, y as u8 * 40, 90, 255 - x as u8]))
+}
+fn opaque() -> DynamicImage {
+    DynamicImage::ImageRgb8(DynamicImage::ImageRgba8(sample()).to_rgb8())
+}
+fn texels(bytes: &[u8], name: &str) -> Vec<[u8; 4]> {
+    match decode(Path::new(name), bytes, &Budget::default()).unwrap().texels {
+        Texels::Srgb8(t) => t.to_vec(),
+        Texels::Linear(_) => panic!("{name} should hold bytes"),
+    }
+}
+#[test]
+fn lossless_formats_keep_their_bytes() {
+    let image = sample();
+    let expected: Vec<[u8; 4]> = image.pixels().map(|p| p.0).collect();
+    let image = DynamicImage::ImageRgba8(image);
+    let formats = [
+        (ImageFormat::Png, "a.png"),
+        (ImageFormat::WebP, "a.webp"),
+        (ImageFormat::Tiff, "a.tif"),
+        (ImageFormat::Tga, "a.tga"),
+        (ImageFormat::Bmp, "a.bmp"),
+    ];
+    for (format, name) in formats {
+        assert_eq!(texels(&encoded(&image, format), name), expected, "{name}");
+    }
+}
+#[test]
+fn sixteen_bits_are_kept_beside_the_bytes_that_they_round_to() {
+    let deep = image::ImageBuffer::from_fn(300, 2, |x, y| image::Rgba([x as u16 * 211, 7, 40000, 65535 - y as u16]));
+    for (format, name) in [(ImageFormat::Png, "a.png"), (ImageFormat::Tiff, "a.tif")] {
+        let bytes = encoded(&DynamicImage::ImageRgba16(deep.clone()), format);
+        let picture = decode(Path::new(name), &bytes, &Budget::default()).unwrap();
+        let kept = picture.deep.as_ref().unwrap();
+        assert!(kept.iter().zip(deep.pixels()).all(|(kept, pixel)| *kept == pixel.0), "{name}");
+        let Texels::Srgb8(texels) = &picture.texels else { panic!("bytes") };
+        let nearest = |v: u16| (f32::from(v) / 257.0).round() as u8;
+        assert!(kept.iter().zip(texels.iter()).all(|(deep, byte)| deep.map(nearest) == *byte), "{name}");
+    }
+    assert!(
+        decode(Path::new("b.png"), &encoded(&opaque(), ImageFormat::Png), &Budget::default()).unwrap().deep.is_none()
+    );
+}
+#[test]
+fn a_mask_is_luminance_times_alpha() {
+    let image = RgbaImage::from_fn(2, 1, |x, _| image::Rgba([255, 255, 255, [255, 128][x as usize]]));
+    let bytes = encoded(&DynamicImage::ImageRgba8(image), ImageFormat::Png);
+    let plane = decode_coverage(Path::new("m.png"), &bytes, &Budget::default()).unwrap();
+    assert_eq!(plane.values(), [255, 128]);
+}
+#[test]
+fn what_is_no_picture_gets_a_sentence() {
+    let mut bomb = encoded(&DynamicImage::ImageRgba8(sample()), ImageFormat::Png);
+    bomb[16..24].copy_from_slice(&[0, 0, 0xea, 0x60, 0, 0, 0xea, 0x60]);
+    let cut = encoded(&opaque(), ImageFormat::Jpeg);
+    let cases: [(&str, &[u8], &str); 4] = [
+        ("empty.png", b"", "is empty"),
+        ("text.png", b"hello, world", "does not begin like"),
+        ("bomb.png", &bomb, "bomb.png"),
+        ("cut.jpg", &cut[..cut.len() - 2], "cut short"),
+    ];
+    for (name, bytes, part) in cases {
+        let said = decode(Path::new(name), bytes, &Budget::default()).unwrap_err().to_string();
+        assert!(said.contains(part), "{said}");
+    }
+}
+#[test]
+fn our_own_profile_is_one_that_strict_readers_take() {
+    let profile = own_srgb();
+    let number = |at: usize| u32::from_be_bytes(*profile[at..].first_chunk().unwrap()) as usize;
+    assert_eq!(number(0), profile.len());
+    let places = (0..number(128)).map(|i| number(132 + 12 * i + 4));
+    assert!(places.into_iter().all(|at| at % 4 == 0 && at < profile.len()));
+    assert!(ColorProfile::new_from_slice(&profile).unwrap().description.is_some());
+    assert!(through_profile(&opaque(), &profile).is_none());
+}
+#[test]
+fn a_wide_profile_is_applied_and_srgb_changes_nothing() {
+    let image = opaque();
+    let profile = ColorProfile::new_display_p3().encode().unwrap();
+    let encode = |icc: Option<Vec<u8>>| {
+        use image::ImageEncoder;
+        let mut out = Vec::new();
+        let mut encoder = image::codecs::png::PngEncoder::new(&mut out);
+        if let Some(icc) = icc {
+            encoder.set_icc_profile(icc).unwrap();
+        }
+        encoder.write_image(image.as_bytes(), 9, 5, image::ExtendedColorType::Rgb8).unwrap();
+        out
+    };
+    let (plain, wide) = (texels(&encode(None), "a.png"), texels(&encode(Some(profile)), "b.png"));
+    assert_eq!(texels(&encode(Some(ColorProfile::new_srgb().encode().unwrap())), "c.png"), plain);
+    // Display P3's primaries are more saturated: a reddish pixel's red grows, the others shrink or stay.
+    let (p, w) = (plain[8], wide[8]);
+    assert!(w[0] > p[0] && w[1] <= p[1] && w[3] == p[3], "{p:?} became {w:?}");
+}
