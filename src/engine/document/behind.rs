@@ -139,6 +139,25 @@ impl<'c> Behind<'c> {
     }
 }
 
+impl Behind<'_> {
+    /// As [`Behind::mix_into`], but where one population alone sees a surface the pixel is wholly that one's.
+    ///
+    /// * `covered`: the pixel's own population sees a surface.
+    pub fn take_surface_into(&self, other: &PlanarTile, own: &mut PlanarTile, covered: impl Fn(i32, i32) -> bool) {
+        let corner = self.at.rect();
+        for (place, pixel) in self.places().filter(|(_, pixel)| pixel.sees_surface()) {
+            let from = other.rows()[place / TILE].pixel(place % TILE);
+            let (x, y) = ((pixel.x - corner.x0) as usize, (pixel.y - corner.y0) as usize);
+            let row = &mut own.rows_mut()[y];
+            let taken = match covered(pixel.x, pixel.y) {
+                true => in_light(row.pixel(x), from, 1.0 - pixel.share, 1.0),
+                false => from,
+            };
+            row.set(x, taken);
+        }
+    }
+}
+
 /// A share of one pixel in another, premultiplied: coverage, as opacity.
 fn mixed(to: [f32; 4], from: [f32; 4], share: f32) -> [f32; 4] {
     std::array::from_fn(|i| to[i] + share * (from[i] - to[i]))

@@ -11,8 +11,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 /// Cached values of a layer; shared by its versions.
 #[derive(Clone, Default)]
 pub struct LayerCache {
-    /// The look of the layer alone, as a file stores it; with its mask or without.
-    pub look: Memo<bool, EncodedPixels>,
+    /// The look of the layer alone, as a file stores it.
+    pub look: Memo<LookKind, EncodedPixels>,
     /// The pixels of a paint layer, as a project stores them.
     pub pixels: Memo<(), EncodedPixels>,
     /// The layer seen through its transforms.
@@ -23,6 +23,15 @@ pub struct LayerCache {
     pub(super) brightest: Memo<()>,
     /// The factor that restores the mean luminance, for given parameters.
     pub(super) gain: Memo<RadianceScaling>,
+}
+
+/// What of a layer is in its look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LookKind {
+    /// Its mask.
+    pub masked: bool,
+    /// The rim of the surface as if that covered it wholly.
+    pub whole_rim: bool,
 }
 
 /// A layer's pixels as a file holds them, and where they lie.

@@ -53,6 +53,15 @@ pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress)
     flatten(&document.with_only(ids)?, progress)
 }
 
+/// The same with pixels on the surface's rim wholly covered: what a mask of [`Surface::shares`] around it cuts to the
+/// picture that there is.
+pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
+    let document = document.with_only(ids)?;
+    let mut prepared = PreparedDocument::new(&document, progress)?;
+    prepared.whole_rims = document.surface.clone();
+    prepared.flatten_tiles(&TileGrid::default(), &prepared.all_tiles(), progress)
+}
+
 impl Document {
     /// With some layers of one list alone, shown or not, without the opacity and masks of the groups around them;
     /// `None` if there are none of them.
@@ -108,7 +117,14 @@ impl PreparedDocument {
         let mut pixels = composed(None);
         if let Some(contours) = self.contours.as_ref().and_then(|contours| contours.on(at)) {
             let behind = Behind::new(at, contours);
-            behind.mix_into(&composed(Some(behind)), &mut pixels, deep.map_or(1.0, DeepTiles::brightest));
+            let other = composed(Some(behind));
+            match &self.whole_rims {
+                None => behind.mix_into(&other, &mut pixels, deep.map_or(1.0, DeepTiles::brightest)),
+                Some(surface) => {
+                    let covered = |x, y| surface.coverage_plane().get(x, y).is_some_and(|c| c > 0);
+                    behind.take_surface_into(&other, &mut pixels, covered);
+                }
+            }
         }
         pixels
     }

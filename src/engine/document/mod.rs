@@ -38,7 +38,7 @@ pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
-pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers};
+pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers, flatten_whole};
 pub use guides::Guides;
 pub use history::History;
 pub use layer::{Layer, LayerId, LayerLabel, LayerLock};

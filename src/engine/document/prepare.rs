@@ -7,7 +7,7 @@ use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
 use crate::shading::{RadianceScaling, radiance::BackdropStats};
-use crate::surface::{Contours, Curvature};
+use crate::surface::{Contours, Curvature, Surface};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,6 +20,8 @@ pub struct PreparedDocument {
     pub(super) stack: Vec<PreparedLayer>,
     /// The pixels that two populations see.
     pub(super) contours: Option<Arc<Contours>>,
+    /// The surface whose rim counts as wholly covered; none: every pixel is mixed of what it shows.
+    pub(super) whole_rims: Option<Arc<Surface>>,
     /// Measurements of the composite beneath each adjustment, in the order they apply.
     pub(super) beneath: Vec<BackdropStats>,
 }
@@ -58,7 +60,7 @@ impl PreparedDocument {
         let scope = Scope { beneath: &[], map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
-        let mut prepared = Self { size: document.size, stack, contours, beneath: Vec::new() };
+        let mut prepared = Self { size: document.size, stack, contours, whole_rims: None, beneath: Vec::new() };
         for adjustment in builder.adjustments {
             // Each may depend on those beneath it, which are measured by now.
             let beneath = prepared.measure(&adjustment, progress)?;

@@ -13,7 +13,7 @@ use super::{
     unwrap::Unwrapping,
     view::Eye,
 };
-use crate::math::{Size, Vec2, Vec3, vec2, vec3};
+use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
 use crate::raster::{CoverageGrid, Plane};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -229,6 +229,19 @@ impl Surface {
     /// The pixels that two populations see.
     pub fn contours(&self) -> &Arc<Contours> {
         &self.contours
+    }
+    /// How much of each pixel the surface covers: as the maps say, and on a rim that they left hard as its contour says.
+    pub fn shares(&self) -> Plane<u8> {
+        let mut shares = self.coverage.clone();
+        for pixel in self.contours.pixels() {
+            let (x, y) = (pixel.x as usize, pixel.y as usize);
+            match (self.coverage.at(x, y) > 0, pixel.sees_surface()) {
+                (true, false) => shares.set(x, y, quantise(pixel.share)),
+                (false, true) => shares.set(x, y, quantise(1.0 - pixel.share)),
+                _ => (),
+            }
+        }
+        shares
     }
     /// What this is the sheet of: its pixels are readings of other populations, not pixels of the canvas.
     pub fn sheet_of(&self) -> Option<&SheetOf> {

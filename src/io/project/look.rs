@@ -4,8 +4,8 @@
 use super::pixels;
 use super::plan::{ItemContent, PlanItem};
 use crate::Result;
-use crate::document::cache::EncodedPixels;
-use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layer, flatten_layers};
+use crate::document::cache::{EncodedPixels, LookKind};
+use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layers, flatten_whole};
 use crate::raster::{BlendMode, TileGrid};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -26,8 +26,11 @@ pub fn render(
     progress.add_total(shown.len() as u64);
     let one = |item: &&PlanItem| {
         let encoded = match &item.shows {
-            ItemContent::Layer(layer) => look(file, document, layer, item.mask.is_none(), progress)?,
-            ItemContent::Composed { document, layers } => flatten_layers(document, layers, progress)
+            ItemContent::Layer(layer) => {
+                let kind = LookKind { masked: item.mask.is_none(), whole_rim: item.whole_rim };
+                look(file, document, layer, kind, progress)?
+            }
+            ItemContent::Composed { document, layers } => flattened(document, layers, item.whole_rim, progress)
                 .map(|tiles| pixels::encode(file, &tiles, None))
                 .transpose()?,
             ItemContent::Nothing(_) | ItemContent::Stack { .. } => {
@@ -56,33 +59,38 @@ pub fn pictures_of(items: &[PlanItem]) -> Vec<&PlanItem> {
     out
 }
 
-/// The look of a layer alone: wholly opaque, the surface's edge in its pixels, and its mask if it is to be `masked`.
+/// The look of a layer alone: wholly opaque, the surface's edge and its mask in its pixels, if those are asked for.
 fn look(
     file: &Path,
     document: &Document,
     layer: &Arc<Layer>,
-    masked: bool,
+    kind: LookKind,
     progress: &Progress,
 ) -> Cancellable<EncodedPixels> {
-    if let Some(tiles) = bare(document, layer, masked) {
+    if let Some(tiles) = bare(document, layer, kind.masked) {
         return pixels_of(file, document, layer, tiles).map(Some);
     }
     let render = || {
         let plain = document.with_layer(layer.id, |layer| {
             (layer.opacity, layer.blend, layer.blend_linear) = (1.0, BlendMode::Normal, false);
-            layer.mask = layer.mask.take().filter(|_| masked);
+            layer.mask = layer.mask.take().filter(|_| kind.masked);
         });
-        let tiles = plain.and_then(|plain| flatten_layer(&plain, layer.id, progress));
+        let tiles = plain.and_then(|plain| flattened(&plain, &[layer.id], kind.whole_rim, progress));
         tiles.map(|tiles| pixels::encode(file, &tiles, Some(document.size.rect()))).transpose()
     };
     let mut failed = None;
-    let look = layer.cache.look.get(&document.scene(), &layers_seen_by(document, layer), &masked, || {
+    let look = layer.cache.look.get(&document.scene(), &layers_seen_by(document, layer), &kind, || {
         render().unwrap_or_else(|error| {
             failed = Some(error);
             None
         })
     });
     failed.map_or(Ok(look), Err)
+}
+
+/// Some layers composed with each other.
+fn flattened(document: &Document, layers: &[LayerId], whole_rim: bool, progress: &Progress) -> Option<TileGrid> {
+    if whole_rim { flatten_whole(document, layers, progress) } else { flatten_layers(document, layers, progress) }
 }
 
 /// A paint layer's pixels, where nothing hides any of them from other programs.
@@ -109,7 +117,8 @@ pub fn remember(document: &Document, looks: &BTreeMap<LayerId, EncodedPixels>) {
     for (_, layer) in document.walk() {
         if let Some(encoded) = looks.get(&layer.id) {
             let (scene, seen) = (document.scene(), layers_seen_by(document, layer));
-            layer.cache.look.get(&scene, &seen, &true, || Some(encoded.clone()));
+            let kind = LookKind { masked: true, whole_rim: false };
+            layer.cache.look.get(&scene, &seen, &kind, || Some(encoded.clone()));
             // Nothing hides any of its pixels, so they are its look.
             if bare(document, layer, true).is_some() {
                 layer.cache.pixels.get(&scene, std::slice::from_ref(layer), &(), || Some(encoded.clone()));

@@ -4,7 +4,7 @@
 use crate::document::cache::EncodedPixels;
 use crate::document::{Document, LayerId};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Another version of the program may render a layer differently.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
@@ -29,14 +29,23 @@ pub struct ManifestPicture {
     pub crc: u32,
     pub x: i32,
     pub y: i32,
+    /// It covers the surface's rim wholly: not as the layer looks here.
+    pub whole_rim: bool,
 }
 
 impl Manifest {
-    pub fn new(document: &Document, stack: u32, shown: &BTreeMap<LayerId, &(String, EncodedPixels)>) -> Self {
+    /// `whole_rims`: of the layers whose pictures cover the surface's rim wholly.
+    pub fn new(
+        document: &Document,
+        stack: u32,
+        shown: &BTreeMap<LayerId, &(String, EncodedPixels)>,
+        whole_rims: &BTreeSet<LayerId>,
+    ) -> Self {
         let pictures = document.walk().into_iter().filter_map(|(path, layer)| {
             let (name, look) = shown.get(&layer.id)?;
             let crc = crc32fast::hash(look.file.bytes());
-            Some(ManifestPicture { layer: path, name: name.clone(), crc, x: look.x, y: look.y })
+            let whole_rim = whole_rims.contains(&layer.id);
+            Some(ManifestPicture { layer: path, name: name.clone(), crc, x: look.x, y: look.y, whole_rim })
         });
         Self { program: PROGRAM.into(), stack, pictures: pictures.collect() }
     }
@@ -44,8 +53,13 @@ impl Manifest {
         self.program == PROGRAM
     }
     pub fn write(&self) -> Value {
-        let picture =
-            |p: &ManifestPicture| json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
+        let picture = |p: &ManifestPicture| {
+            let mut told = json!({ "layer": p.layer, "picture": p.name, "crc32": p.crc, "x": p.x, "y": p.y });
+            if p.whole_rim {
+                told["whole_rim"] = true.into();
+            }
+            told
+        };
         json!({
             "format": "rilievo-project",
             "version": 1,
@@ -66,6 +80,7 @@ impl Manifest {
                 crc: crc(&p["crc32"])?,
                 x: offset(&p["x"])?,
                 y: offset(&p["y"])?,
+                whole_rim: p["whole_rim"] == true,
             })
         };
         (value["format"] == "rilievo-project").then_some(())?;
@@ -83,9 +98,11 @@ mod tests {
 
     #[test]
     fn a_manifest_reads_back() {
-        let shown =
-            ManifestPicture { layer: "layers[0]".into(), name: "data/000.png".into(), crc: u32::MAX, x: -4, y: 5 };
-        let manifest = Manifest { program: "1".into(), stack: 7, pictures: vec![shown] };
+        let shown = |whole_rim| {
+            let (layer, name) = ("layers[0]".into(), "data/000.png".into());
+            ManifestPicture { layer, name, crc: u32::MAX, x: -4, y: 5, whole_rim }
+        };
+        let manifest = Manifest { program: "1".into(), stack: 7, pictures: vec![shown(false), shown(true)] };
         assert_eq!(Manifest::read(&manifest.write()), Some(manifest));
         assert_eq!(Manifest::read(&json!({ "format": "rilievo-project", "pictures": 3 })), None);
     }

@@ -41,7 +41,7 @@ use assets::{AssetList, StoredPixels};
 use manifest::Manifest;
 use packer::ZipPacker;
 use plan::{FormatSupport, ItemContent, PlanItem};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 const MIMETYPE: &str = "mimetype";
@@ -67,7 +67,8 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let shown = shown_alone(&items, &pictures);
     let xml = stack::write(document.size, &items, &pictures);
     let mut entries = vec![ZipEntry::text(MIMETYPE, MIME.as_bytes().to_vec())];
-    entries.extend(documents(file, document, &paint, &shown, crc32fast::hash(xml.as_bytes()))?);
+    let stack = crc32fast::hash(xml.as_bytes());
+    entries.extend(documents(file, document, &paint, &shown, stack, &BTreeSet::new())?);
     // After the document and the manifest, before all pictures.
     entries.insert(3, ZipEntry::text(STACK, xml.into_bytes()));
     let layers = pictures.iter().map(|(name, picture)| ZipEntry::bytes(name, picture.file.clone()));
@@ -101,18 +102,20 @@ impl ZipEntry {
 /// * `paint`: all pixels of the paint layers.
 /// * `shown`: the pictures that show one layer alone, with their names.
 /// * `stack`: a checksum of the layer structure that other programs see.
+/// * `whole_rims`: the layers whose pictures cover the surface's rim wholly.
 pub fn documents(
     file: &Path,
     document: &Document,
     paint: &BTreeMap<LayerId, EncodedPixels>,
     shown: &BTreeMap<LayerId, &(String, EncodedPixels)>,
     stack: u32,
+    whole_rims: &BTreeSet<LayerId>,
 ) -> Result<Vec<ZipEntry>> {
     let shared = shown.iter().filter(|(id, (_, look))| paint.get(id) == Some(look));
     let shared = shared.map(|(id, (name, _))| (*id, name.clone())).collect();
     let mut assets = AssetList::default();
     let renamed = assets.rename(file, document, &StoredPixels { pixels: paint, shared: &shared })?;
-    let manifest = format!("{:#}\n", Manifest::new(document, stack, shown).write());
+    let manifest = format!("{:#}\n", Manifest::new(document, stack, shown, whole_rims).write());
     let mut entries = vec![
         ZipEntry::text(DOCUMENT, recipe::print(&renamed).into_bytes()),
         ZipEntry::text(MANIFEST, manifest.into_bytes()),

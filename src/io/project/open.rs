@@ -219,6 +219,7 @@ fn list_paint(layers: &Value, out: &mut BTreeSet<(String, i32, i32)>) {
 fn looks(document: &Document, intact: Vec<(ManifestPicture, Asset, Size)>) -> BTreeMap<LayerId, EncodedPixels> {
     let mut by_path: BTreeMap<String, EncodedPixels> = intact
         .into_iter()
+        .filter(|(shown, ..)| !shown.whole_rim)
         .map(|(shown, file, size)| (shown.layer, EncodedPixels { file, size, x: shown.x, y: shown.y }))
         .collect();
     let walk = document.walk().into_iter();

@@ -9,12 +9,15 @@
 //!   for Photoshop's format too, whose clipping Krita does not read, nor others to the edge; there the hidden layers
 //!   are clipped as here;
 //! * so does an isolated group with a mask;
+//! * where several layers keep to the surface and the format has masks, its edge is the mask of a group around them, so
+//!   that it cuts them once;
 //! * a layer that changes or reads what lies beneath in a way that cannot be expressed (radiance scaling, exclusion,
 //!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
 //!   beneath it in its scope.
 
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind, Role};
-use crate::raster::BlendMode;
+use crate::raster::{BlendMode, Plane};
+use crate::surface::Surface;
 use std::sync::Arc;
 
 /// A picture or a stack of pictures, and how it blends with what lies beneath.
@@ -28,6 +31,8 @@ pub struct PlanItem {
     pub clipped: bool,
     /// A mask that is not part of the pixels, if the format has masks.
     pub mask: Option<LayerMask>,
+    /// Its picture covers the surface's rim wholly: a mask around it is the surface's edge.
+    pub whole_rim: bool,
     pub shows: ItemContent,
 }
 
@@ -62,12 +67,20 @@ pub enum ItemContent {
 
 /// The items of a document, bottom first.
 pub fn plan(document: &Document, words: FormatSupport) -> Vec<PlanItem> {
-    Planner { document, words }.scope(&document.layers)
+    let edge = document.surface.as_deref().filter(|_| words.masks).map(Surface::shares);
+    let is_soft = |edge: &Plane<u8>| edge.values().iter().any(|share| (1..255).contains(share));
+    let mask = |edge| LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(edge) });
+    Planner { document, words, edge: edge.filter(is_soft).map(mask) }.scope(&document.layers)
 }
+
+/// The name of the group whose mask is the surface's edge.
+const ON_SURFACE: &str = "On the surface";
 
 struct Planner<'a> {
     document: &'a Document,
     words: FormatSupport,
+    /// The surface's edge as a mask, if it is soft, the format has masks, and no group around has it.
+    edge: Option<LayerMask>,
 }
 
 impl Planner<'_> {
@@ -80,8 +93,21 @@ impl Planner<'_> {
             items.extend(self.composed_with_beneath(&runs[..=last]));
         }
         let above = last.map_or(0, |last| last + 1);
-        items.extend(runs[above..].iter().flat_map(|run| self.run(run)));
+        for runs in runs[above..].chunk_by(|a, b| keep_to_surface(a) == keep_to_surface(b)) {
+            items.extend(self.within_edge(runs).unwrap_or_else(|| runs.iter().flat_map(|run| self.run(run)).collect()));
+        }
         items
+    }
+    /// Runs that keep to the surface in a group whose mask is its edge; `None` where each layer brings it as well.
+    fn within_edge(&self, runs: &[&[Arc<Layer>]]) -> Option<Vec<PlanItem>> {
+        let edge = self.edge.clone().filter(|_| runs.iter().all(|run| keep_to_surface(run)))?;
+        let bare = Planner { edge: None, ..*self };
+        let items: Vec<PlanItem> = runs.iter().flat_map(|run| bare.run(run)).map(with_whole_rim).collect();
+        // A single picture has its own edge.
+        (pictures_seen(&items) > 1).then(|| {
+            let shows = ItemContent::Stack { isolated: false, items };
+            vec![PlanItem { mask: Some(edge), ..picture(ON_SURFACE.into(), shows) }]
+        })
     }
     /// A layer that reads what lies beneath it, and all that lies beneath it, as one picture.
     fn composed_with_beneath(&self, runs: &[&[Arc<Layer>]]) -> [PlanItem; 2] {
@@ -190,6 +216,34 @@ impl Planner<'_> {
     }
 }
 
+/// Nothing of these layers is seen beyond the surface.
+fn keep_to_surface(layers: &[Arc<Layer>]) -> bool {
+    layers.iter().all(|layer| match layer.content.role() {
+        Role::Groups(group) => keep_to_surface(&group.layers),
+        Role::Paints => layer.clip_to_surface,
+        Role::Adjusts(_) | Role::Shapes(_) => true,
+    })
+}
+
+fn with_whole_rim(item: PlanItem) -> PlanItem {
+    let shows = match item.shows {
+        ItemContent::Stack { isolated, items } => {
+            ItemContent::Stack { isolated, items: items.into_iter().map(with_whole_rim).collect() }
+        }
+        shows => shows,
+    };
+    PlanItem { whole_rim: true, shows, ..item }
+}
+
+fn pictures_seen(items: &[PlanItem]) -> usize {
+    let of_item = |item: &PlanItem| match &item.shows {
+        ItemContent::Stack { items, .. } => pictures_seen(items),
+        ItemContent::Layer(_) | ItemContent::Composed { .. } => 1,
+        ItemContent::Nothing(_) => 0,
+    };
+    items.iter().filter(|item| item.visible).map(of_item).sum()
+}
+
 /// Whether layers above may be clipped to it; normal layers do not interrupt clipping.
 fn is_base(layer: &Layer) -> bool {
     !layer.clip_below && !layer.content.shapes()
@@ -217,6 +271,7 @@ fn item(layer: &Layer) -> PlanItem {
         lock: layer.lock,
         clipped: false,
         mask: None,
+        whole_rim: false,
         shows: ItemContent::Stack { isolated: true, items: Vec::new() },
     }
 }
@@ -230,6 +285,7 @@ fn picture(name: String, shows: ItemContent) -> PlanItem {
         lock: LayerLock::None,
         clipped: false,
         mask: None,
+        whole_rim: false,
         shows,
     }
 }
@@ -241,87 +297,4 @@ fn hidden_parts(name: &str, items: Vec<PlanItem>) -> PlanItem {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::math::{Size, srgb::Color};
-    use crate::shading::RadianceScaling;
-
-    fn fill(name: &str) -> Layer {
-        Layer::new(name, Content::Fill(Color::BLACK))
-    }
-    fn group(name: &str, pass_through: bool, layers: Vec<Layer>) -> Layer {
-        let layers = layers.into_iter().map(Arc::new).collect();
-        Layer::new(name, Content::Group(Group { layers, pass_through }))
-    }
-    fn planned(layers: Vec<Layer>) -> String {
-        let layers = layers.into_iter().map(Arc::new).collect();
-        let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
-        text(&plan(&document, FormatSupport::OPENRASTER))
-    }
-    /// Names; hidden ones behind a minus, clipped ones behind an arrow, composed ones with a star, stacks with what
-    /// they hold.
-    fn text(items: &[PlanItem]) -> String {
-        let one = |item: &PlanItem| {
-            let what = match &item.shows {
-                ItemContent::Nothing(_) => "0".into(),
-                ItemContent::Layer(_) => String::new(),
-                ItemContent::Composed { layers, .. } => format!("*{}", layers.len()),
-                ItemContent::Stack { isolated, items } => {
-                    format!("{}[{}]", if *isolated { "" } else { "through" }, text(items))
-                }
-            };
-            let sign = format!("{}{}", if item.visible { "" } else { "-" }, if item.clipped { "^" } else { "" });
-            format!("{sign}{}{what}", item.name.replace(" (parts)", "~"))
-        };
-        items.iter().map(one).collect::<Vec<_>>().join(" ")
-    }
-
-    #[test]
-    fn plain_layers_and_groups_are_shown_as_they_are() {
-        let layers = vec![fill("a"), group("g", false, vec![fill("b")]), group("p", true, vec![fill("c")])];
-        assert_eq!(planned(layers), "a g[b] pthrough[c]");
-    }
-    #[test]
-    fn clipped_layers_are_composed_and_kept_hidden_beside() {
-        let clipped = Layer { clip_below: true, ..fill("c") };
-        assert_eq!(planned(vec![fill("a"), fill("b"), clipped.clone()]), "a b[-b~[b c] b*2]");
-        let hidden = Layer { visible: false, ..fill("b") };
-        assert_eq!(planned(vec![hidden, clipped.clone()]), "-b -c", "clipped to what is hidden");
-        assert_eq!(planned(vec![clipped]), "-c", "clipped to nothing");
-    }
-    #[test]
-    fn where_a_format_says_clipping_the_hidden_layers_are_clipped() {
-        let planned = |blend, visible| {
-            let clipped = Layer { clip_below: true, blend, visible, ..fill("c") };
-            let layers = [fill("a"), fill("b"), clipped].map(Arc::new).to_vec();
-            let document = Document { layers, ..Document::empty(Size::new(8, 8)) };
-            text(&plan(&document, FormatSupport::PHOTOSHOP))
-        };
-        assert_eq!(planned(BlendMode::Screen, true), "a -b~[b ^c] b*2");
-        assert_eq!(planned(BlendMode::Plus, true), "a -b~[b c] b*2", "a mode without a word");
-        assert_eq!(planned(BlendMode::Screen, false), "a b -^c", "nothing is seen that is clipped");
-    }
-    #[test]
-    fn an_adjustment_is_composed_with_all_beneath_it_in_its_scope() {
-        let adjustment = || Layer::new("r", Content::RadianceScaling(RadianceScaling::default()));
-        assert_eq!(planned(vec![fill("a"), adjustment(), fill("b")]), "-r~[a r0] r*2 b");
-        let clipped = Layer { clip_below: true, ..fill("c") };
-        assert_eq!(planned(vec![clipped, adjustment()]), "-r~[-c r0] r*1", "clipped to nothing, it is not composed");
-        assert_eq!(
-            planned(vec![fill("a"), group("g", false, vec![fill("b"), adjustment()])]),
-            "a g[-r~[b r0] r*2]",
-            "an isolated group is a scope of its own"
-        );
-        let through = group("g", true, vec![adjustment()]);
-        assert_eq!(planned(vec![fill("a"), through]), "-g~[a gthrough[-r~[r0] r*1]] g*2");
-    }
-    #[test]
-    fn what_openraster_cannot_blend_is_composed() {
-        let exclusion = Layer { blend: BlendMode::Exclusion, ..fill("e") };
-        assert_eq!(planned(vec![fill("a"), exclusion.clone()]), "-e~[a e] e*2");
-        assert_eq!(planned(vec![fill("a"), Layer { visible: false, ..exclusion }]), "a -e");
-        let mask = LayerMask::new(MaskKind::Fresnel { f0: 0.1, power: 1.0 });
-        let masked = Layer { mask: Some(mask), ..group("g", false, vec![fill("b")]) };
-        assert_eq!(planned(vec![fill("a"), masked]), "a g[-g~[b] g*1]");
-    }
-}
+mod tests;

@@ -1,12 +1,16 @@
 //! Documents for tests: every kind of layer, small.
 
 use crate::document::Document;
+use crate::math::{Size, vec3};
+use crate::raster::Plane;
 use crate::recipe::{self, RecipeSource};
+use crate::surface::{Maps, Surface};
 use crate::{Budget, Files};
 use crate::{Error, Result};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Files in memory.
 #[derive(Default)]
@@ -62,6 +66,15 @@ pub fn read(json: &Value, files: &dyn Files) -> Document {
     let budget = Budget::default();
     let source = RecipeSource { file: Path::new("sample.json"), files, budget: &budget, onto: None };
     recipe::read(text.as_bytes(), source).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A level surface that is covered by 0, a quarter, a half, three quarters and the whole, column after column.
+pub fn soft_surface(size: Size) -> Arc<Surface> {
+    let coverage = Plane::from_fn(size, |x, _| [0, 64, 128, 191, 255][x % 5]);
+    let normals = Plane::filled(size, vec3(0.6, 0.0, 0.8));
+    Arc::new(
+        Surface::new(Maps { normals, depth: Plane::filled(size, 0.5), coverage }).unwrap_or_else(|e| panic!("{e}")),
+    )
 }
 
 /// Every kind of layer, with masks, clipping, groups of both sorts, and blend modes.

@@ -11,7 +11,7 @@ use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
 use crate::project::{self, pixels};
 use crate::raster::BlendMode;
 use crate::{Error, Result};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// A side of a file of this kind.
@@ -40,13 +40,13 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
     let mut lowering = RecordBuilder { size: document.size, looks: looks.into_iter(), ..RecordBuilder::default() };
     lowering.items(file, &items)?;
-    let RecordBuilder { records, shown, notes, .. } = lowering;
+    let RecordBuilder { records, shown, whole_rims, notes, .. } = lowering;
     if records.len() > MOST_RECORDS {
         let reason = format!("its layers would be {} for Photoshop, which may be {MOST_RECORDS}", records.len());
         return Err(Error::unsupported(file, reason));
     }
     let shown: BTreeMap<LayerId, &(String, EncodedPixels)> = shown.iter().map(|(id, picture)| (*id, picture)).collect();
-    let ours = project::documents(file, document, &paint, &shown, signature(&records))?;
+    let ours = project::documents(file, document, &paint, &shown, signature(&records), &whole_rims)?;
     let ours = project::packed(file, &ours)?;
     let merged = merged.to_straight_rgba(document.size.rect());
     let merged = emit::on_white(&merged);
@@ -67,6 +67,8 @@ struct RecordBuilder {
     records: Vec<LayerRecord>,
     /// The records that show a single layer, for the manifest.
     shown: Vec<(LayerId, (String, EncodedPixels))>,
+    /// The layers whose records cover the surface's rim wholly.
+    whole_rims: BTreeSet<LayerId>,
     notes: Vec<String>,
     /// The items stand in a group that is not seen.
     is_hidden: bool,
@@ -80,6 +82,7 @@ impl Default for RecordBuilder {
             looks,
             records: Vec::new(),
             shown: Vec::new(),
+            whole_rims: BTreeSet::new(),
             notes: Vec::new(),
             is_hidden: false,
         }
@@ -121,6 +124,9 @@ impl RecordBuilder {
                 }
                 let name = format!("data/{:03}.png", self.records.len());
                 self.shown.push((layer.id, (name, look)));
+                if item.whole_rim {
+                    self.whole_rims.insert(layer.id);
+                }
             }
             _ => self.notes.push(format!("“{}” is composed of several layers for other programs", item.name)),
         }

@@ -6,7 +6,7 @@ use crate::Budget;
 use crate::document::{Content, Document, Group, Layer, MaskKind, PixelLayer, Progress, flatten};
 use crate::math::Size;
 use crate::project::ProjectContents;
-use crate::project::sample::{assert_same, everything, files, read as read_recipe};
+use crate::project::sample::{assert_same, everything, files, png, read as read_recipe};
 use crate::raster::{BlendMode, TileGrid};
 use serde_json::json;
 use std::path::Path;
@@ -65,6 +65,48 @@ fn other_programs_see_the_same_picture() {
     let document = everything(64);
     let seen = read_back(&without_ours(&written(&document)));
     assert!(worst(&document, &seen.document) <= 3, "{}", worst(&document, &seen.document));
+}
+#[test]
+fn the_surface_s_edge_cuts_layers_that_keep_to_it_once_for_other_programs_as_well() {
+    let mut files = files(40);
+    let column = |x: u32| [0, 64, 128, 191, 255][x as usize % 5];
+    files.0.insert("edge.png".into(), png(40, 40, |x, _| [column(x), column(x), column(x), 255]));
+    let fill = |color: &str| json!({ "name": color, "kind": "fill", "color": color });
+    let free = |color: &str| json!({ "name": color, "kind": "fill", "color": color, "clip_to_surface": false });
+    let faint = |color: &str| json!({ "name": color, "kind": "fill", "color": color, "opacity": 0.4 });
+    let group = |layers: serde_json::Value| json!({ "name": "group", "kind": "group", "layers": layers });
+    let stacks = [
+        json!([fill("#fa5ac8"), fill("#0a5ac8")]),
+        json!([fill("#fa5ac8"), fill("#0a5ac8"), group(json!([fill("#505ac8"), faint("#c85a00")])), fill("#1e5ac8")]),
+        json!([free("#785ac8"), fill("#fa5ac8"), faint("#0a5ac8"), free("#3c5ac840"), fill("#5a5ac8")]),
+    ];
+    for (i, stack) in stacks.into_iter().enumerate() {
+        let surface = json!({ "normal": { "file": "maps/n.png" }, "mask": { "file": "edge.png" } });
+        let recipe = json!({ "canvas": { "width": 40, "height": 40 }, "surface": surface, "layers": stack });
+        let document = read_recipe(&recipe, &files);
+        let file = written(&document);
+        let seen = read_back(&without_ours(&file)).document;
+        assert!(worst(&document, &seen) <= 2, "stack {i}: {} of 255", worst(&document, &seen));
+        let own = read_back(&file);
+        assert_eq!(own.notes, [""; 0], "stack {i}");
+        assert_same(&document, &own.document);
+        // What it kept for other programs is not how its layers look here.
+        assert!(looks(&own.document) == looks(&read_recipe(&recipe, &files)), "stack {i}");
+    }
+}
+/// The layers' pictures in a project of the document.
+fn looks(document: &Document) -> Vec<Vec<u8>> {
+    use std::io::{Cursor, Read};
+    let project = crate::project::write(Path::new("a.ora"), document, &Progress::default()).unwrap().unwrap();
+    let mut zip = zip::ZipArchive::new(Cursor::new(project)).unwrap();
+    let mut picture = |i: usize| {
+        let mut bytes = Vec::new();
+        zip.by_name(&format!("data/{i:03}.png")).ok()?.read_to_end(&mut bytes).unwrap();
+        Some(bytes)
+    };
+    let looks: Vec<Vec<u8>> = (0..).map_while(&mut picture).collect();
+    assert!(!looks.is_empty());
+    looks
 }
 #[test]
 fn layers_groups_masks_clipping_locks_and_names_are_carried() {
