@@ -2,6 +2,7 @@
 //! (`damage.rs`): they watch the allocator.
 
 mod cli;
+mod contours;
 mod conventions;
 mod documents;
 mod equations;
