@@ -244,7 +244,7 @@ fn shape(
         Some(node) => node.refused(e),
         None => Error::unsupported(source.file, e),
     };
-    let map = node.and_then(|_| own_map);
+    let map = node.and(own_map);
     let surface = Some(Arc::new(surface).onto(size, map.as_ref()).map_err(refused)?);
     Ok(CanvasAndSurface { size, surface, files, notes: findings.notes })
 }

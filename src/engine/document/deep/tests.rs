@@ -89,7 +89,7 @@ fn every_kind_of_layer_is_the_picture_of_bytes_before_it_is_rounded() {
         layer
     };
     let group = Group { layers: vec![Arc::new(strokes(3))], pass_through: false };
-    let layers = vec![
+    let layers = [
         Layer::new("ground", Content::Fill(Color { r: 90, g: 120, b: 30, a: 255 })),
         image(picture, size, BENT),
         multiplied(gradient(vec2(10.0, 20.0), vec2(120.0, 100.0), BENT)),
