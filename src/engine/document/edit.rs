@@ -25,7 +25,14 @@ impl LayerSlot {
 /// The edits. Each is `None` where the layer or the place does not exist; `self` never changes.
 impl Document {
     pub fn layer(&self, id: LayerId) -> Option<&Arc<Layer>> {
-        self.walk().into_iter().map(|(_, layer)| layer).find(|layer| layer.id == id)
+        fn find(layers: &[Arc<Layer>], id: LayerId) -> Option<&Arc<Layer>> {
+            layers.iter().find_map(|layer| match layer.content.group() {
+                _ if layer.id == id => Some(layer),
+                Some(group) => find(&group.layers, id),
+                None => None,
+            })
+        }
+        find(&self.layers, id)
     }
     /// The slot of a layer.
     pub fn place_of(&self, id: LayerId) -> Option<LayerSlot> {

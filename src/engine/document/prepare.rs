@@ -57,7 +57,7 @@ impl PreparedDocument {
     /// Resolves the layers and measures what adjustments refer to; `None` if cancelled meanwhile.
     pub fn new(document: &Document, progress: &Progress) -> Option<Self> {
         let mut builder = StackBuilder { adjustments: Vec::new(), progress };
-        let scope = Scope { beneath: &[], map: LayerMap::none(document.size) };
+        let scope = Scope { beneath: Beneath::NOTHING, map: LayerMap::none(document.size) };
         let stack = builder.nodes(&document.layers, &mut document.scene(), scope);
         let contours = document.surface.as_ref().map(|surface| surface.contours().clone());
         let mut prepared = Self { size: document.size, stack, contours, whole_rims: None, beneath: Vec::new() };
@@ -93,9 +93,28 @@ pub(super) fn in_parallel<T: Send>(
 #[derive(Clone, Copy)]
 struct Scope<'a> {
     /// The layers beneath it that it blends with.
-    beneath: &'a [Arc<Layer>],
+    beneath: Beneath<'a>,
     /// What takes the frames of the groups around it to the canvas.
     map: LayerMap,
+}
+
+/// Some layers of a list, and what lies beneath that list. Few layers ask for it, so it is only gathered then: gathered
+/// for each layer, it would make a document's cost grow with the square of its layers.
+#[derive(Clone, Copy)]
+struct Beneath<'a> {
+    around: Option<&'a Beneath<'a>>,
+    layers: &'a [Arc<Layer>],
+}
+
+impl Beneath<'_> {
+    const NOTHING: Self = Self { around: None, layers: &[] };
+
+    /// The lowest first.
+    fn gathered(&self) -> Vec<Arc<Layer>> {
+        let mut all = self.around.map_or(Vec::new(), Beneath::gathered);
+        all.extend_from_slice(self.layers);
+        all
+    }
 }
 
 struct StackBuilder<'a> {
@@ -132,8 +151,8 @@ impl StackBuilder<'_> {
             if !layer.visible || !matches!(base, ClipBase::Shown) {
                 continue;
             }
-            let beneath = [scope.beneath, &layers[..i]].concat();
-            let node = self.node(layer, scene, Scope { beneath: &beneath, ..scope });
+            let beneath = Beneath { around: Some(&scope.beneath), layers: &layers[..i] };
+            let node = self.node(layer, scene, Scope { beneath, ..scope });
             match nodes.last_mut() {
                 Some(base) if layer.clip_below => {
                     base.adjustments.end = node.adjustments.end;
@@ -159,7 +178,7 @@ impl StackBuilder<'_> {
             layer.content.warm(behind, self.progress);
         }
         if let Role::Adjusts(scaling) = layer.content.role() {
-            let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), scope.beneath.to_vec());
+            let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), scope.beneath.gathered());
             self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
         }
         if let (Some(MaskKind::Region(region)), Some(surface)) =
@@ -182,7 +201,7 @@ impl StackBuilder<'_> {
         if group.pass_through {
             return self.nodes(&group.layers, scene, scope);
         }
-        self.nodes(&group.layers, &mut scene.clone(), Scope { beneath: &[], ..scope })
+        self.nodes(&group.layers, &mut scene.clone(), Scope { beneath: Beneath::NOTHING, ..scope })
     }
 }
 

@@ -8,6 +8,7 @@ use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerSlot, L
 use crate::math::{Vec2, hash, srgb::Color};
 use crate::paint::{ActiveStrokes, Backdrop, BrushMode, Sample, Scene, StabilizedPen, Stroke, Tip};
 use crate::raster::{Tile, TileAt, TileGrid};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// What the stroke is for.
@@ -122,10 +123,12 @@ fn paintable(context: &ToolContext, purpose: StrokePurpose) -> Option<(Document,
 
 /// A name that no layer has: “Strokes”, “Strokes 2”, …
 pub fn free_name(document: &Document, base: &str) -> String {
-    let taken = |name: &str| document.layer_named(name).is_some();
+    // Looked up once: asked of the document for each number, names would cost the square of the layers.
+    let layers = document.walk();
+    let taken: HashSet<&str> = layers.iter().map(|(_, layer)| layer.name.as_str()).collect();
     let mut name = base.to_owned();
     for i in 2.. {
-        if !taken(&name) {
+        if !taken.contains(name.as_str()) {
             break;
         }
         name = format!("{base} {i}");
