@@ -128,7 +128,7 @@ impl<'s> PlacedDab<'s> {
     /// Adds a round tip to a tile, row by row: a ← a + f (c − a), f = flow · F, up to its ceiling c.
     pub fn add_round(&self, at: TileAt, stroke_tile: &mut StrokeTile, scratch: &mut DabScratch) {
         let part = self.touched(at);
-        let mut tip = RoundTip::new(&self.dab);
+        let tip = RoundTip::new(&self.dab);
         let DabScratch { deformed, covered, shares, row, .. } = scratch;
         let field = self.bent_over.map(|surface| {
             self.fill_touched(&part, deformed);
@@ -138,21 +138,24 @@ impl<'s> PlacedDab<'s> {
             Some(field) => bent_row(field.around(span), tip, row, out),
             None => flat_row(span.x as f32 + 0.5, span.y as f32 + 0.5, tip, row, out),
         };
+        let is_flat = field.is_none();
+        let spans = part.spans().filter_map(|span| if is_flat { span.reached_by(&tip) } else { Some(span) });
         if stroke_tile.is_plain() {
-            for span in part.spans() {
+            for span in spans {
                 let (coverage, reach) = stroke_tile.plain_row(part.start_of(span), span.n);
                 add(span, &tip, RowPaint { coverage, reach });
             }
             return;
         }
         // The stroke tile applies the ceiling, because it knows the coverage.
-        tip.ceiling = 1.0;
-        for span in part.spans() {
+        let mut uncapped = tip;
+        uncapped.ceiling = 1.0;
+        for span in spans {
             for row in [&mut *covered, &mut *shares] {
                 row.clear();
                 row.resize(span.n, 0.0);
             }
-            add(span, &tip, RowPaint { coverage: covered, reach: shares });
+            add(span, &uncapped, RowPaint { coverage: covered, reach: shares });
             let paint = DabPaint { flow: 1.0, ..self.paint(Some(self.dab.color)) };
             stroke_tile.cover(part.start_of(span), CoveredRow { coverage: covered, shares }, paint);
         }
@@ -183,6 +186,15 @@ struct PixelSpan {
     x: i32,
     y: i32,
     n: usize,
+}
+
+impl PixelSpan {
+    /// The part of it that an unbent dab may reach; `None` where that is nothing.
+    fn reached_by(self, tip: &RoundTip) -> Option<Self> {
+        let chunks = tip.flat_chunks(self.x, self.y, self.n);
+        let part = Self { x: self.x + chunks.start as i32, n: chunks.len(), ..self };
+        (part.n > 0).then_some(part)
+    }
 }
 
 /// The part of a tile that a dab may touch, or of what stands for one on a sheet.

@@ -169,6 +169,13 @@ impl DabWalker {
     }
 }
 
+/// About how many dabs a way of so many px and seconds takes at most.
+pub fn most_dabs(brush: &Brush, way_px: f32, secs: f32) -> usize {
+    let timed = (brush.rate.per_sec * secs).max(0.0);
+    // A float that is too large becomes the largest integer.
+    ((way_px / rules::MIN_STEP_PX + timed) as usize).saturating_add(1).min(walk::MAX_STEPS as usize)
+}
+
 /// All dabs of a stroke.
 pub fn dabs(brush: &Brush, operator: Operator, color: Color, samples: &[Sample], scene: &Scene) -> Vec<Dab> {
     let mut walker = DabWalker::new(brush, operator, color, scene);

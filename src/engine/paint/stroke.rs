@@ -10,6 +10,7 @@ pub use many::{are_heavy, render_many, render_tiles};
 
 use super::brush::Brush;
 use super::dab::DabScratch;
+use super::dab_walker;
 use super::scene::Scene;
 use super::selection::StrokeSelection;
 use super::stroke_tile::StrokeBlend;
@@ -124,12 +125,11 @@ impl Stroke {
     }
     /// The tiles of a canvas that the stroke touches, computed once.
     fn support(&self, scene: &Scene) -> Arc<TileReach> {
-        if let Some(support) = self.found().support.as_ref().filter(|support| support.is_on(scene)) {
-            return support.clone();
+        if let Some(support) = self.known_support(scene) {
+            return support;
         }
         let stroke_dabs = self.stroke_dabs(scene);
-        let support = self.found().support.clone().filter(|support| support.is_on(scene));
-        support.unwrap_or_else(|| Arc::new(stroke_dabs.support()))
+        self.known_support(scene).unwrap_or_else(|| Arc::new(stroke_dabs.support()))
     }
     /// The stroke's dabs on a canvas, computed again where they were not cached.
     fn stroke_dabs(&self, scene: &Scene) -> Arc<StrokeDabs> {
@@ -142,6 +142,21 @@ impl Stroke {
         let stroke_dabs = Arc::new(StrokeDabs::of(self, scene));
         self.found().keep(&stroke_dabs);
         stroke_dabs
+    }
+    /// Where it lies, if that is known already.
+    fn known_support(&self, scene: &Scene) -> Option<Arc<TileReach>> {
+        self.found().support.clone().filter(|support| support.is_on(scene))
+    }
+    /// About how many dabs it has at most, without laying them: as densely as dabs follow each other at all.
+    fn most_dabs(&self, scene: &Scene) -> usize {
+        if let Some(support) = self.known_support(scene) {
+            return support.dabs;
+        }
+        let ways = self.samples.windows(2).map(|pair| pair[0].at.distance(pair[1].at));
+        let way_px: f32 = ways.filter(|way| way.is_finite()).sum();
+        let secs =
+            self.samples.last().map_or(0.0, |last| last.time_secs) - self.samples.first().map_or(0.0, |s| s.time_secs);
+        dab_walker::most_dabs(&self.brush, way_px, secs)
     }
     /// Whether its dabs on a canvas are kept.
     fn is_laid(&self, scene: &Scene) -> bool {

@@ -64,13 +64,16 @@ impl<'a> Deformation<'a> {
     ///
     /// Anchors that are not finite are dropped, and parameters that are not finite count as 0: D is finite everywhere.
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
-        let deformation = Self::pinned(surface, size, bend, at_anchor);
+        let deformation = Self::pinned(surface, size, (bend.operator, bend.weights, &bend.anchors), at_anchor);
         deformation.laid(|surface, settings, anchors| LaidPlanes::pinned(surface, settings, anchors, bend.weights))
     }
     /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest surface
     /// values, so that a stroke continues over the silhouette.
     pub fn of_dab(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
-        Self::pinned(surface, size, &Self::dab_bend(operator, at), nearest_map_values).laid(
+        // Of the many dabs that nothing bends none asks for memory.
+        let pinned = [Anchor::fixed(at)];
+        let anchors = if surface.is_none() || operator.is_identity() { &[][..] } else { &pinned };
+        Self::pinned(surface, size, (operator, Weights::default(), anchors), nearest_map_values).laid(
             |surface, settings, anchors| LaidPlanes::of_dab(surface, settings, anchors.first().map_or(at, |a| a.at)),
         )
     }
@@ -78,9 +81,6 @@ impl<'a> Deformation<'a> {
     pub fn of_pattern(surface: Option<&'a Surface>, size: Size, operator: Operator, at: Vec2) -> Self {
         let dab = Self::of_dab(surface, size, operator, at);
         Self { planes: dab.planes.map(LaidPlanes::unbounded), ..dab }
-    }
-    fn dab_bend(operator: Operator, at: Vec2) -> Bend {
-        Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() }
     }
     /// With the planes of the unwrapped surface laid under the anchors, where the operator asks for them.
     fn laid(self, lay: impl FnOnce(&'a Surface, UnwrapSettings, &[Anchor]) -> LaidPlanes<'a>) -> Self {
@@ -91,15 +91,14 @@ impl<'a> Deformation<'a> {
     fn pinned(
         surface: Option<&'a Surface>,
         size: Size,
-        bend: &Bend,
+        (operator, weights, anchors): (Operator, Weights, &[Anchor]),
         read: impl Fn(&Surface, Vec2) -> MapValues,
     ) -> Self {
         let near = |p: Vec2| p.clamp(Vec2::splat(-FARTHEST_PX), Vec2::splat(FARTHEST_PX));
         // A sheet holds readings of single pixels; anchors stand on its surface.
         let whole = surface.and_then(Surface::sheet_of).and_then(|sheet| sheet.surface());
         let pinned = whole.as_deref().or(surface);
-        let pins = bend
-            .anchors
+        let pins = anchors
             .iter()
             .filter(|a| a.at.is_finite() && a.source.is_finite())
             .map(|a| {
@@ -107,9 +106,9 @@ impl<'a> Deformation<'a> {
                 Pin { anchor, map_values: pinned.map_or(MapValues::default(), |s| read(s, anchor.at)) }
             })
             .collect();
-        let operator = bend.operator.finite();
+        let operator = operator.finite();
         let curvature = surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
-        let weights = sane(bend.weights);
+        let weights = sane(weights);
         Self { surface, unit_px: size.longer_side(), operator, weights, pins, planes: None, curvature, reach: None }
     }
     /// The same, of a dab that lands within a reach; where D is the identity it does so anyway.

@@ -9,7 +9,7 @@ pub use super::pyramid::{BLOCK, TILE_BLOCKS};
 use super::pyramid::{BlockCover, DepthSpan, Pyramid, PyramidBlock, TILE_LEVEL, TurnSpan, block_rect, level_size};
 use super::unwrap::Unwrapping;
 use super::{DabReach, Surface};
-use crate::math::{Size, Vec2, vec2};
+use crate::math::{Rect, Size, Vec2, vec2};
 use crate::raster::TileAt;
 use std::sync::Arc;
 
@@ -133,6 +133,13 @@ impl<'s> SupportBounds<'s> {
     }
     /// Visits every tile of the canvas that may be touched.
     pub fn for_each_tile(&self, mut visit: impl FnMut(TileAt)) {
+        if let (OperatorBounds::Still, Some(rect)) = (&self.flow, self.flat_rect()) {
+            // Without a surface's say the tiles about the anchor are all there can be.
+            let is_touched = |at: &TileAt| {
+                self.judge(PyramidBlock { level: TILE_LEVEL, col: at.col, row: at.row }) != BlockOverlap::Nowhere
+            };
+            return TileAt::covering(rect).filter(is_touched).for_each(visit);
+        }
         let mut level = TILE_LEVEL;
         while level_size(self.size, level).area() > 1 {
             level += 1;
@@ -146,6 +153,18 @@ impl<'s> SupportBounds<'s> {
             BlockOverlap::Everywhere => self.on_canvas(at),
             BlockOverlap::Perhaps => blocks::judged(self, at),
         }
+    }
+    /// A rectangle of the canvas that holds all that an extent may reach where D is the identity; `None` where it is
+    /// not told by numbers.
+    fn flat_rect(&self) -> Option<Rect> {
+        // A little more than `DabExtent::may_hold` allows for.
+        let reach = 1.001 * (self.extent.radius_px + self.extent.filter_px + ROUNDING_PX) + 1.0;
+        let is_told = self.at.is_finite() && self.at.abs().max_element() < 1e7 && (0.0..1e7).contains(&reach);
+        is_told.then(|| {
+            let (low, high) = (self.at - reach, self.at + reach);
+            let rect = Rect::new(low.x as i32 - 1, low.y as i32 - 1, high.x as i32 + 1, high.y as i32 + 1);
+            rect.intersect(self.size.rect())
+        })
     }
     /// The blocks of a tile that hold pixels.
     fn on_canvas(&self, at: TileAt) -> TileBlocks {
@@ -182,6 +201,10 @@ impl<'s> SupportBounds<'s> {
         let flat = BlockImage::flat(low, high);
         if flat.near > self.border_px {
             return BlockOverlap::Nowhere;
+        }
+        if let OperatorBounds::Still = self.flow {
+            // On the surface and off it alike.
+            return self.touch(flat);
         }
         let cover = self.cover.and_then(|c| c.at(block)).unwrap_or(BlockCover { some: false, all: false });
         let outside = if cover.all { None } else { Some(flat) };
@@ -323,7 +346,7 @@ fn distance_to_box(low: Vec2, high: Vec2) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Rect, Vec3, hash, vec3};
+    use crate::math::{Vec3, hash, vec3};
     use crate::raster::Plane;
     use crate::surface::{Deformation, Maps, links};
     use proptest::prelude::*;

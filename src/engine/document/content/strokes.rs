@@ -27,7 +27,7 @@ impl Marks for StrokeList {
     fn together(&self, scene: &Scene, tiles: &[TileAt], progress: &Progress, done: &Done) {
         let is_wanted = || !progress.is_cancelled();
         let seen: Vec<TileAt> = tiles.iter().copied().filter(|&at| !scene.area(at).is_empty()).collect();
-        if !seen.is_empty() && stroke::are_heavy(&self.strokes, &scene.front(), is_wanted) == Some(true) {
+        if !seen.is_empty() && stroke::are_heavy(&self.strokes, &scene.front(), seen.len(), is_wanted) == Some(true) {
             // Cancelled, nothing is asked for any more.
             let _ = stroke::render_many(&self.strokes, scene, &seen, is_wanted, done);
         }
@@ -62,7 +62,7 @@ impl LayerKind for Live<StrokeList> {
         }
         let (missing, is_wanted) = (self.missing(scene), || !progress.is_cancelled());
         let strokes = &self.params().strokes;
-        if !missing.is_empty() && stroke::are_heavy(strokes, scene, is_wanted) == Some(true) {
+        if !missing.is_empty() && stroke::are_heavy(strokes, scene, missing.len(), is_wanted) == Some(true) {
             // Cancelled, they are rendered when they are asked for.
             let _ = stroke::render_tiles(strokes, scene, &missing, is_wanted, |at, tile| {
                 self.tile(scene, at, || tile);
@@ -144,7 +144,7 @@ impl Live<StrokeList> {
     fn warm_behind(&self, sheet: &Scene, progress: &Progress) {
         let (front, is_wanted) = (sheet.front(), || !progress.is_cancelled());
         let (missing, strokes) = (self.missing_behind(&front), &self.params().strokes);
-        if missing.is_empty() || stroke::are_heavy(strokes, &front, is_wanted) != Some(true) {
+        if missing.is_empty() || stroke::are_heavy(strokes, &front, missing.len(), is_wanted) != Some(true) {
             return;
         }
         let Some(of) = sheet.sheet() else { return };

@@ -9,6 +9,7 @@ use crate::paint::rim::Rim;
 use crate::paint::stroke_tile::raise;
 use crate::raster::TILE;
 use crate::surface::links;
+use std::ops::Range;
 
 /// Pixels that are judged together. Rows of blocks are whole multiples of them.
 const CHUNK: usize = 8;
@@ -85,6 +86,24 @@ impl RoundTip {
     /// The same footprint, of which coverage itself is asked.
     pub(super) fn plain(dab: &Dab) -> Self {
         Self { flow: 1.0, ceiling: 1.0, ..Self::new(dab) }
+    }
+    /// Of a row of `n` pixels from the pixel at (x, y) on, the chunks that an unbent dab may reach: all others lie beyond
+    /// it as [`RoundTip::zone`] tells. Small dabs touch few rows of their blocks.
+    pub(super) fn flat_chunks(&self, x: i32, y: i32, n: usize) -> Range<usize> {
+        // Distances are rounded.
+        const ROUNDING: (f32, f32) = (1.0005, 0.05);
+        let half = self.half_width.0 + self.half_width.1 * self.per_radius * self.per_radius;
+        let limit = (self.falloff.1 + half) / self.per_radius * ROUNDING.0 + ROUNDING.1;
+        let dy = y as f32 + 0.5 - self.at.y;
+        if dy.abs() > limit {
+            return 0..0;
+        }
+        let chord = (limit * limit - dy * dy).sqrt();
+        let middle = self.at.x - (x as f32 + 0.5);
+        // What is no number is the whole row.
+        let place = |v: f32, otherwise: usize| if v.is_nan() { otherwise } else { (v.max(0.0) as usize).min(n) };
+        let (first, last) = (place((middle - chord).floor(), 0), place((middle + chord).ceil() + 1.0, n));
+        first / CHUNK * CHUNK..last.next_multiple_of(CHUNK).min(n)
     }
     /// The zone of a pixel at distance r whose width's square is at most `widest`, both in radii.
     #[inline(always)]

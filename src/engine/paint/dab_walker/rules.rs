@@ -15,7 +15,7 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 /// The smallest step between dabs. Below it neighbouring dabs of any size are the same to a byte.
-const MIN_STEP_PX: f32 = 0.1;
+pub(super) const MIN_STEP_PX: f32 = 0.1;
 /// The smallest dab, a little wider than a pixel.
 const PIXEL_RADIUS_PX: f32 = 0.75;
 /// *s* of the κ that drives a brush: *L* over this. Relative, so that a larger canvas paints the same.
@@ -24,6 +24,9 @@ const CURVATURE_SCALES: f32 = 32.0;
 const CURVATURE_BLUR_PX: f32 = 1.0;
 /// The longest tip, times its width.
 const MOST_ELONGATION: f32 = 1.0 / *Tip::RATIO.start();
+
+/// Readings that cost more than the others: they are found where something follows them.
+const PEN: [Input; 5] = [Input::TiltDirection, Input::Direction, Input::Attack, Input::Pace, Input::SlowPace];
 
 #[derive(Clone)]
 pub(super) struct DabRules {
@@ -36,6 +39,8 @@ pub(super) struct DabRules {
     /// Where something follows it.
     curvature: Option<Arc<Curvature>>,
     reads_surface: bool,
+    /// Whether anything follows what arc tangents and logarithms tell of the pen.
+    reads_pen: bool,
     varies_in_color: bool,
     rims: Option<Arc<Rims>>,
 }
@@ -88,32 +93,41 @@ impl DabRules {
             scene: scene.clone(),
             facing: brush.facing.map(),
             curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
+            reads_pen: matches!(brush.tip, Tip::Hose(_)) || PEN.into_iter().any(follows),
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
             varies_in_color: tint::varies(brush),
             rims: Rims::of(brush),
         }
     }
     pub fn inputs(&self, moment: &Moment) -> DabInputs {
-        let Moment { place, direction, travelled_px, cycle, custom, number } = *moment;
+        let Moment { place, travelled_px, cycle, custom, number, .. } = *moment;
         let unit = |v: f32| v.max(0.0).min(1.0);
-        let in_frame = |v: Vec2| self.facing.transpose() * v;
-        let [pace, slow_pace] = place.paces.map(|px_per_sec| pace_of(px_per_sec / self.brush.hand.pace_px));
         let inputs = DabInputs {
             pressure: place.pressure,
             tilt: unit(place.tilt.length() / 90.0),
-            tilt_direction: turns_of(in_frame(place.tilt)),
-            direction: turns_of(in_frame(direction)),
             speed: unit(place.px_per_sec / (FAST_LENGTHS_PER_SEC * self.scene.size.longer_side())),
             distance: unit(travelled_px as f32 / (FAR_DIAMETERS * self.brush.size)),
-            pace,
-            slow_pace,
             cycle,
-            attack: (turns_of(in_frame(leaning(&place))) - turns_of(in_frame(direction))).rem_euclid(1.0),
             custom,
             seed: hash::mix(self.brush.seed ^ hash::mix(number.wrapping_add(0x9e37_79b9))),
             ..DabInputs::default()
         };
+        let inputs = if self.reads_pen { self.of_pen(moment, inputs) } else { inputs };
         self.over_surface(place.at, inputs)
+    }
+    /// With the readings of [`PEN`].
+    fn of_pen(&self, moment: &Moment, inputs: DabInputs) -> DabInputs {
+        let Moment { place, direction, .. } = *moment;
+        let in_frame = |v: Vec2| self.facing.transpose() * v;
+        let [pace, slow_pace] = place.paces.map(|px_per_sec| pace_of(px_per_sec / self.brush.hand.pace_px));
+        DabInputs {
+            tilt_direction: turns_of(in_frame(place.tilt)),
+            direction: turns_of(in_frame(direction)),
+            attack: (turns_of(in_frame(leaning(&place))) - turns_of(in_frame(direction))).rem_euclid(1.0),
+            pace,
+            slow_pace,
+            ..inputs
+        }
     }
     /// With what the surface is like at the pixel that a dab's centre lies in.
     fn over_surface(&self, at: Vec2, inputs: DabInputs) -> DabInputs {

@@ -49,11 +49,14 @@ impl StrokeDabs {
     pub fn of(stroke: &Stroke, scene: &Scene) -> Self {
         let mut stroke_dabs = Self::empty(&stroke.brush, scene);
         stroke_dabs.begin(&stroke.brush, &stroke.samples);
-        for dab in dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene) {
-            let tiles = tiles_of(&stroke_dabs.place(dab, scene));
+        let dabs = dab_walker::dabs(&stroke.brush, stroke.operator, stroke.color, &stroke.samples, scene);
+        stroke_dabs.dabs.reserve_exact(dabs.len());
+        let mut tiles = Vec::new();
+        for dab in dabs {
+            tiles.clear();
+            stroke_dabs.place(dab, scene).support().for_each_tile(|at| tiles.push(at));
             stroke_dabs.push(dab, &tiles);
         }
-        stroke_dabs.dabs.shrink_to_fit();
         stroke_dabs
     }
     /// The memory it takes, about.
@@ -93,6 +96,15 @@ impl StrokeDabs {
     }
     pub fn is_on(&self, scene: &Scene) -> bool {
         self.scene.is_same(scene)
+    }
+    /// How many there are.
+    #[cfg(test)]
+    pub fn dabs(&self) -> usize {
+        self.dabs.len()
+    }
+    /// The tiles that they may touch, in no order; some may lie beyond the canvas.
+    pub fn tiles(&self) -> impl Iterator<Item = TileAt> {
+        self.tiles.keys().copied()
     }
     /// What they were laid on.
     pub fn scene(&self) -> &Scene {

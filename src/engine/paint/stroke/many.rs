@@ -8,6 +8,7 @@ use crate::paint::dab::DabScratch;
 use crate::paint::scene::Scene;
 use crate::raster::{PlanarTile, Tile, TileAt};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Dabs that are held at a time, but for the last stroke's, which may go beyond: some 28 MB.
@@ -15,17 +16,28 @@ const DABS_IN_FLIGHT: usize = 1 << 18;
 /// Tiles that are held at a time, in f32: 64 MB.
 const TILES_IN_FLIGHT: usize = 1 << 10;
 
-/// Lays all strokes once, to know where they lie; whether some had to be forgotten, so that [`render_tiles`] is to be
-/// preferred. `None` if it is no longer wanted.
-pub fn are_heavy(strokes: &[Arc<Stroke>], scene: &Scene, is_wanted: impl Fn() -> bool + Sync) -> Option<bool> {
+/// Whether [`render_tiles`] is to be preferred for so many tiles: some strokes cannot be kept, or there are so many that
+/// asking each tile for its strokes would take long. `None` if it is no longer wanted.
+pub fn are_heavy(
+    strokes: &[Arc<Stroke>],
+    scene: &Scene,
+    tiles: usize,
+    is_wanted: impl Fn() -> bool + Sync,
+) -> Option<bool> {
+    const MANY: usize = 1 << 16;
+    if strokes.len().saturating_mul(tiles) > MANY {
+        return is_wanted().then_some(true);
+    }
     let front = scene.front();
-    let heavy = |stroke: &Arc<Stroke>| {
-        is_wanted().then(|| {
-            stroke.support(&front);
-            !stroke.is_laid(&front)
-        })
+    // The first that cannot be kept ends it: the others would be laid in vain.
+    let lay = |stroke: &Arc<Stroke>| {
+        if !is_wanted() {
+            return Err(None);
+        }
+        stroke.support(&front);
+        if stroke.is_laid(&front) { Ok(()) } else { Err(Some(true)) }
     };
-    strokes.par_iter().map(heavy).try_reduce(|| false, |a, b| Some(a | b))
+    strokes.par_iter().try_for_each(lay).map_or_else(|end| end, |()| Some(false))
 }
 
 /// Renders tiles of a list of strokes, the first lowest, and hands each to `done`; `None` if it is no longer wanted.
@@ -49,20 +61,19 @@ pub fn render_many(
 ) -> Option<()> {
     let front = scene.front();
     for part in tiles.chunks(TILES_IN_FLIGHT) {
-        let mut active_tiles: Vec<Wet> = part.iter().map(|&at| Wet { at, pixels: None }).collect();
-        let here: Vec<(&Stroke, Arc<TileReach>)> = strokes
-            .par_iter()
-            .map(|stroke| (stroke.as_ref(), stroke.support(&front)))
-            .filter(|(_, support)| part.iter().any(|&at| support.touches(at)))
-            .collect();
-        for batch in batches(&here) {
+        let places: HashMap<TileAt, usize> = part.iter().enumerate().map(|(i, &at)| (at, i)).collect();
+        let mut active_tiles: Vec<Wet> = part.iter().map(|&at| Wet { at, pixels: None, here: Vec::new() }).collect();
+        for batch in batches(strokes, |stroke| stroke.most_dabs(&front)) {
             is_wanted().then_some(())?;
-            let stroke_dabs: Vec<Flying> = batch
-                .par_iter()
-                .map(|(stroke, support)| Flying { stroke, support, stroke_dabs: stroke.stroke_dabs(&front) })
-                .collect();
-            active_tiles.par_iter_mut().for_each_init(DabScratch::default, |scratch, active_tiles| {
-                active_tiles.paint(&stroke_dabs, scene, scratch)
+            let laid: Vec<Option<Arc<StrokeDabs>>> =
+                batch.par_iter().map(|stroke| laid(stroke, &front, part)).collect();
+            for (i, stroke_dabs) in laid.iter().enumerate() {
+                for place in stroke_dabs.iter().flat_map(|dabs| dabs.tiles()).filter_map(|at| places.get(&at)) {
+                    active_tiles[*place].here.push(i);
+                }
+            }
+            active_tiles.par_iter_mut().for_each_init(DabScratch::default, |scratch, active_tile| {
+                active_tile.paint(batch, &laid, scene, scratch)
             });
         }
         active_tiles.into_par_iter().for_each(|active_tiles| done(active_tiles.at, active_tiles.pixels));
@@ -70,11 +81,10 @@ pub fn render_many(
     Some(())
 }
 
-/// A stroke whose dabs are held.
-struct Flying<'s> {
-    stroke: &'s Stroke,
-    support: &'s TileReach,
-    stroke_dabs: Arc<StrokeDabs>,
+/// The dabs of a stroke; `None` where it is known to touch none of the tiles.
+fn laid(stroke: &Stroke, front: &Scene, tiles: &[TileAt]) -> Option<Arc<StrokeDabs>> {
+    let misses = |support: Arc<TileReach>| !tiles.iter().any(|&at| support.touches(at));
+    (!stroke.known_support(front).is_some_and(misses)).then(|| stroke.stroke_dabs(front))
 }
 
 /// A tile that strokes are being painted on.
@@ -82,26 +92,33 @@ struct Wet {
     at: TileAt,
     /// Once a stroke touched it.
     pixels: Option<PlanarTile>,
+    /// Which strokes of the batch may touch it.
+    here: Vec<usize>,
 }
 
 impl Wet {
-    fn paint(&mut self, flying: &[Flying], scene: &Scene, scratch: &mut DabScratch) {
-        for Flying { stroke, stroke_dabs, .. } in flying.iter().filter(|one| one.support.touches(self.at)) {
+    fn paint(
+        &mut self,
+        batch: &[Arc<Stroke>],
+        laid: &[Option<Arc<StrokeDabs>>],
+        scene: &Scene,
+        scratch: &mut DabScratch,
+    ) {
+        for i in self.here.drain(..) {
+            let Some(stroke_dabs) = &laid[i] else { continue };
             let pixels = self.pixels.get_or_insert_with(PlanarTile::transparent);
-            stroke.paint(stroke_dabs, scene, self.at, pixels, scratch);
+            batch[i].paint(stroke_dabs, scene, self.at, pixels, scratch);
         }
     }
 }
 
 /// Runs of strokes whose dabs together are few enough to be held.
-fn batches<'a, 'b>(
-    strokes: &'a [(&'b Stroke, Arc<TileReach>)],
-) -> impl Iterator<Item = &'a [(&'b Stroke, Arc<TileReach>)]> {
+fn batches<T>(strokes: &[T], most_dabs: impl Fn(&T) -> usize) -> impl Iterator<Item = &[T]> {
     let mut rest = strokes;
     std::iter::from_fn(move || {
-        let mut dabs = 0;
-        let full = rest.iter().position(|(_, support)| {
-            dabs += support.dabs;
+        let mut dabs = 0usize;
+        let full = rest.iter().position(|stroke| {
+            dabs = dabs.saturating_add(most_dabs(stroke));
             dabs >= DABS_IN_FLIGHT
         });
         let (batch, after) = rest.split_at(full.map_or(rest.len(), |last| last + 1));
@@ -165,16 +182,21 @@ mod tests {
     }
     #[test]
     fn batches_hold_every_stroke_once_and_few_dabs() {
-        let (scene, strokes) = (Scene { size: SIZE, surface: None }, strokes(1));
-        let support = |dabs| Arc::new(TileReach::new(scene.clone(), dabs, [TileAt::new(0, 0)].into_iter()));
         let dabs = [1, DABS_IN_FLIGHT, 5, DABS_IN_FLIGHT / 2, DABS_IN_FLIGHT / 2, 7];
-        let all: Vec<(&Stroke, Arc<TileReach>)> = dabs.map(|dabs| (strokes[0].as_ref(), support(dabs))).into();
-        assert_eq!(batches(&all).map(<[_]>::len).collect::<Vec<_>>(), [2, 3, 1]);
+        assert_eq!(batches(&dabs, |dabs| *dabs).map(<[_]>::len).collect::<Vec<_>>(), [2, 3, 1]);
+    }
+    #[test]
+    fn no_stroke_has_more_dabs_than_are_allowed_for() {
+        let scene = waves();
+        for stroke in strokes(8) {
+            let (most, is) = (stroke.most_dabs(&scene), stroke.stroke_dabs(&scene).dabs());
+            assert!(is > 10 && is <= most, "{is} of {most}");
+        }
     }
     #[test]
     fn work_that_is_no_longer_wanted_ends() {
         let scene = Scene { size: SIZE, surface: None };
         assert!(render_tiles(&strokes(3), &scene, &[TileAt::new(0, 0)], || false, |_, _| ()).is_none());
-        assert!(are_heavy(&strokes(3), &scene, || false).is_none());
+        assert!(are_heavy(&strokes(3), &scene, 1, || false).is_none());
     }
 }

@@ -211,7 +211,10 @@ impl<'d> FillPlan<'d> {
             deformation,
             pins: deformation.pins.iter().map(pin).collect(),
             kernel,
-            slope: segment_slope(&deformation.anchors()).to_array(),
+            slope: match deformation.weights {
+                Weights::Segment => segment_slope(&deformation.anchors()).to_array(),
+                Weights::Shepard { .. } => [0.0; 2],
+            },
         }
     }
     /// Asks for what a span of the maps holds.

@@ -51,10 +51,8 @@ pub(super) fn judged(support: &SupportBounds, at: TileAt) -> TileBlocks {
     let cover = support.cover.and_then(|cover| cover.leaves());
     let mut touched = [0; BLOCKS];
     match &support.flow {
-        OperatorBounds::Still => {
-            let spans = BlockRanges::of(at, cover, None::<&Plane<BlockCover>>, |_| []);
-            still(&spans, corner, support.extent, &mut touched);
-        }
+        // On the surface and off it alike.
+        OperatorBounds::Still => still(corner, support.extent, &mut touched),
         OperatorBounds::Depth { pyramid, z, rate } => {
             let figures = |span: DepthSpan| [span.low, span.high, span.slope];
             let spans = BlockRanges::of(at, cover, pyramid.leaves(), figures);
@@ -96,8 +94,6 @@ trait BlockBend<const N: usize>: Copy {
 }
 
 #[derive(Clone, Copy)]
-struct StillBlocks;
-#[derive(Clone, Copy)]
 struct ScaledBlocks {
     z: f32,
     rate: f32,
@@ -113,12 +109,6 @@ struct LaidBlocks {
     at: Vec2,
 }
 
-impl BlockBend<0> for StillBlocks {
-    #[inline(always)]
-    fn image(self, _: [f32; 0], _: (Vec2, Vec2), flat: BlockImage) -> BlockImage {
-        flat
-    }
-}
 impl BlockBend<3> for ScaledBlocks {
     #[inline(always)]
     fn image(self, [low, high, slope]: [f32; 3], _: (Vec2, Vec2), flat: BlockImage) -> BlockImage {
@@ -164,8 +154,11 @@ fn each<const N: usize>(
 }
 
 crate::widest! {
-    fn still(spans: &BlockRanges<0>, corner: Vec2, extent: DabExtent, touched: &mut [u32]) {
-        each(spans, corner, extent, StillBlocks, touched);
+    fn still(corner: Vec2, extent: DabExtent, touched: &mut [u32]) {
+        for (i, touched) in touched.iter_mut().enumerate() {
+            let (low, high) = corners(corner, i);
+            *touched = u32::from(extent.may_hold(BlockImage::flat(low, high)));
+        }
     }
     fn scaled(spans: &BlockRanges<3>, corner: Vec2, extent: DabExtent, bend: ScaledBlocks, touched: &mut [u32]) {
         each(spans, corner, extent, bend, touched);
