@@ -117,7 +117,8 @@ impl Fill {
     fn edged(&self, inside: PixelSet, canvas: Size, part: &CanvasPart) -> FilledArea {
         let grow_px = self.grow_px.max(-FARTHEST_GROWTH_PX).min(FARTHEST_GROWTH_PX);
         let limit = grow_px.abs().ceil() as i32 + 1;
-        let PixelSet { rect, pixels } = inside.within(inside.rect.grown(limit).intersect(canvas.rect()));
+        let rect = inside.rect.grown(limit).intersect(canvas.rect());
+        let PixelSet { rect, pixels } = inside.within(rect);
         let coverage = edges::moved(&pixels, grow_px, self.antialias);
         if part.is_whole() {
             return FilledArea { rect, coverage };
@@ -150,10 +151,17 @@ struct PixelSet {
 
 impl PixelSet {
     /// The same pixels in another rectangle.
-    fn within(&self, rect: Rect) -> PixelSet {
-        let size = Size::new(rect.width() as u32, rect.height() as u32);
-        let (dx, dy) = (rect.x0 - self.rect.x0, rect.y0 - self.rect.y0);
-        let pixels = Plane::from_fn(size, |x, y| self.pixels.get(x as i32 + dx, y as i32 + dy).unwrap_or(0));
+    fn within(self, rect: Rect) -> PixelSet {
+        if rect == self.rect {
+            return self;
+        }
+        let mut pixels = Plane::filled(Size::new(rect.width() as u32, rect.height() as u32), 0u8);
+        let both = rect.intersect(self.rect);
+        for y in both.y0..both.y1 {
+            let from = &self.pixels.row((y - self.rect.y0) as usize)[(both.x0 - self.rect.x0) as usize..];
+            let to = &mut pixels.row_mut((y - rect.y0) as usize)[(both.x0 - rect.x0) as usize..];
+            to[..both.width()].copy_from_slice(&from[..both.width()]);
+        }
         PixelSet { rect, pixels }
     }
 }

@@ -6,7 +6,7 @@ pub mod contour;
 pub mod edges;
 pub mod shapes;
 
-use super::flood::TileBits;
+use super::flood::{TileBits, bytes_of};
 use super::grid::Grid;
 use super::tile::{TILE, TILE_AREA, TileAt};
 use super::{Plane, Tile};
@@ -48,7 +48,7 @@ impl CoverageTile {
         }
         let mut bytes = blank(0);
         for (row, bits) in bytes.as_chunks_mut::<TILE>().0.iter_mut().zip(bits) {
-            row.iter_mut().enumerate().for_each(|(x, b)| *b = if bits >> x & 1 != 0 { u8::MAX } else { 0 });
+            *row = bytes_of(*bits).map(|b| b * u8::MAX);
         }
         Self::new(bytes)
     }

@@ -144,26 +144,41 @@ fn next_wave(spread: &[(TileAt, Box<FloodTile>, FloodEntry)]) -> Vec<(TileAt, Fl
 impl FloodTile {
     /// Continues the flood from its entry.
     fn enter(&mut self, entry: FloodEntry) {
-        let TileLinks { from_left, from_right, from_above, from_below } = self.may.joined();
-        self.filled[0] |= entry.rows[0] & from_above[0];
-        self.filled[TILE - 1] |= entry.rows[1] & from_below[TILE - 1];
+        let joined = self.may.joined();
+        let [from_left, from_right, from_above, from_below] = joined.sides(&self.may.open);
+        let filled = &mut self.filled;
+        let before = *filled;
+        filled[0] |= entry.rows[0] & from_above[0];
+        filled[TILE - 1] |= entry.rows[1] & from_below[TILE - 1];
         for y in 0..TILE {
             let (west, east) = (entry.columns[0] >> y & 1, entry.columns[1] >> y & 1);
-            self.filled[y] |= west & from_left[y] | east << (TILE - 1) & from_right[y];
+            filled[y] |= west & from_left[y] | east << (TILE - 1) & from_right[y];
         }
         if let Some((x, y)) = entry.start {
-            self.filled[y] |= 1 << x & self.may.open[y];
+            filled[y] |= 1 << x & self.may.open[y];
         }
+        // Rows that hold pixels which have not spread along them yet, a bit each: all others are as full as they get
+        // until something enters them.
+        let mut fresh = (0..TILE).fold(0u64, |rows, y| rows | u64::from(filled[y] != before[y]) << y);
+        let mut spread = |filled: &mut TileBits, y: usize, entering: u64| {
+            let seeds = filled[y] | entering;
+            if seeds == filled[y] && fresh >> y & 1 == 0 {
+                return false;
+            }
+            fresh &= !(1 << y);
+            let now = runs_of(from_left[y], from_right[y], seeds);
+            std::mem::replace(&mut filled[y], now) != now
+        };
         // Down and up until nothing is added.
         loop {
             let mut grew = false;
             for y in 0..TILE {
-                let above = if y > 0 { self.filled[y - 1] } else { 0 };
-                grew |= spread(&mut self.filled[y], above & from_above[y], from_left[y], from_right[y]);
+                let above = if y > 0 { filled[y - 1] } else { 0 };
+                grew |= spread(filled, y, above & from_above[y]);
             }
             for y in (0..TILE - 1).rev() {
-                let below = self.filled[y + 1];
-                grew |= spread(&mut self.filled[y], below & from_below[y], from_left[y], from_right[y]);
+                let below = filled[y + 1];
+                grew |= spread(filled, y, below & from_below[y]);
             }
             if !grew {
                 return;
@@ -181,29 +196,22 @@ impl FloodTile {
 }
 
 impl OpenTile {
-    /// The pixels that may be entered from each side.
-    fn joined(&self) -> TileLinks {
-        let open = self.open;
-        match &self.links {
-            None => TileLinks { from_left: open, from_right: open, from_above: open, from_below: open },
-            Some(links) => {
-                let both = |links: &TileBits| std::array::from_fn(|y| links[y] & open[y]);
-                TileLinks {
-                    from_left: both(&links.from_left),
-                    from_right: both(&links.from_right),
-                    from_above: both(&links.from_above),
-                    from_below: both(&links.from_below),
-                }
-            }
-        }
+    /// The pixels that may be entered from each side, where that is not all that are open.
+    fn joined(&self) -> JoinedSides {
+        let both = |links: &TileBits| std::array::from_fn(|y| links[y] & self.open[y]);
+        JoinedSides(self.links.as_ref().map(|links| {
+            [both(&links.from_left), both(&links.from_right), both(&links.from_above), both(&links.from_below)]
+        }))
     }
 }
 
-/// Fills a row from what it holds and from what enters it; whether it grew.
-fn spread(filled: &mut u64, entering: u64, from_left: u64, from_right: u64) -> bool {
-    let before = *filled;
-    *filled = runs_of(from_left, from_right, before | entering);
-    *filled != before
+/// From the left, the right, above and below.
+struct JoinedSides(Option<[TileBits; 4]>);
+
+impl JoinedSides {
+    fn sides<'a>(&'a self, open: &'a TileBits) -> [&'a TileBits; 4] {
+        self.0.as_ref().map_or([open; 4], |sides| sides.each_ref())
+    }
 }
 
 /// What seeds reach along a row: to the right over pixels that may be entered from the left, to the left over those
@@ -218,6 +226,24 @@ fn runs_of(from_left: u64, from_right: u64, seeds: u64) -> u64 {
         down_free &= down_free >> step;
     }
     up | down
+}
+
+/// A row of bits as bytes, 1 where a bit is set; eight at a time: a product puts each bit into a byte of its own.
+pub fn bytes_of(bits: u64) -> [u8; TILE] {
+    let mut bytes = [0; TILE];
+    for (eight, bits) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(bits.to_le_bytes()) {
+        let spread = u64::from(bits) * 0x0101_0101_0101_0101 & 0x8040_2010_0804_0201;
+        // A bit anywhere in a byte carries into its highest one.
+        *eight = ((spread + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101).to_le_bytes();
+    }
+    bytes
+}
+
+/// The inverse of [`bytes_of`] of bytes that are 0 or 1.
+pub fn bits_of(bytes: &[u8; TILE]) -> u64 {
+    let eights = bytes.as_chunks::<8>().0.iter().map(|eight| u64::from_le_bytes(*eight));
+    // The product gathers the lowest bits of eight bytes in the highest byte.
+    eights.rev().fold(0, |bits, eight| bits << 8 | eight.wrapping_mul(0x0102_0408_1020_4080) >> 56)
 }
 
 #[cfg(test)]
@@ -267,6 +293,17 @@ mod tests {
         found
     }
 
+    #[test]
+    fn bits_and_bytes_are_the_same_pixels() {
+        for seed in 0..200 {
+            let bits = u64::from(hash::mix(seed)) << 32 | u64::from(hash::mix(!seed));
+            let bits = if seed % 3 == 0 { bits & bits.rotate_left(seed) } else { bits };
+            let bytes = bytes_of(bits);
+            assert!((0..TILE).all(|x| u64::from(bytes[x]) == bits >> x & 1), "{bits:x}: {bytes:?}");
+            assert_eq!(bits_of(&bytes), bits);
+        }
+        assert_eq!((bytes_of(u64::MAX), bits_of(&[1; TILE]), bits_of(&[0; TILE])), ([1; TILE], u64::MAX, 0));
+    }
     #[test]
     fn a_flood_crosses_neither_closed_pixels_nor_missing_links() {
         for seed in 0..8 {

@@ -3,7 +3,7 @@
 
 use super::PixelSet;
 use crate::math::Size;
-use crate::raster::flood::{Flooded, OpenTile, TileBits};
+use crate::raster::flood::{Flooded, OpenTile, TileBits, bits_of, bytes_of};
 use crate::raster::{CoverageGrid, CoverageTile, Plane, TILE, Tile, TileAt};
 use crate::surface::objects::CanvasPart;
 use std::sync::Arc;
@@ -57,7 +57,11 @@ fn opened(at: TileAt, tile: Option<&Tile>, like: [u8; 4], tolerance: u8, canvas:
     for y in area.y0..area.y1 {
         let row = (y - at.rect().y0) as usize;
         let mut bits = match tile {
-            Some(tile) => row_like(&tile.bytes().as_chunks::<4>().0[row * TILE..][..TILE], like, tolerance),
+            Some(tile) => {
+                let mut alike = [0; TILE];
+                row_like(&tile.bytes()[4 * row * TILE..][..4 * TILE], like, tolerance, &mut alike);
+                bits_of(&alike)
+            }
             None => {
                 if blank_is_open {
                     u64::MAX
@@ -82,18 +86,21 @@ fn opened(at: TileAt, tile: Option<&Tile>, like: [u8; 4], tolerance: u8, canvas:
 }
 
 crate::widest! {
-    /// A bit for each of 64 pixels.
-    fn row_like(pixels: &[[u8; 4]], like: [u8; 4], tolerance: u8) -> u64 {
-        let mut alike = [0u8; TILE];
-        for (a, p) in alike.iter_mut().zip(pixels) {
-            *a = u8::from(is_like(*p, like, tolerance));
+    /// 1 for each of a row's pixels whose bytes are all near, 0 for the others: [`is_like`], byte by byte.
+    fn row_like(row: &[u8], like: [u8; 4], tolerance: u8, alike: &mut [u8; TILE]) {
+        let mut near = [[0u8; 4]; TILE];
+        for (near, pixel) in near.iter_mut().zip(row.as_chunks::<4>().0) {
+            for c in 0..4 {
+                near[c] = u8::from(pixel[c].abs_diff(like[c]) <= tolerance);
+            }
         }
-        alike.iter().rev().fold(0, |bits, a| bits << 1 | u64::from(*a))
+        for (alike, near) in alike.iter_mut().zip(&near) {
+            *alike = u8::from(u32::from_ne_bytes(*near) == 0x0101_0101);
+        }
     }
 }
 
 /// Whether no channel differs by more than the tolerance.
-#[inline(always)]
 fn is_like(a: [u8; 4], b: [u8; 4], tolerance: u8) -> bool {
     let near = |c: usize| a[c].abs_diff(b[c]) <= tolerance;
     near(0) & near(1) & near(2) & near(3)
@@ -108,9 +115,7 @@ pub(super) fn pixels(flooded: &Flooded) -> PixelSet {
         for y in area.y0..area.y1 {
             let bits = tile[(y - at.rect().y0) as usize];
             let row = &mut pixels.row_mut((y - rect.y0) as usize)[(area.x0 - rect.x0) as usize..][..area.width()];
-            for (x, pixel) in row.iter_mut().enumerate() {
-                *pixel = (bits >> x & 1) as u8;
-            }
+            row.copy_from_slice(&bytes_of(bits)[..area.width()]);
         }
     }
     PixelSet { rect, pixels }

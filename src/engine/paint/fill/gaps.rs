@@ -8,6 +8,7 @@
 use super::PixelSet;
 use crate::math::Size;
 use crate::raster::{Plane, distance};
+use rayon::prelude::*;
 
 /// How much lower than both tops a saddle must be to be a gap, px: more than the roughness of a straight corridor drawn
 /// in pixels.
@@ -22,21 +23,39 @@ pub(super) fn closed(inside: PixelSet, start: (i32, i32), canvas: Size, gap_px: 
     let top_px = 0.5 * (gap_px + 1.0) + CLEARLY_PX;
     let limit = top_px.ceil() as u16;
     // The surroundings of the rectangle count as border; the edge of the canvas does not.
-    let inside = inside.within(inside.rect.grown(i32::from(limit)).intersect(canvas.rect()));
-    let to_border = distance::squared(&inside.pixels.map(|p| u8::from(p == 0)), limit);
+    let rect = inside.rect.grown(i32::from(limit)).intersect(canvas.rect());
+    let PixelSet { rect, mut pixels } = inside.within(rect);
+    let to_border = distance::squared(&pixels.map(|p| u8::from(p == 0)), limit);
     let top = (top_px * LEVELS_PER_PX) as u8;
-    let levels = to_border.map(|d| ((f32::from(d).sqrt() * LEVELS_PER_PX) as u8).min(top));
-    let mut rooms = DistanceHills::new(&inside.pixels, &levels, top);
+    let farthest = (usize::from(limit) + 1).pow(2);
+    let level = |squared: usize| (((squared as f32).sqrt() * LEVELS_PER_PX) as u8).min(top);
+    let levels: Vec<u8> = (0..=farthest).map(level).collect();
+    let levels = to_border.map(|d| levels[usize::from(d).min(farthest)]);
+    drop(to_border);
+    let mut rooms = DistanceHills::new(&pixels, &levels, top);
     rooms.rise();
-    let first = (start.1 - inside.rect.y0) as usize * inside.pixels.width() + (start.0 - inside.rect.x0) as usize;
-    let room = rooms.top_of(first);
-    let mut pixels = inside.pixels.clone();
-    for i in 0..pixels.values().len() {
-        if pixels.values()[i] != 0 && rooms.top_of(i) != room {
-            pixels.values_mut()[i] = 0;
+    let width = pixels.width().max(1);
+    let first = (start.1 - rect.y0) as usize * width + (start.0 - rect.x0) as usize;
+    let (room, parents) = (rooms.top_of(first), rooms.parent);
+    // Runs of a row mostly share their hill: each is looked up once.
+    pixels.values_mut().par_chunks_mut(width).zip(parents.par_chunks(width)).for_each(|(row, ups)| {
+        let mut last = (NONE, false);
+        for (pixel, &up) in row.iter_mut().zip(ups).filter(|(pixel, _)| **pixel != 0) {
+            if up != last.0 {
+                last = (up, root_of(&parents, up) == room);
+            }
+            *pixel = u8::from(last.1);
         }
+    });
+    PixelSet { rect, pixels }
+}
+
+/// The top of the hill that a pixel with this parent lies on.
+fn root_of(parents: &[u32], mut up: u32) -> usize {
+    while let Some(&next) = parents.get(up as usize).filter(|&&next| next != up && next != NONE) {
+        up = next;
     }
-    PixelSet { rect: inside.rect, pixels }
+    up as usize
 }
 
 /// Hills of distance: a forest over the pixels, each tree one hill, its root a pixel of its top.

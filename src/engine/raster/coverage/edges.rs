@@ -21,15 +21,21 @@ pub fn moved(marked: &Plane<u8>, grow_px: f32, antialias: bool) -> Plane<u8> {
     let limit = grow_px.abs().ceil() as u16 + 1;
     let to_inside = distance::squared(marked, limit);
     let to_outside = distance::squared(&marked.map(|p| u8::from(p == 0)), limit);
-    Plane::from_fn(marked.size(), |x, y| {
-        let beyond = match marked.at(x, y) {
-            0 => f32::from(to_inside.at(x, y)).sqrt() - 0.5,
-            _ => 0.5 - f32::from(to_outside.at(x, y)).sqrt(),
-        };
+    let share = |beyond: f32| {
         let share = 0.5 + grow_px - beyond;
         let share = if antialias { share.clamp(0.0, 1.0) } else { f32::from(u8::from(share > 0.5)) };
         (share * 255.0).round() as u8
-    })
+    };
+    // A pixel's share follows from its squared distance alone.
+    let farthest = (usize::from(limit.min(distance::FARTHEST)) + 1).pow(2);
+    let distances = || (0..=farthest).map(|squared| (squared as f32).sqrt());
+    let outside: Vec<u8> = distances().map(|d| share(d - 0.5)).collect();
+    let inside: Vec<u8> = distances().map(|d| share(0.5 - d)).collect();
+    let to_share = |x: usize, y: usize, marked: u8| match marked {
+        0 => outside[usize::from(to_inside.at(x, y)).min(farthest)],
+        _ => inside[usize::from(to_outside.at(x, y)).min(farthest)],
+    };
+    marked.clone().updated(to_share)
 }
 
 /// Its edge moved outward (negative: inward) by so many px.
