@@ -115,7 +115,7 @@ crate::widest! {
         }
         for (most, channel) in most.iter_mut().zip(&row.rgb) {
             for x in 0..TILE {
-                most[x] = fast::max(fast::min(channel[x] * per_a[x], 1.0), most[x]);
+                fast::raise(&mut most[x], fast::min(channel[x] * per_a[x], 1.0));
             }
         }
     }
@@ -126,7 +126,7 @@ crate::widest! {
             let light = |v: f32| decode_fast(fast::min(v * per_a, 1.0));
             let luminance = luminance(light(row.rgb[0][x]), light(row.rgb[1][x]), light(row.rgb[2][x]));
             let counts = row.a[x] >= 0.5 && covers[x] >= 128;
-            most[x] = fast::max(if counts { luminance } else { 0.0 }, most[x]);
+            fast::raise(&mut most[x], if counts { luminance } else { 0.0 });
         }
     }
 }

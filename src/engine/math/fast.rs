@@ -14,6 +14,13 @@ pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
+/// Raises a value in place to another, unless that is NaN. `f32::max` and no comparison: of one the compiler makes a store
+/// under a mask, which takes some processors (Zen) forty steps, and what reads the value next waits for it.
+#[inline(always)]
+pub fn raise(value: &mut f32, to: f32) {
+    *value = value.max(to);
+}
+
 /// 2^x, relative error below 4e-6; exactly 1 at 0. `x` is clamped to ±126, NaN becomes 2^-126.
 #[inline(always)]
 pub fn exp2(x: f32) -> f32 {

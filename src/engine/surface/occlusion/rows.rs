@@ -179,7 +179,7 @@ fn march(
             before[i] = rise;
             let space_2 = distance_2 + rise * rise;
             let above = rise / space_2.sqrt() - tangent[i];
-            hidden[i] = fast::max(hidden[i], excess(above, space_2 * per_radius_2, cliffs[i], per_cliff));
+            fast::raise(&mut hidden[i], excess(above, space_2 * per_radius_2, cliffs[i], per_cliff));
         }
     }
 }
