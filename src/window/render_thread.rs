@@ -3,12 +3,15 @@
 //! and whole pixels would take longer than a frame, it paints a smaller picture instead, and the full one as soon as
 //! the hand rests. Floor 7. Pixels come from `document::flatten`; `pass` tracks what is left to paint of one picture.
 
+mod draft;
 mod pass;
+mod ready;
 
-use crate::document::{Document, DocumentReducer};
+use crate::document::Document;
 use crate::math::{Rect, Size};
 use crate::memory::{self, OutOfMemory};
 use crate::raster::{Tile, TileAt};
+use draft::{DraftRender, Readiness};
 use pass::RenderPass;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -67,6 +70,8 @@ const FRAME: Duration = Duration::from_millis(30);
 const REST: Duration = Duration::from_millis(180);
 /// After this long without a request, the thread prepares for the next drag.
 const PAUSE: Duration = Duration::from_millis(600);
+/// Between two looks at what another thread makes ready.
+const LOOK: Duration = Duration::from_millis(30);
 /// Canvas pixels to a pixel of the smallest picture.
 const COARSEST: u32 = 8;
 
@@ -113,13 +118,6 @@ struct RenderWork {
     is_resting: bool,
     /// Whether the reduced document is ready for a drag.
     is_prepared: bool,
-}
-
-/// A smaller picture, for as long as a drag lasts and the next ones.
-struct DraftRender {
-    step: u32,
-    reduced: DocumentReducer,
-    pass: RenderPass,
 }
 
 /// `None` once the window is gone.
@@ -193,9 +191,9 @@ impl RenderWork {
             } else if waited.timed_out() {
                 drop(wanted);
                 // A drag that has no memory to be prepared will be told so itself, if it comes.
-                let _ = self.if_there_is_memory(Self::prepare);
+                let waits = matches!(self.if_there_is_memory(Self::prepare), Ok(Readiness::Waits));
                 // The next part at once.
-                pause = Duration::ZERO;
+                pause = if waits { LOOK } else { Duration::ZERO };
                 wanted = lock(&shared.wanted);
             }
         }
@@ -205,11 +203,14 @@ impl RenderWork {
         !self.is_prepared && self.whole.slowest() > FRAME
     }
     /// Makes some of the document small before a drag needs it: all of a large one would hold the first frame up.
-    fn prepare(&mut self) {
+    fn prepare(&mut self) -> Readiness {
         let step = step_for(self.whole.slowest());
-        let Some(wanted) = &self.wanted else { return self.is_prepared = true };
-        let draft = self.draft.get_or_insert_with(|| DraftRender::new(step));
-        self.is_prepared = !draft.reduced.prepare(&wanted.document);
+        let readiness = match &self.wanted {
+            Some(wanted) => self.draft.get_or_insert_with(|| DraftRender::new(step)).prepare(&wanted.document),
+            None => Readiness::Ready,
+        };
+        self.is_prepared = matches!(readiness, Readiness::Ready);
+        readiness
     }
     fn take_up(&mut self, next: RenderRequest) {
         if self.wanted.as_ref().is_none_or(|old| old.picture != next.picture) {
@@ -230,6 +231,7 @@ impl RenderWork {
         if draft.is_slow() {
             *draft = DraftRender::new(draft.step * 2);
         }
+        draft.wait_for_surface(&wanted.document);
         match draft.reduced.of(&wanted.document) {
             Ok(small) => draft.pass.take_up(small),
             // A surface too thin to be made small is painted whole.
@@ -284,29 +286,6 @@ fn wanted_size(wanted: Option<&RenderRequest>) -> Size {
 fn step_for(whole: Duration) -> u32 {
     let fits = |step: u32| whole.as_secs_f32() <= FRAME.as_secs_f32() * (step * step) as f32;
     [2, 4].into_iter().find(|&step| fits(step)).unwrap_or(COARSEST)
-}
-
-impl DraftRender {
-    fn new(step: u32) -> Self {
-        Self { step, reduced: DocumentReducer::new(1.0 / step as f32), pass: RenderPass::default() }
-    }
-    /// Of the small picture, the pixels in sight.
-    fn in_sight(&self, canvas: Rect) -> Rect {
-        let step = self.step as i32;
-        let Rect { x0, y0, x1, y1 } = canvas;
-        Rect::new(x0.div_euclid(step), y0.div_euclid(step), x1.div_euclid(step) + 1, y1.div_euclid(step) + 1)
-    }
-    /// Its passes take longer than they should, though there is a coarser one. The first made everything small.
-    fn is_slow(&self) -> bool {
-        self.step < COARSEST && self.pass.passes() > 1 && self.pass.took() > FRAME.mul_f32(1.6)
-    }
-    /// It was prepared, and no drag has used it.
-    fn is_unused(&self) -> bool {
-        self.pass.passes() == 0
-    }
-    fn would_be_quick_in_whole_pixels(&self) -> bool {
-        self.pass.passes() > 1 && self.pass.took() * self.step * self.step < FRAME
-    }
 }
 
 #[cfg(test)]

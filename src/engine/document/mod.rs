@@ -48,7 +48,7 @@ pub use normals::{DetailSource, NormalLayer};
 pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};
 pub use prepare::PreparedDocument;
 pub use progress::Progress;
-pub use scale::DocumentReducer;
+pub use scale::{DocumentReducer, ReducedSurface, SurfaceReduction};
 pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
 pub use transform::{LayerMap, LayerTransform, TransformShape};
@@ -109,7 +109,14 @@ impl Document {
     }
     /// A layer by its name, groups opened, the topmost of several.
     pub fn layer_named(&self, name: &str) -> Option<&Arc<Layer>> {
-        self.walk().into_iter().rev().map(|(_, layer)| layer).find(|layer| layer.name == name)
+        fn find<'a>(layers: &'a [Arc<Layer>], name: &str) -> Option<&'a Arc<Layer>> {
+            layers.iter().rev().find_map(|layer| match layer.content.group() {
+                _ if layer.name == name => Some(layer),
+                Some(group) => find(&group.layers, name),
+                None => None,
+            })
+        }
+        find(&self.layers, name)
     }
     /// Every layer, groups opened, bottom first, with its path such as `layers[2].layers[0]`.
     pub fn walk(&self) -> Vec<(String, &Arc<Layer>)> {

@@ -2,9 +2,10 @@
 //! layers change their coordinates and stay as sharp as the new canvas; pixels, masks and maps are resampled.
 
 mod reducer;
+mod resample;
 mod selections;
 
-pub use reducer::DocumentReducer;
+pub use reducer::{DocumentReducer, ReducedSurface, SurfaceReduction};
 
 use super::cache::LayerCache;
 use super::{Document, Layer, MaskKind, Part, PixelLayer};
@@ -45,6 +46,8 @@ pub(super) struct CanvasScale {
     pub length: f32,
     from: Size,
     to: Size,
+    /// Seen for a moment only: what is fine is read coarsely.
+    is_draft: bool,
     /// Selections that were scaled, by their addresses.
     selections: Mutex<ScaledSelections>,
 }
@@ -57,7 +60,25 @@ impl CanvasScale {
             return None;
         }
         let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
-        Some(Self { per_axis, length: factor, from, to, selections: Mutex::default() })
+        Some(Self { per_axis, length: factor, from, to, is_draft: false, selections: Mutex::default() })
+    }
+    /// The same of a document that is seen for a moment only.
+    fn for_a_moment(self) -> Self {
+        Self { is_draft: true, ..self }
+    }
+    /// The new canvas.
+    pub fn to(&self) -> Size {
+        self.to
+    }
+    /// How many of the finest levels of a picture need not be read, so many of whose texels lie under a new pixel.
+    ///
+    /// Antialiasing spends up to sixteen taps on a pixel before it reads a coarser level. So a pixel that covered four
+    /// took twice as long as one of them, and one that covered sixteen three times.
+    pub fn levels_to_skip(&self, texels_per_px: f32) -> u32 {
+        // A canvas of an odd size is not quite so much smaller.
+        let (smaller, covered) = ((1.0 / self.length).log2(), texels_per_px.log2() + 0.1);
+        // NaN and what is negative become 0.
+        if self.is_draft { smaller.min(covered) as u32 } else { 0 }
     }
     /// Parts with their lengths scaled, and the surface that they make on the new canvas.
     fn parts(&self, old: &Document, new: Document) -> Result<Document, SurfaceError> {
@@ -119,20 +140,23 @@ impl CanvasScale {
     /// One tile of a grid resampled: premultiplied values as they are stored, averaged.
     fn tile(&self, grid: &TileGrid, at: TileAt) -> Option<Tile> {
         let rect = at.rect();
-        let columns: Vec<_> = (rect.x0..rect.x1).map(|x| covered(x, self.per_axis.x)).collect();
+        let columns = resample::AxisTaps::new(rect.x0..rect.x1, self.per_axis.x);
+        let rows: Vec<_> = (rect.y0..rect.y1).map(|y| covered(y, self.per_axis.y)).collect();
+        let (first, last) = (rows.first()?.first()?.0, rows.last()?.last()?.0);
+        let source = Rect::new(columns.first(), first, columns.end(), last + 1);
+        // Most tiles of most layers are not there.
+        if TileAt::covering(source).all(|at| grid.tile(at).is_none()) {
+            return None;
+        }
         let mut bytes = Vec::with_capacity(TILE * TILE * 4);
-        for y in rect.y0..rect.y1 {
-            let row = covered(y, self.per_axis.y);
-            for column in &columns {
-                let mut sum = [0.0; 4];
-                for &(y, wy) in &row {
-                    for &(x, wx) in column {
-                        let p = grid.pixel(x, y);
-                        (0..4).for_each(|c| sum[c] += wx * wy * f32::from(p[c]));
-                    }
-                }
-                bytes.extend(sum.map(|v| quantise(v / 255.0)));
+        let mut row = vec![[0; 4]; source.width()];
+        for taps in &rows {
+            let mut sums = [[0.0; 4]; TILE];
+            for &(y, weight) in taps {
+                grid.copy_row(source.x0, y, &mut row);
+                resample::add_row(&columns, weight, &row, &mut sums);
             }
+            bytes.extend(sums.as_flattened().iter().map(|v| quantise(v / 255.0)));
         }
         bytes.chunks_exact(4).any(|p| p[3] > 0).then(|| Tile::from_bytes(bytes)).flatten()
     }

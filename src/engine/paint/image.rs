@@ -81,6 +81,11 @@ impl PictureSource {
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
         Self { file, picture, adjust, texture: Arc::default(), deep: Arc::default(), stamps: Arc::default() }
     }
+    /// The same picture without its finest `levels` of detail: what shows it as much smaller reads fewer texels.
+    pub fn coarser(&self, levels: u32) -> Self {
+        let texture = OnceLock::from(self.texture().coarser(levels));
+        Self { texture: Arc::new(texture), ..self.clone() }
+    }
     pub(super) fn stamps(&self) -> &StampCache {
         &self.stamps
     }
@@ -113,7 +118,7 @@ impl PlacedImage {
             return None;
         }
         let mut pixels = vec![[0u8; 4]; TILE_AREA];
-        let Placed { positions, margin, texels_from_canvas } = self.placed(scene, area);
+        let Placed { positions, margin, texels_from_canvas } = self.placed(scene, area, self.source.texture().size());
         let (width, texture) = (area.width(), self.source.texture());
         let (mut patches, mut bilinear, mut antialias) =
             (Patches::default(), Bilinear::default(), Antialias::default());
@@ -138,9 +143,9 @@ impl PlacedImage {
         }
         Tile::from_pixels(pixels.into_flattened())
     }
-    /// Where each pixel of an area is read.
-    fn placed(&self, scene: &Scene, area: Rect) -> Placed {
-        let texels_from_frame = self.placement.texels_from_canvas(scene.size, self.source.picture.size);
+    /// Where each pixel of an area is read of a texture of this size.
+    fn placed(&self, scene: &Scene, area: Rect, texture: Size) -> Placed {
+        let texels_from_frame = self.placement.texels_from_canvas(scene.size, texture);
         let bent_frame = BentFrame::of(&self.frame, area);
         let texels_from_canvas = texels_from_frame * bent_frame.linear;
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);

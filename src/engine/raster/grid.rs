@@ -128,6 +128,21 @@ impl<T> Grid<T> {
 }
 
 impl Grid<Tile> {
+    /// Copies a row of pixels, premultiplied, from a canvas pixel on.
+    pub fn copy_row(&self, x0: i32, y: i32, row: &mut [[u8; 4]]) {
+        let line = Rect::new(x0, y, x0.saturating_add(row.len() as i32), y.saturating_add(1));
+        for at in TileAt::covering(line) {
+            let (tile, area) = (at.rect(), at.rect().intersect(line));
+            let to = &mut row[(area.x0 - x0) as usize..][..area.width()];
+            match self.tile(at) {
+                Some(held) => {
+                    let start = (y - tile.y0) as usize * TILE + (area.x0 - tile.x0) as usize;
+                    to.copy_from_slice(&held.bytes().as_chunks::<4>().0[start..start + area.width()]);
+                }
+                None => to.fill([0; 4]),
+            }
+        }
+    }
     /// Takes in the tiles of a grid that paints no pixel that this one paints.
     pub fn join(&mut self, other: &TileGrid) {
         self.reserve(other.bounds());

@@ -4,6 +4,7 @@
 use super::picture::{Picture, Texels};
 use crate::math::{Size, srgb};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// What a lookup beyond the picture's border finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -77,7 +78,9 @@ pub struct MipLevel<T = [u8; 4]> {
 /// A mip chain; level 0 is the picture itself, each next one half as large down to 1 × 1.
 #[derive(Clone)]
 pub struct Texture<T = [u8; 4]> {
-    levels: Vec<MipLevel<T>>,
+    levels: Arc<[MipLevel<T>]>,
+    /// The level that is read as level 0.
+    first: usize,
 }
 
 /// A texture of floats; light brighter than white is above 1.
@@ -113,14 +116,19 @@ impl<T: Texel> Texture<T> {
         while let Some(next) = levels.last().and_then(halved) {
             levels.push(next);
         }
-        Self { levels }
+        Self { levels: levels.into(), first: 0 }
+    }
+    /// The same texture without its finest levels, as if the picture were so much smaller; one is always left.
+    pub fn coarser(&self, levels: u32) -> Self {
+        let first = self.first.saturating_add(levels as usize).min(self.levels.len() - 1);
+        Self { levels: self.levels.clone(), first }
     }
     pub fn size(&self) -> Size {
-        self.levels[0].size
+        self.levels[self.first].size
     }
     /// Level 0 is the picture; there is always at least one.
     pub fn levels(&self) -> &[MipLevel<T>] {
-        &self.levels
+        &self.levels[self.first..]
     }
 }
 

@@ -6,7 +6,7 @@ use crate::Result;
 use crate::document::deep::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
-use crate::paint::{PlacedImage, Placement, Scene};
+use crate::paint::{ImageFilter, PlacedImage, Placement, Scene};
 use crate::raster::{DeepTexture, PlanarTile, TileAt};
 use crate::surface::{Anchor, Bend, Deformation};
 use std::sync::Arc;
@@ -50,6 +50,14 @@ impl LayerKind for Live<PlacedImage> {
         image.bend.operator = image.bend.operator.scaled(scale.length);
         for Anchor { at, source } in &mut image.bend.anchors {
             (*at, *source) = (*at * scale.per_axis, *source * scale.per_axis);
+        }
+        if image.filter == ImageFilter::Antialias {
+            let texture = image.source.texture().size();
+            let texels_per_px = image.placement.texels_from_canvas(scale.to(), texture).matrix2.x_axis.length();
+            match scale.levels_to_skip(texels_per_px) {
+                0 => {}
+                levels => image.source = image.source.coarser(levels),
+            }
         }
         Content::Image(Live::new(image))
     }

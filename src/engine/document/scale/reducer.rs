@@ -3,6 +3,7 @@
 
 use super::super::{Content, Document, Group, Layer, LayerId};
 use super::CanvasScale;
+use crate::math::Size;
 use crate::surface::{Surface, SurfaceError};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
@@ -16,30 +17,58 @@ pub struct DocumentReducer {
     layers: HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
 }
 
+/// A surface that is yet to be made small; where that must not hold anything up, on another thread.
+pub struct SurfaceReduction {
+    of: Arc<Surface>,
+    to: Size,
+}
+
+/// A surface that was made small.
+pub struct ReducedSurface {
+    of: Weak<Surface>,
+    small: Arc<Surface>,
+}
+
+impl SurfaceReduction {
+    /// Takes half a second at 4096². Fails if nothing is left of a surface thinner than the new pixels.
+    pub fn make(&self) -> Result<ReducedSurface, SurfaceError> {
+        Ok(ReducedSurface { of: Arc::downgrade(&self.of), small: Arc::new(self.of.stretched(self.to)?) })
+    }
+    /// Both are the same work.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.of, &other.of) && self.to == other.to
+    }
+}
+
 impl DocumentReducer {
     /// `factor`: as of [`Document::scaled`].
     pub fn new(factor: f32) -> Self {
         Self { factor, surface: None, layers: HashMap::new() }
     }
-    /// The reduced document: equal to [`Document::scaled`], with the same errors; what was selected by the surface is
-    /// resampled and not found anew.
+    /// The reduced document: as [`Document::scaled`], with the same errors; but pictures of image layers are read from
+    /// levels as much coarser, and what was selected by the surface is resampled and not found anew.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
-        let Some(scale) = CanvasScale::of(document.size, self.factor) else { return Ok(document.clone()) };
+        let Some(scale) = self.scale(document) else { return Ok(document.clone()) };
         let surface = document.surface.as_ref().map(|surface| self.surface(surface, &scale)).transpose()?;
         let mut layers = HashMap::new();
         let small = self.stack(&document.layers, &scale, &mut layers);
         self.layers = layers;
         Ok(Document { size: scale.to, surface, layers: small, ..scale.selected(document) })
     }
-    /// Scales one more part of the document in advance for [`DocumentReducer::of`]; returns whether there was one.
-    /// An idle thread can prepare in steps with this; the surface is one of them and takes half a second at 4096².
+    /// What of a document's surface [`DocumentReducer::of`] would have to make small; `None` where nothing.
+    pub fn missing_surface(&self, document: &Document) -> Option<SurfaceReduction> {
+        let scale = self.scale(document)?;
+        let surface = document.surface.as_ref().filter(|surface| self.known_surface(surface, scale.to).is_none())?;
+        Some(SurfaceReduction { of: surface.clone(), to: scale.to })
+    }
+    /// Takes in a surface that was made small elsewhere.
+    pub fn take_surface(&mut self, made: ReducedSurface) {
+        self.surface = Some((made.of, made.small));
+    }
+    /// Scales one more layer of the document in advance for [`DocumentReducer::of`]; returns whether there was one. An
+    /// idle thread can prepare in steps with this, and see to [`DocumentReducer::missing_surface`].
     pub fn prepare(&mut self, document: &Document) -> bool {
-        let Some(scale) = CanvasScale::of(document.size, self.factor) else { return false };
-        if let Some(surface) = &document.surface
-            && self.surface.as_ref().is_none_or(|(known, _)| known.as_ptr() != Arc::as_ptr(surface))
-        {
-            return self.surface(surface, &scale).is_ok();
-        }
+        let Some(scale) = self.scale(document) else { return false };
         // Groups cost nothing once their layers are known.
         let is_new = |layer: &&Arc<Layer>| {
             let known = self.layers.get(&layer.id).is_some_and(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
@@ -49,11 +78,15 @@ impl DocumentReducer {
         self.layers.insert(layer.id, (Arc::downgrade(layer), Arc::new(scale.layer(layer))));
         true
     }
+    fn scale(&self, document: &Document) -> Option<CanvasScale> {
+        CanvasScale::of(document.size, self.factor).map(CanvasScale::for_a_moment)
+    }
+    fn known_surface(&self, surface: &Arc<Surface>, to: Size) -> Option<&Arc<Surface>> {
+        let (of, small) = self.surface.as_ref()?;
+        (of.as_ptr() == Arc::as_ptr(surface) && small.size() == to).then_some(small)
+    }
     fn surface(&mut self, surface: &Arc<Surface>, scale: &CanvasScale) -> Result<Arc<Surface>, SurfaceError> {
-        if let Some((known, small)) = &self.surface
-            && known.as_ptr() == Arc::as_ptr(surface)
-            && small.size() == scale.to
-        {
+        if let Some(small) = self.known_surface(surface, scale.to) {
             return Ok(small.clone());
         }
         let small = Arc::new(surface.stretched(scale.to)?);
@@ -93,8 +126,11 @@ impl DocumentReducer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Progress, diff, flatten};
-    use crate::math::{Size, srgb::Color};
+    use crate::document::{Live, Progress, diff, flatten};
+    use crate::math::{srgb::Color, vec3};
+    use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
+    use crate::raster::{Outside, Picture, Plane};
+    use crate::surface::Maps;
 
     fn fill(name: &str, v: u8) -> Layer {
         Layer::new(name, Content::Fill(Color { r: v, g: v, b: v, a: 255 }))
@@ -119,6 +155,52 @@ mod tests {
             (flatten(&second, &Progress::default()), flatten(&changed.scaled(0.5).unwrap(), &Progress::default()));
         let area = second.size.rect();
         assert!(ours.unwrap().to_straight_rgba(area) == whole.unwrap().to_straight_rgba(area));
+    }
+    #[test]
+    fn pictures_of_a_draft_are_read_as_coarsely_as_its_pixels_are() {
+        let size = Size::new(256, 128);
+        let texels = (0..size.area()).map(|i| if i % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] }).collect();
+        let picture = Picture::srgb8(size, texels).unwrap();
+        let levels = |scale: f32, filter: ImageFilter| {
+            let image = PlacedImage {
+                source: PictureSource::new("stripes".into(), picture.clone(), Adjust::default()),
+                placement: Placement { scale, ..Placement::covering(size) },
+                outside: Outside::Mirror,
+                bend: Default::default(),
+                filter,
+                frame: Default::default(),
+            };
+            let layers = vec![Arc::new(Layer::new("image", Content::Image(Live::new(image))))];
+            let document = Document { layers, ..Document::empty(size) };
+            let width = |document: &Document| match &document.layers[0].content {
+                Content::Image(live) => live.params().source.texture().size().width,
+                _ => 0,
+            };
+            let small = DocumentReducer::new(0.25).of(&document).unwrap();
+            let grey = flatten(&small, &Progress::default()).unwrap().pixel(32, 16);
+            assert!(filter == ImageFilter::Bilinear || scale > 1.0 || grey[0].abs_diff(128) < 4, "{grey:?}");
+            (width(&small), width(&document.scaled(0.25).unwrap()))
+        };
+        assert_eq!(levels(1.0, ImageFilter::Antialias), (64, 256), "a print reads all");
+        assert_eq!(levels(2.0, ImageFilter::Antialias), (128, 256), "magnified twice");
+        assert_eq!(levels(9.0, ImageFilter::Antialias), (256, 256));
+        assert_eq!(levels(1.0, ImageFilter::Bilinear), (256, 256));
+    }
+    #[test]
+    fn a_surface_made_small_elsewhere_is_taken_in_and_not_made_again() {
+        let size = Size::new(300, 200);
+        let normals = Plane::from_fn(size, |x, _| vec3((0.1 * x as f32).sin(), 0.0, 1.0));
+        let maps = Maps { normals, depth: Plane::filled(size, 0.5), coverage: Plane::filled(size, 255) };
+        let document = Document { surface: Surface::new(maps).ok().map(Arc::new), ..Document::empty(size) };
+        let mut reduced = DocumentReducer::new(0.5);
+        let missing = reduced.missing_surface(&document).unwrap();
+        assert!(missing.is_same(&reduced.missing_surface(&document).unwrap()));
+        let made = missing.make().unwrap();
+        let small = made.small.clone();
+        reduced.take_surface(made);
+        assert!(reduced.missing_surface(&document).is_none() && !reduced.prepare(&document));
+        assert!(Arc::ptr_eq(reduced.of(&document).unwrap().surface.as_ref().unwrap(), &small));
+        assert!(DocumentReducer::new(1.0).missing_surface(&document).is_none(), "nothing is to be made small");
     }
     #[test]
     fn what_was_prepared_part_by_part_is_not_made_again() {

@@ -80,8 +80,15 @@ fn picture(document: &Document) -> TileGrid {
 }
 fn reduced(grid: &TileGrid, factor: f32) -> TileGrid {
     let to = SIZE.scaled(factor);
-    CanvasScale { per_axis: Vec2::splat(factor), length: factor, from: SIZE, to, selections: Default::default() }
-        .grid(grid)
+    CanvasScale {
+        per_axis: Vec2::splat(factor),
+        length: factor,
+        from: SIZE,
+        to,
+        is_draft: false,
+        selections: Default::default(),
+    }
+    .grid(grid)
 }
 
 #[test]

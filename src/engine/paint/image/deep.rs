@@ -30,8 +30,8 @@ impl PlacedImage {
         if area.is_empty() {
             return None;
         }
-        let Placed { positions, margin, texels_from_canvas } = self.placed(scene, area);
         let (texture, width) = (self.source.deep_texture(), area.width());
+        let Placed { positions, margin, texels_from_canvas } = self.placed(scene, area, texture.size());
         let (mut pixels, mut patches, mut antialias) = (transparent_f32(), Patches::default(), Antialias::default());
         for y in scene.rows(area) {
             let row = (y - area.y0) as usize;

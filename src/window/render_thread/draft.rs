@@ -1,0 +1,88 @@
+//! The smaller picture that shows a drag, and what is made ready for it.
+//! Floor 7.
+
+use super::pass::RenderPass;
+use super::ready::{JobState, SurfaceJob};
+use super::{COARSEST, FRAME};
+use crate::document::{Document, DocumentReducer};
+use crate::math::Rect;
+
+/// A smaller picture, for as long as a drag lasts and the next ones.
+pub struct DraftRender {
+    pub step: u32,
+    pub reduced: DocumentReducer,
+    /// The surface that is being made small beside this thread.
+    surface: Option<SurfaceJob>,
+    pub pass: RenderPass,
+}
+
+/// How far a document is ready for a drag.
+pub enum Readiness {
+    Ready,
+    /// There is more to do at once.
+    NotYet,
+    /// Another thread works on the rest.
+    Waits,
+}
+
+impl DraftRender {
+    pub fn new(step: u32) -> Self {
+        let reduced = DocumentReducer::new(1.0 / step as f32);
+        Self { step, reduced, surface: None, pass: RenderPass::default() }
+    }
+    /// Makes one more layer small, or begins with the surface beside.
+    pub fn prepare(&mut self, document: &Document) -> Readiness {
+        let missing = self.reduced.missing_surface(document);
+        let missing = missing.and_then(|missing| match self.surface.take() {
+            Some(job) if job.is_of(&missing) => match job.state() {
+                JobState::Working => {
+                    self.surface = Some(job);
+                    Some(())
+                }
+                JobState::Done(made) => {
+                    self.reduced.take_surface(made);
+                    None
+                }
+                // A drag will be told so, if it comes.
+                JobState::Failed => {
+                    self.surface = Some(job);
+                    None
+                }
+            },
+            _ => {
+                self.surface = SurfaceJob::begin(missing);
+                self.surface.as_ref().map(|_| ())
+            }
+        });
+        match (self.reduced.prepare(document), missing) {
+            (true, _) => Readiness::NotYet,
+            (false, Some(())) => Readiness::Waits,
+            (false, None) => Readiness::Ready,
+        }
+    }
+    /// What is half done beside is waited for: made anew it would take longer.
+    pub fn wait_for_surface(&mut self, document: &Document) {
+        let missing = self.reduced.missing_surface(document);
+        let job = missing.zip(self.surface.take()).filter(|(missing, job)| job.is_of(missing));
+        if let Some(made) = job.and_then(|(_, job)| job.wait()) {
+            self.reduced.take_surface(made);
+        }
+    }
+    /// Of the small picture, the pixels in sight.
+    pub fn in_sight(&self, canvas: Rect) -> Rect {
+        let step = self.step as i32;
+        let Rect { x0, y0, x1, y1 } = canvas;
+        Rect::new(x0.div_euclid(step), y0.div_euclid(step), x1.div_euclid(step) + 1, y1.div_euclid(step) + 1)
+    }
+    /// Its passes take longer than they should, though there is a coarser one. The first made everything small.
+    pub fn is_slow(&self) -> bool {
+        self.step < COARSEST && self.pass.passes() > 1 && self.pass.took() > FRAME.mul_f32(1.6)
+    }
+    /// It was prepared, and no drag has used it.
+    pub fn is_unused(&self) -> bool {
+        self.pass.passes() == 0
+    }
+    pub fn would_be_quick_in_whole_pixels(&self) -> bool {
+        self.pass.passes() > 1 && self.pass.took() * self.step * self.step < FRAME
+    }
+}

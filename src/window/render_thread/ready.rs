@@ -1,0 +1,56 @@
+//! A surface made small beside the render thread, which goes on painting meanwhile.
+//! Floor 7.
+
+use crate::document::{ReducedSurface, SurfaceReduction};
+use crate::memory;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+/// The work of one thread, which ends with it; what it made is forgotten where nobody waits for it.
+pub struct SurfaceJob {
+    of: Arc<SurfaceReduction>,
+    made: Receiver<ReducedSurface>,
+}
+
+/// How far a job has come.
+pub enum JobState {
+    Working,
+    Done(ReducedSurface),
+    /// Nothing is left of the surface, or there was no memory.
+    Failed,
+}
+
+impl SurfaceJob {
+    /// `None` where the system cannot start a thread.
+    pub fn begin(of: SurfaceReduction) -> Option<Self> {
+        let of = Arc::new(of);
+        let (sender, made) = channel();
+        let work = of.clone();
+        let job = move || {
+            // Threads of its own: those that paint tiles finish what they have begun before they take up anything new.
+            let own = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+            let make = || memory::caught(|| work.make());
+            let made = own.map_or_else(|_| make(), |own| own.install(make));
+            if let Ok(Ok(made)) = made {
+                let _ = sender.send(made);
+            }
+        };
+        std::thread::Builder::new().name("small surface".into()).spawn(job).ok()?;
+        Some(Self { of, made })
+    }
+    /// Whether this is the work that it does.
+    pub fn is_of(&self, work: &SurfaceReduction) -> bool {
+        self.of.is_same(work)
+    }
+    pub fn state(&self) -> JobState {
+        match self.made.try_recv() {
+            Ok(made) => JobState::Done(made),
+            Err(TryRecvError::Empty) => JobState::Working,
+            Err(TryRecvError::Disconnected) => JobState::Failed,
+        }
+    }
+    /// Waits for the end.
+    pub fn wait(self) -> Option<ReducedSurface> {
+        self.made.recv().ok()
+    }
+}
