@@ -21,7 +21,13 @@ use std::time::Instant;
 
 const SIZE: Size = Size::new(2048, 2048);
 const DABS: usize = 128;
-const RADII: [f32; 3] = [32.0, 64.0, 128.0];
+/// Inking is most strokes: small brushes first.
+const RADII: [f32; 6] = [4.0, 8.0, 12.0, 32.0, 64.0, 128.0];
+
+/// From dab to dab, px: of small brushes a fifth of the radius, as brushes have it.
+fn step_px(radius: f32) -> f32 {
+    if radius < 32.0 { 0.2 * radius } else { 14.0 }
+}
 
 const OPERATORS: [(&str, Operator); 5] = [
     ("flat", Operator::None),
@@ -47,15 +53,18 @@ fn ball(size: Size) -> Scene {
     Scene { size, surface: Surface::new(Maps { normals, depth, coverage }).ok().map(Arc::new) }
 }
 
-/// Where the `i`th dab stands: 14 px further along a circle of 700 px.
-fn on_circle(i: f32) -> Sample {
-    Sample::at(SIZE.center() + 700.0 * Vec2::from_angle(0.02 * i))
+/// Where the `i`th dab of a radius stands: a step further along a circle of 700 px.
+fn on_circle(i: f32, radius: f32) -> Sample {
+    Sample::at(SIZE.center() + 700.0 * Vec2::from_angle(step_px(radius) / 700.0 * i))
 }
 
 /// A fresh stroke: nothing is found yet.
 fn circle(operator: Operator, radius: f32) -> Arc<Stroke> {
-    let samples = (0..=8 * (DABS - 1)).map(|i| on_circle(i as f32 / 8.0)).collect();
-    let spacing = 14.0 / (2.0 * radius);
+    // A pen tells of every few px.
+    let samples_px = if radius < 32.0 { 6.0 } else { 1.75 };
+    let per_dab = step_px(radius) / samples_px;
+    let samples = (0..=(per_dab * (DABS - 1) as f32) as usize).map(|i| on_circle(i as f32 / per_dab, radius)).collect();
+    let spacing = step_px(radius) / (2.0 * radius);
     let brush = Brush { size: 2.0 * radius, spacing, flow: 0.4, hardness: 0.5, ..Brush::default() };
     Arc::new(Stroke::new(brush, operator, Color { r: 230, g: 128, b: 26, a: 255 }, samples))
 }
@@ -70,7 +79,7 @@ fn paint(stroke: Arc<Stroke>) -> Vec<Option<Tile>> {
 fn covered_px(operator: Operator, radius: f32) -> usize {
     let dab = |i| {
         let brush = Brush { size: 2.0 * radius, ..Brush::default() };
-        let tiles = paint(Arc::new(Stroke::new(brush, operator, Color::WHITE, vec![on_circle(i as f32)])));
+        let tiles = paint(Arc::new(Stroke::new(brush, operator, Color::WHITE, vec![on_circle(i as f32, radius)])));
         let bytes = tiles.iter().flatten().flat_map(|tile| tile.bytes().chunks_exact(4));
         bytes.filter(|p| p[3] > 0).count()
     };
@@ -119,18 +128,17 @@ fn main() {
         return;
     }
     let peer = peer();
-    println!("\nns per covered pixel, one thread        r = 32     r = 64    r = 128   (ratio to the peer's)");
+    let columns = |values: &[f64]| values.iter().map(|v| format!("{v:8.2}")).collect::<String>();
+    println!("\nns per covered pixel, one thread, by radius, and ratios to the peer's");
+    println!("{:24}{}", "", RADII.map(|r| format!("{r:8}")).concat());
     match &peer {
-        Some(ns) => println!("{:32} {:10.2} {:10.2} {:10.2}", "libmypaint, flat", ns[0], ns[1], ns[2]),
+        Some(ns) => println!("{:24}{}", "libmypaint, flat", columns(ns)),
         None => println!("libmypaint: skipped, cc with libmypaint's headers is not here"),
     }
     for (name, operator) in OPERATORS {
         let ns = RADII.map(|radius| ns_per_px(operator, radius));
-        let ratios = peer.as_ref().map_or(String::new(), |peer| {
-            let ratios: Vec<String> = ns.iter().zip(peer).map(|(a, b)| format!("{:.2}", a / b)).collect();
-            ratios.join("  ")
-        });
-        println!("{name:32} {:10.2} {:10.2} {:10.2}   {ratios}", ns[0], ns[1], ns[2]);
+        let ratios = peer.as_ref().map(|peer| ns.iter().zip(peer).map(|(a, b)| a / b).collect::<Vec<f64>>());
+        println!("{name:24}{}   {}", columns(&ns), columns(&ratios.unwrap_or_default()));
     }
     frames();
     one_of_a_thousand();
