@@ -12,29 +12,57 @@ pub const FARTHEST: u16 = 200;
 /// `limit`: at most [`FARTHEST`]; more counts as that. What lies beyond the plane is not marked.
 pub fn squared(marked: &Plane<u8>, limit: u16) -> Plane<u16> {
     let limit = limit.min(FARTHEST);
-    let far = limit + 1;
-    let width = marked.width().max(1);
-    let mut along_columns = marked.map(|m| if m != 0 { 0 } else { far });
-    let rows = along_columns.values_mut();
-    let height = rows.len() / width;
+    let (width, height) = (marked.width().max(1), marked.height());
+    // Bands of rows, each with so many rows around it that no nearer mark lies beyond.
+    let around = usize::from(limit);
+    let band = (2 * around).max(LEAST_BAND);
+    let mut out = Plane::filled(marked.size(), 0u16);
+    out.values_mut().par_chunks_mut(band * width).enumerate().for_each_init(Vec::new, |columns, (i, out)| {
+        let (first, rows) = (i * band, out.len() / width);
+        let from = first.saturating_sub(around);
+        let to = (first + rows + around).min(height);
+        along_columns(&marked.values()[from * width..to * width], width, limit + 1, columns);
+        let own = &columns[(first - from) * width..][..out.len()];
+        for (row, own) in out.chunks_exact_mut(width).zip(own.chunks_exact(width)) {
+            along_row(own, limit, row);
+        }
+    });
+    out
+}
+
+/// Rows of a band at least.
+const LEAST_BAND: usize = 64;
+
+/// Distances down and up the columns of some rows, `far` where they are no nearer.
+fn along_columns(marked: &[u8], width: usize, far: u16, columns: &mut Vec<u16>) {
+    columns.clear();
+    columns.extend(marked.iter().map(|&m| if m != 0 { 0 } else { far }));
+    let height = columns.len() / width;
     for y in 1..height {
-        let (before, row) = rows.split_at_mut(y * width);
+        let (before, row) = columns.split_at_mut(y * width);
         step(&before[(y - 1) * width..], &mut row[..width], far);
     }
     for y in (1..height).rev() {
-        let (row, after) = rows.split_at_mut(y * width);
+        let (row, after) = columns.split_at_mut(y * width);
         step(&after[..width], &mut row[(y - 1) * width..], far);
     }
-    along_columns.values_mut().par_chunks_mut(width).for_each(|row| {
-        let squares: Vec<u16> = row.iter().map(|d| d * d).collect();
-        row.copy_from_slice(&squares);
-        for k in 1..=usize::from(limit).min(width - 1) {
-            nearer(&squares[k..], &mut row[..width - k], (k * k) as u16);
-            nearer(&squares[..width - k], &mut row[k..], (k * k) as u16);
-        }
-        row.iter_mut().filter(|d| **d > limit * limit).for_each(|d| *d = far * far);
-    });
-    along_columns
+}
+
+/// Squared distances along a row of distances along columns.
+fn along_row(columns: &[u16], limit: u16, row: &mut [u16]) {
+    let far = limit + 1;
+    let (least, most) = columns.iter().fold((far, 0), |(least, most), &d| (least.min(d), most.max(d)));
+    if least == far || most == 0 {
+        return row.fill(least * least);
+    }
+    let squares: Vec<u16> = columns.iter().map(|d| d * d).collect();
+    row.copy_from_slice(&squares);
+    let width = row.len();
+    for k in 1..=usize::from(limit).min(width - 1) {
+        nearer(&squares[k..], &mut row[..width - k], (k * k) as u16);
+        nearer(&squares[..width - k], &mut row[k..], (k * k) as u16);
+    }
+    row.iter_mut().filter(|d| **d > limit * limit).for_each(|d| *d = far * far);
 }
 
 crate::widest! {
@@ -58,11 +86,12 @@ mod tests {
 
     #[test]
     fn distances_are_those_to_the_nearest_of_all_marks() {
-        let size = Size::new(70, 45);
-        for share in [0.002, 0.05, 0.9] {
+        // Several bands.
+        let size = Size::new(70, 145);
+        for share in [0.0005, 0.05, 0.9] {
             let marked = Plane::from_fn(size, |x, y| u8::from(hash::unit(7, x as u32, y as u32) < share));
             let found = squared(&marked, 12);
-            let all = (0..45i32).flat_map(|y| (0..70i32).map(move |x| (x, y)));
+            let all = (0..145i32).flat_map(|y| (0..70i32).map(move |x| (x, y)));
             let marks: Vec<(i32, i32)> = all.clone().filter(|&(x, y)| marked.at(x as usize, y as usize) != 0).collect();
             for (x, y) in all {
                 let nearest = marks.iter().map(|m| (m.0 - x).pow(2) + (m.1 - y).pow(2)).min().unwrap_or(i32::MAX);

@@ -52,7 +52,13 @@ impl<T: Copy> Plane<T> {
     where
         T: Send + Sync,
     {
-        Plane::from_fn(self.size, |x, y| f(self.at(x, y)))
+        use rayon::prelude::*;
+        let width = self.width().max(1);
+        let mut values = filled_or_unwind(self.size.area(), U::default());
+        values.par_chunks_mut(width).zip(self.values.par_chunks(width)).for_each(|(row, from)| {
+            row.iter_mut().zip(from).for_each(|(v, &from)| *v = f(from));
+        });
+        Plane { size: self.size, values }
     }
     pub fn size(&self) -> Size {
         self.size

@@ -2,7 +2,7 @@
 //! that it can be cached. Floor 1. Not here: how it is drawn (`window`).
 
 use super::CoverageGrid;
-use crate::raster::flood::TileBits;
+use crate::raster::flood::{TileBits, bits_of};
 use crate::raster::{TILE, TileAt};
 use std::sync::Arc;
 
@@ -69,8 +69,11 @@ pub fn runs(grid: &CoverageGrid, at: TileAt, level: u32) -> Vec<Run> {
         let before = if y > 0 { here[y - 1] } else { above_here };
         stretches(here[y] ^ before, |x, length| add(x, y, length, false));
         let beside = here[y] << 1 | left >> y & 1;
-        let sides = (here[y] ^ beside) & mask(n);
-        (0..n).filter(|x| sides >> x & 1 != 0).for_each(|x| vertical[x] |= 1 << y);
+        let mut rest = (here[y] ^ beside) & mask(n);
+        while rest != 0 {
+            vertical[rest.trailing_zeros() as usize] |= 1 << y;
+            rest &= rest - 1;
+        }
     }
     for (x, column) in vertical.iter().enumerate().take(n) {
         stretches(*column, |y, length| add(x, y, length, true));
@@ -125,11 +128,9 @@ fn in_blocks(row: u64, level: u32) -> u64 {
     (0..TILE >> level).fold(0, |bits, x| bits | u64::from(row >> (x << level) & block != 0) << x)
 }
 
-crate::widest! {
-    /// A bit for every pixel that is covered by half or more.
-    fn row_bits(row: &[u8; TILE]) -> u64 {
-        row.iter().rev().fold(0, |bits, c| bits << 1 | u64::from(*c >> 7))
-    }
+/// A bit for every pixel that is covered by half or more.
+fn row_bits(row: &[u8; TILE]) -> u64 {
+    bits_of(&row.map(|c| c >> 7))
 }
 
 /// The first bit and the length of every stretch of set bits.
