@@ -34,6 +34,17 @@ impl SculptTool {
         (SculptTool::Pinch, "pinch"),
         (SculptTool::Scrape, "scrape"),
     ];
+    /// Its name in documents.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(tool, _)| *tool == self).map_or("raise", |(_, name)| name)
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known)| *known == name).map(|(tool, _)| *tool)
+    }
+    /// Whether a dab's strength is a height in px; of the others it is a share of the way.
+    pub fn is_by_height(self) -> bool {
+        matches!(self, SculptTool::Raise | SculptTool::Lower | SculptTool::Crease)
+    }
 }
 
 /// A stroke on the height layer.

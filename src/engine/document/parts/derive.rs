@@ -121,6 +121,19 @@ impl Document {
         };
         Some(if moved == (0, 0) { outline } else { Arc::new(outline.moved(moved)) })
     }
+    /// The form of a part as it was made last, if neither the part nor what lies on it was changed since.
+    pub(super) fn made_form(&self, part: &Arc<Part>) -> Option<Arc<Form>> {
+        let made = self.known(&part.id)?;
+        (Arc::ptr_eq(&made.part, part) && same_list(&made.upon, &self.upon(part))).then_some(made.form)
+    }
+    /// Makes the forms of all parts that are seen, those that are known again for nothing.
+    pub(super) fn make_forms(&self) {
+        drop(self.reshaped());
+    }
+    /// The parts that lie on another and are seen.
+    fn upon(&self, part: &Part) -> Vec<Arc<Part>> {
+        self.parts.list.iter().filter(|p| p.visible && p.on() == Some(part.id.as_str())).cloned().collect()
+    }
     fn known(&self, id: &str) -> Option<MadePart> {
         let made = self.parts.cache.made.lock().unwrap_or_else(PoisonError::into_inner);
         made.iter().find(|made| made.part.id == id).cloned()
@@ -135,8 +148,7 @@ impl Document {
         standing: Option<Arc<Outline>>,
         in_front: &[Option<Arc<Outline>>],
     ) -> Option<Arc<Form>> {
-        let upon: Vec<Arc<Part>> =
-            self.parts.list.iter().filter(|p| p.visible && p.on() == Some(part.id.as_str())).cloned().collect();
+        let upon = self.upon(part);
         let known = self.known(&part.id);
         let source = part.outline().map(|outline| OutlineKey::of(self, outline));
         let source = match source {
@@ -326,7 +338,12 @@ fn changed(form: Form, outline: &Outline, part: &Part, still: Affine2) -> Form {
             touches::touched(&form, outline, &through.collect::<Vec<_>>())
         }
         PartKind::Sculpt { strokes, .. } => {
+            let length = still.matrix2.determinant().abs().sqrt();
             let mut through = strokes.clone();
+            for stroke in &mut through {
+                stroke.size *= length;
+                stroke.strength *= if stroke.tool.is_by_height() { length } else { 1.0 };
+            }
             for sample in through.iter_mut().flat_map(|stroke| &mut stroke.samples) {
                 sample.0 = still.transform_point2(sample.0);
             }

@@ -135,7 +135,7 @@ fn apart(a: [u8; 4], b: [u8; 4]) -> i32 {
 }
 
 /// How far a pixel lies from one colour toward another, 255 at the other; 0 where it lies beside the way.
-fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
+pub fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
     let way: [f32; 4] = std::array::from_fn(|c| f32::from(to[c]) - f32::from(from[c]));
     let gone: [f32; 4] = std::array::from_fn(|c| f32::from(pixel[c]) - f32::from(from[c]));
     let dot = |a: &[f32; 4], b: &[f32; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();

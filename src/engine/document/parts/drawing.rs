@@ -1,0 +1,222 @@
+//! What a drawing is before it has a shape: whether its ground is transparent or of one colour, and whether it is of
+//! flat colours. Floor 4. What parts are made of it is `flats`'.
+
+use super::flats::colors_of;
+use super::outlines::{is_near, share_on_the_way};
+use crate::math::srgb::Color;
+use crate::math::{Rect, Size};
+use crate::raster::grid::unpremultiply;
+use crate::raster::{Plane, TileGrid};
+
+/// What lies around the figure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ground {
+    /// Nothing: the alpha is the outline.
+    Transparent,
+    /// One opaque colour, along the whole border.
+    Flat(Color),
+    /// All kinds of things, as in a photograph: there is no outline.
+    Painted,
+    /// There is no figure either.
+    Empty,
+}
+
+/// A drawing as it was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrawingLook {
+    pub ground: Ground,
+    /// Flat colours of the figure that are large enough to be parts.
+    pub colors: usize,
+    /// The share of the figure that has one of them, `[0, 1]`.
+    pub flat_share: f32,
+}
+
+/// A pixel less opaque than this is ground.
+const OPAQUE: u8 = 128;
+/// Of the border that must have the colour of a flat ground.
+const LEAST_BORDER: f32 = 0.9;
+/// Of the picture that must be transparent, so that what is left is a figure; and that must be figure.
+const LEAST_SHARE: f32 = 0.004;
+
+impl DrawingLook {
+    /// Flats cover most of a figure: shaded paint has few of its pixels in any one colour.
+    const LEAST_FLAT: f32 = 0.7;
+
+    pub fn of(tiles: &TileGrid, canvas: Size) -> Self {
+        let rect = canvas.rect();
+        let opaque = count(rect, |x, y| tiles.pixel(x, y)[3] >= OPAQUE);
+        let all = canvas.area().max(1) as f32;
+        if opaque as f32 / all < LEAST_SHARE {
+            return Self { ground: Ground::Empty, colors: 0, flat_share: 0.0 };
+        }
+        let is_cut_out = 1.0 - opaque as f32 / all >= LEAST_SHARE;
+        let ground = match flat_ground(tiles, canvas) {
+            _ if is_cut_out => Ground::Transparent,
+            Some(color) => Ground::Flat(color),
+            None => Ground::Painted,
+        };
+        let figure = match ground {
+            Ground::Flat(color) => without_ground(tiles, canvas, color),
+            _ => tiles.clone(),
+        };
+        let of_figure = count(rect, |x, y| figure.pixel(x, y)[3] >= OPAQUE);
+        if of_figure as f32 / all < LEAST_SHARE {
+            return Self { ground: Ground::Empty, colors: 0, flat_share: 0.0 };
+        }
+        let colors = colors_of(&figure, figure.bounds());
+        let known: Vec<[u8; 4]> = colors.iter().map(|color| bytes_of(*color)).collect();
+        let flat = count(rect, |x, y| {
+            let pixel = figure.pixel(x, y);
+            pixel[3] == 255 && known.iter().any(|color| is_near(pixel, *color))
+        });
+        Self { ground, colors: colors.len(), flat_share: flat as f32 / of_figure.max(1) as f32 }
+    }
+    /// Whether it can be given a shape as it is.
+    pub fn has_outline(&self) -> bool {
+        matches!(self.ground, Ground::Transparent | Ground::Flat(_))
+    }
+    /// Whether its colours are worth a part each.
+    pub fn is_of_flats(&self) -> bool {
+        self.colors > 1 && self.flat_share >= Self::LEAST_FLAT
+    }
+}
+
+fn count(rect: Rect, is: impl Fn(i32, i32) -> bool) -> usize {
+    (rect.y0..rect.y1).map(|y| (rect.x0..rect.x1).filter(|x| is(*x, y)).count()).sum()
+}
+
+fn bytes_of(color: Color) -> [u8; 4] {
+    color.premultiplied().map(|v| (v * 255.0).round() as u8)
+}
+
+/// The opaque colour that nearly all of the canvas's border has.
+fn flat_ground(tiles: &TileGrid, canvas: Size) -> Option<Color> {
+    let (w, h) = (canvas.width as i32, canvas.height as i32);
+    let border: Vec<[u8; 4]> = (0..w)
+        .flat_map(|x| [(x, 0), (x, h - 1)])
+        .chain((0..h).flat_map(|y| [(0, y), (w - 1, y)]))
+        .map(|(x, y)| tiles.pixel(x, y))
+        .collect();
+    let like = |color: [u8; 4]| border.iter().filter(|pixel| is_near(**pixel, color)).count();
+    // Of a ground with noise any of its pixels will do; some are tried, all along the border.
+    let tried = (0..16).map(|i| border[i * border.len() / 16]).filter(|pixel| pixel[3] == 255);
+    let best = tried.max_by_key(|color| like(*color))?;
+    let is_most = like(best) as f32 >= LEAST_BORDER * border.len() as f32;
+    let [r, g, b, a] = best;
+    is_most.then_some(Color { r, g, b, a })
+}
+
+/// A picture without its flat ground, as far as that is joined to the border. Over the ground's colour it is what it
+/// was: pixels at its edge lose just the share that the ground has of them.
+pub fn without_ground(tiles: &TileGrid, canvas: Size, ground: Color) -> TileGrid {
+    let color = bytes_of(ground);
+    let open = joined_to_border(&Plane::from_fn(canvas, |x, y| is_near(tiles.pixel(x as i32, y as i32), color)));
+    let pixel = |x: usize, y: usize| {
+        let (x, y) = (x as i32, y as i32);
+        let here = tiles.pixel(x, y);
+        if open.at(x as usize, y as usize) {
+            return [0; 4];
+        }
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+        let (mut is_edge, mut other) = (false, here);
+        for (x, y) in around {
+            is_edge |= open.get(x, y).unwrap_or(false);
+            let pixel = tiles.pixel(x, y);
+            if apart(pixel, color) > apart(other, color) {
+                other = pixel;
+            }
+        }
+        if is_edge { unmixed(here, color, share_on_the_way(here, other, color)) } else { here }
+    };
+    let (width, height) = (canvas.width as usize, canvas.height as usize);
+    let rows: Plane<[u8; 4]> = Plane::from_fn(canvas, pixel);
+    let mut straight = vec![0u8; 4 * width * height];
+    unpremultiply(rows.values().as_flattened(), &mut straight);
+    TileGrid::from_straight_rgba(&straight, width, height, 0, 0)
+}
+
+fn apart(a: [u8; 4], b: [u8; 4]) -> i32 {
+    a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum()
+}
+
+/// A premultiplied pixel without a share (of 255) of another colour.
+fn unmixed(pixel: [u8; 4], of: [u8; 4], share: u8) -> [u8; 4] {
+    let part = |c: usize| (f32::from(of[c]) * f32::from(share) / 255.0).round() as u8;
+    let alpha = pixel[3].saturating_sub(part(3));
+    std::array::from_fn(|c| pixel[c].saturating_sub(part(c)).min(alpha))
+}
+
+/// The pixels of a set that are joined to the border by others of it, side by side.
+fn joined_to_border(set: &Plane<bool>) -> Plane<bool> {
+    let (w, h) = (set.width() as i32, set.height() as i32);
+    let mut found = Plane::filled(set.size(), false);
+    let mut ahead: Vec<(i32, i32)> = (0..w).flat_map(|x| [(x, 0), (x, h - 1)]).collect();
+    ahead.extend((0..h).flat_map(|y| [(0, y), (w - 1, y)]));
+    while let Some((x, y)) = ahead.pop() {
+        if set.get(x, y) == Some(true) && !found.at(x as usize, y as usize) {
+            found.set(x as usize, y as usize, true);
+            ahead.extend([(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)]);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CANVAS: Size = Size { width: 60, height: 50 };
+
+    /// A disc with a soft edge and a hole of the ground's colour, on a ground.
+    fn drawn(ground: [u8; 4], disc: [f32; 3]) -> TileGrid {
+        let pixel = |i: usize| {
+            let (x, y) = ((i % 60) as f32 + 0.5, (i / 60) as f32 + 0.5);
+            let away = ((x - 30.0).powi(2) + (y - 25.0).powi(2)).sqrt();
+            let share = (18.5 - away).max(0.0).min(1.0);
+            if away < 4.0 {
+                return [ground[0], ground[1], ground[2], 255];
+            }
+            let mixed = |c: usize| (disc[c] * share + f32::from(ground[c]) * (1.0 - share)).round() as u8;
+            match ground[3] {
+                0 => [disc[0] as u8, disc[1] as u8, disc[2] as u8, (255.0 * share).round() as u8],
+                _ => [mixed(0), mixed(1), mixed(2), 255],
+            }
+        };
+        let rgba: Vec<u8> = (0..3000).flat_map(pixel).collect();
+        TileGrid::from_straight_rgba(&rgba, 60, 50, 0, 0)
+    }
+    #[test]
+    fn a_ground_is_told_from_the_figure_by_alpha_or_by_its_one_colour() {
+        let cut_out = DrawingLook::of(&drawn([255, 255, 255, 0], [200.0, 60.0, 20.0]), CANVAS);
+        assert_eq!((cut_out.ground, cut_out.is_of_flats()), (Ground::Transparent, true));
+        let white = Color { r: 255, g: 255, b: 255, a: 255 };
+        let on_white = DrawingLook::of(&drawn([255; 4], [200.0, 60.0, 20.0]), CANVAS);
+        assert_eq!((on_white.ground, on_white.has_outline()), (Ground::Flat(white), true));
+        assert_eq!(on_white.colors, 2, "the hole is no ground: it is not joined to the border");
+        let noise = |i: u32| crate::math::hash::unit(5, i, 3).mul_add(255.0, 0.0) as u8;
+        let photo: Vec<u8> = (0..3000u32).flat_map(|i| [noise(i), noise(i + 9000), noise(i + 20_000), 255]).collect();
+        let photo = DrawingLook::of(&TileGrid::from_straight_rgba(&photo, 60, 50, 0, 0), CANVAS);
+        assert_eq!((photo.ground, photo.is_of_flats()), (Ground::Painted, false));
+        assert_eq!(DrawingLook::of(&TileGrid::default(), CANVAS).ground, Ground::Empty);
+        let paper = TileGrid::from_straight_rgba(&[255; 12_000], 60, 50, 0, 0);
+        assert_eq!(DrawingLook::of(&paper, CANVAS).ground, Ground::Empty, "paper alone is no figure");
+    }
+    #[test]
+    fn a_drawing_without_its_ground_over_that_ground_is_what_it_was() {
+        let ground = Color { r: 240, g: 235, b: 220, a: 255 };
+        let drawn = drawn([240, 235, 220, 255], [30.0, 60.0, 120.0]);
+        let bare = without_ground(&drawn, CANVAS, ground);
+        assert_eq!(bare.pixel(2, 2), [0; 4]);
+        assert_eq!(bare.pixel(30, 25), [240, 235, 220, 255], "the hole stays");
+        let mut soft = 0;
+        for (x, y) in (0..50).flat_map(|y| (0..60).map(move |x| (x, y))) {
+            let (over, was) = (bare.pixel(x, y), drawn.pixel(x, y));
+            soft += usize::from(over[3] > 0 && over[3] < 255);
+            for (c, under) in [240.0f32, 235.0, 220.0].into_iter().enumerate() {
+                let seen = f32::from(over[c]) + under * (1.0 - f32::from(over[3]) / 255.0);
+                assert!((seen - f32::from(was[c])).abs() < 3.0, "{x} {y} {c}: {seen} for {}", was[c]);
+            }
+        }
+        assert!(soft > 60, "the edge is soft: {soft}");
+    }
+}

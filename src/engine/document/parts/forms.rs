@@ -1,0 +1,34 @@
+//! The forms of a document's parts where they stand: what a pointer meets, and what a list shows.
+//! Floor 4. They are those that the surface was made of.
+
+use super::Part;
+use crate::document::Document;
+use crate::math::Vec2;
+use crate::shape::Form;
+use std::sync::Arc;
+
+impl Document {
+    /// The forms that are seen, with their parts, the farthest first. Of the shape that was made last nothing is made
+    /// again. Parts that make no form, such as an outline of nothing, are left out.
+    pub fn part_forms(&self) -> Vec<(Arc<Part>, Arc<Form>)> {
+        let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
+        if shown().any(|part| self.made_form(part).is_none()) {
+            self.make_forms();
+        }
+        shown().filter_map(|part| Some((part.clone(), self.made_form(part)?))).collect()
+    }
+    /// The nearest part whose form covers a canvas point by half or more.
+    pub fn part_at(&self, at: Vec2) -> Option<Arc<Part>> {
+        nearest_at(&self.part_forms(), at)
+    }
+}
+
+/// The last of some forms that covers a canvas point by half or more: the nearest of a document's.
+pub fn nearest_at(forms: &[(Arc<Part>, Arc<Form>)], at: Vec2) -> Option<Arc<Part>> {
+    let (x, y) = (at.x.floor() as i32, at.y.floor() as i32);
+    let covers = |form: &Form| {
+        let (x, y) = (x.saturating_sub(form.corner.0), y.saturating_sub(form.corner.1));
+        form.coverage.get(x, y).unwrap_or(0) >= 128
+    };
+    forms.iter().rev().find(|(_, form)| covers(form)).map(|(part, _)| part.clone())
+}
