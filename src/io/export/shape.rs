@@ -1,6 +1,8 @@
 //! The maps of a shape as files for engines and other programs: normals, depth, height, mask and parts.
 //! Floor 5. PNG keeps the coverage as alpha; EXR holds the numbers as they are.
 
+use super::OutputFile;
+use crate::Terms;
 use crate::exr::encode_channels;
 use crate::math::{Size, srgb::quantise};
 use crate::surface::Surface;
@@ -8,7 +10,7 @@ use crate::{Error, Result};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use std::io::Cursor;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// One of the maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +35,46 @@ impl ShapeMap {
         (ShapeMap::Mask, "_mask"),
         (ShapeMap::Parts, "_id"),
     ];
+    /// What is added to a file's name.
+    pub fn suffix(self) -> &'static str {
+        Self::ALL.iter().find(|(map, _)| *map == self).map_or("", |(_, suffix)| suffix)
+    }
+    pub fn from_suffix(suffix: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(_, known)| *known == suffix).map(|(map, _)| *map)
+    }
 }
+
+/// The files of one shape, checked before any of them is made: all may be written, or none is.
+pub struct ShapeFiles {
+    targets: Vec<(ShapeMap, PathBuf, OutputFile)>,
+    options: ShapeOptions,
+}
+
+impl ShapeFiles {
+    /// `base`: the folder and the name that the suffixes are added to; an ending that pictures have is left out.
+    pub fn new(base: &Path, maps: &[ShapeMap], options: ShapeOptions, terms: &Terms) -> Result<Self> {
+        let extension = if options.is_exr { "exr" } else { "png" };
+        let known = |ending: &std::ffi::OsStr| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known));
+        let stem = if base.extension().is_some_and(known) { base.file_stem() } else { base.file_name() };
+        let stem = stem.unwrap_or_default().to_string_lossy();
+        let target = |map: &ShapeMap| {
+            let file = base.with_file_name(format!("{stem}{}.{extension}", map.suffix()));
+            Ok((*map, file.clone(), OutputFile::new(&file, terms.clone())?))
+        };
+        Ok(Self { targets: maps.iter().map(target).collect::<Result<_>>()?, options })
+    }
+    /// Writes them; their paths.
+    pub fn write(&self, surface: &Surface) -> Result<Vec<PathBuf>> {
+        let write = |(map, file, target): &(ShapeMap, PathBuf, OutputFile)| {
+            target.replace(&encode(file, surface, *map, &self.options)?)?;
+            Ok(file.clone())
+        };
+        self.targets.iter().map(write).collect()
+    }
+}
+
+/// Endings of the files that shapes are made of and written to.
+const ENDINGS: [&str; 10] = ["png", "exr", "ora", "psd", "jpg", "jpeg", "webp", "tif", "tiff", "json"];
 
 /// How maps are written.
 #[derive(Clone, Copy, Debug)]
@@ -178,6 +219,24 @@ mod tests {
         assert!(depth.get_pixel(32, 24).0[0] < 100 && height.get_pixel(32, 24).0[0] > 65000);
         assert_eq!(written(ShapeMap::Parts, false, false).into_luma16().get_pixel(32, 24).0[0], 7);
         assert_eq!(written(ShapeMap::Mask, false, false).into_luma8().get_pixel(32, 24).0[0], 255);
+    }
+    #[test]
+    fn files_are_named_after_the_drawing_and_none_is_written_where_one_is_in_the_way() {
+        let folder = tempfile::tempdir().unwrap();
+        let options = ShapeOptions { is_directx: false, is_deep: true, is_exr: false };
+        let maps = ShapeMap::ALL.map(|(map, _)| map);
+        let terms = Terms::export(crate::Overwrite::Nothing, Vec::new());
+        let names = |base: &str| {
+            let files = ShapeFiles::new(&folder.path().join(base), &maps, options, &terms)?.write(&ball())?;
+            let name = |file: &PathBuf| file.file_name().unwrap().to_string_lossy().into_owned();
+            Ok::<Vec<String>, crate::Error>(files.iter().map(name).collect())
+        };
+        assert_eq!(names("snail v1.2").unwrap()[0], "snail v1.2_n.png");
+        let all = ["snail_n.png", "snail_d.png", "snail_h.png", "snail_mask.png", "snail_id.png"];
+        std::fs::write(folder.path().join("snail_id.png"), b"mine").unwrap();
+        assert!(names("snail.png").is_err() && !folder.path().join("snail_n.png").exists());
+        std::fs::remove_file(folder.path().join("snail_id.png")).unwrap();
+        assert_eq!(names("snail.png").unwrap(), all);
     }
     #[test]
     fn an_exr_holds_normals_that_are_read_back() {

@@ -5,8 +5,7 @@ use super::force::Force;
 use super::{LimitArgs, convert};
 use crate::document::parts::{Inflation, Part, flats};
 use crate::document::{Content, Document, Layer, PixelLayer};
-use crate::io::export::OutputFile;
-use crate::io::export::shape::{ShapeMap, ShapeOptions, encode};
+use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
 use crate::io::files::read_file;
 use crate::io::{Budget, picture};
 use crate::math::{Range, Size};
@@ -91,18 +90,15 @@ pub fn run(args: &ShapeArgs) -> Result<()> {
         std::fs::create_dir_all(&args.output).map_err(|e| Error::io(&args.output, e))?;
         let stem = args.drawing.file_stem().unwrap_or_default().to_string_lossy();
         let reads: Vec<PathBuf> = [Some(args.drawing.clone()), args.flats.clone()].into_iter().flatten().collect();
-        let target = |(map, suffix): &(ShapeMap, &str)| {
-            let file = args.output.join(format!("{stem}{suffix}.{}", args.format));
-            Ok((*map, OutputFile::new(&file, args.force.export(reads.clone()))?, file))
-        };
-        // All may be written, or none is.
-        let targets: Vec<_> = ShapeMap::ALL.iter().map(target).collect::<Result<_>>()?;
         let options = ShapeOptions {
             is_directx: args.convention == "directx",
             is_deep: args.bits == 16,
             is_exr: args.format == "exr",
         };
-        targets.into_iter().try_for_each(|(map, target, file)| target.replace(&encode(&file, surface, map, &options)?))
+        let maps = ShapeMap::ALL.map(|(map, _)| map);
+        // The name's own ending, whichever it is, is no part of it.
+        let base = args.output.join(format!("{stem}.{}", args.format));
+        ShapeFiles::new(&base, &maps, options, &args.force.export(reads))?.write(surface).map(drop)
     })
 }
 
