@@ -40,7 +40,7 @@ pub fn open() -> Result<OpenedTab> {
     let layers = vec![Arc::new(behind), Arc::new(Layer::new("Base", Content::Gradient(Live::new(clay))))];
     let size = Size::new(SIDE as u32, SIDE as u32);
     let document = Document { surface: Some(Arc::new(surface)), layers, ..Document::empty(size) };
-    Ok(OpenedTab { tab: OpenDocument::new("Sample", document, None), notes: Vec::new() })
+    Ok(OpenedTab { tab: OpenDocument::new("Sample", document, None), notes: Vec::new(), drawing: None })
 }
 
 fn grey(v: u8) -> Color {

@@ -5,12 +5,18 @@ mod write;
 
 pub use write::{write, write_part};
 
-use super::LayerReader;
-use crate::Result;
+use super::pictures::PictureCache;
+use super::{LayerReader, RecipeSource};
+use crate::document::Document;
 use crate::document::parts::{CoverageFile, Inflation, OutlineSource, Part, PartKind, Parts};
+use crate::files::UserFiles;
 use crate::json::{Fields, JsonNode};
 use crate::math::{Affine2, COORDINATE, Range, Vec2, Vec3, vec2};
 use crate::shape::{Ball, Bevel, BevelCurve, Body, Combine, Detail, Primitive, SculptStroke, SculptTool, Touch};
+use crate::{Budget, Result};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The defaults that stand in no type.
@@ -19,6 +25,23 @@ const BODY_RADIUS: f32 = 50.0;
 const DAB_SIZE: f32 = 40.0;
 const DAB_HARDNESS: f32 = 0.5;
 const DAB_STRENGTH: f32 = 2.0;
+
+/// One part as an edit of a document tells it. The pictures that it names are those that parts of the document have, or
+/// the user's own. `file`: for messages.
+pub fn read_part(file: &Path, value: &Value, document: &Document, budget: &Budget) -> Result<Part> {
+    let files = UserFiles::default();
+    let source = RecipeSource { file, files: &files, budget, onto: None };
+    let mut pictures = PictureCache::default();
+    for part in &document.parts.list {
+        if let Some(known) = Part::clone(part).files_mut() {
+            pictures.know_coverage(&known.file, &known.coverage);
+        }
+    }
+    let Budget { layers: layers_left, document_samples: samples_left, .. } = *budget;
+    let (size, selections) = (document.size, HashMap::new());
+    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections };
+    reader.part(&JsonNode::root(file, value), document.parts.list.len())
+}
 
 impl LayerReader<'_> {
     /// The list of parts.

@@ -125,6 +125,10 @@ impl PictureCache {
         self.spend(source, plane.size(), plane.size().area())?;
         Ok(CoverageGrid::from_plane(&plane, x, y))
     }
+    /// A mask that is known already by its name.
+    pub fn know_coverage(&mut self, file: &str, coverage: &Arc<Plane<u8>>) {
+        self.coverages.insert(file.to_owned(), coverage.clone());
+    }
     /// The mask that a field names; it has the canvas's size.
     pub fn coverage(
         &mut self,

@@ -34,7 +34,7 @@ use crate::surface::Operator;
 use crate::tools::select::SelectSettings;
 use crate::tools::snap::{SnapLines, ViewAids};
 use crate::tools::symmetry::SymmetryAxes;
-use crate::tools::{Gesture, Symmetry, ToolKind};
+use crate::tools::{Gesture, ShapeSettings, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use storage::OpenedTab;
@@ -69,6 +69,8 @@ pub struct Session {
     pub select: SelectSettings,
     /// What the pen snaps to, and what is shown of it.
     pub aids: ViewAids,
+    /// The settings of the tools that touch and sculpt the shape.
+    pub shape: ShapeSettings,
     /// The corners of the lasso that is being set.
     pub lasso: Vec<Vec2>,
     /// The outline of the selection is not drawn.
@@ -118,6 +120,7 @@ impl Default for Session {
             fill: Fill::default(),
             select: SelectSettings::default(),
             aids: ViewAids::default(),
+            shape: ShapeSettings::default(),
             lasso: Vec::new(),
             hides_selection: false,
             copied: None,
@@ -187,7 +190,7 @@ impl Session {
     }
     /// A document that was opened elsewhere, perhaps on another thread.
     pub fn adopt(&mut self, opened: OpenedTab) {
-        let OpenedTab { mut tab, notes } = opened;
+        let OpenedTab { mut tab, notes, .. } = opened;
         if tab.file.is_none() && tab.name.is_empty() {
             tab.name = self.untitled();
         }

@@ -4,7 +4,7 @@
 use super::chosen::ChosenLayers;
 use super::first_look::FirstLook;
 use super::view::CanvasView;
-use crate::document::{Document, History, LayerId, MaskKind};
+use crate::document::{Document, History, LayerId, MaskKind, Part};
 use crate::io::replace::FileStamp;
 use crate::math::Vec2;
 use crate::paint::Selection;
@@ -33,6 +33,8 @@ pub struct OpenDocument {
     /// The primary one of the chosen layers: what the brush paints on.
     pub selected: Option<LayerId>,
     pub(super) chosen_layers: ChosenLayers,
+    /// The part of the shape that is chosen, by its id.
+    pub part: Option<String>,
     /// Where it was opened from or saved to.
     pub file: Option<PathBuf>,
     /// Its name while it has no file.
@@ -84,6 +86,7 @@ struct Preview {
 impl OpenDocument {
     pub fn new(name: impl Into<String>, document: Document, file: Option<PathBuf>) -> Self {
         static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let part = nearest_part(&document);
         let selected = document.layers.last().map(|layer| layer.id);
         Self {
             key: NEXT.fetch_add(1, Ordering::Relaxed),
@@ -92,6 +95,7 @@ impl OpenDocument {
             preview: None,
             selected,
             chosen_layers: ChosenLayers::default(),
+            part,
             file,
             stamp: None,
             reads: Vec::new(),
@@ -193,6 +197,10 @@ impl OpenDocument {
     pub fn forget_preview(&mut self) {
         self.preview = None;
     }
+    /// The chosen part as shown.
+    pub fn chosen_part(&self) -> Option<&Arc<Part>> {
+        self.shown().parts.part(self.part.as_deref()?)
+    }
     /// The selected strokes of the selected layer that exist, in rising order.
     pub fn chosen_strokes(&self) -> Vec<usize> {
         let Some((layer, chosen)) = self.chosen.as_ref().filter(|(layer, _)| Some(*layer) == self.selected) else {
@@ -238,7 +246,16 @@ impl OpenDocument {
         if !self.solo.is_some_and(is_there) {
             self.solo = None;
         }
+        let is_part = |id: &String| document.parts.part(id).is_some();
+        if !self.part.as_ref().is_some_and(is_part) {
+            self.part = nearest_part(document);
+        }
     }
+}
+
+/// The nearest part that has a form of its own, by its id.
+fn nearest_part(document: &Document) -> Option<String> {
+    document.parts.list.iter().rev().find(|part| part.on().is_none()).map(|part| part.id.clone())
 }
 
 /// Whether both are the same value: nothing was edited between them.

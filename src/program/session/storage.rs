@@ -2,8 +2,10 @@
 //! and use are recognised.
 
 use super::OpenDocument;
+use super::actions::parts::first;
 use super::first_look::FirstLook;
 use crate::Result;
+use crate::document::parts::drawing::DrawingLook;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::document::{Content, Document, Layer, Live, Progress};
 use crate::io::export::ExportFormat;
@@ -41,6 +43,8 @@ pub struct OpenedTab {
     pub tab: OpenDocument,
     /// Sentences about what was found and what could not be kept.
     pub notes: Vec<String>,
+    /// Of a picture: what it looks like as a drawing.
+    pub drawing: Option<DrawingLook>,
 }
 
 pub fn is_document(file: &Path) -> bool {
@@ -87,7 +91,8 @@ pub fn kind_of(file: &Path) -> Result<FileUse> {
 
 /// Opens a document, a map, or a picture as a document of its own.
 pub fn open(file: &Path) -> Result<OpenedTab> {
-    match kind_of(file)? {
+    let found = kind_of(file)?;
+    match found {
         FileUse::Document | FileUse::Picture => {
             io::save::tidy(file);
             let io::OpenedDocument { document, notes, is_whole, kind, stamp, reads, picture } =
@@ -102,7 +107,11 @@ pub fn open(file: &Path) -> Result<OpenedTab> {
             tab.stamp = Some(stamp).filter(|_| is_project && is_whole);
             tab.reads = reads;
             tab.first_look = FirstLook::of(file, picture.as_ref(), tab.document().size);
-            Ok(OpenedTab { tab, notes })
+            let drawing = match (found, tab.document().layers.as_slice()) {
+                (FileUse::Picture, [layer]) => first::look(tab.document(), layer.id),
+                _ => None,
+            };
+            Ok(OpenedTab { tab, notes, drawing })
         }
         FileUse::Normals => open_maps(&with_own_depth(file)),
         FileUse::Depth => open_maps(&maps_of(None, Some(file))),
@@ -240,7 +249,7 @@ pub fn of_import(source: &SurfaceSource, import: maps::ImportedSurface) -> Opene
     let name = file.map(|file| pairs::object_of(Path::new(file))).unwrap_or_default();
     let mut tab = OpenDocument::new(name, document, None);
     tab.reads = map_files(source);
-    OpenedTab { tab, notes: findings.notes }
+    OpenedTab { tab, notes: findings.notes, drawing: None }
 }
 
 /// The user's own files that a surface is made of.

@@ -3,7 +3,7 @@
 
 use super::snap::{SnapTargets, ViewAids};
 use super::symmetry::SymmetryAxes;
-use super::{SelectSettings, Symmetry};
+use super::{SelectSettings, ShapeSettings, Symmetry};
 use crate::document::{Document, LayerId};
 use crate::math::{Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
@@ -32,6 +32,10 @@ pub struct ToolContext<'a> {
     pub fill: Fill,
     /// The settings of the selection tools.
     pub select: SelectSettings,
+    /// The settings of the tools that touch and sculpt.
+    pub shape: ShapeSettings,
+    /// The chosen part of the shape, by its id.
+    pub part: Option<&'a str>,
     /// The corners of the lasso that is being set.
     pub lasso: &'a [Vec2],
     /// The strokes of the selected layer that are chosen.
@@ -62,6 +66,8 @@ impl<'a> ToolContext<'a> {
             symmetry: Symmetry::None,
             fill: Fill::default(),
             select: SelectSettings::default(),
+            shape: ShapeSettings::default(),
+            part: None,
             lasso: &[],
             strokes: &[],
             axes: SymmetryAxes::default(),
@@ -84,6 +90,7 @@ pub struct KeptContext {
     brush: Brush,
     lasso: Vec<Vec2>,
     strokes: Vec<usize>,
+    part: Option<String>,
     snap: SnapTargets,
     /// All that is no reference.
     plain: PlainContext,
@@ -99,6 +106,7 @@ struct PlainContext {
     axes: SymmetryAxes,
     fill: Fill,
     select: SelectSettings,
+    shape: ShapeSettings,
     aids: ViewAids,
     clone_offset: Option<Vec2>,
 }
@@ -106,10 +114,10 @@ struct PlainContext {
 impl KeptContext {
     pub fn of(context: &ToolContext) -> Self {
         let ToolContext { color, second_color, operator, px_per_pt, last_end, symmetry, axes, .. } = *context;
-        let ToolContext { fill, select, aids, clone_offset, .. } = *context;
+        let ToolContext { fill, select, shape, aids, clone_offset, .. } = *context;
         let colors = [color, second_color];
         let plain =
-            PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, select, aids, clone_offset };
+            PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, select, shape, aids, clone_offset };
         Self {
             document: context.document.clone(),
             layer: context.layer,
@@ -117,6 +125,7 @@ impl KeptContext {
             brush: context.brush.clone(),
             lasso: context.lasso.to_vec(),
             strokes: context.strokes.to_vec(),
+            part: context.part.map(str::to_owned),
             snap: context.snap.clone(),
             plain,
         }
@@ -127,8 +136,8 @@ impl KeptContext {
     }
     /// The context as it was.
     pub fn lend<T>(&self, to: impl FnOnce(&ToolContext) -> T) -> T {
-        let PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, select, aids, clone_offset } =
-            self.plain;
+        let PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, .. } = self.plain;
+        let PlainContext { select, shape, aids, clone_offset, .. } = self.plain;
         to(&ToolContext {
             document: &self.document,
             layer: self.layer,
@@ -143,6 +152,8 @@ impl KeptContext {
             axes,
             fill,
             select,
+            shape,
+            part: self.part.as_deref(),
             lasso: &self.lasso,
             strokes: &self.strokes,
             snap: &self.snap,

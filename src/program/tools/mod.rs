@@ -17,16 +17,18 @@ pub mod move_content;
 pub mod outline;
 mod retouch;
 pub mod select;
+pub mod shape;
 pub mod snap;
 pub mod strokes;
 pub mod symmetry;
 pub mod transform;
 
 use crate::document::{Document, LayerId};
-use crate::math::{Vec2, srgb::Color};
+use crate::math::{Vec2, Vec3, srgb::Color};
 use crate::paint::Sample;
 pub use context::ToolContext;
 pub use select::SelectSettings;
+pub use shape::ShapeSettings;
 use snap::SnapLines;
 pub use symmetry::Symmetry;
 
@@ -44,6 +46,9 @@ pub enum ToolKind {
     Transform,
     Assistants,
     Strokes,
+    Shape,
+    Touch,
+    Sculpt,
     SelectRectangle,
     SelectEllipse,
     Lasso,
@@ -69,7 +74,7 @@ pub struct ToolRow {
 }
 
 impl ToolKind {
-    pub const ALL: [ToolRow; 18] = [
+    pub const ALL: [ToolRow; 21] = [
         ToolRow {
             kind: ToolKind::Brush,
             name: "brush",
@@ -143,6 +148,28 @@ impl ToolKind {
             hint: "Select strokes of a stroke layer and drag them; Shift selects more. Properties lists them too",
         },
         ToolRow {
+            kind: ToolKind::Shape,
+            name: "shape",
+            label: "Shape",
+            key: 'P',
+            hint: "Click chooses a part of the shape, a drag moves it; its handles scale, turn, puff (middle) and tilt it",
+        },
+        ToolRow {
+            kind: ToolKind::Touch,
+            name: "touch",
+            label: "Touch",
+            key: 'N',
+            hint: "Click or drag to turn the surface the way the ball shows; drag a touch to move it. Alt removes one, \
+                   or takes the surface's direction",
+        },
+        ToolRow {
+            kind: ToolKind::Sculpt,
+            name: "sculpt",
+            label: "Sculpt",
+            key: 'U',
+            hint: "Paint height on a part; Ctrl lowers what raises, Shift smooths",
+        },
+        ToolRow {
             kind: ToolKind::SelectRectangle,
             name: "select rectangle",
             label: "Select rectangle",
@@ -207,6 +234,10 @@ impl ToolKind {
         use ToolKind::{Lasso, SelectEllipse, SelectRectangle, SurfaceWand, Wand};
         matches!(self, SelectRectangle | SelectEllipse | Lasso | Wand | SurfaceWand)
     }
+    /// It works on the parts of the shape.
+    pub fn shapes(self) -> bool {
+        matches!(self, ToolKind::Shape | ToolKind::Touch | ToolKind::Sculpt)
+    }
     pub fn name(self) -> &'static str {
         self.row().name
     }
@@ -263,6 +294,10 @@ pub enum Outcome {
     Lasso(Vec<Vec2>),
     /// These strokes of the selected layer are chosen from now on.
     Chosen(Vec<usize>),
+    /// This part of the shape is chosen from now on.
+    ChosenPart(String),
+    /// Touches give this direction from now on.
+    Direction(Vec3),
     /// Clone brushes copy from here from now on.
     CloneFrom(Vec2),
     /// Nothing was started, for a reason to show.
@@ -310,6 +345,9 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Transform => transform::press(context, pen),
         ToolKind::Assistants => assistants::press(context, pen),
         ToolKind::Strokes => strokes::press(context, pen),
+        ToolKind::Shape => shape::part::press(context, pen),
+        ToolKind::Touch => shape::touch::press(context, pen),
+        ToolKind::Sculpt => shape::sculpt::press(context, pen),
         ToolKind::SelectRectangle
         | ToolKind::SelectEllipse
         | ToolKind::Lasso

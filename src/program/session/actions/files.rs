@@ -1,6 +1,7 @@
 //! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
 
 use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource};
+use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
 use crate::io::export::{ExportOptions, Output, OutputFile};
 use crate::io::{Budget, Overwrite, Terms, files::read_file, maps, picture, save};
 use crate::math::{Size, Vec2, srgb::Color};
@@ -8,14 +9,26 @@ use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::layers::above;
 use crate::session::actions::pictures::{self, PicturePart};
-use crate::session::replay::actions;
+use crate::session::replay::{ReplayValue, actions};
 use crate::session::{OpenDocument, Session, brushes, storage};
 use crate::surface::operator::reflection;
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use crate::tools::brush::free_name;
 use crate::{Error, Result};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// By what is added to a file's name.
+impl ReplayValue for ShapeMap {
+    fn written(&self) -> Value {
+        self.suffix().into()
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        let map = value.as_str().and_then(ShapeMap::from_suffix);
+        map.ok_or_else(|| format!("is {value}; it must be _n, _d, _h, _mask or _id"))
+    }
+}
 
 actions! {
     /// Paths are those of the user's own files.
@@ -37,6 +50,8 @@ actions! {
         "save" Save { file: PathBuf }
         /// `bits`: a channel; the format's usual ones where absent.
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8> }
+        /// The maps of the shape as files whose names begin with this one's, as PNG, or as EXR where it ends in that.
+        "export maps" ExportMaps { file: PathBuf, maps: Vec<ShapeMap>, directx: bool, bits: u8 }
         /// A picture that the selected layer is made of.
         "use" Use { part: PicturePart, file: PathBuf }
         /// The document's surface anew, of these maps: what is live bends over it.
@@ -92,6 +107,13 @@ impl FileAction {
                 let notes = export(tab.document(), file, &options, terms, &Progress::default())?;
                 session.notes.extend(notes);
             }
+            FileAction::ExportMaps { file, maps, directx, bits } => {
+                let Some(tab) = session.active() else { return Ok(()) };
+                let is_exr = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+                let options = ShapeOptions { is_directx: *directx, is_deep: *bits > 8, is_exr };
+                let terms = Terms::export(unless_forced(session, Overwrite::Nothing), session.reads());
+                export_maps(tab.document(), file, maps, options, &terms)?;
+            }
             FileAction::Use { part, file } => {
                 let read = pictures::read(*part, file)?;
                 if let Some(tab) = session.active_mut()
@@ -141,6 +163,19 @@ pub fn export(
     let Some(encoded) = save::encode(document, file, progress)? else { return Ok(Vec::new()) };
     target.replace(&encoded.bytes)?;
     Ok(encoded.notes.into_iter().map(|note| format!("{}: {note}", file.display())).collect())
+}
+
+/// The maps of a document's shape as files; their paths.
+pub fn export_maps(
+    document: &Document,
+    file: &Path,
+    maps: &[ShapeMap],
+    options: ShapeOptions,
+    terms: &Terms,
+) -> Result<Vec<PathBuf>> {
+    let no_shape = || Error::unsupported(file, "the document has no shape whose maps could be exported");
+    let surface = document.surface.as_ref().ok_or_else(no_shape)?;
+    ShapeFiles::new(file, maps, options, terms)?.write(surface)
 }
 
 /// A picture of the user's own, with the name it goes by.

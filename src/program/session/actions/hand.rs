@@ -7,6 +7,7 @@ use crate::math::{TURNS, UNIT, Vec2, srgb::Color};
 use crate::paint::{Brush, BrushMode, Fill, Property};
 use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, field, names, record};
+use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
 use crate::tools::{Symmetry, ToolKind};
@@ -116,6 +117,9 @@ impl HandAction {
                 Ok(read) => *brush = read,
                 Err(error) => session.notes.push(error.to_string()),
             },
+            HandAction::Size { to } if session.tool == ToolKind::Sculpt => {
+                session.shape.size = held(*to, &SculptStroke::SIZE);
+            }
             HandAction::Size { to } => brush.size = to.max(SIZES[0]).min(SIZES[1]),
             HandAction::Hardness { to } => brush.hardness = unit(*to),
             HandAction::Opacity { to } => brush.opacity = unit(*to),

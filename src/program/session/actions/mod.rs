@@ -10,6 +10,7 @@ pub mod hand;
 mod layer_steps;
 pub mod layers;
 mod new_layers;
+pub mod parts;
 pub mod pictures;
 pub mod pointer;
 pub mod selection;
@@ -22,6 +23,7 @@ pub use files::FileAction;
 pub use guides::GuideAction;
 pub use hand::HandAction;
 pub use layers::{LayerAction, NewLayer};
+pub use parts::{NewPart, PartAction};
 pub use pointer::PointerAction;
 pub use selection::{EdgeChange, SelectionAction};
 pub use strokes::{StrokeAction, Style};
@@ -41,6 +43,7 @@ pub enum Action {
     Guide(GuideAction),
     Hand(HandAction),
     Layer(LayerAction),
+    Part(PartAction),
     Pointer(PointerAction),
     Selection(SelectionAction),
     Stroke(StrokeAction),
@@ -59,6 +62,7 @@ impl Action {
             Action::Guide(action) => action.apply(session),
             Action::Hand(action) => action.apply(session),
             Action::Layer(action) => action.apply(session),
+            Action::Part(action) => action.apply(session),
             Action::Pointer(action) => action.apply(session),
             Action::Selection(action) => action.apply(session),
             Action::Stroke(action) => action.apply(session),
@@ -78,6 +82,7 @@ impl ReplayValue for Action {
             Action::Guide(action) => ("guide", action.written()),
             Action::Hand(action) => ("hand", action.written()),
             Action::Layer(action) => ("layer", action.written()),
+            Action::Part(action) => ("part", action.written()),
             Action::Pointer(action) => ("pointer", action.written()),
             Action::Selection(action) => ("selection", action.written()),
             Action::Stroke(action) => ("stroke", action.written()),
@@ -96,12 +101,13 @@ impl ReplayValue for Action {
             Some("guide") => Action::Guide(ReplayValue::read(value)?),
             Some("hand") => Action::Hand(ReplayValue::read(value)?),
             Some("layer") => Action::Layer(ReplayValue::read(value)?),
+            Some("part") => Action::Part(ReplayValue::read(value)?),
             Some("pointer") => Action::Pointer(ReplayValue::read(value)?),
             Some("selection") => Action::Selection(ReplayValue::read(value)?),
             Some("stroke") => Action::Stroke(ReplayValue::read(value)?),
             Some("view") => Action::View(ReplayValue::read(value)?),
             _ => {
-                let rooms = "clipboard, edit, file, guide, hand, layer, pointer, selection, stroke or view";
+                let rooms = "clipboard, edit, file, guide, hand, layer, part, pointer, selection, stroke or view";
                 return Err(format!("“in” must be {rooms}"));
             }
         })

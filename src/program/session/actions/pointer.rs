@@ -10,7 +10,7 @@ use crate::tools::assistants::StrokeStart;
 use crate::tools::brush::StrokePurpose;
 use crate::tools::guides::GuideAt;
 use crate::tools::snap::{SnapTargets, ViewAids};
-use crate::tools::{self, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
+use crate::tools::{self, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext, ToolKind};
 use serde_json::Value;
 
 record!(ModifierKeys { shift, ctrl, alt });
@@ -111,6 +111,8 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         axes: session.axes,
         fill: session.fill,
         select: session.select,
+        shape: session.shape,
+        part: tab.part.as_deref(),
         lasso: &session.lasso,
         strokes: &strokes,
         snap: &snap,
@@ -192,6 +194,7 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
                 .and_then(|id| document.layer(id))
                 .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
     let looks_only = is_moved_whole
+        || tool.shapes()
         || matches!(
             tool,
             ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom | ToolKind::Transform | ToolKind::Assistants
@@ -229,6 +232,10 @@ fn take(session: &mut Session, outcome: Outcome) {
         Outcome::Lasso(corners) => {
             tab.forget_preview();
             session.lasso = corners;
+        }
+        Outcome::ChosenPart(part) => tab.part = Some(part),
+        Outcome::Direction(normal) => {
+            session.shape = ShapeSettings { normal, ..session.shape }.held();
         }
         Outcome::CloneFrom(at) => tab.clone_source = Some(CloneSource { at, offset: None }),
         Outcome::Refused(why) => session.notes.push(why.into()),

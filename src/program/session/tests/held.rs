@@ -112,7 +112,7 @@ const PROPERTIES: [&str; 45] = [
     r#"{"do":"reference","reference":#}"#,
     r#"{"do":"strength","to":#}"#,
 ];
-const OTHERS: [&str; 46] = [
+const OTHERS: [&str; 66] = [
     r#"{"in":"guide","do":"set","guides":{"vertical":[#,3.5],"horizontal":[#]}}"#,
     r#"{"in":"guide","do":"assistants","assistants":[{"kind":"ellipse","points":[[1,2],[#,4],[5,#]]}]}"#,
     r#"{"in":"guide","do":"clear"}"#,
@@ -162,7 +162,38 @@ const OTHERS: [&str; 46] = [
     r#"{"in":"layer","do":"group","layer":"2"}"#,
     STROKE,
     STROKE,
+    r#"{"in":"part","do":"shape","layer":"2","preset":"coin","flats":false}"#,
+    r#"{"in":"part","do":"shape","layer":"3","preset":"relief","flats":true}"#,
+    r#"{"in":"part","do":"add","kind":"torus"}"#,
+    r#"{"in":"part","do":"add","kind":"box"}"#,
+    r#"{"in":"part","do":"add","kind":"bevel"}"#,
+    r#"{"in":"part","do":"add","kind":"inflate selection"}"#,
+    r#"{"in":"part","do":"add","kind":"lathe"}"#,
+    r#"{"in":"part","do":"add","kind":"sweep"}"#,
+    r#"{"in":"part","do":"add","kind":"sculpt"}"#,
+    r#"{"in":"part","do":"order","part":"part-1","index":%}"#,
+    r#"{"in":"part","do":"duplicate","part":"part-1"}"#,
+    r#"{"in":"part","do":"delete","part":"part-2"}"#,
+    r#"{"in":"part","do":"visible","part":"part-1","on":false}"#,
+    r#"{"in":"part","do":"set","part":{"id":"part-1","kind":"primitive","shape":"cone","center":[#,9],"radius":#,
+        "turn":[#,#,0],"tilt":[#,#],"raise":#,"combine":"union","smooth":#},"done":true}"#,
+    r#"{"in":"part","do":"set","part":{"id":"part-1","name":"é","kind":"inflate","outline":{"path":[[4,#],[40,4],
+        [20,30]]},"puff":#,"profile":#,"rim":#,"matrix":[1,0,0,1,#,#]},"done":true}"#,
+    r#"{"in":"part","do":"set","part":{"id":"part-2","kind":"bevel","outline":{"layer":"fill"},"width":#,"height":#,
+        "curve":[[0,#],[1,#]]},"done":true}"#,
+    r#"{"in":"part","do":"set","part":{"id":"part-2","kind":"touches","on":"part-1","touches":[{"at":[9,#],
+        "radius":#,"normal":[#,0,1],"reach":#}]},"done":true}"#,
+    r#"{"in":"part","do":"set","part":{"id":"part-2","kind":"sculpt","on":"part-1","strokes":[{"tool":"crease",
+        "size":#,"hardness":#,"strength":#,"samples":[[4,#],[20,20,#]]}]},"done":true}"#,
+    r#"{"in":"part","do":"settings","shape":{"tool":"pinch","size":#,"hardness":#,"height":#,"share":#,
+        "normal":[#,#,#],"radius":#,"reach":#}}"#,
+    SCULPT,
 ];
+const SCULPT: &str = "{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"sculpt\",\"pen\":[24,20,#],\"px_per_pt\":1}\n\
+    {\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[17.123,#,0.3],[30,31.7,0.7]]}\n\
+    {\"in\":\"pointer\",\"do\":\"release\"}\n\
+    {\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"touch\",\"pen\":[24,20,#],\"px_per_pt\":1}\n\
+    {\"in\":\"pointer\",\"do\":\"release\"}";
 const STROKE: &str = "{\"in\":\"layer\",\"do\":\"select\",\"layer\":\"3\"}\n\
     {\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"brush\",\"pen\":[5,6,#,#,20,0],\"px_per_pt\":1}\n\
     {\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[17.123,#,0.3,1,2,0.25],[30,31.7,0.7,-3,4,#]]}\n\

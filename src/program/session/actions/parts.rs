@@ -1,0 +1,186 @@
+//! Actions on the shape of the document in front: its parts, the farthest first. What cannot be done says why.
+//! Floor 6. `new` makes parts, `first` gives a drawing its first shape, `list` orders them. Parts that the pen changes
+//! on the canvas are `tools::shape`'s.
+
+pub mod first;
+mod list;
+pub mod new;
+
+pub use new::NewPart;
+
+use crate::document::parts::Part;
+use crate::document::{Document, Inflation};
+use crate::io::Budget;
+use crate::io::recipe::parts::read_part;
+use crate::session::replay::{ReplayValue, actions, names, record};
+use crate::session::{LayerPath, OpenDocument, Session};
+use crate::shape::SculptTool;
+use crate::tools::shape::ShapeSettings;
+use serde_json::Value;
+use std::path::Path;
+use std::sync::Arc;
+
+names!(SculptTool);
+record!(ShapeSettings { tool, size, hardness, height, share, normal, radius, reach });
+
+/// A preset of inflation, by its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preset(pub Inflation);
+
+impl ReplayValue for Preset {
+    fn written(&self) -> Value {
+        let known = Inflation::PRESETS.iter().find(|(preset, _)| *preset == self.0);
+        known.map_or(Inflation::PRESETS[0].1, |(_, name)| name).into()
+    }
+    fn read(value: &Value) -> Result<Self, String> {
+        let known = value.as_str().and_then(|word| Inflation::PRESETS.iter().find(|(_, name)| *name == word));
+        known.map(|(preset, _)| Preset(*preset)).ok_or_else(|| format!("is {value}, which is no preset"))
+    }
+}
+
+actions! {
+    /// `part` is always an id.
+    PartAction {
+        /// Of the selected layer, the selection or the chosen part, as its kind says; in front of all others.
+        "add" Add { kind: NewPart }
+        /// A layer gets a shape: one part of its alpha, or one of each of its flat colours, and a Base that is lit.
+        "shape" Shape { layer: LayerPath, preset: Preset, flats: bool }
+        /// A part anew, as recipes write it; shown only, until it is `done`.
+        "set" Set { part: Value, done: bool }
+        /// With what lies on it.
+        "delete" Delete { part: String }
+        /// So that so many parts with a form of their own lie behind it; what lies on it goes along.
+        "order" Order { part: String, index: usize }
+        "visible" Visible { part: String, on: bool }
+        "duplicate" Duplicate { part: String }
+        "select" Select { part: String }
+        /// What the tools that touch and sculpt do.
+        "settings" Settings { shape: ShapeSettings }
+    }
+}
+
+/// Why something could not be done.
+type Refusal = &'static str;
+const NO_PART: Refusal = "There is no such part.";
+
+impl PartAction {
+    pub fn apply(&self, session: &mut Session) {
+        if let PartAction::Settings { shape } = self {
+            session.shape = shape.held();
+            return;
+        }
+        session.drop_gesture();
+        let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
+        let done = match self {
+            PartAction::Set { part, done } => set(tab, part, *done),
+            PartAction::Select { part } => match tab.document().parts.part(part) {
+                Some(_) => {
+                    tab.part = Some(part.clone());
+                    Ok(())
+                }
+                None => Err(NO_PART.into()),
+            },
+            _ => {
+                tab.forget_preview();
+                self.step(tab).map_err(str::to_owned)
+            }
+        };
+        session.notes.extend(done.err());
+    }
+    fn step(&self, tab: &mut OpenDocument) -> Result<(), Refusal> {
+        let document = tab.document();
+        let of = |id: &str| document.parts.part(id).cloned().ok_or(NO_PART);
+        let (label, next, chosen) = match self {
+            PartAction::Add { kind } => {
+                let part = new::made(*kind, tab)?;
+                let id = part.id.clone();
+                let next = list::with_new(document, part);
+                // What lies on another shows there.
+                let shows = next.parts.part(&id).and_then(|part| part.on().map(str::to_owned)).unwrap_or(id.clone());
+                if !next.part_forms().iter().any(|(part, _)| part.id == shows) {
+                    return Err(kind.why_empty());
+                }
+                ("Add part", next, Some(id))
+            }
+            PartAction::Shape { layer, preset, flats } => {
+                let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
+                let first::FirstShape { document: next, part, base } =
+                    first::shaped(document, layer, preset.0, *flats)?;
+                if tab.commit("Give it a shape", next) {
+                    (tab.part, tab.selected) = (Some(part), Some(base));
+                }
+                return Ok(());
+            }
+            PartAction::Delete { part } => ("Delete part", list::without(document, &of(part)?.id), None),
+            PartAction::Order { part, index } => ("Order parts", list::ordered(document, &of(part)?.id, *index), None),
+            PartAction::Visible { part, on } => {
+                let next = Part { visible: *on, ..Part::clone(&*of(part)?) };
+                (if *on { "Show part" } else { "Hide part" }, list::with(document, next), None)
+            }
+            PartAction::Duplicate { part } => {
+                let (next, id) = list::duplicated(document, &*of(part)?);
+                ("Duplicate part", next, Some(id))
+            }
+            PartAction::Set { .. } | PartAction::Select { .. } | PartAction::Settings { .. } => return Ok(()),
+        };
+        if tab.commit(label, next) {
+            tab.part = chosen.or(tab.part.take());
+            tab.repair();
+        }
+        Ok(())
+    }
+}
+
+/// A part of the document anew.
+fn set(tab: &mut OpenDocument, value: &Value, done: bool) -> Result<(), String> {
+    let document = tab.document();
+    let read = read_part(Path::new("part"), value, document, &Budget::holding(document));
+    let next = match read {
+        Ok(next) => next,
+        Err(error) => {
+            tab.forget_preview();
+            return Err(error.to_string());
+        }
+    };
+    let Some(old) = document.parts.part(&next.id) else {
+        tab.forget_preview();
+        return Err(NO_PART.into());
+    };
+    let label = label(old, &next);
+    let next = list::with(document, next);
+    if done {
+        tab.commit(label, next);
+    } else {
+        tab.show(label, next);
+    }
+    Ok(())
+}
+
+/// What a change of a part is called.
+fn label(old: &Part, next: &Part) -> &'static str {
+    let only = |same: &dyn Fn(&mut Part)| {
+        let mut changed = old.clone();
+        same(&mut changed);
+        changed == *next
+    };
+    if only(&|part| part.name.clone_from(&next.name)) {
+        "Rename part"
+    } else if only(&|part| part.matrix = next.matrix) {
+        "Move part"
+    } else if only(&|part| part.tilt_deg = next.tilt_deg) {
+        "Tilt part"
+    } else if only(&|part| part.combine = next.combine) {
+        "Combine part"
+    } else {
+        "Shape part"
+    }
+}
+
+/// An id that no part of a document has: `part-1`, `part-2`, …
+fn free_id(document: &Document, taken: &[Arc<Part>]) -> String {
+    let is_taken = |id: &str| document.parts.part(id).is_some() || taken.iter().any(|part| part.id == id);
+    (1..).map(|i| format!("part-{i}")).find(|id| !is_taken(id)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests;

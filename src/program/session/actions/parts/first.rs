@@ -1,0 +1,121 @@
+//! The first shape of a drawing: a part of its outline, or one of each of its flat colours, and a Base that is lit, so
+//! that the form is seen at once. Floor 6. What a drawing is `document::parts::drawing` tells.
+
+use super::{Refusal, free_id, new};
+use crate::document::parts::Part;
+use crate::document::parts::drawing::{DrawingLook, Ground, without_ground};
+use crate::document::parts::flats::parts_of_flats;
+use crate::document::{
+    Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress, flatten_layer,
+};
+use crate::math::{srgb::Color, vec3};
+use crate::raster::{BlendMode, TileGrid};
+use crate::shading::{Light, LightKind, Model, Shading, Term};
+use crate::tools::brush::free_name;
+use std::sync::Arc;
+
+/// A document whose drawing has a shape.
+pub struct FirstShape {
+    pub document: Document,
+    /// The nearest of the new parts.
+    pub part: String,
+    /// The layer that shows the form.
+    pub base: LayerId,
+}
+
+/// What a layer paints on the canvas, without any surface.
+pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
+    let flat = Document { surface: None, parts: Arc::default(), ..document.clone() };
+    let flat = flat.with_layer(layer, |layer| (layer.visible, layer.opacity) = (true, 1.0))?;
+    flatten_layer(&flat, layer, &Progress::default())
+}
+
+/// What a layer of a document looks like as a drawing.
+pub fn look(document: &Document, layer: LayerId) -> Option<DrawingLook> {
+    Some(DrawingLook::of(&painted(document, layer)?, document.size))
+}
+
+/// A layer of a document gets a shape.
+pub fn shaped(document: &Document, layer: LayerId, inflation: Inflation, flats: bool) -> Result<FirstShape, Refusal> {
+    let tiles = painted(document, layer).ok_or("This layer paints nothing of its own, so it has no outline.")?;
+    let look = DrawingLook::of(&tiles, document.size);
+    let (document, tiles) = match look.ground {
+        Ground::Transparent => (document.clone(), tiles),
+        Ground::Flat(color) => without_flat_ground(document, layer, &tiles, color).ok_or("There is no such layer.")?,
+        Ground::Painted => {
+            return Err("This layer is opaque all over and its ground has many colours, so it has no outline. Select \
+                        the figure, and inflate the selection.");
+        }
+        Ground::Empty => return Err("This layer is empty, so it has no outline."),
+    };
+    let document = named_alone(&document, layer).ok_or("There is no such layer.")?;
+    let name = document.layer(layer).map(|layer| layer.name.clone()).unwrap_or_default();
+    let made = match flats {
+        true => parts_of_flats(&tiles, &name, inflation),
+        false => vec![Part { name: new::free_name(&document, &name), ..Part::of_layer("", &name, inflation) }],
+    };
+    let mut list = document.parts.list.clone();
+    for part in made {
+        let id = free_id(&document, &list);
+        list.push(Arc::new(Part { id, ..part }));
+    }
+    let part = list.last().map(|part| part.id.clone()).ok_or("No flat colour of it covers enough to be a part.")?;
+    // Its edge is the surface's: to be clipped as well would make it thinner.
+    let next = document.with_layer(layer, |layer| layer.clip_to_surface = false).unwrap_or(document);
+    let base = base(&next);
+    let id = base.id;
+    let place =
+        next.place_of(layer).map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
+    let next = next.with_inserted(base, place).ok_or("There is no such layer.")?.with_parts(list);
+    match next.surface {
+        Some(_) => Ok(FirstShape { document: next, part, base: id }),
+        None => Err("Nothing in this layer is opaque enough to have a shape."),
+    }
+}
+
+/// With a name that no other layer has, by which parts follow it.
+fn named_alone(document: &Document, layer: LayerId) -> Option<Document> {
+    let name = &document.layer(layer)?.name;
+    let is_alone = document.walk().iter().filter(|(_, other)| other.name == *name).count() == 1;
+    let named = if is_alone && !name.is_empty() { name.clone() } else { free_name(document, "Drawing") };
+    document.with_layer(layer, |layer| layer.name = named)
+}
+
+/// The drawing as paint without its ground, and the ground as a fill beneath, and the drawing's pixels. What shows stays
+/// as it was.
+fn without_flat_ground(
+    document: &Document,
+    layer: LayerId,
+    tiles: &TileGrid,
+    color: Color,
+) -> Option<(Document, TileGrid)> {
+    let bare = without_ground(tiles, document.size, color);
+    let paint = Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles: bare.clone() });
+    let next = document.with_layer(layer, |layer| {
+        // The mask and the transform are in the pixels now.
+        (layer.content, layer.mask, layer.transform) = (paint, None, None);
+    })?;
+    let drawing = next.layer(layer)?;
+    let ground = Layer {
+        clip_to_surface: false,
+        visible: drawing.visible,
+        opacity: drawing.opacity,
+        ..Layer::new(free_name(document, "Ground"), Content::Fill(color))
+    };
+    let place = next.place_of(layer)?;
+    Some((next.with_inserted(ground, place)?, bare))
+}
+
+/// The layer that shows the form: the drawing in the light of one warm lamp, with cool shadows, multiplied.
+fn base(document: &Document) -> Layer {
+    let lamp = Light { kind: LightKind::Directional { direction: vec3(-0.45, 0.55, 0.75) }, ..Light::default() };
+    let shading = Shading {
+        lights: vec![lamp],
+        ambient: Term::plain(Color { r: 0xc8, g: 0xd0, b: 0xff, a: 255 }, 0.38),
+        diffuse: Term::plain(Color { r: 0xff, g: 0xf4, b: 0xe4, a: 255 }, 0.8),
+        specular: Term::NONE,
+        ..Shading::new(Model::Phong)
+    };
+    let content = Content::Shading(Live::new(shading));
+    Layer { blend: BlendMode::Multiply, ..Layer::new(free_name(document, "Base"), content) }
+}

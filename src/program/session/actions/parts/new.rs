@@ -1,0 +1,185 @@
+//! New parts: of the selected layer, the selection, the chosen stroke, or bodies in the middle of the canvas.
+//! Floor 6.
+
+use super::{Refusal, free_id};
+use crate::document::parts::{CoverageFile, OutlineSource, Part, PartKind};
+use crate::document::{Document, Inflation};
+use crate::math::{Vec2, vec2};
+use crate::session::OpenDocument;
+use crate::session::replay::names;
+use crate::shape::{Ball, Bevel, Body, Primitive};
+use std::sync::Arc;
+
+/// What a new part is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NewPart {
+    InflateLayer,
+    InflateSelection,
+    Bevel,
+    Body(Body),
+    Lathe,
+    Sweep,
+    Touches,
+    Sculpt,
+}
+
+/// A new part with its name in replays, what the window calls it, and a hint.
+pub type NewPartRow = (NewPart, &'static str, &'static str, &'static str);
+
+impl NewPart {
+    pub const ALL: [NewPartRow; 14] = [
+        (NewPart::InflateLayer, "inflate", "Inflate this layer", "What the selected layer covers, filled with air"),
+        (NewPart::InflateSelection, "inflate selection", "Inflate selection", "What is selected, filled with air"),
+        (NewPart::Bevel, "bevel", "Bevel", "The selection, or the selected layer, with a slope along its rim"),
+        (NewPart::Body(Body::Sphere), "sphere", "Sphere", "A ball in the middle of the canvas"),
+        (NewPart::Body(Body::Ellipsoid), "ellipsoid", "Ellipsoid", "An egg with three axes"),
+        (NewPart::Body(Body::Cylinder), "cylinder", "Cylinder", "A drum, which can be turned"),
+        (NewPart::Body(Body::Cone), "cone", "Cone", "A cone, which can be turned"),
+        (NewPart::Body(Body::Capsule), "capsule", "Capsule", "A cylinder with round ends: a limb"),
+        (NewPart::Body(Body::Torus), "torus", "Torus", "A ring"),
+        (NewPart::Body(Body::Box), "box", "Box", "A block with round edges"),
+        (NewPart::Lathe, "lathe", "Lathe", "What the selected layer covers, turned about its axis: vases, bottles"),
+        (
+            NewPart::Sweep,
+            "sweep",
+            "Sweep",
+            "Balls along the chosen stroke, as wide as the pen pressed: tails, tentacles",
+        ),
+        (NewPart::Touches, "touches", "Touches", "Normals put down by hand on the chosen part"),
+        (NewPart::Sculpt, "sculpt", "Sculpt", "Heights sculpted by hand on the chosen part"),
+    ];
+    fn row(self) -> NewPartRow {
+        Self::ALL.into_iter().find(|row| row.0 == self).unwrap_or(Self::ALL[0])
+    }
+    pub fn name(self) -> &'static str {
+        self.row().1
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+    /// What the window calls it.
+    pub fn label(self) -> &'static str {
+        self.row().2
+    }
+    pub fn hint(self) -> &'static str {
+        self.row().3
+    }
+    /// Why nothing came of it.
+    pub(super) fn why_empty(self) -> Refusal {
+        match self {
+            NewPart::InflateSelection => "The selection holds no whole pixel, so it has no outline.",
+            NewPart::Touches | NewPart::Sculpt => "The chosen part has no form to put anything on.",
+            _ => "The layer is empty, so it has no outline: paint on it, or select another.",
+        }
+    }
+}
+
+names!(NewPart);
+
+/// A part as it is first made.
+pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, Refusal> {
+    let document = tab.document();
+    let shorter = document.size.width.min(document.size.height) as f32;
+    let made = match kind {
+        NewPart::InflateLayer => PartKind::Inflate { outline: of_layer(tab)?, inflation: Inflation::default() },
+        NewPart::InflateSelection => {
+            let outline = of_selection(document).ok_or("Nothing is selected, so there is nothing to inflate.")?;
+            PartKind::Inflate { outline, inflation: Inflation::default() }
+        }
+        NewPart::Bevel => {
+            let outline = of_selection(document).map_or_else(|| of_layer(tab), Ok)?;
+            let side = (0.04 * shorter).round().max(2.0);
+            PartKind::Bevel { outline, bevel: Bevel { width: side, height: side, ..Bevel::default() } }
+        }
+        NewPart::Body(body) => {
+            let radius = (0.25 * shorter).round().max(1.0);
+            PartKind::Primitive(Primitive::new(body, document.size.center(), radius))
+        }
+        NewPart::Lathe => PartKind::Lathe { outline: of_layer(tab)?, axis: None, puff: 1.0 },
+        NewPart::Sweep => PartKind::Sweep { balls: of_stroke(tab).unwrap_or_else(|| tail(document)), puff: 1.0 },
+        NewPart::Touches => PartKind::Touches { on: form_of_chosen(tab)?, touches: Vec::new() },
+        NewPart::Sculpt => PartKind::Sculpt { on: form_of_chosen(tab)?, strokes: Vec::new() },
+    };
+    let name = match (kind, tab.selected.and_then(|id| document.layer(id))) {
+        (NewPart::InflateLayer | NewPart::Lathe, Some(layer)) => layer.name.clone(),
+        (NewPart::InflateSelection, _) => "Selection".to_owned(),
+        _ => kind.label().to_owned(),
+    };
+    Ok(Part { name: free_name(document, &name), ..Part::new(free_id(document, &[]), made) })
+}
+
+/// A name that no part has, as short as a file takes.
+pub fn free_name(document: &Document, base: &str) -> String {
+    let base: String = base.chars().take(Part::LONGEST_NAME - 12).collect();
+    let taken = |name: &str| document.parts.list.iter().any(|part| part.name == name);
+    let numbered = (2..).map(|i| format!("{base} {i}"));
+    std::iter::once(base.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or(base)
+}
+
+/// The chosen part, or the one that it lies on.
+fn form_of_chosen(tab: &OpenDocument) -> Result<String, Refusal> {
+    let part = tab.part.as_deref().and_then(|id| tab.document().parts.part(id));
+    let part = part.ok_or("No part is chosen. Add one first, or give the drawing a shape.")?;
+    Ok(part.on().unwrap_or(&part.id).to_owned())
+}
+
+fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, Refusal> {
+    let document = tab.document();
+    let layer = tab.selected.and_then(|id| document.layer(id)).ok_or("No layer is selected.")?;
+    if !layer.content.paints() {
+        return Err("This layer paints nothing of its own, so it has no outline. Select another.");
+    }
+    if document.layer_named(&layer.name).is_none_or(|named| named.id != layer.id) {
+        return Err(
+            "Another layer has the same name; give this one a name of its own, by which its part will follow it.",
+        );
+    }
+    Ok(OutlineSource::Layer { layer: layer.name.clone(), color: None })
+}
+
+/// The selection as a picture of coverage, under a name that no part's picture has.
+fn of_selection(document: &Document) -> Option<OutlineSource> {
+    let coverage = Arc::new(document.selected()?.to_plane(document.size.rect()));
+    let names: Vec<String> = document
+        .parts
+        .list
+        .iter()
+        .filter_map(|part| Part::clone(part).files_mut().map(|file| file.file.clone()))
+        .collect();
+    let file = (1..).map(|i| format!("outline-{i}.png")).find(|name| !names.contains(name))?;
+    Some(OutlineSource::File(CoverageFile { file, coverage }))
+}
+
+/// Balls along the stroke that is chosen, or was painted last, of the selected layer.
+fn of_stroke(tab: &OpenDocument) -> Option<Vec<Ball>> {
+    let strokes = tab.document().strokes(tab.selected?);
+    let stroke = match tab.chosen_strokes().last() {
+        Some(&index) => strokes.get(index)?,
+        None => strokes.last()?,
+    };
+    let size = stroke.brush().size;
+    let radius = |pressure: f32| (0.5 * size * pressure).max(0.5).min(*Ball::RADIUS.end());
+    let mut balls: Vec<Ball> = Vec::new();
+    for sample in stroke.samples() {
+        let ball = Ball { at: sample.at, radius: radius(sample.pressure) };
+        // A fifth of a radius apart they are one body.
+        if balls.last().is_none_or(|last| last.at.distance(ball.at) >= 0.2 * ball.radius) {
+            balls.push(ball);
+        }
+    }
+    let step = balls.len().div_ceil(512).max(1);
+    Some(balls.into_iter().step_by(step).collect())
+}
+
+/// A tapering S in the middle of the canvas.
+fn tail(document: &Document) -> Vec<Ball> {
+    const BALLS: usize = 24;
+    let (middle, shorter) = (document.size.center(), document.size.width.min(document.size.height) as f32);
+    let ball = |i: usize| {
+        let t = i as f32 / (BALLS - 1) as f32;
+        let bend = (t * std::f32::consts::TAU).sin();
+        let at: Vec2 = middle + shorter * vec2(0.12 * bend, 0.3 - 0.6 * t);
+        Ball { at, radius: (shorter * (0.09 - 0.075 * t)).max(0.5) }
+    };
+    (0..BALLS).map(ball).collect()
+}

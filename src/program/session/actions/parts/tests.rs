@@ -1,0 +1,170 @@
+//! Stories of parts, replayed.
+
+use crate::document::parts::PartKind;
+use crate::document::{Content, Document, Progress, flatten};
+use crate::math::Size;
+use crate::math::vec2;
+use crate::raster::Picture;
+use crate::session::actions::files::of_picture;
+use crate::session::{OpenDocument, Session};
+use std::path::Path;
+
+/// Two flat discs that touch, with soft edges, on nothing or on white.
+fn snowman(on_white: bool) -> Document {
+    let size = Size::new(96, 128);
+    let inside = |x: f32, y: f32, cx: f32, cy: f32, r: f32| {
+        (r + 0.5 - ((x - cx).powi(2) + (y - cy).powi(2)).sqrt()).max(0.0).min(1.0)
+    };
+    let texel = |i: usize| {
+        let (x, y) = ((i % 96) as f32 + 0.5, (i / 96) as f32 + 0.5);
+        let (head, body) = (inside(x, y, 48.0, 36.0, 24.0), inside(x, y, 48.0, 84.0, 36.0));
+        let mixed = |head_c: f32, body_c: f32| {
+            let beneath = if on_white { body_c * body + 255.0 * (1.0 - body) } else { body_c };
+            (head_c * head + beneath * (1.0 - head)).round() as u8
+        };
+        let alpha = if on_white { 255 } else { (255.0 * head.max(body)).round() as u8 };
+        [mixed(220.0, 60.0), mixed(160.0, 90.0), mixed(80.0, 200.0), alpha]
+    };
+    of_picture("snowman.png", Picture::srgb8(size, (0..size.area()).map(texel).collect()).unwrap())
+}
+fn opened(document: Document) -> Session {
+    let mut session = Session::default();
+    session.add_document(OpenDocument::new("snowman.png", document, None));
+    session
+}
+fn tell(session: &mut Session, line: &str) {
+    session.replay(Path::new("story"), line).unwrap_or_else(|error| panic!("{line}: {error}"));
+}
+fn shown(session: &Session) -> &Document {
+    session.active().unwrap().shown()
+}
+fn ids(session: &Session) -> Vec<&str> {
+    shown(session).parts.list.iter().map(|part| part.id.as_str()).collect()
+}
+fn puff(session: &Session, id: &str) -> f32 {
+    match &shown(session).parts.part(id).unwrap().kind {
+        PartKind::Inflate { inflation, .. } => inflation.puff,
+        other => panic!("{}", other.name()),
+    }
+}
+
+#[test]
+fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
+    let mut session = opened(snowman(false));
+    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
+    assert_eq!(session.notes, Vec::<String>::new());
+    let document = shown(&session);
+    assert_eq!(document.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(), ["snowman", "Base"]);
+    let surface = document.surface.as_ref().unwrap();
+    assert!(surface.normal(48, 84).z > 0.98 && surface.normal(70, 84).x > 0.3);
+    let lit = flatten(document, &Progress::default()).unwrap();
+    let (light, dark) = (lit.pixel(34, 66), lit.pixel(66, 106));
+    assert!(light[2] > dark[2] + 40, "lit from above left: {light:?} {dark:?}");
+    assert_eq!(session.active().unwrap().part.as_deref(), Some("part-1"));
+    tell(&mut session, r#"{"in":"edit","do":"undo"}"#);
+    assert!(shown(&session).surface.is_none() && shown(&session).layers.len() == 1);
+}
+#[test]
+fn each_flat_colour_becomes_a_part() {
+    let mut session = opened(snowman(false));
+    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"tube","flats":true}"#);
+    assert_eq!(ids(&session), ["part-1", "part-2"]);
+    let at = |x: f32, y: f32| shown(&session).part_at(vec2(x, y)).map(|part| part.id.clone());
+    let (head, body) = (at(48.0, 36.0), at(48.0, 90.0));
+    assert!(head.is_some() && body.is_some() && head != body, "{head:?} {body:?}");
+    assert_eq!(at(3.0, 3.0), None);
+}
+#[test]
+fn a_flat_ground_is_taken_off_and_lies_beneath_and_the_picture_stays() {
+    let mut session = opened(snowman(true));
+    let before = flatten(shown(&session), &Progress::default()).unwrap();
+    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
+    let names: Vec<&str> = shown(&session).layers.iter().map(|layer| layer.name.as_str()).collect();
+    assert_eq!(names, ["Ground", "snowman", "Base"]);
+    assert!(matches!(shown(&session).layers[1].content, Content::Pixels(_)));
+    assert_eq!(shown(&session).surface.as_ref().unwrap().coverage(2, 2), 0);
+    tell(&mut session, r#"{"in":"layer","do":"set","layer":"2","to":{"do":"visible","on":false},"done":true}"#);
+    let after = flatten(shown(&session), &Progress::default()).unwrap();
+    for (x, y) in (0..128).flat_map(|y| (0..96).map(move |x| (x, y))) {
+        let (a, b) = (before.pixel(x, y), after.pixel(x, y));
+        assert!(a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 3), "{x} {y}: {a:?} {b:?}");
+    }
+}
+#[test]
+fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
+    let mut session = opened(snowman(false));
+    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
+    let steps = session.active().unwrap().history.past().count();
+    let part = |puff: f32, done: bool| {
+        let outline = r#"{"layer":"snowman"}"#;
+        format!(
+            r#"{{"in":"part","do":"set","part":{{"id":"part-1","name":"snowman","kind":"inflate",
+            "outline":{outline},"puff":{puff}}},"done":{done}}}"#
+        )
+        .replace('\n', " ")
+    };
+    let before = shown(&session).surface.clone().unwrap();
+    tell(&mut session, &part(0.5, false));
+    assert!(puff(&session, "part-1") == 0.5 && session.active().unwrap().is_previewing());
+    let flatter = shown(&session).surface.clone().unwrap();
+    assert!(flatter.normal(70, 84).z > before.normal(70, 84).z + 0.1);
+    tell(&mut session, &part(0.25, true));
+    assert_eq!(session.active().unwrap().history.past().count(), steps + 1);
+    tell(&mut session, &part(9.0, true));
+    assert!(session.notes[0].contains("puff") && session.notes[0].contains("between 0 and 8"), "{:?}", session.notes);
+    assert!(puff(&session, "part-1") == 0.25 && !session.active().unwrap().is_previewing());
+}
+#[test]
+fn parts_are_added_ordered_copied_hidden_and_deleted_with_what_lies_on_them() {
+    let mut session = opened(snowman(false));
+    for kind in ["sphere", "box", "touches", "sweep", "inflate"] {
+        tell(&mut session, &format!(r#"{{"in":"part","do":"add","kind":"{kind}"}}"#));
+    }
+    assert_eq!(session.notes, Vec::<String>::new());
+    assert_eq!(ids(&session), ["part-1", "part-2", "part-3", "part-4", "part-5"]);
+    assert_eq!(shown(&session).parts.part("part-3").unwrap().on(), Some("part-2"));
+    tell(&mut session, r#"{"in":"part","do":"order","part":"part-2","index":3}"#);
+    assert_eq!(ids(&session), ["part-1", "part-4", "part-5", "part-2", "part-3"]);
+    tell(&mut session, r#"{"in":"part","do":"order","part":"part-2","index":0}"#);
+    assert_eq!(ids(&session), ["part-2", "part-3", "part-1", "part-4", "part-5"]);
+    tell(&mut session, r#"{"in":"part","do":"duplicate","part":"part-2"}"#);
+    assert_eq!(ids(&session)[..4], ["part-2", "part-3", "part-6", "part-7"]);
+    assert_eq!(shown(&session).parts.part("part-7").unwrap().on(), Some("part-6"));
+    tell(&mut session, r#"{"in":"part","do":"visible","part":"part-1","on":false}"#);
+    assert!(!shown(&session).parts.part("part-1").unwrap().visible);
+    tell(&mut session, r#"{"in":"part","do":"delete","part":"part-2"}"#);
+    assert_eq!(ids(&session), ["part-6", "part-7", "part-1", "part-4", "part-5"]);
+    tell(&mut session, r#"{"in":"part","do":"delete","part":"nobody"}"#);
+    assert_eq!(session.notes, ["There is no such part."]);
+    assert!(session.active().unwrap().part.is_some());
+}
+#[test]
+fn what_has_no_outline_says_so_and_changes_nothing() {
+    let mut session = Session::default();
+    tell(&mut session, r##"{"in":"file","do":"new","width":64,"height":48,"background":null}"##);
+    tell(&mut session, r#"{"in":"layer","do":"add","kind":"paint"}"#);
+    for (line, why) in [
+        (r#"{"in":"part","do":"shape","layer":"0","preset":"coin","flats":false}"#, "empty"),
+        (r#"{"in":"part","do":"add","kind":"inflate"}"#, "empty"),
+        (r#"{"in":"part","do":"add","kind":"inflate selection"}"#, "Nothing is selected"),
+        (r#"{"in":"part","do":"add","kind":"sculpt"}"#, "No part is chosen"),
+        (r#"{"in":"part","do":"shape","layer":"7","preset":"coin","flats":false}"#, "no such layer"),
+    ] {
+        tell(&mut session, line);
+        let said = session.notes.pop().unwrap_or_default();
+        assert!(said.contains(why), "{line}: {said}");
+    }
+    assert!(shown(&session).parts.is_empty() && shown(&session).surface.is_none());
+}
+#[test]
+fn a_selection_is_inflated_and_keeps_its_outline_when_it_is_let_go_of() {
+    let mut session = opened(snowman(false));
+    let press = r#"{"in":"pointer","do":"press","tool":"select rectangle","pen":[20,20],"px_per_pt":1}"#;
+    tell(&mut session, press);
+    tell(&mut session, r#"{"in":"pointer","do":"drag","pens":[[76,108]]}"#);
+    tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"inflate selection"}"#);
+    tell(&mut session, r#"{"in":"selection","do":"none"}"#);
+    let at = |x: f32, y: f32| shown(&session).part_at(vec2(x, y)).is_some();
+    assert!(at(48.0, 64.0) && !at(8.0, 64.0));
+}

@@ -1,0 +1,230 @@
+//! The shape tool: the part under the pen is chosen and moved; handles around the chosen one scale, turn, puff and tilt
+//! it. Floor 5. The numbers that have no handle are the panel's.
+
+use super::{changed, map_about};
+use crate::document::Document;
+use crate::document::parts::{Inflation, Part, PartKind};
+use crate::math::range::held;
+use crate::math::{Affine2, Mat2, Vec2, vec2};
+use crate::shape::{Bevel, Form};
+use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use std::sync::Arc;
+
+/// The box around what a part covers, with its handles; canvas px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PartFrame {
+    pub low: Vec2,
+    pub high: Vec2,
+    /// Canvas px per screen point: handles within and above the box are so far apart on the screen.
+    pub px_per_pt: f32,
+    /// Whether it has a height to drag.
+    pub has_puff: bool,
+}
+
+/// What of a part the pen holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartHandle {
+    /// Upper left, upper right, lower right, lower left: scales about the opposite corner.
+    Corner(usize),
+    /// Above the box: turns about its middle.
+    Turn,
+    /// In the middle: dragged up the part rises, dragged down it sinks.
+    Puff,
+    /// The ball below the middle: dragged to a side the part leans there.
+    Tilt,
+    /// All else of the part.
+    Body,
+}
+
+/// How far above the box its turning handle stands, and the ball below the middle, points.
+const TURN_PT: f32 = 26.0;
+const TILT_PT: f32 = 34.0;
+/// In a smaller box there is no room for handles within, points.
+const LEAST_BOX_PT: f32 = 84.0;
+/// A degree of tilt for so many points.
+const TILT_PT_A_DEGREE: f32 = 2.0;
+/// Turns with Shift go from one multiple of this to the next.
+const STEP_DEGREES: f32 = 15.0;
+
+impl PartFrame {
+    /// Of a part by its form.
+    pub fn of(part: &Part, form: &Form, px_per_pt: f32) -> Self {
+        let rect = covered(form);
+        Self { low: rect.0, high: rect.1, px_per_pt, has_puff: height_of(&part.kind).is_some() }
+    }
+    /// Upper left, upper right, lower right, lower left.
+    pub fn corners(&self) -> [Vec2; 4] {
+        [self.low, vec2(self.high.x, self.low.y), self.high, vec2(self.low.x, self.high.y)]
+    }
+    pub fn middle(&self) -> Vec2 {
+        (self.low + self.high) * 0.5
+    }
+    pub fn turn(&self) -> Vec2 {
+        vec2(self.middle().x, self.low.y - TURN_PT * self.px_per_pt)
+    }
+    /// Where the handle of the height stands, if the part has one and there is room.
+    pub fn puff(&self) -> Option<Vec2> {
+        (self.has_puff && self.has_room()).then(|| self.middle())
+    }
+    pub fn tilt(&self) -> Option<Vec2> {
+        self.has_room().then(|| self.middle() + vec2(0.0, TILT_PT * self.px_per_pt))
+    }
+    fn has_room(&self) -> bool {
+        (self.high - self.low).min_element() >= LEAST_BOX_PT * self.px_per_pt
+    }
+    /// The handle at a canvas point.
+    pub fn handle_at(&self, at: Vec2) -> Option<PartHandle> {
+        let near = |p: Vec2| p.distance(at) <= GRAB_PT * self.px_per_pt;
+        if let Some(corner) = self.corners().iter().position(|corner| near(*corner)) {
+            return Some(PartHandle::Corner(corner));
+        }
+        let inner =
+            [(Some(self.turn()), PartHandle::Turn), (self.puff(), PartHandle::Puff), (self.tilt(), PartHandle::Tilt)];
+        inner.into_iter().find(|(p, _)| p.is_some_and(near)).map(|(_, handle)| handle)
+    }
+}
+
+/// The corners of what a form covers.
+fn covered(form: &Form) -> (Vec2, Vec2) {
+    let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+    for y in 0..form.coverage.height() {
+        let row = form.coverage.row(y);
+        let Some(first) = row.iter().position(|c| *c > 0) else { continue };
+        let last = row.iter().rposition(|c| *c > 0).unwrap_or(first);
+        low = low.min(vec2(first as f32, y as f32));
+        high = high.max(vec2(last as f32 + 1.0, y as f32 + 1.0));
+    }
+    let corner = vec2(form.corner.0 as f32, form.corner.1 as f32);
+    if low.is_finite() { (low + corner, high + corner) } else { (corner, corner) }
+}
+
+/// The number that is the height of a part, and how much of it a drag over half of the part's smaller side changes.
+fn height_of(kind: &PartKind) -> Option<(f32, f32)> {
+    match kind {
+        PartKind::Inflate { inflation, .. } => Some((inflation.puff, 1.0)),
+        PartKind::Lathe { puff, .. } | PartKind::Sweep { puff, .. } => Some((*puff, 1.0)),
+        PartKind::Bevel { bevel, .. } => Some((bevel.height, bevel.width)),
+        _ => None,
+    }
+}
+
+fn with_height(kind: &PartKind, to: f32) -> PartKind {
+    let mut kind = kind.clone();
+    match &mut kind {
+        PartKind::Inflate { inflation, .. } => inflation.puff = held(to, &Inflation::PUFF),
+        PartKind::Lathe { puff, .. } | PartKind::Sweep { puff, .. } => *puff = held(to, &Inflation::PUFF),
+        PartKind::Bevel { bevel, .. } => bevel.height = held(to, &Bevel::HEIGHT),
+        _ => {}
+    }
+    kind
+}
+
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let document = context.document;
+    let forms = document.part_forms();
+    if forms.is_empty() {
+        let why = "There is no part here. Layer › Give it a shape… makes some, or the panel Shape adds one.";
+        return (None, Outcome::Refused(why));
+    }
+    let frame_of = |id: &str| {
+        let (part, form) = forms.iter().find(|(part, _)| part.id == id)?;
+        Some((part.clone(), PartFrame::of(part, form, context.px_per_pt)))
+    };
+    let chosen = context.part.and_then(frame_of);
+    let on_handle = chosen.and_then(|(part, frame)| Some((part, frame, frame.handle_at(pen.place())?)));
+    let held = on_handle.or_else(|| {
+        let part = crate::document::parts::forms::nearest_at(&forms, pen.place())?;
+        let (part, frame) = frame_of(&part.id)?;
+        Some((part, frame, PartHandle::Body))
+    });
+    let Some((part, frame, handle)) = held else { return (None, Outcome::Idle) };
+    let chosen = Outcome::ChosenPart(part.id.clone());
+    let gesture = PartGesture { document: document.clone(), part, frame, handle, from: pen.place(), found: None };
+    (Some(Box::new(gesture)), chosen)
+}
+
+struct PartGesture {
+    document: Document,
+    /// Before the drag.
+    part: Arc<Part>,
+    frame: PartFrame,
+    handle: PartHandle,
+    from: Vec2,
+    /// As it was last dragged.
+    found: Option<Part>,
+}
+
+impl PartGesture {
+    fn dragged(&self, pen: &PenSample) -> Option<Part> {
+        let (to, part) = (pen.place(), &*self.part);
+        let by = to - self.from;
+        let mapped = |map: Affine2| {
+            let matrix = map * part.matrix;
+            let is_told = matrix.is_finite() && matrix.to_cols_array().iter().all(|v| Part::MATRIX.contains(v));
+            is_told.then(|| Part { matrix, ..part.clone() })
+        };
+        match self.handle {
+            PartHandle::Body => mapped(Affine2::from_translation(moved_by(by, pen.keys.shift))),
+            PartHandle::Turn => {
+                let middle = self.frame.middle();
+                let (before, after) = (self.from - middle, to - middle);
+                let degrees = (after.to_angle() - before.to_angle()).to_degrees();
+                let step = |v: f32| (v / STEP_DEGREES).round() * STEP_DEGREES;
+                let degrees = if pen.keys.shift { step(degrees) } else { degrees };
+                mapped(map_about(middle, Mat2::from_angle(degrees.to_radians())))
+            }
+            PartHandle::Corner(corner) => {
+                let corners = self.frame.corners();
+                let fixed = if pen.keys.alt { self.frame.middle() } else { corners[(corner + 2) % 4] };
+                let way = corners[corner] - fixed;
+                let scale = (to - fixed).dot(way) / way.length_squared().max(1.0);
+                mapped(map_about(fixed, Mat2::from_diagonal(Vec2::splat(scale.max(0.02).min(50.0)))))
+            }
+            PartHandle::Puff => {
+                let (height, per_half) = height_of(&part.kind)?;
+                let half = (0.5 * (self.frame.high - self.frame.low).min_element()).max(1.0);
+                Some(Part { kind: with_height(&part.kind, height - per_half * by.y / half), ..part.clone() })
+            }
+            PartHandle::Tilt => {
+                // Where the ball goes the part faces, so it falls there.
+                let by = by / (TILT_PT_A_DEGREE * self.frame.px_per_pt.max(1e-6));
+                let tilt = (part.tilt_deg - by).round();
+                let tilt_deg = vec2(held(tilt.x, &Part::TILT), held(tilt.y, &Part::TILT));
+                Some(Part { tilt_deg, ..part.clone() })
+            }
+        }
+    }
+}
+
+/// By whole pixels, so that nothing is made anew; with Shift along one axis.
+fn moved_by(by: Vec2, along_axis: bool) -> Vec2 {
+    match along_axis {
+        true if by.x.abs() >= by.y.abs() => vec2(by.x, 0.0).round(),
+        true => vec2(0.0, by.y).round(),
+        false => by.round(),
+    }
+}
+
+impl Gesture for PartGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let Some(part) = pens.last().and_then(|pen| self.dragged(pen)) else { return Outcome::Idle };
+        self.found = Some(part.clone());
+        Outcome::Preview(changed(&self.document, part))
+    }
+    fn release(&mut self) -> Outcome {
+        let label = match self.handle {
+            PartHandle::Body => "Move part",
+            PartHandle::Corner(_) => "Scale part",
+            PartHandle::Turn => "Turn part",
+            PartHandle::Puff => "Puff part",
+            PartHandle::Tilt => "Tilt part",
+        };
+        match self.found.take().filter(|found| *found != *self.part) {
+            Some(part) => {
+                let document = changed(&self.document, part);
+                Outcome::Commit { label: label.into(), document, select: None }
+            }
+            None => Outcome::Cancel,
+        }
+    }
+}

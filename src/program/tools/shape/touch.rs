@@ -1,0 +1,209 @@
+//! The touch tool: a click or a drag gives the part under the pen a direction there; touches are moved by dragging and
+//! taken away with Alt. Floor 5. How they spread is `shape::touches`'.
+
+use super::{changed, free_id, inverse_direction, on_canvas_direction};
+use crate::document::Document;
+use crate::document::parts::{Part, PartKind};
+use crate::math::{COORDINATE, Vec2, Vec3};
+use crate::shape::Touch;
+use crate::tools::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use std::sync::Arc;
+
+/// A touch where it stands on the canvas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StandingTouch {
+    /// The part that holds it, and its place there.
+    pub part: String,
+    pub index: usize,
+    /// Canvas px.
+    pub at: Vec2,
+    /// Unit, camera space (y up).
+    pub normal: Vec3,
+}
+
+/// The touches of a document that are seen.
+pub fn touches(document: &Document) -> Vec<StandingTouch> {
+    let of = |part: &Arc<Part>| {
+        let PartKind::Touches { on, touches } = &part.kind else { return Vec::new() };
+        let Some(base) = document.parts.part(on).filter(|base| base.visible && part.visible) else { return Vec::new() };
+        let standing = |(index, touch): (usize, &Touch)| StandingTouch {
+            part: part.id.clone(),
+            index,
+            at: base.matrix.transform_point2(touch.at),
+            normal: on_canvas_direction(touch.normal, base.matrix),
+        };
+        touches.iter().enumerate().map(standing).collect()
+    };
+    document.parts.list.iter().flat_map(of).collect()
+}
+
+/// The touch near a canvas point.
+fn touch_at(document: &Document, at: Vec2, grab_px: f32) -> Option<StandingTouch> {
+    let all = touches(document).into_iter().map(|touch| (touch.at.distance(at), touch));
+    let near = all.filter(|(distance, _)| *distance <= grab_px);
+    near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, touch)| touch)
+}
+
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let (document, at) = (context.document, pen.place());
+    let found = touch_at(document, at, GRAB_PT * context.px_per_pt);
+    if pen.keys.alt {
+        return (None, found.map_or_else(|| taken(document, at), |touch| without(document, &touch)));
+    }
+    if let Some(touch) = found {
+        let Some(part) = document.parts.part(&touch.part).cloned() else { return (None, Outcome::Idle) };
+        let moving = MovingTouch { document: document.clone(), part, index: touch.index, moved: None };
+        return (Some(Box::new(moving)), Outcome::Idle);
+    }
+    let Some(base) = document.part_at(at) else {
+        let why = "Touch a part: there is none under the pen. Layer › Give it a shape… makes some.";
+        return (None, Outcome::Refused(why));
+    };
+    let settings = context.shape;
+    let (part, is_new) = layer_on(
+        document,
+        &base,
+        |kind| matches!(kind, PartKind::Touches { .. }),
+        || ("Touches", PartKind::Touches { on: base.id.clone(), touches: Vec::new() }),
+    );
+    let scale = super::length_of(base.matrix);
+    let made = Touch {
+        at,
+        radius: (settings.radius / scale).max(*Touch::RADIUS.start()).min(*Touch::RADIUS.end()),
+        normal: inverse_direction(settings.normal, base.matrix),
+        reach: (settings.reach / scale).max(0.0).min(*Touch::REACH.end()),
+    };
+    // A drag puts them down so far apart that each counts.
+    let apart_px = (2.0 * settings.radius).max(GRAB_PT * context.px_per_pt);
+    let mut gesture = TouchGesture { document: document.clone(), base, part, is_new, made, apart_px, last: None };
+    let outcome = gesture.drag(&[pen]);
+    (Some(Box::new(gesture)), outcome)
+}
+
+/// The nearest part of a kind that lies on another, or a new one; and whether it is new.
+pub(super) fn layer_on(
+    document: &Document,
+    base: &Part,
+    is: impl Fn(&PartKind) -> bool,
+    new: impl FnOnce() -> (&'static str, PartKind),
+) -> (Part, bool) {
+    let known = document
+        .parts
+        .list
+        .iter()
+        .rev()
+        .find(|part| part.visible && part.on() == Some(base.id.as_str()) && is(&part.kind));
+    match known {
+        Some(part) => (Part::clone(part), false),
+        None => {
+            let (name, kind) = new();
+            (Part { name: name.into(), ..Part::new(free_id(document), kind) }, true)
+        }
+    }
+}
+
+/// The direction of the surface at a point.
+fn taken(document: &Document, at: Vec2) -> Outcome {
+    let Some(surface) = &document.surface else { return Outcome::Refused("There is no surface to take it from.") };
+    let (x, y) = surface.pixel_of(at);
+    match surface.coverage(x, y) {
+        0 => Outcome::Refused("There is no surface under the pen to take a direction from."),
+        _ => Outcome::Direction(surface.normal(x, y)),
+    }
+}
+
+fn without(document: &Document, touch: &StandingTouch) -> Outcome {
+    let Some(part) = document.parts.part(&touch.part) else { return Outcome::Idle };
+    let mut next = Part::clone(part);
+    if let PartKind::Touches { touches, .. } = &mut next.kind
+        && touch.index < touches.len()
+    {
+        touches.remove(touch.index);
+    }
+    Outcome::Commit { label: "Remove touch".into(), document: changed(document, next), select: None }
+}
+
+/// Touches being put down.
+struct TouchGesture {
+    document: Document,
+    /// The part that is touched.
+    base: Arc<Part>,
+    /// The one that holds the touches.
+    part: Part,
+    is_new: bool,
+    /// What each of them is; `at` is the last one's.
+    made: Touch,
+    apart_px: f32,
+    /// Where the last one stands, canvas px.
+    last: Option<Vec2>,
+}
+
+impl TouchGesture {
+    fn with(&self) -> Document {
+        if self.is_new {
+            super::with_new(&self.document, self.part.clone())
+        } else {
+            changed(&self.document, self.part.clone())
+        }
+    }
+}
+
+impl Gesture for TouchGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let mut is_changed = false;
+        let back = self.base.matrix.inverse();
+        for at in pens.iter().map(PenSample::place).filter(|at| at.is_finite()) {
+            let is_near = self.last.is_some_and(|last| last.distance(at) < self.apart_px);
+            let PartKind::Touches { touches, .. } = &mut self.part.kind else { continue };
+            if is_near || touches.len() >= Touch::MOST {
+                continue;
+            }
+            let own = back.transform_point2(at);
+            if COORDINATE.contains(&own.x) && COORDINATE.contains(&own.y) {
+                touches.push(Touch { at: own, ..self.made });
+                (self.last, is_changed) = (Some(at), true);
+            }
+        }
+        if is_changed { Outcome::Preview(self.with()) } else { Outcome::Idle }
+    }
+    fn release(&mut self) -> Outcome {
+        match self.last {
+            Some(_) => Outcome::Commit { label: "Touch".into(), document: self.with(), select: None },
+            None => Outcome::Cancel,
+        }
+    }
+}
+
+/// A touch being moved.
+struct MovingTouch {
+    document: Document,
+    part: Arc<Part>,
+    index: usize,
+    moved: Option<Part>,
+}
+
+impl Gesture for MovingTouch {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let Some(at) = pens.last().map(PenSample::place) else { return Outcome::Idle };
+        let base = self.part.on().and_then(|on| self.document.parts.part(on));
+        let Some(own) = base.map(|base| base.matrix.inverse().transform_point2(at)) else { return Outcome::Idle };
+        let mut next = Part::clone(&self.part);
+        let PartKind::Touches { touches, .. } = &mut next.kind else { return Outcome::Idle };
+        let Some(touch) = touches.get_mut(self.index) else { return Outcome::Idle };
+        if !COORDINATE.contains(&own.x) || !COORDINATE.contains(&own.y) {
+            return Outcome::Idle;
+        }
+        touch.at = own;
+        self.moved = Some(next.clone());
+        Outcome::Preview(changed(&self.document, next))
+    }
+    fn release(&mut self) -> Outcome {
+        match self.moved.take() {
+            Some(part) => {
+                let document = changed(&self.document, part);
+                Outcome::Commit { label: "Move touch".into(), document, select: None }
+            }
+            None => Outcome::Cancel,
+        }
+    }
+}
