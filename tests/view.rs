@@ -97,13 +97,13 @@ fn a_folder_gets_every_view_and_a_file_the_sheet() {
     let mut names: Vec<String> =
         fs::read_dir(desk.path("all")).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    let all = "curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask normals \
-               objects weights";
+    let all = "clay contours curvature-grey curvature depth directions flow-depth flow-normals flow-operator lit mask \
+               normals objects weights";
     let mut expected: Vec<String> = all.split(' ').map(|name| format!("{name}.png")).collect();
     expected.sort();
     assert_eq!(names, expected);
     let sheet = desk.shown(&["r.json"], &[]);
-    assert_eq!(sheet.dimensions(), (4 * (SIDE + 8) + 8, 3 * (SIDE + 8) + 8));
+    assert_eq!(sheet.dimensions(), (4 * (SIDE + 8) + 8, 4 * (SIDE + 8) + 8));
 }
 #[test]
 fn the_weights_of_a_layer_have_a_colour_for_each_anchor() {

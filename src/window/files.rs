@@ -21,7 +21,12 @@ pub enum FilePurpose {
     Part(PicturePart),
     Save,
     Export,
+    /// Maps of the shape, whose names begin with this one.
+    ExportMaps,
 }
+
+/// Endings of maps of the shape.
+const MAPS: [&str; 2] = ["png", "exr"];
 
 impl FilePurpose {
     pub fn title(self) -> &'static str {
@@ -35,10 +40,11 @@ impl FilePurpose {
             FilePurpose::Part(part) => part.title(),
             FilePurpose::Save => "Save as",
             FilePurpose::Export => "Export the picture",
+            FilePurpose::ExportMaps => "Export maps of the shape",
         }
     }
     pub fn is_saving(self) -> bool {
-        matches!(self, FilePurpose::Save | FilePurpose::Export)
+        matches!(self, FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportMaps)
     }
     /// The extensions of files to choose from, with the name of each group.
     pub fn filters(self) -> Vec<(&'static str, Vec<&'static str>)> {
@@ -59,12 +65,14 @@ impl FilePurpose {
             }
             FilePurpose::Save => vec![("Documents", SAVED.to_vec())],
             FilePurpose::Export => vec![("Pictures", exported().collect())],
+            FilePurpose::ExportMaps => vec![("Maps", MAPS.to_vec())],
         }
     }
     /// What a chosen file will be called. `extension`: of exports that have none.
     pub fn named(self, file: PathBuf, extension: &str) -> PathBuf {
         match self {
             FilePurpose::Save => with_document_extension(file, SAVED[0], &SAVED),
+            FilePurpose::ExportMaps => with_document_extension(file, MAPS[0], &MAPS),
             FilePurpose::Export => with_document_extension(file, extension, &exported().collect::<Vec<_>>()),
             _ => file,
         }

@@ -51,6 +51,8 @@ pub enum JobResult {
     Loses(Box<Saving>),
     /// Something was exported; what the format cannot hold.
     Exported(PathBuf, Vec<String>),
+    /// Maps of the shape were exported.
+    ExportedMaps(Vec<PathBuf>),
     /// Something would be lost that nobody was asked about; why.
     Refused(Pending, String),
     /// An edit of the document of a tab that took long.

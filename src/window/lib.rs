@@ -32,7 +32,7 @@ mod window;
 pub use window::MainWindow;
 
 // The floors beneath, under their own names.
-use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, surface};
+use rilievo_engine::{Error, Remedy, Result, document, math, memory, paint, raster, shading, shape, surface};
 use rilievo_io as io;
 use rilievo_program::{session, tools};
 

@@ -10,6 +10,8 @@ pub struct PanelLayout {
     pub is_hidden: bool,
     /// Which panel is in front above the layers.
     pub front: PanelKind,
+    /// Which is in front below: the layers or the shape.
+    pub below: PanelKind,
     /// Panels in windows of their own.
     pub apart: Vec<PanelKind>,
     pub width_pt: f32,
@@ -36,6 +38,13 @@ pub const SIDES: [(PanelSide, &str); 3] =
 
 impl Default for PanelLayout {
     fn default() -> Self {
-        Self { side: PanelSide::Right, is_hidden: false, front: PanelKind::Color, apart: Vec::new(), width_pt: 268.0 }
+        Self {
+            side: PanelSide::Right,
+            is_hidden: false,
+            front: PanelKind::Color,
+            below: PanelKind::Layers,
+            apart: Vec::new(),
+            width_pt: 268.0,
+        }
     }
 }

@@ -31,6 +31,8 @@ pub enum WindowRequest {
     OpenMapsDialog,
     ReplaceMapsDialog,
     PlaceDialog,
+    /// For the drawing of the document in front.
+    ShapeDialog,
     /// Opened on a thread of its own.
     Open(PathBuf),
     OpenSample,
@@ -39,6 +41,11 @@ pub enum WindowRequest {
     Save,
     SaveAs,
     ExportDialog,
+    ExportMapsDialog,
+    /// Asks where to, for the maps of the shape.
+    ExportMaps,
+    /// Sways the picture by its depth, until a key or a click.
+    Wobble,
     /// Asks where to, for a file of this ending.
     Export(&'static str),
     /// Asks first where there is unsaved work.

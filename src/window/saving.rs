@@ -4,12 +4,13 @@
 use crate::dialogs::AfterUnsaved;
 use crate::document::{Document, Progress};
 use crate::io::export::ExportOptions;
+use crate::io::export::shape::{ShapeMap, ShapeOptions};
 use crate::io::fs::Disk;
 use crate::io::replace::{FileStamp, check};
 use crate::io::save::{EncodedDocument, encode};
 use crate::io::{Overwrite, Terms};
 use crate::jobs::JobResult;
-use crate::session::actions::files::export;
+use crate::session::actions::files::{export, export_maps};
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -37,10 +38,30 @@ pub struct Exporting {
     pub terms: Terms,
 }
 
+/// Maps of a shape that are to be exported.
+pub struct ExportingMaps {
+    pub document: Document,
+    /// What their names begin with.
+    pub file: PathBuf,
+    pub maps: Vec<ShapeMap>,
+    pub options: ShapeOptions,
+    pub terms: Terms,
+}
+
+impl ExportingMaps {
+    pub fn run(self) -> JobResult {
+        match export_maps(&self.document, &self.file, &self.maps, self.options, &self.terms) {
+            Ok(files) => JobResult::ExportedMaps(files),
+            Err(error) => refused(error, || Pending::Maps(Box::new(self))),
+        }
+    }
+}
+
 /// What waits for an answer.
 pub enum Pending {
     Save(Box<Saving>),
     Export(Box<Exporting>),
+    Maps(Box<ExportingMaps>),
 }
 
 /// How far a save came.
@@ -100,6 +121,7 @@ impl Pending {
         match self {
             Pending::Save(saving) => &saving.file,
             Pending::Export(exporting) => &exporting.file,
+            Pending::Maps(exporting) => &exporting.file,
         }
     }
     /// The user insists.
@@ -107,6 +129,7 @@ impl Pending {
         match &mut self {
             Pending::Save(saving) => saving.terms.over = Overwrite::Forced,
             Pending::Export(exporting) => exporting.terms.over = Overwrite::Forced,
+            Pending::Maps(exporting) => exporting.terms.over = Overwrite::Forced,
         }
         self
     }

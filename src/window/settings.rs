@@ -46,7 +46,7 @@ impl Settings {
         self.recent.truncate(RECENT);
     }
     fn to_json(&self) -> Value {
-        let PanelLayout { side, is_hidden, front, apart, width_pt } = &self.layout;
+        let PanelLayout { side, is_hidden, front, below, apart, width_pt } = &self.layout;
         let recent: Vec<String> = self.recent.iter().map(|file| file.to_string_lossy().into_owned()).collect();
         let apart: Vec<&str> = apart.iter().map(|front| front.name()).collect();
         let side = SIDES.iter().find(|(known, _)| known == side).map_or("right", |(_, name)| name);
@@ -56,7 +56,7 @@ impl Settings {
             "scale": self.scale,
             "hint done": self.is_hint_done,
             "panels": {
-                "side": side, "hidden": is_hidden, "front": front.name(), "apart": apart,
+                "side": side, "hidden": is_hidden, "front": front.name(), "below": below.name(), "apart": apart,
                 "width": width_pt.round(),
             },
             "keys": self.keymap.to_json(),
@@ -80,6 +80,7 @@ impl Settings {
             side: SIDES.iter().find(|(_, name)| *name == word("side")).map_or(plain.side, |(side, _)| *side),
             is_hidden: flag(panels, "hidden"),
             front: PanelKind::from_name(word("front")).unwrap_or(plain.front),
+            below: PanelKind::from_name(word("below")).unwrap_or(plain.below),
             apart: texts(panels.get("apart")).iter().filter_map(|name| PanelKind::from_name(name)).collect(),
             width_pt: width.max(200.0).min(800.0),
         };
@@ -181,6 +182,7 @@ mod tests {
             side: PanelSide::Left,
             is_hidden: true,
             front: PanelKind::History,
+            below: PanelKind::Shape,
             apart: vec![PanelKind::Navigator],
             width_pt: 300.0,
         };

@@ -4,6 +4,7 @@
 use super::jobs;
 use crate::Error;
 use crate::document::{Document, Layer, LayerId, LayerMask, MaskKind, Progress, flatten_layer};
+use crate::panels::shape::pictures::PartPictures;
 use crate::raster::{Plane, TileGrid};
 use crate::surface::Surface;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2, vec2};
@@ -35,6 +36,8 @@ pub struct Thumbnails {
     ordered: HashMap<LayerId, Weak<Layer>>,
     /// Of masks that are pictures, each with the one it shows.
     masks: HashMap<LayerId, (Weak<Plane<u8>>, bool, TextureHandle)>,
+    /// Of the parts of the shape.
+    pub parts: PartPictures,
     /// Errors to report once.
     pub trouble: Option<Error>,
 }
@@ -61,7 +64,15 @@ impl Thumbnails {
         };
         // Without a thread there are no thumbnails, only icons.
         let trouble = jobs::spawn("thumbnails", work).err();
-        Self { orders, done, made: HashMap::new(), ordered: HashMap::new(), masks: HashMap::new(), trouble }
+        Self {
+            orders,
+            done,
+            made: HashMap::new(),
+            ordered: HashMap::new(),
+            masks: HashMap::new(),
+            parts: PartPictures::default(),
+            trouble,
+        }
     }
     /// Takes what was made.
     pub fn collect(&mut self, ctx: &egui::Context) {

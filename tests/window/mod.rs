@@ -11,6 +11,7 @@ mod recovery;
 mod replayed;
 mod selecting;
 mod several;
+mod shape;
 
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;

@@ -10,12 +10,15 @@ mod frame_input;
 mod guides;
 mod marks;
 mod overlay;
+mod parts;
 mod pointer;
 mod rulers;
 mod sheet;
+mod wobble;
 
 pub use marks::color32;
 pub use overlay::loaded;
+pub use parts::ball;
 
 use super::pen::SharedTablet;
 use super::render_thread::{RenderRequest, RenderThread};
@@ -32,9 +35,11 @@ use eframe::egui::{
     self, Color32, ColorImage, Sense, Stroke, TextureHandle, TextureOptions, TextureWrapMode, Ui, pos2,
 };
 use overlay::{Insets, Overlay};
+use parts::PartMarks;
 use pointer::PointerState;
 use sheet::TileSheet;
 use std::time::Duration;
+use wobble::Wobble;
 
 /// The state of the canvas.
 pub struct Canvas {
@@ -54,6 +59,8 @@ pub struct Canvas {
     overlay: Overlay,
     insets: Insets,
     ants: Ants,
+    parts: PartMarks,
+    wobble: Option<Wobble>,
     /// The picture for the navigator, and whether it is outdated.
     small: Option<TextureHandle>,
     small_is_old: bool,
@@ -88,6 +95,8 @@ impl Canvas {
             overlay: Overlay::default(),
             insets: Insets::default(),
             ants: Ants::default(),
+            parts: PartMarks::default(),
+            wobble: None,
             small: None,
             small_is_old: true,
             area_pt: vec2(800.0, 600.0),
@@ -135,6 +144,14 @@ impl Canvas {
         self.draw_checker(ui, &painter, shadow);
         let in_front = if self.is_draft_in_front { &self.draft } else { &self.whole };
         in_front.draw(&painter, screen_from_canvas, tab.document().size);
+        if let Some(wobble) = &mut self.wobble {
+            if wobble.goes_on(ui, tab.shown()) {
+                return wobble.draw(&painter, screen_from_canvas);
+            }
+            // What ended it does nothing else.
+            self.wobble = None;
+            return ui.ctx().request_repaint();
+        }
         self.draw_overlay(ui.ctx(), session, &painter, screen_from_canvas);
         painter.add(egui::Shape::closed_line(shadow.to_vec(), Stroke::new(1.0, Color32::from_black_alpha(110))));
 
@@ -152,6 +169,7 @@ impl Canvas {
         rulers::draw(ui, session, rect, screen_from_canvas, under);
         self.ants.draw(&painter, session, screen_from_canvas, visible_rect(&view, rect));
         marks::draw(&painter, session, screen_from_canvas, under, tool);
+        self.parts.draw(&painter, session, screen_from_canvas, under, tool);
         lasso_keys(ui, session, actions);
         if tool == ToolKind::Anchors {
             self.insets.draw(ui.ctx(), session, &painter);
@@ -160,6 +178,13 @@ impl Canvas {
         if response.hovered() || self.hand.is_looking() {
             ui.ctx().set_cursor_icon(self.hand.cursor(session, under.is_some()));
         }
+    }
+    /// Sways the picture by its depth, or no longer.
+    pub fn wobble(&mut self, ctx: &egui::Context, session: &Session) {
+        self.wobble = match self.wobble {
+            Some(_) => None,
+            None => session.shown().and_then(|document| Wobble::new(ctx, document, &self.whole.grid)),
+        };
     }
     /// What is selected, as last drawn.
     pub fn selected(&self) -> Option<Rect> {

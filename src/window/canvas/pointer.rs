@@ -100,7 +100,7 @@ impl PointerState {
             (_, ToolKind::Zoom) => CursorIcon::ZoomIn,
             (_, ToolKind::Move | ToolKind::Image) => CursorIcon::Move,
             // The footprint's outline is the cursor.
-            (_, ToolKind::Brush | ToolKind::Eraser) if on_canvas => CursorIcon::None,
+            (_, ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt) if on_canvas => CursorIcon::None,
             _ => CursorIcon::Crosshair,
         }
     }
@@ -203,6 +203,9 @@ impl PointerState {
         let is_brush = matches!(tool, ToolKind::Brush | ToolKind::Eraser);
         self.holding = match (button, tool) {
             (PointerButton::Middle, _) => PointerGesture::Panning,
+            (PointerButton::Secondary, ToolKind::Sculpt) => {
+                PointerGesture::Sizing { from: pos, size: session.shape.size }
+            }
             (PointerButton::Secondary, _) if is_brush => PointerGesture::Sizing { from: pos, size: session.brush.size },
             (PointerButton::Primary, ToolKind::Hand) if self.space && self.keys.command => {
                 PointerGesture::Zooming { about: pos, moved: false }

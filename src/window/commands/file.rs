@@ -45,6 +45,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| requests.request(WindowRequest::ExportDialog),
     ),
+    row(
+        "Export maps…",
+        &[],
+        "Normals, depth, height, mask and parts of the shape for engines and other programs, as PNG or EXR",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ExportMapsDialog),
+    ),
     LINE,
     row(
         "Place image…",

@@ -107,6 +107,14 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("New group", &[], "Layers flattened together", has_document, |_, requests| add(requests, NewLayer::Group)),
     LINE,
     row(
+        "Give it a shape…",
+        &[],
+        "Makes a shape of what the drawing covers: one part or a part for each colour, lit, to be painted on",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ShapeDialog),
+    ),
+    LINE,
+    row(
         "Layer via copy",
         &[ctrl(Key::J)],
         "A new layer with what is selected of this one; without a selection a copy of all of it",

@@ -7,6 +7,7 @@ mod guides;
 mod help;
 mod layer;
 mod paint;
+mod parts;
 mod row;
 mod select;
 mod shading;
@@ -29,6 +30,8 @@ pub const MENUS: [(&str, &[MenuCommand]); 7] = [
 pub const SHADING: &[MenuCommand] = shading::COMMANDS;
 /// A menu within View.
 pub const GUIDES: &[MenuCommand] = guides::COMMANDS;
+/// A menu within Layer.
+pub const PARTS: &[MenuCommand] = parts::COMMANDS;
 /// A menu within Edit.
 pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
 
@@ -36,7 +39,7 @@ pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
     const EVERY: [(&str, &[MenuCommand]); 7] = MENUS;
     let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
-    menus.chain(SHADING).chain(TRANSFORMS).chain(GUIDES).filter(|command| !command.is_line())
+    menus.chain(SHADING).chain(PARTS).chain(TRANSFORMS).chain(GUIDES).filter(|command| !command.is_line())
 }
 
 /// A command by its name.

@@ -6,13 +6,14 @@ use crate::operators;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
+use crate::tools::ToolKind;
 use eframe::egui::Key;
 
 fn hand(requests: &mut UiRequests, action: HandAction) {
     requests.act(Action::Hand(action));
 }
 fn resize(session: &Session, requests: &mut UiRequests, factor: f32) {
-    let size = session.brush.size;
+    let size = if session.tool == ToolKind::Sculpt { session.shape.size } else { session.brush.size };
     let to = if factor > 1.0 { (size * factor).max(size + 1.0) } else { (size * factor).min(size - 1.0) };
     hand(requests, HandAction::Size { to: to.round() });
 }

@@ -115,6 +115,29 @@ pub const COMMANDS: &[MenuCommand] = &[
         |session, requests| overlay(session, requests, "lit"),
     )
     .ticked(|session, _| is_over(session, "lit")),
+    row(
+        "Show clay",
+        &[alt(Key::Num6)],
+        "The form alone, unpainted, in even light",
+        has_surface,
+        |session, requests| overlay(session, requests, "clay"),
+    )
+    .ticked(|session, _| is_over(session, "clay")),
+    row(
+        "Show contour lines",
+        &[alt(Key::Num7)],
+        "Lines of equal depth: where they are close the surface is steep",
+        has_surface,
+        |session, requests| overlay(session, requests, "contours"),
+    )
+    .ticked(|session, _| is_over(session, "contours")),
+    row(
+        "Wobble",
+        &[alt(Key::Num8)],
+        "The picture sways by its depth, as if you moved your head; any key or click stops it",
+        has_surface,
+        |_, requests| requests.request(WindowRequest::Wobble),
+    ),
     LINE,
     row("Hide panels", &[key(Key::Tab)], "Shows only the canvas, or all panels again", always, |_, requests| {
         requests.request(WindowRequest::TogglePanels)

@@ -7,11 +7,13 @@ pub mod grid;
 pub mod help;
 pub mod import;
 pub mod losses;
+pub mod maps;
 pub mod new;
 pub mod palette;
 pub mod path;
 pub mod recovery;
 pub mod replace;
+pub mod shape;
 pub mod shortcuts;
 pub mod unsaved;
 
@@ -20,7 +22,7 @@ use super::keymap::Keymap;
 use super::requests::{UiRequests, WindowRequest};
 use super::saving::{Pending, Saving};
 use crate::document::SurfaceSource;
-use crate::io::maps;
+use crate::io::maps::ImportedSurface;
 use crate::io::recovery::LostSession;
 use crate::session::Session;
 use eframe::egui::{self, Id, Modal, Ui};
@@ -36,9 +38,11 @@ pub enum Dialog {
     Import(Box<import::ImportDialog>),
     Path(path::PathDialog),
     Recovery(recovery::RecoveryDialog),
+    Shape(shape::ShapeDialog),
     Unsaved(unsaved::UnsavedDialog),
     Replace(replace::Replace),
     Losses(losses::Losses),
+    Maps(maps::MapsDialog),
     Palette(palette::CommandPalette),
     Shortcuts(shortcuts::ShortcutsDialog),
     About,
@@ -55,7 +59,7 @@ pub enum DialogAnswer {
     /// The document that was made of them.
     Imported(import::MadeDocument),
     /// The new maps of the document in front.
-    Replaced(Box<(SurfaceSource, maps::ImportedSurface)>),
+    Replaced(Box<(SurfaceSource, ImportedSurface)>),
     /// Discard unsaved changes, then do this.
     Discard(AfterUnsaved),
     /// Save first, then do this.
@@ -65,6 +69,8 @@ pub enum DialogAnswer {
     /// Save, whatever the format cannot hold.
     Lose(Box<Saving>),
     Ask(WindowRequest),
+    /// The drawing was given a shape.
+    Shaped,
     /// Recover these drawings.
     Recover(Vec<LostSession>),
     /// The user decided to delete this drawing.
@@ -103,8 +109,10 @@ impl Dialog {
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),
                 Dialog::Recovery(recovery) => recovery.show(ui),
+                Dialog::Shape(shape) => shape.show(ui, session, requests),
                 Dialog::Unsaved(unsaved) => unsaved.show(ui, session),
                 Dialog::Replace(replace) => replace.show(ui),
+                Dialog::Maps(maps) => maps.show(ui, session),
                 Dialog::Losses(losses) => losses.show(ui),
                 Dialog::Palette(palette) => palette.show(ui, session, keymap, requests),
                 Dialog::Shortcuts(shortcuts) => shortcuts.show(ui, keymap),
@@ -130,6 +138,11 @@ fn close(ui: &mut Ui) -> DialogAnswer {
 
 /// The two buttons at a dialog's foot, the affirmative one last; true for it, false for the other.
 fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
+    answers(ui, yes, "Cancel", can)
+}
+
+/// The same where giving up has a name of its own.
+fn answers(ui: &mut Ui, yes: &str, no: &str, can: bool) -> Option<bool> {
     let mut answer = None;
     ui.add_space(4.0);
     let row = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
@@ -139,7 +152,7 @@ fn buttons(ui: &mut Ui, yes: &str, can: bool) -> Option<bool> {
         if ui.add_enabled(can, strong).clicked() || (enter && can) {
             answer = Some(true);
         }
-        if ui.button("Cancel").clicked() {
+        if ui.button(no).clicked() {
             answer = Some(false);
         }
     });

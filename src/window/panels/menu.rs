@@ -1,7 +1,7 @@
 //! The menu bar and the documents' tabs.
 //! Floor 7.
 
-use crate::commands::{GUIDES, MENUS, MenuCommand, SHADING, TRANSFORMS};
+use crate::commands::{GUIDES, MENUS, MenuCommand, PARTS, SHADING, TRANSFORMS};
 use crate::icons::{Icon, sized_button};
 use crate::keymap::shown;
 use crate::requests::{UiRequests, WindowRequest};
@@ -25,6 +25,9 @@ pub fn show(ui: &mut Ui, session: &Session, settings: &Settings, requests: &mut 
                         match command.name {
                             "New gradient layer" => drop(ui.menu_button("New shading layer", |ui| {
                                 SHADING.iter().for_each(|command| entry(ui, session, settings, command, requests));
+                            })),
+                            "Give it a shape…" => drop(ui.menu_button("New part", |ui| {
+                                PARTS.iter().for_each(|command| entry(ui, session, settings, command, requests));
                             })),
                             "Transform" => drop(ui.menu_button("Transform layer", |ui| {
                                 TRANSFORMS.iter().for_each(|command| entry(ui, session, settings, command, requests));

@@ -18,6 +18,8 @@ pub mod options;
 pub mod properties;
 mod select;
 mod setter;
+pub mod shape;
+mod shaping;
 pub mod status;
 pub mod strokes;
 pub mod surface;
@@ -33,13 +35,14 @@ pub enum PanelKind {
     Surface,
     History,
     Navigator,
-    /// Below the others, which share one area.
+    /// Below the others, as the parts of the shape.
     Layers,
+    Shape,
 }
 
 impl PanelKind {
     /// Every panel with its name.
-    pub const ALL: [(PanelKind, &'static str); 7] = [
+    pub const ALL: [(PanelKind, &'static str); 8] = [
         (PanelKind::Color, "Colour"),
         (PanelKind::Brushes, "Brushes"),
         (PanelKind::Properties, "Properties"),
@@ -47,9 +50,14 @@ impl PanelKind {
         (PanelKind::History, "History"),
         (PanelKind::Navigator, "Navigator"),
         (PanelKind::Layers, "Layers"),
+        (PanelKind::Shape, "Shape"),
     ];
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(front, _)| *front == self).map_or("", |(_, name)| name)
+    }
+    /// Whether it stands below, where the layers are.
+    pub fn is_below(self) -> bool {
+        matches!(self, PanelKind::Layers | PanelKind::Shape)
     }
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(_, known)| *known == name).map(|(front, _)| *front)

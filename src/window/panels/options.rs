@@ -1,9 +1,9 @@
 //! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
-use super::{assistants, brush_mode, fill, select, transform};
+use super::{assistants, brush_mode, fill, select, shaping, transform};
 use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
-use crate::requests::UiRequests;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::actions::hand::SIZES;
 use crate::session::{Action, Session};
@@ -37,6 +37,9 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool == ToolKind::Fill {
         return drop(ui.weak("Fills are not bent: they colour the pixels that they cover"));
     }
+    if session.tool.shapes() {
+        return drop(ui.weak("The shape is what everything bends over: parts, nearest first, are in the panel Shape"));
+    }
     if session.tool.selects() {
         return drop(
             ui.weak("Selections say where marks may land: every brush, fill, gradient and eraser keeps to them"),
@@ -61,6 +64,10 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let has_surface = session.shown().is_none_or(|document| document.surface.is_some());
     if !has_surface && operator != Operator::None {
         ui.colored_label(ui.visuals().warn_fg_color, "No surface here: marks lie flat");
+        let hint = "Makes a shape of what the drawing covers, so that marks bend over it and light falls on it";
+        if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
+            requests.request(WindowRequest::ShapeDialog);
+        }
     }
 }
 
@@ -78,6 +85,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
         tool if tool.selects() => select::options(ui, session, requests),
+        tool if tool.shapes() => shaping::options(ui, session, requests),
         ToolKind::Transform => transform::options(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         tool => drop(ui.weak(tool.row().hint)),

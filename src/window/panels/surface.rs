@@ -15,7 +15,10 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     };
     let Some(surface) = &document.surface else {
         ui.label("This document has no surface: marks lie flat.");
-        if ui.button("Give it maps…").clicked() {
+        if ui.button("Give it a shape…").on_hover_text("Of what the drawing covers").clicked() {
+            requests.request(WindowRequest::ShapeDialog);
+        }
+        if ui.button("Give it maps…").on_hover_text("Normals, depth or both, from files").clicked() {
             requests.request(WindowRequest::ReplaceMapsDialog);
         }
         return;
@@ -34,6 +37,10 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
     });
+    let hint = "The picture sways by its depth, as if you moved your head; any key or click stops it";
+    if ui.button("Wobble").on_hover_text(hint).clicked() {
+        requests.request(WindowRequest::Wobble);
+    }
     if !is_off {
         let number = NumberField::new("Opacity", 0.0..=1.0, "Of the view over the picture");
         if let Some(changed) = number.row(ui, session.overlay_opacity) {
@@ -79,6 +86,8 @@ fn about(view: SurfaceView) -> &'static str {
         SurfaceView::Scaling => {
             "Radiance scaling: how much light of each brightness is raised on convex and lowered on concave parts"
         }
+        SurfaceView::Clay => "Unpainted, in even light: the form alone",
+        SurfaceView::Contours => "Lines of equal depth, as on a map: where they are close the surface is steep",
         SurfaceView::Lit => "The surface and a ball under one light: if they agree, the maps are the right way round",
     }
 }

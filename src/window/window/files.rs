@@ -4,7 +4,8 @@
 use super::MainWindow;
 use crate::advice::with_advice;
 use crate::clipboard::PastedContent;
-use crate::dialogs::{Dialog, import, losses, path, replace};
+use crate::dialogs::{Dialog, import, losses, path, replace, shape};
+use crate::document::parts::drawing::DrawingLook;
 use crate::files::{self, FilePurpose};
 use crate::io::Overwrite;
 use crate::jobs::{JobKind, JobResult, PartResult, PinPosition, short};
@@ -31,7 +32,11 @@ impl MainWindow {
             JobResult::Opened(file, opened) => match *opened {
                 Ok(opened) => {
                     self.recent_is(opened.tab.file.clone());
+                    let drawing = opened.drawing.filter(DrawingLook::has_outline);
                     self.session.adopt(opened);
+                    if let (Some(look), Some(tab)) = (drawing, self.session.active()) {
+                        self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of_picture(tab, look)));
+                    }
                     if let Some(file) = file {
                         self.did(|| Action::File(FileAction::Open { file }));
                     }
@@ -78,6 +83,11 @@ impl MainWindow {
             JobResult::Saved(saving, stamp) => self.saved(ctx, *saving, stamp),
             JobResult::Loses(saving) => self.dialogs.push(Dialog::Losses(losses::Losses::new(saving))),
             JobResult::Exported(file, notes) => self.exported(&file, notes),
+            JobResult::ExportedMaps(files) => {
+                let folder = files.first().and_then(|file| file.parent()).unwrap_or(Path::new(""));
+                let names: Vec<String> = files.iter().map(|file| short(file)).collect();
+                self.jobs.say(format!("Exported {} to {}", names.join(", "), folder.display()));
+            }
             JobResult::Refused(pending, reason) => {
                 self.dialogs.push(Dialog::Replace(replace::Replace::new(pending, reason)));
             }
@@ -137,6 +147,7 @@ impl MainWindow {
                     import.take_file(purpose, file);
                 }
             }
+            FilePurpose::ExportMaps => self.export_maps_to(file),
             FilePurpose::Save | FilePurpose::Export => self.chosen_to_write(purpose, file),
         }
     }
@@ -170,8 +181,18 @@ impl MainWindow {
     pub(super) fn proposed(&self, purpose: FilePurpose) -> String {
         let title = self.session.active().map_or_else(String::new, |tab| tab.title());
         let stem = storage::without_ending(&title);
-        let extension = if purpose == FilePurpose::Export { self.export.extension } else { storage::SAVED[0] };
-        format!("{stem}.{extension}")
+        let extension = match purpose {
+            FilePurpose::Export => self.export.extension,
+            FilePurpose::ExportMaps if self.maps.options.is_exr => "exr",
+            FilePurpose::ExportMaps => "png",
+            _ => storage::SAVED[0],
+        };
+        // Of several files the name of the first, so that it is seen what they will be called.
+        let suffix = match purpose {
+            FilePurpose::ExportMaps => self.maps.maps().first().map_or("", |map| map.suffix()),
+            _ => "",
+        };
+        format!("{stem}{suffix}.{extension}")
     }
     /// The folder to begin in.
     pub(super) fn folder(&self) -> PathBuf {

@@ -69,17 +69,17 @@ impl MainWindow {
     /// The panel in front above, the layers below.
     fn together(&mut self, ui: &mut Ui, requests: &mut UiRequests) {
         let apart = &self.settings.layout.apart;
-        let strip: Vec<_> = PanelKind::ALL
-            .into_iter()
-            .filter(|(front, _)| *front != PanelKind::Layers && !apart.contains(front))
-            .collect();
+        let strip: Vec<_> =
+            PanelKind::ALL.into_iter().filter(|(front, _)| !front.is_below() && !apart.contains(front)).collect();
         let front = match self.settings.layout.front {
             front if strip.iter().any(|(known, _)| *known == front) => Some(front),
             _ => strip.first().map(|(front, _)| *front),
         };
-        let has_layers = !apart.contains(&PanelKind::Layers);
+        let below: Vec<_> =
+            PanelKind::ALL.into_iter().filter(|(panel, _)| panel.is_below() && !apart.contains(panel)).collect();
+        let has_below = !below.is_empty();
         if let Some(front) = front {
-            if has_layers {
+            if has_below {
                 let above = Panel::top("front").resizable(true).default_size(372.0).size_range(140.0..=640.0);
                 // At the same left as the layers beneath.
                 let above = above.frame(Frame::new().inner_margin(Margin { bottom: 4, ..Margin::ZERO }));
@@ -88,15 +88,32 @@ impl MainWindow {
                 self.fronted(ui, &strip, front, requests);
             }
         }
-        if has_layers {
+        if has_below {
             CentralPanel::no_frame().show(ui, |ui| {
-                ui.add_space(4.0);
-                panels::layers::show(ui, &self.session, &mut self.thumbnails, requests);
+                ui.add_space(2.0);
+                self.below(ui, &below, requests);
             });
         }
     }
+    /// The layers or the shape.
+    fn below(&mut self, ui: &mut Ui, strip: &[(PanelKind, &str)], requests: &mut UiRequests) {
+        let known = strip.iter().find(|(panel, _)| *panel == self.settings.layout.below).or(strip.first());
+        let Some(&(front, _)) = known else { return };
+        self.settings.layout.below = self.tabs(ui, strip, front);
+        let front = self.settings.layout.below;
+        ui.add_space(2.0);
+        self.panel(ui, front, requests);
+    }
     /// The tabs of the panels that share the area, and the one in front.
-    fn fronted(&mut self, ui: &mut Ui, strip: &[(PanelKind, &str)], mut front: PanelKind, requests: &mut UiRequests) {
+    fn fronted(&mut self, ui: &mut Ui, strip: &[(PanelKind, &str)], front: PanelKind, requests: &mut UiRequests) {
+        let front = self.tabs(ui, strip, front);
+        self.settings.layout.front = front;
+        ui.add_space(2.0);
+        let area = egui::ScrollArea::vertical().id_salt("front").auto_shrink([false, false]);
+        area.show(ui, |ui| self.panel(ui, front, requests));
+    }
+    /// The names of panels that share an area, and which of them is in front.
+    fn tabs(&mut self, ui: &mut Ui, strip: &[(PanelKind, &str)], mut front: PanelKind) -> PanelKind {
         let mut gone = None;
         ui.horizontal_wrapped(|ui| {
             for &(choice, name) in strip {
@@ -110,11 +127,8 @@ impl MainWindow {
                 });
             }
         });
-        self.settings.layout.front = front;
         self.settings.layout.apart.extend(gone);
-        ui.add_space(2.0);
-        let area = egui::ScrollArea::vertical().id_salt("front").auto_shrink([false, false]);
-        area.show(ui, |ui| self.panel(ui, front, requests));
+        front
     }
     fn panel(&mut self, ui: &mut Ui, front: PanelKind, requests: &mut UiRequests) {
         match front {
@@ -125,6 +139,7 @@ impl MainWindow {
             PanelKind::History => panels::history::show(ui, &self.session, requests),
             PanelKind::Navigator => panels::navigator::show(ui, &self.session, &mut self.canvas, requests),
             PanelKind::Layers => panels::layers::show(ui, &self.session, &mut self.thumbnails, requests),
+            PanelKind::Shape => panels::shape::show(ui, &self.session, &mut self.thumbnails.parts, requests),
         }
     }
     /// The panels in windows of their own; closing one puts it back.

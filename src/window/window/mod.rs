@@ -10,10 +10,11 @@ mod work;
 
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
-use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, edge, export, import, new, palette, shortcuts};
+use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, edge, export, import, maps, new, palette, shape, shortcuts};
 use super::files::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
 use super::panel_layout::PanelSide;
+use super::panels::PanelKind;
 use super::pen::SharedTablet;
 use super::requests::{UiRequests, WindowRequest};
 use super::saving::{Pending, Saving};
@@ -52,6 +53,7 @@ pub struct MainWindow {
     /// Which of the steps of a first start were done, in any document.
     steps_done: [bool; 3],
     export: export::ExportDialog,
+    maps: maps::MapsDialog,
     /// The purpose of the open system dialog.
     title: String,
     /// Whether the stored theme was applied.
@@ -92,6 +94,7 @@ impl MainWindow {
             is_first_start: false,
             steps_done: [false; 3],
             export: export::ExportDialog::default(),
+            maps: maps::MapsDialog::default(),
             title: String::new(),
             is_dressed: false,
             leaving: false,
@@ -175,8 +178,10 @@ impl MainWindow {
         let is_seen = matches!(dialog, Dialog::Export(_));
         let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
         let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, requests);
-        if let Dialog::Export(export) = dialog {
-            self.export = export.clone();
+        match dialog {
+            Dialog::Export(export) => self.export = export.clone(),
+            Dialog::Maps(maps) => self.maps = maps.clone(),
+            _ => {}
         }
         match answer {
             DialogAnswer::Open => return,
@@ -207,6 +212,8 @@ impl MainWindow {
             DialogAnswer::Replace(pending) => self.put(pending.forced()),
             DialogAnswer::Lose(saving) => self.put(Pending::Save(Box::new(Saving { knows_losses: true, ..*saving }))),
             DialogAnswer::Ask(ask) => requests.request(ask),
+            // The parts are where the numbers are.
+            DialogAnswer::Shaped => self.settings.layout.below = PanelKind::Shape,
             DialogAnswer::Open
             | DialogAnswer::Close
             | DialogAnswer::Import(_)
@@ -241,6 +248,11 @@ impl MainWindow {
                 let import = import::ImportDialog::replacing(source.as_deref());
                 self.dialogs.push(Dialog::Import(Box::new(import)));
             }
+            WindowRequest::ShapeDialog => {
+                if let Some(tab) = self.session.active() {
+                    self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(tab)));
+                }
+            }
             WindowRequest::Choose(purpose) => self.ask_for(purpose, ""),
             WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
             WindowRequest::Open(file) => self.jobs.open(vec![file], None),
@@ -248,6 +260,9 @@ impl MainWindow {
             WindowRequest::Save => self.save(None),
             WindowRequest::SaveAs => self.save_as(None),
             WindowRequest::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
+            WindowRequest::ExportMapsDialog => self.dialogs.push(Dialog::Maps(self.maps.clone())),
+            WindowRequest::ExportMaps => self.ask_where(FilePurpose::ExportMaps),
+            WindowRequest::Wobble => self.canvas.wobble(ctx, &self.session),
             WindowRequest::Export(extension) => {
                 self.export.extension = extension;
                 self.ask_where(FilePurpose::Export);

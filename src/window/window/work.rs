@@ -13,7 +13,7 @@ use crate::jobs::{EditResult, JobKind, JobResult, short};
 use crate::math::Size;
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
-use crate::saving::{Exporting, Pending, Saving};
+use crate::saving::{Exporting, ExportingMaps, Pending, Saving};
 use crate::session::actions::LayerAction;
 use crate::session::{Action, storage};
 use crate::widgets::bar;
@@ -53,6 +53,9 @@ impl MainWindow {
             Pending::Save(saving) => {
                 self.jobs.start(format!("Saving {name}"), JobKind::Working, move |progress| saving.run(progress));
             }
+            Pending::Maps(exporting) => {
+                self.jobs.start(format!("Exporting maps {name}"), JobKind::Working, move |_| exporting.run());
+            }
             Pending::Export(exporting) => {
                 self.jobs.start(format!("Exporting {name}"), JobKind::Working, move |progress| exporting.run(progress));
             }
@@ -81,6 +84,18 @@ impl MainWindow {
         };
         let terms = Terms::export(over, self.session.reads());
         self.put(Pending::Export(Box::new(Exporting { document, file, options, terms })));
+    }
+    /// Files whose names begin with this one.
+    pub(super) fn export_maps_to(&mut self, file: PathBuf) {
+        let Some(document) = self.session.active().map(|tab| tab.document().clone()) else { return };
+        let terms = Terms::export(Overwrite::Nothing, self.session.reads());
+        let (maps, options) = (self.maps.maps(), self.maps.options);
+        // The name was proposed, and perhaps left, as that of the first.
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let first = maps.first().map_or("", |map| map.suffix());
+        let stem = stem.strip_suffix(first).filter(|stem| !stem.is_empty()).unwrap_or(&stem);
+        let file = file.with_file_name(format!("{stem}.{}", if options.is_exr { "exr" } else { "png" }));
+        self.put(Pending::Maps(Box::new(ExportingMaps { document, file, maps, options, terms })));
     }
     pub(super) fn exported(&mut self, file: &Path, notes: Vec<String>) {
         self.jobs.say(format!("Exported {}", file.display()));

@@ -78,3 +78,43 @@ pub(super) fn lit(surface: &Surface) -> Picture {
         [shade; 3]
     })
 }
+
+/// A matt surface in a lamp's light and, from the other side, in a faint one, so that nothing is quite black; encoded.
+pub(super) fn clay(surface: &Surface) -> Picture {
+    let (lamp, fill) = (LIGHT.normalize_or_zero(), vec3(0.7, -0.3, 0.5).normalize_or_zero());
+    painted(surface.size(), Some(surface), |x, y| {
+        let n = surface.normal(x, y);
+        let light = 0.10 + 0.70 * n.dot(lamp).max(0.0) + 0.10 * n.dot(fill).max(0.0);
+        CLAY.map(|c| srgb::encode((light * c).min(1.0)))
+    })
+}
+
+/// Linear.
+const CLAY: [f32; 3] = [0.92, 0.86, 0.80];
+/// Lines of equal depth from the nearest to the farthest point, the strong ones among them, and how wide they are, px.
+const LINES: f32 = 20.0;
+const STRONG_EACH: i32 = 4;
+const LINE_PX: [f32; 2] = [0.55, 1.1];
+
+pub(super) fn contours(surface: &Surface) -> Picture {
+    let depth = surface.depth_plane();
+    painted(surface.size(), Some(surface), |x, y| {
+        let (xi, yi) = (x as i32, y as i32);
+        let here = depth.at(x, y) * LINES;
+        // The steepest of the differences to both sides that are no jump: a line is as wide on every slope.
+        let slope = |dx: i32, dy: i32| {
+            let side = |s: i32| (depth.clamped(xi + s * dx, yi + s * dy) * LINES - here).abs();
+            side(1).min(side(-1))
+        };
+        let steep = slope(1, 0).hypot(slope(0, 1)).max(1e-4);
+        let line = here.round();
+        let away_px = (here - line).abs() / steep;
+        let is_strong = (line as i32).rem_euclid(STRONG_EACH) == 0;
+        let wide = LINE_PX[usize::from(is_strong)];
+        // A level plane that lies on a line is no line.
+        let ink = if steep < 2e-3 { 0.0 } else { (wide + 0.5 - away_px).max(0.0).min(1.0) };
+        let paper = 0.95 - 0.35 * depth.at(x, y);
+        let ink = ink * if is_strong { 0.85 } else { 0.55 };
+        [paper, paper, paper * 0.98].map(|c| c + (0.12 - c) * ink)
+    })
+}

@@ -5,6 +5,7 @@ mod flows;
 mod maps;
 mod scaling;
 mod sheet;
+pub mod sway;
 mod unwrapped;
 mod weights;
 
@@ -48,6 +49,10 @@ pub enum SurfaceView {
     Unwrapped,
     /// The surface and a ball beside it under one light: if they agree, the maps are read the right way round.
     Lit,
+    /// Unpainted, in even light from above left.
+    Clay,
+    /// Lines of equal depth, every fourth a strong one.
+    Contours,
 }
 
 impl SurfaceView {
@@ -67,6 +72,8 @@ impl SurfaceView {
         (SurfaceView::Scaling, "scaling"),
         (SurfaceView::Unwrapped, "unwrapped"),
         (SurfaceView::Lit, "lit"),
+        (SurfaceView::Clay, "clay"),
+        (SurfaceView::Contours, "contours"),
     ];
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(view, _)| *view == self).map_or("", |(_, name)| name)
@@ -130,6 +137,8 @@ pub fn draw(
         SurfaceView::Curvature => maps::curvature(surface()?, options),
         SurfaceView::CurvatureGrey => maps::curvature_grey(surface()?, options),
         SurfaceView::Lit => maps::lit(surface()?),
+        SurfaceView::Clay => maps::clay(surface()?),
+        SurfaceView::Contours => maps::contours(surface()?),
         SurfaceView::Scaling => scaling::plots().ok_or(ViewUnavailable::NoMemory)?,
         SurfaceView::Unwrapped => unwrapped(document, layer)?.0,
         SurfaceView::Directions => flows::directions(surface()?, options),

@@ -1,0 +1,26 @@
+//! New parts of the shape, a menu within Layer.
+//! Floor 7. What each is made of is `session::actions::parts::new`'s.
+
+use super::row::{MenuCommand, has_document, row};
+use crate::session::Action;
+use crate::session::actions::{NewPart, PartAction};
+
+/// A command for each kind, in the order of its table.
+macro_rules! commands {
+    ($($index:literal),+) => { &[$(row(NewPart::ALL[$index].2, &[], NewPart::ALL[$index].3, has_document, |_, requests| {
+        requests.act(Action::Part(PartAction::Add { kind: NewPart::ALL[$index].0 }));
+    })),+] };
+}
+
+pub const COMMANDS: &[MenuCommand] = commands!(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_part_has_a_command() {
+        let named = |(_, _, label, _): &(NewPart, &str, &str, &str)| COMMANDS.iter().any(|row| row.name == *label);
+        assert!(NewPart::ALL.iter().all(named) && COMMANDS.len() == NewPart::ALL.len());
+    }
+}

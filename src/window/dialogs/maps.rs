@@ -1,0 +1,73 @@
+//! Exports the shape as maps for engines and other programs: which, and how they are written.
+//! Floor 7. The files are `io::export::shape`'s.
+
+use super::{DialogAnswer, buttons};
+use crate::io::export::shape::{ShapeMap, ShapeOptions};
+use crate::requests::WindowRequest;
+use crate::session::Session;
+use eframe::egui::Ui;
+
+/// The choices, kept for the next time.
+#[derive(Clone)]
+pub struct MapsDialog {
+    /// One for each map, in the order of the table.
+    chosen: [bool; ShapeMap::ALL.len()],
+    pub options: ShapeOptions,
+}
+
+impl Default for MapsDialog {
+    fn default() -> Self {
+        let options = ShapeOptions { is_directx: false, is_deep: true, is_exr: false };
+        Self { chosen: [true; ShapeMap::ALL.len()], options }
+    }
+}
+
+impl MapsDialog {
+    /// The maps to be written.
+    pub fn maps(&self) -> Vec<ShapeMap> {
+        ShapeMap::ALL.iter().zip(self.chosen).filter(|(_, on)| *on).map(|((map, _), _)| *map).collect()
+    }
+    pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
+        ui.set_width(340.0);
+        ui.heading("Export maps of the shape");
+        let Some(surface) = session.shown().and_then(|document| document.surface.as_ref()) else {
+            ui.label("This document has no shape. Layer › Give it a shape… makes one.");
+            return super::close(ui);
+        };
+        ui.weak(format!("{} pixels; the coverage is kept as alpha", surface.size()));
+        for ((map, suffix), on) in ShapeMap::ALL.into_iter().zip(&mut self.chosen) {
+            ui.checkbox(on, format!("{} ({suffix})", label(map)));
+        }
+        let options = &mut self.options;
+        ui.horizontal(|ui| {
+            ui.label("Green points");
+            ui.radio_value(&mut options.is_directx, false, "up (OpenGL)");
+            ui.radio_value(&mut options.is_directx, true, "down (DirectX)");
+        });
+        ui.horizontal(|ui| {
+            ui.radio_value(&mut options.is_exr, false, "PNG");
+            ui.radio_value(&mut options.is_exr, true, "EXR of 32 bits");
+        });
+        ui.add_enabled_ui(!options.is_exr, |ui| {
+            ui.horizontal(|ui| {
+                ui.radio_value(&mut options.is_deep, true, "16 bits");
+                ui.radio_value(&mut options.is_deep, false, "8 bits");
+            });
+        });
+        match buttons(ui, "Export…", self.chosen.contains(&true)) {
+            Some(true) => DialogAnswer::Ask(WindowRequest::ExportMaps),
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
+        }
+    }
+}
+
+fn label(map: ShapeMap) -> &'static str {
+    match map {
+        ShapeMap::Normals => "Normals",
+        ShapeMap::Depth => "Depth, near is dark",
+        ShapeMap::Height => "Height, near is light",
+        ShapeMap::Mask => "Mask",
+        ShapeMap::Parts => "Number of the part, 16 bits",
+    }
+}

@@ -1,0 +1,111 @@
+//! Gives a drawing its first shape: one part or a part for each colour, as a pillow, tube, relief or coin.
+//! Floor 7. What becomes of it is `session::actions::parts::first`'s.
+
+use super::{DialogAnswer, answers};
+use crate::document::parts::drawing::{DrawingLook, Ground};
+use crate::document::{Document, Inflation, LayerId};
+use crate::panels::shape::presets;
+use crate::requests::UiRequests;
+use crate::session::actions::parts::{PartAction, Preset, first};
+use crate::session::{Action, LayerPath, OpenDocument, Session};
+use eframe::egui::Ui;
+
+/// Layers that are looked at for a drawing.
+const MOST_LOOKS: usize = 12;
+
+pub struct ShapeDialog {
+    /// The tab, by its key.
+    tab: usize,
+    /// Its drawing, if it has one.
+    layer: Option<LayerId>,
+    look: DrawingLook,
+    preset: Inflation,
+    flats: bool,
+    /// The document was opened just now, from a picture.
+    is_first: bool,
+}
+
+impl ShapeDialog {
+    /// For a document that was opened from a picture, whose only layer is the drawing.
+    pub fn of_picture(tab: &OpenDocument, look: DrawingLook) -> Self {
+        let layer = tab.document().layers.last().map(|layer| layer.id);
+        Self { is_first: true, ..Self::new(tab, layer, look) }
+    }
+    /// For the drawing of a document: the selected layer, or the topmost that has an outline.
+    pub fn of(tab: &OpenDocument) -> Self {
+        let document = tab.document();
+        let others = document.walk().into_iter().rev().map(|(_, layer)| layer);
+        let others = others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
+        let looked: Vec<(LayerId, DrawingLook)> = tab
+            .selected
+            .into_iter()
+            .chain(others)
+            .take(MOST_LOOKS)
+            .filter_map(|id| Some((id, first::look(document, id)?)))
+            .collect();
+        let found = looked.iter().find(|(_, look)| look.has_outline()).or(looked.first());
+        match found {
+            Some((id, look)) => Self::new(tab, Some(*id), *look),
+            None => Self::new(tab, None, DrawingLook { ground: Ground::Empty, colors: 0, flat_share: 0.0 }),
+        }
+    }
+    fn new(tab: &OpenDocument, layer: Option<LayerId>, look: DrawingLook) -> Self {
+        let preset = Inflation::PRESETS[0].0;
+        Self { tab: tab.key, layer, look, preset, flats: look.is_of_flats(), is_first: false }
+    }
+    pub fn show(&mut self, ui: &mut Ui, session: &Session, requests: &mut UiRequests) -> DialogAnswer {
+        ui.set_width(380.0);
+        let tab = session.open_documents.iter().position(|tab| tab.key == self.tab);
+        let Some((index, tab)) = tab.map(|index| (index, &session.open_documents[index])) else {
+            return DialogAnswer::Close;
+        };
+        ui.heading(if self.is_first { "A drawing without a shape" } else { "Give it a shape" });
+        if let Some(why) = self.refusal() {
+            ui.label(why);
+            return super::close(ui);
+        }
+        ui.label(
+            "With a shape, light falls on the drawing, and strokes, gradients and photos bend over it. Every number \
+             can be changed later, in the panel Shape.",
+        );
+        ui.radio_value(&mut self.flats, false, "One part");
+        let text = match self.look.colors {
+            0 | 1 => "A part for each colour".to_owned(),
+            n => format!("A part for each colour ({n})"),
+        };
+        ui.add_enabled_ui(self.look.colors > 1, |ui| ui.radio_value(&mut self.flats, true, text));
+        self.preset = presets(ui, self.preset).unwrap_or(self.preset);
+        if matches!(self.look.ground, Ground::Flat(_)) {
+            ui.weak("Its one-coloured ground becomes a layer of its own, beneath.");
+        }
+        let no = if self.is_first { "Only paint" } else { "Cancel" };
+        match answers(ui, "Give it a shape", no, true) {
+            Some(true) => {
+                self.ask(index, tab.document(), requests);
+                DialogAnswer::Shaped
+            }
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
+        }
+    }
+    /// Why there is nothing to give a shape to.
+    fn refusal(&self) -> Option<&'static str> {
+        match self.look.ground {
+            Ground::Transparent | Ground::Flat(_) if self.layer.is_some() => None,
+            Ground::Painted => Some(
+                "No layer has an outline: this one is opaque all over, and its ground has many colours. Select the \
+                 figure (W or L), then Layer, New part, Inflate selection.",
+            ),
+            _ => Some(
+                "There is no drawing yet: a shape is made of what a layer covers. Paint a figure on a layer without \
+                 a background, or begin with a body: Layer, New part, Sphere.",
+            ),
+        }
+    }
+    fn ask(&self, tab: usize, document: &Document, requests: &mut UiRequests) {
+        let Some(layer) = self.layer.and_then(|layer| LayerPath::of(document, layer)) else { return };
+        requests.act(Action::File(crate::session::actions::FileAction::Tab { index: tab }));
+        let (preset, flats) = (Preset(self.preset), self.flats);
+        requests.act(Action::Part(PartAction::Shape { layer, preset, flats }));
+    }
+}

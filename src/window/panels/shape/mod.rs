@@ -1,0 +1,112 @@
+//! The shape: its parts, the nearest on top, with the numbers of the chosen one beneath. Floor 7. `row` shows one part,
+//! `numbers` what can be set of it, `pictures` paints the small lit pictures.
+
+mod numbers;
+pub mod pictures;
+mod row;
+
+use crate::commands::PARTS;
+use crate::document::{Document, Part};
+use crate::icons::{Icon, icon_button};
+use crate::io::recipe::parts::write_part;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::PartAction;
+use crate::session::{Action, Session};
+use crate::widgets::ValueChange;
+use eframe::egui::{ScrollArea, Ui};
+pub use numbers::presets;
+use pictures::PartPictures;
+use std::sync::Arc;
+
+/// The most of the panel's height that the list takes; what is beneath it is the numbers'.
+const LIST_SHARE: f32 = 0.45;
+const LEAST_LIST_PT: f32 = 116.0;
+
+fn act(requests: &mut UiRequests, action: PartAction) {
+    requests.act(Action::Part(action));
+}
+
+/// Asks for a part with other values.
+fn set(requests: &mut UiRequests, changed: ValueChange<Part>) {
+    act(requests, PartAction::Set { part: write_part(&changed.to), done: changed.done });
+}
+
+pub fn show(ui: &mut Ui, session: &Session, pictures: &mut PartPictures, requests: &mut UiRequests) {
+    let Some((tab, document)) = session.active().zip(session.shown()) else {
+        ui.weak("No document is open.");
+        return;
+    };
+    head(ui, session, document, requests);
+    if document.parts.is_empty() {
+        return begin(ui, document, requests);
+    }
+    pictures.follow(ui.ctx(), document);
+    let most = (ui.available_height() * LIST_SHARE).max(LEAST_LIST_PT);
+    ScrollArea::vertical().id_salt("parts").max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        for part in forms(document).rev() {
+            row::show(ui, session, document, part, pictures, requests);
+            for upon in document.parts.list.iter().rev().filter(|upon| upon.on() == Some(part.id.as_str())) {
+                row::show(ui, session, document, upon, pictures, requests);
+            }
+        }
+    });
+    ui.add_space(2.0);
+    let Some(part) = tab.chosen_part() else { return };
+    ScrollArea::vertical().id_salt("part").auto_shrink([false, false]).show(ui, |ui| {
+        if let Some(changed) = numbers::show(ui, part) {
+            set(requests, changed);
+        }
+    });
+}
+
+/// The parts that have a form of their own, the farthest first; and those that lie on nothing.
+fn forms(document: &Document) -> impl DoubleEndedIterator<Item = &Arc<Part>> {
+    let parts = &document.parts;
+    parts.list.iter().filter(|part| part.on().is_none_or(|on| parts.part(on).is_none()))
+}
+
+/// The buttons that add, copy, order and delete.
+fn head(ui: &mut Ui, session: &Session, document: &Document, requests: &mut UiRequests) {
+    ui.horizontal(|ui| {
+        ui.menu_button("+ Part", |ui| {
+            for command in PARTS {
+                let response = ui.add_enabled((command.can)(session), eframe::egui::Button::new(command.name));
+                if response.on_hover_text(command.hint).clicked() {
+                    (command.run)(session, requests);
+                    ui.close();
+                }
+            }
+        })
+        .response
+        .on_hover_text("Adds a part in front of all others");
+        let Some(part) = session.active().and_then(|tab| tab.chosen_part()) else { return };
+        let siblings: Vec<&Arc<Part>> = document.parts.list.iter().filter(|other| other.on() == part.on()).collect();
+        let at = siblings.iter().position(|other| other.id == part.id).unwrap_or(0);
+        let order = |index: usize| PartAction::Order { part: part.id.clone(), index };
+        let buttons = [
+            (Icon::Duplicate, "Duplicate part", Some(PartAction::Duplicate { part: part.id.clone() })),
+            (Icon::Up, "Bring part forward", (at + 1 < siblings.len()).then(|| order(at + 1))),
+            (Icon::Down, "Send part back", at.checked_sub(1).map(order)),
+            (Icon::Delete, "Delete part", Some(PartAction::Delete { part: part.id.clone() })),
+        ];
+        for (icon, label, action) in buttons {
+            let button = ui.add_enabled_ui(action.is_some(), |ui| icon_button(ui, icon, label, false));
+            if let Some(action) = action.filter(|_| button.inner.on_hover_text(label).clicked()) {
+                act(requests, action);
+            }
+        }
+    });
+}
+
+/// What to do where there are no parts yet.
+fn begin(ui: &mut Ui, document: &Document, requests: &mut UiRequests) {
+    ui.label(match document.surface {
+        Some(_) => "The shape is that of the maps. Parts stand in front of it.",
+        None => "This drawing has no shape yet: marks lie flat.",
+    });
+    let hint = "What the drawing covers is filled with air, in one part or a part for each colour, and lit";
+    if ui.button("Give it a shape…").on_hover_text(hint).clicked() {
+        requests.request(WindowRequest::ShapeDialog);
+    }
+}

@@ -1,0 +1,254 @@
+//! What can be set of a part, with the ranges of its type.
+//! Floor 7.
+
+use crate::document::parts::OutlineSource;
+use crate::document::{Inflation, Part, PartKind};
+use crate::math::{Vec2, Vec3};
+use crate::shape::{Bevel, BevelCurve, Body, Combine, Detail, Primitive};
+use crate::widgets::{NumberField, ValueChange, choice_row, name, sentence};
+use eframe::egui::{Button, Ui};
+
+/// The rows of a part; a part with other values, if one was changed.
+pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
+    let kind = of_kind(ui, &part.kind).map(|changed| changed.map(|kind| Part { kind, ..part.clone() }));
+    if part.on().is_some() {
+        return kind;
+    }
+    let stands = stands(ui, part);
+    let source = part.outline().map(|outline| match outline {
+        OutlineSource::Layer { layer, color: None } => format!("Follows the layer “{layer}”"),
+        OutlineSource::Layer { layer, color: Some(color) } => format!("Follows the colour {color} of “{layer}”"),
+        OutlineSource::Object(object) => format!("Follows object {object} of the maps"),
+        _ => "Keeps the outline that was selected".to_owned(),
+    });
+    if let Some(source) = source {
+        ui.weak(source);
+    }
+    kind.or(stands)
+}
+
+/// A number in a row.
+struct NumberRow<'a> {
+    field: NumberField<'a>,
+    value: f32,
+}
+
+impl NumberRow<'_> {
+    fn show<T>(self, ui: &mut Ui, made: impl FnOnce(f32) -> T) -> Option<ValueChange<T>> {
+        self.field.row(ui, self.value).map(|changed| changed.map(made))
+    }
+}
+
+fn number<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+    NumberRow { field: NumberField::new(label, range.clone(), hint), value }
+}
+
+/// Lengths: near 0 they are set more finely.
+fn length<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+    let row = number(label, range, hint, value);
+    NumberRow { field: row.field.pixels().logarithmic(), ..row }
+}
+
+fn degrees<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+    let row = number(label, range, hint, value);
+    NumberRow { field: row.field.degrees(), ..row }
+}
+
+const PUFF_HINT: &str = "Factor of the height: at 1 a disc becomes a half ball";
+
+/// Puff, with the fine steps where they are needed.
+fn puff(value: f32) -> NumberRow<'static> {
+    let row = number("Puff", &Inflation::PUFF, PUFF_HINT, value);
+    NumberRow { field: row.field.logarithmic(), ..row }
+}
+
+fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
+    match kind {
+        PartKind::Inflate { outline, inflation } => inflated(ui, *inflation)
+            .map(|changed| changed.map(|inflation| PartKind::Inflate { outline: outline.clone(), inflation })),
+        PartKind::Bevel { outline, bevel } => {
+            beveled(ui, bevel).map(|changed| changed.map(|bevel| PartKind::Bevel { outline: outline.clone(), bevel }))
+        }
+        PartKind::Primitive(body) => primitive(ui, body).map(|changed| changed.map(PartKind::Primitive)),
+        PartKind::Lathe { outline, axis, puff: value } => {
+            puff(*value).show(ui, |puff| PartKind::Lathe { outline: outline.clone(), axis: *axis, puff })
+        }
+        PartKind::Sweep { balls, puff: value } => {
+            ui.weak(format!("{} balls along a stroke", balls.len()));
+            puff(*value).show(ui, |puff| PartKind::Sweep { balls: balls.clone(), puff })
+        }
+        PartKind::Touches { touches, .. } => {
+            ui.weak(format!(
+                "{} touches. The touch tool (N) puts them down, moves them and takes them away.",
+                touches.len()
+            ));
+            None
+        }
+        PartKind::Sculpt { strokes, .. } => {
+            ui.weak(format!("{} strokes. The sculpt tool (U) makes more.", strokes.len()));
+            if strokes.is_empty() || !ui.button("Without the last stroke").clicked() {
+                return None;
+            }
+            let mut kind = kind.clone();
+            if let PartKind::Sculpt { strokes, .. } = &mut kind {
+                strokes.pop();
+            }
+            Some(ValueChange { to: kind, done: true })
+        }
+        PartKind::Relief { on, picture, detail } => relief(ui, *detail)
+            .map(|changed| changed.map(|detail| PartKind::Relief { on: on.clone(), picture: picture.clone(), detail })),
+        #[allow(unreachable_patterns)]
+        _ => None,
+    }
+}
+
+/// The presets, and the three numbers.
+fn inflated(ui: &mut Ui, now: Inflation) -> Option<ValueChange<Inflation>> {
+    let mut changed = None;
+    let chosen = presets(ui, now);
+    changed = chosen.map(|to| ValueChange { to, done: true }).or(changed);
+    changed = puff(now.puff).show(ui, |puff| Inflation { puff, ..now }).or(changed);
+    let hint = "A pillow is a cloth filled with air; in a tube limbs are as deep as they are wide";
+    let profile = number("Pillow ↔ tube", &Inflation::PROFILE, hint, now.profile);
+    changed = profile.show(ui, |profile| Inflation { profile, ..now }).or(changed);
+    let hint = "How far the rim turns away: at 90° it is a silhouette, less is a low relief";
+    degrees("Rim", &Inflation::RIM, hint, now.rim_deg).show(ui, |rim_deg| Inflation { rim_deg, ..now }).or(changed)
+}
+
+/// The presets as chips.
+pub fn presets(ui: &mut Ui, now: Inflation) -> Option<Inflation> {
+    let mut chosen = None;
+    ui.horizontal_wrapped(|ui| {
+        for (preset, word) in Inflation::PRESETS {
+            let chip = Button::selectable(preset == now, sentence(word)).corner_radius(10);
+            if ui.add(chip).on_hover_text(about(word)).clicked() {
+                chosen = Some(preset);
+            }
+        }
+    });
+    chosen
+}
+
+fn about(preset: &str) -> &'static str {
+    match preset {
+        "pillow" => "Round, as a cloth filled with air",
+        "tube" => "Limbs as deep as they are wide",
+        "relief" => "Half as high, its rim not quite a silhouette",
+        _ => "Nearly flat, with a rim that can be seen",
+    }
+}
+
+fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
+    let hint = "How far in from the rim it rises";
+    let width = length("Width", &Bevel::WIDTH, hint, now.width).show(ui, |width| Bevel { width, ..now.clone() });
+    let height = length("Height", &Bevel::HEIGHT, "How high it rises; below 0 it falls", now.height)
+        .show(ui, |height| Bevel { height, ..now.clone() });
+    let mut curves: Vec<(usize, &str)> =
+        BevelCurve::NAMED.iter().enumerate().map(|(i, (_, word))| (i, *word)).collect();
+    let named = BevelCurve::NAMED.iter().position(|(curve, _)| *curve == now.curve);
+    if named.is_none() {
+        curves.push((curves.len(), "its own"));
+    }
+    let chosen = choice_row(ui, "Curve", named.unwrap_or(BevelCurve::NAMED.len()), &curves);
+    let curve = chosen.and_then(|i| BevelCurve::NAMED.get(i));
+    let curve = curve.map(|(curve, _)| ValueChange { to: Bevel { curve: curve.clone(), ..now.clone() }, done: true });
+    width.or(height).or(curve)
+}
+
+/// The numbers that a body has.
+fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
+    let now = *now;
+    let mut changed = choice_row(ui, "Body", now.body, &Body::ALL)
+        .map(|body| ValueChange { to: Primitive { body, ..now }, done: true });
+    let range = &Primitive::LENGTH;
+    if !matches!(now.body, Body::Ellipsoid | Body::Box) {
+        let hint = if now.body == Body::Torus { "Of the ring" } else { "Of the body" };
+        changed = length("Radius", range, hint, now.radius).show(ui, |radius| Primitive { radius, ..now }).or(changed);
+    }
+    if matches!(now.body, Body::Cylinder | Body::Cone | Body::Capsule) {
+        let row = length("Length", range, "Along its axis", now.length);
+        changed = row.show(ui, |length| Primitive { length, ..now }).or(changed);
+    }
+    if now.body == Body::Torus {
+        let row = length("Tube", range, "Radius of what goes round the ring", now.tube);
+        changed = row.show(ui, |tube| Primitive { tube, ..now }).or(changed);
+    }
+    if matches!(now.body, Body::Ellipsoid | Body::Box) {
+        let halves: [(&str, fn(Vec3, f32) -> Vec3, f32); 3] = [
+            ("Half width", |half, x| Vec3 { x, ..half }, now.half.x),
+            ("Half height", |half, y| Vec3 { y, ..half }, now.half.y),
+            ("Half depth", |half, z| Vec3 { z, ..half }, now.half.z),
+        ];
+        for (label, with, value) in halves {
+            let row = length(label, range, "From the middle to the side", value);
+            changed = row.show(ui, |v| Primitive { half: with(now.half, v), ..now }).or(changed);
+        }
+    }
+    if now.body == Body::Box {
+        let row = length("Round", &Primitive::ROUND, "Radius of the edges", now.round);
+        changed = row.show(ui, |round| Primitive { round, ..now }).or(changed);
+    }
+    if now.body != Body::Sphere {
+        let turns: [(&str, fn(Vec3, f32) -> Vec3, f32); 3] = [
+            ("Turn over", |turn, x| Vec3 { x, ..turn }, now.turn_deg.x),
+            ("Turn aside", |turn, y| Vec3 { y, ..turn }, now.turn_deg.y),
+            ("Turn round", |turn, z| Vec3 { z, ..turn }, now.turn_deg.z),
+        ];
+        for (label, with, value) in turns {
+            // The type's range is that of files; a hand needs one turn.
+            let row = degrees(label, &(-180.0..=180.0), "In space, about its middle", value);
+            changed = row.show(ui, |v| Primitive { turn_deg: with(now.turn_deg, v), ..now }).or(changed);
+        }
+    }
+    changed
+}
+
+fn relief(ui: &mut Ui, now: Detail) -> Option<ValueChange<Detail>> {
+    let coarse = length("Coarse", &Detail::HEIGHT, "How high the coarse detail stands", now.coarse)
+        .show(ui, |coarse| Detail { coarse, ..now });
+    let fine = length("Fine", &Detail::HEIGHT, "How high the fine detail stands", now.fine)
+        .show(ui, |fine| Detail { fine, ..now });
+    let radius = length("Radius", &Detail::RADIUS, "What is larger is form, not detail", now.radius)
+        .show(ui, |radius| Detail { radius, ..now });
+    let edge = number("Edge", &Detail::EDGE, "Steps of brightness above this are edges, which stay", now.edge)
+        .show(ui, |edge| Detail { edge, ..now });
+    coarse.or(fine).or(radius).or(edge)
+}
+
+/// How it leans, how near it is, and how it meets what lies beneath.
+fn stands(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
+    let tilted = |tilt_deg: Vec2| Part { tilt_deg, ..part.clone() };
+    let tilt = part.tilt_deg;
+    let right = degrees("Tilt right", &Part::TILT, "Leans up toward the right", tilt.x)
+        .show(ui, |x| tilted(Vec2 { x, ..tilt }));
+    let down = degrees("Tilt down", &Part::TILT, "Leans up toward the bottom", tilt.y)
+        .show(ui, |y| tilted(Vec2 { y, ..tilt }));
+    let raise = length("Raise", &Part::RAISE, "Nearer to the viewer than it must be", part.raise)
+        .show(ui, |raise| Part { raise, ..part.clone() });
+    let ways: Vec<(usize, &str)> = Combine::ALL.iter().enumerate().map(|(i, (_, word))| (i, *word)).collect();
+    let now = Combine::ALL.iter().position(|(way, _)| way.name() == part.combine.name()).unwrap_or(0);
+    let way = choice_row(ui, "Combine", now, &ways).and_then(|i| Combine::ALL.get(i));
+    let way = way.map(|(combine, _)| ValueChange { to: Part { combine: *combine, ..part.clone() }, done: true });
+    let smooth = match part.combine {
+        Combine::Union { smooth } => {
+            let hint = "Over how much height the two grow into one";
+            length("Smooth", &Combine::SMOOTH, hint, smooth)
+                .show(ui, |smooth| Part { combine: Combine::Union { smooth }, ..part.clone() })
+        }
+        _ => None,
+    };
+    let is_plain = part.matrix == crate::math::Affine2::IDENTITY;
+    let back = if is_plain {
+        None
+    } else {
+        ui.horizontal(|ui| {
+            name(ui, "Moved");
+            let hint = "Where its outline was drawn, not turned and not scaled";
+            let clicked = ui.button("Put it back").on_hover_text(hint).clicked();
+            let to = || Part { matrix: crate::math::Affine2::IDENTITY, ..part.clone() };
+            clicked.then(|| ValueChange { to: to(), done: true })
+        })
+        .inner
+    };
+    right.or(down).or(raise).or(way).or(smooth).or(back)
+}

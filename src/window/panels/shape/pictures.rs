@@ -1,0 +1,73 @@
+//! Small pictures of parts: each alone in the light of one lamp.
+//! Floor 7.
+
+use crate::document::parts::Parts;
+use crate::document::{Document, Part};
+use crate::math::{Vec3, srgb, vec3};
+use crate::shape::Form;
+use crate::surface::Surface;
+use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Of a picture, px.
+const SIDE: usize = 56;
+
+/// The pictures of the document's parts, by their ids.
+#[derive(Default)]
+pub struct PartPictures {
+    /// What the forms were asked of last: while it is the same, so are they.
+    of: Option<(Arc<Parts>, Option<Arc<Surface>>)>,
+    forms: Vec<(Arc<Part>, Arc<Form>)>,
+    painted: HashMap<String, (Arc<Form>, TextureHandle)>,
+}
+
+impl PartPictures {
+    /// Brings the pictures up to a document.
+    pub fn follow(&mut self, ctx: &egui::Context, document: &Document) {
+        self.forms(document);
+        let forms = &self.forms;
+        self.painted.retain(|id, _| forms.iter().any(|(part, _)| part.id == *id));
+        for (part, form) in forms {
+            let is_known = self.painted.get(&part.id).is_some_and(|(known, _)| Arc::ptr_eq(known, form));
+            if !is_known {
+                let texture = ctx.load_texture(format!("part {}", part.id), lit(form), TextureOptions::LINEAR);
+                self.painted.insert(part.id.clone(), (form.clone(), texture));
+            }
+        }
+    }
+    /// The forms of a document with their parts, asked for once a version of it.
+    pub fn forms(&mut self, document: &Document) -> &[(Arc<Part>, Arc<Form>)] {
+        let is_same = self.of.as_ref().is_some_and(|(parts, surface)| {
+            let surfaces = [surface, &document.surface].map(|surface| surface.as_ref().map(Arc::as_ptr));
+            Arc::ptr_eq(parts, &document.parts) && surfaces[0] == surfaces[1]
+        });
+        if !is_same {
+            self.forms = document.part_forms();
+            self.of = Some((document.parts.clone(), document.surface.clone()));
+        }
+        &self.forms
+    }
+    /// A picture and its size.
+    pub fn picture(&self, part: &Part) -> Option<(TextureId, Vec2)> {
+        let (_, texture) = self.painted.get(part.on().unwrap_or(&part.id))?;
+        Some((texture.id(), texture.size_vec2()))
+    }
+}
+
+/// A form under a lamp from above left, transparent around it.
+fn lit(form: &Form) -> ColorImage {
+    let light = vec3(-0.5, 0.6, 0.62).normalize_or(Vec3::Z);
+    let size = form.coverage.size();
+    let scale = (SIDE as f32 / size.longer_side()).min(1.0);
+    let side = |v: u32| ((v as f32 * scale).round() as usize).max(1);
+    let (width, height) = (side(size.width), side(size.height));
+    let texel = |i: usize| {
+        let at = |v: usize, n: usize, all: u32| (((v as f32 + 0.5) / n as f32) * all as f32) as i32;
+        let (x, y) = (at(i % width, width, size.width), at(i / width, height, size.height));
+        let normal = form.normals.clamped(x, y);
+        let shade = srgb::quantise(srgb::encode(0.06 + 0.8 * normal.dot(light).max(0.0)));
+        Color32::from_rgba_unmultiplied(shade, shade, shade, form.coverage.clamped(x, y))
+    };
+    ColorImage::new([width, height], (0..width * height).map(texel).collect())
+}

@@ -1,0 +1,134 @@
+//! The options of the tools that touch and sculpt the shape.
+//! Floor 7.
+
+use crate::canvas::ball;
+use crate::math::{Vec3, vec3};
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::actions::PartAction;
+use crate::session::{Action, Session};
+use crate::shape::{SculptStroke, SculptTool, Touch};
+use crate::tools::{ShapeSettings, ToolKind};
+use crate::widgets::{NumberField, named, sentence};
+use eframe::egui::{Button, Sense, Ui, vec2};
+
+pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let has_parts = session.shown().is_some_and(|document| !document.parts.is_empty());
+    if !has_parts {
+        ui.weak("There is no part to work on yet.");
+        if ui.button("Give it a shape…").clicked() {
+            requests.request(WindowRequest::ShapeDialog);
+        }
+        return;
+    }
+    let now = session.shape;
+    let to = match session.tool {
+        ToolKind::Touch => touching(ui, now),
+        ToolKind::Sculpt => sculpting(ui, now),
+        tool => {
+            ui.weak(tool.row().hint);
+            None
+        }
+    };
+    requests.actions.extend(to.map(|shape| Action::Part(PartAction::Settings { shape })));
+}
+
+/// Degrees that a direction leans to the right and up.
+fn leaning(normal: Vec3) -> [f32; 2] {
+    [normal.x, normal.y].map(|v| v.max(-1.0).min(1.0).asin().to_degrees())
+}
+
+/// The direction that leans so far; what leans farther than a silhouette is one.
+fn leaned([right, up]: [f32; 2]) -> Vec3 {
+    let flat = crate::math::vec2(right.to_radians().sin(), up.to_radians().sin()).clamp_length_max(0.999);
+    vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt())
+}
+
+fn touching(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
+    let side = ui.spacing().interact_size.y + 4.0;
+    let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::drag());
+    named(&response, "Direction of touches");
+    ball(ui.painter(), rect.center(), 0.46 * side, now.normal);
+    let mut to = None;
+    if response.dragged() {
+        // A drag of so many points leans it over.
+        const POINTS: f32 = 60.0;
+        let by = response.drag_delta() / POINTS;
+        let flat = crate::math::vec2(now.normal.x + by.x, now.normal.y - by.y).clamp_length_max(0.98);
+        let normal = vec3(flat.x, flat.y, (1.0 - flat.length_squared()).max(0.0).sqrt());
+        to = Some(ShapeSettings { normal, ..now });
+    }
+    response.on_hover_text("The way that touches turn the surface: drag the ball. Alt-click takes it from the surface");
+    let [right, up] = leaning(now.normal);
+    let number = |label, hint| NumberField::new(label, -88.0..=88.0, hint).degrees();
+    ui.label("right");
+    let changed = number("Lean right", "How far it leans to the right; below 0 to the left").field(ui, right);
+    to = changed.map(|c| ShapeSettings { normal: leaned([c.to, up]), ..now }).or(to);
+    ui.label("up");
+    let changed = number("Lean up", "How far it leans up; below 0 down").field(ui, up);
+    to = changed.map(|c| ShapeSettings { normal: leaned([right, c.to]), ..now }).or(to);
+    if ui.button("Facing you").on_hover_text("Touches level the surface").clicked() {
+        to = Some(ShapeSettings { normal: Vec3::Z, ..now });
+    }
+    ui.add_space(6.0);
+    let field = NumberField::new("Size", Touch::RADIUS, "Radius of a touch").px();
+    to = field.inline(ui, now.radius, 70.0).map(|c| ShapeSettings { radius: c.to, ..now }).or(to);
+    let hint = "How far a touch is felt; 0: to the rim of the part and to the next touches";
+    let field = NumberField::new("Reach", Touch::REACH, hint).px();
+    field.inline(ui, now.reach, 70.0).map(|c| ShapeSettings { reach: c.to, ..now }).or(to)
+}
+
+fn sculpting(ui: &mut Ui, now: ShapeSettings) -> Option<ShapeSettings> {
+    let mut to = None;
+    for (tool, word) in SculptTool::ALL {
+        let button = Button::selectable(now.tool == tool, sentence(word));
+        if ui.add(button).on_hover_text(about(tool)).clicked() {
+            to = Some(ShapeSettings { tool, ..now });
+        }
+    }
+    ui.add_space(6.0);
+    let field =
+        NumberField::new("Size", SculptStroke::SIZE, "Diameter of a dab ([ and ], or drag with the right button)");
+    to = field.px().inline(ui, now.size, 70.0).map(|c| ShapeSettings { size: c.to, ..now }).or(to);
+    let field = NumberField::new("Hardness", SculptStroke::HARDNESS, "How much of the dab is whole");
+    to = field.inline(ui, now.hardness, 50.0).map(|c| ShapeSettings { hardness: c.to, ..now }).or(to);
+    let changed = match now.tool.is_by_height() {
+        true => {
+            let field = NumberField::new("Strength", SculptStroke::STRENGTH, "How far a dab raises or lowers");
+            let changed = field.pixels().logarithmic().inline(ui, now.height, 60.0);
+            changed.map(|c| ShapeSettings { height: c.to, ..now })
+        }
+        false => {
+            let field = NumberField::new("Strength", crate::math::UNIT, "How far a dab goes of the way it could");
+            field.inline(ui, now.share, 60.0).map(|c| ShapeSettings { share: c.to, ..now })
+        }
+    };
+    ui.weak("Pressure weakens it");
+    changed.or(to)
+}
+
+fn about(tool: SculptTool) -> &'static str {
+    match tool {
+        SculptTool::Raise => "Builds the surface up (Ctrl lowers)",
+        SculptTool::Lower => "Digs into it (Ctrl raises)",
+        SculptTool::Smooth => "Toward the mean of what is around (Shift with any tool)",
+        SculptTool::Flatten => "Toward the plane under the first dab",
+        SculptTool::Crease => "A sharp line inward",
+        SculptTool::Pinch => "Draws heights together toward the middle",
+        SculptTool::Scrape => "Levels what stands out, and nothing else",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_direction_leans_as_far_as_its_numbers_say() {
+        for told in [[0.0, 0.0], [30.0, -40.0], [-60.0, 10.0]] {
+            let back = leaning(leaned(told));
+            assert!((back[0] - told[0]).abs() < 1e-3 && (back[1] - told[1]).abs() < 1e-3, "{told:?} {back:?}");
+        }
+        let beyond = leaned([80.0, 80.0]);
+        assert!(beyond.is_normalized() && beyond.z > 0.0);
+    }
+}

@@ -1,0 +1,163 @@
+//! The shape workshop: from a drawing to a lit, bent picture, by the window's own controls.
+
+use super::{
+    Story, choose, click, command, drag, key, layers, press, session, steps, stroke, until, window, window_of,
+};
+use eframe::egui::{Key, Modifiers, Vec2, vec2};
+use egui_kittest::kittest::Queryable;
+use rilievo_engine::document::{Part, PartKind};
+use rilievo_program::tools::ToolKind;
+use rilievo_window::MainWindow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use tempfile::TempDir;
+
+/// A head on a body, each of a flat colour with soft edges, on nothing.
+fn drawing(folder: &TempDir) -> PathBuf {
+    let disc = |x: f32, y: f32, cx: f32, cy: f32, r: f32| (r + 0.5 - (x - cx).hypot(y - cy)).clamp(0.0, 1.0);
+    let picture = image::RgbaImage::from_fn(320, 400, |x, y| {
+        let (x, y) = (x as f32 + 0.5, y as f32 + 0.5);
+        let (head, body) = (disc(x, y, 160.0, 120.0, 80.0), disc(x, y, 160.0, 260.0, 110.0));
+        let mixed = |h: f32, b: f32| (h * head + b * (1.0 - head)).round() as u8;
+        let alpha = (255.0 * head.max(body)).round() as u8;
+        image::Rgba([mixed(230.0, 70.0), mixed(170.0, 120.0), mixed(90.0, 210.0), alpha])
+    });
+    let file = folder.path().join("creature.png");
+    picture.save(&file).unwrap();
+    file
+}
+/// A window that was asked to open a file.
+fn opening(file: &Path) -> Story {
+    let mut harness = window_of(1.0, MainWindow::new);
+    click(&mut harness, "File");
+    press(&mut harness, "Open…");
+    choose(&mut harness, file);
+    harness
+}
+fn asked(harness: &mut Story) {
+    until(harness, |harness| harness.query_by_label("Only paint").is_some());
+}
+fn parts(harness: &Story) -> Vec<Arc<Part>> {
+    session(harness).active().unwrap().document().parts.list.clone()
+}
+/// Where a canvas point is seen, from the middle of the canvas.
+fn seen(harness: &Story, x: f32, y: f32) -> Vec2 {
+    let view = session(harness).active().unwrap().view.unwrap();
+    let at = view.screen_from_canvas().transform_point2(rilievo_engine::math::vec2(x, y));
+    vec2(at.x, at.y)
+}
+fn puff(part: &Part) -> f32 {
+    match &part.kind {
+        PartKind::Inflate { inflation, .. } => inflation.puff,
+        other => panic!("{}", other.name()),
+    }
+}
+
+#[test]
+fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_again() {
+    let folder = TempDir::new().unwrap();
+    let mut harness = opening(&drawing(&folder));
+    asked(&mut harness);
+    harness.get_by_label("A part for each colour (2)");
+    press(&mut harness, "Give it a shape");
+    assert_eq!(layers(&harness), ["creature", "Base"]);
+    let made = parts(&harness);
+    assert_eq!(made.len(), 2);
+    // The panel with the parts is in front, the nearest chosen: the head.
+    harness.get_by_label("Part Part 2");
+    assert!(harness.query_all_by_label("Pillow ↔ tube").next().is_some());
+    steps(&mut harness);
+
+    key(&mut harness, Modifiers::NONE, Key::P);
+    assert_eq!(session(&harness).tool, ToolKind::Shape);
+    let (from, to) = (seen(&harness, 160.0, 120.0), seen(&harness, 160.0, 180.0));
+    drag(&mut harness, from, to);
+    let head = parts(&harness).pop().unwrap();
+    assert!(puff(&head) < 0.5, "dragged down it is flatter: {}", puff(&head));
+
+    key(&mut harness, Modifiers::NONE, Key::N);
+    let at = seen(&harness, 150.0, 300.0);
+    drag(&mut harness, at, at);
+    key(&mut harness, Modifiers::NONE, Key::U);
+    let (from, to) = (seen(&harness, 110.0, 280.0), seen(&harness, 200.0, 320.0));
+    drag(&mut harness, from, to);
+    let kinds: Vec<&str> = parts(&harness).iter().map(|part| part.kind.name()).collect();
+    assert_eq!(kinds, ["inflate", "touches", "sculpt", "inflate"], "on the body, behind the head");
+
+    key(&mut harness, Modifiers::NONE, Key::B);
+    key(&mut harness, Modifiers::NONE, Key::F3);
+    stroke(&mut harness, vec2(40.0, 60.0));
+    assert_eq!(layers(&harness).len(), 3);
+    let (steps_done, document) = {
+        let tab = session(&harness).active().unwrap();
+        (tab.history.past().count(), tab.document().clone())
+    };
+    // The shape, the puff, the touch, the sculpting, the stroke: one step each.
+    assert_eq!(steps_done, 5);
+
+    command(&mut harness, "Save as…");
+    let file = folder.path().join("creature.ora");
+    choose(&mut harness, &file);
+    until(&mut harness, |harness| !session(harness).active().unwrap().is_dirty());
+    let mut again = opening(&file);
+    until(&mut again, |harness| session(harness).active().is_some());
+    let opened = session(&again).active().unwrap().document();
+    assert_eq!(document.difference(opened), None);
+    let surfaces = [&document, opened].map(|document| document.surface.clone().unwrap());
+    assert_eq!(surfaces[0].normal_planes()[0].values(), surfaces[1].normal_planes()[0].values());
+}
+#[test]
+fn who_only_wants_to_paint_is_not_asked_again_but_told_where_marks_lie_flat() {
+    let folder = TempDir::new().unwrap();
+    let mut harness = opening(&drawing(&folder));
+    asked(&mut harness);
+    press(&mut harness, "Only paint");
+    assert!(session(&harness).shown().unwrap().surface.is_none());
+    key(&mut harness, Modifiers::NONE, Key::B);
+    key(&mut harness, Modifiers::NONE, Key::F3);
+    harness.get_by_label_contains("No surface here");
+    press(&mut harness, "Give it a shape…");
+    press(&mut harness, "One part");
+    press(&mut harness, "Coin");
+    press(&mut harness, "Give it a shape");
+    assert_eq!(parts(&harness).len(), 1);
+    assert!(puff(&parts(&harness)[0]) < 0.3);
+}
+#[test]
+fn parts_are_added_chosen_ordered_hidden_and_renamed_by_their_controls() {
+    let mut harness = window();
+    command(&mut harness, "Sphere");
+    command(&mut harness, "Box");
+    assert_eq!(parts(&harness).len(), 2);
+    until(&mut harness, |harness| harness.query_by_label("Layers").is_some());
+    // The tab beside the layers; the tool of that name stands before it.
+    let tabs: Vec<_> = harness.get_all_by_label("Shape").collect();
+    tabs.last().unwrap().click();
+    steps(&mut harness);
+    press(&mut harness, "Part Sphere");
+    press(&mut harness, "Bring part forward");
+    let names: Vec<String> = parts(&harness).iter().map(|part| part.name.clone()).collect();
+    assert_eq!(names, ["Box", "Sphere"]);
+    press(&mut harness, "Show part Sphere");
+    assert!(!parts(&harness)[1].visible);
+    press(&mut harness, "Delete part");
+    assert_eq!(parts(&harness).len(), 1);
+}
+#[test]
+fn maps_of_the_shape_are_exported_under_the_names_that_engines_expect() {
+    let folder = TempDir::new().unwrap();
+    let mut harness = window();
+    command(&mut harness, "Sphere");
+    command(&mut harness, "Export maps…");
+    press(&mut harness, "down (DirectX)");
+    press(&mut harness, "8 bits");
+    press(&mut harness, "Mask (_mask)");
+    press(&mut harness, "Export…");
+    choose(&mut harness, &folder.path().join("ball.png"));
+    let is_there = |name: &str| folder.path().join(name).exists();
+    until(&mut harness, |_| is_there("ball_id.png"));
+    assert!(is_there("ball_n.png") && is_there("ball_d.png") && is_there("ball_h.png") && !is_there("ball_mask.png"));
+    let normals = image::open(folder.path().join("ball_n.png")).unwrap().into_rgba8();
+    let above = normals.get_pixel(512, 300).0;
+    assert!(above[1] < 100 && above[3] == 255, "green points down: {above:?}");
+}
