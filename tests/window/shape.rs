@@ -1,8 +1,6 @@
 //! The shape workshop: from a drawing to a lit, bent picture, by the window's own controls.
 
-use super::{
-    Story, choose, click, command, drag, key, layers, press, session, steps, stroke, until, window, window_of,
-};
+use super::{Story, choose, command, drag, key, layers, press, session, steps, stroke, until, window, window_of};
 use eframe::egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_engine::document::{Part, PartKind};
@@ -29,8 +27,7 @@ fn drawing(folder: &TempDir) -> PathBuf {
 /// A window that was asked to open a file.
 fn opening(file: &Path) -> Story {
     let mut harness = window_of(1.0, MainWindow::new);
-    click(&mut harness, "File");
-    press(&mut harness, "Open…");
+    key(&mut harness, Modifiers::COMMAND, Key::O);
     choose(&mut harness, file);
     harness
 }

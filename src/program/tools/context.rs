@@ -116,8 +116,19 @@ impl KeptContext {
         let ToolContext { color, second_color, operator, px_per_pt, last_end, symmetry, axes, .. } = *context;
         let ToolContext { fill, select, shape, aids, clone_offset, .. } = *context;
         let colors = [color, second_color];
-        let plain =
-            PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, select, shape, aids, clone_offset };
+        let plain = PlainContext {
+            colors,
+            operator,
+            px_per_pt,
+            last_end,
+            symmetry,
+            axes,
+            fill,
+            select,
+            shape,
+            aids,
+            clone_offset,
+        };
         Self {
             document: context.document.clone(),
             layer: context.layer,

@@ -152,7 +152,7 @@ impl ToolKind {
             name: "shape",
             label: "Shape",
             key: 'P',
-            hint: "Click chooses a part of the shape, a drag moves it; its handles scale, turn, puff (middle) and tilt it",
+            hint: "Click chooses a part of the shape, a drag moves it; handles scale, turn, puff (middle) and tilt it",
         },
         ToolRow {
             kind: ToolKind::Touch,

@@ -7,9 +7,12 @@ use crate::session::actions::{NewPart, PartAction};
 
 /// A command for each kind, in the order of its table.
 macro_rules! commands {
-    ($($index:literal),+) => { &[$(row(NewPart::ALL[$index].2, &[], NewPart::ALL[$index].3, has_document, |_, requests| {
-        requests.act(Action::Part(PartAction::Add { kind: NewPart::ALL[$index].0 }));
-    })),+] };
+    ($($index:literal),+) => { &[$({
+        let (_, _, label, hint) = NewPart::ALL[$index];
+        row(label, &[], hint, has_document, |_, requests| {
+            requests.act(Action::Part(PartAction::Add { kind: NewPart::ALL[$index].0 }));
+        })
+    }),+] };
 }
 
 pub const COMMANDS: &[MenuCommand] = commands!(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13);

@@ -1,5 +1,5 @@
-//! The list of parts without one, with a copy of one, or in another order. What lies on a part (touches, sculpting, reliefs)
-//! stands behind it in the list, and goes along.
+//! The list of parts without one, with a copy of one, or in another order. What lies on a part (touches, sculpting,
+//! reliefs) stands behind it in the list, and goes along.
 //! Floor 6.
 
 use super::free_id;
