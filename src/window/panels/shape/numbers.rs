@@ -77,27 +77,27 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
             ui.weak(format!("{} balls along a stroke", balls.len()));
             puff(*value).show(ui, |puff| PartKind::Sweep { balls: balls.clone(), puff })
         }
-        PartKind::Touches { touches, .. } => {
-            ui.weak(format!(
-                "{} touches. The touch tool (N) puts them down, moves them and takes them away.",
-                touches.len()
-            ));
-            None
-        }
-        PartKind::Sculpt { strokes, .. } => {
-            ui.weak(format!("{} strokes. The sculpt tool (U) makes more.", strokes.len()));
-            if strokes.is_empty() || !ui.button("Without the last stroke").clicked() {
-                return None;
-            }
-            let mut kind = kind.clone();
-            if let PartKind::Sculpt { strokes, .. } = &mut kind {
-                strokes.pop();
-            }
-            Some(ValueChange { to: kind, done: true })
-        }
         PartKind::Relief { on, picture, detail } => relief(ui, *detail)
             .map(|changed| changed.map(|detail| PartKind::Relief { on: on.clone(), picture: picture.clone(), detail })),
-        #[allow(unreachable_patterns)]
+        other => by_hand(ui, other),
+    }
+}
+
+/// What the pen made of a part; its marks are changed on the canvas.
+fn by_hand(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
+    let count = |n: usize, of: &str| format!("{n} {of}{}", if n == 1 { "" } else { "s" });
+    match kind {
+        PartKind::Touches { touches, .. } => {
+            let n = count(touches.len(), "touch").replace("touchs", "touches");
+            ui.weak(format!("{n}. The tool Touch (N) puts them down, moves them and takes them away."));
+            None
+        }
+        PartKind::Sculpt { on, strokes } => {
+            ui.weak(format!("{}. The tool Sculpt (U) makes more.", count(strokes.len(), "stroke")));
+            let (_, rest) = strokes.split_last()?;
+            let made = || PartKind::Sculpt { on: on.clone(), strokes: rest.to_vec() };
+            ui.button("Without the last stroke").clicked().then(|| ValueChange { to: made(), done: true })
+        }
         _ => None,
     }
 }
@@ -155,6 +155,9 @@ fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
     width.or(height).or(curve)
 }
 
+/// One of three numbers: its name, how it is set, and what it is.
+type AxisRow = (&'static str, fn(Vec3, f32) -> Vec3, f32);
+
 /// The numbers that a body has.
 fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
     let now = *now;
@@ -174,7 +177,7 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
         changed = row.show(ui, |tube| Primitive { tube, ..now }).or(changed);
     }
     if matches!(now.body, Body::Ellipsoid | Body::Box) {
-        let halves: [(&str, fn(Vec3, f32) -> Vec3, f32); 3] = [
+        let halves: [AxisRow; 3] = [
             ("Half width", |half, x| Vec3 { x, ..half }, now.half.x),
             ("Half height", |half, y| Vec3 { y, ..half }, now.half.y),
             ("Half depth", |half, z| Vec3 { z, ..half }, now.half.z),
@@ -189,7 +192,7 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
         changed = row.show(ui, |round| Primitive { round, ..now }).or(changed);
     }
     if now.body != Body::Sphere {
-        let turns: [(&str, fn(Vec3, f32) -> Vec3, f32); 3] = [
+        let turns: [AxisRow; 3] = [
             ("Turn over", |turn, x| Vec3 { x, ..turn }, now.turn_deg.x),
             ("Turn aside", |turn, y| Vec3 { y, ..turn }, now.turn_deg.y),
             ("Turn round", |turn, z| Vec3 { z, ..turn }, now.turn_deg.z),
