@@ -60,17 +60,20 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     assert_eq!(layers(&harness), ["creature", "Base"]);
     let made = parts(&harness);
     assert_eq!(made.len(), 2);
-    // The panel with the parts is in front, the nearest chosen: the head.
+    // The panel with the parts is in front, one of them chosen.
     harness.get_by_label("Part Part 2");
     assert!(harness.query_all_by_label("Pillow ↔ tube").next().is_some());
     steps(&mut harness);
 
     key(&mut harness, Modifiers::NONE, Key::P);
     assert_eq!(session(&harness).tool, ToolKind::Shape);
-    let (from, to) = (seen(&harness, 160.0, 120.0), seen(&harness, 160.0, 180.0));
-    drag(&mut harness, from, to);
-    let head = parts(&harness).pop().unwrap();
-    assert!(puff(&head) < 0.5, "dragged down it is flatter: {}", puff(&head));
+    let (head, down) = (seen(&harness, 160.0, 120.0), seen(&harness, 160.0, 180.0));
+    drag(&mut harness, head, head);
+    let chosen = session(&harness).active().unwrap().part.clone().unwrap();
+    // In the middle of the chosen part stands the handle of its height.
+    drag(&mut harness, head, down);
+    let part = |harness: &Story, id: &str| parts(harness).into_iter().find(|part| part.id == id).unwrap();
+    assert!(puff(&part(&harness, &chosen)) < 0.5, "dragged down it is flatter");
 
     key(&mut harness, Modifiers::NONE, Key::N);
     let at = seen(&harness, 150.0, 300.0);
@@ -78,8 +81,9 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     key(&mut harness, Modifiers::NONE, Key::U);
     let (from, to) = (seen(&harness, 110.0, 280.0), seen(&harness, 200.0, 320.0));
     drag(&mut harness, from, to);
-    let kinds: Vec<&str> = parts(&harness).iter().map(|part| part.kind.name()).collect();
-    assert_eq!(kinds, ["inflate", "touches", "sculpt", "inflate"], "on the body, behind the head");
+    let body = made.iter().find(|part| part.id != chosen).unwrap().id.clone();
+    let on_body: Vec<Arc<Part>> = parts(&harness).into_iter().filter(|part| part.on() == Some(body.as_str())).collect();
+    assert_eq!(on_body.iter().map(|part| part.kind.name()).collect::<Vec<_>>(), ["touches", "sculpt"]);
 
     key(&mut harness, Modifiers::NONE, Key::B);
     key(&mut harness, Modifiers::NONE, Key::F3);
