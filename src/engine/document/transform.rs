@@ -5,13 +5,13 @@
 //! through their transforms when they are prepared: live ones with their parameters taken along, pixels sampled once,
 //! however many transforms there were.
 
-mod apply;
+pub(super) mod apply;
 mod extent;
 
 pub use extent::FrameBox;
 
 use super::{Content, Group, Layer, LayerMask, MaskKind};
-use crate::math::plane_map::PixelMove;
+use crate::math::plane_map::{PixelMove, orthogonal};
 use crate::math::{COORDINATE, DVec2, Mat2, PlaneMap, Rect, Size, Vec2, range};
 use crate::raster::warp::{PixelMap, warped_plane};
 use crate::raster::{Plane, Resampling};
@@ -87,6 +87,14 @@ impl LayerMap {
     pub fn none(canvas: Size) -> Self {
         Self { plane: PlaneMap::IDENTITY, filter: Resampling::default(), canvas }
     }
+    /// Of pixels alone, seen through any map.
+    pub(super) fn of_plane(plane: PlaneMap, filter: Resampling, canvas: Size) -> Self {
+        Self { plane, filter, canvas }
+    }
+    /// The same after another map.
+    pub(super) fn after(&self, first: &PlaneMap) -> Self {
+        Self { plane: first.then(&self.plane), ..*self }
+    }
     /// With the transform of one more layer inside.
     pub fn within(&self, layer: &Layer) -> Self {
         let Some(transform) = &layer.transform else { return *self };
@@ -109,6 +117,10 @@ impl LayerMap {
     /// How much longer lengths become about a point of the frame: √|det J|.
     pub fn length_at(&self, p: Vec2) -> f32 {
         self.plane.stretch_at(p).map_or(1.0, |jacobian| jacobian.determinant().abs().sqrt())
+    }
+    /// How directions turn about a point of the frame, mirrored where the map mirrors.
+    pub fn turn_at(&self, p: Vec2) -> Mat2 {
+        self.plane.stretch_at(p).map_or(Mat2::IDENTITY, orthogonal)
     }
 }
 

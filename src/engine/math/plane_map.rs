@@ -182,6 +182,20 @@ impl PixelMove {
     }
 }
 
+/// The turn, or the mirror and turn, that is nearest to a map's matrix: its orthogonal factor. The identity of one that
+/// only scales.
+pub fn orthogonal(matrix: Mat2) -> Mat2 {
+    let mirror = Mat2::from_diagonal(vec2(if matrix.determinant() < 0.0 { -1.0 } else { 1.0 }, 1.0));
+    let m = matrix * mirror;
+    let (sine, cosine) = (m.x_axis.y - m.y_axis.x, m.x_axis.x + m.y_axis.y);
+    let length = sine.hypot(cosine);
+    if !(length > 0.0 && length.is_finite()) {
+        return mirror;
+    }
+    let (sine, cosine) = (sine / length, cosine / length);
+    Mat2::from_cols(vec2(cosine, sine), vec2(-sine, cosine)) * mirror
+}
+
 /// A point under a projective map, and the map's Jacobian there.
 fn project(map: &DMat3, p: Vec2) -> Option<(Vec2, Mat2)> {
     let v = *map * DVec3::new(f64::from(p.x), f64::from(p.y), 1.0);
@@ -240,6 +254,16 @@ mod tests {
         assert!(map.to_canvas(vec2(200.0, 150.0)).is_some());
         let crossed = [corners[0], corners[2], corners[1], corners[3]];
         assert_eq!(PlaneMap::quad(CANVAS, crossed), None, "crossed sides");
+    }
+    #[test]
+    fn the_orthogonal_factor_of_a_map_is_its_turn_and_mirror() {
+        let turn = Mat2::from_angle(0.7);
+        for matrix in [turn * 3.0, turn * Mat2::from_diagonal(vec2(-1.0, 1.0)) * 0.5] {
+            let found = orthogonal(matrix);
+            assert!((found - matrix * matrix.determinant().abs().sqrt().recip()).abs().x_axis.max_element() < 1e-6);
+        }
+        assert_eq!(orthogonal(Mat2::from_diagonal(vec2(2.0, 5.0))), Mat2::IDENTITY);
+        assert_eq!(orthogonal(Mat2::ZERO), Mat2::IDENTITY);
     }
     #[test]
     fn what_cannot_be_inverted_is_no_map() {

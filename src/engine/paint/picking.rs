@@ -1,11 +1,11 @@
 //! Finds the stroke under a point, and makes copies of a stroke in another place or style.
 //! Floor 3.
 
-use super::brush::Brush;
+use super::brush::{Brush, StrokeFrame};
 use super::scene::Scene;
 use super::selection::StrokeSelection;
 use super::stroke::{Sample, Stroke, render_tile};
-use crate::math::Vec2;
+use crate::math::{Mat2, Vec2};
 use crate::raster::{BlendMode, CoverageGrid, TILE, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
@@ -70,13 +70,30 @@ impl Stroke {
         self.with_brush(self.brush().clone()).within(selection)
     }
     /// The stroke where a map takes its samples: `place` tells where a point goes (`None`: nowhere), `length` how much
-    /// longer lengths become there. Its brush grows by the mean over the samples that are left.
-    pub fn mapped(&self, place: &dyn Fn(Vec2) -> Option<Vec2>, length: impl Fn(Vec2) -> f32) -> Stroke {
-        let placed = |sample: &Sample| Some(Sample { at: place(sample.at)?, ..*sample });
+    /// longer lengths become there, `turn` how directions turn there (an orthogonal matrix). Its brush grows by the
+    /// mean over the samples that are left and faces as the first of them does; the pen leans along.
+    pub fn mapped(
+        &self,
+        place: &dyn Fn(Vec2) -> Option<Vec2>,
+        length: impl Fn(Vec2) -> f32,
+        turn: impl Fn(Vec2) -> Mat2,
+    ) -> Stroke {
+        let placed = |sample: &Sample| {
+            let (at, turned) = (place(sample.at)?, turn(sample.at));
+            Some(Sample {
+                at,
+                tilt: if turned == Mat2::IDENTITY { sample.tilt } else { turned * sample.tilt },
+                ..*sample
+            })
+        };
         let (samples, lengths): (Vec<Sample>, Vec<f64>) =
             self.samples().iter().filter_map(|sample| Some((placed(sample)?, f64::from(length(sample.at))))).unzip();
         let mean = lengths.iter().sum::<f64>() / lengths.len().max(1) as f64;
-        let brush = if samples.is_empty() { self.brush().clone() } else { self.brush().scaled(mean as f32) };
+        let mut brush = if samples.is_empty() { self.brush().clone() } else { self.brush().scaled(mean as f32) };
+        let turned = self.samples().iter().find(|sample| place(sample.at).is_some()).map(|sample| turn(sample.at));
+        if let Some(turned) = turned.filter(|turned| *turned != Mat2::IDENTITY) {
+            brush.facing = StrokeFrame::of(turned * brush.facing.map());
+        }
         Stroke::new(brush, self.operator(), self.color(), samples)
     }
     /// The same movement of the hand with another brush.

@@ -9,7 +9,7 @@ use super::tile::{TILE, Tile, TileAt, transparent_f32};
 use super::{Plane, TileGrid};
 use crate::math::plane_map::PixelMove;
 use crate::math::srgb::quantise;
-use crate::math::{Mat2, Rect, Vec2, vec2};
+use crate::math::{Mat2, Rect, Size, Vec2, vec2};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -85,15 +85,20 @@ fn moved_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
 
 /// A map of the canvas, such as a mask's coverage, seen through a map; its border continues beyond it.
 pub fn warped_plane(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling) -> Plane<u8> {
+    warped_plane_onto(plane, map, filter, plane.size())
+}
+
+/// The same on a canvas of another size.
+pub fn warped_plane_onto(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling, size: Size) -> Plane<u8> {
     if let Some(by) = map.pixel_move() {
-        return Plane::from_fn(plane.size(), |x, y| {
+        return Plane::from_fn(size, |x, y| {
             let (x, y) = by.source(x as i32, y as i32);
             plane.clamped(x, y)
         });
     }
     let source = PlaneSource { plane };
     let warp = Warp { source: &source, map, filter };
-    let canvas = plane.size().rect();
+    let canvas = size.rect();
     let blocks: Vec<TileAt> = TileAt::covering(canvas).collect();
     let values: Vec<Vec<(i32, i32, u8)>> = blocks
         .par_iter()
@@ -103,7 +108,7 @@ pub fn warped_plane(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling) -
             out
         })
         .collect();
-    let mut out = Plane::filled(plane.size(), 0);
+    let mut out = Plane::filled(size, 0);
     values.into_iter().flatten().for_each(|(x, y, value)| out.set(x as usize, y as usize, value));
     out
 }

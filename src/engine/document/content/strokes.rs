@@ -5,9 +5,9 @@ use super::{Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameF
 use crate::Result;
 use crate::document::deep::{Done, Marks};
 use crate::document::{LayerMap, Live, Progress};
-use crate::math::Vec2;
+use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Scene, Selection, Stroke, StrokeSelection, stroke};
-use crate::raster::warp::warped_plane;
+use crate::raster::warp::warped_plane_onto;
 use crate::raster::{CoverageGrid, PlanarTile, TileAt};
 use crate::surface::{Bend, Deformation};
 use std::collections::HashMap;
@@ -87,7 +87,7 @@ impl LayerKind for Live<StrokeList> {
         let mut on_canvas = |stroke: &Arc<Stroke>| match seen.get(&Arc::as_ptr(stroke)) {
             Some(seen) => Arc::clone(seen),
             None => {
-                let mapped = stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p));
+                let mapped = stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p), |p| map.turn_at(p));
                 Arc::new(mapped.within(stroke.selection().map(|own| selected(own, map, &mut selections))))
             }
         };
@@ -170,8 +170,16 @@ fn selected(
     known: &mut HashMap<*const Selection, Arc<Selection>>,
 ) -> StrokeSelection {
     let warped = || {
-        let plane = own.coverage().to_plane(map.canvas().rect());
-        Arc::new(Selection::new(CoverageGrid::from_plane(&warped_plane(&plane, map, map.filter), 0, 0)))
+        let (canvas, coverage) = (map.canvas(), own.coverage());
+        // Beyond the canvas of its own frame there may be some, too; a little more, so that it ends.
+        let rect = coverage.covered().grown(2).intersect(map.plane.source_rect(canvas.rect()));
+        if rect.is_empty() {
+            return Arc::default();
+        }
+        let corner = PlaneMap::translation(vec2(rect.x0 as f32, rect.y0 as f32));
+        let from_corner = map.after(&corner);
+        let warped = warped_plane_onto(&coverage.to_plane(rect), &from_corner, map.filter, canvas);
+        Arc::new(Selection::new(CoverageGrid::from_plane(&warped, 0, 0)))
     };
     StrokeSelection::new(match own.moved == Vec2::ZERO {
         true => known.entry(Arc::as_ptr(&own.selection)).or_insert_with(warped).clone(),
