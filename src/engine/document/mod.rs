@@ -4,6 +4,7 @@
 pub mod assistants;
 mod behind;
 pub mod cache;
+pub mod canvas_change;
 mod compose;
 pub mod content;
 pub mod cut;
@@ -34,6 +35,7 @@ pub mod view;
 mod weight;
 
 pub use assistants::{Assistant, AssistantKind};
+pub use canvas_change::CanvasChange;
 pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use deep::Highlights;
 pub use diff::diff;

@@ -8,10 +8,14 @@ mod selections;
 pub use reducer::{DocumentReducer, ReducedSurface, SurfaceReduction};
 
 use super::cache::LayerCache;
-use super::{Document, Layer, MaskKind, Part, PixelLayer};
-use crate::math::{Rect, Size, Vec2, srgb::quantise, vec2};
+use super::{
+    Content, DetailSource, Document, Layer, LayerMap, LayerTransform, Live, MaskKind, NormalLayer, Part, PixelLayer,
+    canvas_change,
+};
+use crate::math::{PlaneMap, Rect, Size, Vec2, srgb::quantise, vec2};
 use crate::paint::{Sample, Selection, Stroke};
-use crate::raster::{Plane, TILE, Tile, TileAt, TileGrid};
+use crate::raster::warp::{warped, warped_plane_onto};
+use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
 use crate::surface::SurfaceError;
 use rayon::prelude::*;
@@ -35,6 +39,35 @@ impl Document {
     }
 }
 
+impl Document {
+    /// The same picture on a canvas of `to`'s size, its paint sampled for good; the aspect may be another one. Live
+    /// layers change their numbers, images their transforms where the aspect changes. Layers keep their ids.
+    ///
+    /// The caller must check that the result fits the memory. Fails if nothing is left of a surface thinner than the
+    /// new pixels.
+    pub fn resampled(&self, to: Size, filter: Resampling) -> Result<Document, SurfaceError> {
+        let Some(scale) = CanvasScale::onto(self.size, to, filter) else { return Ok(self.clone()) };
+        let maps = self.maps_surface().map(|maps| maps.through(to, &scale.map())).transpose()?;
+        let source = self.surface_source.as_ref().zip(maps.as_ref());
+        let scaled = Document {
+            size: to,
+            surface_source: source.map(|(source, maps)| Arc::new(canvas_change::placed(source, maps, to))),
+            surface: maps,
+            parts: Arc::default(),
+            layers: scale.layers(&self.layers),
+            guides: Arc::new(self.guides.scaled(scale.per_axis)),
+            assistants: Arc::new(self.assistants.iter().map(|own| own.scaled(scale.per_axis)).collect()),
+            ..scale.selected(self)
+        };
+        let part = |part: &Arc<Part>| Arc::new(part.scaled(scale.per_axis, scale.length, |plane| scale.plane(plane)));
+        let shaped = match self.parts.is_empty() {
+            true => scaled,
+            false => scaled.with_parts(self.parts.list.iter().map(part).collect()),
+        };
+        Ok(shaped.with_selections_found())
+    }
+}
+
 /// Selections and what became of them, by the addresses of the old ones.
 type ScaledSelections = HashMap<usize, (Arc<Selection>, Arc<Selection>)>;
 
@@ -48,6 +81,8 @@ pub(super) struct CanvasScale {
     to: Size,
     /// Seen for a moment only: what is fine is read coarsely.
     is_draft: bool,
+    /// How pixels are sampled; by the mean over what they cover without one.
+    filter: Option<Resampling>,
     /// Selections that were scaled, by their addresses.
     selections: Mutex<ScaledSelections>,
 }
@@ -60,7 +95,7 @@ impl CanvasScale {
             return None;
         }
         let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
-        Some(Self { per_axis, length: factor, from, to, is_draft: false, selections: Mutex::default() })
+        Some(Self { per_axis, length: factor, from, to, is_draft: false, filter: None, selections: Mutex::default() })
     }
     /// The same of a document that is seen for a moment only.
     fn for_a_moment(self) -> Self {
@@ -80,6 +115,52 @@ impl CanvasScale {
         // NaN and what is negative become 0.
         if self.is_draft { smaller.min(covered) as u32 } else { 0 }
     }
+    fn onto(from: Size, to: Size, filter: Resampling) -> Option<Self> {
+        let per_axis = vec2(to.width as f32 / from.width as f32, to.height as f32 / from.height as f32);
+        let length = per_axis.element_product().sqrt();
+        let is_some = to != from && to.area() > 0;
+        let (filter, selections) = (Some(filter), Mutex::default());
+        is_some.then(|| Self { per_axis, length, from, to, is_draft: false, filter, selections })
+    }
+    fn map(&self) -> PlaneMap {
+        let side = |to: u32, from: u32| f64::from(to) / f64::from(from);
+        let (x, y) = (side(self.to.width, self.from.width), side(self.to.height, self.from.height));
+        PlaneMap::affine([x, 0.0, 0.0, y, 0.0, 0.0]).unwrap_or_default()
+    }
+    /// The sampler of pixels, where there is one, and what they are seen through.
+    fn sampler(&self) -> Option<LayerMap> {
+        let reach = Size::new(self.from.width.max(self.to.width), self.from.height.max(self.to.height));
+        Some(LayerMap::of_plane(self.map(), self.filter?, reach))
+    }
+    /// An image that the change of the aspect stretches, which its placement cannot say: by its transform. `None` of
+    /// other layers, and where a mask lies in the layer's frame.
+    fn stretched(&self, layer: &Layer) -> Option<Layer> {
+        let filter = self.filter?;
+        let off_px = (self.per_axis.x / self.per_axis.y - 1.0).abs() * self.to.longer_side();
+        let has_picture = layer.mask.as_ref().is_some_and(|mask| matches!(mask.kind, MaskKind::File { .. }));
+        if off_px <= 1.5 || has_picture {
+            return None;
+        }
+        let content = match &layer.content {
+            Content::Image(live) => {
+                let mut image = live.params().clone();
+                image.placement = image.placement.on_canvas_of(self.from, self.to, image.source.picture.size);
+                let longer = self.length * self.from.longer_side() / self.to.longer_side();
+                image.bend.operator = image.bend.operator.scaled(self.length).on_canvas_of(longer);
+                Content::Image(Live::new(image))
+            }
+            Content::Normals(normals) => {
+                let DetailSource::Map { map, .. } = &normals.source else { return None };
+                let placement = normals.placement.on_canvas_of(self.from, self.to, map.size());
+                Content::Normals(NormalLayer { placement, ..normals.clone() })
+            }
+            _ => return None,
+        };
+        let own = layer.transform.map_or(Some(PlaneMap::IDENTITY), |own| own.map(self.from))?;
+        let filter = layer.transform.map_or(filter, |own| own.filter);
+        let transform = Some(LayerTransform::of_map(&own.then(&self.map()), filter, self.to)?);
+        Some(Layer { content, transform, cache: LayerCache::default(), ..layer.clone() })
+    }
     /// Parts with their lengths scaled, and the surface that they make on the new canvas.
     fn parts(&self, old: &Document, new: Document) -> Result<Document, SurfaceError> {
         let part = |part: &Arc<Part>| Arc::new(part.scaled(self.per_axis, self.length, |plane| self.plane(plane)));
@@ -92,6 +173,9 @@ impl CanvasScale {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()
     }
     fn layer(&self, layer: &Layer) -> Layer {
+        if let Some(stretched) = self.stretched(layer) {
+            return stretched;
+        }
         let mut next = Layer { content: layer.content.scaled(self), cache: LayerCache::default(), ..layer.clone() };
         next.transform = layer.transform.map(|transform| transform.scaled(self.per_axis));
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
@@ -132,6 +216,9 @@ impl CanvasScale {
             side(y1, self.per_axis.y).ceil() as i32,
         );
         let tiles: Vec<TileAt> = TileAt::covering(bounds).collect();
+        if let Some(sampler) = self.sampler() {
+            return warped(grid, &sampler, sampler.filter, &tiles);
+        }
         let resampled: Vec<Option<Tile>> = tiles.par_iter().map(|&at| self.tile(grid, at)).collect();
         let mut next = TileGrid::for_rect(bounds);
         tiles.into_iter().zip(resampled).for_each(|(at, tile)| next.set(at, tile.map(Arc::new)));
@@ -162,12 +249,16 @@ impl CanvasScale {
     }
     /// A map of the canvas resampled; its border continues beyond it.
     fn plane(&self, plane: &Plane<u8>) -> Plane<u8> {
-        if plane.size() != self.from {
-            return plane.clone();
+        // Pictures of parts may have a size of their own.
+        let side = |v: u32, s: f32| ((f64::from(v) * f64::from(s)).ceil() as u32).max(1);
+        let own = Size::new(side(plane.size().width, self.per_axis.x), side(plane.size().height, self.per_axis.y));
+        let to = if plane.size() == self.from { self.to } else { own };
+        if let Some(sampler) = self.sampler() {
+            return warped_plane_onto(plane, &sampler, sampler.filter, to);
         }
-        let columns: Vec<_> = (0..self.to.width as i32).map(|x| covered(x, self.per_axis.x)).collect();
-        let rows: Vec<_> = (0..self.to.height as i32).map(|y| covered(y, self.per_axis.y)).collect();
-        Plane::from_fn(self.to, |x, y| {
+        let columns: Vec<_> = (0..to.width as i32).map(|x| covered(x, self.per_axis.x)).collect();
+        let rows: Vec<_> = (0..to.height as i32).map(|y| covered(y, self.per_axis.y)).collect();
+        Plane::from_fn(to, |x, y| {
             let of_row = |&(py, wy): &(i32, f32)| {
                 columns[x].iter().map(|&(px, wx)| wx * wy * f32::from(plane.clamped(px, py))).sum::<f32>()
             };

@@ -45,6 +45,14 @@ impl Placement {
         let center = canvas.center() - alpha * longer * turn;
         Self { center, scale: scale.max(*Self::SCALE.start()).min(*Self::SCALE.end()), rotation: 0.0 }
     }
+    /// The same place on another canvas, px for px, of a picture that covers both by its own aspect.
+    pub fn on_canvas_of(&self, from: Size, to: Size, picture: Size) -> Self {
+        let cover = |canvas: Size| {
+            (canvas.width as f32 / picture.width as f32).max(canvas.height as f32 / picture.height as f32)
+        };
+        let scale = self.scale * (cover(from) / cover(to));
+        Self { scale: scale.max(*Self::SCALE.start()).min(*Self::SCALE.end()), ..*self }
+    }
     /// P⁻¹: texels of a picture from canvas px. A picture of the canvas's own size at scale 1 maps pixel for pixel.
     pub fn texels_from_canvas(&self, canvas: Size, picture: Size) -> Affine2 {
         let cover = (canvas.width as f32 / picture.width as f32).max(canvas.height as f32 / picture.height as f32);

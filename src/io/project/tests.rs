@@ -223,6 +223,28 @@ fn maps_that_were_turned_come_back_as_their_files_and_a_matrix() {
     let refused = Document { surface_source: Some(Arc::new(flat)), ..plain }.fits(None).unwrap_err();
     assert!(refused.contains("cannot be inverted"), "{refused}");
 }
+#[test]
+fn a_drawing_whose_canvas_was_changed_again_and_again_is_saved_as_it_is() {
+    use crate::document::canvas_change::{CanvasAnchor, CanvasChange, CanvasMirror};
+    let mut here = everything(64);
+    for step in 0..7 {
+        let size = here.size;
+        let change = match step {
+            0 => CanvasChange::quarter_turns(size, 1),
+            1 => CanvasChange::mirrored(size, CanvasMirror::LeftRight),
+            2 => CanvasChange::crop(size, crate::math::Rect::new(9, 5, 60, 58)).unwrap(),
+            3 => CanvasChange::turned(size, 25.0),
+            4 => CanvasChange::resized(size, Size::new(90, 70), CanvasAnchor::BottomRight).unwrap(),
+            5 => CanvasChange::turned(size, -25.0),
+            _ => CanvasChange::mirrored(size, CanvasMirror::UpDown),
+        };
+        here = here.on_other_canvas(&change).unwrap();
+        assert_eq!(here.fits(None), Ok(()), "step {step}");
+        assert_same(&here, &read_back(&written(&here)).document);
+    }
+    let scaled = here.resampled(Size::new(120, 130), crate::raster::Resampling::Sharp).unwrap();
+    assert_same(&scaled, &read_back(&written(&scaled)).document);
+}
 /// The recipe in a project.
 fn text_of(bytes: &[u8]) -> String {
     let found = entries(bytes).into_iter().find(|(name, _)| name == DOCUMENT).unwrap_or_else(|| panic!("no recipe"));

@@ -43,7 +43,8 @@ impl LayerReader<'_> {
                 (kind, _) => derived(kind, &mut fields)?,
             },
             None => {
-                let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, self.size)?;
+                let (file, coverage) =
+                    self.pictures.coverage(self.source, &fields.required("file")?, Some(self.size))?;
                 MaskKind::File { file, coverage }
             }
         };

@@ -135,7 +135,7 @@ impl LayerReader<'_> {
             radius: fields.number("radius", plain.radius, Detail::RADIUS)?,
             edge: fields.number("edge", plain.edge, Detail::EDGE)?,
         };
-        let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, self.size)?;
+        let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, None)?;
         Ok(PartKind::Relief { on: on(fields)?, picture: CoverageFile { file, coverage }, detail })
     }
     fn outline(&mut self, fields: &mut Fields) -> Result<OutlineSource> {
@@ -145,7 +145,7 @@ impl LayerReader<'_> {
         let source = if let Some(layer) = fields.get("layer") {
             OutlineSource::Layer { layer: layer.text()?.to_owned(), color }
         } else if let Some(file) = fields.get("file") {
-            let (file, coverage) = self.pictures.coverage(self.source, &file, self.size)?;
+            let (file, coverage) = self.pictures.coverage(self.source, &file, None)?;
             OutlineSource::File(CoverageFile { file, coverage })
         } else if let Some(path) = fields.get("path") {
             OutlineSource::Path(points(&path, OutlineSource::MOST_POINTS)?)

@@ -134,16 +134,17 @@ impl PictureCache {
         &mut self,
         source: RecipeSource,
         name: &JsonNode,
-        canvas: Size,
+        canvas: Option<Size>,
     ) -> Result<(String, Arc<Plane<u8>>)> {
         let file = name.text()?.to_owned();
-        if let Some(known) = self.coverages.get(&file) {
+        let fits = |plane: &Plane<u8>| canvas.is_none_or(|canvas| canvas == plane.size());
+        if let Some(known) = self.coverages.get(&file).filter(|known| fits(known)) {
             return Ok((file, known.clone()));
         }
         let bytes = bytes(source, name)?;
         let plane = picture::decode_coverage(&source.files.path(&file), &bytes, source.budget);
         let plane = Arc::new(plane.map_err(|e| name.led_to(e))?);
-        if plane.size() != canvas {
+        if let Some(canvas) = canvas.filter(|_| !fits(&plane)) {
             return Err(name.refused(format!("“{file}” has {} pixels, the canvas {canvas}", plane.size())));
         }
         self.coverages.insert(file.clone(), plane.clone());

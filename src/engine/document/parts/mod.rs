@@ -140,7 +140,7 @@ impl Default for Inflation {
 pub enum OutlineSource {
     /// The alpha of a layer, by its name, the topmost of several; or of it what has a colour.
     Layer { layer: String, color: Option<Color> },
-    /// A picture of coverage, as large as the canvas.
+    /// A picture of coverage; its upper left corner is the frame's.
     File(CoverageFile),
     /// A closed polygon, canvas px.
     Path(Vec<Vec2>),

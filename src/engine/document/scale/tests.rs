@@ -86,6 +86,7 @@ fn reduced(grid: &TileGrid, factor: f32) -> TileGrid {
         from: SIZE,
         to,
         is_draft: false,
+        filter: None,
         selections: Default::default(),
     }
     .grid(grid)
@@ -131,4 +132,40 @@ fn weights_of_the_covered_pixels_add_up_to_one() {
     }
     assert_eq!(covered(3, 0.5), [(6, 0.5), (7, 0.5)]);
     assert_eq!(covered(1, 2.0), [(0, 0.75), (1, 0.25)]);
+}
+#[test]
+fn an_image_size_samples_paint_as_it_is_told_and_keeps_the_rest_live() {
+    let full = document();
+    let (mean, _) = difference(
+        &picture(&full.resampled(Size::new(120, 80), crate::raster::Resampling::Smooth).unwrap()),
+        &reduced(&picture(&full), 0.5),
+        Size::new(120, 80),
+    );
+    assert!(mean < 2.0, "mean difference {mean}");
+    let twice = full.resampled(SIZE.scaled(2.0), crate::raster::Resampling::Nearest).unwrap();
+    let tiles = |document: &Document| match &document.layer_named("pixels").unwrap().content {
+        Content::Pixels(pixels) => pixels.tiles.clone(),
+        _ => unreachable!(),
+    };
+    for (x, y) in [(0, 12), (-15, 30), (100, 90)] {
+        assert_eq!(tiles(&twice).pixel(2 * x + 1, 2 * y), tiles(&full).pixel(x, y));
+    }
+    // Another aspect: the picture is stretched, images too.
+    let wide = Size::new(240, 80);
+    let stretched = full.resampled(wide, crate::raster::Resampling::Smooth).unwrap();
+    assert_eq!(stretched.size, wide);
+    let image = stretched.layer_named("image").unwrap();
+    assert!(image.transform.is_some());
+    let flat = |document: &Document, only: &str| {
+        let layer = document.layer_named(only).unwrap().clone();
+        let alone = Layer { clip_to_surface: false, opacity: 1.0, ..Layer::clone(&layer) };
+        picture(&Document { surface: None, layers: vec![Arc::new(alone)], ..Document::empty(document.size) })
+    };
+    let (before, after) = (flat(&full, "image"), flat(&stretched, "image"));
+    let far = |x: i32, y: i32| {
+        let (a, b) = (before.pixel(x, 2 * y), after.pixel(x, y));
+        (0..3).map(|c| a[c].abs_diff(b[c])).max().unwrap()
+    };
+    let worst = [(40, 20), (120, 40), (200, 60), (70, 70)].map(|(x, y)| far(x, y)).into_iter().max().unwrap();
+    assert!(worst <= 8, "{worst}");
 }

@@ -80,7 +80,8 @@ fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<LayerTransfo
     transform.map(canvas).map(|_| transform)
 }
 
-fn in_place(layer: &Arc<Layer>, canvas: Size) -> Arc<Layer> {
+/// A layer on the canvas without its transform, where its kind can say so.
+pub(in crate::document) fn in_place(layer: &Arc<Layer>, canvas: Size) -> Arc<Layer> {
     if layer.content.group().is_some() {
         return handed_down(layer, canvas).map_or_else(|| layer.clone(), Arc::new);
     }
@@ -116,7 +117,8 @@ impl crate::paint::Gradient {
     }
 }
 
-fn placed(placement: &Placement, frame: &PlaneMap) -> Option<Placement> {
+/// A placement on the canvas that a frame lies on; `None` of a frame that is mirrored, skewed or in perspective.
+pub(in crate::document) fn placed(placement: &Placement, frame: &PlaneMap) -> Option<Placement> {
     let map = similarity(frame, false)?;
     let along = map.matrix2.x_axis;
     Some(Placement {

@@ -80,6 +80,15 @@ impl Operator {
             _ => None,
         }
     }
+    /// The same bend on a canvas whose length *L* is another: `ratio` of the old one to the new one, lengths in px
+    /// being the same.
+    pub fn on_canvas_of(self, ratio: f32) -> Self {
+        match self {
+            Operator::Normal { alpha, beta, detail } => Operator::Normal { alpha: alpha * ratio, beta, detail }.held(),
+            Operator::Reflection { alpha, detail } => Operator::Reflection { alpha: alpha * ratio, detail }.held(),
+            of_px => of_px,
+        }
+    }
     /// On a canvas so many times as large: lengths in px grow with it.
     pub fn scaled(self, by: f32) -> Self {
         match self {
