@@ -28,9 +28,10 @@ use crate::io::fs::Disk;
 use crate::io::recipe::{Preset, presets};
 use crate::io::replace::is_same_file;
 use crate::io::{Overwrite, Terms};
-use crate::math::{Vec2, srgb::Color};
+use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
+use crate::tools::crop::CropAspect;
 use crate::tools::select::SelectSettings;
 use crate::tools::snap::{SnapLines, ViewAids};
 use crate::tools::symmetry::SymmetryAxes;
@@ -73,6 +74,10 @@ pub struct Session {
     pub shape: ShapeSettings,
     /// The corners of the lasso that is being set.
     pub lasso: Vec<Vec2>,
+    /// The frame of the crop tool, canvas px.
+    pub crop: Option<Rect>,
+    /// The aspect that it keeps.
+    pub crop_aspect: CropAspect,
     /// The outline of the selection is not drawn.
     pub hides_selection: bool,
     /// What was copied last.
@@ -122,6 +127,8 @@ impl Default for Session {
             aids: ViewAids::default(),
             shape: ShapeSettings::default(),
             lasso: Vec::new(),
+            crop: None,
+            crop_aspect: CropAspect::Free,
             hides_selection: false,
             copied: None,
             presses_by_speed: false,

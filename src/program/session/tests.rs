@@ -1,5 +1,6 @@
 //! Stories: what a user does, told as the lines of a replay.
 
+mod canvas;
 mod held;
 mod selecting;
 mod several;

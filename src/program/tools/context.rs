@@ -1,11 +1,12 @@
 //! What tools are told when the pen comes down.
 //! Floor 5.
 
+use super::crop::CropAspect;
 use super::snap::{SnapTargets, ViewAids};
 use super::symmetry::SymmetryAxes;
 use super::{SelectSettings, ShapeSettings, Symmetry};
 use crate::document::{Document, LayerId};
-use crate::math::{Vec2, srgb::Color};
+use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
 
@@ -38,6 +39,9 @@ pub struct ToolContext<'a> {
     pub part: Option<&'a str>,
     /// The corners of the lasso that is being set.
     pub lasso: &'a [Vec2],
+    /// The frame of the crop tool, and the aspect that it keeps.
+    pub crop: Option<Rect>,
+    pub crop_aspect: CropAspect,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
     /// Where the axes of symmetry stand.
@@ -69,6 +73,8 @@ impl<'a> ToolContext<'a> {
             shape: ShapeSettings::default(),
             part: None,
             lasso: &[],
+            crop: None,
+            crop_aspect: CropAspect::Free,
             strokes: &[],
             axes: SymmetryAxes::default(),
             snap: SnapTargets::none(),
@@ -166,6 +172,9 @@ impl KeptContext {
             shape,
             part: self.part.as_deref(),
             lasso: &self.lasso,
+            // Only strokes begin with a later sample.
+            crop: None,
+            crop_aspect: CropAspect::Free,
             strokes: &self.strokes,
             snap: &self.snap,
             aids,

@@ -6,6 +6,7 @@ pub mod anchors;
 pub mod assistants;
 pub mod brush;
 mod context;
+pub mod crop;
 pub mod eyedropper;
 pub mod fill;
 pub mod gradient;
@@ -24,7 +25,7 @@ pub mod symmetry;
 pub mod transform;
 
 use crate::document::{Document, LayerId};
-use crate::math::{Vec2, Vec3, srgb::Color};
+use crate::math::{Rect, Vec2, Vec3, srgb::Color};
 use crate::paint::Sample;
 pub use context::ToolContext;
 pub use select::SelectSettings;
@@ -45,6 +46,7 @@ pub enum ToolKind {
     Move,
     Transform,
     Assistants,
+    Crop,
     Strokes,
     Shape,
     Touch,
@@ -74,7 +76,7 @@ pub struct ToolRow {
 }
 
 impl ToolKind {
-    pub const ALL: [ToolRow; 21] = [
+    pub const ALL: [ToolRow; 22] = [
         ToolRow {
             kind: ToolKind::Brush,
             name: "brush",
@@ -139,6 +141,14 @@ impl ToolKind {
             key: 'Y',
             hint: "Drag to lay an assistant, or a handle of one or of the symmetry's axes; Alt-click takes one away. \
                    Strokes go along them",
+        },
+        ToolRow {
+            kind: ToolKind::Crop,
+            name: "crop",
+            label: "Crop",
+            key: 'C',
+            hint: "Drag a frame, also beyond the canvas, and its handles; Shift keeps the aspect. Enter crops, Escape \
+                   gives up",
         },
         ToolRow {
             kind: ToolKind::Strokes,
@@ -226,8 +236,8 @@ impl ToolKind {
     }
     /// The pen snaps to guides, the grid and edges, whatever is done with it.
     pub fn snaps(self) -> bool {
-        use ToolKind::{Assistants, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
-        matches!(self, Assistants | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
+        use ToolKind::{Assistants, Crop, Gradient, Move, SelectEllipse, SelectRectangle, Transform};
+        matches!(self, Assistants | Crop | Gradient | Move | SelectEllipse | SelectRectangle | Transform)
     }
     /// It makes selections.
     pub fn selects(self) -> bool {
@@ -298,6 +308,8 @@ pub enum Outcome {
     ChosenPart(String),
     /// Touches give this direction from now on.
     Direction(Vec3),
+    /// The crop tool's frame from now on.
+    Frame(Rect),
     /// Clone brushes copy from here from now on.
     CloneFrom(Vec2),
     /// Nothing was started, for a reason to show.
@@ -344,6 +356,7 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Move => move_content::press(context, pen),
         ToolKind::Transform => transform::press(context, pen),
         ToolKind::Assistants => assistants::press(context, pen),
+        ToolKind::Crop => crop::press(context, pen),
         ToolKind::Strokes => strokes::press(context, pen),
         ToolKind::Shape => shape::part::press(context, pen),
         ToolKind::Touch => shape::touch::press(context, pen),

@@ -1,6 +1,10 @@
 //! The transform tool: a frame with handles around the chosen layers and groups, which stay live until it is applied.
 //! Floor 5. What a layer becomes under its transform is `document::transform`'s.
 
+mod numbers;
+
+pub use numbers::FrameNumbers;
+
 use super::snap::{SnapLines, SnapTargets};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::transform::FrameBox;

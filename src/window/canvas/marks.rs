@@ -27,6 +27,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
         super::frame::draw(painter, session, &to_screen);
     }
     super::assistants::draw(painter, session, &to_screen, tool == ToolKind::Assistants);
+    if tool == ToolKind::Crop {
+        super::crop::draw(painter, session, &to_screen);
+    }
     if tool == ToolKind::Strokes {
         chosen(painter, session, &to_screen);
     }

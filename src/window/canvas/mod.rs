@@ -5,6 +5,7 @@
 mod ants;
 mod assistants;
 mod blocks;
+pub mod crop;
 mod frame;
 mod frame_input;
 mod guides;
@@ -131,6 +132,12 @@ impl Canvas {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
         }
+        // So is one that has become another, if the last one was.
+        let last = self.wanted.as_ref().filter(|_| self.tab == Some(tab.key)).map(|(last, _)| last.size);
+        if last.is_some_and(|last| last != tab.document().size && view == CanvasView::fitting(last, self.area_pt)) {
+            actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
+            ui.ctx().request_repaint();
+        }
         let middle = rect.center();
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();
@@ -171,6 +178,7 @@ impl Canvas {
         marks::draw(&painter, session, screen_from_canvas, under, tool);
         self.parts.draw(&painter, session, screen_from_canvas, under, tool);
         lasso_keys(ui, session, actions);
+        crop::keys(ui, session, actions);
         if tool == ToolKind::Anchors {
             self.insets.draw(ui.ctx(), session, &painter);
             self.trouble = self.trouble.take().or(self.insets.trouble.take());

@@ -5,6 +5,7 @@ mod edit;
 mod file;
 mod guides;
 mod help;
+mod image;
 mod layer;
 mod paint;
 mod parts;
@@ -17,9 +18,10 @@ mod view;
 pub use row::MenuCommand;
 
 /// The menus and what is in them.
-pub const MENUS: [(&str, &[MenuCommand]); 7] = [
+pub const MENUS: [(&str, &[MenuCommand]); 8] = [
     ("File", file::COMMANDS),
     ("Edit", edit::COMMANDS),
+    ("Image", image::COMMANDS),
     ("Select", select::COMMANDS),
     ("Layer", layer::COMMANDS),
     ("Paint", paint::COMMANDS),
@@ -37,7 +39,7 @@ pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
 
 /// Every command, menu by menu.
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {
-    const EVERY: [(&str, &[MenuCommand]); 7] = MENUS;
+    const EVERY: [(&str, &[MenuCommand]); 8] = MENUS;
     let menus = EVERY.into_iter().flat_map(|(_, commands)| commands);
     menus.chain(SHADING).chain(PARTS).chain(TRANSFORMS).chain(GUIDES).filter(|command| !command.is_line())
 }

@@ -44,9 +44,11 @@ pub const COMMANDS: &[MenuCommand] = &[
     }),
 ];
 
-/// There is a transform, and Enter closes no lasso.
+/// There is a transform, and Enter neither closes a lasso nor crops.
 fn is_transformed(session: &Session) -> bool {
-    let Some(tab) = session.active().filter(|_| session.lasso.is_empty()) else { return false };
+    let Some(tab) = session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none()) else {
+        return false;
+    };
     let has_transform = |id| tab.document().layer(id).is_some_and(|layer| layer.transform.is_some());
     tab.chosen_layers().into_iter().any(has_transform)
 }

@@ -1,6 +1,7 @@
 //! Dialogs: one at a time, over the window. Each is a struct that holds the input and a function that shows it.
 //! Floor 7.
 
+pub mod canvas;
 pub mod edge;
 pub mod export;
 pub mod grid;
@@ -34,6 +35,9 @@ pub enum Dialog {
     Edge(edge::EdgeDialog),
     Keep(edge::KeepDialog),
     Grid,
+    Canvas(canvas::CanvasSizeDialog),
+    ImageSize(canvas::ImageSizeDialog),
+    Turn(canvas::TurnDialog),
     Export(export::ExportDialog),
     Import(Box<import::ImportDialog>),
     Path(path::PathDialog),
@@ -105,6 +109,9 @@ impl Dialog {
                     keep.show(ui, &names, requests)
                 }
                 Dialog::Grid => grid::show(ui, session, requests),
+                Dialog::Canvas(canvas) => canvas.show(ui, requests),
+                Dialog::ImageSize(image) => image.show(ui, requests),
+                Dialog::Turn(turn) => turn.show(ui, requests),
                 Dialog::Export(export) => export.show(ui, session, preview),
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),

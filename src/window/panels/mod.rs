@@ -6,6 +6,7 @@ mod brush;
 pub mod brush_mode;
 pub mod brushes;
 pub mod colors;
+mod crop;
 mod curve;
 pub mod fill;
 pub mod history;

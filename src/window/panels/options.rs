@@ -1,7 +1,7 @@
 //! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
-use super::{assistants, brush_mode, fill, select, shaping, transform};
+use super::{assistants, brush_mode, crop, fill, select, shaping, transform};
 use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
@@ -39,6 +39,9 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
     if session.tool.shapes() {
         return drop(ui.weak("The shape is what everything bends over: parts, nearest first, are in the panel Shape"));
+    }
+    if session.tool == ToolKind::Crop {
+        return drop(ui.weak("Everything goes along with the canvas; paint beyond it is kept"));
     }
     if session.tool.selects() {
         return drop(
@@ -88,6 +91,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         tool if tool.shapes() => shaping::options(ui, session, requests),
         ToolKind::Transform => transform::options(ui, session, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
+        ToolKind::Crop => crop::options(ui, session, requests),
         tool => drop(ui.weak(tool.row().hint)),
     }
 }

@@ -10,7 +10,9 @@ mod work;
 
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
-use super::dialogs::{AfterUnsaved, Dialog, DialogAnswer, edge, export, import, maps, new, palette, shape, shortcuts};
+use super::dialogs::{
+    AfterUnsaved, Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shape, shortcuts,
+};
 use super::files::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
 use super::panel_layout::PanelSide;
@@ -269,6 +271,10 @@ impl MainWindow {
             }
             WindowRequest::Close(tab) => self.close(ctx, tab),
             WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            WindowRequest::CanvasSizeDialog | WindowRequest::ImageSizeDialog | WindowRequest::TurnDialog => {
+                let size = self.session.active().map(|tab| tab.document().size);
+                self.dialogs.extend(size.map(|size| canvas::asked(&ask, size)));
+            }
             WindowRequest::EdgeDialog(change) => self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change))),
             WindowRequest::KeepDialog => self.dialogs.push(Dialog::Keep(edge::KeepDialog::default())),
             WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),

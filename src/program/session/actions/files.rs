@@ -128,7 +128,10 @@ impl FileAction {
                 let import = storage::import(&source)?;
                 replace_maps(session, &source, import)?;
             }
-            FileAction::Tab { index } => session.current = (*index).min(session.open_documents.len().saturating_sub(1)),
+            FileAction::Tab { index } => {
+                session.crop = None;
+                session.current = (*index).min(session.open_documents.len().saturating_sub(1));
+            }
             FileAction::Close { index } => session.close_document(*index),
         }
         Ok(())

@@ -110,6 +110,7 @@ impl HandAction {
             HandAction::Tool { tool } => {
                 session.drop_gesture();
                 session.lasso.clear();
+                session.crop = None;
                 session.tool = *tool;
             }
             HandAction::Preset { name } => session.take_preset(name),

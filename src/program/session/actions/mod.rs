@@ -1,6 +1,7 @@
 //! Everything that can be done, as values: the window creates them, a replay reads them, [`Action::apply`] performs
 //! them. Floor 6. There is one small enum per area, with its `apply` in its own file.
 
+pub mod canvas;
 pub mod clipboard;
 pub mod edit;
 pub mod files;
@@ -17,6 +18,7 @@ pub mod selection;
 pub mod strokes;
 pub mod views;
 
+pub use canvas::CanvasAction;
 pub use clipboard::ClipboardAction;
 pub use edit::EditAction;
 pub use files::FileAction;
@@ -37,6 +39,7 @@ use serde_json::Value;
 /// One action.
 #[derive(Clone)]
 pub enum Action {
+    Canvas(CanvasAction),
     Clipboard(ClipboardAction),
     Edit(EditAction),
     File(FileAction),
@@ -56,6 +59,7 @@ impl Action {
     pub fn apply(&self, session: &mut Session) -> Result<()> {
         let mut done = Ok(());
         match self {
+            Action::Canvas(action) => action.apply(session),
             Action::Clipboard(action) => action.apply(session),
             Action::Edit(action) => action.apply(session),
             Action::File(action) => done = action.apply(session),
@@ -76,6 +80,7 @@ impl Action {
 impl ReplayValue for Action {
     fn written(&self) -> Value {
         let (room, mut value) = match self {
+            Action::Canvas(action) => ("canvas", action.written()),
             Action::Clipboard(action) => ("clipboard", action.written()),
             Action::Edit(action) => ("edit", action.written()),
             Action::File(action) => ("file", action.written()),
@@ -95,6 +100,7 @@ impl ReplayValue for Action {
     }
     fn read(value: &Value) -> std::result::Result<Self, String> {
         Ok(match value.get("in").and_then(Value::as_str) {
+            Some("canvas") => Action::Canvas(ReplayValue::read(value)?),
             Some("clipboard") => Action::Clipboard(ReplayValue::read(value)?),
             Some("edit") => Action::Edit(ReplayValue::read(value)?),
             Some("file") => Action::File(ReplayValue::read(value)?),
@@ -107,7 +113,8 @@ impl ReplayValue for Action {
             Some("stroke") => Action::Stroke(ReplayValue::read(value)?),
             Some("view") => Action::View(ReplayValue::read(value)?),
             _ => {
-                let rooms = "clipboard, edit, file, guide, hand, layer, part, pointer, selection, stroke or view";
+                let rooms =
+                    "canvas, clipboard, edit, file, guide, hand, layer, part, pointer, selection, stroke or view";
                 return Err(format!("“in” must be {rooms}"));
             }
         })

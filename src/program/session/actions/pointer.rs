@@ -114,6 +114,8 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         shape: session.shape,
         part: tab.part.as_deref(),
         lasso: &session.lasso,
+        crop: session.crop,
+        crop_aspect: session.crop_aspect,
         strokes: &strokes,
         snap: &snap,
         aids: session.aids,
@@ -197,7 +199,12 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
         || tool.shapes()
         || matches!(
             tool,
-            ToolKind::Eyedropper | ToolKind::Hand | ToolKind::Zoom | ToolKind::Transform | ToolKind::Assistants
+            ToolKind::Eyedropper
+                | ToolKind::Hand
+                | ToolKind::Zoom
+                | ToolKind::Transform
+                | ToolKind::Crop
+                | ToolKind::Assistants
         );
     let Some(layer) = tab.selected.filter(|_| !looks_only) else { return Ok(document.clone()) };
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
@@ -237,6 +244,7 @@ fn take(session: &mut Session, outcome: Outcome) {
         Outcome::Direction(normal) => {
             session.shape = ShapeSettings { normal, ..session.shape }.held();
         }
+        Outcome::Frame(frame) => session.crop = Some(frame),
         Outcome::CloneFrom(at) => tab.clone_source = Some(CloneSource { at, offset: None }),
         Outcome::Refused(why) => session.notes.push(why.into()),
         Outcome::Chosen(strokes) => {

@@ -1,0 +1,145 @@
+//! Actions on the canvas of the document in front: its borders, its size, which way it lies. What cannot be done says
+//! why. Floor 6. What a document becomes is `document::canvas_change`'s and `document::scale`'s.
+
+use crate::document::canvas_change::{CanvasAnchor, CanvasChange, CanvasMirror};
+use crate::document::{Document, Progress, flatten};
+use crate::io::Budget;
+use crate::math::{Rect, Size};
+use crate::raster::{CoverageGrid, Resampling};
+use crate::session::Session;
+use crate::session::replay::{ReplayValue, actions, names, record};
+use crate::tools::crop::CropAspect;
+use serde_json::Value;
+use std::path::Path;
+
+names!(CropAspect);
+record!(Rect { x0, y0, x1, y1 });
+
+/// Choices by the names of their tables.
+macro_rules! of_table {
+    ($($name:ty),+) => { $(impl ReplayValue for $name {
+        fn written(&self) -> Value {
+            Self::ALL.iter().find(|row| row.0 == *self).map_or(Value::Null, |row| row.1.into())
+        }
+        fn read(value: &Value) -> Result<Self, String> {
+            let found = Self::ALL.iter().find(|row| value.as_str() == Some(row.1));
+            found.map(|row| row.0).ok_or_else(|| format!("is {value}, which is not known here"))
+        }
+    })+ };
+}
+of_table!(CanvasAnchor, CanvasMirror, Resampling);
+
+actions! {
+    /// All but the frame are steps that can be undone. Paint beyond the canvas is kept.
+    CanvasAction {
+        /// To a rectangle, which may reach beyond the canvas.
+        "crop" Crop { to: Rect }
+        "crop to selection" CropToSelection {}
+        /// To the rectangle around all that is painted.
+        "trim" Trim {}
+        /// Borders move, the picture does not; `anchor` is what stays in place.
+        "size" Size { width: u32, height: u32, anchor: CanvasAnchor }
+        /// The picture becomes larger or smaller.
+        "scale" Scale { width: u32, height: u32, filter: Resampling }
+        /// Degrees, counter-clockwise.
+        "turn" Turn { degrees: f32 }
+        "mirror" Mirror { mirror: CanvasMirror }
+        /// The frame of the crop tool, or none.
+        "frame" Frame { frame: Option<Rect> }
+        /// The aspect that it keeps.
+        "aspect" Aspect { aspect: CropAspect }
+    }
+}
+
+impl CanvasAction {
+    pub fn apply(&self, session: &mut Session) {
+        session.drop_gesture();
+        match self {
+            CanvasAction::Frame { frame } => return session.crop = frame.map(near).filter(|frame| !frame.is_empty()),
+            CanvasAction::Aspect { aspect } => {
+                session.crop_aspect = *aspect;
+                let canvas = session.active().map(|tab| tab.document().size);
+                session.crop = session.crop.zip(canvas).map(|(frame, canvas)| aspect.given(frame, canvas));
+                return;
+            }
+            _ => session.crop = None,
+        }
+        let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
+        tab.forget_preview();
+        match self.step(tab.document()) {
+            Ok((label, next)) => {
+                if tab.commit(label, next) {
+                    // Places of the old canvas.
+                    (tab.last_end, tab.clone_source, tab.last_selection) = (None, None, None);
+                }
+            }
+            Err(why) => session.say(&why),
+        }
+    }
+    /// The step: its name and the resulting document; or why there is none.
+    fn step(&self, document: &Document) -> Result<(&'static str, Document), String> {
+        let size = document.size;
+        let (label, change) = match self {
+            CanvasAction::Crop { to } => ("Crop", cropped(size, *to)?),
+            CanvasAction::CropToSelection {} => {
+                let selected = document.selected().ok_or("Nothing is selected.")?.covered();
+                ("Crop to selection", cropped(size, selected.intersect(size.rect()))?)
+            }
+            CanvasAction::Trim {} => {
+                let nothing = || "Nothing is painted: there is nothing to trim to.".to_owned();
+                let painted = flatten(document, &Progress::default()).ok_or_else(nothing)?;
+                let painted = CoverageGrid::of_alpha(&painted).covered().intersect(size.rect());
+                if painted.is_empty() {
+                    return Err(nothing());
+                }
+                if painted == size.rect() {
+                    return Err("There is nothing to trim: the picture reaches every border.".into());
+                }
+                ("Trim", cropped(size, painted)?)
+            }
+            CanvasAction::Size { width, height, anchor } => {
+                let to = allowed(*width, *height)?;
+                let change = CanvasChange::resized(size, to, *anchor);
+                ("Canvas size", change.ok_or("A canvas has one pixel at least.")?)
+            }
+            CanvasAction::Scale { width, height, filter } => {
+                let to = allowed(*width, *height)?;
+                if to == size {
+                    return Err("The picture has that size already.".into());
+                }
+                let next = document.resampled(to, *filter).map_err(|why| format!("The picture stays as it is: {why}."));
+                return Ok(("Image size", next?));
+            }
+            CanvasAction::Turn { degrees } => {
+                let change = CanvasChange::turned(size, f64::from(*degrees));
+                allowed(change.size().width, change.size().height)?;
+                ("Turn canvas", change)
+            }
+            CanvasAction::Mirror { mirror } => ("Mirror canvas", CanvasChange::mirrored(size, *mirror)),
+            CanvasAction::Frame { .. } | CanvasAction::Aspect { .. } => return Err("There is no frame.".into()),
+        };
+        if change.is_none() {
+            return Err("The canvas is like that already.".into());
+        }
+        Ok((label, document.on_other_canvas(&change)?))
+    }
+}
+
+/// A frame no farther away than pixels can lie.
+fn near(frame: Rect) -> Rect {
+    const FAR: i32 = 1_000_000;
+    let [x0, y0, x1, y1] = [frame.x0, frame.y0, frame.x1, frame.y1].map(|v| v.clamp(-FAR, FAR));
+    Rect::new(x0, y0, x1, y1)
+}
+
+fn cropped(from: Size, to: Rect) -> Result<CanvasChange, String> {
+    let change = CanvasChange::crop(from, near(to)).ok_or("The frame holds no pixel of the canvas.")?;
+    allowed(change.size().width, change.size().height)?;
+    Ok(change)
+}
+
+/// A size that this machine has memory for.
+fn allowed(width: u32, height: u32) -> Result<Size, String> {
+    let budget = Budget::of_this_machine();
+    budget.size(Path::new("canvas"), width.into(), height.into()).map_err(|error| format!("{error}."))
+}

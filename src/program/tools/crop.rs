@@ -1,0 +1,250 @@
+//! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or given up.
+//! Floor 5. What a document becomes within it is `document::canvas_change`'s.
+
+use super::snap::{SnapLines, SnapTargets};
+use super::transform::FrameHandle;
+use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::math::range::held;
+use crate::math::{COORDINATE, Rect, Size, Vec2, vec2};
+
+/// The aspect that a frame keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum CropAspect {
+    #[default]
+    Free,
+    /// The canvas's own.
+    Canvas,
+    Square,
+    FourToThree,
+    SixteenToNine,
+    ThreeToTwo,
+}
+
+impl CropAspect {
+    /// With names in replays, and what the window calls them.
+    pub const ALL: [(CropAspect, &'static str, &'static str); 6] = [
+        (CropAspect::Free, "free", "Free"),
+        (CropAspect::Canvas, "canvas", "As it is"),
+        (CropAspect::Square, "1:1", "1 : 1"),
+        (CropAspect::FourToThree, "4:3", "4 : 3"),
+        (CropAspect::SixteenToNine, "16:9", "16 : 9"),
+        (CropAspect::ThreeToTwo, "3:2", "3 : 2"),
+    ];
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|row| row.0 == self).map_or("free", |row| row.1)
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+    /// Width by height.
+    pub fn ratio(self, canvas: Size) -> Option<f32> {
+        match self {
+            CropAspect::Free => None,
+            CropAspect::Canvas => Some(canvas.width as f32 / canvas.height as f32),
+            CropAspect::Square => Some(1.0),
+            CropAspect::FourToThree => Some(4.0 / 3.0),
+            CropAspect::SixteenToNine => Some(16.0 / 9.0),
+            CropAspect::ThreeToTwo => Some(1.5),
+        }
+    }
+    /// A frame with this aspect about the middle of another one, as wide.
+    pub fn given(self, frame: Rect, canvas: Size) -> Rect {
+        let Some(ratio) = self.ratio(canvas) else { return frame };
+        let height = (frame.width() as f32 / ratio).round().max(1.0) as i32;
+        let top = frame.y0 + (frame.height() as i32 - height).div_euclid(2);
+        Rect::new(frame.x0, top, frame.x1, top + height)
+    }
+}
+
+/// The corners of a frame: upper left, upper right, lower right, lower left.
+pub fn corners(frame: Rect) -> [Vec2; 4] {
+    let [x0, y0, x1, y1] = [frame.x0, frame.y0, frame.x1, frame.y1].map(|v| v as f32);
+    [vec2(x0, y0), vec2(x1, y0), vec2(x1, y1), vec2(x0, y1)]
+}
+
+/// The middle of the side from a corner to the next.
+pub fn edge(frame: Rect, index: usize) -> Vec2 {
+    let corners = corners(frame);
+    (corners[index % 4] + corners[(index + 1) % 4]) * 0.5
+}
+
+/// What of a frame lies at a point; `grab_px`: how near is near.
+pub fn handle_at(frame: Rect, at: Vec2, grab_px: f32) -> FrameHandle {
+    let near = |p: Vec2| p.distance(at) <= grab_px;
+    let corners = corners(frame);
+    if let Some(corner) = (0..4).find(|&i| near(corners[i])) {
+        return FrameHandle::Corner(corner);
+    }
+    if let Some(side) = (0..4).find(|&i| near(edge(frame, i))) {
+        return FrameHandle::Edge(side);
+    }
+    let inside = at.x >= corners[0].x && at.x <= corners[2].x && at.y >= corners[0].y && at.y <= corners[2].y;
+    if inside { FrameHandle::Inside } else { FrameHandle::Outside }
+}
+
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let at = pen.place();
+    let handle = context.crop.map_or(FrameHandle::Outside, |frame| handle_at(frame, at, GRAB_PT * context.px_per_pt));
+    let gesture = CropGesture {
+        frame: context.crop,
+        handle,
+        from: at,
+        slop_px: SLOP_PT * context.px_per_pt,
+        is_begun: false,
+        ratio: context.crop_aspect.ratio(context.document.size),
+        snap: context.snap.clone(),
+        lines: SnapLines::default(),
+    };
+    (Some(Box::new(gesture)), Outcome::Idle)
+}
+
+/// A pen that moves less than this, screen points, draws no new frame.
+const SLOP_PT: f32 = 4.0;
+
+struct CropGesture {
+    /// Before the drag.
+    frame: Option<Rect>,
+    handle: FrameHandle,
+    from: Vec2,
+    slop_px: f32,
+    is_begun: bool,
+    ratio: Option<f32>,
+    snap: SnapTargets,
+    lines: SnapLines,
+}
+
+impl CropGesture {
+    /// The frame with what is held at the pen; Shift keeps the aspect that it had.
+    fn dragged(&self, pen: &PenSample) -> Rect {
+        let at = pen.place();
+        let Some(frame) = self.frame.filter(|_| self.handle != FrameHandle::Outside) else {
+            let ratio = self.ratio.or(pen.keys.shift.then_some(1.0));
+            return between(self.from, at, ratio);
+        };
+        let ratio = self.ratio.or(pen.keys.shift.then(|| frame.width() as f32 / frame.height() as f32));
+        match self.handle {
+            FrameHandle::Corner(corner) => between(corners(frame)[(corner + 2) % 4], at, ratio),
+            FrameHandle::Edge(side) => with_side(frame, side, at, ratio),
+            FrameHandle::Inside | FrameHandle::Outside => {
+                let by = place(at - self.from);
+                Rect::new(frame.x0 + by.0, frame.y0 + by.1, frame.x1 + by.0, frame.y1 + by.1)
+            }
+        }
+    }
+}
+
+/// A point in whole px that files can hold.
+fn place(at: Vec2) -> (i32, i32) {
+    (held(at.x, &COORDINATE).round() as i32, held(at.y, &COORDINATE).round() as i32)
+}
+
+/// The frame from a corner that stays to the pen, at least a pixel; with an aspect as large as the farther side asks.
+fn between(fixed: Vec2, at: Vec2, ratio: Option<f32>) -> Rect {
+    let by = at - fixed;
+    let (mut w, mut h) = (by.x.abs().max(1.0), by.y.abs().max(1.0));
+    if let Some(ratio) = ratio.filter(|ratio| ratio.is_finite() && *ratio > 0.0) {
+        (w, h) = if w >= h * ratio { (w, w / ratio) } else { (h * ratio, h) };
+    }
+    let far = fixed + vec2(w.max(1.0).copysign(by.x), h.max(1.0).copysign(by.y));
+    let ((ax, ay), (bx, by)) = (place(fixed), place(far));
+    let span = |a: i32, b: i32| if a == b { (a, a + 1) } else { (a.min(b), a.max(b)) };
+    let ((x0, x1), (y0, y1)) = (span(ax, bx), span(ay, by));
+    Rect::new(x0, y0, x1, y1)
+}
+
+/// A frame with one side at the pen; with an aspect it grows about its middle along that side.
+fn with_side(frame: Rect, side: usize, at: Vec2, ratio: Option<f32>) -> Rect {
+    let [top_left, _, bottom_right, _] = corners(frame);
+    let (mut low, mut high) = (top_left, bottom_right);
+    match side {
+        0 => low.y = at.y,
+        1 => high.x = at.x,
+        2 => high.y = at.y,
+        _ => low.x = at.x,
+    }
+    let (low, high) = (low.min(high), low.max(high));
+    let size = (high - low).max(Vec2::ONE);
+    let Some(ratio) = ratio else { return between(low, low + size, None) };
+    let middle = (low + high) * 0.5;
+    let is_upright = side.is_multiple_of(2);
+    let size = if is_upright { vec2(size.y * ratio, size.y) } else { vec2(size.x, size.x / ratio) };
+    let low = if is_upright { vec2(middle.x - 0.5 * size.x, low.y) } else { vec2(low.x, middle.y - 0.5 * size.y) };
+    between(low.round(), low.round() + size.round(), None)
+}
+
+impl Gesture for CropGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        self.is_begun |= pen.place().distance(self.from) > self.slop_px || self.handle != FrameHandle::Outside;
+        if !self.is_begun {
+            return Outcome::Idle;
+        }
+        let mut snapped = *pen;
+        self.lines = SnapLines::default();
+        if self.handle != FrameHandle::Inside {
+            let found = self.snap.point(pen.place());
+            (snapped.sample.at, self.lines) = (found.at, found.lines);
+        }
+        Outcome::Frame(self.dragged(&snapped))
+    }
+    fn release(&mut self) -> Outcome {
+        Outcome::Idle
+    }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+    use crate::paint::Brush;
+
+    /// The frame after a drag; `None` where it was left as it is.
+    fn dragged(crop: Option<Rect>, aspect: CropAspect, from: Vec2, to: Vec2) -> Option<Rect> {
+        let (document, brush) = (Document::empty(Size::new(200, 100)), Brush::default());
+        let context = ToolContext { crop, crop_aspect: aspect, ..ToolContext::new(&document, &brush) };
+        let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
+        match gesture.drag(&[PenSample::at(to)]) {
+            Outcome::Frame(frame) => Some(frame),
+            _ => None,
+        }
+    }
+    const FRAME: Rect = Rect { x0: 50, y0: 20, x1: 150, y1: 80 };
+
+    #[test]
+    fn a_drag_draws_a_frame_and_a_click_beside_one_does_nothing() {
+        let drawn = dragged(None, CropAspect::Free, vec2(90.2, 70.0), vec2(-10.0, 20.4));
+        assert_eq!(drawn, Some(Rect::new(-10, 20, 90, 70)));
+        assert_eq!(dragged(Some(FRAME), CropAspect::Free, vec2(10.0, 90.0), vec2(11.0, 90.0)), None);
+        let anew = dragged(Some(FRAME), CropAspect::Free, vec2(10.0, 95.0), vec2(30.0, 5.0));
+        assert_eq!(anew, Some(Rect::new(10, 5, 30, 95)));
+    }
+    #[test]
+    fn corners_sides_and_the_inside_are_held() {
+        let to = |from, to| dragged(Some(FRAME), CropAspect::Free, from, to).unwrap();
+        assert_eq!(to(vec2(148.0, 79.0), vec2(220.0, 60.0)), Rect::new(50, 20, 220, 60));
+        assert_eq!(to(vec2(50.0, 50.0), vec2(70.0, 10.0)), Rect::new(70, 20, 150, 80));
+        assert_eq!(to(vec2(100.0, 50.0), vec2(95.0, 58.0)), Rect::new(45, 28, 145, 88));
+        // Past the other side it turns over, and never becomes nothing.
+        assert_eq!(to(vec2(50.0, 50.0), vec2(170.0, 50.0)), Rect::new(150, 20, 170, 80));
+        assert_eq!(to(vec2(50.0, 50.0), vec2(150.0, 50.0)).width(), 1);
+    }
+    #[test]
+    fn an_aspect_is_kept_by_every_handle() {
+        for (aspect, ratio) in [(CropAspect::Canvas, 2.0), (CropAspect::Square, 1.0), (CropAspect::ThreeToTwo, 1.5)] {
+            for from in [vec2(50.0, 20.0), vec2(150.0, 80.0), vec2(100.0, 20.0), vec2(150.0, 50.0)] {
+                let frame = dragged(Some(FRAME), aspect, from, from + vec2(17.0, -31.0)).unwrap();
+                let off = (frame.width() as f32 - ratio * frame.height() as f32).abs();
+                assert!(off <= 0.5 + 0.5 * ratio, "{aspect:?} {from}: {frame:?}");
+            }
+        }
+        assert_eq!(CropAspect::Square.given(FRAME, Size::new(9, 9)), Rect::new(50, 0, 150, 100));
+    }
+    #[test]
+    fn what_is_no_place_is_held() {
+        let frame = dragged(None, CropAspect::Free, vec2(0.0, 0.0), vec2(f32::MAX, f32::NAN));
+        assert!(frame.is_none_or(|frame| frame.x1 <= 1_000_001 && frame.height() >= 1));
+    }
+}

@@ -1,0 +1,128 @@
+//! The frame of the transform tool in numbers, to be read and typed.
+//! Floor 5.
+
+use super::{TransformFrame, said};
+use crate::document::{Document, LayerId, LayerTransform};
+use crate::math::{DVec2, PlaneMap};
+
+/// Where a frame stands that lies in no perspective.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameNumbers {
+    /// Its upper left corner, canvas px.
+    pub at: DVec2,
+    /// Sides, px; a negative height is a mirrored frame.
+    pub width: f64,
+    pub height: f64,
+    /// Degrees, counter-clockwise as seen.
+    pub angle: f64,
+    /// Degrees that its upright sides lean to the right at the bottom.
+    pub skew: f64,
+    /// The sides before the layer was transformed, px.
+    pub own: DVec2,
+}
+
+impl FrameNumbers {
+    /// Nearest and farthest of what can be typed.
+    pub const SIDE: std::ops::RangeInclusive<f64> = -65_536.0..=65_536.0;
+    pub const SKEW: std::ops::RangeInclusive<f64> = -85.0..=85.0;
+
+    /// `None` of a frame in perspective, and of one without area.
+    pub fn of(frame: &TransformFrame) -> Option<Self> {
+        frame.map.plane.coefficients()?;
+        let [a, b, _, d] = frame.corners.map(|corner| corner.as_dvec2());
+        let (right, down) = (b - a, d - a);
+        let width = right.length();
+        let across = right / width;
+        let (along, height) = (across.dot(down), across.perp_dot(down));
+        let own = (frame.inner.high - frame.inner.low).as_dvec2();
+        let numbers = Self {
+            at: a,
+            width,
+            height,
+            angle: -across.y.atan2(across.x).to_degrees(),
+            skew: (along / height.abs()).atan().to_degrees(),
+            own,
+        };
+        (width > 1e-6 && height.abs() > 1e-6 && own.min_element() > 0.0).then_some(numbers)
+    }
+    /// Its sides as vectors: to the right and down.
+    fn sides(&self) -> (DVec2, DVec2) {
+        let across = DVec2::from_angle(-self.angle.to_radians());
+        let lean = self.skew.to_radians().tan() * self.height.abs();
+        (across * self.width, across.perp() * self.height + across * lean)
+    }
+    fn middle(&self) -> DVec2 {
+        let (right, down) = self.sides();
+        self.at + 0.5 * (right + down)
+    }
+    /// With the middle where another frame has it: sides and angles change about the middle.
+    pub fn about_middle_of(&self, other: &Self) -> Self {
+        Self { at: self.at + other.middle() - self.middle(), ..*self }
+    }
+    /// A layer's own transform under which its frame has these numbers: `None` where that is no map, inner `None` where
+    /// none is left.
+    pub fn transform(&self, document: &Document, layer: LayerId) -> Option<Option<LayerTransform>> {
+        let frame = TransformFrame::of(document, layer)?;
+        let own = document.layer(layer)?.transform;
+        let plane = own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(document.size))?;
+        let around = plane.inverse().then(&frame.map.plane);
+        let low = frame.inner.low.as_dvec2();
+        let (right, down) = self.sides();
+        let (x, y) = (right / self.own.x, down / self.own.y);
+        let from_low = PlaneMap::affine([x.x, x.y, y.x, y.y, self.at.x, self.at.y])?;
+        let whole = PlaneMap::affine([1.0, 0.0, 0.0, 1.0, -low.x, -low.y])?.then(&from_low);
+        let filter = own.map_or(frame.map.filter, |own| own.filter);
+        said(&whole.then(&around.inverse()), filter, document.size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Content, Layer, PixelLayer};
+    use crate::math::Size;
+    use crate::raster::TileGrid;
+    use std::sync::Arc;
+
+    fn document() -> Document {
+        let tiles = TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(40 * 20), 40, 20, 40, 30);
+        let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+        Document { layers: vec![Arc::new(paint)], ..Document::empty(Size::new(200, 100)) }
+    }
+    fn numbers(document: &Document) -> FrameNumbers {
+        FrameNumbers::of(&TransformFrame::of(document, document.layers[0].id).unwrap()).unwrap()
+    }
+    fn with(document: &Document, numbers: &FrameNumbers) -> Document {
+        let id = document.layers[0].id;
+        let transform = numbers.transform(document, id).unwrap();
+        document.with_layer(id, |layer| layer.transform = transform).unwrap()
+    }
+
+    #[test]
+    fn what_is_typed_is_what_the_frame_has() {
+        let start = numbers(&document());
+        assert_eq!((start.at, start.width, start.height), (DVec2::new(40.0, 30.0), 40.0, 20.0));
+        assert!(start.angle.abs() < 1e-9 && start.skew.abs() < 1e-9);
+        let wanted =
+            FrameNumbers { at: DVec2::new(12.0, 50.0), width: 60.0, height: 15.0, angle: 30.0, skew: -20.0, ..start };
+        let found = numbers(&with(&document(), &wanted));
+        let off = [
+            (found.at - wanted.at).length(),
+            found.width - wanted.width,
+            found.height - wanted.height,
+            found.angle - wanted.angle,
+            found.skew - wanted.skew,
+        ];
+        assert!(off.iter().all(|off| off.abs() < 1e-3), "{found:?}");
+        let back = with(&with(&document(), &wanted), &start);
+        assert_eq!(back.layers[0].transform, None);
+    }
+    #[test]
+    fn sides_and_angles_change_about_the_middle() {
+        let start = numbers(&document());
+        let turned = FrameNumbers { angle: 90.0, width: 80.0, ..start }.about_middle_of(&start);
+        assert!((turned.middle() - DVec2::new(60.0, 40.0)).length() < 1e-9);
+        let found = numbers(&with(&document(), &turned));
+        assert!((found.middle() - DVec2::new(60.0, 40.0)).length() < 1e-3);
+    }
+}

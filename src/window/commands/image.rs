@@ -1,0 +1,64 @@
+//! The Image menu: the canvas of the document, with everything on it.
+//! Floor 7.
+
+use super::row::{LINE, MenuCommand, always, ctrl_alt, has_document, row};
+use crate::document::canvas_change::CanvasMirror;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::Action;
+use crate::session::actions::CanvasAction;
+use eframe::egui::Key;
+
+fn act(requests: &mut UiRequests, action: CanvasAction) {
+    requests.act(Action::Canvas(action));
+}
+
+pub const COMMANDS: &[MenuCommand] = &[
+    row("Crop to selection", &[], "The canvas becomes the rectangle around all that is selected", always, |_, r| {
+        act(r, CanvasAction::CropToSelection {})
+    }),
+    row("Trim canvas", &[], "Takes away borders on which nothing is painted", always, |_, requests| {
+        act(requests, CanvasAction::Trim {})
+    }),
+    row(
+        "Canvas size…",
+        &[ctrl_alt(Key::C)],
+        "Moves the borders; the picture stays as large as it is",
+        has_document,
+        |_, requests| requests.request(WindowRequest::CanvasSizeDialog),
+    ),
+    row(
+        "Image size…",
+        &[],
+        "Makes the whole picture larger or smaller; what is live stays sharp",
+        has_document,
+        |_, requests| requests.request(WindowRequest::ImageSizeDialog),
+    ),
+    LINE,
+    row(
+        "Turn canvas left",
+        &[],
+        "By a quarter, counter-clockwise, with everything on it: the shape and its lights too",
+        always,
+        |_, requests| act(requests, CanvasAction::Turn { degrees: 90.0 }),
+    ),
+    row("Turn canvas right", &[], "By a quarter, clockwise, with everything on it", always, |_, requests| {
+        act(requests, CanvasAction::Turn { degrees: -90.0 })
+    }),
+    row("Turn canvas upside down", &[], "By a half, with everything on it", always, |_, requests| {
+        act(requests, CanvasAction::Turn { degrees: 180.0 })
+    }),
+    row("Turn canvas…", &[], "By any angle; the canvas grows to hold it", has_document, |_, requests| {
+        requests.request(WindowRequest::TurnDialog)
+    }),
+    LINE,
+    row(
+        "Mirror canvas left and right",
+        &[],
+        "The picture itself, and not the view, with everything on it",
+        always,
+        |_, requests| act(requests, CanvasAction::Mirror { mirror: CanvasMirror::LeftRight }),
+    ),
+    row("Mirror canvas up and down", &[], "The picture itself, with everything on it", always, |_, requests| {
+        act(requests, CanvasAction::Mirror { mirror: CanvasMirror::UpDown })
+    }),
+];

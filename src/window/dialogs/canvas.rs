@@ -1,0 +1,192 @@
+//! Asks for the size of the canvas, of the picture, and for the angle that it is turned by.
+//! Floor 7.
+
+use super::{Dialog, DialogAnswer, buttons};
+use crate::document::canvas_change::{CanvasAnchor, CanvasChange};
+use crate::math::Size;
+use crate::raster::Resampling;
+use crate::requests::{UiRequests, WindowRequest};
+use crate::session::Action;
+use crate::session::actions::CanvasAction;
+use crate::widgets::choice;
+use eframe::egui::{Button, DragValue, Grid, Ui};
+
+/// A side in the dialogs, px: as of new documents.
+const SIDE: std::ops::RangeInclusive<u32> = 1..=16_384;
+/// What printers take for one inch.
+const PRINT_PPI: f32 = 300.0;
+
+/// The dialog that is asked for, on a canvas of a size.
+pub fn asked(ask: &WindowRequest, size: Size) -> Dialog {
+    match ask {
+        WindowRequest::ImageSizeDialog => Dialog::ImageSize(ImageSizeDialog::of(size)),
+        WindowRequest::TurnDialog => Dialog::Turn(TurnDialog::of(size)),
+        _ => Dialog::Canvas(CanvasSizeDialog::of(size)),
+    }
+}
+
+/// Two sides, which may keep their aspect.
+struct Sides {
+    from: Size,
+    width: u32,
+    height: u32,
+    keeps_aspect: bool,
+}
+
+impl Sides {
+    fn of(from: Size, keeps_aspect: bool) -> Self {
+        Self { from, width: from.width, height: from.height, keeps_aspect }
+    }
+    fn size(&self) -> Size {
+        Size::new(self.width, self.height)
+    }
+    fn show(&mut self, ui: &mut Ui) {
+        let (w, h) = (self.from.width as f32, self.from.height as f32);
+        let held = |v: f32| (v.round() as u32).clamp(*SIDE.start(), *SIDE.end());
+        let mut percent = [100.0 * self.width as f32 / w, 100.0 * self.height as f32 / h];
+        let (mut wider, mut taller) = (false, false);
+        Grid::new("sides").num_columns(3).show(ui, |ui| {
+            for (i, name) in ["Width", "Height"].into_iter().enumerate() {
+                let label = ui.label(name);
+                let side = if i == 0 { &mut self.width } else { &mut self.height };
+                let px = DragValue::new(side).range(SIDE).suffix(" px");
+                let mut is_other = ui.add(px).labelled_by(label.id).changed();
+                let share = DragValue::new(&mut percent[i]).range(0.1..=10_000.0).speed(0.5).suffix(" %");
+                let share = ui.add(share).on_hover_text(format!("{name} as a share of what it was"));
+                if share.changed() {
+                    *side = held([w, h][i] * percent[i] / 100.0);
+                    is_other = true;
+                }
+                *[&mut wider, &mut taller][i] |= is_other;
+                ui.end_row();
+            }
+        });
+        let hint = "One side follows the other";
+        let locked = ui.checkbox(&mut self.keeps_aspect, "Keep the aspect").on_hover_text(hint).changed();
+        if self.keeps_aspect && (wider || locked) {
+            self.height = held(self.width as f32 * h / w);
+        } else if self.keeps_aspect && taller {
+            self.width = held(self.height as f32 * w / h);
+        }
+        ui.weak(about(self.from, self.size()));
+    }
+}
+
+/// What a size means.
+fn about(from: Size, to: Size) -> String {
+    let cm = |px: u32| px as f32 / PRINT_PPI * 2.54;
+    let millions = to.area() as f32 / 1e6;
+    let (w, h) = (cm(to.width), cm(to.height));
+    format!("{from} → {to} px, {millions:.1} megapixels; {w:.1} × {h:.1} cm printed at {PRINT_PPI} px an inch")
+}
+
+/// Borders that move.
+pub struct CanvasSizeDialog {
+    sides: Sides,
+    anchor: CanvasAnchor,
+}
+
+/// What the window calls them.
+const ANCHORS: [(CanvasAnchor, &str); 9] = [
+    (CanvasAnchor::TopLeft, "The upper left corner stays"),
+    (CanvasAnchor::Top, "The upper side stays"),
+    (CanvasAnchor::TopRight, "The upper right corner stays"),
+    (CanvasAnchor::Left, "The left side stays"),
+    (CanvasAnchor::Center, "The middle stays"),
+    (CanvasAnchor::Right, "The right side stays"),
+    (CanvasAnchor::BottomLeft, "The lower left corner stays"),
+    (CanvasAnchor::Bottom, "The lower side stays"),
+    (CanvasAnchor::BottomRight, "The lower right corner stays"),
+];
+
+impl CanvasSizeDialog {
+    pub fn of(size: Size) -> Self {
+        Self { sides: Sides::of(size, false), anchor: CanvasAnchor::Center }
+    }
+    pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
+        ui.set_width(360.0);
+        ui.heading("Canvas size");
+        ui.weak("Moves the borders. Paint beyond them is kept; masks of layers are cut.");
+        self.sides.show(ui);
+        Grid::new("anchor").spacing([2.0, 2.0]).show(ui, |ui| {
+            for (i, (anchor, hint)) in ANCHORS.into_iter().enumerate() {
+                let button = Button::selectable(self.anchor == anchor, "").min_size([30.0, 26.0].into());
+                let response = ui.add(button).on_hover_text(hint);
+                let is_on = self.anchor == anchor;
+                response.widget_info(|| {
+                    eframe::egui::WidgetInfo::selected(eframe::egui::Role::RadioButton, true, is_on, hint)
+                });
+                if response.clicked() {
+                    self.anchor = anchor;
+                }
+                if i % 3 == 2 {
+                    ui.end_row();
+                }
+            }
+        });
+        let Size { width, height } = self.sides.size();
+        answer(ui, requests, "Resize", CanvasAction::Size { width, height, anchor: self.anchor })
+    }
+}
+
+/// A picture that becomes larger or smaller.
+pub struct ImageSizeDialog {
+    sides: Sides,
+    filter: Resampling,
+}
+
+const FILTERS: [(Resampling, &str); 3] =
+    [(Resampling::Smooth, "smooth"), (Resampling::Sharp, "sharp"), (Resampling::Nearest, "pixels")];
+
+impl ImageSizeDialog {
+    pub fn of(size: Size) -> Self {
+        Self { sides: Sides::of(size, true), filter: Resampling::Sharp }
+    }
+    pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
+        ui.set_width(360.0);
+        ui.heading("Image size");
+        ui.weak("Paint is sampled; strokes, images, gradients and the shape are made anew, as sharp as before.");
+        self.sides.show(ui);
+        ui.horizontal(|ui| {
+            ui.label("Paint is sampled");
+            self.filter = choice(ui, "How paint is sampled", self.filter, &FILTERS).unwrap_or(self.filter);
+        });
+        let Size { width, height } = self.sides.size();
+        answer(ui, requests, "Resize", CanvasAction::Scale { width, height, filter: self.filter })
+    }
+}
+
+/// A turn by any angle.
+pub struct TurnDialog {
+    size: Size,
+    degrees: f32,
+}
+
+impl TurnDialog {
+    pub fn of(size: Size) -> Self {
+        Self { size, degrees: 15.0 }
+    }
+    pub fn show(&mut self, ui: &mut Ui, requests: &mut UiRequests) -> DialogAnswer {
+        ui.set_width(360.0);
+        ui.heading("Turn canvas");
+        ui.weak("Counter-clockwise. Paint turns by its transform, so that it can be turned back without a loss.");
+        ui.horizontal(|ui| {
+            let label = ui.label("Angle");
+            let angle = DragValue::new(&mut self.degrees).range(-360.0..=360.0).speed(0.5).suffix("°");
+            ui.add(angle).labelled_by(label.id);
+        });
+        ui.weak(about(self.size, CanvasChange::turned(self.size, f64::from(self.degrees)).size()));
+        answer(ui, requests, "Turn", CanvasAction::Turn { degrees: self.degrees })
+    }
+}
+
+fn answer(ui: &mut Ui, requests: &mut UiRequests, yes: &str, action: CanvasAction) -> DialogAnswer {
+    match buttons(ui, yes, true) {
+        Some(true) => {
+            requests.act(Action::Canvas(action));
+            DialogAnswer::Close
+        }
+        Some(false) => DialogAnswer::Close,
+        None => DialogAnswer::Open,
+    }
+}

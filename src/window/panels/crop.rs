@@ -1,0 +1,56 @@
+//! The options of the crop tool: its frame in numbers, the aspect that it keeps, and what to do with it.
+//! Floor 7.
+
+use crate::canvas::crop;
+use crate::math::Rect;
+use crate::requests::UiRequests;
+use crate::session::actions::CanvasAction;
+use crate::session::{Action, Session};
+use crate::tools::crop::CropAspect;
+use crate::widgets::choice;
+use eframe::egui::{Button, DragValue, Ui};
+
+/// Places and sides that can be typed, px.
+const PLACE: std::ops::RangeInclusive<i32> = -65_536..=65_536;
+const SIDE: std::ops::RangeInclusive<i32> = 1..=65_536;
+
+pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let Some(canvas) = session.active().map(|tab| tab.document().size) else { return };
+    let frame = session.crop.unwrap_or(canvas.rect());
+    let (mut x, mut y) = (frame.x0, frame.y0);
+    let (mut width, mut height) = (frame.width() as i32, frame.height() as i32);
+    let number = |ui: &mut Ui, label: &str, value: &mut i32, range| {
+        let label = ui.label(label);
+        ui.add(DragValue::new(value).range(range).speed(1.0).suffix(" px")).labelled_by(label.id).changed()
+    };
+    let mut is_other = number(ui, "X", &mut x, PLACE);
+    is_other |= number(ui, "Y", &mut y, PLACE);
+    let wider = number(ui, "Width", &mut width, SIDE);
+    let taller = number(ui, "Height", &mut height, SIDE);
+    if let Some(ratio) = session.crop_aspect.ratio(canvas) {
+        let round = |v: f32| (v.round() as i32).clamp(*SIDE.start(), *SIDE.end());
+        match (wider, taller) {
+            (true, _) => height = round(width as f32 / ratio),
+            (_, true) => width = round(height as f32 * ratio),
+            _ => {}
+        }
+    }
+    if is_other || wider || taller {
+        let frame = Some(Rect::new(x, y, x + width, y + height));
+        requests.act(Action::Canvas(CanvasAction::Frame { frame }));
+    }
+    ui.add_space(6.0);
+    let choices = CropAspect::ALL.map(|(aspect, _, label)| (aspect, label));
+    if let Some(aspect) = choice(ui, "Aspect of the frame", session.crop_aspect, &choices) {
+        requests.act(Action::Canvas(CanvasAction::Aspect { aspect }));
+    }
+    ui.add_space(6.0);
+    let crops = ui.add_enabled(session.crop.is_some(), Button::new("Crop to frame"));
+    if crops.on_hover_text("The canvas becomes the frame (Enter)").clicked() {
+        requests.act(crop::apply(frame));
+    }
+    let drops = ui.add_enabled(session.crop.is_some(), Button::new("Give up"));
+    if drops.on_hover_text("Takes the frame away (Escape)").clicked() {
+        requests.act(Action::Canvas(CanvasAction::Frame { frame: None }));
+    }
+}
