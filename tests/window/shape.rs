@@ -62,7 +62,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     assert_eq!(made.len(), 2);
     // The panel with the parts is in front, one of them chosen.
     harness.get_by_label("Part Part 2");
-    assert!(harness.query_all_by_label("Pillow ↔ tube").next().is_some());
+    assert!(harness.query_all_by_label("Pillow – tube").next().is_some());
     steps(&mut harness);
 
     key(&mut harness, Modifiers::NONE, Key::P);

@@ -109,7 +109,7 @@ fn inflated(ui: &mut Ui, now: Inflation) -> Option<ValueChange<Inflation>> {
     changed = chosen.map(|to| ValueChange { to, done: true }).or(changed);
     changed = puff(now.puff).show(ui, |puff| Inflation { puff, ..now }).or(changed);
     let hint = "A pillow is a cloth filled with air; in a tube limbs are as deep as they are wide";
-    let profile = number("Pillow ↔ tube", &Inflation::PROFILE, hint, now.profile);
+    let profile = number("Pillow – tube", &Inflation::PROFILE, hint, now.profile);
     changed = profile.show(ui, |profile| Inflation { profile, ..now }).or(changed);
     let hint = "How far the rim turns away: at 90° it is a silhouette, less is a low relief";
     degrees("Rim", &Inflation::RIM, hint, now.rim_deg).show(ui, |rim_deg| Inflation { rim_deg, ..now }).or(changed)
