@@ -55,6 +55,10 @@ impl DrawingLook {
             Some(color) => Ground::Flat(color),
             None => Ground::Painted,
         };
+        // A photograph has as many colours as pixels; none of them will be a part.
+        if ground == Ground::Painted {
+            return Self { ground, colors: 0, flat_share: 0.0 };
+        }
         let figure = match ground {
             Ground::Flat(color) => without_ground(tiles, canvas, color),
             _ => tiles.clone(),
