@@ -22,7 +22,8 @@ use std::path::Path;
 /// * `file`: for messages (and for TGA, which only its name tells).
 ///
 /// Integer files become sRGB bytes (through their ICC profile where it says something else), float files linear light.
-/// EXR gives its colour layer, straight alpha; integers of 16 bits are kept beside the bytes. Fails with a sentence on anything damaged, unknown or beyond `budget`.
+/// EXR gives its colour layer, straight alpha; integers of 16 bits are kept beside the bytes. Fails with a sentence on
+/// anything damaged, unknown or beyond `budget`.
 /// The picture keeps `bytes`, so that a project can store the file as it is.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let is_exr = ExrFile::is_exr(bytes);

@@ -11,8 +11,8 @@ pub struct SurfaceSource {
     pub normal: Option<MapSource<NormalConvention>>,
     pub depth: Option<MapSource<DepthConvention>>,
     pub mask: Option<MaskSource>,
-    /// `"matrix"`: canvas from the pixels of the maps, a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f. Without
-    /// one the maps are as large as the canvas allows, centred.
+    /// `"matrix"`: canvas from the pixels of the maps, a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f.
+    /// Without one the maps are as large as the canvas allows, centred.
     pub matrix: Option<[f64; 6]>,
 }
 

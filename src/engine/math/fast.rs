@@ -14,8 +14,8 @@ pub fn min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// Raises a value in place to another, unless that is NaN. `f32::max` and no comparison: of one the compiler makes a store
-/// under a mask, which takes some processors (Zen) forty steps, and what reads the value next waits for it.
+/// Raises a value in place to another, unless that is NaN. `f32::max` and no comparison: of one the compiler makes a
+/// store under a mask, which takes some processors (Zen) forty steps, and what reads the value next waits for it.
 #[inline(always)]
 pub fn raise(value: &mut f32, to: f32) {
     *value = value.max(to);

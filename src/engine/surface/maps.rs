@@ -230,7 +230,8 @@ impl Surface {
     pub fn contours(&self) -> &Arc<Contours> {
         &self.contours
     }
-    /// How much of each pixel the surface covers: as the maps say, and on a rim that they left hard as its contour says.
+    /// How much of each pixel the surface covers: as the maps say, and on a rim that they left hard as its contour
+    /// says.
     pub fn shares(&self) -> Plane<u8> {
         let mut shares = self.coverage.clone();
         for pixel in self.contours.pixels() {

@@ -1,7 +1,7 @@
 //! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
 //! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `forms`
-//! tells what it made, `outlines` finds the outlines, `flats` makes parts of a layer of flat colours, and `drawing` says
-//! what can be made of one.
+//! tells what it made, `outlines` finds the outlines, `flats` makes parts of a layer of flat colours, and `drawing`
+//! says what can be made of one.
 
 mod derive;
 pub mod drawing;

@@ -87,8 +87,8 @@ impl RoundTip {
     pub(super) fn plain(dab: &Dab) -> Self {
         Self { flow: 1.0, ceiling: 1.0, ..Self::new(dab) }
     }
-    /// Of a row of `n` pixels from the pixel at (x, y) on, the chunks that an unbent dab may reach: all others lie beyond
-    /// it as [`RoundTip::zone`] tells. Small dabs touch few rows of their blocks.
+    /// Of a row of `n` pixels from the pixel at (x, y) on, the chunks that an unbent dab may reach: all others lie
+    /// beyond it as [`RoundTip::zone`] tells. Small dabs touch few rows of their blocks.
     pub(super) fn flat_chunks(&self, x: i32, y: i32, n: usize) -> Range<usize> {
         // Distances are rounded.
         const ROUNDING: (f32, f32) = (1.0005, 0.05);

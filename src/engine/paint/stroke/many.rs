@@ -16,8 +16,8 @@ const DABS_IN_FLIGHT: usize = 1 << 18;
 /// Tiles that are held at a time, in f32: 64 MB.
 const TILES_IN_FLIGHT: usize = 1 << 10;
 
-/// Whether [`render_tiles`] is to be preferred for so many tiles: some strokes cannot be kept, or there are so many that
-/// asking each tile for its strokes would take long. `None` if it is no longer wanted.
+/// Whether [`render_tiles`] is to be preferred for so many tiles: some strokes cannot be kept, or there are so many
+/// that asking each tile for its strokes would take long. `None` if it is no longer wanted.
 pub fn are_heavy(
     strokes: &[Arc<Stroke>],
     scene: &Scene,
