@@ -232,7 +232,7 @@ fn runs_of(from_left: u64, from_right: u64, seeds: u64) -> u64 {
 pub fn bytes_of(bits: u64) -> [u8; TILE] {
     let mut bytes = [0; TILE];
     for (eight, bits) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(bits.to_le_bytes()) {
-        let spread = u64::from(bits) * 0x0101_0101_0101_0101 & 0x8040_2010_0804_0201;
+        let spread = (u64::from(bits) * 0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
         // A bit anywhere in a byte carries into its highest one.
         *eight = ((spread + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101).to_le_bytes();
     }
