@@ -2,32 +2,36 @@
 //! Floor 5.
 
 use super::channel::pack;
+use super::kept;
 use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO};
+use crate::document::NamedSelection;
 use crate::math::{Rect, Size};
 use crate::picture;
 
 /// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
 
-/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `ours` our own resource.
-pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], ours: &[u8]) -> Vec<u8> {
+/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` stand beside it as channels, `ours`
+/// is our own resource.
+pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], selections: &[NamedSelection], ours: &[u8]) -> Vec<u8> {
     let mut out = MAGIC.to_vec();
     short(&mut out, 1);
     out.extend([0; 6]);
-    short(&mut out, 4);
+    short(&mut out, 4 + selections.len() as u16);
     long(&mut out, size.height);
     long(&mut out, size.width);
     short(&mut out, 8);
     // RGB, and no table of colours.
     short(&mut out, 3);
     long(&mut out, 0);
-    section(&mut out, &resources(ours));
+    section(&mut out, &resources(selections, ours));
     let mut layers = Vec::new();
     section(&mut layers, &layer_info(records));
     // No mask of all layers.
     long(&mut layers, 0);
     section(&mut out, &layers);
-    let planes: Vec<Vec<u8>> = (0..4).map(|c| plane(merged, c)).collect();
+    let coverage = |kept: &NamedSelection| kept.selection.coverage.to_plane(size.rect()).into_values();
+    let planes: Vec<Vec<u8>> = (0..4).map(|c| plane(merged, c)).chain(selections.iter().map(coverage)).collect();
     packed(&mut out, &planes, size.width as usize);
     out
 }
@@ -59,7 +63,7 @@ fn unicode(out: &mut Vec<u8>, text: &str) {
     units.iter().for_each(|unit| short(out, *unit));
 }
 
-fn resources(ours: &[u8]) -> Vec<u8> {
+fn resources(selections: &[NamedSelection], ours: &[u8]) -> Vec<u8> {
     let mut resolution = Vec::new();
     for _ in 0..2 {
         // Fixed point; shown per inch, lengths in inches.
@@ -76,7 +80,9 @@ fn resources(ours: &[u8]) -> Vec<u8> {
     long(&mut version, 1);
     let mut out = Vec::new();
     let profile = picture::own_srgb();
-    for (id, data) in [(RESOLUTION, &resolution[..]), (ICC_PROFILE, &profile), (VERSION_INFO, &version), (OURS, ours)] {
+    let named = kept::resources(selections);
+    let own = [(RESOLUTION, &resolution[..]), (ICC_PROFILE, &profile), (VERSION_INFO, &version), (OURS, ours)];
+    for (id, data) in named.iter().map(|(id, data)| (*id, &data[..])).chain(own) {
         out.extend(b"8BIM");
         short(&mut out, id);
         // No name, padded.

@@ -146,7 +146,7 @@ mod tests {
     fn picture(value: u8) -> Option<Merged> {
         let mut rgba = [value, value, value, 255].repeat(200);
         rgba[..3].fill(0);
-        Some(Merged { rgba, has_alpha: false, is_real: true })
+        Some(Merged { rgba, is_real: true, ..Merged::default() })
     }
     fn judged_as(merged: Option<Merged>, is_less: bool) -> (Vec<(String, bool)>, Vec<String>) {
         let mut notes = Vec::new();
@@ -166,7 +166,7 @@ mod tests {
     }
     #[test]
     fn a_picture_that_is_none_is_not_believed() {
-        let plain = |is_real| Some(Merged { rgba: vec![255; 800], has_alpha: false, is_real });
+        let plain = |is_real| Some(Merged { rgba: vec![255; 800], is_real, ..Merged::default() });
         for (merged, is_less, said) in [
             (None, true, "damaged or missing"),
             (plain(false), true, "saved without a picture"),

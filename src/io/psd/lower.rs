@@ -1,7 +1,9 @@
 //! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the document itself is
 //! stored beside them. Floor 5. `emit` writes the records as bytes, `verify` reads them again.
 
-use super::{LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, signature, verify};
+use super::{
+    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, kept, signature, verify,
+};
 use crate::document::cache::EncodedPixels;
 use crate::document::{Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten};
 use crate::math::{Rect, Size};
@@ -40,7 +42,7 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let Some(merged) = flatten(document, progress) else { return Ok(None) };
     let mut lowering = RecordBuilder { size: document.size, looks: looks.into_iter(), ..RecordBuilder::default() };
     lowering.items(file, &items)?;
-    let RecordBuilder { records, shown, whole_rims, notes, .. } = lowering;
+    let RecordBuilder { records, shown, whole_rims, mut notes, .. } = lowering;
     if records.len() > MOST_RECORDS {
         let reason = format!("its layers would be {} for Photoshop, which may be {MOST_RECORDS}", records.len());
         return Err(Error::unsupported(file, reason));
@@ -50,12 +52,16 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     let ours = project::packed(file, &ours)?;
     let merged = merged.to_straight_rgba(document.size.rect());
     let merged = emit::on_white(&merged);
-    let bytes = emit::emit(document.size, &records, &merged, &ours);
+    let selections = kept::written(document);
+    if selections.len() < document.selections.len() {
+        notes.push("selections beyond the first 52, and empty ones, are kept for this program alone".into());
+    }
+    let bytes = emit::emit(document.size, &records, &merged, &selections, &ours);
     if bytes.len() > LONGEST_BYTES {
         let reason = format!("a Photoshop file has at most 2 GB, not {}", memory::spoken(bytes.len() as u64));
         return Err(Error::unsupported(file, reason));
     }
-    verify::read_back(file, &bytes, verify::Meant { document, records: &records, merged })?;
+    verify::read_back(file, &bytes, verify::Meant { document, records: &records, merged, selections })?;
     Ok(Some(WrittenPsd { bytes, notes }))
 }
 

@@ -5,12 +5,13 @@ use super::VERSION_INFO;
 use super::channel;
 use super::colours::{Colours, Mode};
 use super::cursor::ByteCursor;
+use super::kept;
 use super::parse::{PsdHeader, resource};
-
-/// What stands in each channel beyond the colours; 0 is the transparency of all.
-const ALPHA_NAMES: u16 = 1053;
+use crate::document::NamedSelection;
+use crate::raster::{CoverageGrid, Plane};
 
 /// The picture, as it stands in the file.
+#[derive(Default)]
 pub struct Merged {
     /// Straight sRGB.
     pub rgba: Vec<u8>,
@@ -18,18 +19,29 @@ pub struct Merged {
     pub has_alpha: bool,
     /// The writer did not say that it left the picture out.
     pub is_real: bool,
+    /// Its channels beyond colours and transparency.
+    pub selections: Vec<NamedSelection>,
+    /// How many of them are inks, which are left out.
+    pub inks: usize,
 }
 
-/// Reads the picture; `None` where it is damaged. `count`: the number that stands before the layers, if there are any.
+/// Reads the picture; `None` where it is damaged. `count`: the number that stands before the layers, if there are any;
+/// `has_room`: there is memory for selections too.
 pub fn merged(
     rest: &mut ByteCursor,
     header: &PsdHeader,
     colours: &Colours,
     resources: ByteCursor,
     count: Option<i16>,
+    has_room: bool,
 ) -> Option<Merged> {
     let has_alpha = usize::from(header.channels) > header.colours() && has_alpha(resources, header.mode, count);
-    let planes = planes(rest, header, header.colours() + usize::from(has_alpha))?;
+    let own = header.colours() + usize::from(has_alpha);
+    let wanted = if has_room && header.mode != Mode::Multichannel { usize::from(header.channels) } else { own };
+    let mut planes = planes(rest, header, own, wanted)?;
+    let coverage = |values| Some(CoverageGrid::from_plane(&Plane::from_values(header.size, values)?, 0, 0));
+    let channels = planes.split_off(own).into_iter().map_while(coverage).collect();
+    let (selections, inks) = kept::selections(channels, has_alpha, resources);
     let mut planes = planes.into_iter();
     let mut slots: [Option<Vec<u8>>; 4] = [None, None, None, None];
     slots.iter_mut().take(header.colours()).for_each(|slot| *slot = planes.next());
@@ -41,30 +53,35 @@ pub fn merged(
     }
     // Since the number of its version: whether the picture is real.
     let is_real = resource(resources, VERSION_INFO).is_none_or(|data| data.get(4) != Some(&0));
-    Some(Merged { rgba, has_alpha, is_real })
+    Some(Merged { rgba, has_alpha, is_real, selections, inks })
 }
 
 /// A channel beyond the colours is the transparency of all layers, not a selection that somebody kept.
 fn has_alpha(resources: ByteCursor, mode: Mode, count: Option<i16>) -> bool {
-    let names = resource(resources, ALPHA_NAMES).unwrap_or_default();
+    let names = resource(resources, kept::NUMBERS).unwrap_or_default();
     let is_named = !names.is_empty() && names.as_chunks::<4>().0.iter().all(|name| *name != [0; 4]);
     mode != Mode::Multichannel && !is_named && count.is_none_or(|count| count < 0)
 }
 
-fn planes(rest: &mut ByteCursor, header: &PsdHeader, wanted: usize) -> Option<Vec<Vec<u8>>> {
+/// The first channels, `own` at least, and of the others up to `wanted` as many as are whole.
+fn planes(rest: &mut ByteCursor, header: &PsdHeader, own: usize, wanted: usize) -> Option<Vec<Vec<u8>>> {
     let shape = |c: usize| header.shape(header.size, c < header.colours());
     let (height, channels) = (header.size.height as usize, usize::from(header.channels));
     let compression = rest.u16()?;
-    match compression {
-        0 => (0..wanted).map(|c| channel::decode_as(rest, shape(c), 0)).collect(),
+    let planes: Vec<Vec<u8>> = match compression {
+        0 => (0..wanted).map_while(|c| channel::decode_as(rest, shape(c), 0)).collect(),
         1 => {
             let lengths = channel::row_lengths(rest, shape(0), height * channels)?;
             let rows = lengths.chunks(height).take(wanted).enumerate();
-            rows.map(|(c, lengths)| channel::unpack_rows(rest, shape(c), lengths)).collect()
+            rows.map_while(|(c, lengths)| channel::unpack_rows(rest, shape(c), lengths)).collect()
         }
-        2 | 3 => channel::inflate_planes(rest.rest(), wanted, shape, compression == 3),
-        _ => None,
-    }
+        2 | 3 => {
+            let inflated = |count| channel::inflate_planes(rest.rest(), count, shape, compression == 3);
+            inflated(wanted).or_else(|| inflated(own))?
+        }
+        _ => return None,
+    };
+    (planes.len() >= own).then_some(planes)
 }
 
 /// No colour is darker than it can be on white.

@@ -9,6 +9,7 @@
 //! | `parse`, `layers`, `blocks` | a file into its parts, its records and what stands behind them |
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, beside the pixels that show it |
+//! | `kept` | selections, the channels beside the colours |
 //! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
 //! | `judge` | whether that looks like the file's own picture, and what is done where it does not |
@@ -27,6 +28,7 @@ mod emit;
 mod fill;
 mod filled;
 mod judge;
+mod kept;
 mod layers;
 mod lower;
 mod masks;

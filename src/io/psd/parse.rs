@@ -91,12 +91,18 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     let records = info.map_or_else(|| Ok(Vec::new()), |info| reader.records(info))?;
     let patterns = pattern::read(global_blocks(section, header.large), &mut reader)?;
     let held_bytes = reader.held_bytes();
-    let damage = reader.damage;
+    let mut damage = reader.damage;
     let is_there = rest.take(length).is_some();
     let count = info.and_then(|info| ByteCursor::new(info.rest()).i16());
     let held_bytes = held_bytes.saturating_add(header.merged_bytes());
     budget.room(file, "reading its layers and the picture of them all", held_bytes)?;
-    let merged = if is_there { merged(&mut rest, &header, &colours, resources, count) } else { None };
+    let channels = usize::from(header.channels).saturating_sub(header.colours());
+    let with_channels = held_bytes.saturating_add((header.size.area() as u64).saturating_mul(2 * channels as u64));
+    let has_room = budget.room(file, "", with_channels).is_ok();
+    if !has_room {
+        damage.push("the selections that it keeps are left out: there is too little memory for them".into());
+    }
+    let merged = if is_there { merged(&mut rest, &header, &colours, resources, count, has_room) } else { None };
     if merged.is_none() && records.is_empty() {
         return Err(Error::decode(file, "it holds no layers, and its picture is damaged or cut short"));
     }

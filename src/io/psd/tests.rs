@@ -3,11 +3,12 @@ mod made;
 
 use super::*;
 use crate::Budget;
-use crate::document::{Content, Document, Group, Layer, MaskKind, PixelLayer, Progress, flatten};
-use crate::math::Size;
+use crate::document::{Content, Document, Group, Layer, MaskKind, NamedSelection, PixelLayer, Progress, flatten};
+use crate::math::{Rect, Size};
+use crate::paint::Selection;
 use crate::project::ProjectContents;
 use crate::project::sample::{assert_same, everything, files, png, read as read_recipe};
-use crate::raster::{BlendMode, TileGrid};
+use crate::raster::{BlendMode, CoverageGrid, TileGrid};
 use serde_json::json;
 use std::path::Path;
 use std::sync::Arc;
@@ -234,7 +235,7 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
     let deep: Vec<LayerRecord> =
         [vec![mark(RecordSection::End); 100], vec![leaf], vec![mark(RecordSection::Group); 100]].concat();
     let size = Size::new(4, 4);
-    let back = read_back(&emit::emit(size, &deep, &[0; 64], &[]));
+    let back = read_back(&emit::emit(size, &deep, &[0; 64], &[], &[]));
     assert!(back.notes.iter().any(|note| note.contains("nested too deep")), "{:?}", back.notes);
     let depth = |path: &str| path.split('.').count();
     let walk = back.document.walk();
@@ -244,7 +245,7 @@ fn groups_nested_too_deep_are_opened_up_and_many_masks_are_refused() {
     // Each covers the canvas once it is read, though it takes no room in the file.
     let mask = Some(RecordMask { rect: Rect::EMPTY, outside: 9, values: Vec::new(), disabled: false });
     let masked = vec![LayerRecord { mask, ..LayerRecord::default() }; 50];
-    let bytes = emit::emit(size, &masked, &[0; 64], &[]);
+    let bytes = emit::emit(size, &masked, &[0; 64], &[], &[]);
     let budget = Budget { document_px: 100, ..Budget::default() };
     let said = read(Path::new("a.psd"), &bytes, &budget).err().unwrap().to_string();
     assert!(said.contains("hold more than 100 pixels"), "{said}");
@@ -261,4 +262,33 @@ fn numbers_of_colours_become_colours() {
     let back = read_back(&bytes);
     let seen = flatten(&back.document, &Progress::default()).unwrap();
     assert_eq!([seen.pixel(0, 0), seen.pixel(1, 0)], [[10, 20, 30, 255], [0, 0, 0, 255]]);
+}
+#[test]
+fn selections_kept_by_name_are_channels_for_other_programs() {
+    let coverage = |x: i32| CoverageGrid::filled(Rect::new(x, 3, x + 20, 90));
+    let named =
+        |name: &str, coverage| NamedSelection { name: name.into(), selection: Arc::new(Selection::new(coverage)) };
+    let mut document = everything(64);
+    document.selections =
+        vec![named("Eye", coverage(5)), named("目 left", coverage(-9)), named("none", Default::default())];
+    let bytes = written(&document);
+    assert_eq!(bytes[12..14], [0, 6], "channels");
+    let read = read_back(&without_ours(&bytes)).document;
+    let kept: Vec<&str> = read.selections.iter().map(|kept| kept.name.as_str()).collect();
+    assert_eq!(kept, ["Eye", "目 left"]);
+    for (read, meant) in read.selections.iter().zip(&document.selections) {
+        assert!(
+            read.selection.coverage.is_same(&meant.selection.coverage.within(document.size.rect())),
+            "{}",
+            read.name
+        );
+    }
+    document.selections.pop();
+    let back = read_back(&written(&document));
+    assert_same(&document, &back.document);
+    // More than a file has room for.
+    document.selections = (0..60).map(|i| named(&i.to_string(), coverage(i % 40))).collect();
+    let many = write(Path::new("a.psd"), &document, &Progress::default()).unwrap().unwrap();
+    assert_eq!(many.bytes[12..14], [0, 56]);
+    assert!(many.notes.iter().any(|note| note.contains("beyond the first 52")), "{:?}", many.notes);
 }

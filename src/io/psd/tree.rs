@@ -36,6 +36,8 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     }
     notes.extend(colour_notes(&parsed));
     let size = parsed.header.size;
+    let kept = parsed.merged.as_mut().map(|merged| (std::mem::take(&mut merged.selections), merged.inks));
+    let kept = kept.unwrap_or_default();
     if parsed.records.is_empty() {
         flattened(&mut parsed);
     }
@@ -45,7 +47,11 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         TreeBuilder { size, deepest, patterns: &parsed.patterns, open: vec![Vec::new()], is_less: false, notes };
     std::mem::take(&mut parsed.records).into_iter().for_each(|record| builder.add(record));
     let (layers, is_less, mut notes) = builder.done();
-    let document = Document { layers, ..Document::empty(size) };
+    let (selections, inks) = kept;
+    if inks > 0 {
+        notes.push("inks beside its colours are left out".into());
+    }
+    let document = Document { layers, selections, ..Document::empty(size) };
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
         budget.room(file, "comparing its layers with its own picture", compared)?;

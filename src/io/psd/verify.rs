@@ -6,7 +6,7 @@ use super::parse::{ParsedPsd, parse};
 use super::tree::restored;
 use super::{LayerRecord, RecordSection};
 use crate::Budget;
-use crate::document::Document;
+use crate::document::{Document, NamedSelection};
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -16,6 +16,7 @@ pub struct Meant<'a> {
     pub records: &'a [LayerRecord],
     /// RGBA of the canvas, on white where it is transparent.
     pub merged: Vec<u8>,
+    pub selections: Vec<NamedSelection>,
 }
 
 /// Fails with a sentence that says what would not come back: to other programs, or here.
@@ -63,8 +64,14 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
         // As the reader takes the white away: no two pixels become the same by that.
         off_white(&mut expected);
     }
-    let is_same = parsed.merged.take().is_some_and(|read| read.is_real && read.rgba == expected);
-    (!is_same).then(|| "the picture of all layers".into())
+    let Some(read) = parsed.merged.take() else { return Some("the picture of all layers".into()) };
+    if !read.is_real || read.rgba != expected {
+        return Some("the picture of all layers".into());
+    }
+    let is_kept = |(a, b): (&NamedSelection, &NamedSelection)| a.selection.coverage.is_same(&b.selection.coverage);
+    let are_kept =
+        read.selections.len() == meant.selections.len() && read.selections.iter().zip(&meant.selections).all(is_kept);
+    (!are_kept).then(|| "the selections that are kept by name".into())
 }
 
 fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static str> {
@@ -93,7 +100,7 @@ mod tests {
     use crate::document::{Progress, flatten};
     use crate::math::Rect;
     use crate::project::sample::everything;
-    use crate::psd::{emit, lower};
+    use crate::psd::{emit, kept, lower};
 
     const FILE: &str = "a.psd";
 
@@ -105,7 +112,7 @@ mod tests {
         let shown = flatten(document, &Progress::default()).unwrap();
         let mut merged = emit::on_white(&shown.to_straight_rgba(document.size.rect()));
         change(&mut records, &mut merged);
-        let meant = Meant { document, records: &records, merged };
+        let meant = Meant { document, records: &records, merged, selections: kept::written(document) };
         read_back(file, bytes, meant).err().map(|error| error.to_string()).unwrap_or_default()
     }
     #[test]
@@ -142,7 +149,11 @@ mod tests {
             let records = parse(Path::new(FILE), &bytes, &Budget::default()).unwrap().records;
             let shown = flatten(&everything(32), &Progress::default()).unwrap();
             let merged = emit::on_white(&shown.to_straight_rgba(other.size.rect()));
-            read_back(Path::new(FILE), &bytes, Meant { document, records: &records, merged })
+            read_back(
+                Path::new(FILE),
+                &bytes,
+                Meant { document, records: &records, merged, selections: kept::written(document) },
+            )
         };
         assert!(meant(&document).is_ok());
         let said = meant(&other).unwrap_err().to_string();

@@ -259,3 +259,27 @@ fn masks_are_switched_off_dense_and_inverted_as_the_file_says() {
     assert_eq!(masked(&[0, 4, 0, 0]), [0, 200], "inverted");
     assert_eq!(masked(&[0, 16, 1, 128]), [200, 100], "half as dense");
 }
+#[test]
+fn kept_selections_open_by_their_names_and_inks_do_not() {
+    let text = |name: &str| [&[name.len() as u8], name.as_bytes()].concat();
+    let wide = |name: &str| {
+        let units = name.encode_utf16().flat_map(u16::to_be_bytes);
+        (name.encode_utf16().count() as u32).to_be_bytes().into_iter().chain(units).collect::<Vec<u8>>()
+    };
+    let shown = |kind: u8| [&[0; 12][..], &[kind]].concat();
+    let mut made = plain(4, 3, [10, 20, 30]);
+    made.merged.extend([vec![0, 255, 128, 0, 0, 0, 0, 0, 0, 0, 0, 7], vec![255; 12], vec![9; 12]]);
+    made.resources = vec![(1006, ["Eye", "Gold", "Eye"].map(text).concat())];
+    made.resources.push((1077, [&[0, 0, 0, 1][..], &shown(1), &shown(2), &shown(1)].concat()));
+    let read = opened(&made);
+    let kept = &read.document.selections;
+    assert_eq!(kept.iter().map(|kept| kept.name.as_str()).collect::<Vec<_>>(), ["Eye", "Eye 2"]);
+    let coverage = &kept[0].selection.coverage;
+    assert_eq!([(1, 0), (2, 0), (3, 2), (0, 1)].map(|(x, y)| coverage.at(x, y)), [255, 128, 7, 0]);
+    assert!(read.notes.iter().any(|note| note.contains("inks")), "{:?}", read.notes);
+    // Letters beyond a byte, and channels that nobody named.
+    made.resources = vec![(1045, wide("Auge – 目"))];
+    let read = opened(&made);
+    let names: Vec<&str> = read.document.selections.iter().map(|kept| kept.name.as_str()).collect();
+    assert_eq!(names, ["Auge – 目", "Alpha 2", "Alpha 3"]);
+}
