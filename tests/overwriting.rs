@@ -126,6 +126,22 @@ fn a_project_is_replaced_with_force_alone_and_keeps_its_previous_version() {
     assert_eq!(fs::read(folder.path().join("b.ora~")).unwrap(), b"the old one");
 }
 #[test]
+fn a_replay_saves_over_another_file_with_force_alone_and_over_its_own_as_often_as_it_likes() {
+    let folder = folder();
+    let save = r#"{"in":"file","do":"save","file":"mine.ora"}"#;
+    let new = r#"{"in":"file","do":"new","width":20,"height":10,"background":null}"#;
+    let add = r#"{"in":"layer","do":"add","kind":"paint"}"#;
+    fs::write(folder.path().join("story"), [new, save, add, save].join("\n")).unwrap();
+    fs::write(folder.path().join("mine.ora"), "somebody's").unwrap();
+    let before = bytes(folder.path());
+    refused(folder.path(), &["replay", "story"], "--force replaces it");
+    assert_eq!(bytes(folder.path()), before);
+    done(folder.path(), &["replay", "story", "--force"]);
+    fs::remove_file(folder.path().join("mine.ora")).unwrap();
+    done(folder.path(), &["replay", "story"]);
+    assert_ne!(fs::read(folder.path().join("mine.ora")).unwrap(), b"somebody's");
+}
+#[test]
 fn a_brush_does_not_take_the_place_of_its_own_tip() {
     let folder = folder();
     let brush = r#"{ "name": "Leaf", "brush": { "size": 20, "tip": { "file": "tip.png" } } }"#;

@@ -90,8 +90,7 @@ impl FileAction {
             FileAction::Save { file } => {
                 let Some(tab) = session.active() else { return Ok(()) };
                 let document = tab.document().clone();
-                // Where that is another document's file, its previous version is kept.
-                let terms = session.saving(file, unless_forced(session, Overwrite::Anything));
+                let terms = session.saving(file, unless_forced(session));
                 // Nothing here gives up, so it is saved.
                 if let (Some(stamp), Some(tab)) =
                     (storage::save(file, &document, terms, &Progress::default())?, session.active_mut())
@@ -103,7 +102,7 @@ impl FileAction {
                 let Some(tab) = session.active() else { return Ok(()) };
                 let (background, quality, bits) = (*background, *quality, *bits);
                 let options = ExportOptions { background, quality, bits, ..ExportOptions::default() };
-                let terms = Terms::export(unless_forced(session, Overwrite::Nothing), session.reads());
+                let terms = Terms::export(unless_forced(session), session.reads());
                 let notes = export(tab.document(), file, &options, terms, &Progress::default())?;
                 session.notes.extend(notes);
             }
@@ -111,7 +110,7 @@ impl FileAction {
                 let Some(tab) = session.active() else { return Ok(()) };
                 let is_exr = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
                 let options = ShapeOptions { is_directx: *directx, is_deep: *bits > 8, is_exr };
-                let terms = Terms::export(unless_forced(session, Overwrite::Nothing), session.reads());
+                let terms = Terms::export(unless_forced(session), session.reads());
                 export_maps(tab.document(), file, maps, options, &terms)?;
             }
             FileAction::Use { part, file } => {
@@ -144,9 +143,10 @@ pub fn empty(size: Size, background: Option<Color>) -> Document {
     Document { layers: fill.into_iter().collect(), ..Document::empty(size) }
 }
 
-/// What saving and exporting may replace: what is usual, or all where the user said so beforehand.
-fn unless_forced(session: &Session, usual: Overwrite) -> Overwrite {
-    if session.replaces_unasked { Overwrite::Forced } else { usual }
+/// What saving and exporting may replace beside the document's own file: nothing, since nobody can be asked, or all
+/// where the user said so beforehand.
+fn unless_forced(session: &Session) -> Overwrite {
+    if session.replaces_unasked { Overwrite::Forced } else { Overwrite::Nothing }
 }
 
 /// The flattened picture as a file, or the document as a Photoshop file; none is written if that is given up. What the
