@@ -1,11 +1,14 @@
 //! MyPaint's brushes: settings, each a base value and curves over what the hand does that add to it. JSON of version
-//! 3, and the text of versions 1 and 2 (`old`). Floor 5. `curves` says what an input is here, `dab` what a dab looks
-//! like, `hand` how dabs follow the pen.
+//! 3, and the text of versions 1 and 2 (`old`). Floor 5. `settings` are what a file says, `curves` how inputs run here,
+//! `dab` what a dab looks like and `small` how large it is, `hand` how dabs follow the pen.
 
+mod added;
 mod curves;
 mod dab;
 mod hand;
 mod old;
+mod settings;
+mod small;
 
 use super::ImportedBrush;
 use crate::Budget;
@@ -13,8 +16,10 @@ use crate::json;
 use crate::paint::Brush;
 use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
 use crate::{Error, Result};
-use curves::{Added, MyPaintSettings};
+use added::Added;
 use serde_json::{Map, Value};
+use settings::MyPaintSettings;
+use small::DabSmoothing;
 use std::path::Path;
 
 pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ImportedBrush> {
@@ -52,6 +57,8 @@ struct Lengths {
     radius: f32,
     /// The diameter of the brush as it becomes here.
     size: f32,
+    /// The dab's radius over what it becomes here, where all that drives it is halfway.
+    shrunk: f32,
 }
 
 impl Lengths {
@@ -63,11 +70,14 @@ impl Lengths {
 
 fn brush(settings: &mut MyPaintSettings) -> Brush {
     let custom = settings.custom().within(0.0, 0.0);
-    let radius = settings.added("radius_logarithmic", 2.0);
+    let radius_log = settings.added("radius_logarithmic", 2.0);
     let base = settings.base("radius_logarithmic", 2.0);
+    let here = dab::hardness(settings, radius_log.base.exp()).halfway();
+    let radius = DabSmoothing::new(settings, here).radius_log_here(radius_log.clone());
+    let shrunk = (radius_log.halfway() - radius.halfway()).exp().max(0.2).min(5.0);
     // What never changes is part of the size.
     let size = (2.0 * radius.base.max(-2.0).min(6.9).exp()).max(0.1);
-    let lengths = Lengths { radius: base.max(-2.0).min(6.9).exp(), size };
+    let lengths = Lengths { radius: base.max(-2.0).min(6.9).exp(), size, shrunk };
     // What adds up in a logarithm doubles here.
     let doublings = Added { base: 0.0, ..radius }.times(std::f32::consts::LOG2_E);
     let brush = Brush { size, dynamics: Dynamics::none(), ..Brush::default() };

@@ -1,7 +1,8 @@
 //! What a dab of a MyPaint brush looks like: tip, coverage, colour, and paint that is taken up.
 //! Floor 5.
 
-use super::curves::{Added, MyPaintSettings};
+use super::added::Added;
+use super::settings::MyPaintSettings;
 use super::{with, with_constant};
 use crate::paint::dynamics::Property;
 use crate::paint::{Brush, Falloff, Pickup, Tip};
@@ -13,9 +14,7 @@ const ROUND: f32 = 1.001;
 
 /// Hardness and the elliptic tip.
 pub fn shape(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
-    let rim_px = settings.added("anti_aliasing", 1.0).base;
-    let hardness = settings.added("hardness", 0.8);
-    let hardness = softened(hardness, rim_px, 0.5 * brush.size).within(0.0, 1.0);
+    let hardness = hardness(settings, 0.5 * brush.size);
     let brush = Brush { hardness: hardness.base, falloff: Falloff::Peaked, ..brush };
     let brush = with(brush, Property::Hardness, &hardness);
     let elongation = settings.added("elliptical_dab_ratio", 1.0).within(1.0, 1.0 / *Tip::RATIO.start());
@@ -28,6 +27,12 @@ pub fn shape(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
         Brush { tip: Tip::Ellipse { ratio: 1.0 / elongation.base }, rotation: angle.base.rem_euclid(360.0), ..brush };
     let brush = with(brush, Property::Elongation, &elongation);
     with(brush, Property::Rotation, &angle.times(1.0 / 360.0))
+}
+
+/// As it becomes here, of a brush of this radius.
+pub fn hardness(settings: &mut MyPaintSettings, radius: f32) -> Added {
+    let rim_px = settings.added("anti_aliasing", 1.0).base;
+    softened(settings.added("hardness", 0.8), rim_px, radius).within(0.0, 1.0)
 }
 
 /// A rim that is asked to be wider than the hardness makes it, the radius at which it covers one half staying.
@@ -50,20 +55,19 @@ pub fn flow(settings: &mut MyPaintSettings, brush: Brush) -> Brush {
     let brush = Brush { overlap, ..brush };
     let opaque = settings.added("opaque", 1.0);
     let times = settings.opaque_multiply();
-    match times.rows.as_slice() {
-        // One of them changes: the other is a number.
-        [] => flows(brush, opaque.times(times.base.max(0.0))),
-        _ if opaque.rows.is_empty() => flows(brush, times.times(opaque.base.max(0.0))),
-        [rows @ .., last] => {
-            if !rows.is_empty() {
-                settings.note("“opaque_multiply” follows one of several inputs");
-            }
-            let most = times.range()[1].max(1e-3);
-            let factors = last.factors(|x| times.at(last, x) / most);
-            let brush = flows(brush, opaque.times(most));
-            let dynamics = factors.map(|curve| brush.dynamics.with(Property::Flow, last.input, curve));
-            Brush { dynamics: dynamics.unwrap_or(brush.dynamics.clone()), ..brush }
-        }
+    // What follows several inputs adds up here, what follows one multiplies it.
+    let (sum, factor) = if opaque.rows.len() < times.rows.len() { (times, opaque) } else { (opaque, times) };
+    let Some(main) = factor.main_row() else { return flows(brush, sum.times(factor.base.max(0.0))) };
+    if factor.rows.len() > 1 {
+        settings.note("The opacity follows some of several inputs");
+    }
+    let row = &factor.rows[main];
+    let rest = factor.halfway() - row.halfway();
+    let most = (rest + row.most()).max(1e-3);
+    let brush = flows(brush, sum.times(most));
+    match row.factors(|x| (rest + row.at(x)) / most) {
+        Some(curve) => Brush { dynamics: brush.dynamics.with(Property::Flow, row.input, curve), ..brush },
+        None => brush,
     }
 }
 

@@ -1,7 +1,8 @@
 //! How dabs of a MyPaint brush follow the pen: how densely, how far from it, and how the hand is read.
 //! Floor 5.
 
-use super::curves::{Added, MyPaintSettings};
+use super::added::Added;
+use super::settings::MyPaintSettings;
 use super::{Lengths, with};
 use crate::paint::brush::Stabilizer;
 use crate::paint::dynamics::Property;
@@ -18,7 +19,7 @@ pub fn spacing(settings: &mut MyPaintSettings, lengths: Lengths, brush: Brush) -
     let per_sec = settings.plain("dabs_per_second", 0.0);
     let [least, most] = SPACINGS;
     // No dabs are due at all where a radius has none.
-    let spacing = |dabs: f32| if dabs > 0.0 { (0.5 / dabs).max(least).min(most) } else { most };
+    let spacing = |dabs: f32| if dabs > 0.0 { (0.5 * lengths.shrunk / dabs).max(least).min(most) } else { most };
     let rate =
         Rate { per_diameter: (basic / lengths.diameters()).max(0.0).min(200.0), per_sec: per_sec.max(0.0).min(200.0) };
     let brush = Brush { spacing: spacing(actual.base), rate, ..brush };
