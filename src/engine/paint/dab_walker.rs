@@ -82,7 +82,9 @@ impl Dab {
 
 /// Walks along a stroke: samples go in one by one, and dabs that no later sample changes come out.
 ///
-/// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. Samples that are not
+/// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. The way is computed from
+/// the pixel of the first sample on, and dabs stand on a fine grid: a stroke that is moved by whole px gives the same dabs
+/// moved by them, to the bit. Samples that are not
 /// finite, lie beyond all canvases, or are earlier than the one before are skipped.
 #[derive(Clone)]
 pub struct DabWalker {
@@ -111,7 +113,8 @@ impl DabWalker {
         if !is_good || !time_secs.is_finite() || time_secs < self.speeds.at_secs() {
             return;
         }
-        let Some(at) = self.tremor.shaken(at) else { return };
+        let origin = *self.rules.origin.get_or_insert(at.floor());
+        let Some(at) = self.tremor.shaken(at - origin) else { return };
         let tilt = if tilt.is_finite() { tilt } else { Vec2::ZERO };
         let place = CurvePoint { at, pressure: pressure.clamp(0.0, 1.0), tilt, ..CurvePoint::at_rest(time_secs) };
         let Some(last) = self.places.last_mut() else {

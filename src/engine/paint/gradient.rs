@@ -80,8 +80,10 @@ impl RampPositions {
     fn over(gradient: &Gradient, scene: &Scene, rect: Rect) -> Self {
         let bend = gradient.bend();
         let mut d = DeformedRect::default();
-        Deformation::new(scene.surface.as_deref(), scene.size, &bend).fill(rect, &mut d);
-        let frame = BentFrame::of(&gradient.frame, rect);
+        let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &bend);
+        let deformation = deformation.about(BentFrame::origin(&gradient.frame));
+        deformation.fill(rect, &mut d);
+        let frame = BentFrame::of(&gradient.frame, rect, deformation.origin());
         if !frame.apply(&mut d.x, &mut d.y) && frame.linear != Affine2::IDENTITY {
             transform(frame.linear, &mut d.x, &mut d.y);
         }

@@ -154,9 +154,10 @@ impl PlacedImage {
     /// Where each pixel of an area is read of a texture of this size.
     fn placed(&self, scene: &Scene, area: Rect, texture: Size) -> Placed {
         let texels_from_frame = self.placement.texels_from_canvas(scene.size, texture);
-        let bent_frame = BentFrame::of(&self.frame, area);
-        let texels_from_canvas = texels_from_frame * bent_frame.linear;
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
+        let deformation = deformation.about(BentFrame::origin(&self.frame));
+        let bent_frame = BentFrame::of(&self.frame, area, deformation.origin());
+        let texels_from_canvas = texels_from_frame * bent_frame.linear;
         let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;
         // One more pixel on every side, where differences are taken.
         let margin = if self.filter == ImageFilter::Bilinear || is_exact { 0 } else { 1 };
@@ -188,9 +189,20 @@ pub(super) struct BentFrame {
 }
 
 impl BentFrame {
-    /// `area`: the pixels that are asked for.
-    pub fn of(frame: &PlaneMap, area: Rect) -> Self {
-        if let Some(linear) = frame.inverse().as_affine() {
+    /// The corner of the pixels next to where the frame's own corner lies: points are counted from there, so that what
+    /// was moved by whole px is computed from the same numbers. That of the canvas for perspectives.
+    pub fn origin(frame: &PlaneMap) -> (i32, i32) {
+        const FAR: f64 = 1e6;
+        match frame.coefficients() {
+            Some([.., e, f]) if e.abs() <= FAR && f.abs() <= FAR => (e.round() as i32, f.round() as i32),
+            _ => (0, 0),
+        }
+    }
+    /// * `area`: the pixels that are asked for.
+    /// * `origin`: what points of the canvas are counted from; of a perspective its own, which is none.
+    pub fn of(frame: &PlaneMap, area: Rect, origin: (i32, i32)) -> Self {
+        let from_origin = PlaneMap::translation(vec2(origin.0 as f32, origin.1 as f32));
+        if let Some(linear) = from_origin.then(&frame.inverse()).as_affine() {
             return Self { linear, perspective: None };
         }
         let middle = vec2((area.x0 + area.x1) as f32, (area.y0 + area.y1) as f32) * 0.5;

@@ -31,6 +31,8 @@ pub struct Deformation<'a> {
     curvature: Option<Arc<Curvature>>,
     /// Of a dab that must stay near the pen.
     reach: Option<DabReach>,
+    /// The canvas point that q, anchors and D are counted from.
+    origin: (i32, i32),
 }
 
 /// An anchor and what the maps hold there.
@@ -109,7 +111,37 @@ impl<'a> Deformation<'a> {
         let operator = operator.finite();
         let curvature = surface.filter(|_| operator.detail() != 0.0).map(|s| s.curvature(DETAIL_BLUR_PX));
         let weights = sane(weights);
-        Self { surface, unit_px: size.longer_side(), operator, weights, pins, planes: None, curvature, reach: None }
+        Self {
+            surface,
+            unit_px: size.longer_side(),
+            operator,
+            weights,
+            pins,
+            planes: None,
+            curvature,
+            reach: None,
+            origin: (0, 0),
+        }
+    }
+    /// The same, counted from another corner of the pixels: q, anchors and D. What moved with its surface by whole px
+    /// then gives the same bits as before. Where the surface is unwrapped the origin stays.
+    pub fn about(mut self, origin: (i32, i32)) -> Self {
+        if self.planes.is_some() {
+            return self;
+        }
+        let by = vec2((origin.0 - self.origin.0) as f32, (origin.1 - self.origin.1) as f32);
+        for Pin { anchor, .. } in &mut self.pins {
+            (anchor.at, anchor.source) = (anchor.at - by, anchor.source - by);
+        }
+        Self { origin, ..self }
+    }
+    /// What points are counted from, canvas px.
+    pub fn origin(&self) -> (i32, i32) {
+        self.origin
+    }
+    /// The centre of a pixel of the canvas.
+    fn centre(&self, x: i32, y: i32) -> Vec2 {
+        vec2(x.wrapping_sub(self.origin.0) as f32, y.wrapping_sub(self.origin.1) as f32) + 0.5
     }
     /// The same, of a dab that lands within a reach; where D is the identity it does so anyway.
     pub fn within(self, reach: Option<DabReach>) -> Self {
@@ -125,7 +157,7 @@ impl<'a> Deformation<'a> {
     ///
     /// MATH 2 (SF eq. 13, 15): `D(q) = q + Σ_i w_i(q) [ offset_i(q) + (s_i − q_i) ]`. Canvas px.
     pub fn at(&self, x: i32, y: i32) -> Vec2 {
-        let q = vec2(x as f32, y as f32) + 0.5;
+        let q = self.centre(x, y);
         if let Some((planes, (_, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
             return self.within_reach(q, planes.at(x, y));
         }
@@ -146,7 +178,7 @@ impl<'a> Deformation<'a> {
     ///
     /// `J = I + Σ_i [ w_i ∂offset_i/∂q + (offset_i + s_i − q_i) ∇w_iᵀ ]`.
     pub fn jacobian(&self, x: i32, y: i32) -> Mat2 {
-        let q = vec2(x as f32, y as f32) + 0.5;
+        let q = self.centre(x, y);
         if let Some((planes, (surface, x, y))) = self.planes.as_ref().zip(self.on_surface(x, y)) {
             let near = DifferencePairs::linked(surface, x, y);
             let rows = [near.slope(|x, y| planes.at(x, y).x), near.slope(|x, y| planes.at(x, y).y)];
@@ -194,13 +226,13 @@ impl<'a> Deformation<'a> {
             Some(sheet) if y >= 0 => {
                 for (x, (q_x, q_y)) in (x..).zip(q_x.iter_mut().zip(q_y)) {
                     let (x, y) = sheet.canvas_pixel(x.max(0), y);
-                    (*q_x, *q_y) = (x as f32 + 0.5, y as f32 + 0.5);
+                    (*q_x, *q_y) = self.centre(x, y).into();
                 }
             }
             _ => {
-                let first = x as f32 + 0.5;
-                q_x.iter_mut().enumerate().for_each(|(k, q)| *q = first + k as i32 as f32);
-                q_y.fill(y as f32 + 0.5);
+                let first = self.centre(x, y);
+                q_x.iter_mut().enumerate().for_each(|(k, q)| *q = first.x + k as i32 as f32);
+                q_y.fill(first.y);
             }
         }
     }

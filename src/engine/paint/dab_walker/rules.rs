@@ -16,6 +16,8 @@ use std::sync::Arc;
 
 /// The smallest step between dabs. Below it neighbouring dabs of any size are the same to a byte.
 pub(super) const MIN_STEP_PX: f32 = 0.1;
+/// Dabs stand on a grid as fine as f32 tells places on canvases of 4096 px.
+const STEPS_PER_PX: f32 = 4096.0;
 /// The smallest dab, a little wider than a pixel.
 const PIXEL_RADIUS_PX: f32 = 0.75;
 /// *s* of the κ that drives a brush: *L* over this. Relative, so that a larger canvas paints the same.
@@ -34,6 +36,8 @@ pub(super) struct DabRules {
     operator: Operator,
     color: Color,
     scene: Scene,
+    /// The corner of the pixel that the stroke begins in: what its places are counted from.
+    pub origin: Option<Vec2>,
     /// Canvas from the frame that the stroke was drawn in.
     facing: Mat2,
     /// Where something follows it.
@@ -91,6 +95,7 @@ impl DabRules {
             operator,
             color,
             scene: scene.clone(),
+            origin: None,
             facing: brush.facing.map(),
             curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
             reads_pen: matches!(brush.tip, Tip::Hose(_)) || PEN.into_iter().any(follows),
@@ -113,7 +118,11 @@ impl DabRules {
             ..DabInputs::default()
         };
         let inputs = if self.reads_pen { self.of_pen(moment, inputs) } else { inputs };
-        self.over_surface(place.at, inputs)
+        self.over_surface(self.on_canvas(place.at), inputs)
+    }
+    /// Where a place lies on the canvas.
+    fn on_canvas(&self, at: Vec2) -> Vec2 {
+        (at * STEPS_PER_PX).round() / STEPS_PER_PX + self.origin.unwrap_or_default()
     }
     /// With the readings of [`PEN`].
     fn of_pen(&self, moment: &Moment, inputs: DabInputs) -> DabInputs {
@@ -249,8 +258,9 @@ impl DabRules {
     }
     /// The dab of a moment; `None` where nothing would be seen.
     pub fn dab(&self, moment: &Moment, inputs: DabInputs) -> Option<Dab> {
-        let at = self.strayed(moment, &inputs);
-        let inputs = if at == moment.place.at { inputs } else { self.over_surface(at, inputs) };
+        let strayed = self.strayed(moment, &inputs);
+        let at = self.on_canvas(strayed);
+        let inputs = if strayed == moment.place.at { inputs } else { self.over_surface(at, inputs) };
         let brush = &self.brush;
         let unit = |v: f32| v.max(0.0).min(1.0);
         let (larger, fainter) = self.chance_of_size(&inputs);

@@ -293,3 +293,35 @@ proptest! {
         }
     }
 }
+#[test]
+fn counted_from_another_corner_a_moved_surface_gives_the_same_bits() {
+    let (size, by) = (Size::new(90, 70), (17, 9));
+    let at = |x: f32, y: f32| vec3((x * 0.11).sin() * 0.4, (y * 0.13).cos() * 0.3, 0.8).normalize();
+    let surface = |shift: (i32, i32)| {
+        let normals = Plane::from_fn(size, |x, y| at(x as f32 - shift.0 as f32, y as f32 - shift.1 as f32));
+        let depth =
+            Plane::from_fn(size, |x, y| (x as f32 - shift.0 as f32) * 0.01 + (y as f32 - shift.1 as f32) * 0.004);
+        let mut depth = depth.map(|v| v.max(0.0).min(1.0));
+        // The range stays the same.
+        (depth.set(0, 0, 0.0), depth.set(89, 69, 1.0));
+        Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
+    };
+    let bend = |shift: (i32, i32)| {
+        let move_by = vec2(shift.0 as f32, shift.1 as f32);
+        let pin = |x: f32, y: f32| Anchor { at: vec2(x, y) + move_by, source: vec2(x + 1.5, y) + move_by };
+        Bend {
+            operator: Operator::Normal { alpha: 0.37, beta: 1.3, detail: 0.0 },
+            anchors: vec![pin(20.5, 30.25), pin(44.125, 18.5)],
+            ..Bend::default()
+        }
+    };
+    let (here, there) = (surface((0, 0)), surface(by));
+    let (mut a, mut b) = (DeformedRect::default(), DeformedRect::default());
+    Deformation::new(Some(&here), size, &bend((0, 0))).fill(Rect::new(5, 5, 60, 50), &mut a);
+    let moved = Deformation::new(Some(&there), size, &bend(by)).about(by);
+    moved.fill(Rect::new(5 + by.0, 5 + by.1, 60 + by.0, 50 + by.1), &mut b);
+    assert!(a.x == b.x && a.y == b.y);
+    assert!(
+        moved.at(30 + by.0, 20 + by.1).distance(Deformation::new(Some(&here), size, &bend((0, 0))).at(30, 20)) < 1e-6
+    );
+}
