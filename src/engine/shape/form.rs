@@ -2,7 +2,7 @@
 //! Floor 3. How forms meet is `combine`'s.
 
 use super::{Outline, Rim};
-use crate::math::{Rect, Vec2, Vec3, vec2, vec3};
+use crate::math::{Affine2, Mat2, Rect, Size, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 use rayon::prelude::*;
 
@@ -66,6 +66,67 @@ impl Form {
     pub fn moved(&self, by: (i32, i32)) -> Self {
         let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));
         Self { corner, ..self.clone() }
+    }
+    /// The form as it is seen through a map of its plane; `None` where the map flattens it, or its picture would have
+    /// more than `most_px` pixels. Whole pixels are moved as they are.
+    ///
+    /// Slopes s become k A^−T s and heights k z, with k = √|det A|, as of an object that is turned and scaled with its
+    /// picture (MATH 1). Between pixels normals and heights are those of the covered ones.
+    pub fn through(&self, map: Affine2, most_px: usize) -> Option<Self> {
+        let area = map.matrix2.determinant().abs();
+        if !map.is_finite() || area < 1e-6 {
+            return None;
+        }
+        let shift = map.translation;
+        if map.matrix2 == Mat2::IDENTITY && shift == shift.round() {
+            return Some(self.moved((shift.x as i32, shift.y as i32)));
+        }
+        let Rect { x0, y0, x1, y1 } = self.rect();
+        let seen =
+            [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| map.transform_point2(vec2(x as f32, y as f32)));
+        let low = seen.iter().fold(Vec2::MAX, |a, b| a.min(*b)).floor();
+        let extent = (seen.iter().fold(Vec2::MIN, |a, b| a.max(*b)).ceil() - low).max(Vec2::ONE);
+        let pixels = f64::from(extent.x) * f64::from(extent.y);
+        if pixels.is_nan() || pixels > most_px as f64 || low.abs().max_element() > 1e6 {
+            return None;
+        }
+        let (back, scale, turn) = (map.inverse(), area.sqrt(), map.matrix2.inverse().transpose());
+        let origin = vec2(x0 as f32, y0 as f32) + 0.5;
+        let size = Size::new(extent.x as u32, extent.y as u32);
+        let read = Plane::from_fn(size, |x, y| {
+            self.between(back.transform_point2(low + vec2(x as f32, y as f32) + 0.5) - origin)
+        });
+        let turned = |n: Vec3| {
+            // n̄ / n_z in image axes; multiplied by n_z, so that silhouettes stay finite.
+            let bar = scale * (turn * vec2(n.x, -n.y));
+            vec3(bar.x, -bar.y, n.z).normalize_or(Vec3::Z)
+        };
+        Some(Self {
+            corner: (low.x as i32, low.y as i32),
+            height: read.map(|(height, _, _)| height * scale),
+            normals: read.map(|(_, normal, _)| turned(normal)),
+            coverage: read.map(|(_, _, coverage)| coverage.round() as u8),
+        })
+    }
+    /// Height, normal and coverage at a place counted from the centre of the first pixel.
+    fn between(&self, p: Vec2) -> (f32, Vec3, f32) {
+        let whole = p.floor();
+        let part = p - whole;
+        let (mut height, mut normal, mut coverage, mut sum) = (0.0, Vec3::ZERO, 0.0, 0.0);
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let (x, y) = (whole.x as i32 + dx, whole.y as i32 + dy);
+            let along = |d: i32, part: f32| if d == 0 { 1.0 - part } else { part };
+            let share = along(dx, part.x) * along(dy, part.y);
+            let covered = self.coverage.get(x, y).unwrap_or(0);
+            if covered == 0 || share <= 0.0 {
+                continue;
+            }
+            coverage += share * f32::from(covered);
+            sum += share;
+            height += share * self.height.at(x as usize, y as usize);
+            normal += share * self.normals.at(x as usize, y as usize);
+        }
+        if sum > 0.0 { (height / sum, normal.normalize_or(Vec3::Z), coverage) } else { (0.0, Vec3::Z, 0.0) }
     }
     /// Leaned about its middle: a plane is added that rises by `tan(tilt)` toward the right (x) and the bottom (y).
     /// What is a silhouette stays one. Degrees, between −90 and 90.

@@ -67,6 +67,15 @@ impl Outline {
     pub fn inside(&self) -> &Plane<bool> {
         &self.inside
     }
+    /// The same planes with some pixels outside; a plane of another size takes none away.
+    pub fn without(&self, cut: &Plane<bool>) -> Self {
+        if cut.size() != self.size() {
+            return self.clone();
+        }
+        let coverage = Plane::from_fn(self.size(), |x, y| if cut.at(x, y) { 0 } else { self.coverage.at(x, y) });
+        let inside = Plane::from_fn(self.size(), |x, y| !cut.at(x, y) && self.inside.at(x, y));
+        Self { corner: self.corner, coverage, inside }
+    }
     /// The same outline elsewhere.
     pub fn moved(&self, by: (i32, i32)) -> Self {
         let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));

@@ -1,7 +1,10 @@
 //! Lighting profiles: normals from one drawing shaded several times by hand, each with the light elsewhere.
 //! Floor 3. Photometric stereo (Woodham 1980): I_k = ρ n·ℓ_k.
 
-use crate::math::{Mat3, Size, Vec3};
+use super::lines::filled;
+use super::touches::{lifted, with_normals};
+use super::{Form, Outline};
+use crate::math::{Mat3, Size, Vec3, vec2, vec3};
 use crate::raster::Plane;
 
 /// One shading of the drawing.
@@ -76,6 +79,38 @@ fn solved(profiles: &[Profile], x: usize, y: usize) -> (Vec3, f32) {
     (found, (left / used.len() as f32).sqrt())
 }
 
+/// The form that shadings tell within an outline: their normals, and heights whose slopes these are. Where they tell
+/// nothing (all but two are clipped) the form goes on as beside it. `None` as of [`normals_from_profiles`].
+///
+/// The planes of the shadings are those of the outline.
+pub fn formed(profiles: &[Profile], outline: &Outline) -> Option<Form> {
+    let (found, inside) = (normals_from_profiles(profiles)?, outline.inside());
+    if found.normals.size() != inside.size() {
+        return None;
+    }
+    let told = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && found.normals.at(x, y) != Vec3::ZERO);
+    let untold = Plane::from_fn(inside.size(), |x, y| inside.at(x, y) && !told.at(x, y));
+    let bar = Plane::from_fn(inside.size(), |x, y| {
+        let n = found.normals.at(x, y);
+        // What turns away from the viewer is not seen.
+        let n = if n.z < 0.0 { vec3(n.x, n.y, 0.0).normalize_or(Vec3::Z) } else { n };
+        vec2(n.x, -n.y)
+    });
+    let bar = filled(bar, &untold, inside);
+    let normals = Plane::from_fn(inside.size(), |x, y| if inside.at(x, y) { lifted(bar.at(x, y)) } else { Vec3::Z });
+    let flat = Form {
+        corner: outline.corner(),
+        height: Plane::filled(inside.size(), 0.0),
+        normals: normals.clone(),
+        coverage: outline.coverage().clone(),
+    };
+    let form = with_normals(&flat, outline, normals);
+    // It stands on its lowest place.
+    let covered = || form.height.values().iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
+    let low = covered().fold(f32::MAX, f32::min);
+    Some(if low < f32::MAX { form.raised(-low) } else { form })
+}
+
 /// The size of all shadings; `None` where there are none.
 pub fn size_of(profiles: &[Profile]) -> Option<Size> {
     profiles.first().map(|p| p.grey.size())
@@ -84,7 +119,6 @@ pub fn size_of(profiles: &[Profile]) -> Option<Size> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{vec2, vec3};
     use crate::shape::primitive::{Body, Primitive};
 
     fn lights() -> Vec<Vec3> {

@@ -103,8 +103,12 @@ fn disc(inside: &Plane<bool>, center: Vec2, radius: f32) -> impl Iterator<Item =
 
 /// δ over the outline: what is wanted where it is held, 0 at the rim, smooth between.
 pub fn spread(outline: &Outline, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
+    spread_within(&Rim::silhouette(outline), held, wanted, reach)
+}
+
+/// The same within a rim that is free in part.
+pub fn spread_within(rim: &Rim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
     let screen = if reach.is_finite() { 1.0 / (reach * reach).max(0.25) } else { 0.0 };
-    let rim = Rim::silhouette(outline);
     let equation = rim.equation(|x, y| if held.at(x, y) { FIRM } else { screen });
     let component = |c: usize| {
         let source = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { FIRM * wanted.at(x, y)[c] } else { 0.0 });
