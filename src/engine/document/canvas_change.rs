@@ -180,7 +180,9 @@ impl Document {
             return Ok(self.clone());
         }
         let carried = CarriedSelections::new(change);
-        let layers = layers::Carrier { change, selections: &carried }.layers(&self.layers)?;
+        // What lies on parts is carried as it shows, and put on them again where they came to lie.
+        let lifted = self.lifted_off(|_| true);
+        let layers = layers::Carrier { change, selections: &carried }.layers(&lifted.layers)?;
         let maps = self.maps_surface().map(|maps| maps.through(change.to, &change.map));
         let maps = maps.transpose().map_err(|error| match error {
             SurfaceError::Empty => NOTHING_LEFT.to_owned(),
@@ -203,7 +205,7 @@ impl Document {
             guides: Arc::new(self.guides.through(&change.map)),
             assistants: Arc::new(self.assistants.iter().filter_map(|own| own.through(&change.map)).collect()),
         };
-        let next = if parts.is_empty() { bare } else { bare.with_parts(parts) };
+        let next = if parts.is_empty() { bare } else { bare.with_parts(parts).with_homes_of(self) };
         if self.surface.is_some() && next.surface.is_none() {
             return Err(NOTHING_LEFT.into());
         }

@@ -10,7 +10,7 @@ mod normals;
 mod pixels;
 mod radiance_scaling;
 mod shading;
-mod strokes;
+pub(super) mod strokes;
 
 pub use group::Group;
 pub use pixels::PixelLayer;
@@ -93,6 +93,10 @@ trait LayerKind {
     /// and what became of it under the same map.
     fn on_canvas(&self, _map: &LayerMap, _last: Option<(&Content, &Content)>) -> Option<Content> {
         None
+    }
+    /// Whether marks of it have homes of their own.
+    fn has_homes(&self) -> bool {
+        false
     }
     /// Without what was painted; `None` of what is not painted on.
     fn emptied(&self) -> Option<Content> {
@@ -212,6 +216,10 @@ impl Content {
             Some((own, seen)) if self.is_identical(own) => seen.clone(),
             _ => self.kind().on_canvas(map, last).unwrap_or_else(|| self.clone()),
         }
+    }
+    /// Whether marks of it have homes that differ from the layer's.
+    pub fn has_homes(&self) -> bool {
+        self.kind().has_homes()
     }
     /// The same kind without what was painted; `None` of what is not painted on.
     pub fn emptied(&self) -> Option<Content> {

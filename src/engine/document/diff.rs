@@ -46,7 +46,7 @@ fn contexts(document: &Document) -> BTreeMap<LayerId, LayerContext> {
 /// Notes which layers stand in groups that were transformed.
 fn place(layers: &[Arc<Layer>], around: &LayerMap, all: &mut BTreeMap<LayerId, LayerContext>) {
     for layer in layers {
-        if let Some(context) = all.get_mut(&layer.id).filter(|_| !around.is_none()) {
+        if let Some(context) = all.get_mut(&layer.id).filter(|_| !around.moves_nothing()) {
             context.around = Some(*around);
         }
         if let Some(group) = layer.content.group() {
@@ -180,7 +180,8 @@ impl Diff<'_> {
     }
     /// Whether its own frame or that of a group around it is not the canvas.
     fn stands_elsewhere(&self, layer: &Layer) -> bool {
-        layer.transform.is_some() || self.new.get(&layer.id).is_some_and(|context| context.around.is_some())
+        let is_taken = self.new.get(&layer.id).is_some_and(|context| context.around.is_some());
+        layer.transform.is_some() || layer.on.is_some() || is_taken
     }
     fn both(&mut self, old: &Arc<Layer>, new: &Arc<Layer>) -> bool {
         self.whole(old, Version::Old) | self.whole(new, Version::New)
@@ -227,6 +228,7 @@ fn looks_alike(a: &Layer, b: &Layer) -> bool {
         && a.clip_to_surface == b.clip_to_surface
         && a.mask.is_some() == b.mask.is_some()
         && a.transform == b.transform
+        && a.on == b.on
 }
 
 #[cfg(test)]

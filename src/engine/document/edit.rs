@@ -45,17 +45,20 @@ impl Document {
         }
         find(&self.layers, None, id)
     }
-    /// With one layer changed. Its id stays whatever `change` does to it.
+    /// With one layer changed. Its id stays whatever `change` does to it, and outlines that name it follow its name.
     pub fn with_layer(&self, id: LayerId, change: impl FnOnce(&mut Layer)) -> Option<Document> {
-        self.with_siblings(self.place_of(id)?, |layers, index| {
+        let next = self.with_siblings(self.place_of(id)?, |layers, index| {
             let layer = Arc::make_mut(layers.get_mut(index)?);
             change(layer);
             layer.id = id;
             Some(())
-        })
+        })?;
+        Some(if self.parts.is_empty() { next } else { next.with_outlines_renamed(self, id) })
     }
-    /// With one more layer. `None` also where the document has a layer of that id already.
+    /// With one more layer. `None` also where the document has a layer of that id already. What it has on parts that
+    /// are not in this document stays where it shows.
     pub fn with_inserted(&self, layer: Layer, place: LayerSlot) -> Option<Document> {
+        let layer = self.adopted(layer);
         let new = Document { layers: vec![Arc::new(layer)], ..Document::empty(self.size) };
         if new.walk().iter().any(|(_, layer)| self.layer(layer.id).is_some()) {
             return None;

@@ -6,10 +6,13 @@ mod light;
 mod marks;
 mod selections;
 
-use super::{Assistant, Content, DetailSource, Document, Layer, LayerMask, MaskKind, PixelLayer};
+use super::TransformShape;
+use super::{
+    Assistant, Content, DetailSource, Document, HomeFrame, Layer, LayerMask, LayerTransform, MaskKind, PixelLayer,
+};
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, Size};
-use crate::raster::{Picture, TILE};
+use crate::raster::{Picture, Resampling, TILE};
 use crate::shading::FeatureScale;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -43,11 +46,13 @@ impl Document {
                 fit = layer_fits(layer, was.map(|was| &**was), self.size).map_err(|why| named(layer, &why));
             }
         });
+        let homes = || self.homes_fit();
         let values = || total.fits().map_err(|why| format!("{why}."));
         fit.and_then(|()| self.aids_fit())
             .and_then(|()| selections::fit(self, before))
             .and_then(|()| self.surface_fits())
             .and_then(|()| self.parts_fit())
+            .and_then(|()| homes())
             .and_then(|()| values())
     }
 }
@@ -58,6 +63,28 @@ impl Document {
     }
     fn surface_fits(&self) -> Fit {
         self.surface_source.as_ref().map_or(Ok(()), |source| source.fits().map_err(|why| format!("Surface: {why}.")))
+    }
+    /// Whether every home is the canvas or one of the parts.
+    fn homes_fit(&self) -> Result<(), String> {
+        let known = |home: &HomeFrame| match home.part() {
+            Some(id) if self.parts.part(id).is_none() => Err(format!("lies on “{id}”, and there is no such part")),
+            _ => Ok(()),
+        };
+        let of_strokes = |layer: &Layer| match &layer.content {
+            Content::Strokes(live) if layer.content.has_homes() => {
+                live.params().strokes.iter().try_for_each(|stroke| {
+                    let Some(home) = stroke.home() else { return Ok(()) };
+                    known(&home.frame)?;
+                    let shape = TransformShape::Matrix(home.own);
+                    LayerTransform { shape, filter: Resampling::default() }.fits()
+                })
+            }
+            _ => Ok(()),
+        };
+        self.walk().into_iter().try_for_each(|(_, layer)| {
+            let fit = layer.on.as_ref().map_or(Ok(()), known).and_then(|()| of_strokes(layer));
+            fit.map_err(|why| named(layer, &why))
+        })
     }
 }
 

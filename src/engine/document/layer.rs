@@ -4,6 +4,7 @@
 use super::{Content, LayerTransform, cache::LayerCache, mask::LayerMask};
 use crate::math::srgb::Color;
 use crate::math::{Range, UNIT};
+use crate::paint::HomeFrame;
 use crate::raster::BlendMode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -40,6 +41,9 @@ pub struct Layer {
     pub clip_to_surface: bool,
     /// Where the frame that content and mask lie in stands on the canvas; absent: it is the canvas.
     pub transform: Option<LayerTransform>,
+    /// The part of the shape that carries it, after its own transform; absent: what carries the group around it, or
+    /// the canvas.
+    pub on: Option<HomeFrame>,
     pub content: Content,
     /// Cached values of this layer; no part of the document's value.
     pub cache: LayerCache,
@@ -65,6 +69,7 @@ impl Layer {
             label: LayerLabel::None,
             clip_to_surface: true,
             transform: None,
+            on: None,
             content,
             cache: LayerCache::default(),
         }

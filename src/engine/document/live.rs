@@ -12,6 +12,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 pub struct Live<T> {
     params: Arc<T>,
     rendered: Arc<RenderedTiles>,
+    /// Whether marks of it have homes of their own, once it was asked.
+    has_homes: Arc<OnceLock<bool>>,
 }
 
 /// The tiles of one scene; replaced when the layer is rendered on another canvas or surface.
@@ -57,10 +59,14 @@ impl TileCells {
 
 impl<T> Live<T> {
     pub fn new(params: T) -> Self {
-        Self { params: Arc::new(params), rendered: Arc::default() }
+        Self { params: Arc::new(params), rendered: Arc::default(), has_homes: Arc::default() }
     }
     pub fn params(&self) -> &T {
         &self.params
+    }
+    /// What was found of the parameters once is not sought again.
+    pub(super) fn has_homes(&self, sought: impl FnOnce(&T) -> bool) -> bool {
+        *self.has_homes.get_or_init(|| sought(&self.params))
     }
     /// New parameters that change only some tiles: the rendered tiles for which `keeps` is true are taken over.
     pub fn with(&self, params: T, keeps: impl Fn(TileAt) -> bool) -> Self {
@@ -111,7 +117,8 @@ impl<T> Live<T> {
     }
     /// The same, to be rendered behind contours where it was only counted as the same there.
     pub fn settled(&self) -> Self {
-        let next = Self { params: self.params.clone(), rendered: Arc::default() };
+        let (params, has_homes) = (self.params.clone(), self.has_homes.clone());
+        let next = Self { params, rendered: Arc::default(), has_homes };
         if let Some((scene, old)) = self.lock().clone() {
             let mut cells = TileCells::for_scene(&scene);
             cells.cells.clone_from(&old.cells);

@@ -34,6 +34,7 @@ pub mod transform;
 pub mod view;
 mod weight;
 
+pub use crate::paint::{HomeFrame, StrokeHome};
 pub use assistants::{Assistant, AssistantKind};
 pub use canvas_change::CanvasChange;
 pub use content::{Content, Group, PixelLayer, Role, StrokeList};

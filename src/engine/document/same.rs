@@ -105,7 +105,7 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
     let what = if a.name != b.name {
         "name"
     } else if !meets_alike(a, b) {
-        "opacity, blend mode, clipping, lock or label"
+        "opacity, blend mode, clipping, lock, label or home"
     } else if !same_mask(a.mask.as_ref(), b.mask.as_ref()) {
         "mask"
     } else {
@@ -115,8 +115,11 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
 }
 
 fn meets_alike(a: &Layer, b: &Layer) -> bool {
+    // Where a part stands is the part's.
+    let on = |l: &Layer| l.on.as_ref().map(|home| home.part.clone());
     let meets = |l: &Layer| {
-        (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below, l.lock, l.clip_to_surface, l.transform, l.label)
+        let kind = (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below);
+        (kind, l.lock, l.clip_to_surface, l.transform, l.label, on(l))
     };
     meets(a) == meets(b)
 }
@@ -173,11 +176,13 @@ fn same_selection(a: &Stroke, b: &Stroke) -> bool {
 }
 
 fn same_strokes(a: &StrokeList, b: &StrokeList) -> bool {
+    let home = |stroke: &Stroke| stroke.home().map(|home| (home.frame.part.clone(), home.own));
     let same = |(a, b): (&Arc<Stroke>, &Arc<Stroke>)| {
         Arc::ptr_eq(a, b)
             || (a.operator(), a.color()) == (b.operator(), b.color())
                 && a.samples() == b.samples()
                 && same_selection(a, b)
+                && home(a) == home(b)
                 && a.brush() == b.brush()
     };
     a.strokes.len() == b.strokes.len() && a.strokes.iter().zip(&b.strokes).all(same)

@@ -10,10 +10,10 @@ pub use reducer::{DocumentReducer, ReducedSurface, SurfaceReduction};
 use super::cache::LayerCache;
 use super::{
     Content, DetailSource, Document, Layer, LayerMap, LayerTransform, Live, MaskKind, NormalLayer, Part, PixelLayer,
-    canvas_change,
+    canvas_change, transform,
 };
 use crate::math::{PlaneMap, Rect, Size, Vec2, srgb::quantise, vec2};
-use crate::paint::{Sample, Selection, Stroke};
+use crate::paint::{Sample, Selection, Stroke, StrokeHome};
 use crate::raster::warp::{warped, warped_plane_onto};
 use crate::raster::{Plane, Resampling, TILE, Tile, TileAt, TileGrid};
 use crate::shading::Features;
@@ -199,7 +199,12 @@ impl CanvasScale {
         let samples = stroke.samples().iter().map(|s| Sample { at: s.at * self.per_axis, ..*s }).collect();
         let selection = stroke.selection().map(|own| own.scaled(self.selection(&own.selection), self.per_axis));
         let brush = stroke.brush().scaled(self.length);
-        Stroke::new(brush, stroke.operator().scaled(self.length), stroke.color(), samples).within(selection)
+        let home = |home: &Arc<StrokeHome>| {
+            Arc::new(StrokeHome { own: transform::scaled(home.own, self.per_axis), ..StrokeHome::clone(home) })
+        };
+        Stroke::new(brush, stroke.operator().scaled(self.length), stroke.color(), samples)
+            .within(selection)
+            .on(stroke.home().map(home))
     }
     pub fn pixels(&self, pixels: &PixelLayer) -> PixelLayer {
         let corner = vec2(pixels.x as f32, pixels.y as f32) * self.per_axis;

@@ -61,10 +61,12 @@ impl Document {
         }
         Some(Document { selections, ..self.clone() })
     }
-    /// Without the selection of a name. `None` where there is none.
+    /// Without the selection of a name; outlines of parts that follow it keep it as a picture. `None` where there is
+    /// none.
     pub fn without_kept_selection(&self, name: &str) -> Option<Document> {
-        let selections: Vec<_> = self.selections.iter().filter(|kept| kept.name != name).cloned().collect();
-        (selections.len() < self.selections.len()).then(|| Document { selections, ..self.clone() })
+        let gone = self.selections.iter().find(|kept| kept.name == name)?;
+        let selections = self.selections.iter().filter(|kept| kept.name != name).cloned().collect();
+        Some(Document { selections, ..self.without_outlines_of(gone) })
     }
     /// With every selection that follows the surface found on the present one: called once the surface is another.
     pub fn with_selections_found(&self) -> Document {

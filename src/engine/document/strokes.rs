@@ -20,6 +20,14 @@ impl Document {
             _ => &[],
         }
     }
+    /// The same where they show: through the transforms and homes of the layer and of each.
+    pub fn strokes_on_canvas(&self, layer: LayerId) -> Vec<Arc<Stroke>> {
+        let found = self.layer(layer).zip(self.map_of(layer));
+        match found.map(|(layer, map)| map.layer_on_canvas(layer)).map(|layer| layer.content.clone()) {
+            Some(Content::Strokes(live)) => live.params().strokes.clone(),
+            _ => Vec::new(),
+        }
+    }
     /// With some strokes changed, each for itself.
     pub fn with_each_stroke(
         &self,

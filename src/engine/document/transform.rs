@@ -4,15 +4,20 @@
 //! frame. A transform takes that frame to the canvas, one of a group takes along all layers in it. Layers are seen
 //! through their transforms when they are prepared: live ones with their parameters taken along, pixels sampled once,
 //! however many transforms there were.
+//!
+//! What lies on a part of the shape is carried by it: first the layer's own transform, then the part's matrix, then the
+//! transforms of the groups around. The innermost home counts; those of groups around it do not.
 
 pub(super) mod apply;
 mod extent;
+mod homes;
 
 pub use extent::FrameBox;
 
 use super::{Content, Group, Layer, LayerMask, MaskKind};
 use crate::math::plane_map::{PixelMove, orthogonal};
 use crate::math::{COORDINATE, DVec2, Mat2, PlaneMap, Rect, Size, Vec2, range};
+use crate::paint::{HomeFrame, StrokeHome};
 use crate::raster::warp::{PixelMap, warped_plane};
 use crate::raster::{Plane, Resampling};
 use crate::surface::Anchor;
@@ -65,13 +70,17 @@ impl LayerTransform {
     pub(super) fn scaled(&self, per_axis: Vec2) -> Self {
         let s = per_axis.as_dvec2();
         let shape = match self.shape {
-            TransformShape::Matrix([a, b, c, d, e, f]) => {
-                TransformShape::Matrix([a, b * s.y / s.x, c * s.x / s.y, d, e * s.x, f * s.y])
-            }
+            TransformShape::Matrix(coefficients) => TransformShape::Matrix(scaled(coefficients, per_axis)),
             TransformShape::Quad(corners) => TransformShape::Quad(corners.map(|corner| corner * s)),
         };
         Self { shape, ..*self }
     }
+}
+
+/// The matrix that does on a canvas `per_axis` times as large what this one does.
+pub(super) fn scaled([a, b, c, d, e, f]: [f64; 6], per_axis: Vec2) -> [f64; 6] {
+    let s = per_axis.as_dvec2();
+    [a, b * s.y / s.x, c * s.x / s.y, d, e * s.x, f * s.y]
 }
 
 /// All transforms that act on a layer, as one.
@@ -80,29 +89,59 @@ pub struct LayerMap {
     pub plane: PlaneMap,
     pub filter: Resampling,
     canvas: Size,
+    /// The transform of the layer itself.
+    own: PlaneMap,
+    /// Those of the groups around it, without the homes of these.
+    around: PlaneMap,
 }
 
 impl LayerMap {
     /// Of layers that stay where they are.
     pub fn none(canvas: Size) -> Self {
-        Self { plane: PlaneMap::IDENTITY, filter: Resampling::default(), canvas }
+        let [plane, own, around] = [PlaneMap::IDENTITY; 3];
+        Self { plane, filter: Resampling::default(), canvas, own, around }
     }
     /// Of pixels alone, seen through any map.
     pub(super) fn of_plane(plane: PlaneMap, filter: Resampling, canvas: Size) -> Self {
-        Self { plane, filter, canvas }
+        Self { plane, filter, ..Self::none(canvas) }
     }
     /// The same after another map.
     pub(super) fn after(&self, first: &PlaneMap) -> Self {
         Self { plane: first.then(&self.plane), ..*self }
     }
-    /// With the transform of one more layer inside.
+    /// With the transform and the home of one more layer inside.
     pub fn within(&self, layer: &Layer) -> Self {
-        let Some(transform) = &layer.transform else { return *self };
-        let plane = transform.map(self.canvas).unwrap_or_default().then(&self.plane);
-        Self { plane, filter: transform.filter, ..*self }
+        let own = layer.transform.and_then(|transform| transform.map(self.canvas)).unwrap_or_default();
+        let plane = own.then(&self.outside(layer.on.as_ref()));
+        let filter = layer.transform.map_or(self.filter, |transform| transform.filter);
+        Self { plane, filter, own, around: self.without_homes(), ..*self }
+    }
+    /// What takes the frame of a layer inside, its own transform done, to the canvas.
+    fn outside(&self, home: Option<&HomeFrame>) -> PlaneMap {
+        match home {
+            Some(home) => home.map().then(&self.without_homes()),
+            None => self.plane,
+        }
+    }
+    /// As [`LayerMap::plane`] while every part stands where it was made.
+    pub(super) fn without_homes(&self) -> PlaneMap {
+        self.own.then(&self.around)
+    }
+    /// The same layer where its parts were made: it is carried nowhere.
+    pub(super) fn at_home(&self) -> Self {
+        Self { plane: self.without_homes(), ..*self }
+    }
+    /// Of a stroke of the layer that has a home of its own.
+    pub(super) fn of_stroke(&self, home: &StrokeHome) -> Self {
+        let own = home.own_map().then(&self.own);
+        Self { plane: own.then(&home.frame.map()).then(&self.around), own, ..*self }
     }
     pub fn is_none(&self) -> bool {
         self.plane.is_identity_on(self.canvas)
+    }
+    /// Nor does it move anything that lies on a home of its own.
+    pub(super) fn moves_nothing(&self) -> bool {
+        self.is_none() && self.without_homes().is_identity_on(self.canvas)
     }
     pub(super) fn canvas(&self) -> Size {
         self.canvas
@@ -137,21 +176,25 @@ impl PixelMap for LayerMap {
 }
 
 impl LayerMap {
-    /// A layer of its frame, without its own transform, as it lies on the canvas: content and mask taken there.
+    /// A layer of which this is the map, as it lies on the canvas: content and mask taken there, no transform, no home.
     pub fn layer_on_canvas(&self, layer: &Arc<Layer>) -> Arc<Layer> {
-        let bare = Layer { transform: None, ..Layer::clone(layer) };
-        on_canvas(&Arc::new(bare), self)
+        let seen = seen(layer, self);
+        Arc::new(Layer { transform: None, on: None, ..Layer::clone(&seen) })
     }
 }
 
 /// A layer as it lies on the canvas: content and mask taken there. The layers of a group are taken one by one.
 pub(super) fn on_canvas(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
-    let map = &map.within(layer);
-    if map.is_none() {
+    seen(layer, &map.within(layer))
+}
+
+/// The same with the layer's own transform and home in the map.
+fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
+    if map.is_none() && !layer.content.has_homes() {
         return layer.clone();
     }
     let (content, mask) = layer.cache.on_canvas.get(layer, map);
-    Arc::new(Layer { content, mask, transform: None, ..Layer::clone(layer) })
+    Arc::new(Layer { content, mask, transform: None, on: None, ..Layer::clone(layer) })
 }
 
 /// What layers were last seen as; shared by the versions of a layer.
@@ -189,6 +232,7 @@ impl CanvasCache {
         );
         let mask = match last.filter(|last| same_mask(&last.own_mask)) {
             Some(last) => last.mask.clone(),
+            None if map.is_none() => layer.mask.clone(),
             None => layer.mask.as_ref().map(|mask| mask_on_canvas(mask, map)),
         };
         let entry = CanvasEntry {

@@ -59,11 +59,12 @@ impl Stroke {
         let plain = Brush { erases: false, keeps_alpha: false, blend: BlendMode::Normal, ..brush.clone() };
         Arc::new(self.with_brush(plain))
     }
-    /// The same stroke elsewhere: every dab bends at its new position.
+    /// The same stroke elsewhere in its frame: every dab bends at its new position.
     pub fn moved(&self, by: Vec2) -> Stroke {
         let samples = self.samples().iter().map(|sample| Sample { at: sample.at + by, ..*sample }).collect();
         Stroke::new(self.brush().clone(), self.operator(), self.color(), samples)
             .within(self.selection().map(|selection| selection.moved(by)))
+            .on(self.home().cloned())
     }
     /// The same stroke within another selection, or within none.
     pub fn selecting(&self, selection: Option<StrokeSelection>) -> Stroke {
@@ -71,7 +72,8 @@ impl Stroke {
     }
     /// The stroke where a map takes its samples: `place` tells where a point goes (`None`: nowhere), `length` how much
     /// longer lengths become there, `turn` how directions turn there (an orthogonal matrix). Its brush grows by the
-    /// mean over the samples that are left and faces as the first of them does; the pen leans along.
+    /// mean over the samples that are left and faces as the first of them does; the pen leans along. It has no home and
+    /// no selection.
     pub fn mapped(
         &self,
         place: &dyn Fn(Vec2) -> Option<Vec2>,
@@ -98,7 +100,9 @@ impl Stroke {
     }
     /// The same movement of the hand with another brush.
     pub fn with_brush(&self, brush: Brush) -> Stroke {
-        Stroke::new(brush, self.operator(), self.color(), self.samples().to_vec()).within(self.selection().cloned())
+        Stroke::new(brush, self.operator(), self.color(), self.samples().to_vec())
+            .within(self.selection().cloned())
+            .on(self.home().cloned())
     }
 }
 

@@ -11,6 +11,7 @@ pub use many::{are_heavy, render_many, render_tiles};
 use super::brush::Brush;
 use super::dab::DabScratch;
 use super::dab_walker;
+use super::home::StrokeHome;
 use super::scene::Scene;
 use super::selection::StrokeSelection;
 use super::stroke_tile::StrokeBlend;
@@ -74,6 +75,8 @@ pub struct Stroke {
     samples: Vec<Sample>,
     /// Where it may paint; absent: everywhere.
     selection: Option<StrokeSelection>,
+    /// Where it lies, if elsewhere than its layer.
+    home: Option<Arc<StrokeHome>>,
     found: Arc<Mutex<StrokeCache>>,
 }
 
@@ -91,11 +94,23 @@ impl Stroke {
     pub const MOST_SAMPLES: usize = 1_000_000;
 
     pub fn new(brush: Brush, operator: Operator, color: Color, samples: Vec<Sample>) -> Self {
-        Self { brush, operator, color, samples, selection: None, found: Arc::default() }
+        Self { brush, operator, color, samples, selection: None, home: None, found: Arc::default() }
     }
     /// The same stroke within a selection, or within none.
     pub fn within(self, selection: Option<StrokeSelection>) -> Self {
         Self { selection, ..self }
+    }
+    /// The same stroke, which is shown as it is, on another home.
+    pub fn on(self, home: Option<Arc<StrokeHome>>) -> Self {
+        Self { home, ..self }
+    }
+    /// A copy on a home that stands elsewhere.
+    pub fn moved_home(&self, home: Arc<StrokeHome>) -> Self {
+        Self { home: Some(home), ..self.clone() }
+    }
+    /// Its own home, where that differs from its layer's.
+    pub fn home(&self) -> Option<&Arc<StrokeHome>> {
+        self.home.as_ref()
     }
     pub fn brush(&self) -> &Brush {
         &self.brush

@@ -7,7 +7,7 @@ use crate::document::cache::EncodedPixels;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };
-use crate::document::{Content, Document, Layer, LayerId, MaskKind, Part, Parts, SelectionList};
+use crate::document::{Content, Document, Layer, LayerId, MaskKind, Part, PartKind, Parts, SelectionList};
 use crate::exr;
 use crate::math::Rect;
 use crate::paint::Selection;
@@ -77,9 +77,19 @@ impl AssetList {
         let mut next = Parts::clone(parts);
         for part in &mut next.list {
             let mut named = Part::clone(part);
-            let Some(coverage) = named.files_mut() else { continue };
-            let asset = self.made.mask(file, &coverage.coverage)?;
-            coverage.file = self.add(&name_with_extension(&coverage.file, "outline", "png"), asset);
+            for coverage in named.files_mut() {
+                let asset = self.made.mask(file, &coverage.coverage)?;
+                coverage.file = self.add(&name_with_extension(&coverage.file, "outline", "png"), asset);
+            }
+            if let PartKind::Maps(maps) = &mut named.kind {
+                let mut source = SurfaceSource::clone(&maps.source);
+                for name in files_of_mut(&mut source) {
+                    if let Some(asset) = maps.files.get(name.as_str()) {
+                        *name = self.add(name, asset.clone());
+                    }
+                }
+                maps.source = Arc::new(source);
+            }
             *part = Arc::new(named);
         }
         Ok(Arc::new(next))

@@ -107,7 +107,8 @@ fn bare<'a>(document: &Document, layer: &'a Layer, masked: bool) -> Option<&'a T
 /// it elsewhere.
 fn layers_seen_by(document: &Document, layer: &Arc<Layer>) -> Vec<Arc<Layer>> {
     let all = document.walk().into_iter().map(|(_, layer)| layer);
-    let takes_along = |layer: &Layer| layer.transform.is_some() && layer.content.group().is_some();
+    let is_taken = |layer: &Layer| layer.transform.is_some() || layer.on.is_some();
+    let takes_along = |layer: &Layer| is_taken(layer) && layer.content.group().is_some();
     let others = all.filter(|layer| layer.content.shapes() || takes_along(layer));
     std::iter::once(layer).chain(others).cloned().collect()
 }

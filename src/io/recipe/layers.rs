@@ -4,7 +4,7 @@
 use super::LayerReader;
 use super::names::{BLEND_SPACES, LOCKS};
 use super::{images, masks, normals, shading, strokes, transforms};
-use crate::document::{Content, Group, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList};
+use crate::document::{Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
 use crate::math::srgb::Color;
@@ -50,11 +50,22 @@ impl LayerReader<'_> {
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
         let transform = fields.get("transform").map(|node| transforms::read(&node)).transpose()?;
+        let on = fields.get("on").map(|node| self.home(&node)).transpose()?;
+        // Outside of groups the canvas is what is around.
+        let on = on.filter(|home| depth > 0 || !home.is_canvas());
         let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);
         let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
-        Ok(Layer { label, mask, clip_to_surface, transform, ..layer })
+        Ok(Layer { label, mask, clip_to_surface, transform, on, ..layer })
+    }
+    /// What a layer or a stroke lies on.
+    pub fn home(&self, node: &JsonNode) -> Result<HomeFrame> {
+        let id = node.text()?;
+        if id != HomeFrame::CANVAS && !self.homes.iter().any(|known| known == id) {
+            return Err(node.refused(format!("is “{id}”; there is no part of that id")));
+        }
+        Ok(HomeFrame::on(id))
     }
     fn pixels(&mut self, fields: &mut Fields) -> Result<PixelLayer> {
         let mut offset = |name| fields.get(name).map_or(Ok(0), |node| node.integer(-1_000_000..=1_000_000));
@@ -128,6 +139,7 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
         out.set("mask", masks::write(mask));
     }
     out.said("transform", layer.transform.as_ref(), transforms::write);
+    out.said("on", layer.on.as_ref(), |home| (*home.part).into());
     write_content(&mut out, &layer.content, canvas);
     out
 }

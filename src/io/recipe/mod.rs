@@ -145,20 +145,23 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
     let assistants = root.get("assistants").map_or(Ok(Vec::new()), |node| guides::read_assistants(&node))?;
     root.finish()?;
 
-    let CanvasAndSurface { size, surface, files, notes } = shape(canvas, own.as_ref(), source)?;
+    let CanvasAndSurface { size, surface, files, notes: of_maps } = shape(canvas, own.as_ref(), source)?;
     let surface_source = source.onto.map(fitted_source).or(own.map(|(own, _)| own)).map(Arc::new);
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *source.budget;
     let pictures = PictureCache::knowing(tiles);
-    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections: HashMap::new() };
+    let (known, homes, notes) = (HashMap::new(), Vec::new(), of_maps);
+    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections: known, homes, notes };
     let scene = Scene { size, surface: surface.clone() };
-    let selections = selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
+    // Those that follow the surface are found on the maps, and anew once the parts have made theirs.
+    let mut selections = selections.map_or(Ok(Vec::new()), |node| reader.selections(&node, &scene))?;
     let active_selection = active.map(|node| reader.selection_of(&node)).transpose()?.filter(|found| !found.is_empty());
-    let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
-    // Another object takes the place of the document's own, parts and all.
-    let parts = match surface_node.filter(|_| source.onto.is_none()) {
+    let parts = match surface_node {
         Some(node) => node.fields()?.get("parts").map(|node| reader.parts(&node)).transpose()?.unwrap_or_default(),
         None => Vec::new(),
     };
+    selections.extend(reader.outlined(&parts, &selections));
+    reader.homes = parts.iter().map(|part| part.id.clone()).collect();
+    let layers = layers.map_or(Ok(Vec::new()), |node| reader.layers(&node, 0))?;
     let (surface_files, no_parts) = (Arc::new(files), Arc::default());
     let bare = Document {
         size,
@@ -172,8 +175,13 @@ fn read_parts(value: &Value, source: RecipeSource, tiles: TileGrids) -> Result<(
         guides: Arc::new(guides),
         assistants: Arc::new(assistants),
     };
-    let document = if parts.is_empty() { bare } else { bare.with_parts(parts).with_selections_found() };
-    Ok((document, notes))
+    let document = match source.onto {
+        _ if parts.is_empty() => bare,
+        // Another object takes the place of the document's own, parts and all.
+        Some(_) => bare.off_parts(parts),
+        None => bare.with_parts(parts).with_selections_found(),
+    };
+    Ok((document, reader.notes))
 }
 
 fn check_version(root: &mut Fields) -> Result<()> {
@@ -200,8 +208,9 @@ pub fn put_onto(document: &Document, file: &Path, onto: OtherSurface, budget: &B
     let maps::ImportedSurface { surface, files, .. } = maps::import(onto.surface, onto.files, budget)?;
     let surface = Arc::new(surface).onto(document.size, None).map_err(|e| Error::unsupported(file, e))?;
     let surface_source = Some(Arc::new(fitted_source(onto)));
-    let (surface_files, parts) = (Arc::new(files), Arc::default());
-    let next = Document { surface: Some(surface), surface_source, surface_files, parts, ..document.clone() };
+    let surface_files = Arc::new(files);
+    let bare = document.with_parts(Vec::new());
+    let next = Document { surface: Some(surface), surface_source, surface_files, ..bare };
     Ok(next.with_selections_found())
 }
 
@@ -263,8 +272,12 @@ struct LayerReader<'a> {
     /// And readings of the pen.
     samples_left: usize,
     pictures: PictureCache,
-    /// By their ids.
-    selections: HashMap<String, Arc<Selection>>,
+    /// By their ids, with the names of those that are kept.
+    selections: HashMap<String, (Arc<Selection>, Option<String>)>,
+    /// The ids of the parts that layers and strokes may lie on.
+    homes: Vec<String>,
+    /// What could not be carried over, a sentence each.
+    notes: Vec<String>,
 }
 
 /// The JSON that [`read`] reads back to an equal document. Files are named, not written: a project puts its pixels
@@ -294,7 +307,10 @@ pub fn print(document: &Document) -> String {
 /// Whether the first version has no words for something in a document.
 fn needs_second_version(document: &Document) -> bool {
     let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
-    let is_new = |layer: &Layer| layer.transform.is_some() || layer.label != LayerLabel::None;
+    let is_new = |layer: &Layer| {
+        let is_carried = layer.on.is_some() || layer.content.has_homes();
+        is_carried || layer.transform.is_some() || layer.label != LayerLabel::None
+    };
     has_matrix || !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| is_new(layer))
 }
 
@@ -310,7 +326,7 @@ fn head(document: &Document, list: &SelectionList) -> JsonObject {
     out.set("canvas", json!({ "width": document.size.width, "height": document.size.height }));
     let mut surface = document.surface_source.as_deref().map(surface::write).unwrap_or_default();
     if !document.parts.is_empty() {
-        surface.set("parts", parts::write(&document.parts));
+        surface.set("parts", parts::write(&document.parts, list));
     }
     out.object("surface", surface);
     selections::write(&mut out, document, list);

@@ -6,16 +6,18 @@ mod write;
 pub use write::{write, write_part};
 
 use super::pictures::PictureCache;
-use super::{LayerReader, RecipeSource};
-use crate::document::Document;
-use crate::document::parts::{CoverageFile, Inflation, OutlineSource, Part, PartKind, Parts};
+use super::{LayerReader, RecipeSource, maps, surface};
+use crate::document::{Document, NamedSelection};
+use crate::document::parts::{CoverageFile, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture};
 use crate::files::UserFiles;
 use crate::json::{Fields, JsonNode};
 use crate::math::{Affine2, COORDINATE, Range, Vec2, Vec3, vec2};
-use crate::shape::{Ball, Bevel, BevelCurve, Body, Combine, Detail, Primitive, SculptStroke, SculptTool, Touch};
+use crate::shape::profiles::MOST_PROFILES;
+use crate::shape::{
+    Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
+};
 use crate::{Budget, Result};
 use serde_json::Value;
-use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -33,13 +35,17 @@ pub fn read_part(file: &Path, value: &Value, document: &Document, budget: &Budge
     let source = RecipeSource { file, files: &files, budget, onto: None };
     let mut pictures = PictureCache::default();
     for part in &document.parts.list {
-        if let Some(known) = Part::clone(part).files_mut() {
+        for known in Part::clone(part).files_mut() {
             pictures.know_coverage(&known.file, &known.coverage);
         }
     }
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *budget;
-    let (size, selections) = (document.size, HashMap::new());
-    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections };
+    let size = document.size;
+    // Edits call selections by their names.
+    let by_name = |kept: &NamedSelection| (kept.name.clone(), (kept.selection.clone(), Some(kept.name.clone())));
+    let selections = document.selections.iter().map(by_name).collect();
+    let (homes, notes) = (Vec::new(), Vec::new());
+    let mut reader = LayerReader { source, size, layers_left, samples_left, pictures, selections, homes, notes };
     reader.part(&JsonNode::root(file, value), document.parts.list.len())
 }
 
@@ -87,7 +93,7 @@ impl LayerReader<'_> {
     }
     fn part_kind(&mut self, fields: &mut Fields) -> Result<PartKind> {
         type ReadKind = fn(&mut LayerReader<'_>, &mut Fields<'_>) -> Result<PartKind>;
-        const KINDS: [(ReadKind, &str); 8] = [
+        const KINDS: [(ReadKind, &str); 11] = [
             (|reader, fields| reader.inflate(fields), "inflate"),
             (|reader, fields| reader.bevel(fields), "bevel"),
             (|_, fields| Ok(PartKind::Primitive(primitive(fields)?)), "primitive"),
@@ -96,6 +102,9 @@ impl LayerReader<'_> {
             (|_, fields| touches(fields), "touches"),
             (|_, fields| sculpt(fields), "sculpt"),
             (|reader, fields| reader.relief(fields), "relief"),
+            (|reader, fields| reader.lines(fields), "lines"),
+            (|reader, fields| reader.profiles(fields), "profiles"),
+            (|reader, fields| reader.maps(fields), "maps"),
         ];
         fields.required("kind")?.one_of(&KINDS)?(self, fields)
     }
@@ -138,8 +147,44 @@ impl LayerReader<'_> {
         let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, None)?;
         Ok(PartKind::Relief { on: on(fields)?, picture: CoverageFile { file, coverage }, detail })
     }
+    fn lines(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let plain = Lines::default();
+        let lines = Lines {
+            form: fields.one_of("form", &LineForm::ALL, plain.form)?,
+            angle_deg: fields.number("angle", plain.angle_deg, Lines::ANGLE)?,
+            reach: fields.number("reach", plain.reach, Lines::REACH)?,
+        };
+        Ok(PartKind::Lines { on: on(fields)?, ink: self.outline(fields)?, lines })
+    }
+    fn profiles(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let outline = fields.get("outline").map(|node| self.outline_of(&node)).transpose()?;
+        let mut shading = |item: &JsonNode| {
+            let mut fields = item.fields()?;
+            let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, self.size)?;
+            let light = fields.required("light")?.vector(ProfilePicture::LIGHT)?;
+            fields.finish()?;
+            Ok(ProfilePicture { picture: CoverageFile { file, coverage }, light })
+        };
+        let items = fields.required("pictures")?.list(MOST_PROFILES)?;
+        let shadings = items.iter().map(&mut shading).collect::<Result<_>>()?;
+        Ok(PartKind::Profiles { outline, shadings })
+    }
+    fn maps(&mut self, fields: &mut Fields) -> Result<PartKind> {
+        let node = fields.node().clone();
+        let source = surface::maps_of(fields)?;
+        if source.normal.is_none() && source.depth.is_none() {
+            return Err(node.refused("names neither a normal map nor a depth map"));
+        }
+        let found = maps::import(&source, self.source.files, self.source.budget).map_err(|error| node.led_to(error))?;
+        let fitted = Arc::new(found.surface).onto(self.size, None).map_err(|error| node.refused(error))?;
+        self.notes.extend(found.findings.notes);
+        Ok(PartKind::Maps(PartMaps { source: Arc::new(source), files: Arc::new(found.files), surface: fitted }))
+    }
     fn outline(&mut self, fields: &mut Fields) -> Result<OutlineSource> {
         let node = fields.required("outline")?;
+        self.outline_of(&node)
+    }
+    fn outline_of(&mut self, node: &JsonNode) -> Result<OutlineSource> {
         let mut fields = node.fields()?;
         let color = fields.get("color").map(|node| node.color()).transpose()?;
         let source = if let Some(layer) = fields.get("layer") {
@@ -149,10 +194,12 @@ impl LayerReader<'_> {
             OutlineSource::File(CoverageFile { file, coverage })
         } else if let Some(path) = fields.get("path") {
             OutlineSource::Path(points(&path, OutlineSource::MOST_POINTS)?)
+        } else if let Some(selection) = fields.get("selection") {
+            OutlineSource::Selection(self.outline_selection(&selection)?)
         } else if let Some(object) = fields.get("object") {
             OutlineSource::Object(object.whole(1..=u32::MAX)?)
         } else {
-            return Err(node.refused("names no layer, file, path or object"));
+            return Err(node.refused("names no layer, file, selection, path or object"));
         };
         if color.is_some() && !matches!(source, OutlineSource::Layer { .. }) {
             return Err(node.refused("has a colour, but only a layer has colours"));
@@ -246,5 +293,7 @@ fn sculpt(fields: &mut Fields) -> Result<PartKind> {
     Ok(PartKind::Sculpt { on: on(fields)?, strokes })
 }
 
+#[cfg(test)]
+mod home_tests;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 
 use super::LayerReader;
 use crate::Result;
-use crate::document::{Document, NamedSelection, SelectionList};
+use crate::document::{Document, NamedSelection, OutlineSource, Part, SelectionList};
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{Vec2, vec2};
 use crate::paint::{Scene, Selection, Stroke, StrokeSelection};
@@ -40,7 +40,8 @@ impl LayerReader<'_> {
                 None => Arc::new(Selection::new(CoverageGrid::filled(self.size.rect()))),
             };
             fields.finish()?;
-            if self.selections.insert(id.text()?.to_owned(), selection.clone()).is_some() {
+            let known = (selection.clone(), name.as_ref().map(|(name, _)| name.clone()));
+            if self.selections.insert(id.text()?.to_owned(), known).is_some() {
                 return Err(id.refused("is the id of another selection too"));
             }
             if let Some((name, at)) = name {
@@ -55,8 +56,29 @@ impl LayerReader<'_> {
     /// The selection of an id.
     pub fn selection_of(&self, node: &JsonNode) -> Result<Arc<Selection>> {
         let id = node.text()?;
-        let known = self.selections.get(id).cloned();
+        let known = self.selections.get(id).map(|(selection, _)| selection.clone());
         known.ok_or_else(|| node.refused(format!("is “{id}”; there is no selection of that id")))
+    }
+    /// The kept selection that an outline names, by its id or, in an edit, by its name; one that has no name is called
+    /// by its id.
+    pub fn outline_selection(&self, node: &JsonNode) -> Result<String> {
+        let id = node.text()?;
+        match self.selections.get(id) {
+            Some((_, name)) => Ok(name.clone().unwrap_or_else(|| id.to_owned())),
+            None => Err(node.refused(format!("is “{id}”; there is no selection of that id"))),
+        }
+    }
+    /// The selections that have no name and are outlines of parts, kept by their ids.
+    pub fn outlined(&self, parts: &[Arc<Part>], kept: &[NamedSelection]) -> Vec<NamedSelection> {
+        let mut new: Vec<NamedSelection> = Vec::new();
+        for part in parts {
+            let Some(OutlineSource::Selection(name)) = part.outline() else { continue };
+            let is_known = kept.iter().chain(&new).any(|known| known.name == *name);
+            if let Some((selection, None)) = self.selections.get(name).filter(|_| !is_known) {
+                new.push(NamedSelection { name: name.clone(), selection: selection.clone() });
+            }
+        }
+        new
     }
     fn selection(&mut self, node: &JsonNode, scene: &Scene) -> Result<Selection> {
         let mut fields = node.fields()?;
@@ -140,6 +162,11 @@ pub fn write_of_stroke(stroke: &Stroke, list: &SelectionList) -> JsonObject {
         }
     }
     out
+}
+
+/// What the kept selection of a name is called in a list.
+pub fn id_of_kept(name: &str, list: &SelectionList) -> Option<String> {
+    list.named().position(|(known, _)| known == Some(name)).map(id)
 }
 
 /// A stroke's JSON with those fields.

@@ -6,12 +6,13 @@ use super::LayerReader;
 use super::brush::{settings, write_brush};
 use super::images::{operator, write_operator};
 use super::selections::{with_selection, write_of_stroke};
-use super::{presets, samples, tips};
+use super::{presets, samples, tips, transforms};
 use crate::Result;
-use crate::document::{SelectionList, StrokeList};
+use crate::document::{LayerTransform, SelectionList, StrokeHome, StrokeList, TransformShape};
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::srgb::Color;
 use crate::paint::{Adjust, Brush, Stroke};
+use crate::raster::Resampling;
 use crate::surface::Operator;
 use serde_json::Value;
 use std::sync::Arc;
@@ -44,8 +45,27 @@ impl LayerReader<'_> {
             None => Vec::new(),
         };
         let selection = self.stroke_selection(&mut fields)?;
+        let home = self.stroke_home(&mut fields)?;
         fields.finish()?;
-        Ok(Stroke::new(brush, operator, color, samples).within(selection))
+        Ok(Stroke::new(brush, operator, color, samples).within(selection).on(home))
+    }
+    /// What a stroke lies on, where that is not what its layer lies on, and where its own frame lies within the layer's.
+    fn stroke_home(&self, fields: &mut Fields) -> Result<Option<Arc<StrokeHome>>> {
+        let (on, transform) = (fields.get("on"), fields.get("transform"));
+        let Some(on) = on else {
+            return match transform {
+                Some(node) => Err(node.refused("is for strokes that lie on something of their own (“on”)")),
+                None => Ok(None),
+            };
+        };
+        let mut home = StrokeHome::new(self.home(&on)?);
+        if let Some(node) = transform {
+            home.own = match transforms::read(&node)?.shape {
+                TransformShape::Matrix(coefficients) => coefficients,
+                TransformShape::Quad(_) => return Err(node.refused("must be a matrix")),
+            };
+        }
+        Ok(Some(Arc::new(home)))
     }
     /// A preset, an inline brush, or a preset or the brush of the stroke before with some of its fields changed.
     fn brush(&mut self, node: &JsonNode, before: Option<Brush>) -> Result<(Brush, Operator)> {
@@ -89,6 +109,13 @@ fn write(stroke: &Stroke, brush: &JsonObject) -> Value {
     out.object("brush", brush.clone());
     out.object("operator", write_operator(stroke.operator()));
     out.set("color", object::color(stroke.color()));
+    if let Some(home) = stroke.home() {
+        out.set("on", (*home.frame.part).into());
+        if home.own != StrokeHome::UNMOVED {
+            let (shape, filter) = (TransformShape::Matrix(home.own), Resampling::default());
+            out.set("transform", transforms::write(&LayerTransform { shape, filter }));
+        }
+    }
     out.set("samples", samples::write(stroke.samples()));
     out.done()
 }

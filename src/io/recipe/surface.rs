@@ -16,12 +16,8 @@ const MOST_BACKGROUNDS: usize = 64;
 /// Reads the maps of the object `surface`; nothing where it has parts and no maps.
 pub fn read(node: &JsonNode) -> Result<Option<SurfaceSource>> {
     let mut fields = node.fields()?;
-    let source = SurfaceSource {
-        normal: fields.get("normal").map(|node| normal(&node)).transpose()?,
-        depth: fields.get("depth").map(|node| depth(&node)).transpose()?,
-        mask: fields.get("mask").map(|node| mask(&node)).transpose()?,
-        matrix: fields.get("matrix").map(|node| matrix(&node)).transpose()?,
-    };
+    let matrix = fields.get("matrix").map(|node| matrix(&node)).transpose()?;
+    let source = SurfaceSource { matrix, ..maps_of(&mut fields)? };
     // They are read once the canvas is known.
     let has_parts = fields.get("parts").is_some();
     fields.finish()?;
@@ -32,6 +28,16 @@ pub fn read(node: &JsonNode) -> Result<Option<SurfaceSource>> {
         return Err(node.refused("names neither a normal map nor a depth map"));
     }
     Ok(Some(source))
+}
+
+/// The maps alone, of the surface or of a part.
+pub fn maps_of(fields: &mut Fields) -> Result<SurfaceSource> {
+    Ok(SurfaceSource {
+        normal: fields.get("normal").map(|node| normal(&node)).transpose()?,
+        depth: fields.get("depth").map(|node| depth(&node)).transpose()?,
+        mask: fields.get("mask").map(|node| mask(&node)).transpose()?,
+        matrix: None,
+    })
 }
 
 fn matrix(node: &JsonNode) -> Result<[f64; 6]> {

@@ -47,9 +47,9 @@ pub fn held(document: &Document, layer: &Layer, at: Vec2, whole: bool) -> Option
         return None;
     }
     let stroke = match &layer.content {
-        Content::Strokes(live) if !whole => {
+        Content::Strokes(_) if !whole => {
             let scene = document.scene_of(layer.id).unwrap_or_else(|| document.scene());
-            picking::topmost_at(&live.params().strokes, &scene, at)
+            picking::topmost_at(&document.strokes_on_canvas(layer.id), &scene, at)
         }
         _ => None,
     };

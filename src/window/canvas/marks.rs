@@ -109,7 +109,7 @@ struct OutlineCache {
 fn chosen(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
     let document = tab.shown();
-    let strokes = document.strokes(layer.id);
+    let strokes = document.strokes_on_canvas(layer.id);
     let chosen: Vec<&Arc<PaintStroke>> = tab.chosen_strokes().iter().filter_map(|&index| strokes.get(index)).collect();
     if tab.is_previewing() {
         return chosen.into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));

@@ -33,7 +33,7 @@ impl Carrier<'_> {
         let has_picture = matches!(&layer.mask, Some(LayerMask { kind: MaskKind::File { .. }, .. }));
         // A mask is as large as the canvas: what a transform brings back from beyond it would be lost.
         if has_picture && layer.transform.is_some() && !self.change.holds_all() {
-            let shown = in_place(layer, self.change.from);
+            let shown = in_place(layer, &LayerMap::none(self.change.from));
             if shown.transform.is_none() {
                 return self.carried(&shown, &self.frame_of(&shown));
             }

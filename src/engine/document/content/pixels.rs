@@ -3,7 +3,7 @@
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent, Touched};
 use crate::document::LayerMap;
-use crate::math::Vec2;
+use crate::math::{Rect, Vec2, vec2};
 use crate::paint::Scene;
 use crate::raster::warp::{PixelMap, warped};
 use crate::raster::{TileAt, TileGrid};
@@ -18,6 +18,29 @@ pub struct PixelLayer {
     pub y: i32,
     /// On the canvas lattice, offset applied.
     pub tiles: TileGrid,
+}
+
+impl PixelLayer {
+    /// All of it where a map takes it, beyond the canvas too, as far as the canvas is long.
+    pub(in crate::document) fn taken_along(&self, map: &LayerMap) -> Self {
+        if map.is_none() {
+            return self.clone();
+        }
+        let canvas = map.canvas();
+        let Rect { x0, y0, x1, y1 } = self.tiles.bounds();
+        let corner = |x: i32, y: i32| map.plane.to_canvas(vec2(x as f32, y as f32));
+        let corners: Option<Vec<Vec2>> =
+            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| corner(x, y)).into_iter().collect();
+        // What crosses the horizon has no bounds.
+        let around = corners.map_or(canvas.rect(), |corners| {
+            let low = corners.iter().copied().fold(Vec2::INFINITY, Vec2::min).floor();
+            let high = corners.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max).ceil();
+            Rect::new(low.x as i32, low.y as i32, high.x as i32, high.y as i32).grown(2)
+        });
+        let room = canvas.rect().grown(canvas.longer_side() as i32);
+        let wanted: Vec<TileAt> = TileAt::covering(around.intersect(room)).collect();
+        Self { tiles: warped(&self.tiles, map, map.filter, &wanted), ..self.clone() }
+    }
 }
 
 impl LayerKind for PixelLayer {

@@ -83,16 +83,19 @@ impl LayerKind for Live<StrokeList> {
             }
             _ => HashMap::new(),
         };
-        let mut selections = HashMap::new();
+        let mut selections = Vec::new();
         let mut on_canvas = |stroke: &Arc<Stroke>| match seen.get(&Arc::as_ptr(stroke)) {
             Some(seen) => Arc::clone(seen),
             None => {
-                let mapped = stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p), |p| map.turn_at(p));
-                Arc::new(mapped.within(stroke.selection().map(|own| selected(own, map, &mut selections))))
+                let own = stroke.home().map(|home| map.of_stroke(home));
+                taken_along(stroke, own.as_ref().unwrap_or(map), &mut selections)
             }
         };
         let strokes = self.params().strokes.iter().map(&mut on_canvas).collect();
         Some(Content::Strokes(Live::new(StrokeList { strokes })))
+    }
+    fn has_homes(&self) -> bool {
+        Live::has_homes(self, |list| list.strokes.iter().any(|stroke| stroke.home().is_some()))
     }
     fn emptied(&self) -> Option<Content> {
         Some(Content::Strokes(Live::new(StrokeList::default())))
@@ -162,8 +165,29 @@ impl Live<StrokeList> {
     }
 }
 
-/// The selection of a stroke as it lies on the canvas, sampled once for all strokes that share it unmoved; `known`: by
-/// their addresses, those of the strokes, which live on.
+/// Selections that were sampled under a map, by their addresses: those of the strokes, which live on.
+pub(in crate::document) type SeenSelections = Vec<(LayerMap, HashMap<*const Selection, Arc<Selection>>)>;
+
+/// A stroke where a map takes it; one that it leaves is the very same.
+pub(in crate::document) fn taken_along(
+    stroke: &Arc<Stroke>,
+    map: &LayerMap,
+    selections: &mut SeenSelections,
+) -> Arc<Stroke> {
+    if map.is_none() {
+        return stroke.clone();
+    }
+    let mapped = stroke.mapped(&|p| map.plane.to_canvas(p), |p| map.length_at(p), |p| map.turn_at(p));
+    let Some(own) = stroke.selection() else { return Arc::new(mapped) };
+    let place = selections.iter().position(|(known, _)| known == map).unwrap_or_else(|| {
+        selections.push((*map, HashMap::new()));
+        selections.len() - 1
+    });
+    let selection = selections.get_mut(place).map(|(_, known)| selected(own, map, known));
+    Arc::new(mapped.within(selection))
+}
+
+/// The selection of a stroke as it lies on the canvas, sampled once for all strokes that share it unmoved.
 fn selected(
     own: &StrokeSelection,
     map: &LayerMap,

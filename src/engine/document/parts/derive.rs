@@ -1,14 +1,13 @@
 //! The surface of a document from its parts and its maps; what of a part did not change is not made again.
 //! Floor 4.
 
+use super::body::{self, Body, cut_to, formed, inflated, joined, of_surface};
 use super::outlines::OutlineKey;
-use super::{Inflation, Part, PartKind, turned};
+use super::{Part, PartKind, turned};
 use crate::document::Document;
-use crate::math::{Affine2, Size, Vec3};
+use crate::math::{Affine2, Size};
 use crate::raster::Plane;
-use crate::shape::{
-    Form, Outline, Relief, Rim, Roundness, Touch, bevel, inflate, relief, sculpt, sweep, touches, tube,
-};
+use crate::shape::{Form, Lines, Outline, Relief, Rim, Roundness, Touch, bevel, lines, relief, sculpt, sweep, touches};
 use crate::surface::Surface;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -33,6 +32,8 @@ struct MadePart {
     part: Arc<Part>,
     /// The parts that lie on it.
     upon: Vec<Arc<Part>>,
+    /// What the lines among them are made of.
+    inks: Vec<OutlineKey>,
     source: Option<OutlineKey>,
     body: Arc<Body>,
     form: Arc<Form>,
@@ -40,22 +41,14 @@ struct MadePart {
     moved: (i32, i32),
 }
 
-/// What takes long to make: an outline with the fields that were solved over it.
-struct Body {
-    /// Through the part's matrix but for its whole px.
-    outline: Arc<Outline>,
-    /// Where its rim is free, since a part in front begins there.
-    joined: Option<Arc<Plane<bool>>>,
-    pillow: Option<Arc<Plane<f32>>>,
-    tube: Option<Arc<Plane<f32>>>,
-}
-
 impl Document {
-    /// The document with the surface that its parts, layers and maps make now; itself where nothing changed.
+    /// The document with the surface that its parts, layers and maps make now, and with what lies on parts where they
+    /// stand; itself where nothing changed.
     pub fn reshaped(&self) -> Document {
-        if self.parts.is_empty() {
-            return self.clone();
-        }
+        let placed = self.with_homes_placed();
+        if self.parts.is_empty() { placed } else { placed.derived() }
+    }
+    fn derived(&self) -> Document {
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         let outlines: Vec<_> = shown().map(|part| self.standing_outline(part)).collect();
         let forms: Vec<_> = shown()
@@ -110,7 +103,7 @@ impl Document {
     }
     /// The outline of a part where it stands; `None` where it has none.
     fn standing_outline(&self, part: &Arc<Part>) -> Option<Arc<Outline>> {
-        let source = OutlineKey::of(self, part.outline()?)?;
+        let source = OutlineKey::of_part(self, part)??;
         let (still, moved) = apart(part.matrix);
         let known = self.known(&part.id).filter(|made| {
             made.source.as_ref().is_some_and(|known| known.is_same(&source)) && apart(made.part.matrix).0 == still
@@ -150,12 +143,8 @@ impl Document {
     ) -> Option<Arc<Form>> {
         let upon = self.upon(part);
         let known = self.known(&part.id);
-        let source = part.outline().map(|outline| OutlineKey::of(self, outline));
-        let source = match source {
-            Some(None) => return None,
-            Some(key) => key,
-            None => None,
-        };
+        let source = OutlineKey::of_part(self, part)?;
+        let inks: Vec<OutlineKey> = upon.iter().filter_map(|part| OutlineKey::of_part(self, part)?).collect();
         let (still, moved) = apart(part.matrix);
         let same_source = |made: &MadePart| match (&made.source, &source) {
             (Some(a), Some(b)) => a.is_same(b),
@@ -164,7 +153,10 @@ impl Document {
         let same_place = |made: &MadePart| apart(made.part.matrix).0 == still;
         let joined = standing.as_ref().and_then(|own| joined(own, in_front)).map(Arc::new);
         let known = known.filter(|made| same_source(made) && same_place(made) && made.body.joined == joined);
-        if let Some(made) = known.as_ref().filter(|made| same_shape(&made.part, part) && same_list(&made.upon, &upon)) {
+        if let Some(made) = known
+            .as_ref()
+            .filter(|made| same_shape(&made.part, part) && same_list(&made.upon, &upon) && same_inks(&made.inks, &inks))
+        {
             if made.moved == moved && Arc::ptr_eq(&made.part, part) {
                 return Some(made.form.clone());
             }
@@ -176,9 +168,9 @@ impl Document {
         }
         let body = known.map(|made| made.body);
         let own = standing.map(|own| if moved == (0, 0) { own } else { Arc::new(own.moved((-moved.0, -moved.1))) });
-        let (body, form) = self.made(part, own, joined, still, body, &upon)?;
+        let (body, form) = self.made(part, (own, source.as_ref()), joined, still, body, &upon)?;
         let form = Arc::new(form.moved(moved));
-        self.remember(MadePart { part: part.clone(), upon, source, body, form: form.clone(), moved });
+        self.remember(MadePart { part: part.clone(), upon, inks, source, body, form: form.clone(), moved });
         Some(form)
     }
     fn remember(&self, made: MadePart) {
@@ -194,7 +186,7 @@ impl Document {
     fn made(
         &self,
         part: &Part,
-        own: Option<Arc<Outline>>,
+        (own, source): (Option<Arc<Outline>>, Option<&OutlineKey>),
         joined: Option<Arc<Plane<bool>>>,
         still: Affine2,
         known: Option<Arc<Body>>,
@@ -242,9 +234,27 @@ impl Document {
                 let outline = Arc::new(Outline::new(form.corner, &form.coverage)?);
                 (bare(outline), form)
             }
-            PartKind::Touches { .. } | PartKind::Sculpt { .. } | PartKind::Relief { .. } => return None,
+            PartKind::Profiles { shadings, .. } => {
+                let drawn = source?.outline(self, most_px)?;
+                let form = body::of_profiles(shadings, &drawn, still, most_px)?;
+                (bare(Arc::new(Outline::new(form.corner, &form.coverage)?)), form)
+            }
+            PartKind::Maps(maps) => {
+                let form = body::of_maps(maps, still, most_px)?;
+                (bare(Arc::new(Outline::new(form.corner, &form.coverage)?)), form)
+            }
+            PartKind::Touches { .. } | PartKind::Sculpt { .. } | PartKind::Relief { .. } | PartKind::Lines { .. } => {
+                return None;
+            }
         };
-        let form = upon.iter().fold(form, |form, other| changed(form, &body.outline, other, still));
+        let form = upon.iter().fold(form, |form, other| match &other.kind {
+            PartKind::Lines { lines, .. } => {
+                let ink = OutlineKey::of_part(self, other).flatten().and_then(|ink| ink.outline(self, most_px));
+                let ink = ink.and_then(|ink| ink.through(still, most_px));
+                ink.map_or(form.clone(), |ink| lined(form, &body.outline, &ink, *lines))
+            }
+            _ => changed(form, &body.outline, other, still),
+        });
         let form = form.tilted(part.tilt_deg).raised(part.raise);
         Some((Arc::new(body), form))
     }
@@ -261,61 +271,34 @@ fn same_list(a: &[Arc<Part>], b: &[Arc<Part>]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
 }
 
+fn same_inks(a: &[OutlineKey], b: &[OutlineKey]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.is_same(b))
+}
+
+/// A form with ink as lines on it.
+fn lined(form: Form, outline: &Outline, ink: &Outline, lines: Lines) -> Form {
+    if form.height.size() != outline.size() {
+        let cut = cut_to(&form, outline);
+        return if cut.height.size() == outline.size() { lined(cut, outline, ink, lines) } else { form };
+    }
+    let shift = (outline.corner().0 - ink.corner().0, outline.corner().1 - ink.corner().1);
+    let inked =
+        Plane::from_fn(outline.size(), |x, y| ink.coverage().get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0));
+    lines::lined(&form, outline, &inked, lines)
+}
+
 /// Whether two versions of a part have the same form, wherever it stands.
 fn same_shape(a: &Arc<Part>, b: &Arc<Part>) -> bool {
-    Arc::ptr_eq(a, b) || (a.kind == b.kind && a.tilt_deg == b.tilt_deg && a.raise == b.raise)
+    Arc::ptr_eq(a, b) || (same_kind(&a.kind, &b.kind) && a.tilt_deg == b.tilt_deg && a.raise == b.raise)
 }
 
-/// The fields that a profile needs over an outline; those that are known stay.
-fn inflated(outline: Arc<Outline>, joined: Option<Arc<Plane<bool>>>, known: Option<&Body>, profile: f32) -> Body {
-    let free = joined.as_deref();
-    let pillow = known.and_then(|body| body.pillow.clone());
-    let tube = known.and_then(|body| body.tube.clone());
-    let needs_pillow = profile < 1.0 && pillow.is_none();
-    let needs_tube = profile > 0.0 && tube.is_none();
-    let pillow = if needs_pillow { Some(Arc::new(inflate::inflate(&outline, free, None))) } else { pillow };
-    let tube = if needs_tube { Some(Arc::new(tube::tube(&outline, free, None))) } else { tube };
-    Body { outline, joined, pillow, tube }
-}
-
-/// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins. `None` where there are
-/// none. A rim that lies hidden under such a part stays one: what is inside of it is covered as well.
-fn joined(own: &Outline, in_front: &[Option<Arc<Outline>>]) -> Option<Plane<bool>> {
-    let corner = own.corner();
-    let met: Vec<&Outline> =
-        in_front.iter().flatten().map(|o| &**o).filter(|o| !o.rect().intersect(own.rect()).is_empty()).collect();
-    if met.is_empty() {
-        return None;
-    }
-    let inside = own.inside();
-    let covers = |other: &Outline, x: i32, y: i32| {
-        let at = (x + corner.0 - other.corner().0, y + corner.1 - other.corner().1);
-        other.inside().get(at.0, at.1).unwrap_or(false)
-    };
-    let free = Plane::from_fn(own.size(), |x, y| {
-        let (x, y) = (x as i32, y as i32);
-        let beside = [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)];
-        let begins = |other: &&Outline| {
-            let open = |p: &(i32, i32)| inside.get(p.0, p.1).unwrap_or(false) && !covers(other, p.0, p.1);
-            covers(other, x, y) && beside.iter().any(open)
-        };
-        !inside.at(x as usize, y as usize) && met.iter().any(begins)
-    });
-    free.values().contains(&true).then_some(free)
-}
-
-fn formed(body: &Body, inflation: Inflation) -> Form {
-    let rim = Rim::of(&body.outline, body.joined.as_deref());
-    let round = Roundness { puff: inflation.puff, rim_deg: inflation.rim_deg };
-    let form = |squares: &Plane<f32>| Form::of_squares(&body.outline, squares, &rim, round);
-    match (&body.pillow, &body.tube) {
-        (Some(pillow), Some(tube)) if inflation.profile > 0.0 && inflation.profile < 1.0 => {
-            form(&tube::blend(pillow, tube, inflation.profile))
-        }
-        (Some(pillow), _) if inflation.profile <= 0.0 => form(pillow),
-        (_, Some(tube)) => form(tube),
-        (Some(pillow), None) => form(pillow),
-        (None, None) => form(&Plane::filled(body.outline.size(), 0.0)),
+/// Whether two kinds make the same of the same outline, whatever they call it.
+fn same_kind(a: &PartKind, b: &PartKind) -> bool {
+    match (a, b) {
+        (PartKind::Inflate { inflation: a, .. }, PartKind::Inflate { inflation: b, .. }) => a == b,
+        (PartKind::Bevel { bevel: a, .. }, PartKind::Bevel { bevel: b, .. }) => a == b,
+        (PartKind::Lathe { axis: a, puff: x, .. }, PartKind::Lathe { axis: b, puff: y, .. }) => a == b && x == y,
+        _ => a == b,
     }
 }
 
@@ -360,29 +343,5 @@ fn changed(form: Form, outline: &Outline, part: &Part, still: Affine2) -> Form {
             form.with_added(&relief::relief(outline, &luminance, *detail))
         }
         _ => form,
-    }
-}
-
-/// A form over the planes of an outline.
-fn cut_to(form: &Form, outline: &Outline) -> Form {
-    let shift = (outline.corner().0 - form.corner.0, outline.corner().1 - form.corner.1);
-    let at = |x: usize, y: usize| (x as i32 + shift.0, y as i32 + shift.1);
-    let size = outline.size();
-    Form {
-        corner: outline.corner(),
-        height: Plane::from_fn(size, |x, y| form.height.get(at(x, y).0, at(x, y).1).unwrap_or(0.0)),
-        normals: Plane::from_fn(size, |x, y| form.normals.get(at(x, y).0, at(x, y).1).unwrap_or(Vec3::Z)),
-        coverage: outline.coverage().clone(),
-    }
-}
-
-/// The maps of a document as a form: heights in px, the farthest 0.
-fn of_surface(surface: &Surface) -> Form {
-    let range = surface.depth_range_px();
-    Form {
-        corner: (0, 0),
-        height: surface.depth_plane().map(|z| (1.0 - z) * range),
-        normals: Plane::from_fn(surface.size(), |x, y| surface.normal(x, y)),
-        coverage: surface.coverage_plane().clone(),
     }
 }

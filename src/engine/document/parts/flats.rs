@@ -1,7 +1,8 @@
 //! Parts of a layer of flat colours: one for each colour, ordered by who interrupts whose outline.
 //! Floor 4.
 
-use super::outlines::{is_near, of_color};
+use super::outlines::is_near;
+use super::shares::Flats;
 use super::{Inflation, OutlineSource, Part, PartKind};
 use crate::math::Rect;
 use crate::math::srgb::Color;
@@ -19,7 +20,8 @@ const LOOKED_AROUND: f32 = 0.02;
 pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation) -> Vec<Part> {
     let rect = tiles.bounds();
     let colors = colors_of(tiles, rect);
-    let areas: Vec<Plane<u8>> = colors.iter().map(|color| of_color(tiles, rect, *color)).collect();
+    let flats = Flats::of(tiles, rect);
+    let areas: Vec<Plane<u8>> = colors.iter().map(|color| flats.share_of(*color, &[])).collect();
     let order = farthest_first(&areas);
     let part = |(place, index): (usize, usize)| {
         let outline = OutlineSource::Layer { layer: layer.into(), color: Some(colors[index]) };
@@ -32,11 +34,9 @@ pub fn parts_of_flats(tiles: &TileGrid, layer: &str, inflation: Inflation) -> Ve
 /// The opaque flat colours of a picture, the most frequent first.
 pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
     let mut counts: BTreeMap<[u8; 4], usize> = BTreeMap::new();
-    for (x, y) in (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y))) {
-        let pixel = tiles.pixel(x, y);
-        if pixel[3] == 255 {
-            *counts.entry(pixel).or_default() += 1;
-        }
+    // Straight edges hold long rows of one mixed colour.
+    for pixel in Flats::of(tiles, rect).flat_pixels().filter(|pixel| pixel[3] == 255) {
+        *counts.entry(pixel).or_default() += 1;
     }
     let mut by_count: Vec<([u8; 4], usize)> = counts.into_iter().collect();
     by_count.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));

@@ -1,25 +1,29 @@
 //! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
-//! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `forms`
-//! tells what it made, `outlines` finds the outlines, `flats` makes parts of a layer of flat colours, and `drawing`
-//! says what can be made of one.
+//! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `body` one form, `outlines`
+//! finds the outlines, `flats` makes parts of a layer of flat colours, `edit` changes the list, `fit` holds it to what files
+//! can hold.
 
+mod body;
 mod derive;
 pub mod drawing;
+mod edit;
+mod fit;
 pub mod flats;
 pub mod forms;
 mod outlines;
+mod shares;
 
 #[cfg(test)]
 mod tests;
 
-use super::Document;
-use crate::math::range::{at_most, within};
+use super::source::SurfaceSource;
 use crate::math::srgb::Color;
 use crate::math::{Affine2, COORDINATE, Mat2, Range, UNIT, Vec2, Vec3, vec2, vec3};
-use crate::raster::Plane;
-use crate::shape::{Ball, Bevel, BevelCurve, Combine, Detail, Primitive, SculptStroke, Touch};
+use crate::raster::{Asset, Plane};
+use crate::shape::{Ball, Bevel, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
 use crate::surface::Surface;
 use derive::PartCache;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The parts of a document, and what is kept of them for speed.
@@ -41,6 +45,16 @@ impl Parts {
     }
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
+    }
+    /// The part that a part changes in the end, or itself; `None` if there is no such part.
+    pub fn body_of(&self, id: &str) -> Option<&Arc<Part>> {
+        let mut part = self.part(id)?;
+        // No chain is longer than the list; one that bites its tail ends there.
+        for _ in 0..self.list.len() {
+            let Some(next) = part.on().and_then(|on| self.part(on)) else { break };
+            part = next;
+        }
+        Some(part)
     }
     pub fn part(&self, id: &str) -> Option<&Arc<Part>> {
         self.list.iter().find(|part| part.id == id)
@@ -97,12 +111,69 @@ pub enum PartKind {
         on: String,
         strokes: Vec<SculptStroke>,
     },
+    /// Ink that tells where another part turns.
+    Lines {
+        on: String,
+        ink: OutlineSource,
+        lines: Lines,
+    },
+    /// Several shadings of one drawing by hand, each with the light elsewhere; of a part wherever they tell anything, or
+    /// within an outline.
+    Profiles {
+        outline: Option<OutlineSource>,
+        shadings: Vec<ProfilePicture>,
+    },
+    /// Maps that were made elsewhere.
+    Maps(PartMaps),
     /// The detail of a picture on another part.
     Relief {
         on: String,
         picture: CoverageFile,
         detail: Detail,
     },
+}
+
+impl ProfilePicture {
+    /// Each number of its light.
+    pub const LIGHT: Range = -1e4..=1e4;
+}
+
+/// A shading of a drawing as a grey picture, and where its light is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfilePicture {
+    /// sRGB.
+    pub picture: CoverageFile,
+    /// Toward the light, camera space (y up); any length.
+    pub light: Vec3,
+}
+
+/// Maps as a part, with the surface that they are, as large as the canvas.
+#[derive(Clone)]
+pub struct PartMaps {
+    pub source: Arc<SurfaceSource>,
+    /// The files that it names.
+    pub files: Arc<BTreeMap<String, Asset>>,
+    pub surface: Arc<Surface>,
+}
+
+/// By what they hold: names are given anew by every project.
+impl PartialEq for PartMaps {
+    fn eq(&self, other: &Self) -> bool {
+        let is_same = || {
+            self.surface.size() == other.surface.size()
+                && self.surface.depth_range_px() == other.surface.depth_range_px()
+                && self.surface.normal_planes() == other.surface.normal_planes()
+                && self.surface.depth_plane() == other.surface.depth_plane()
+                && self.surface.coverage_plane() == other.surface.coverage_plane()
+        };
+        Arc::ptr_eq(&self.surface, &other.surface) || is_same()
+    }
+}
+
+impl std::fmt::Debug for PartMaps {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PartMaps").field("source", &self.source).finish_non_exhaustive()
+    }
 }
 
 /// How an outline is inflated.
@@ -142,6 +213,9 @@ pub enum OutlineSource {
     Layer { layer: String, color: Option<Color> },
     /// A picture of coverage; its upper left corner is the frame's.
     File(CoverageFile),
+    /// A selection that is kept by its name. One that follows the surface is found on the document's maps, without
+    /// parts.
+    Selection(String),
     /// A closed polygon, canvas px.
     Path(Vec<Vec2>),
     /// An object of the document's maps, from 1 on.
@@ -190,29 +264,50 @@ impl Part {
     /// The part that this one changes, where it is no form of its own.
     pub fn on(&self) -> Option<&str> {
         match &self.kind {
-            PartKind::Touches { on, .. } | PartKind::Sculpt { on, .. } | PartKind::Relief { on, .. } => Some(on),
+            PartKind::Touches { on, .. }
+            | PartKind::Sculpt { on, .. }
+            | PartKind::Relief { on, .. }
+            | PartKind::Lines { on, .. } => Some(on),
             _ => None,
         }
     }
+    /// What it is made of; of lines their ink.
     pub fn outline(&self) -> Option<&OutlineSource> {
         match &self.kind {
             PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
                 Some(outline)
             }
+            PartKind::Lines { ink, .. } => Some(ink),
+            PartKind::Profiles { outline, .. } => outline.as_ref(),
             _ => None,
         }
     }
-    /// The files that it names, to be given other names.
-    pub fn files_mut(&mut self) -> Option<&mut CoverageFile> {
+    pub(super) fn outline_mut(&mut self) -> Option<&mut OutlineSource> {
         match &mut self.kind {
             PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
-                match outline {
-                    OutlineSource::File(file) => Some(file),
-                    _ => None,
-                }
+                Some(outline)
             }
-            PartKind::Relief { picture, .. } => Some(picture),
+            PartKind::Lines { ink, .. } => Some(ink),
+            PartKind::Profiles { outline, .. } => outline.as_mut(),
             _ => None,
+        }
+    }
+    /// The pictures that it names, to be given other names. Maps have names of their own.
+    pub fn files_mut(&mut self) -> Vec<&mut CoverageFile> {
+        fn of_outline(outline: &mut OutlineSource) -> Option<&mut CoverageFile> {
+            if let OutlineSource::File(file) = outline { Some(file) } else { None }
+        }
+        match &mut self.kind {
+            PartKind::Inflate { outline, .. }
+            | PartKind::Bevel { outline, .. }
+            | PartKind::Lathe { outline, .. }
+            | PartKind::Lines { ink: outline, .. } => of_outline(outline).into_iter().collect(),
+            PartKind::Profiles { outline, shadings } => {
+                let own = outline.as_mut().and_then(of_outline);
+                own.into_iter().chain(shadings.iter_mut().map(|shading| &mut shading.picture)).collect()
+            }
+            PartKind::Relief { picture, .. } => vec![picture],
+            _ => Vec::new(),
         }
     }
     /// The same part on a canvas with other sides.
@@ -255,35 +350,31 @@ impl Part {
                 stroke.strength *= length;
                 stroke.samples.iter_mut().for_each(|sample| sample.0 *= scale);
             }),
+            PartKind::Lines { ink, lines, .. } => {
+                ink.scale(scale);
+                lines.reach *= length;
+            }
+            PartKind::Profiles { outline, .. } => {
+                if let Some(outline) = outline {
+                    outline.scale(scale);
+                }
+            }
+            PartKind::Maps(maps) => {
+                // What is thinner than a pixel of the new canvas stays as it was.
+                if let Ok(surface) = maps.surface.stretched(maps.surface.size().scaled(length)) {
+                    maps.surface = Arc::new(surface);
+                }
+            }
             PartKind::Relief { detail, .. } => {
                 detail.coarse *= length;
                 detail.fine *= length;
                 detail.radius *= length;
             }
         }
-        if let Some(file) = next.files_mut() {
+        for file in next.files_mut() {
             file.coverage = Arc::new(plane(&file.coverage));
         }
         next
-    }
-    /// Whether a file can hold it: every number in its range; else a sentence.
-    pub fn fits(&self) -> Result<(), String> {
-        at_most("letters of the id", self.id.chars().count(), Self::LONGEST_NAME)?;
-        at_most("letters of the name", self.name.chars().count(), Self::LONGEST_NAME)?;
-        if self.id.is_empty() {
-            return Err("a part has no id".into());
-        }
-        if let Combine::Union { smooth } = self.combine {
-            within("the union's smoothness", smooth, &Combine::SMOOTH)?;
-        }
-        within("the tilt", self.tilt_deg.x, &Self::TILT)?;
-        within("the tilt", self.tilt_deg.y, &Self::TILT)?;
-        within("how far it is raised", self.raise, &Self::RAISE)?;
-        self.matrix.to_cols_array().iter().try_for_each(|v| within("the matrix", *v, &Self::MATRIX))?;
-        if let Some(outline) = self.outline() {
-            outline.fits()?;
-        }
-        self.kind.fits()
     }
 }
 
@@ -293,23 +384,6 @@ impl OutlineSource {
             points.iter_mut().for_each(|p| *p *= scale);
         }
     }
-    fn fits(&self) -> Result<(), String> {
-        match self {
-            OutlineSource::Path(points) => {
-                at_most("points of the path", points.len(), Self::MOST_POINTS)?;
-                points.iter().try_for_each(|p| place("a point of the path", *p))
-            }
-            OutlineSource::Layer { layer, .. } => {
-                at_most("letters of the layer's name", layer.chars().count(), Part::LONGEST_NAME)
-            }
-            OutlineSource::File(_) | OutlineSource::Object(_) => Ok(()),
-        }
-    }
-}
-
-fn place(what: &str, p: Vec2) -> Result<(), String> {
-    within(what, p.x, &COORDINATE)?;
-    within(what, p.y, &COORDINATE)
 }
 
 impl PartKind {
@@ -324,74 +398,9 @@ impl PartKind {
             PartKind::Touches { .. } => "touches",
             PartKind::Sculpt { .. } => "sculpt",
             PartKind::Relief { .. } => "relief",
-        }
-    }
-    fn fits(&self) -> Result<(), String> {
-        match self {
-            PartKind::Inflate { inflation, .. } => {
-                within("the puff", inflation.puff, &Inflation::PUFF)?;
-                within("the profile", inflation.profile, &Inflation::PROFILE)?;
-                within("the rim", inflation.rim_deg, &Inflation::RIM)
-            }
-            PartKind::Bevel { bevel, .. } => {
-                within("the bevel's width", bevel.width, &Bevel::WIDTH)?;
-                within("the bevel's height", bevel.height, &Bevel::HEIGHT)?;
-                let BevelCurve::Points(points) = &bevel.curve else { return Ok(()) };
-                at_most("points of the bevel's curve", points.len(), BevelCurve::MOST_POINTS)?;
-                points.iter().try_for_each(|p| {
-                    within("a point of the bevel's curve", p.x, &UNIT)?;
-                    within("a point of the bevel's curve", p.y, &UNIT)
-                })
-            }
-            PartKind::Primitive(body) => {
-                place("the middle", body.center)?;
-                let Vec3 { x, y, z } = body.half;
-                [body.radius, body.length, body.tube, x, y, z]
-                    .iter()
-                    .try_for_each(|side| within("a side of the body", *side, &Primitive::LENGTH))?;
-                within("the radius of its edges", body.round, &Primitive::ROUND)?;
-                body.turn_deg.to_array().iter().try_for_each(|turn| within("its turn", *turn, &Primitive::TURN))
-            }
-            PartKind::Lathe { axis, puff, .. } => {
-                within("the puff", *puff, &Inflation::PUFF)?;
-                axis.iter().flatten().try_for_each(|p| place("the axis", *p))
-            }
-            PartKind::Sweep { balls, puff } => {
-                within("the puff", *puff, &Inflation::PUFF)?;
-                at_most("balls of a sweep", balls.len(), Ball::MOST)?;
-                balls.iter().try_for_each(|ball| {
-                    place("a ball", ball.at)?;
-                    within("the radius of a ball", ball.radius, &Ball::RADIUS)
-                })
-            }
-            PartKind::Touches { touches, .. } => {
-                at_most("touches", touches.len(), Touch::MOST)?;
-                touches.iter().try_for_each(|touch| {
-                    place("a touch", touch.at)?;
-                    within("the radius of a touch", touch.radius, &Touch::RADIUS)?;
-                    within("the reach of a touch", touch.reach, &Touch::REACH)?;
-                    touch.normal.to_array().iter().try_for_each(|v| within("a touch's normal", *v, &(-1.0..=1.0)))
-                })
-            }
-            PartKind::Sculpt { strokes, .. } => {
-                let samples: usize = strokes.iter().map(|stroke| stroke.samples.len()).sum();
-                at_most("samples of sculpting", samples + strokes.len(), SculptStroke::MOST)?;
-                strokes.iter().try_for_each(|stroke| {
-                    within("the size of a stroke", stroke.size, &SculptStroke::SIZE)?;
-                    within("the hardness of a stroke", stroke.hardness, &SculptStroke::HARDNESS)?;
-                    within("the strength of a stroke", stroke.strength, &SculptStroke::STRENGTH)?;
-                    stroke.samples.iter().try_for_each(|(at, pressure)| {
-                        place("a sample", *at)?;
-                        within("the pressure of a sample", *pressure, &SculptStroke::PRESSURE)
-                    })
-                })
-            }
-            PartKind::Relief { detail, .. } => {
-                within("the coarse detail", detail.coarse, &Detail::HEIGHT)?;
-                within("the fine detail", detail.fine, &Detail::HEIGHT)?;
-                within("the detail's radius", detail.radius, &Detail::RADIUS)?;
-                within("the detail's edge", detail.edge, &Detail::EDGE)
-            }
+            PartKind::Lines { .. } => "lines",
+            PartKind::Profiles { .. } => "profiles",
+            PartKind::Maps(_) => "maps",
         }
     }
 }
@@ -402,43 +411,4 @@ fn turned(normal: Vec3, matrix: Affine2) -> Vec3 {
     // Image axes are y down, normals y up.
     let bar = along.rotate(vec2(normal.x, -normal.y));
     vec3(bar.x, -bar.y, normal.z)
-}
-
-impl Document {
-    /// The surface of the document's maps alone, beneath its parts.
-    pub fn maps_surface(&self) -> Option<&Arc<Surface>> {
-        if self.parts.is_empty() { self.surface.as_ref() } else { self.parts.maps.as_ref() }
-    }
-    /// With other parts, and the surface that follows from them.
-    pub fn with_parts(&self, list: Vec<Arc<Part>>) -> Document {
-        let maps = self.maps_surface().cloned();
-        let mut next = self.clone();
-        if list.is_empty() {
-            next.surface = maps.clone();
-        }
-        next.parts = Arc::new(Parts { list, maps, cache: self.parts.cache.clone() });
-        next.reshaped()
-    }
-    /// With other maps beneath its parts.
-    pub fn with_maps(&self, surface: Option<Arc<Surface>>) -> Document {
-        let mut next = self.clone();
-        if self.parts.is_empty() {
-            next.surface = surface;
-            return next;
-        }
-        next.parts = Arc::new(Parts { maps: surface, ..Parts::clone(&self.parts) });
-        next.reshaped()
-    }
-    /// Whether files can hold the parts.
-    pub(super) fn parts_fit(&self) -> Result<(), String> {
-        at_most("Parts", self.parts.list.len(), Parts::MOST)?;
-        for (i, part) in self.parts.list.iter().enumerate() {
-            let shown: String = part.name.chars().take(60).collect();
-            part.fits().map_err(|why| format!("“{shown}”: {why}."))?;
-            if self.parts.list[..i].iter().any(|other| other.id == part.id) {
-                return Err(format!("“{shown}”: another part has the id “{}” as well.", part.id));
-            }
-        }
-        Ok(())
-    }
 }

@@ -1,39 +1,104 @@
 //! The outlines that parts name: of layers, colours, pictures, paths and objects.
 //! Floor 4.
 
-use super::{CoverageFile, OutlineSource};
-use crate::document::{Content, Document, Layer, Progress, flatten_layer};
+use super::shares::Flats;
+use super::{CoverageFile, OutlineSource, Part, PartKind};
+use crate::document::{Content, Document, Layer, LayerMap, LayerTransform, Progress, flatten_layer};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
-use crate::raster::{Plane, TileGrid};
+use crate::paint::{Scene, Selection};
+use crate::raster::{CoverageGrid, Plane, TileGrid};
 use crate::shape::Outline;
 use crate::surface::Surface;
+use crate::surface::region::SurfaceRegion;
 use std::sync::Arc;
 
 /// What an outline is made of: while it is the same, so is the outline.
 #[derive(Clone)]
 pub enum OutlineKey {
-    Layer(Arc<Layer>, Option<Color>),
+    /// With what takes it to the canvas, or to the frame of the part, if it is carried by that.
+    Layer(Arc<Layer>, Option<FlatColor>, LayerMap),
     Coverage(Arc<Plane<u8>>),
+    Selection(Arc<Selection>),
+    /// A selection that follows the maps.
+    Region(SurfaceRegion, Option<Arc<Surface>>),
     Path(OutlineSource),
+    /// Wherever one of some pictures is not black.
+    Told(Vec<Arc<Plane<u8>>>),
     Object(Arc<Surface>, u32),
 }
 
+/// A colour of a layer of flats.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatColor {
+    color: Color,
+    /// Those of the parts that lie over it, at edges of which it goes on beneath.
+    over: Vec<Color>,
+}
+
+impl Document {
+    /// The colours of the same layer whose parts lie over a part, where both were made.
+    fn colors_over(&self, part: &Part) -> Vec<Color> {
+        let Some(OutlineSource::Layer { layer: own, .. }) = part.outline().filter(|_| part.on().is_none()) else {
+            return Vec::new();
+        };
+        let nearer = self.parts.list.iter().skip_while(|other| other.id != part.id).skip(1);
+        let color = |other: &Arc<Part>| match other.outline() {
+            Some(OutlineSource::Layer { layer, color }) if layer == own && other.matrix == part.matrix => *color,
+            _ => None,
+        };
+        nearer.filter(|other| other.visible && other.on().is_none()).filter_map(color).collect()
+    }
+}
+
 impl OutlineKey {
-    /// `None` where what is named is not there.
-    pub fn of(document: &Document, source: &OutlineSource) -> Option<Self> {
+    /// What a part is made of, if it is made of anything; outer `None` where what it names is not there.
+    pub fn of_part(document: &Document, part: &Part) -> Option<Option<Self>> {
+        match (&part.kind, part.outline()) {
+            (_, Some(outline)) => Self::of(document, part, outline).map(Some),
+            (PartKind::Profiles { shadings, .. }, None) => {
+                Some(Some(Self::Told(shadings.iter().map(|shading| shading.picture.coverage.clone()).collect())))
+            }
+            (_, None) => Some(None),
+        }
+    }
+    fn of(document: &Document, part: &Part, source: &OutlineSource) -> Option<Self> {
         Some(match source {
-            OutlineSource::Layer { layer, color } => Self::Layer(document.layer_named(layer)?.clone(), *color),
+            OutlineSource::Layer { layer, color } => {
+                let layer = document.layer_named(layer)?;
+                let map = document.map_of(layer.id)?;
+                let home = document.home_of(layer.id).and_then(|home| document.parts.body_of(&home.part));
+                let body = document.parts.body_of(&part.id);
+                let is_home = home.zip(body).is_some_and(|(home, body)| home.id == body.id);
+                let map = if is_home { map.at_home() } else { map };
+                let color = color.map(|color| FlatColor { color, over: document.colors_over(part) });
+                Self::Layer(layer.clone(), color, map)
+            }
             OutlineSource::File(CoverageFile { coverage, .. }) => Self::Coverage(coverage.clone()),
+            OutlineSource::Selection(name) => {
+                let kept = &document.selections.iter().find(|kept| kept.name == *name)?.selection;
+                match kept.made {
+                    Some(region) => Self::Region(region, document.maps_surface().cloned()),
+                    None => Self::Selection(kept.clone()),
+                }
+            }
             OutlineSource::Path(_) => Self::Path(source.clone()),
             OutlineSource::Object(object) => Self::Object(document.maps_surface()?.clone(), *object),
         })
     }
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Layer(a, x), Self::Layer(b, y)) => x == y && (Arc::ptr_eq(a, b) || same_pixels(a, b)),
+            (Self::Layer(a, x, from), Self::Layer(b, y, to)) => {
+                x == y && from == to && (Arc::ptr_eq(a, b) || same_pixels(a, b))
+            }
             (Self::Coverage(a), Self::Coverage(b)) => Arc::ptr_eq(a, b),
+            (Self::Selection(a), Self::Selection(b)) => Arc::ptr_eq(a, b),
+            (Self::Region(a, on), Self::Region(b, other)) => {
+                let same = on.as_ref().map(Arc::as_ptr) == other.as_ref().map(Arc::as_ptr);
+                a == b && same
+            }
             (Self::Path(a), Self::Path(b)) => a == b,
+            (Self::Told(a), Self::Told(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b)),
             (Self::Object(a, x), Self::Object(b, y)) => Arc::ptr_eq(a, b) && x == y,
             _ => false,
         }
@@ -41,19 +106,29 @@ impl OutlineKey {
     /// The outline; `None` where nothing is covered.
     pub fn outline(&self, document: &Document, most_px: usize) -> Option<Outline> {
         match self {
-            Self::Layer(layer, color) => {
-                let tiles = pixels(document, layer)?;
+            Self::Layer(layer, color, map) => {
+                let tiles = pixels(document, layer, map)?;
                 let rect = tiles.bounds();
                 if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
                     return None;
                 }
                 let coverage = match color {
                     None => alpha(&tiles, rect),
-                    Some(color) => of_color(&tiles, rect, *color),
+                    Some(FlatColor { color, over }) => Flats::of(&tiles, rect).share_of(*color, over),
                 };
                 Outline::new((rect.x0, rect.y0), &coverage)
             }
             Self::Coverage(coverage) => Outline::new((0, 0), coverage),
+            Self::Selection(selection) => covered(&selection.coverage, most_px),
+            Self::Region(region, surface) => {
+                let scene = Scene { size: document.size, surface: surface.clone() };
+                covered(&Selection::of_region(*region, &scene).coverage, most_px)
+            }
+            Self::Told(pictures) => {
+                let size = pictures.first()?.size();
+                let told = |x: usize, y: usize| pictures.iter().any(|p| p.get(x as i32, y as i32).unwrap_or(0) > 0);
+                Outline::new((0, 0), &Plane::from_fn(size, |x, y| if told(x, y) { 255 } else { 0 }))
+            }
             Self::Path(OutlineSource::Path(points)) => Outline::of_path(points, most_px),
             Self::Path(_) => None,
             Self::Object(surface, object) => {
@@ -71,6 +146,15 @@ impl OutlineKey {
     }
 }
 
+/// The outline of coverage in tiles.
+fn covered(coverage: &CoverageGrid, most_px: usize) -> Option<Outline> {
+    let rect = coverage.covered();
+    if rect.is_empty() || rect.width().checked_mul(rect.height()).is_none_or(|px| px > most_px) {
+        return None;
+    }
+    Outline::new((rect.x0, rect.y0), &coverage.to_plane(rect))
+}
+
 /// Whether two versions of a layer hold the same paint: its name, mode or opacity change no outline.
 fn same_pixels(a: &Layer, b: &Layer) -> bool {
     match (&a.content, &b.content) {
@@ -79,13 +163,20 @@ fn same_pixels(a: &Layer, b: &Layer) -> bool {
     }
 }
 
-/// What a layer paints: its own pixels, or what it shows alone, without any surface, which follows from it.
-fn pixels(document: &Document, layer: &Arc<Layer>) -> Option<TileGrid> {
-    if let Content::Pixels(pixels) = &layer.content {
-        return Some(pixels.tiles.clone());
-    }
-    let flat = Document { surface: None, ..document.clone() };
-    flatten_layer(&flat, layer.id, &Progress::default())
+/// What a layer paints where a map takes it: its own pixels, or what it shows alone, without any surface, which follows
+/// from it.
+fn pixels(document: &Document, layer: &Arc<Layer>, map: &LayerMap) -> Option<TileGrid> {
+    let layer = match &layer.content {
+        Content::Pixels(pixels) => return Some(pixels.taken_along(map).tiles),
+        Content::Group(_) => {
+            let transform = LayerTransform::of_map(&map.plane, map.filter, document.size);
+            Layer { on: None, transform, ..Layer::clone(layer) }
+        }
+        _ => Layer::clone(&map.layer_on_canvas(layer)),
+    };
+    let id = layer.id;
+    let flat = Document { layers: vec![Arc::new(layer)], ..Document::empty(document.size) };
+    flatten_layer(&flat, id, &Progress::default())
 }
 
 fn size_of(rect: Rect) -> Size {
@@ -101,37 +192,6 @@ pub const NEAR: i32 = 8;
 
 pub fn is_near(pixel: [u8; 4], color: [u8; 4]) -> bool {
     pixel.iter().zip(color).all(|(a, b)| (i32::from(*a) - i32::from(b)).abs() <= NEAR)
-}
-
-/// The share of each pixel that a flat colour takes: all of it where the pixel has the colour; at its edge as far as
-/// the pixel lies on the way from what is beside it to the colour.
-pub fn of_color(tiles: &TileGrid, rect: Rect, color: Color) -> Plane<u8> {
-    let color = color.premultiplied().map(|v| (v * 255.0).round() as u8);
-    let at = |x: i32, y: i32| tiles.pixel(rect.x0 + x, rect.y0 + y);
-    Plane::from_fn(size_of(rect), |x, y| {
-        let (x, y) = (x as i32, y as i32);
-        let here = at(x, y);
-        if is_near(here, color) {
-            return 255;
-        }
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))).map(|(x, y)| at(x, y));
-        let (mut beside, mut other) = (false, None);
-        for pixel in around {
-            if is_near(pixel, color) {
-                beside = true;
-            } else if other.is_none_or(|known| apart(pixel, color) > apart(known, color)) {
-                other = Some(pixel);
-            }
-        }
-        match (beside, other) {
-            (true, Some(other)) => share_on_the_way(here, other, color),
-            _ => 0,
-        }
-    })
-}
-
-fn apart(a: [u8; 4], b: [u8; 4]) -> i32 {
-    a.iter().zip(b).map(|(a, b)| (i32::from(*a) - i32::from(b)).pow(2)).sum()
 }
 
 /// How far a pixel lies from one colour toward another, 255 at the other; 0 where it lies beside the way.

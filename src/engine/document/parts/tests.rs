@@ -1,7 +1,7 @@
 //! A document's surface follows from its parts and layers.
 
 use super::*;
-use crate::document::{Content, Layer, PixelLayer};
+use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::math::Size;
 use crate::raster::TileGrid;
 use crate::shape::Body;
@@ -122,12 +122,38 @@ fn every_kind_makes_a_surface() {
             puff: 1.0,
         },
     ];
+    let shading = |light: Vec3| {
+        let lit = |x: usize, y: usize| {
+            let n = disc.surface.as_ref().unwrap().normal(x, y);
+            let grey = (0.9 * n.dot(light.normalize())).max(0.0);
+            if disc.surface.as_ref().unwrap().coverage(x, y) > 0 {
+                crate::math::srgb::quantise(crate::math::srgb::encode(grey))
+            } else {
+                0
+            }
+        };
+        let coverage = Arc::new(Plane::from_fn(SIZE, lit));
+        ProfilePicture { picture: CoverageFile { file: "s.png".into(), coverage }, light }
+    };
+    let lights = [vec3(0.4, 0.0, 1.0), vec3(-0.3, 0.4, 1.0), vec3(0.0, -0.5, 1.0)];
+    let maps = PartMaps { source: Arc::default(), files: Arc::default(), surface: disc.surface.clone().unwrap() };
+    let kinds = kinds
+        .into_iter()
+        .chain([PartKind::Profiles { outline: None, shadings: lights.map(shading).to_vec() }, PartKind::Maps(maps)]);
     for kind in kinds {
         let name = kind.name();
         let shaped = flat.with_parts(vec![Arc::new(Part::new("p", kind))]);
         let surface = shaped.surface.unwrap_or_else(|| panic!("{name} has no surface"));
         assert!(surface.coverage_plane().values().contains(&255), "{name}");
         assert!(surface.normal_planes()[2].values().iter().all(|z| z.is_finite()), "{name}");
+        if matches!(name, "profiles" | "maps") {
+            // Both are told of the same ball.
+            let ball = disc.surface.as_ref().unwrap();
+            for (x, y) in [(80, 60), (95, 55), (62, 70)] {
+                let (a, b) = (ball.normal(x, y), surface.normal(x, y));
+                assert!(a.distance(b) < 0.06, "{name} at {x}, {y}: {b} and not {a}");
+            }
+        }
     }
     // What lies on another part changes it.
     let touch = Touch { at: vec2(80.0, 60.0), radius: 4.0, normal: vec3(0.6, 0.0, 0.8), reach: 0.0 };
@@ -147,6 +173,11 @@ fn every_kind_makes_a_surface() {
             on: on(),
             picture: CoverageFile { file: "p.png".into(), coverage: picture },
             detail: Detail::default(),
+        },
+        PartKind::Lines {
+            on: on(),
+            ink: OutlineSource::Path(vec![vec2(79.0, 45.0), vec2(81.0, 45.0), vec2(81.0, 75.0), vec2(79.0, 75.0)]),
+            lines: Lines::default(),
         },
     ];
     for kind in changes {
@@ -188,4 +219,37 @@ fn numbers_beyond_their_range_and_ids_that_stand_twice_are_refused() {
     assert!(refused(Part { raise: 1e9, ..Part::of_layer("a", "A", Inflation::default()) }).contains("raised"));
     assert!(flat.with_parts(vec![inflated("a", "A"), inflated("a", "B")]).fits(None).unwrap_err().contains("id"));
     assert_eq!(flat.with_parts(vec![inflated("a", "A")]).fits(None), Ok(()));
+}
+
+#[test]
+fn maps_that_are_turned_show_the_turned_object_and_come_back_where_they_lay() {
+    let ball = |at: Vec2, radius: f32| {
+        let body =
+            Primitive { half: vec3(radius, 0.6 * radius, radius), ..Primitive::new(Body::Ellipsoid, at, radius) };
+        document(Vec::new()).with_part(Part::new("b", PartKind::Primitive(body))).surface.unwrap()
+    };
+    let maps = PartMaps { source: Arc::default(), files: Arc::default(), surface: ball(vec2(70.0, 60.0), 30.0) };
+    let part = |matrix: Affine2| Part { matrix, ..Part::new("m", PartKind::Maps(maps.clone())) };
+    let seen = |matrix| document(Vec::new()).with_part(part(matrix)).surface.unwrap();
+    // By a quarter turn about the middle, and half as large again.
+    let middle = vec2(70.0, 60.0);
+    let turned = seen(
+        Affine2::from_translation(middle)
+            * Affine2::from_mat2(Mat2::from_cols_array(&[0.0, 1.5, -1.5, 0.0]))
+            * Affine2::from_translation(-middle),
+    );
+    let was = seen(Affine2::IDENTITY);
+    for (dx, dy) in [(0, 0), (12, 4), (-10, 7), (3, -9)] {
+        let (x, y) = (70 + dx, 60 + dy);
+        let before = was.normal(x as usize, y as usize);
+        // Pixel centres: (dx + ½, dy + ½) goes to 1.5 (−dy − ½, dx + ½).
+        let at = middle + 1.5 * vec2(-(dy as f32) - 0.5, dx as f32 + 0.5);
+        let after = turned.normal(at.x as usize, at.y as usize);
+        // Image axes turn; y of normals is up.
+        let wanted = vec3(before.y, -before.x, before.z);
+        assert!(after.distance(wanted) < 0.05, "({dx}, {dy}): {after} and not {wanted}");
+    }
+    assert!((turned.depth_range_px() / was.depth_range_px() - 1.5).abs() < 0.05);
+    let moved = seen(Affine2::from_translation(vec2(21.0, -7.0)));
+    assert_eq!(moved.normal(91, 53), was.normal(70, 60));
 }

@@ -1,10 +1,11 @@
 //! Applies transforms for good: the frames of a layer become the canvas, so that tools can work on it as it shows.
 //! Floor 4.
 
-use super::{LayerMap, LayerTransform, TransformShape, on_canvas};
-use crate::document::{Content, Document, Group, Layer, LayerId, Live};
+use super::homes::{kept, transform_of};
+use super::{LayerMap, LayerTransform, TransformShape, seen};
+use crate::document::{Content, Document, Group, Layer, LayerId, Live, StrokeList};
 use crate::math::{Affine2, PlaneMap, Size, Vec2, vec2};
-use crate::paint::{PlacedImage, Placement};
+use crate::paint::{PlacedImage, Placement, StrokeHome};
 use crate::raster::Resampling;
 use std::sync::Arc;
 
@@ -13,25 +14,47 @@ impl Document {
     /// good, strokes, ramps, lights and placements take new numbers. The transforms of groups around it go to the
     /// layers in them. An image or a ramp that is skewed or in perspective keeps its transform. `None` if there is no
     /// such layer.
+    ///
+    /// What a part carries is carried on from there: the layer's transform becomes the inverse of where its home stands
+    /// now, so that its coordinates are those of the canvas until the part moves.
     pub fn with_transform_applied(&self, id: LayerId) -> Option<Document> {
-        if self.map_of(id)?.is_none() && self.layer(id)?.transform.is_none() {
+        if is_in_place(self.layer(id)?, &self.map_of(id)?) {
             return Some(self.clone());
         }
-        let layers = applied(&self.layers, id, self.size)?;
+        let layers = applied(&self.layers, id, &LayerMap::none(self.size))?;
         Some(Document { layers, ..self.clone() })
+    }
+    /// The transform with which a layer's frame is the canvas. `None` if there is no such layer, or no such transform.
+    pub fn transform_to_canvas(&self, id: LayerId) -> Option<Option<LayerTransform>> {
+        let (layer, around) = (self.layer(id)?, self.map_around(id)?);
+        transform_of(&around.outside(layer.on.as_ref()).inverse(), &around.within(layer))
     }
 }
 
+/// Whether the frame of a layer and those of its strokes are the canvas, with no transform that could be spared.
+fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
+    let is_carried = map.plane != map.without_homes();
+    let strokes_are = || match &layer.content {
+        Content::Strokes(live) if layer.content.has_homes() => {
+            let homes = live.params().strokes.iter().filter_map(|stroke| stroke.home());
+            homes.into_iter().all(|home| map.of_stroke(home).is_none())
+        }
+        _ => true,
+    };
+    map.is_none() && (layer.transform.is_none() || is_carried) && strokes_are()
+}
+
 /// A list of layers with the transforms on the way to a layer handed down; `None` if it is not among them.
-fn applied(layers: &[Arc<Layer>], id: LayerId, canvas: Size) -> Option<Vec<Arc<Layer>>> {
+fn applied(layers: &[Arc<Layer>], id: LayerId, around: &LayerMap) -> Option<Vec<Arc<Layer>>> {
     let index = layers.iter().position(|layer| layer.id == id || holds(layer, id))?;
     let mut next = layers.to_vec();
     next[index] = if layers[index].id == id {
-        in_place(&layers[index], canvas)
+        in_place(&layers[index], around)
     } else {
-        let mut outer = handed_down(&layers[index], canvas)?;
+        let mut outer = handed_down(&layers[index], around)?;
+        let within = around.within(&outer);
         if let Content::Group(group) = &mut outer.content {
-            group.layers = applied(&group.layers, id, canvas)?;
+            group.layers = applied(&group.layers, id, &within)?;
         }
         Arc::new(outer)
     };
@@ -42,23 +65,22 @@ fn holds(layer: &Layer, id: LayerId) -> bool {
     layer.content.group().is_some_and(|group| group.layers.iter().any(|layer| layer.id == id || holds(layer, id)))
 }
 
-/// A group without its transform: each layer in it has it instead. `None` where that cannot be said.
-fn handed_down(group: &Arc<Layer>, canvas: Size) -> Option<Layer> {
-    let Some(transform) = group.transform else { return Some(Layer::clone(group)) };
-    let outer = transform.map(canvas)?;
-    let down = |layer: &Arc<Layer>| {
-        let (own, filter) = match &layer.transform {
-            Some(own) => (own.map(canvas)?, own.filter),
-            None => (PlaneMap::IDENTITY, transform.filter),
-        };
-        let transform = said(&own.then(&outer), filter, canvas)?;
-        Some(Arc::new(Layer { transform: Some(transform), ..Layer::clone(layer) }))
-    };
-    let inner: Option<Vec<Arc<Layer>>> = group.content.group()?.layers.iter().map(down).collect();
+/// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that cannot be said.
+fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
+    let was = around.within(group);
+    if is_in_place(group, &was) {
+        return Some(Layer::clone(group));
+    }
+    let transform = transform_of(&around.outside(group.on.as_ref()).inverse(), &was)?;
+    let bare = Layer { transform, ..Layer::clone(group) };
+    let now = around.within(&bare);
+    let inner = group.content.group()?.layers.iter();
+    let inner: Option<Vec<Arc<Layer>>> =
+        inner.map(|layer| kept(layer, (&was, &now), &|home| Some(home.clone()))).collect();
     // Its mask goes along once.
-    let seen = on_canvas(group, &LayerMap::none(canvas));
+    let mask = seen(group, &was).mask.clone();
     let content = Content::Group(Group { layers: inner?, ..group.content.group()?.clone() });
-    Some(Layer { content, mask: seen.mask.clone(), transform: None, ..Layer::clone(group) })
+    Some(Layer { content, mask, ..bare })
 }
 
 impl LayerTransform {
@@ -81,11 +103,12 @@ fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<LayerTransfo
 }
 
 /// A layer on the canvas without its transform, where its kind can say so.
-pub(in crate::document) fn in_place(layer: &Arc<Layer>, canvas: Size) -> Arc<Layer> {
+pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Arc<Layer> {
     if layer.content.group().is_some() {
-        return handed_down(layer, canvas).map_or_else(|| layer.clone(), Arc::new);
+        return handed_down(layer, around).map_or_else(|| layer.clone(), Arc::new);
     }
-    let seen = on_canvas(layer, &LayerMap::none(canvas));
+    let map = around.within(layer);
+    let seen = seen(layer, &map);
     let content = match &seen.content {
         Content::Image(live) => live.params().unframed().map(|image| Content::Image(Live::new(image))),
         Content::Gradient(live) => live.params().unframed().map(|ramp| Content::Gradient(Live::new(ramp))),
@@ -94,10 +117,37 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, canvas: Size) -> Arc<Lay
         }),
         content => Some(content.clone()),
     };
-    match content {
-        Some(content) => Arc::new(Layer { content, transform: None, ..Layer::clone(&seen) }),
-        None => layer.clone(),
+    let transform = transform_of(&around.outside(layer.on.as_ref()).inverse(), &map);
+    let (Some(content), Some(transform)) = (content, transform) else { return layer.clone() };
+    let mut next = Layer { content, transform, mask: seen.mask.clone(), ..Layer::clone(layer) };
+    let now = around.within(&next);
+    match &layer.content {
+        // What lies beyond the canvas comes back with its part.
+        Content::Pixels(pixels) if layer.on.is_some() => next.content = Content::Pixels(pixels.taken_along(&map)),
+        Content::Strokes(own) if layer.content.has_homes() => match carried_on(own.params(), &seen.content, &now) {
+            Some(list) => next.content = Content::Strokes(Live::new(list)),
+            None => return layer.clone(),
+        },
+        _ => {}
     }
+    Arc::new(next)
+}
+
+/// Strokes as they lie on the canvas, those with homes of their own carried on by them; `None` where that cannot be
+/// said.
+///
+/// * `now`: the map of their layer.
+fn carried_on(own: &StrokeList, seen: &Content, now: &LayerMap) -> Option<StrokeList> {
+    let Content::Strokes(seen) = seen else { return None };
+    let both = own.strokes.iter().zip(&seen.params().strokes);
+    let strokes = both.map(|(own, seen)| {
+        let Some(home) = own.home() else { return Some(seen.clone()) };
+        let mut next = StrokeHome::new(home.frame.clone());
+        next.own = now.of_stroke(&next).plane.inverse().coefficients()?;
+        let is_same = Arc::ptr_eq(own, seen) && now.of_stroke(home).is_none();
+        Some(if is_same { own.clone() } else { Arc::new(seen.moved_home(Arc::new(next))) })
+    });
+    Some(StrokeList { strokes: strokes.collect::<Option<_>>()? })
 }
 
 impl PlacedImage {

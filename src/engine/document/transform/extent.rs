@@ -3,9 +3,10 @@
 
 use super::LayerMap;
 use crate::document::{Content, Document, Layer, LayerId};
-use crate::math::{Rect, Vec2, vec2};
-use crate::paint::Scene;
+use crate::math::{PlaneMap, Rect, Vec2, vec2};
+use crate::paint::{Scene, Stroke};
 use crate::raster::{TILE, TileGrid};
+use std::sync::Arc;
 
 /// A box with sides along the axes, px.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,24 +38,32 @@ impl Document {
     /// end the canvas. `None` of an empty layer.
     pub fn frame_box(&self, id: LayerId) -> Option<FrameBox> {
         let scene = self.scene_of(id)?;
-        box_of(self.layer(id)?, &scene)
+        box_of(self.layer(id)?, &scene, &self.map_of(id)?)
     }
 }
 
-fn box_of(layer: &Layer, scene: &Scene) -> Option<FrameBox> {
+/// `map`: the layer's.
+fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
+    // What has a frame of its own, in that of the layer.
+    let within = |inner: FrameBox, plane: &PlaneMap| {
+        let to = plane.then(&map.plane.inverse());
+        let corners = inner.corners().map(|corner| to.to_canvas(corner).unwrap_or(corner));
+        let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min);
+        FrameBox { low, high: corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) }
+    };
     match &layer.content {
         Content::Pixels(pixels) => FrameBox::of(painted(&pixels.tiles)),
         Content::Strokes(live) => {
-            let bounds = live.params().strokes.iter().map(|stroke| stroke.bounds(scene));
-            FrameBox::of(bounds.fold(Rect::EMPTY, Rect::union))
+            let box_of = |stroke: &Arc<Stroke>| {
+                let inner = FrameBox::of(stroke.bounds(scene))?;
+                Some(stroke.home().map_or(inner, |home| within(inner, &map.of_stroke(home).plane)))
+            };
+            live.params().strokes.iter().filter_map(box_of).reduce(FrameBox::around)
         }
         Content::Group(group) => {
-            let around = LayerMap::none(scene.size);
             let seen = group.layers.iter().filter_map(|layer| {
-                let (inner, map) = (box_of(layer, scene)?, around.within(layer));
-                let corners = inner.corners().map(|corner| map.point(corner));
-                let low = corners.into_iter().fold(Vec2::INFINITY, Vec2::min);
-                Some(FrameBox { low, high: corners.into_iter().fold(Vec2::NEG_INFINITY, Vec2::max) })
+                let own = map.within(layer);
+                Some(within(box_of(layer, scene, &own)?, &own.plane))
             });
             seen.reduce(FrameBox::around)
         }

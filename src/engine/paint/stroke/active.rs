@@ -156,7 +156,15 @@ impl ActiveStroke {
         let found = StrokeCache { bounds: Some((scene.clone(), self.bounds)), ..StrokeCache::default() };
         let Self { brush, operator, color, samples, selection, .. } = self;
         let (brush, samples, selection) = (brush.clone(), samples.clone(), selection.clone());
-        Stroke { brush, operator: *operator, color: *color, samples, selection, found: Arc::new(Mutex::new(found)) }
+        Stroke {
+            brush,
+            operator: *operator,
+            color: *color,
+            samples,
+            selection,
+            home: None,
+            found: Arc::new(Mutex::new(found)),
+        }
     }
     /// The finished stroke, its dabs known already.
     fn finished(mut self, scene: &Scene) -> Stroke {
@@ -167,7 +175,7 @@ impl ActiveStroke {
         let mut found = StrokeCache::default();
         found.keep(&Arc::new(self.stroke_dabs));
         let Self { brush, operator, color, samples, selection, .. } = self;
-        Stroke { brush, operator, color, samples, selection, found: Arc::new(Mutex::new(found)) }
+        Stroke { brush, operator, color, samples, selection, home: None, found: Arc::new(Mutex::new(found)) }
     }
 }
 

@@ -11,6 +11,12 @@ fn read(parts: &Value) -> crate::Result<Document> {
     let folder = tempfile::tempdir().unwrap();
     let mask = image::GrayImage::from_fn(48, 40, |x, y| image::Luma([((x * 9 + y * 5) % 256) as u8]));
     mask.save(folder.path().join("mask.png")).unwrap();
+    let normals = image::RgbImage::from_fn(48, 40, |x, y| {
+        let (x, y) = ((x as f32 - 24.0) / 40.0, (20.0 - y as f32) / 40.0);
+        let z = (1.0 - x * x - y * y).sqrt();
+        image::Rgb([x, y, z].map(|v| ((v * 0.5 + 0.5) * 255.0).round() as u8))
+    });
+    normals.save(folder.path().join("n.png")).unwrap();
     let value = json!({
         "format": "rilievo", "version": 2, "canvas": { "width": 48, "height": 40 },
         "surface": { "parts": parts },
@@ -41,6 +47,11 @@ fn every_kind() -> Value {
           { "tool": "pinch", "size": 9, "hardness": 0.2, "strength": 0.4, "samples": [[9, 9], [20, 12, 0.5]] }] },
         { "id": "h", "kind": "relief", "on": "body", "file": "mask.png", "coarse": 2, "fine": 1,
            "radius": 5, "edge": 0.1 },
+        { "id": "i", "kind": "lines", "on": "body", "outline": path, "form": "over", "angle": 60, "reach": 8 },
+        { "id": "j", "kind": "profiles", "pictures": [
+          { "file": "mask.png", "light": [0.5, 0, 1] }, { "file": "mask.png", "light": [-0.5, 0.25, 1] }] },
+        { "id": "k", "kind": "maps", "normal": { "file": "n.png", "convention": "opengl" },
+          "matrix": [0.8, 0.6, -0.6, 0.8, 12, -4] },
     ])
 }
 
@@ -94,12 +105,19 @@ fn what_is_wrong_is_named_with_its_path() {
         "surface.parts[0].pufff: is unknown; did you mean",
     );
     says(json!({ "kind": "inflate" }), "surface.parts[0].outline: is missing");
-    says(json!({ "kind": "inflate", "outline": {} }), "names no layer, file, path or object");
+    says(json!({ "kind": "inflate", "outline": {} }), "names no layer, file, selection, path or object");
     says(json!({ "kind": "inflate", "outline": { "file": "../mask.png" } }), "is refused");
     says(json!({ "kind": "inflate", "outline": { "path": [[0, 0], [1, 1e30]] } }), "must be between");
     says(json!({ "kind": "balloon" }), "must be one of inflate, bevel, primitive");
     says(json!({ "kind": "bevel", "outline": layer, "curve": [[0.5, 0], [0.2, 1]] }), "farther in");
     says(json!({ "kind": "sweep", "balls": [[1, 2, -3]] }), "radius of a ball");
+    let light = json!({ "file": "mask.png", "light": [0, 0, 0] });
+    says(json!({ "kind": "profiles", "pictures": [light] }), "it has 1 shadings; there must be 2 to 5");
+    says(json!({ "kind": "profiles", "pictures": [light, light] }), "points nowhere");
+    says(json!({ "kind": "maps", "mask": { "file": "mask.png" } }), "neither a normal map nor a depth map");
+    says(json!({ "kind": "maps", "normal": { "file": "../n.png" } }), "is refused");
+    says(json!({ "kind": "lines", "on": "a", "outline": layer, "form": "edge" }), "must be one of ridge, valley");
+    says(json!({ "kind": "sweep", "balls": [[9, 9, 3]], "matrix": [1, 2, 2, 4, 0, 0] }), "cannot be inverted");
     let twice = json!({ "id": "x", "kind": "sweep", "balls": [[9, 9, 3]] });
     assert!(read(&json!([twice, twice])).map(|_| ()).unwrap_err().to_string().contains("another part has"));
 }

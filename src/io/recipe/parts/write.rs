@@ -1,20 +1,29 @@
 //! Writes the parts of a shape.
 //! Floor 5. Defaults are left out; those that stand in no type are the reader's.
 
+use super::super::selections::id_of_kept;
+use super::super::surface;
 use super::{BODY_RADIUS, DAB_HARDNESS, DAB_SIZE, DAB_STRENGTH, TOUCH_RADIUS};
-use crate::document::parts::{Inflation, OutlineSource, Part, PartKind, Parts};
+use crate::document::SelectionList;
+use crate::document::parts::{Inflation, OutlineSource, Part, PartKind, Parts, ProfilePicture};
 use crate::json::{JsonObject, object};
 use crate::math::{Affine2, Vec2};
-use crate::shape::{Ball, Bevel, BevelCurve, Body, Combine, Detail, Primitive, SculptStroke, SculptTool, Touch};
+use crate::shape::{
+    Ball, Bevel, BevelCurve, Body, Combine, Detail, LineForm, Lines, Primitive, SculptStroke, SculptTool, Touch,
+};
 use serde_json::{Value, json};
 
-/// The list as JSON.
-pub fn write(parts: &Parts) -> Value {
-    parts.list.iter().map(|part| write_part(part)).collect()
+/// The list as JSON; `list`: what selections are called.
+pub fn write(parts: &Parts, list: &SelectionList) -> Value {
+    parts.list.iter().map(|part| written(part, |name| id_of_kept(name, list))).collect()
 }
 
-/// One part as it stands in the list.
+/// One part as an edit tells it: as it stands in the list, but selections go by their names.
 pub fn write_part(part: &Part) -> Value {
+    written(part, |name| Some(name.to_owned()))
+}
+
+fn written(part: &Part, selection: impl Fn(&str) -> Option<String>) -> Value {
     let mut out = JsonObject::default();
     out.set("id", part.id.as_str().into());
     out.text("name", &part.name, &part.id);
@@ -25,7 +34,7 @@ pub fn write_part(part: &Part) -> Value {
         out.number("smooth", smooth, Combine::DEFAULT_SMOOTH);
     }
     if let Some(outline) = part.outline() {
-        out.set("outline", write_outline(outline));
+        out.set("outline", write_outline(outline, selection));
     }
     write_kind(&mut out, &part.kind);
     if part.tilt_deg != Vec2::ZERO {
@@ -38,7 +47,7 @@ pub fn write_part(part: &Part) -> Value {
     out.done()
 }
 
-fn write_outline(outline: &OutlineSource) -> Value {
+fn write_outline(outline: &OutlineSource, selection: impl Fn(&str) -> Option<String>) -> Value {
     let mut out = JsonObject::default();
     match outline {
         OutlineSource::Layer { layer, color } => {
@@ -47,6 +56,7 @@ fn write_outline(outline: &OutlineSource) -> Value {
         }
         OutlineSource::File(file) => out.set("file", file.file.as_str().into()),
         OutlineSource::Path(points) => out.set("path", points.iter().copied().map(object::point).collect()),
+        OutlineSource::Selection(name) => out.said("selection", selection(name), Value::from),
         OutlineSource::Object(object) => out.set("object", (*object).into()),
     }
     out.done()
@@ -97,6 +107,20 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind) {
         PartKind::Sculpt { on, strokes } => {
             out.set("on", on.as_str().into());
             out.set("strokes", strokes.iter().map(write_stroke).collect());
+        }
+        PartKind::Lines { on, lines, .. } => {
+            let plain = Lines::default();
+            out.set("on", on.as_str().into());
+            out.word("form", &LineForm::ALL, lines.form, plain.form);
+            out.number("angle", lines.angle_deg, plain.angle_deg);
+            out.number("reach", lines.reach, plain.reach);
+        }
+        PartKind::Profiles { shadings, .. } => {
+            let shading = |shading: &ProfilePicture| json!({ "file": shading.picture.file, "light": object::vector(shading.light) });
+            out.set("pictures", shadings.iter().map(shading).collect());
+        }
+        PartKind::Maps(maps) => {
+            surface::write(&maps.source).fields().iter().for_each(|(name, value)| out.set(name, value.clone()));
         }
         PartKind::Relief { on, picture, detail } => {
             let plain = Detail::default();

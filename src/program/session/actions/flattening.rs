@@ -56,9 +56,11 @@ fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Docu
         (layer.opacity, layer.mask, layer.blend, layer.clip_to_surface) = (1.0, None, Default::default(), false);
     })?;
     let tiles = flatten_layer(&bare, layer.id, progress)?;
+    // What was drawn lies on the canvas; what carries the layer carries it on from there.
+    let transform = document.transform_to_canvas(layer.id)?;
     document.with_layer(layer.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
-        (layer.transform, layer.mask) = (None, mask);
+        (layer.transform, layer.mask) = (transform, mask);
     })
 }
 
@@ -71,13 +73,18 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
     let beneath: LayerId = sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })?;
     let beneath = document.layer(beneath)?.clone();
     // The two alone, in a canvas of their own that sees the same surface.
-    let pair = vec![Arc::new(Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&beneath) })];
-    let mut pair = Document { layers: pair, ..document.clone() };
-    pair.layers.push(layer.clone());
+    // Groups take their layers along one by one.
+    let seen = |layer: &Arc<Layer>| match layer.content.group() {
+        Some(_) => Some(layer.clone()),
+        None => Some(document.map_of(layer.id)?.layer_on_canvas(layer)),
+    };
+    let lower = Layer { clip_below: false, blend: Default::default(), ..Layer::clone(&*seen(&beneath)?) };
+    let pair = Document { layers: vec![Arc::new(lower), seen(layer)?], ..document.clone() };
     let tiles = flatten(&pair, progress)?;
+    let transform = document.transform_to_canvas(beneath.id)?;
     let document = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
-        (layer.opacity, layer.mask, layer.transform) = (1.0, None, None);
+        (layer.opacity, layer.mask, layer.transform) = (1.0, None, transform);
     })?;
     Some(Edit { label: "Merge down", document, select: vec![beneath.id] })
 }

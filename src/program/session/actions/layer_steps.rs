@@ -39,11 +39,16 @@ pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<Step> {
     for id in ids {
         let Some(group) = next.layer(*id)?.content.group().map(|_| next.with_transform_applied(*id)) else { continue };
         let applied = group?;
+        let home = applied.layer(*id)?.on.clone();
         let group = applied.layer(*id)?.content.group()?.clone();
         let place = applied.place_of(*id)?;
         next = applied.without_layer(*id)?;
         for (i, inner) in group.layers.iter().enumerate() {
             next = next.with_inserted(Layer::clone(inner), LayerSlot { index: place.index + i, ..place })?;
+            // What carried the group carries each of them.
+            if let Some(home) = home.as_ref().filter(|_| inner.on.is_none()) {
+                next = next.with_layer_on(inner.id, Some(&home.part)).unwrap_or(next);
+            }
             freed.push(inner.id);
         }
     }

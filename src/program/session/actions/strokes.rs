@@ -142,6 +142,8 @@ impl Style {
             Style::Rotation { to } => brush.rotation = held(*to, &TURNS),
             Style::Brush {} => brush = Brush { mode: BrushMode::Paint, ..current_brush.clone() },
         }
-        Stroke::new(brush, operator, color, stroke.samples().to_vec()).within(stroke.selection().cloned())
+        Stroke::new(brush, operator, color, stroke.samples().to_vec())
+            .within(stroke.selection().cloned())
+            .on(stroke.home().cloned())
     }
 }

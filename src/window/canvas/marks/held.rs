@@ -36,7 +36,7 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
         let Some((last, moved)) = last.zip(moved) else { return };
         return match last.held {
             Held::Stroke(index) => {
-                let strokes = tab.shown().strokes(layer.id);
+                let strokes = tab.shown().strokes_on_canvas(layer.id);
                 strokes.get(index).into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
             }
             Held::Layer => bounds(painter, moved, tab.shown().size, to_screen),
@@ -51,7 +51,7 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
     match now {
         Held::Stroke(index) => {
             let scene = tab.shown().scene_of(layer.id).unwrap_or_else(|| tab.shown().scene());
-            let strokes = tab.shown().strokes(layer.id);
+            let strokes = tab.shown().strokes_on_canvas(layer.id);
             outlined(painter, strokes.get(index).into_iter().collect(), &scene, to_screen);
         }
         Held::Layer => bounds(painter, layer, tab.shown().size, to_screen),

@@ -1,0 +1,124 @@
+//! The forms of single parts: fields that take long to solve, and what is made of them.
+//! Floor 4. Which of them are made anew is `derive`'s.
+
+use super::{Inflation, PartMaps, ProfilePicture};
+use crate::math::srgb::decode;
+use crate::math::{Affine2, Vec3};
+use crate::raster::Plane;
+use crate::shape::profiles::{self, Profile};
+use crate::shape::{Form, Outline, Rim, Roundness, inflate, tube};
+use crate::surface::Surface;
+use std::sync::Arc;
+
+/// What takes long to make: an outline with the fields that were solved over it.
+pub struct Body {
+    /// Through the part's matrix but for its whole px.
+    pub outline: Arc<Outline>,
+    /// Where its rim is free, since a part in front begins there.
+    pub joined: Option<Arc<Plane<bool>>>,
+    pub pillow: Option<Arc<Plane<f32>>>,
+    pub tube: Option<Arc<Plane<f32>>>,
+}
+
+/// The fields that a profile needs over an outline; those that are known stay.
+pub fn inflated(outline: Arc<Outline>, joined: Option<Arc<Plane<bool>>>, known: Option<&Body>, profile: f32) -> Body {
+    let free = joined.as_deref();
+    let pillow = known.and_then(|body| body.pillow.clone());
+    let tube = known.and_then(|body| body.tube.clone());
+    let needs_pillow = profile < 1.0 && pillow.is_none();
+    let needs_tube = profile > 0.0 && tube.is_none();
+    let pillow = if needs_pillow { Some(Arc::new(inflate::inflate(&outline, free, None))) } else { pillow };
+    let tube = if needs_tube { Some(Arc::new(tube::tube(&outline, free, None))) } else { tube };
+    Body { outline, joined, pillow, tube }
+}
+
+/// How far a part goes on beneath the edge of one in front of it.
+const EDGE_PX: i32 = 3;
+
+/// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins. `None` where there are
+/// none. A rim that lies hidden under such a part stays one: what is inside of it is covered as well.
+pub fn joined(own: &Outline, in_front: &[Option<Arc<Outline>>]) -> Option<Plane<bool>> {
+    let corner = own.corner();
+    let met: Vec<&Outline> =
+        in_front.iter().flatten().map(|o| &**o).filter(|o| !o.rect().intersect(own.rect()).is_empty()).collect();
+    if met.is_empty() {
+        return None;
+    }
+    let inside = own.inside();
+    let covers = |other: &Outline, x: i32, y: i32| {
+        let at = (x + corner.0 - other.corner().0, y + corner.1 - other.corner().1);
+        other.inside().get(at.0, at.1).unwrap_or(false)
+    };
+    let free = Plane::from_fn(own.size(), |x, y| {
+        let (x, y) = (x as i32, y as i32);
+        // What lies behind goes on beneath the edge of what lies over it, as far as that is blurred.
+        let begins = |other: &&Outline| {
+            let is_in = |x: i32, y: i32| inside.get(x, y).unwrap_or(false);
+            let opens = |(dx, dy): (i32, i32)| {
+                let mut way = (1..=EDGE_PX).map(|k| (x + k * dx, y + k * dy)).take_while(|p| is_in(p.0, p.1));
+                way.any(|p| !covers(other, p.0, p.1))
+            };
+            covers(other, x, y) && [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().any(opens)
+        };
+        !inside.at(x as usize, y as usize) && met.iter().any(begins)
+    });
+    free.values().contains(&true).then_some(free)
+}
+
+pub fn formed(body: &Body, inflation: Inflation) -> Form {
+    let rim = Rim::of(&body.outline, body.joined.as_deref());
+    let round = Roundness { puff: inflation.puff, rim_deg: inflation.rim_deg };
+    let form = |squares: &Plane<f32>| Form::of_squares(&body.outline, squares, &rim, round);
+    match (&body.pillow, &body.tube) {
+        (Some(pillow), Some(tube)) if inflation.profile > 0.0 && inflation.profile < 1.0 => {
+            form(&tube::blend(pillow, tube, inflation.profile))
+        }
+        (Some(pillow), _) if inflation.profile <= 0.0 => form(pillow),
+        (_, Some(tube)) => form(tube),
+        (Some(pillow), None) => form(pillow),
+        (None, None) => form(&Plane::filled(body.outline.size(), 0.0)),
+    }
+}
+
+/// A form over the planes of an outline.
+pub fn cut_to(form: &Form, outline: &Outline) -> Form {
+    let shift = (outline.corner().0 - form.corner.0, outline.corner().1 - form.corner.1);
+    let at = |x: usize, y: usize| (x as i32 + shift.0, y as i32 + shift.1);
+    let size = outline.size();
+    Form {
+        corner: outline.corner(),
+        height: Plane::from_fn(size, |x, y| form.height.get(at(x, y).0, at(x, y).1).unwrap_or(0.0)),
+        normals: Plane::from_fn(size, |x, y| form.normals.get(at(x, y).0, at(x, y).1).unwrap_or(Vec3::Z)),
+        coverage: outline.coverage().clone(),
+    }
+}
+
+/// The maps of a document as a form: heights in px, the farthest 0.
+pub fn of_surface(surface: &Surface) -> Form {
+    let range = surface.depth_range_px();
+    Form {
+        corner: (0, 0),
+        height: surface.depth_plane().map(|z| (1.0 - z) * range),
+        normals: Plane::from_fn(surface.size(), |x, y| surface.normal(x, y)),
+        coverage: surface.coverage_plane().clone(),
+    }
+}
+
+/// A form of maps where a matrix takes it; `None` where nothing of it is left.
+pub fn of_maps(maps: &PartMaps, still: Affine2, most_px: usize) -> Option<Form> {
+    of_surface(&maps.surface).through(still, most_px)
+}
+
+/// A form of hand-made shadings over an outline, both on the canvas, where a matrix takes it.
+pub fn of_profiles(shadings: &[ProfilePicture], outline: &Outline, still: Affine2, most_px: usize) -> Option<Form> {
+    let (x0, y0) = outline.corner();
+    let profile = |shading: &ProfilePicture| {
+        let grey = Plane::from_fn(outline.size(), |x, y| {
+            let byte = shading.picture.coverage.get(x as i32 + x0, y as i32 + y0).unwrap_or(0);
+            decode(f32::from(byte) / 255.0)
+        });
+        Profile { grey, light: shading.light.normalize_or(Vec3::Z) }
+    };
+    let all: Vec<Profile> = shadings.iter().map(profile).collect();
+    profiles::formed(&all, outline)?.through(still, most_px)
+}

@@ -1,0 +1,168 @@
+//! Parts that a file can hold.
+//! Floor 4.
+
+use super::{Inflation, OutlineSource, Part, PartKind, Parts, ProfilePicture};
+use crate::document::{Document, NamedSelection};
+use crate::math::range::{at_most, within};
+use crate::math::{COORDINATE, PlaneMap, UNIT, Vec2, Vec3};
+use crate::paint::HomeFrame;
+use crate::shading::Light;
+use crate::shape::profiles::MOST_PROFILES;
+use crate::shape::{Ball, Bevel, BevelCurve, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
+
+impl Document {
+    /// Whether files can hold the parts.
+    pub(in crate::document) fn parts_fit(&self) -> Result<(), String> {
+        at_most("Parts", self.parts.list.len(), Parts::MOST)?;
+        for (i, part) in self.parts.list.iter().enumerate() {
+            let shown: String = part.name.chars().take(60).collect();
+            part.fits().map_err(|why| format!("“{shown}”: {why}."))?;
+            if self.parts.list[..i].iter().any(|other| other.id == part.id) {
+                return Err(format!("“{shown}”: another part has the id “{}” as well.", part.id));
+            }
+            if let Some(OutlineSource::Selection(name)) = part.outline()
+                && !self.selections.iter().any(|kept| kept.name == *name)
+            {
+                return Err(format!("“{shown}”: its outline is the selection “{name}”, which is not kept."));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Part {
+    /// Whether a file can hold it: every number in its range; else a sentence.
+    pub fn fits(&self) -> Result<(), String> {
+        at_most("letters of the id", self.id.chars().count(), Self::LONGEST_NAME)?;
+        at_most("letters of the name", self.name.chars().count(), Self::LONGEST_NAME)?;
+        if self.id.is_empty() {
+            return Err("a part has no id".into());
+        }
+        if self.id == HomeFrame::CANVAS {
+            return Err(format!("a part cannot have the id “{}”", HomeFrame::CANVAS));
+        }
+        if let Combine::Union { smooth } = self.combine {
+            within("the union's smoothness", smooth, &Combine::SMOOTH)?;
+        }
+        within("the tilt", self.tilt_deg.x, &Self::TILT)?;
+        within("the tilt", self.tilt_deg.y, &Self::TILT)?;
+        within("how far it is raised", self.raise, &Self::RAISE)?;
+        self.matrix.to_cols_array().iter().try_for_each(|v| within("the matrix", *v, &Self::MATRIX))?;
+        if PlaneMap::affine(self.matrix.to_cols_array().map(f64::from)).is_none() {
+            return Err("the matrix cannot be inverted: it leaves no area".into());
+        }
+        if let Some(outline) = self.outline() {
+            outline.fits()?;
+        }
+        self.kind.fits()
+    }
+}
+
+impl OutlineSource {
+    fn fits(&self) -> Result<(), String> {
+        match self {
+            OutlineSource::Path(points) => {
+                at_most("points of the path", points.len(), Self::MOST_POINTS)?;
+                points.iter().try_for_each(|p| place("a point of the path", *p))
+            }
+            OutlineSource::Layer { layer, .. } => {
+                at_most("letters of the layer's name", layer.chars().count(), Part::LONGEST_NAME)
+            }
+            OutlineSource::Selection(name) => {
+                at_most("letters of the selection's name", name.chars().count(), NamedSelection::LONGEST_NAME)
+            }
+            OutlineSource::File(_) | OutlineSource::Object(_) => Ok(()),
+        }
+    }
+}
+
+fn place(what: &str, p: Vec2) -> Result<(), String> {
+    within(what, p.x, &COORDINATE)?;
+    within(what, p.y, &COORDINATE)
+}
+
+impl PartKind {
+    fn fits(&self) -> Result<(), String> {
+        match self {
+            PartKind::Inflate { inflation, .. } => {
+                within("the puff", inflation.puff, &Inflation::PUFF)?;
+                within("the profile", inflation.profile, &Inflation::PROFILE)?;
+                within("the rim", inflation.rim_deg, &Inflation::RIM)
+            }
+            PartKind::Bevel { bevel, .. } => {
+                within("the bevel's width", bevel.width, &Bevel::WIDTH)?;
+                within("the bevel's height", bevel.height, &Bevel::HEIGHT)?;
+                let BevelCurve::Points(points) = &bevel.curve else { return Ok(()) };
+                at_most("points of the bevel's curve", points.len(), BevelCurve::MOST_POINTS)?;
+                points.iter().try_for_each(|p| {
+                    within("a point of the bevel's curve", p.x, &UNIT)?;
+                    within("a point of the bevel's curve", p.y, &UNIT)
+                })
+            }
+            PartKind::Primitive(body) => {
+                place("the middle", body.center)?;
+                let Vec3 { x, y, z } = body.half;
+                [body.radius, body.length, body.tube, x, y, z]
+                    .iter()
+                    .try_for_each(|side| within("a side of the body", *side, &Primitive::LENGTH))?;
+                within("the radius of its edges", body.round, &Primitive::ROUND)?;
+                body.turn_deg.to_array().iter().try_for_each(|turn| within("its turn", *turn, &Primitive::TURN))
+            }
+            PartKind::Lathe { axis, puff, .. } => {
+                within("the puff", *puff, &Inflation::PUFF)?;
+                axis.iter().flatten().try_for_each(|p| place("the axis", *p))
+            }
+            PartKind::Sweep { balls, puff } => {
+                within("the puff", *puff, &Inflation::PUFF)?;
+                at_most("balls of a sweep", balls.len(), Ball::MOST)?;
+                balls.iter().try_for_each(|ball| {
+                    place("a ball", ball.at)?;
+                    within("the radius of a ball", ball.radius, &Ball::RADIUS)
+                })
+            }
+            PartKind::Touches { touches, .. } => {
+                at_most("touches", touches.len(), Touch::MOST)?;
+                touches.iter().try_for_each(|touch| {
+                    place("a touch", touch.at)?;
+                    within("the radius of a touch", touch.radius, &Touch::RADIUS)?;
+                    within("the reach of a touch", touch.reach, &Touch::REACH)?;
+                    touch.normal.to_array().iter().try_for_each(|v| within("a touch's normal", *v, &(-1.0..=1.0)))
+                })
+            }
+            PartKind::Sculpt { strokes, .. } => {
+                let samples: usize = strokes.iter().map(|stroke| stroke.samples.len()).sum();
+                at_most("samples of sculpting", samples + strokes.len(), SculptStroke::MOST)?;
+                strokes.iter().try_for_each(|stroke| {
+                    within("the size of a stroke", stroke.size, &SculptStroke::SIZE)?;
+                    within("the hardness of a stroke", stroke.hardness, &SculptStroke::HARDNESS)?;
+                    within("the strength of a stroke", stroke.strength, &SculptStroke::STRENGTH)?;
+                    stroke.samples.iter().try_for_each(|(at, pressure)| {
+                        place("a sample", *at)?;
+                        within("the pressure of a sample", *pressure, &SculptStroke::PRESSURE)
+                    })
+                })
+            }
+            PartKind::Lines { lines, .. } => {
+                within("how far the form turns at lines", lines.angle_deg, &Lines::ANGLE)?;
+                within("the reach of lines", lines.reach, &Lines::REACH)
+            }
+            PartKind::Profiles { shadings, .. } => {
+                if !(2..=MOST_PROFILES).contains(&shadings.len()) {
+                    return Err(format!("it has {} shadings; there must be 2 to {MOST_PROFILES}", shadings.len()));
+                }
+                shadings.iter().try_for_each(|shading| {
+                    let light = shading.light;
+                    light.to_array().iter().try_for_each(|v| within("a light", *v, &ProfilePicture::LIGHT))?;
+                    if Light::points(light) { Ok(()) } else { Err("a light points nowhere".into()) }
+                })
+            }
+            PartKind::Maps(maps) => maps.source.fits(),
+            PartKind::Relief { detail, .. } => {
+                within("the coarse detail", detail.coarse, &Detail::HEIGHT)?;
+                within("the fine detail", detail.fine, &Detail::HEIGHT)?;
+                within("the detail's radius", detail.radius, &Detail::RADIUS)?;
+                within("the detail's edge", detail.edge, &Detail::EDGE)
+            }
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Edits of homes: what lies on which part of the shape. Whatever else changes, what lies there shows where it showed.
+//! Floor 4. How homes and transforms meet is `LayerMap`'s.
+
+use super::{LayerMap, LayerTransform};
+use crate::document::content::strokes::{SeenSelections, taken_along};
+use crate::document::{Content, Document, Group, Layer, LayerId, Live, Parts, StrokeList};
+use crate::math::{Affine2, PlaneMap};
+use crate::paint::{HomeFrame, Stroke, StrokeHome};
+use std::sync::Arc;
+
+/// Which home takes the place of another; `None`: that of what is around.
+type Rehome<'a> = dyn Fn(&HomeFrame) -> Option<HomeFrame> + 'a;
+
+impl Parts {
+    /// Where the frame of a part stands: canvas from part. What lies on another part has its frame. `None` if there is
+    /// no such part.
+    pub fn frame_of(&self, id: &str) -> Option<Affine2> {
+        self.body_of(id).map(|part| part.matrix)
+    }
+    /// The home that a part is; `None` if there is no such part.
+    pub fn home(&self, id: &str) -> Option<HomeFrame> {
+        if id == HomeFrame::CANVAS {
+            return Some(HomeFrame::canvas());
+        }
+        Some(HomeFrame { matrix: self.frame_of(id)?, ..HomeFrame::on(id) })
+    }
+}
+
+impl Document {
+    /// The part that carries a layer: its own home or that of the nearest group around it. `None` of the canvas.
+    pub fn home_of(&self, id: LayerId) -> Option<&HomeFrame> {
+        fn find<'d>(layers: &'d [Arc<Layer>], id: LayerId, around: Option<&'d HomeFrame>) -> Option<&'d HomeFrame> {
+            layers.iter().find_map(|layer| {
+                let home = layer.on.as_ref().or(around);
+                if layer.id == id { home } else { find(&layer.content.group()?.layers, id, home) }
+            })
+        }
+        find(&self.layers, id, None).filter(|home| !home.is_canvas())
+    }
+    /// With a layer on a part of the shape, by its id, or on what is around the layer. It shows where it showed, and is
+    /// carried from there. `None` where there is no such layer or part, or the layer's place there cannot be said.
+    pub fn with_layer_on(&self, id: LayerId, part: Option<&str>) -> Option<Document> {
+        let on = match part {
+            Some(part) => Some(self.parts.home(part)?),
+            None => None,
+        };
+        let around = self.map_around(id)?;
+        let layer = kept_on(self.layer(id)?, on, (&around, &around), &|home| Some(home.clone()))?;
+        self.with_layer(id, |old| *old = Layer::clone(&layer))
+    }
+    /// With some strokes of a layer on a part, or on what their layer lies on; as [`Document::with_layer_on`].
+    pub fn with_strokes_on(&self, layer: LayerId, chosen: &[usize], part: Option<&str>) -> Option<Document> {
+        let home = match part {
+            Some(part) => Some(self.parts.home(part)?),
+            None => None,
+        };
+        let map = self.map_of(layer)?;
+        let mut selections = SeenSelections::new();
+        self.with_strokes(layer, |strokes| {
+            for &index in chosen {
+                let stroke = strokes.get_mut(index)?;
+                *stroke = stroke_on(stroke, home.clone(), (&map, &map), &mut selections)?;
+            }
+            Some(())
+        })
+    }
+    /// With everything on the parts that it is on in another document, showing where it shows. What cannot be said stays
+    /// on what is around it.
+    pub(in crate::document) fn with_homes_of(&self, other: &Document) -> Document {
+        let mut next = self.clone();
+        for (_, layer) in other.walk() {
+            if let Some(home) = &layer.on {
+                next = next.with_layer_on(layer.id, Some(&home.part)).unwrap_or(next);
+            }
+            if !layer.content.has_homes() {
+                continue;
+            }
+            for (i, stroke) in other.strokes(layer.id).iter().enumerate() {
+                if let Some(home) = stroke.home() {
+                    next = next.with_strokes_on(layer.id, &[i], Some(&home.frame.part)).unwrap_or(next);
+                }
+            }
+        }
+        next
+    }
+    /// The map of what is around a layer.
+    pub(super) fn map_around(&self, id: LayerId) -> Option<LayerMap> {
+        let none = LayerMap::none(self.size);
+        match self.place_of(id)?.group {
+            Some(group) => self.map_of(group),
+            None => Some(none),
+        }
+    }
+    /// With every home where its part stands now; itself where nothing moved.
+    pub(in crate::document) fn with_homes_placed(&self) -> Document {
+        match placed(&self.layers, &self.parts) {
+            Some(layers) => Document { layers, ..self.clone() },
+            None => self.clone(),
+        }
+    }
+    /// With nothing on some parts: what was on them stays where it shows, carried by what is around it.
+    pub(in crate::document) fn lifted_off(&self, is_gone: impl Fn(&str) -> bool) -> Document {
+        let none = LayerMap::none(self.size);
+        let rehome = |home: &HomeFrame| (home.is_canvas() || !is_gone(&home.part)).then(|| home.clone());
+        let lifted = |layer: &Arc<Layer>| kept(layer, (&none, &none), &rehome).unwrap_or_else(|| bare(layer, &rehome));
+        Document { layers: self.layers.iter().map(lifted).collect(), ..self.clone() }
+    }
+    /// A layer of another document: homes that are none here are lifted.
+    pub(in crate::document) fn adopted(&self, layer: Layer) -> Layer {
+        let alone = Document { layers: vec![Arc::new(layer.clone())], ..Document::empty(self.size) };
+        let known = |id: &str| self.parts.part(id).is_some();
+        let all_known = alone.each_home(&mut |home| home.part().is_none_or(known));
+        if all_known {
+            return layer;
+        }
+        let lifted = alone.lifted_off(|id| !known(id));
+        lifted.layers.first().map_or(layer, |layer| Layer::clone(layer))
+    }
+    /// Asks of every home, of layers and of strokes; whether all agree.
+    pub(in crate::document) fn each_home(&self, agrees: &mut dyn FnMut(&HomeFrame) -> bool) -> bool {
+        self.walk().into_iter().all(|(_, layer)| {
+            layer.on.as_ref().is_none_or(&mut *agrees)
+                && match &layer.content {
+                    Content::Strokes(live) if layer.content.has_homes() => {
+                        let homes = live.params().strokes.iter().filter_map(|stroke| stroke.home());
+                        homes.map(|home| &home.frame).all(&mut *agrees)
+                    }
+                    _ => true,
+                }
+        })
+    }
+}
+
+/// A layer and all in it without the homes that go, wherever that leads: of one whose place cannot be said otherwise.
+fn bare(layer: &Arc<Layer>, rehome: &Rehome) -> Arc<Layer> {
+    let mut next = Layer { on: layer.on.as_ref().and_then(rehome), ..Layer::clone(layer) };
+    match &mut next.content {
+        Content::Group(group) => group.layers = group.layers.iter().map(|layer| bare(layer, rehome)).collect(),
+        Content::Strokes(live) if layer.content.has_homes() => {
+            let home = |stroke: &Arc<Stroke>| {
+                let goes = stroke.home().is_some_and(|home| rehome(&home.frame).is_none());
+                if goes { Arc::new(Stroke::clone(stroke).on(None)) } else { stroke.clone() }
+            };
+            *live = Live::new(StrokeList { strokes: live.params().strokes.iter().map(home).collect() });
+        }
+        _ => {}
+    }
+    Arc::new(next)
+}
+
+/// Layers with their homes where the parts stand; `None` where all are.
+fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
+    let next = |home: &HomeFrame| parts.home(&home.part).filter(|next| next != home);
+    let stroke = |stroke: &Arc<Stroke>| {
+        let home = stroke.home()?;
+        let frame = next(&home.frame)?;
+        Some(Arc::new(stroke.moved_home(Arc::new(StrokeHome { frame, ..StrokeHome::clone(home) }))))
+    };
+    let mut out: Option<Vec<Arc<Layer>>> = None;
+    for (i, layer) in layers.iter().enumerate() {
+        let on = layer.on.as_ref().and_then(next);
+        let content = match &layer.content {
+            Content::Group(group) => {
+                placed(&group.layers, parts).map(|layers| Content::Group(Group { layers, ..group.clone() }))
+            }
+            Content::Strokes(live) if layer.content.has_homes() => {
+                let strokes = &live.params().strokes;
+                let moved: Vec<Option<Arc<Stroke>>> = strokes.iter().map(stroke).collect();
+                moved.iter().any(Option::is_some).then(|| {
+                    let strokes = moved.into_iter().zip(strokes).map(|(new, old)| new.unwrap_or_else(|| old.clone()));
+                    Content::Strokes(Live::new(StrokeList { strokes: strokes.collect() }))
+                })
+            }
+            _ => None,
+        };
+        if on.is_none() && content.is_none() {
+            continue;
+        }
+        let next = Layer {
+            on: on.or_else(|| layer.on.clone()),
+            content: content.unwrap_or_else(|| layer.content.clone()),
+            ..Layer::clone(layer)
+        };
+        out.get_or_insert_with(|| layers.to_vec())[i] = Arc::new(next);
+    }
+    out
+}
+
+/// A layer that shows what it showed though what is around it was `old` and is `new`; the very same where nothing of it
+/// has to change. `None` where that cannot be said.
+pub(super) fn kept(layer: &Arc<Layer>, (old, new): (&LayerMap, &LayerMap), rehome: &Rehome) -> Option<Arc<Layer>> {
+    kept_on(layer, layer.on.as_ref().and_then(rehome), (old, new), rehome)
+}
+
+/// The same on another home.
+fn kept_on(
+    layer: &Arc<Layer>,
+    on: Option<HomeFrame>,
+    (old, new): (&LayerMap, &LayerMap),
+    rehome: &Rehome,
+) -> Option<Arc<Layer>> {
+    let (was, outside) = (old.within(layer), new.outside(on.as_ref()));
+    let transform = match old.outside(layer.on.as_ref()) == outside {
+        true => layer.transform,
+        false => transform_of(&was.plane.then(&outside.inverse()), &was)?,
+    };
+    let next = Layer { transform, on, ..Layer::clone(layer) };
+    let now = new.within(&next);
+    let content = match &layer.content {
+        Content::Group(group) => {
+            let layers: Option<Vec<_>> = group.layers.iter().map(|layer| kept(layer, (&was, &now), rehome)).collect();
+            let layers = layers?;
+            let is_same = layers.iter().zip(&group.layers).all(|(a, b)| Arc::ptr_eq(a, b));
+            (!is_same).then(|| Content::Group(Group { layers, ..group.clone() }))
+        }
+        Content::Strokes(live) if layer.content.has_homes() => {
+            let mut selections = SeenSelections::new();
+            let strokes = live.params().strokes.iter().map(|stroke| match stroke.home() {
+                Some(home) => stroke_on(stroke, rehome(&home.frame), (&was, &now), &mut selections),
+                None => Some(stroke.clone()),
+            });
+            let strokes: Vec<Arc<Stroke>> = strokes.collect::<Option<_>>()?;
+            let is_same = strokes.iter().zip(&live.params().strokes).all(|(a, b)| Arc::ptr_eq(a, b));
+            (!is_same).then(|| Content::Strokes(Live::new(StrokeList { strokes })))
+        }
+        _ => None,
+    };
+    if content.is_none() && next.transform == layer.transform && next.on == layer.on {
+        return Some(layer.clone());
+    }
+    Some(Arc::new(Layer { content: content.unwrap_or_else(|| layer.content.clone()), ..next }))
+}
+
+/// A stroke on another home, or on its layer's, of a layer whose map was `was` and is `now`.
+fn stroke_on(
+    stroke: &Arc<Stroke>,
+    frame: Option<HomeFrame>,
+    (was, now): (&LayerMap, &LayerMap),
+    selections: &mut SeenSelections,
+) -> Option<Arc<Stroke>> {
+    let plane = stroke.home().map_or(was.plane, |home| was.of_stroke(home).plane);
+    let Some(frame) = frame else {
+        let map = LayerMap { plane: plane.then(&now.plane.inverse()), ..*now };
+        return Some(Arc::new(Stroke::clone(&taken_along(stroke, &map, selections)).on(None)));
+    };
+    let mut home = StrokeHome::new(frame);
+    let own = plane.then(&now.of_stroke(&home).plane.inverse());
+    if !own.is_identity_on(now.canvas) {
+        home.own = own.coefficients()?;
+    }
+    match stroke.home() {
+        Some(known) if **known == home => Some(stroke.clone()),
+        _ => Some(Arc::new(stroke.moved_home(Arc::new(home)))),
+    }
+}
+
+/// A map as a layer's transform that files hold, none where it moves nothing; outer `None` where there is no such one.
+pub(super) fn transform_of(map: &PlaneMap, of: &LayerMap) -> Option<Option<LayerTransform>> {
+    if map.is_identity_on(of.canvas) {
+        return Some(None);
+    }
+    let transform = LayerTransform::of_map(map, of.filter, of.canvas)?;
+    transform.fits().ok().map(|()| Some(transform))
+}
+
+#[cfg(test)]
+mod tests;

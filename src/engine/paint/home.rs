@@ -1,0 +1,60 @@
+//! Home frames: marks have their coordinates on the canvas or on a part of the document's shape, which carries them
+//! where it goes. Floor 3. Parts themselves are `document::parts`; how homes meet the transforms of layers stands in
+//! `document::transform`.
+
+use crate::math::{Affine2, PlaneMap};
+use std::sync::Arc;
+
+/// The part that marks lie on, and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HomeFrame {
+    /// The id of the part, or [`HomeFrame::CANVAS`].
+    pub part: Arc<str>,
+    /// Canvas from part, as the part stands now: resolved anew whenever the document is shaped.
+    pub matrix: Affine2,
+}
+
+impl HomeFrame {
+    /// What documents call the canvas by where they name a home. No part has this id.
+    pub const CANVAS: &'static str = "canvas";
+
+    /// On a part whose place is not known yet.
+    pub fn on(part: &str) -> Self {
+        Self { part: part.into(), matrix: Affine2::IDENTITY }
+    }
+    /// On the canvas itself, whatever is around.
+    pub fn canvas() -> Self {
+        Self::on(Self::CANVAS)
+    }
+    pub fn is_canvas(&self) -> bool {
+        &*self.part == Self::CANVAS
+    }
+    /// The part's id; `None` of the canvas.
+    pub fn part(&self) -> Option<&str> {
+        Some(&*self.part).filter(|_| !self.is_canvas())
+    }
+    /// Canvas from part; a matrix that leaves no area moves nothing.
+    pub fn map(&self) -> PlaneMap {
+        PlaneMap::affine(self.matrix.to_cols_array().map(f64::from)).unwrap_or_default()
+    }
+}
+
+/// The home of a stroke that differs from its layer's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrokeHome {
+    pub frame: HomeFrame,
+    /// Where the stroke's own frame lies within that of its layer: a, b, c, d, e, f as of a layer's transform.
+    pub own: [f64; 6],
+}
+
+impl StrokeHome {
+    pub const UNMOVED: [f64; 6] = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+
+    pub fn new(frame: HomeFrame) -> Self {
+        Self { frame, own: Self::UNMOVED }
+    }
+    /// The stroke's own frame within its layer's.
+    pub fn own_map(&self) -> PlaneMap {
+        PlaneMap::affine(self.own).unwrap_or_default()
+    }
+}
