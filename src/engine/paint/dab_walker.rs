@@ -83,8 +83,8 @@ impl Dab {
 /// Walks along a stroke: samples go in one by one, and dabs that no later sample changes come out.
 ///
 /// The dabs do not depend on how samples are batched, nor on how densely the curve is sampled. The way is computed from
-/// the pixel of the first sample on, and dabs stand on a fine grid: a stroke that is moved by whole px gives the same dabs
-/// moved by them, to the bit. Samples that are not
+/// the pixel of the first sample on, and dabs stand on a fine grid: a stroke that is moved by whole px gives the same
+/// dabs moved by them, to the bit. Samples that are not
 /// finite, lie beyond all canvases, or are earlier than the one before are skipped.
 #[derive(Clone)]
 pub struct DabWalker {

@@ -16,7 +16,7 @@ pub enum LineForm {
     Ridge,
     /// The form rises on both sides.
     Valley,
-    /// A silhouette: the form on the inner side of the line's bend turns away at it, before what lies on the outer side.
+    /// A silhouette: the form on the inner side of the line's bend turns away at it, before what lies on the outer one.
     Over,
     /// The same of the form on the outer side.
     Under,

@@ -49,7 +49,7 @@ impl LayerReader<'_> {
         fields.finish()?;
         Ok(Stroke::new(brush, operator, color, samples).within(selection).on(home))
     }
-    /// What a stroke lies on, where that is not what its layer lies on, and where its own frame lies within the layer's.
+    /// What a stroke lies on, where that is not what its layer lies on, and where its frame lies within the layer's.
     fn stroke_home(&self, fields: &mut Fields) -> Result<Option<Arc<StrokeHome>>> {
         let (on, transform) = (fields.get("on"), fields.get("transform"));
         let Some(on) = on else {

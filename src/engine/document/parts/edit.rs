@@ -58,7 +58,10 @@ impl Document {
     }
     /// With the outlines that follow a kept selection as it is now.
     pub(in crate::document) fn without_outlines_of(&self, selection: &NamedSelection) -> Document {
-        let names = |part: &Arc<Part>| matches!(part.outline(), Some(OutlineSource::Selection(name)) if *name == selection.name);
+        let names = |part: &Arc<Part>| match part.outline() {
+            Some(OutlineSource::Selection(name)) => *name == selection.name,
+            _ => false,
+        };
         if !self.parts.list.iter().any(names) {
             return self.clone();
         }

@@ -1,7 +1,7 @@
 //! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
-//! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `body` one form, `outlines`
-//! finds the outlines, `flats` makes parts of a layer of flat colours, `edit` changes the list, `fit` holds it to what files
-//! can hold.
+//! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `body` one
+//! form, `outlines` finds the outlines, `flats` makes parts of a layer of flat colours, whose mixed pixels `shares`
+//! shares out; `edit` changes the list, `scale` the canvas, `fit` holds it to what files can hold.
 
 mod body;
 mod derive;
@@ -11,6 +11,7 @@ mod fit;
 pub mod flats;
 pub mod forms;
 mod outlines;
+mod scale;
 mod shares;
 
 #[cfg(test)]
@@ -18,7 +19,7 @@ mod tests;
 
 use super::source::SurfaceSource;
 use crate::math::srgb::Color;
-use crate::math::{Affine2, COORDINATE, Mat2, Range, UNIT, Vec2, Vec3, vec2, vec3};
+use crate::math::{Affine2, COORDINATE, Range, UNIT, Vec2, Vec3, vec2, vec3};
 use crate::raster::{Asset, Plane};
 use crate::shape::{Ball, Bevel, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
 use crate::surface::Surface;
@@ -117,8 +118,8 @@ pub enum PartKind {
         ink: OutlineSource,
         lines: Lines,
     },
-    /// Several shadings of one drawing by hand, each with the light elsewhere; of a part wherever they tell anything, or
-    /// within an outline.
+    /// Several shadings of one drawing by hand, each with the light elsewhere, within an outline or wherever they tell
+    /// anything.
     Profiles {
         outline: Option<OutlineSource>,
         shadings: Vec<ProfilePicture>,
@@ -308,80 +309,6 @@ impl Part {
             }
             PartKind::Relief { picture, .. } => vec![picture],
             _ => Vec::new(),
-        }
-    }
-    /// The same part on a canvas with other sides.
-    pub(super) fn scaled(&self, scale: Vec2, length: f32, plane: impl Fn(&Plane<u8>) -> Plane<u8>) -> Part {
-        let mut next = self.clone();
-        next.raise *= length;
-        let to = Mat2::from_diagonal(scale);
-        // What it stands on is scaled as well: the matrix maps scaled points to scaled points.
-        next.matrix.matrix2 = to * self.matrix.matrix2 * to.inverse();
-        next.matrix.translation *= scale;
-        match &mut next.kind {
-            PartKind::Inflate { outline, .. } => outline.scale(scale),
-            PartKind::Bevel { outline, bevel } => {
-                outline.scale(scale);
-                bevel.width *= length;
-                bevel.height *= length;
-            }
-            PartKind::Primitive(primitive) => {
-                primitive.center *= scale;
-                primitive.half *= length;
-                for side in [&mut primitive.radius, &mut primitive.length, &mut primitive.tube, &mut primitive.round] {
-                    *side *= length;
-                }
-            }
-            PartKind::Lathe { outline, axis, .. } => {
-                outline.scale(scale);
-                axis.iter_mut().flatten().for_each(|p| *p *= scale);
-            }
-            PartKind::Sweep { balls, .. } => balls.iter_mut().for_each(|ball| {
-                ball.at *= scale;
-                ball.radius *= length;
-            }),
-            PartKind::Touches { touches, .. } => touches.iter_mut().for_each(|touch| {
-                touch.at *= scale;
-                touch.radius *= length;
-                touch.reach *= length;
-            }),
-            PartKind::Sculpt { strokes, .. } => strokes.iter_mut().for_each(|stroke| {
-                stroke.size *= length;
-                stroke.strength *= length;
-                stroke.samples.iter_mut().for_each(|sample| sample.0 *= scale);
-            }),
-            PartKind::Lines { ink, lines, .. } => {
-                ink.scale(scale);
-                lines.reach *= length;
-            }
-            PartKind::Profiles { outline, .. } => {
-                if let Some(outline) = outline {
-                    outline.scale(scale);
-                }
-            }
-            PartKind::Maps(maps) => {
-                // What is thinner than a pixel of the new canvas stays as it was.
-                if let Ok(surface) = maps.surface.stretched(maps.surface.size().scaled(length)) {
-                    maps.surface = Arc::new(surface);
-                }
-            }
-            PartKind::Relief { detail, .. } => {
-                detail.coarse *= length;
-                detail.fine *= length;
-                detail.radius *= length;
-            }
-        }
-        for file in next.files_mut() {
-            file.coverage = Arc::new(plane(&file.coverage));
-        }
-        next
-    }
-}
-
-impl OutlineSource {
-    fn scale(&mut self, scale: Vec2) {
-        if let OutlineSource::Path(points) = self {
-            points.iter_mut().for_each(|p| *p *= scale);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::document::{Content, Document, Layer, PixelLayer};
-use crate::math::Size;
+use crate::math::{Mat2, Size};
 use crate::raster::TileGrid;
 use crate::shape::Body;
 

@@ -116,7 +116,10 @@ fn write_kind(out: &mut JsonObject, kind: &PartKind) {
             out.number("reach", lines.reach, plain.reach);
         }
         PartKind::Profiles { shadings, .. } => {
-            let shading = |shading: &ProfilePicture| json!({ "file": shading.picture.file, "light": object::vector(shading.light) });
+            let shading = |shading: &ProfilePicture| {
+                let light = object::vector(shading.light);
+                json!({ "file": shading.picture.file, "light": light })
+            };
             out.set("pictures", shadings.iter().map(shading).collect());
         }
         PartKind::Maps(maps) => {
