@@ -7,8 +7,8 @@ pub use write::{write, write_part};
 
 use super::pictures::PictureCache;
 use super::{LayerReader, RecipeSource, maps, surface};
-use crate::document::{Document, NamedSelection};
 use crate::document::parts::{CoverageFile, Inflation, OutlineSource, Part, PartKind, PartMaps, Parts, ProfilePicture};
+use crate::document::{Document, NamedSelection};
 use crate::files::UserFiles;
 use crate::json::{Fields, JsonNode};
 use crate::math::{Affine2, COORDINATE, Range, Vec2, Vec3, vec2};

@@ -49,8 +49,10 @@ pub fn duplicated(document: &Document, part: &Part) -> (Document, String) {
     let mut copies = vec![Arc::new(copy)];
     for other in document.parts.list.iter().filter(|other| other.on() == Some(part.id.as_str())) {
         let mut other = Part { id: free_id(document, &copies), ..Part::clone(other) };
-        if let PartKind::Touches { on, .. } | PartKind::Sculpt { on, .. } | PartKind::Relief { on, .. } =
-            &mut other.kind
+        if let PartKind::Touches { on, .. }
+        | PartKind::Sculpt { on, .. }
+        | PartKind::Relief { on, .. }
+        | PartKind::Lines { on, .. } = &mut other.kind
         {
             on.clone_from(&id);
         }

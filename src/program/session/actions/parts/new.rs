@@ -144,7 +144,7 @@ fn of_selection(document: &Document) -> Option<OutlineSource> {
         .parts
         .list
         .iter()
-        .filter_map(|part| Part::clone(part).files_mut().map(|file| file.file.clone()))
+        .flat_map(|part| Part::clone(part).files_mut().into_iter().map(|file| file.file.clone()).collect::<Vec<_>>())
         .collect();
     let file = (1..).map(|i| format!("outline-{i}.png")).find(|name| !names.contains(name))?;
     Some(OutlineSource::File(CoverageFile { file, coverage }))
