@@ -160,7 +160,7 @@ impl LayerReader<'_> {
         let outline = fields.get("outline").map(|node| self.outline_of(&node)).transpose()?;
         let mut shading = |item: &JsonNode| {
             let mut fields = item.fields()?;
-            let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, self.size)?;
+            let (file, coverage) = self.pictures.coverage(self.source, &fields.required("file")?, Some(self.size))?;
             let light = fields.required("light")?.vector(ProfilePicture::LIGHT)?;
             fields.finish()?;
             Ok(ProfilePicture { picture: CoverageFile { file, coverage }, light })

@@ -68,17 +68,23 @@ impl Frame {
     /// Of the part that is called so, and of all that lies on it.
     fn of(list: &[Arc<Part>], id: &str, change: &CanvasChange) -> Self {
         let base = list.iter().find(|part| part.id == id);
-        let follows =
-            |part: &Arc<Part>| matches!(part.outline(), Some(OutlineSource::Layer { .. } | OutlineSource::Object(_)));
+        let follows = |part: &Arc<Part>| match part.outline() {
+            Some(OutlineSource::Layer { .. } | OutlineSource::Object(_) | OutlineSource::Selection(_)) => true,
+            Some(OutlineSource::File(_) | OutlineSource::Path(_)) | None => false,
+        };
         if base.is_none_or(follows) {
             return Self { map: change.map, pictures: Some(change.to) };
         }
-        if change.is_shift() {
+        // Lights and normals of what was made elsewhere turn by the matrix.
+        let is_made = |part: &Arc<Part>| matches!(part.kind, PartKind::Maps(_) | PartKind::Profiles { .. });
+        if change.is_shift() || base.is_some_and(is_made) {
             return Self { map: PlaneMap::IDENTITY, pictures: None };
         }
         // Turned in place, so far that pictures begin at its corner again.
         let own = list.iter().filter(|part| part.id == id || part.on() == Some(id));
-        let sizes = own.filter_map(|part| Some(Part::clone(part).files_mut()?.coverage.size()));
+        let sizes = own.flat_map(|part| {
+            Part::clone(part).files_mut().into_iter().map(|file| file.coverage.size()).collect::<Vec<_>>()
+        });
         let held = sizes.fold(change.from, |a, b| Size::new(a.width.max(b.width), a.height.max(b.height)));
         let turned = match change.pixel_move() {
             Some(by) => super::selections::moved_rect(held.rect(), by),
@@ -98,7 +104,8 @@ impl Frame {
             next.tilt_deg = vec2(slope.x.atan().to_degrees(), slope.y.atan().to_degrees());
         }
         carry(&mut next.kind, here);
-        if let (Some(size), Some(file)) = (self.pictures, next.files_mut()) {
+        let Some(size) = self.pictures else { return next };
+        for file in next.files_mut() {
             file.coverage = Arc::new(self.picture(&file.coverage, size));
         }
         next
@@ -140,7 +147,9 @@ fn carry(kind: &mut PartKind, map: Affine2) {
         PartKind::Sculpt { strokes, .. } => {
             strokes.iter_mut().flat_map(|stroke| &mut stroke.samples).for_each(|sample| at(&mut sample.0));
         }
-        PartKind::Relief { .. } => {}
+        PartKind::Lines { ink, .. } => path(ink),
+        PartKind::Profiles { outline, .. } => outline.iter_mut().for_each(path),
+        PartKind::Relief { .. } | PartKind::Maps(_) => {}
     }
 }
 
