@@ -18,6 +18,10 @@ impl<K: PartialEq, V> RecentCache<K, V> {
     fn lock(&self) -> MutexGuard<'_, Vec<(K, Arc<V>)>> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
+    /// The value of a key, if it is held.
+    pub fn known(&self, key: &K) -> Option<Arc<V>> {
+        self.lock().iter().find(|(known, _)| known == key).map(|(_, value)| value.clone())
+    }
     /// The value of a key. It never computes while holding the lock: a thread that waits for work of its own pool would
     /// deadlock. Threads that ask at the same time may each compute the value; the results are equal.
     ///

@@ -10,7 +10,7 @@ use super::{
     objects::Objects,
     pyramid::MapPyramids,
     through::Origin,
-    unwrap::Unwrapping,
+    unwrap::{PlaneLayout, Unwrapping},
     view::Eye,
 };
 use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
@@ -68,6 +68,7 @@ pub struct Surface {
     regions: RecentCache<SurfaceRegion, CoverageGrid>,
     /// By amount and blur.
     unwrappings: RecentCache<[u32; 2], Unwrapping>,
+    plane_layouts: RecentCache<[u32; 2], Option<Arc<PlaneLayout>>>,
     bounds: MapPyramids,
     objects: OnceLock<Objects>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
@@ -158,6 +159,7 @@ impl Surface {
             occlusions: RecentCache::default(),
             regions: RecentCache::default(),
             unwrappings: RecentCache::default(),
+            plane_layouts: RecentCache::default(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
             parts: None,
@@ -325,6 +327,9 @@ impl Surface {
     }
     pub(super) fn unwrappings(&self) -> &RecentCache<[u32; 2], Unwrapping> {
         &self.unwrappings
+    }
+    pub(super) fn plane_layouts(&self) -> &RecentCache<[u32; 2], Option<Arc<PlaneLayout>>> {
+        &self.plane_layouts
     }
     pub(super) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
         &self.occlusions

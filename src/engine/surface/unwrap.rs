@@ -2,6 +2,7 @@
 //! Floor 2. `metric` holds the equations, `steps` the local and global steps over rows, `smooth` the blur before them.
 //! The linear systems are `springs`'. Not here: anchors, and how marks use the plane (`deformation`).
 
+mod layout;
 pub mod metric;
 mod place;
 mod seen;
@@ -9,6 +10,7 @@ mod settle;
 mod smooth;
 mod steps;
 
+pub use layout::{CanvasPlace, LaidPiece, PlaneLayout};
 pub use place::PlanePlace;
 pub use seen::PlaneView;
 

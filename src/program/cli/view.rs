@@ -4,16 +4,16 @@
 use super::LimitArgs;
 use super::force::Force;
 use crate::document::source::{MapSource, MaskSource};
-use crate::document::view::{self, SurfaceView, ViewOptions};
-use crate::document::{Document, Layer, SurfaceSource};
+use crate::document::view::{self, SurfaceView, UnwrappedPicture, ViewOptions, ViewUnavailable};
+use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource};
 use crate::io::export::{ExportOptions, OutputFile};
 use crate::io::files::{TrackedFiles, read_file};
 use crate::io::maps::{self, pairs};
 use crate::io::recipe::{self, RecipeSource};
 use crate::io::{Budget, RecipeFolder, UserFiles};
 use crate::math::{Size, srgb::Color};
-use crate::paint::Placement;
-use crate::raster::{Picture, TileGrid, picture::Texels};
+use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage};
+use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
 use crate::{Error, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
@@ -44,6 +44,9 @@ pub struct ViewArgs {
     /// The mask, whatever its name
     #[arg(long, value_name = "FILE")]
     mask: Option<PathBuf>,
+    /// With “unwrapped”: pixels of the picture along one of the plane
+    #[arg(long, value_name = "FACTOR", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
+    scale: u32,
     /// Curvature scale in pixels: how soon curvature is shown as strong
     #[arg(long, value_name = "PX", value_parser = not_negative,
           default_value_t = ViewOptions::default().curvature_scale_px)]
@@ -105,11 +108,13 @@ pub fn run(args: &ViewArgs) -> Result<()> {
         let target = OutputFile::new(&args.output, args.force.export(reads.clone()))?;
         match args.show {
             ShowArg::One(SurfaceView::Unwrapped) => {
-                let (picture, placement) = view::unwrapped(&document, layer)
-                    .map_err(|why| Error::invalid(named_file(args), "--show unwrapped", why))?;
+                let refused = |why| Error::invalid(named_file(args), "--show unwrapped", why);
+                let options = view::UnwrapOptions { scale: args.scale, ..Default::default() };
+                let seen = view::unwrapped(&document, layer, options, &Progress::default()).map_err(refused)?;
+                let picture = seen.picture().ok_or_else(|| refused(ViewUnavailable::NoMemory))?;
                 write(&target, &picture)?;
-                // What lays the picture back: for the recipe of an image layer.
-                println!("{}", placement_line(placement));
+                // What lays the picture back.
+                println!("{}", layer_line(&document, &args.output, &seen, picture));
                 Ok(())
             }
             ShowArg::One(view) => write(&target, &draw(view)?),
@@ -122,11 +127,20 @@ pub fn run(args: &ViewArgs) -> Result<()> {
     })
 }
 
-/// The fields of an image layer that put a picture of the unwrapped plane where it was seen.
-fn placement_line(placement: Placement) -> String {
-    let Placement { center, scale, .. } = placement;
-    let center = format!("[{}, {}]", center.x, center.y);
-    format!(r#""placement": {{ "center": {center}, "scale": {scale} }}, "outside": "none""#)
+/// The layer of a recipe that puts a picture of the unwrapped surface where it was seen.
+fn layer_line(document: &Document, file: &Path, seen: &UnwrappedPicture, picture: Picture) -> String {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let image = PlacedImage {
+        source: PictureSource::new(name.into_owned(), picture, Adjust::default()),
+        placement: seen.placement,
+        outside: Outside::None,
+        bend: seen.bend.clone(),
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+    };
+    let layer = Layer::new(file.file_stem().unwrap_or_default().to_string_lossy(), Content::Image(Live::new(image)));
+    let recipe = recipe::write(&Document { layers: vec![Arc::new(layer)], ..Document::empty(document.size) });
+    recipe.get("layers").and_then(|layers| layers.get(0)).map(ToString::to_string).unwrap_or_default()
 }
 
 /// The file named in errors about the whole command.

@@ -10,10 +10,10 @@ mod unwrapped;
 mod weights;
 
 pub use sheet::sheet;
-pub use unwrapped::unwrapped;
+pub use unwrapped::{UnwrapOptions, UnwrappedPicture, placed_over, unwrapped};
 pub use weights::color_of as anchor_color;
 
-use super::{Document, Layer};
+use super::{Document, Layer, Progress};
 use crate::math::{Size, srgb::quantise};
 use crate::raster::{Picture, Plane};
 use crate::surface::{Bend, Surface};
@@ -140,7 +140,10 @@ pub fn draw(
         SurfaceView::Clay => maps::clay(surface()?),
         SurfaceView::Contours => maps::contours(surface()?),
         SurfaceView::Scaling => scaling::plots().ok_or(ViewUnavailable::NoMemory)?,
-        SurfaceView::Unwrapped => unwrapped(document, layer)?.0,
+        SurfaceView::Unwrapped => {
+            let seen = unwrapped(document, layer, UnwrapOptions::default(), &Progress::default())?;
+            seen.picture().ok_or(ViewUnavailable::NoMemory)?
+        }
         SurfaceView::Directions => flows::directions(surface()?, options),
         SurfaceView::FlowDepth => flows::of_depth(surface()?, options),
         SurfaceView::FlowNormals => flows::of_normals(surface()?, options),

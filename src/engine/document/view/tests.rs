@@ -100,29 +100,48 @@ fn a_sheet_holds_every_picture_in_order() {
     assert_eq!(pixel(&sheet, 8 + 80, 8 + 168 + 80), [255; 4]);
     assert!(super::sheet(&[]).is_none());
 }
-#[test]
-fn a_picture_of_the_unwrapped_plane_lies_on_the_surface_as_what_it_was_taken_from() {
-    let mut document = ball();
-    let (plane, placement) = unwrapped(&document, None).unwrap();
-    assert!(
-        plane.size.width > 150 && plane.size.height > 150,
-        "a ball of 120 px is longer along its surface: {}",
-        plane.size
-    );
-    let before = crate::document::flatten(&document, &crate::document::Progress::default()).unwrap();
+/// The document with the picture of its planes as its only layer.
+fn laid_back(document: &Document, seen: &UnwrappedPicture, filter: ImageFilter) -> Document {
+    let source = PictureSource::new("plane.png".into(), seen.picture().unwrap(), Adjust::default());
     let image = PlacedImage {
-        source: PictureSource::new("plane.png".into(), plane, Adjust::default()),
-        placement,
+        source,
+        placement: seen.placement,
         outside: Outside::None,
-        bend: Bend { operator: Operator::Surface { amount: 1.0, smooth: 0.0 }, ..Bend::default() },
-        filter: ImageFilter::Bilinear,
+        bend: seen.bend.clone(),
+        filter,
         frame: Default::default(),
     };
-    document.layers = vec![Arc::new(Layer::new("print", Content::Image(Live::new(image))))];
-    let after = crate::document::flatten(&document, &crate::document::Progress::default()).unwrap();
-    for (x, y) in [(80, 80), (60, 80), (100, 60), (80, 125), (40, 70)] {
-        let (a, b) = (before.pixel(x, y), after.pixel(x, y));
-        let most = (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap();
-        assert!(most <= 6, "({x}, {y}): {a:?} and {b:?}");
+    let layers = vec![Arc::new(Layer::new("print", Content::Image(Live::new(image))))];
+    Document { layers, ..document.clone() }
+}
+/// The mean and the largest difference of two paintings inside the surface, of 255.
+fn differences(a: &Document, b: &Document) -> (f64, u8) {
+    let [a_pixels, b_pixels] = [a, b].map(|d| crate::document::flatten(d, &Progress::default()).unwrap());
+    let surface = a.surface.as_deref().unwrap();
+    let (mut sum, mut count, mut most) = (0.0, 0.0, 0);
+    for (x, y) in (0..a.size.height).flat_map(|y| (0..a.size.width).map(move |x| (x, y))) {
+        if surface.coverage(x as usize, y as usize) == 255 {
+            let (a, b) = (a_pixels.pixel(x as i32, y as i32), b_pixels.pixel(x as i32, y as i32));
+            for c in 0..4 {
+                sum += f64::from(a[c].abs_diff(b[c]));
+                count += 1.0;
+                most = most.max(a[c].abs_diff(b[c]));
+            }
+        }
+    }
+    (sum / count, most)
+}
+#[test]
+fn a_picture_of_the_unwrapped_plane_lies_on_the_surface_as_what_it_was_taken_from() {
+    let document = ball();
+    for scale in [1, 2, 4] {
+        let seen = unwrapped(&document, None, UnwrapOptions { scale, ..Default::default() }, &Progress::default());
+        let seen = seen.unwrap();
+        assert!(seen.size.width > 150 * scale, "a ball of 120 px is longer along its surface: {}", seen.size);
+        for filter in [ImageFilter::Bilinear, ImageFilter::Antialias] {
+            let (mean, most) = differences(&document, &laid_back(&document, &seen, filter));
+            println!("scale {scale} {filter:?}: mean {mean:.3}, most {most}");
+            assert!(mean < 2.0, "scale {scale}, {filter:?}: {mean} of 255 in the mean, {most} at most");
+        }
     }
 }

@@ -24,7 +24,6 @@ impl PlaneView {
         if deformed.rect != Some(canvas) {
             return None;
         }
-        let w = canvas.width();
         let at = |i: usize| vec2(deformed.x[i], deformed.y[i]);
         let covered = |i: usize| surface.coverage_plane().values()[i] > 0;
         let bounds = (0..deformed.x.len()).filter(|&i| covered(i) && at(i).is_finite()).map(at);
@@ -37,7 +36,12 @@ impl PlaneView {
         if rect.is_empty() {
             return None;
         }
-        let area = rect.width() * rect.height();
+        Some(Self::rastered(surface, rect, at))
+    }
+    /// The part `rect` of the plane in which `at` lays the pixels of the canvas, counted row by row.
+    pub(super) fn rastered(surface: &Surface, rect: Rect, at: impl Fn(usize) -> Vec2) -> Self {
+        let canvas = surface.size().rect();
+        let (w, area) = (canvas.width(), rect.width() * rect.height());
         let mut seen = PlaneRaster {
             rect,
             points: filled_or_unwind(area, Vec2::NAN),
@@ -61,9 +65,38 @@ impl PlaneView {
                 seen.triangle([b, d, c]);
             }
         }
-        Some(Self { rect, points: seen.points })
+        Self { rect, points: seen.points }
+    }
+    /// The canvas point at a pixel of the plane, `None` where no surface lies.
+    pub fn at(&self, x: i32, y: i32) -> Option<Vec2> {
+        let is_within = self.rect.contains(x, y);
+        let i = || (y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize;
+        is_within.then(|| self.points[i()]).filter(|point| point.is_finite())
+    }
+    /// The canvas point between pixels; `None` where none of the four around it shows the surface.
+    pub fn between(&self, p: Vec2) -> Option<Vec2> {
+        if !p.is_finite() {
+            return None;
+        }
+        let corner = (p - 0.5).floor();
+        let share = p - 0.5 - corner;
+        let (x, y) = (corner.x as i32, corner.y as i32);
+        let sides = [(0, 0), (1, 0), (0, 1), (1, 1)];
+        let around = sides.map(|(dx, dy)| self.at(x.saturating_add(dx), y.saturating_add(dy)));
+        if let [Some(a), Some(b), Some(c), Some(d)] = around
+            && [b, c, d].iter().all(|other| a.distance_squared(*other) < FARTHEST_STEP_PX * FARTHEST_STEP_PX)
+        {
+            return Some(a.lerp(b, share.x).lerp(c.lerp(d, share.x), share.y));
+        }
+        let weight =
+            |(dx, dy): (i32, i32)| [1.0 - share.x, share.x][dx as usize] * [1.0 - share.y, share.y][dy as usize];
+        let known = around.iter().zip(sides).filter_map(|(point, side)| Some(((*point)?, weight(side))));
+        known.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(point, _)| point)
     }
 }
+
+/// Farther than this from one pixel of the plane to the next lies another part of the surface.
+const FARTHEST_STEP_PX: f32 = 4.0;
 
 struct PlaneRaster {
     rect: Rect,

@@ -5,7 +5,7 @@ use crate::surface::Maps;
 const WHOLE: UnwrapSettings = UnwrapSettings { amount: 1.0, smooth_px: 0.0 };
 
 /// A surface whose normal and depth follow from a height in px toward the viewer; `None` is no surface.
-fn of_height(size: Size, height: impl Fn(f32, f32) -> Option<f32> + Sync) -> Surface {
+pub fn of_height(size: Size, height: impl Fn(f32, f32) -> Option<f32> + Sync) -> Surface {
     let at = |x: usize, y: usize| height(x as f32 + 0.5, y as f32 + 0.5);
     let slope = |x: f32, y: f32, dx: f32, dy: f32| {
         let step = 0.01;
