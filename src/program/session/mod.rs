@@ -31,6 +31,7 @@ use crate::io::{Overwrite, Terms};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Brush, Fill};
 use crate::surface::Operator;
+use crate::surface::unwrap::UnwrapSettings;
 use crate::tools::crop::CropAspect;
 use crate::tools::select::SelectSettings;
 use crate::tools::snap::{SnapLines, ViewAids};
@@ -177,6 +178,10 @@ impl Session {
     pub fn layer_paths(&self) -> LayerPaths {
         let chosen = self.active().map(|tab| LayerPaths::of(tab.document(), &tab.outermost_chosen()));
         chosen.unwrap_or_default()
+    }
+    /// What surfaces are unwrapped with: as the operator in hand says, else as they are.
+    pub fn unwrap_settings(&self) -> UnwrapSettings {
+        self.operator.unwrapping().unwrap_or(UnwrapSettings { amount: 1.0, smooth_px: 0.0 })
     }
     /// Whether a tool is between press and release.
     pub fn is_drawing(&self) -> bool {

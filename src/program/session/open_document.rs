@@ -6,8 +6,9 @@ use super::first_look::FirstLook;
 use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind, Part};
 use crate::io::replace::FileStamp;
-use crate::math::Vec2;
+use crate::math::{Size, Vec2};
 use crate::paint::Selection;
+use crate::surface::unwrap::{PlaneLayout, UnwrapSettings};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -49,6 +50,10 @@ pub struct OpenDocument {
     saved: Document,
     /// `None` until the window has shown it.
     pub view: Option<CanvasView>,
+    /// The surface is seen unwrapped, with these settings: the view is of the sheet of its planes.
+    unwrapped: Option<UnwrapSettings>,
+    /// The view of the picture while the sheet is seen, and of the sheet while the picture is.
+    other_view: Option<CanvasView>,
     /// The brush and the eraser change the selected layer's mask, not the layer.
     pub on_mask: bool,
     /// The one layer that is shown, while it is alone.
@@ -102,6 +107,8 @@ impl OpenDocument {
             knows_losses: false,
             name: name.into(),
             view: None,
+            unwrapped: None,
+            other_view: None,
             on_mask: false,
             quick_mask: false,
             last_selection: None,
@@ -128,6 +135,29 @@ impl OpenDocument {
             return under_red(shown);
         }
         self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
+    }
+    /// What the surface is unwrapped with, while it is seen so.
+    pub fn unwrapped(&self) -> Option<UnwrapSettings> {
+        self.unwrapped
+    }
+    /// Shows the surface unwrapped, or the picture again; each has a view of its own.
+    pub fn show_unwrapped(&mut self, settings: Option<UnwrapSettings>) {
+        if self.unwrapped.is_some() != settings.is_some() {
+            std::mem::swap(&mut self.view, &mut self.other_view);
+        }
+        self.unwrapped = settings;
+    }
+    /// The sheet that is seen, if it is laid out already: see [`OpenDocument::layout`].
+    pub fn known_layout(&self) -> Option<Arc<PlaneLayout>> {
+        self.document().surface.as_ref()?.known_plane_layout(self.unwrapped?)
+    }
+    /// The sheet that is seen, laid out now if it must be.
+    pub fn layout(&self) -> Option<Arc<PlaneLayout>> {
+        self.document().surface.as_ref()?.plane_layout(self.unwrapped?)
+    }
+    /// Of what the view shows: the picture, or the sheet.
+    pub fn shown_size(&self) -> Size {
+        self.known_layout().map_or(self.document().size, |layout| layout.size())
     }
     /// The file's name, or the one given.
     pub fn title(&self) -> String {
@@ -249,6 +279,9 @@ impl OpenDocument {
         let is_part = |id: &String| document.parts.part(id).is_some();
         if !self.part.as_ref().is_some_and(is_part) {
             self.part = nearest_part(document);
+        }
+        if document.surface.is_none() {
+            self.show_unwrapped(None);
         }
     }
 }

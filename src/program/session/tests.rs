@@ -6,6 +6,7 @@ mod selecting;
 mod several;
 mod snapping;
 mod steps;
+mod unwrapped;
 
 use super::actions::{Action, LayerAction};
 use super::replay::ReplayValue;

@@ -23,6 +23,7 @@ pub mod snap;
 pub mod strokes;
 pub mod symmetry;
 pub mod transform;
+pub mod unwrapped;
 
 use crate::document::{Document, LayerId};
 use crate::math::{Rect, Vec2, Vec3, srgb::Color};

@@ -125,7 +125,7 @@ fn cell(corners: &[(Vec2, f32); 4], lines: &mut Vec<[Vec2; 2]>) {
     }
 }
 
-fn circle(at: Vec2, radius_px: f32) -> Vec<[Vec2; 2]> {
+pub fn circle(at: Vec2, radius_px: f32) -> Vec<[Vec2; 2]> {
     const SIDES: usize = 64;
     let on = |i: usize| at + radius_px * Vec2::from_angle(i as f32 * std::f32::consts::TAU / SIDES as f32);
     (0..SIDES).map(|i| [on(i), on(i + 1)]).collect()

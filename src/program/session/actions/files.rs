@@ -1,6 +1,7 @@
 //! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
 
-use crate::document::{Content, Document, Layer, Live, Progress, SurfaceSource};
+use crate::document::view::UnwrapOptions;
+use crate::document::{Content, Document, Highlights, Layer, Live, Progress, SurfaceSource};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
 use crate::io::export::{ExportOptions, Output, OutputFile};
 use crate::io::{Budget, Overwrite, Terms, files::read_file, maps, picture, save};
@@ -9,6 +10,7 @@ use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::layers::above;
 use crate::session::actions::pictures::{self, PicturePart};
+use crate::session::actions::unwrapped;
 use crate::session::replay::{ReplayValue, actions};
 use crate::session::{OpenDocument, Session, brushes, storage};
 use crate::surface::operator::reflection;
@@ -52,6 +54,11 @@ actions! {
         "export" Export { file: PathBuf, background: Option<Color>, quality: u8, bits: Option<u8> }
         /// The maps of the shape as files whose names begin with this one's, as PNG, or as EXR where it ends in that.
         "export maps" ExportMaps { file: PathBuf, maps: Vec<ShapeMap>, directx: bool, bits: u8 }
+        /// The painting, or the layer that is seen alone, as it lies in the planes of the unwrapped surface, `scale`
+        /// pixels to one of the plane.
+        "export unwrapped" ExportUnwrapped { file: PathBuf, scale: u32, deep: bool }
+        /// A picture of those planes becomes an image layer that lies on the surface.
+        "import unwrapped" ImportUnwrapped { file: PathBuf }
         /// A picture that the selected layer is made of.
         "use" Use { part: PicturePart, file: PathBuf }
         /// The document's surface anew, of these maps: what is live bends over it.
@@ -112,6 +119,19 @@ impl FileAction {
                 let options = ShapeOptions { is_directx: *directx, is_deep: *bits > 8, is_exr };
                 let terms = Terms::export(unless_forced(session), session.reads());
                 export_maps(tab.document(), file, maps, options, &terms)?;
+            }
+            FileAction::ExportUnwrapped { file, scale, deep } => {
+                let Some(tab) = session.active() else { return Ok(()) };
+                let settings = session.unwrap_settings();
+                let deep = deep.then_some(Highlights::Clipped);
+                let options = UnwrapOptions { scale: *scale, settings, deep };
+                let terms = Terms::export(unless_forced(session), session.reads());
+                unwrapped::export(&tab.drawn(), file, options, terms, &Progress::default())?;
+            }
+            FileAction::ImportUnwrapped { file } => {
+                let (name, picture) = read_picture(file)?;
+                unwrapped::place(session, &name, picture);
+                session.note_read(file);
             }
             FileAction::Use { part, file } => {
                 let read = pictures::read(*part, file)?;

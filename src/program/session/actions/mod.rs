@@ -16,6 +16,7 @@ pub mod pictures;
 pub mod pointer;
 pub mod selection;
 pub mod strokes;
+pub mod unwrapped;
 pub mod views;
 
 pub use canvas::CanvasAction;

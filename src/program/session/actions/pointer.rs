@@ -2,7 +2,7 @@
 //! Floor 6.
 
 use crate::document::{Content, Document, LayerId};
-use crate::math::vec2;
+use crate::math::{Vec2, vec2};
 use crate::paint::{BrushMode, Sample};
 use crate::session::replay::{ReplayValue, actions, record};
 use crate::session::{CloneSource, OpenDocument, Session};
@@ -10,6 +10,7 @@ use crate::tools::assistants::StrokeStart;
 use crate::tools::brush::StrokePurpose;
 use crate::tools::guides::GuideAt;
 use crate::tools::snap::{SnapTargets, ViewAids};
+use crate::tools::unwrapped;
 use crate::tools::{self, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext, ToolKind};
 use serde_json::Value;
 
@@ -39,7 +40,7 @@ impl ReplayValue for PenSample {
 }
 
 actions! {
-    /// Canvas px.
+    /// Canvas px; while the surface is seen unwrapped, px of its sheet.
     PointerAction {
         /// `tool`: a held key may select another than the current one. `px_per_pt`: canvas px per screen point.
         "press" Press { tool: ToolKind, pen: PenSample, px_per_pt: f32 }
@@ -57,7 +58,8 @@ impl PointerAction {
             PointerAction::Drag { pens } => {
                 let Some(gesture) = &mut session.gesture else { return };
                 let outcome = gesture.drag(pens);
-                let drawn = gesture.end().or(pens.last().map(|pen| pen.sample.at));
+                let drawn = gesture.end();
+                let drawn = drawn.or_else(|| on_canvas(session, pens.last()?.place()));
                 session.last_pen = drawn.or(session.last_pen);
                 take(session, outcome);
             }
@@ -73,10 +75,16 @@ impl PointerAction {
 
 fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) {
     session.drop_gesture();
+    let layout = session.active().and_then(OpenDocument::layout);
+    if layout.is_some() && !unwrapped::works(tool) {
+        let how = "This tool works in the picture: leave the unwrapped view (View, Unwrapped) to use it.";
+        return session.notes.push(how.into());
+    }
+    let place = on_canvas(session, pen.place());
     let clones = matches!(tool, ToolKind::Brush) && !pen.keys.alt;
     let clone_offset = match session.brush.mode {
         BrushMode::Clone { aligned, .. } if clones => {
-            session.active_mut().and_then(|tab| tab.begin_clone(pen.place(), aligned))
+            session.active_mut().zip(place).and_then(|(tab, at)| tab.begin_clone(at, aligned))
         }
         _ => None,
     };
@@ -87,6 +95,8 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         Err(why) => return session.notes.push(why.into()),
     };
     let is_line = matches!(tool, ToolKind::Brush | ToolKind::Eraser) && pen.keys.shift && tab.last_end.is_some();
+    // Guides and what else is snapped to lie in the picture.
+    let is_line = is_line && layout.is_none();
     let snap = targets(session, &document, tool, &layers, is_line, px_per_pt);
     // Straight lines end where they snap.
     let at = if is_line { snap.point(pen.place()).at } else { pen.place() };
@@ -121,14 +131,16 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         aids: session.aids,
         clone_offset,
     };
-    let (gesture, outcome) = match stroke_start(tool, tab) {
+    let (gesture, outcome) = match (layout, stroke_start(tool, tab)) {
+        (Some(layout), Some(start)) => unwrapped::paint(&context, pen, layout, start),
+        (Some(layout), None) => unwrapped::point(&context, pen, layout, tool),
         // A line from the last stroke's end is straight already.
-        Some(start) if is_line => start(&context, pen),
-        Some(start) => tools::assistants::press_along(&context, pen, start),
-        None => tools::press(tool, &context, pen),
+        (None, Some(start)) if is_line => start(&context, pen),
+        (None, Some(start)) => tools::assistants::press_along(&context, pen, start),
+        (None, None) => tools::press(tool, &context, pen),
     };
     session.gesture = gesture;
-    session.last_pen = Some(pen.sample.at);
+    session.last_pen = place.or(session.last_pen);
     if matches!(tool, ToolKind::Brush | ToolKind::Fill | ToolKind::Gradient) {
         session.remember_color();
     }
@@ -185,6 +197,15 @@ fn guide_under(
 
 /// How near to a guide the move tool takes hold of it, screen points.
 const GUIDE_PT: f32 = 4.0;
+
+/// The canvas point under the pen, which may be on the sheet of the unwrapped surface; `None` beside its pieces.
+fn on_canvas(session: &Session, pen: Vec2) -> Option<Vec2> {
+    let tab = session.active()?;
+    match (tab.layout(), &tab.document().surface) {
+        (Some(layout), Some(surface)) => Some(layout.canvas_at(surface, pen)?.at),
+        _ => Some(pen),
+    }
+}
 
 /// The document for a tool that works on the selected layer where it shows: with the layer's transform applied.
 fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'static str> {

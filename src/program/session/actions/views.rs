@@ -20,6 +20,9 @@ actions! {
         /// A view of the surface over the picture, by its name, or none.
         "overlay" Overlay { view: Option<String> }
         "overlay opacity" OverlayOpacity { to: f32 }
+        /// The surface unwrapped in place of the picture, by what the operator in hand says of it. The pen's points are
+        /// then those of the sheet.
+        "unwrapped" Unwrapped { on: bool }
     }
 }
 
@@ -28,9 +31,10 @@ impl ViewAction {
         match self {
             ViewAction::Overlay { view } => session.overlay.clone_from(view),
             ViewAction::OverlayOpacity { to } => session.overlay_opacity = to.max(0.0).min(1.0),
+            ViewAction::Unwrapped { on } => unwrap(session, *on),
             _ => {
                 if let Some(tab) = session.active_mut() {
-                    let size = tab.document().size;
+                    let size = tab.shown_size();
                     let view = tab.view.unwrap_or_else(|| CanvasView::fitting(size, Vec2::new(800.0, 600.0)));
                     tab.view = Some(self.clamped(view, size));
                 }
@@ -49,7 +53,19 @@ impl ViewAction {
                 CanvasView { mirrored: view.mirrored, ..CanvasView::fitting(canvas, window_pt.max(Vec2::ONE)) }
             }
             ViewAction::LookAt { center } => CanvasView { center: *center, ..view },
-            ViewAction::Overlay { .. } | ViewAction::OverlayOpacity { .. } => view,
+            ViewAction::Overlay { .. } | ViewAction::OverlayOpacity { .. } | ViewAction::Unwrapped { .. } => view,
         }
+    }
+}
+
+fn unwrap(session: &mut Session, on: bool) {
+    session.drop_gesture();
+    let settings = session.unwrap_settings();
+    let Some(tab) = session.active_mut() else { return };
+    let laid = tab.document().surface.as_ref().filter(|_| on).and_then(|surface| surface.plane_layout(settings));
+    let is_laid = laid.is_some();
+    tab.show_unwrapped(laid.map(|_| settings));
+    if on && !is_laid {
+        session.notes.push("There is no surface here that could be unwrapped.".into());
     }
 }

@@ -1,0 +1,83 @@
+//! Pictures of the unwrapped surface: written to a file, and laid back on the surface.
+//! Floor 6. Drawing them is `document::view`'s, the sheet `surface::unwrap`'s.
+
+use crate::document::view::{UnwrapOptions, placed_over, unwrapped};
+use crate::document::{Content, Document, Highlights, Layer, Live, Progress};
+use crate::io::Terms;
+use crate::io::export::deep::encode as encode_deep;
+use crate::io::export::{ExportFormat, ExportOptions, OutputFile, encode};
+use crate::math::srgb::Color;
+use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage};
+use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
+use crate::session::Session;
+use crate::session::actions::files::free_file;
+use crate::session::actions::layers::above;
+use crate::tools::brush::free_name;
+use crate::{Error, Result};
+use std::path::Path;
+
+/// Writes a painting as it lies in the planes of its surface; nothing if that is given up.
+///
+/// Fails where there is no surface, and for formats that cannot hold what is asked for.
+pub fn export(
+    document: &Document,
+    file: &Path,
+    options: UnwrapOptions,
+    terms: Terms,
+    progress: &Progress,
+) -> Result<()> {
+    let target = OutputFile::new(file, terms)?;
+    let format = ExportFormat::of(file)?;
+    // A file of light keeps what is brighter than white.
+    let deep = (format == ExportFormat::Exr).then_some(Highlights::Kept).or(options.deep);
+    let options = UnwrapOptions { deep, ..options };
+    let seen = match unwrapped(document, None, options, progress) {
+        _ if progress.is_cancelled() => return Ok(()),
+        seen => seen.map_err(|why| Error::unsupported(file, why))?,
+    };
+    // A JPEG has no transparency for what lies between the pieces.
+    let background = (format == ExportFormat::Jpeg).then_some(Color::WHITE);
+    let written = ExportOptions { background, ..ExportOptions::default() };
+    if deep.is_some() {
+        return target.replace(&encode_deep(file, format, &seen.pixels, seen.size, &written)?);
+    }
+    let Some(Texels::Srgb8(texels)) = seen.picture().map(|picture| picture.texels) else { return Ok(()) };
+    let (width, height) = (seen.size.width as usize, seen.size.height as usize);
+    let grid = TileGrid::from_straight_rgba(texels.as_flattened(), width, height, 0, 0);
+    target.replace(&encode(file, format, &grid, seen.size, &written)?)
+}
+
+/// How far the sides of a picture may be from the sheet's, as a ratio, before that is told.
+const SAME_ASPECT: f32 = 0.005;
+
+/// A picture of the sheet becomes an image layer above the selected one, pixel for pixel where the sheet shows it.
+pub fn place(session: &mut Session, name: &str, picture: Picture) {
+    let settings = session.unwrap_settings();
+    let Some(tab) = session.active_mut() else { return };
+    let document = tab.document();
+    let Some(layout) = document.surface.as_ref().and_then(|surface| surface.plane_layout(settings)) else {
+        return session.notes.push("There is no surface here that could be unwrapped.".into());
+    };
+    let (sheet, size) = (layout.size(), picture.size);
+    let image = PlacedImage {
+        placement: placed_over(sheet.rect(), size, document.size),
+        source: PictureSource::new(free_file(document, name), picture, Adjust::default()),
+        outside: Outside::None,
+        bend: layout.bend(),
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+    };
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));
+    let id = layer.id;
+    let next = document.with_inserted(layer, above(tab));
+    if next.is_some_and(|next| tab.commit("Import unwrapped", next)) {
+        tab.selected = Some(id);
+        let aspect = |size: crate::math::Size| size.width as f32 / size.height.max(1) as f32;
+        if (aspect(size) / aspect(sheet) - 1.0).abs() > SAME_ASPECT {
+            session.notes.push(format!(
+                "The picture has {size} pixels, the unwrapped surface {sheet}: it is as wide, but not as high."
+            ));
+        }
+    }
+}
