@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 pub enum FilePurpose {
     Open,
     Place,
+    ImportUnwrapped,
     Brush,
     NormalMap,
     DepthMap,
@@ -23,16 +24,21 @@ pub enum FilePurpose {
     Export,
     /// Maps of the shape, whose names begin with this one.
     ExportMaps,
+    ExportUnwrapped,
 }
 
 /// Endings of maps of the shape.
 const MAPS: [&str; 2] = ["png", "exr"];
 
 impl FilePurpose {
+    /// What pictures of the unwrapped surface are written to.
+    const FLAT: [&'static str; 4] = ["png", "tif", "tiff", "exr"];
+
     pub fn title(self) -> &'static str {
         match self {
             FilePurpose::Open => "Open",
             FilePurpose::Place => "Place an image",
+            FilePurpose::ImportUnwrapped => "Import a picture of the surface laid flat",
             FilePurpose::Brush => "Import a brush",
             FilePurpose::NormalMap => "Normal map",
             FilePurpose::DepthMap => "Depth map",
@@ -41,10 +47,11 @@ impl FilePurpose {
             FilePurpose::Save => "Save as",
             FilePurpose::Export => "Export the picture",
             FilePurpose::ExportMaps => "Export maps of the shape",
+            FilePurpose::ExportUnwrapped => "Export the surface laid flat",
         }
     }
     pub fn is_saving(self) -> bool {
-        matches!(self, FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportMaps)
+        matches!(self, FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportMaps | FilePurpose::ExportUnwrapped)
     }
     /// The extensions of files to choose from, with the name of each group.
     pub fn filters(self) -> Vec<(&'static str, Vec<&'static str>)> {
@@ -57,6 +64,7 @@ impl FilePurpose {
             ],
             FilePurpose::Brush => vec![("Brushes", EXTENSIONS.to_vec())],
             FilePurpose::Place
+            | FilePurpose::ImportUnwrapped
             | FilePurpose::NormalMap
             | FilePurpose::DepthMap
             | FilePurpose::MaskMap
@@ -66,6 +74,7 @@ impl FilePurpose {
             FilePurpose::Save => vec![("Documents", SAVED.to_vec())],
             FilePurpose::Export => vec![("Pictures", exported().collect())],
             FilePurpose::ExportMaps => vec![("Maps", MAPS.to_vec())],
+            FilePurpose::ExportUnwrapped => vec![("Pictures", Self::FLAT.to_vec())],
         }
     }
     /// What a chosen file will be called. `extension`: of exports that have none.
@@ -74,6 +83,7 @@ impl FilePurpose {
             FilePurpose::Save => with_document_extension(file, SAVED[0], &SAVED),
             FilePurpose::ExportMaps => with_document_extension(file, MAPS[0], &MAPS),
             FilePurpose::Export => with_document_extension(file, extension, &exported().collect::<Vec<_>>()),
+            FilePurpose::ExportUnwrapped => with_document_extension(file, Self::FLAT[0], &Self::FLAT),
             _ => file,
         }
     }

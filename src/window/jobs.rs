@@ -43,6 +43,10 @@ pub enum JobResult {
     Recovered(Box<Result<RecoveredTab>>),
     /// A picture was read from a file, to become an image layer.
     Pictured(PathBuf, String, Picture, PinPosition),
+    /// The same, to lie on the unwrapped surface.
+    Flat(PathBuf, String, Picture),
+    /// The surface of a tab, by its key, was unwrapped.
+    Unwrapped(usize),
     /// A picture was read that a layer of a tab is to be made of.
     Part(Box<PartResult>),
     /// The document of a tab was saved.

@@ -48,6 +48,11 @@ pub enum WindowRequest {
     Wobble,
     /// Asks where to, for a file of this ending.
     Export(&'static str),
+    ExportUnwrappedDialog,
+    /// Asks where to.
+    ExportUnwrapped,
+    /// Shows the surface unwrapped, once it is.
+    Unwrap,
     /// Asks first where there is unsaved work.
     Close(usize),
     Quit,

@@ -2,6 +2,7 @@
 //! Floor 7. Writing is `io::replace`'s; the questions on the way are `dialogs`', for nothing is replaced unasked.
 
 use crate::dialogs::AfterUnsaved;
+use crate::document::view::UnwrapOptions;
 use crate::document::{Document, Progress};
 use crate::io::export::ExportOptions;
 use crate::io::export::shape::{ShapeMap, ShapeOptions};
@@ -11,6 +12,7 @@ use crate::io::save::{EncodedDocument, encode};
 use crate::io::{Overwrite, Terms};
 use crate::jobs::JobResult;
 use crate::session::actions::files::{export, export_maps};
+use crate::session::actions::unwrapped;
 use crate::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -35,6 +37,8 @@ pub struct Exporting {
     pub document: Document,
     pub file: PathBuf,
     pub options: ExportOptions,
+    /// As it lies on the unwrapped surface.
+    pub unwrapped: Option<UnwrapOptions>,
     pub terms: Terms,
 }
 
@@ -100,7 +104,14 @@ impl Saving {
 
 impl Exporting {
     pub fn run(self, progress: &Progress) -> JobResult {
-        match export(&self.document, &self.file, &self.options, self.terms.clone(), progress) {
+        let terms = self.terms.clone();
+        let written = match self.unwrapped {
+            Some(options) => {
+                unwrapped::export(&self.document, &self.file, options, terms, progress).map(|()| Vec::new())
+            }
+            None => export(&self.document, &self.file, &self.options, terms, progress),
+        };
+        match written {
             Ok(_) if progress.is_cancelled() => JobResult::Nothing,
             Ok(notes) => JobResult::Exported(self.file, notes),
             Err(error) => refused(error, || Pending::Export(Box::new(self))),

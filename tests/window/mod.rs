@@ -13,6 +13,7 @@ mod replayed;
 mod selecting;
 mod several;
 mod shape;
+mod unwrapped;
 
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;

@@ -11,7 +11,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// A project with a shape in it, as a file.
-fn project(folder: &Path) -> std::path::PathBuf {
+pub fn project(folder: &Path) -> std::path::PathBuf {
     let normals = folder.join("wave_normal.png");
     let at = |x: u32, y: u32| {
         let n = [0.6 * (x as f32 * 0.06).sin(), 0.5 * (y as f32 * 0.05).cos(), 0.7f32];
@@ -25,7 +25,7 @@ fn project(folder: &Path) -> std::path::PathBuf {
     file
 }
 /// The bytes of the picture, and of the document as its project describes it.
-fn bytes(document: &Document, folder: &Path, name: &str) -> (Vec<u8>, Vec<u8>) {
+pub fn bytes(document: &Document, folder: &Path, name: &str) -> (Vec<u8>, Vec<u8>) {
     let picture = flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect());
     let file = folder.join(name);
     storage::save(&file, document, Overwrite::Anything, &Progress::default()).unwrap().unwrap();

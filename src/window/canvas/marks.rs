@@ -50,26 +50,54 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
             let radius = (0.5 * session.brush.size).max(0.5);
             let reach_px = 2.0 * radius * session.brush.reach;
             let lines = outline::outline(document, session.operator, at, radius, reach_px);
-            let lines: Vec<[Pos2; 2]> = lines.into_iter().map(|line| line.map(to_screen)).collect();
-            // Dark beneath light, so that it is visible on any picture.
-            for stroke in
-                [Stroke::new(2.4, Color32::from_black_alpha(120)), Stroke::new(1.1, Color32::from_white_alpha(230))]
-            {
-                painter.extend(lines.iter().map(|&line| Shape::line_segment(line, stroke)));
-            }
+            footprint(painter, lines, at, &to_screen);
             if tool == ToolKind::Brush {
                 clone_source(painter, session, at, &to_screen);
             }
-            let center = to_screen(at);
-            painter.circle_filled(center, 2.2, Color32::from_black_alpha(140));
-            painter.circle_filled(center, 1.2, Color32::WHITE);
         }
-        ToolKind::Eyedropper => {
-            painter.circle_stroke(to_screen(at), 14.0, Stroke::new(4.0, color32(session.color)));
-            painter.circle_stroke(to_screen(at), 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
-        }
+        ToolKind::Eyedropper => picked(painter, session, to_screen(at)),
         _ => {}
     }
+}
+
+/// The same over the sheet of the unwrapped surface, where dabs are as the brush has them; `under`: on the sheet.
+pub fn draw_unwrapped(
+    painter: &Painter,
+    session: &Session,
+    screen_from_sheet: Affine2,
+    under: Option<Vec2>,
+    tool: ToolKind,
+) {
+    let to_screen = |p: Vec2| {
+        let p = screen_from_sheet.transform_point2(p);
+        pos2(p.x, p.y)
+    };
+    let Some(at) = under else { return };
+    match tool {
+        ToolKind::Brush | ToolKind::Eraser => {
+            footprint(painter, outline::circle(at, (0.5 * session.brush.size).max(0.5)), at, &to_screen);
+        }
+        ToolKind::Eyedropper => picked(painter, session, to_screen(at)),
+        _ => {}
+    }
+}
+
+/// The outline of a dab and its centre.
+fn footprint(painter: &Painter, lines: Vec<[Vec2; 2]>, at: Vec2, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let lines: Vec<[Pos2; 2]> = lines.into_iter().map(|line| line.map(to_screen)).collect();
+    // Dark beneath light, so that it is visible on any picture.
+    for stroke in [Stroke::new(2.4, Color32::from_black_alpha(120)), Stroke::new(1.1, Color32::from_white_alpha(230))] {
+        painter.extend(lines.iter().map(|&line| Shape::line_segment(line, stroke)));
+    }
+    let center = to_screen(at);
+    painter.circle_filled(center, 2.2, Color32::from_black_alpha(140));
+    painter.circle_filled(center, 1.2, Color32::WHITE);
+}
+
+/// The colour in hand, around the point where another is taken.
+fn picked(painter: &Painter, session: &Session, at: Pos2) {
+    painter.circle_stroke(at, 14.0, Stroke::new(4.0, color32(session.color)));
+    painter.circle_stroke(at, 16.5, Stroke::new(1.0, Color32::from_black_alpha(160)));
 }
 
 /// The axes of symmetry.

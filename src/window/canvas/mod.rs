@@ -15,6 +15,7 @@ mod parts;
 mod pointer;
 mod rulers;
 mod sheet;
+mod unwrapped;
 mod wobble;
 
 pub use marks::color32;
@@ -29,6 +30,7 @@ use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, Session, looks_same};
+use crate::surface::unwrap::PlaneLayout;
 use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{corners, on_screen, quad};
@@ -39,7 +41,9 @@ use overlay::{Insets, Overlay};
 use parts::PartMarks;
 use pointer::PointerState;
 use sheet::TileSheet;
+use std::sync::Arc;
 use std::time::Duration;
+use unwrapped::UnwrappedSheet;
 use wobble::Wobble;
 
 /// The state of the canvas.
@@ -51,6 +55,8 @@ pub struct Canvas {
     /// A smaller version, while something is dragged that takes long to redraw.
     draft: TileSheet,
     is_draft_in_front: bool,
+    /// The picture unwrapped, while that is shown.
+    sheet: UnwrappedSheet,
     /// The tab that is shown, and the last request.
     picture: u64,
     tab: Option<usize>,
@@ -88,6 +94,7 @@ impl Canvas {
             whole: TileSheet::default(),
             draft: TileSheet::default(),
             is_draft_in_front: false,
+            sheet: UnwrappedSheet::default(),
             picture: 0,
             tab: None,
             wanted: None,
@@ -127,8 +134,13 @@ impl Canvas {
             ui.ctx().request_repaint();
             return;
         };
+        let layout = tab.known_layout();
+        if tab.unwrapped().is_some() && layout.is_none() {
+            return said(ui, rect, "Unwrapping the surface…");
+        }
+        let size = tab.shown_size();
         // A canvas that is seen whole is seen whole in a window of another size too.
-        if area_before_pt != self.area_pt && view == CanvasView::fitting(tab.document().size, area_before_pt) {
+        if area_before_pt != self.area_pt && view == CanvasView::fitting(size, area_before_pt) {
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));
             ui.ctx().request_repaint();
         }
@@ -142,16 +154,22 @@ impl Canvas {
         let to_window = Affine2::from_translation(vec2(middle.x, middle.y));
         let screen_from_canvas = to_window * view.screen_from_canvas();
         self.follow(ui.ctx(), session, &view, rect);
+        self.follow_unwrapped(ui.ctx(), layout.as_ref());
         let pixels_per_point = ui.ctx().pixels_per_point();
         self.whole.set_sharp(view.zoom * pixels_per_point >= 2.0);
+        self.sheet.shown.set_sharp(view.zoom * pixels_per_point >= 2.0);
 
         let painter = ui.painter_at(rect);
-        let canvas = tab.document().size.rect();
+        let canvas = size.rect();
         let shadow = corners(canvas).map(|(x, y)| on_screen(screen_from_canvas, x, y));
         self.draw_checker(ui, &painter, shadow);
-        let in_front = if self.is_draft_in_front { &self.draft } else { &self.whole };
-        in_front.draw(&painter, screen_from_canvas, tab.document().size);
-        if let Some(wobble) = &mut self.wobble {
+        let in_front = match &layout {
+            Some(_) => &self.sheet.shown,
+            None if self.is_draft_in_front => &self.draft,
+            None => &self.whole,
+        };
+        in_front.draw(&painter, screen_from_canvas, size);
+        if let Some(wobble) = self.wobble.as_mut().filter(|_| layout.is_none()) {
             if wobble.goes_on(ui, tab.shown()) {
                 return wobble.draw(&painter, screen_from_canvas);
             }
@@ -159,7 +177,9 @@ impl Canvas {
             self.wobble = None;
             return ui.ctx().request_repaint();
         }
-        self.draw_overlay(ui.ctx(), session, &painter, screen_from_canvas);
+        if layout.is_none() {
+            self.draw_overlay(ui.ctx(), session, &painter, screen_from_canvas);
+        }
         painter.add(egui::Shape::closed_line(shadow.to_vec(), Stroke::new(1.0, Color32::from_black_alpha(110))));
 
         self.hand.listen(ui, &response, session, &view, middle, actions);
@@ -168,18 +188,23 @@ impl Canvas {
         let under = pointer.map(|p| inverse.transform_point2(vec2(p.x, p.y)));
         self.under = under.filter(|p| canvas.contains(p.x.floor() as i32, p.y.floor() as i32));
         let tool = self.hand.tool(session);
-        let to_screen = |p: Vec2| {
-            let p = screen_from_canvas.transform_point2(p);
-            pos2(p.x, p.y)
-        };
-        guides::draw(&painter, session, &to_screen, visible_rect(&view, rect), view.zoom);
-        rulers::draw(ui, session, rect, screen_from_canvas, under);
-        self.ants.draw(&painter, session, screen_from_canvas, visible_rect(&view, rect));
-        marks::draw(&painter, session, screen_from_canvas, under, tool);
-        self.parts.draw(&painter, session, screen_from_canvas, under, tool);
+        if let Some((layout, surface)) = layout.as_ref().zip(tab.document().surface.as_ref()) {
+            self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
+            marks::draw_unwrapped(&painter, session, screen_from_canvas, under, tool);
+        } else {
+            let to_screen = |p: Vec2| {
+                let p = screen_from_canvas.transform_point2(p);
+                pos2(p.x, p.y)
+            };
+            guides::draw(&painter, session, &to_screen, visible_rect(&view, rect), view.zoom);
+            rulers::draw(ui, session, rect, screen_from_canvas, under);
+            self.ants.draw(&painter, session, screen_from_canvas, visible_rect(&view, rect));
+            marks::draw(&painter, session, screen_from_canvas, under, tool);
+            self.parts.draw(&painter, session, screen_from_canvas, under, tool);
+        }
         lasso_keys(ui, session, actions);
         crop::keys(ui, session, actions);
-        if tool == ToolKind::Anchors {
+        if tool == ToolKind::Anchors && layout.is_none() {
             self.insets.draw(ui.ctx(), session, &painter);
             self.trouble = self.trouble.take().or(self.insets.trouble.take());
         }
@@ -206,6 +231,7 @@ impl Canvas {
             self.tab = Some(tab.key);
             self.picture += 1;
             self.whole.begin(drawn.size);
+            self.sheet.begin();
             if let Some(picture) = tab.first_look.take() {
                 self.whole.show(picture);
             }
@@ -213,7 +239,9 @@ impl Canvas {
         }
         let is_dragged = is_dragged(session);
         if !self.wanted.as_ref().is_some_and(|(old, dragged)| *dragged == is_dragged && looks_same(old, &drawn)) {
-            let (picture, document, visible) = (self.picture, drawn.clone(), visible_rect(view, area));
+            // Any part of the picture may be in sight on the sheet.
+            let visible = if tab.unwrapped().is_some() { drawn.size.rect() } else { visible_rect(view, area) };
+            let (picture, document) = (self.picture, drawn.clone());
             if let Some(thread) = &self.render_thread {
                 thread.want(RenderRequest { picture, document, visible, is_dragged });
                 self.is_busy = true;
@@ -235,23 +263,38 @@ impl Canvas {
             if is_draft && self.draft.size() != Some(painted.size) {
                 self.draft.begin(painted.size);
             }
-            if is_draft { self.draft.take(painted) } else { self.whole.take(painted) }
+            if is_draft {
+                self.draft.take(painted);
+            } else {
+                self.sheet.changed(painted.tiles.iter().map(|(at, _)| *at));
+                self.whole.take(painted);
+            }
         }
         let is_sent = self.whole.send(ctx, self.is_busy) | self.draft.send(ctx, self.is_busy);
         self.is_draft_in_front = is_draft_next;
         self.small_is_old |= is_sent;
     }
-    /// The small picture for the navigator; updated when the render thread is idle.
+    /// Brings the sheet of the unwrapped surface up to the picture, if it is shown.
+    fn follow_unwrapped(&mut self, ctx: &egui::Context, layout: Option<&Arc<PlaneLayout>>) {
+        let was_shown = self.sheet.shown.size().is_some();
+        match layout {
+            Some(layout) => self.small_is_old |= self.sheet.follow(ctx, layout, &self.whole.grid),
+            None => self.sheet.put_away(),
+        }
+        self.small_is_old |= was_shown != layout.is_some();
+    }
+    /// The small picture for the navigator, of the sheet while that is shown; updated when the render thread is idle.
     pub fn small(&mut self, ctx: &egui::Context, canvas: Size) -> Option<egui::TextureId> {
         const SIDE: u32 = 200;
         if self.small.is_none() || (self.small_is_old && !self.is_busy) {
             self.small_is_old = false;
             let step = canvas.width.max(canvas.height).div_ceil(SIDE).max(1);
             let (width, height) = (canvas.width.div_ceil(step), canvas.height.div_ceil(step));
+            let shown = if self.sheet.shown.size() == Some(canvas) { &self.sheet.shown } else { &self.whole };
             let pixel = |i: u32| {
                 let (x, y) = (i % width * step + step / 2, i / width * step + step / 2);
                 let at = |v: u32, n: u32| v.min(n - 1) as i32;
-                let [r, g, b, a] = self.whole.grid.pixel(at(x, canvas.width), at(y, canvas.height));
+                let [r, g, b, a] = shown.grid.pixel(at(x, canvas.width), at(y, canvas.height));
                 Color32::from_rgba_premultiplied(r, g, b, a)
             };
             let image = ColorImage::new([width as usize, height as usize], (0..width * height).map(pixel).collect());
@@ -323,7 +366,11 @@ fn visible_rect(view: &CanvasView, area: egui::Rect) -> Rect {
 
 /// The text of an empty window.
 fn invite(ui: &Ui, area: egui::Rect) {
+    said(ui, area, "Drop a picture, a normal map or a project here, or open one from the File menu");
+}
+
+/// A sentence in place of a picture.
+fn said(ui: &Ui, area: egui::Rect, text: &str) {
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop a picture, a normal map or a project here, or open one from the File menu";
     ui.painter().text(area.center(), egui::Align2::CENTER_CENTER, text, font, ui.visuals().weak_text_color());
 }

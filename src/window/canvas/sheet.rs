@@ -3,9 +3,10 @@
 
 use super::blocks::TextureBlocks;
 use crate::math::{Affine2, Size, vec2};
-use crate::raster::{TileAt, TileGrid};
+use crate::raster::{Tile, TileAt, TileGrid};
 use crate::render_thread::RenderedTileBatch;
 use eframe::egui;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 #[derive(Default)]
@@ -45,7 +46,11 @@ impl TileSheet {
     }
     /// Takes painted tiles.
     pub fn take(&mut self, painted: RenderedTileBatch) {
-        for (at, tile) in painted.tiles {
+        self.put(painted.tiles);
+    }
+    /// Takes tiles that are to be shown at once.
+    pub fn put(&mut self, tiles: Vec<(TileAt, Option<Arc<Tile>>)>) {
+        for (at, tile) in tiles {
             self.grid.set(at, tile);
             self.unsent.push(at);
         }

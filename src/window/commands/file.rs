@@ -1,7 +1,8 @@
 //! The File menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, row};
+use crate::files::FilePurpose;
 use crate::requests::WindowRequest;
 use eframe::egui::Key;
 
@@ -52,6 +53,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_document,
         |_, requests| requests.request(WindowRequest::ExportMapsDialog),
     ),
+    row(
+        "Export unwrapped…",
+        &[],
+        "The painting as it lies on the surface laid flat: to paint a pattern over it in another program",
+        has_surface,
+        |_, requests| requests.request(WindowRequest::ExportUnwrappedDialog),
+    ),
     LINE,
     row(
         "Place image…",
@@ -59,6 +67,13 @@ pub const COMMANDS: &[MenuCommand] = &[
         "A picture as a layer bent over the surface",
         has_document,
         |_, requests| requests.request(WindowRequest::PlaceDialog),
+    ),
+    row(
+        "Import unwrapped…",
+        &[],
+        "A picture of the surface laid flat as a layer that lies on the surface, where the export has it",
+        has_surface,
+        |_, requests| requests.request(WindowRequest::Choose(FilePurpose::ImportUnwrapped)),
     ),
     LINE,
     row(

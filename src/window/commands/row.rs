@@ -66,6 +66,9 @@ pub fn always(_: &Session) -> bool {
 pub fn has_document(session: &Session) -> bool {
     session.active().is_some()
 }
+pub fn has_surface(session: &Session) -> bool {
+    session.shown().is_some_and(|document| document.surface.is_some())
+}
 pub fn has_layer(session: &Session) -> bool {
     session.layer().is_some()
 }

@@ -1,7 +1,7 @@
 //! The View menu.
 //! Floor 7.
 
-use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, key, row};
+use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, key, row};
 use crate::math::Vec2;
 use crate::panel_layout::PanelSide;
 use crate::panels::PanelKind;
@@ -19,8 +19,8 @@ fn overlay(session: &Session, requests: &mut UiRequests, name: &str) {
 fn is_over(session: &Session, name: &str) -> bool {
     session.overlay.as_deref() == Some(name)
 }
-fn has_surface(session: &Session) -> bool {
-    session.shown().is_some_and(|document| document.surface.is_some())
+fn is_unwrapped(session: &Session) -> bool {
+    session.active().is_some_and(|tab| tab.unwrapped().is_some())
 }
 const fn alt(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::ALT, key)
@@ -138,6 +138,17 @@ pub const COMMANDS: &[MenuCommand] = &[
         has_surface,
         |_, requests| requests.request(WindowRequest::Wobble),
     ),
+    row(
+        "Unwrapped",
+        &[alt(Key::Num9)],
+        "The surface laid flat, to paint on: what is drawn straight here lies bent on the form",
+        has_surface,
+        |session, requests| match is_unwrapped(session) {
+            true => view(requests, ViewAction::Unwrapped { on: false }),
+            false => requests.request(WindowRequest::Unwrap),
+        },
+    )
+    .ticked(|session, _| is_unwrapped(session)),
     LINE,
     row("Hide panels", &[key(Key::Tab)], "Shows only the canvas, or all panels again", always, |_, requests| {
         requests.request(WindowRequest::TogglePanels)

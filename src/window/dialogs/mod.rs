@@ -17,6 +17,7 @@ pub mod replace;
 pub mod shape;
 pub mod shortcuts;
 pub mod unsaved;
+pub mod unwrapped;
 
 use super::files::FilePurpose;
 use super::keymap::Keymap;
@@ -39,6 +40,7 @@ pub enum Dialog {
     ImageSize(canvas::ImageSizeDialog),
     Turn(canvas::TurnDialog),
     Export(export::ExportDialog),
+    Unwrapped(unwrapped::UnwrappedDialog),
     Import(Box<import::ImportDialog>),
     Path(path::PathDialog),
     Recovery(recovery::RecoveryDialog),
@@ -113,6 +115,7 @@ impl Dialog {
                 Dialog::ImageSize(image) => image.show(ui, requests),
                 Dialog::Turn(turn) => turn.show(ui, requests),
                 Dialog::Export(export) => export.show(ui, session, preview),
+                Dialog::Unwrapped(unwrapped) => unwrapped.show(ui, session),
                 Dialog::Import(import) => import.show(ui),
                 Dialog::Path(path) => path.show(ui),
                 Dialog::Recovery(recovery) => recovery.show(ui),

@@ -45,6 +45,10 @@ pub fn show(
             requests.request(WindowRequest::Scale(1.0));
         }
         ui.weak(document.size.to_string());
+        if tab.unwrapped().is_some() {
+            ui.label("Unwrapped")
+                .on_hover_text("You paint on the surface laid flat; View, Unwrapped shows the picture");
+        }
         ui.separator();
         if let Some(rect) = canvas.selected().filter(|_| document.active_selection.is_some()) {
             let about = format!("Selected {} × {} at {}, {}", rect.width(), rect.height(), rect.x0, rect.y0);

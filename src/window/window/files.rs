@@ -16,6 +16,7 @@ use crate::session::actions::ClipboardAction;
 use crate::session::actions::FileAction;
 use crate::session::actions::files::place;
 use crate::session::actions::pictures::{self, PicturePart};
+use crate::session::actions::unwrapped;
 use crate::session::{brushes, storage};
 use eframe::egui;
 use std::path::{Path, PathBuf};
@@ -72,6 +73,12 @@ impl MainWindow {
                 self.session.note_read(&file);
                 self.did(|| Action::File(FileAction::Place { file, at }));
             }
+            JobResult::Flat(file, name, picture) => {
+                unwrapped::place(&mut self.session, &name, picture);
+                self.session.note_read(&file);
+                self.did(|| Action::File(FileAction::ImportUnwrapped { file }));
+            }
+            JobResult::Unwrapped(tab) => self.unwrapped(tab),
             JobResult::Part(read) => {
                 let PartResult { tab, layer, part, file, read } = *read;
                 if let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) {
@@ -138,6 +145,7 @@ impl MainWindow {
             FilePurpose::Place => {
                 self.jobs.read_picture(file, PinPosition::Middle);
             }
+            FilePurpose::ImportUnwrapped => self.import_unwrapped(file),
             FilePurpose::Brush => {
                 self.apply(&Action::File(FileAction::ImportBrush { file }));
             }
@@ -148,7 +156,9 @@ impl MainWindow {
                 }
             }
             FilePurpose::ExportMaps => self.export_maps_to(file),
-            FilePurpose::Save | FilePurpose::Export => self.chosen_to_write(purpose, file),
+            FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportUnwrapped => {
+                self.chosen_to_write(purpose, file);
+            }
         }
     }
     /// A file was chosen to be written. Where it is there the dialog asked about it, unless it gets another name here.
@@ -160,7 +170,7 @@ impl MainWindow {
             let then = self.after_saving.take();
             self.save_to(named, over, false, then);
         } else {
-            self.export_to(named, over);
+            self.export_to(named, over, purpose == FilePurpose::ExportUnwrapped);
         }
     }
     /// The import dialog, where it is open.
@@ -181,6 +191,9 @@ impl MainWindow {
     pub(super) fn proposed(&self, purpose: FilePurpose) -> String {
         let title = self.session.active().map_or_else(String::new, |tab| tab.title());
         let stem = storage::without_ending(&title);
+        if purpose == FilePurpose::ExportUnwrapped {
+            return format!("{stem}-unwrapped.png");
+        }
         let extension = match purpose {
             FilePurpose::Export => self.export.extension,
             FilePurpose::ExportMaps if self.maps.options.is_exr => "exr",

@@ -1,6 +1,8 @@
 //! The look of the window: light or dark, and the size of its controls. Floor 7. The colours are in `theme`.
 
 use super::MainWindow;
+use crate::session::Action;
+use crate::session::actions::ViewAction;
 use eframe::egui::{self, Theme};
 
 /// Sizes of the interface to choose from; 1 is what the system asks for.
@@ -42,5 +44,14 @@ impl MainWindow {
         for view in self.session.open_documents.iter_mut().filter_map(|tab| tab.view.as_mut()) {
             view.zoom *= kept;
         }
+    }
+    /// 0 fits the canvas; 1 is a pixel of the canvas to one of the screen.
+    pub(super) fn scale(&mut self, ctx: &egui::Context, scale: f32) {
+        let action = if scale > 0.0 {
+            ViewAction::ZoomTo { zoom: scale / ctx.pixels_per_point() }
+        } else {
+            ViewAction::Fit { window_pt: self.canvas.area_pt }
+        };
+        self.apply(&Action::View(action));
     }
 }

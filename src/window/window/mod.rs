@@ -6,12 +6,13 @@ mod interface;
 mod layout;
 mod leaving;
 mod steps;
+mod unwrap;
 mod work;
 
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
 use super::dialogs::{
-    AfterUnsaved, Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shape, shortcuts,
+    AfterUnsaved, Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shape, shortcuts, unwrapped,
 };
 use super::files::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
@@ -26,9 +27,10 @@ use super::thumbnails::Thumbnails;
 use super::{commands, keys, sample};
 use crate::advice::with_advice;
 use crate::document::Progress;
-use crate::session::actions::{GuideAction, ViewAction};
+use crate::session::actions::GuideAction;
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
+use crate::surface::Surface;
 use crate::tools::snap::ViewAids;
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
@@ -56,6 +58,9 @@ pub struct MainWindow {
     steps_done: [bool; 3],
     export: export::ExportDialog,
     maps: maps::MapsDialog,
+    unwrapped: unwrapped::UnwrappedDialog,
+    /// The surface that was laid flat last because the one that was shown so is gone.
+    unwrapping: Option<Arc<Surface>>,
     /// The purpose of the open system dialog.
     title: String,
     /// Whether the stored theme was applied.
@@ -97,6 +102,8 @@ impl MainWindow {
             steps_done: [false; 3],
             export: export::ExportDialog::default(),
             maps: maps::MapsDialog::default(),
+            unwrapped: unwrapped::UnwrappedDialog::default(),
+            unwrapping: None,
             title: String::new(),
             is_dressed: false,
             leaving: false,
@@ -154,6 +161,7 @@ impl MainWindow {
         self.dress(ui.ctx());
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
+        self.keep_unwrapped();
         self.thumbnails.collect(ui.ctx());
         if self.dialogs.is_empty() && self.jobs.editing().is_none() {
             keys::listen(ui.ctx(), &self.session, &self.settings.keymap, &mut requests);
@@ -177,13 +185,17 @@ impl MainWindow {
     fn show_dialog(&mut self, ctx: &egui::Context, requests: &mut UiRequests) {
         let Some(dialog) = self.dialogs.last_mut() else { return };
         let size = self.session.shown().map(|document| document.size);
-        let is_seen = matches!(dialog, Dialog::Export(_));
+        let is_flat = self.session.active().is_some_and(|tab| tab.unwrapped().is_some());
+        let is_seen = matches!(dialog, Dialog::Export(_)) && !is_flat;
         let preview = size.filter(|_| is_seen).and_then(|size| self.canvas.small(ctx, size));
         let answer = dialog.show(ctx, &self.session, &mut self.settings.keymap, preview, requests);
         match dialog {
             Dialog::Export(export) => self.export = export.clone(),
             Dialog::Maps(maps) => self.maps = maps.clone(),
             _ => {}
+        }
+        if let Dialog::Unwrapped(unwrapped) = dialog {
+            self.unwrapped = unwrapped.clone();
         }
         match answer {
             DialogAnswer::Open => return,
@@ -269,6 +281,9 @@ impl MainWindow {
                 self.export.extension = extension;
                 self.ask_where(FilePurpose::Export);
             }
+            WindowRequest::ExportUnwrappedDialog => self.dialogs.push(Dialog::Unwrapped(self.unwrapped.clone())),
+            WindowRequest::ExportUnwrapped => self.ask_where(FilePurpose::ExportUnwrapped),
+            WindowRequest::Unwrap => self.unwrap_surface(),
             WindowRequest::Close(tab) => self.close(ctx, tab),
             WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             WindowRequest::CanvasSizeDialog | WindowRequest::ImageSizeDialog | WindowRequest::TurnDialog => {
@@ -311,15 +326,6 @@ impl MainWindow {
             Err(error) => self.messages.push(with_advice(&error)),
         }
         self.messages.append(&mut self.session.notes);
-    }
-    /// 0 fits the canvas; 1 is a pixel of the canvas to one of the screen.
-    fn scale(&mut self, ctx: &egui::Context, scale: f32) {
-        let action = if scale > 0.0 {
-            ViewAction::ZoomTo { zoom: scale / ctx.pixels_per_point() }
-        } else {
-            ViewAction::Fit { window_pt: self.canvas.area_pt }
-        };
-        self.apply(&Action::View(action));
     }
     fn set_title(&mut self, ctx: &egui::Context) {
         let title = self.session.active().map_or_else(

@@ -73,9 +73,11 @@ impl MainWindow {
             self.proceed(ctx, then, false);
         }
     }
-    /// `over`: what may be replaced.
-    pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite) {
-        let Some(document) = self.session.active().map(|tab| tab.document().clone()) else { return };
+    /// `over`: what may be replaced. `is_flat`: as it lies on the unwrapped surface.
+    pub(super) fn export_to(&mut self, file: PathBuf, over: Overwrite, is_flat: bool) {
+        let Some(tab) = self.session.active() else { return };
+        let document = if is_flat { tab.drawn() } else { tab.document().clone() };
+        let unwrapped = is_flat.then(|| self.unwrapped.options(self.session.unwrap_settings()));
         let options = ExportOptions {
             background: self.export.background,
             quality: self.export.quality,
@@ -83,7 +85,7 @@ impl MainWindow {
             ..ExportOptions::default()
         };
         let terms = Terms::export(over, self.session.reads());
-        self.put(Pending::Export(Box::new(Exporting { document, file, options, terms })));
+        self.put(Pending::Export(Box::new(Exporting { document, file, options, unwrapped, terms })));
     }
     /// Files whose names begin with this one.
     pub(super) fn export_maps_to(&mut self, file: PathBuf) {

@@ -1,0 +1,48 @@
+//! Asks how the unwrapped surface is to be exported.
+//! Floor 7.
+
+use super::{DialogAnswer, buttons};
+use crate::document::Highlights;
+use crate::document::view::UnwrapOptions;
+use crate::requests::WindowRequest;
+use crate::session::Session;
+use crate::surface::unwrap::UnwrapSettings;
+use eframe::egui::Ui;
+
+/// The choices, kept for the next time.
+#[derive(Clone)]
+pub struct UnwrappedDialog {
+    pub scale: u32,
+    pub is_deep: bool,
+}
+
+impl Default for UnwrappedDialog {
+    fn default() -> Self {
+        Self { scale: 2, is_deep: false }
+    }
+}
+
+impl UnwrappedDialog {
+    /// What was chosen, of a surface unwrapped with these settings.
+    pub fn options(&self, settings: UnwrapSettings) -> UnwrapOptions {
+        UnwrapOptions { scale: self.scale, settings, deep: self.is_deep.then_some(Highlights::Clipped) }
+    }
+    pub fn show(&mut self, ui: &mut Ui, session: &Session) -> DialogAnswer {
+        ui.set_width(320.0);
+        ui.heading("Export the surface laid flat");
+        ui.weak("Painted over in another program and imported unwrapped, it lies on the surface where it was.");
+        for scale in UnwrapOptions::SCALE.filter(|scale| scale.is_power_of_two()) {
+            let about = match scale {
+                1 => "As large as on the surface".to_owned(),
+                more => format!("{more} pixels to one of the surface: keeps fine strokes sharp"),
+            };
+            ui.radio_value(&mut self.scale, scale, about);
+        }
+        ui.checkbox(&mut self.is_deep, "16 bits a channel");
+        match buttons(ui, "Export…", session.shown().is_some()) {
+            Some(true) => DialogAnswer::Ask(WindowRequest::ExportUnwrapped),
+            Some(false) => DialogAnswer::Close,
+            None => DialogAnswer::Open,
+        }
+    }
+}
