@@ -135,3 +135,33 @@ fn what_cannot_be_shown_is_refused_in_a_sentence() {
     assert_eq!(show(&MAPS, &["--show", "everything"]).status.code(), Some(2));
     assert_eq!(show(&MAPS, &["--blur", "-1"]).status.code(), Some(2));
 }
+
+#[test]
+fn the_unwrapped_view_prints_the_layer_that_lays_its_picture_back() {
+    let desk = Desk::new();
+    let seen = desk.view(&["r.json"], "plane.png", &["--show", "unwrapped", "--scale", "2"]);
+    assert!(seen.status.success(), "{}", String::from_utf8_lossy(&seen.stderr));
+    let plane = image::open(desk.path("plane.png")).unwrap().to_rgba8();
+    assert!(plane.width() > 2 * 90, "two pixels to one of the surface: {}", plane.width());
+    let layer: serde_json::Value = serde_json::from_slice(&seen.stdout).unwrap();
+    let mut recipe: serde_json::Value = serde_json::from_str(RECIPE).unwrap();
+    recipe["version"] = 2.into();
+    recipe["layers"] = serde_json::json!([layer]);
+    fs::write(desk.path("back.json"), recipe.to_string()).unwrap();
+    let rendered = |name: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rilievo"));
+        let out = desk.path(name).with_extension("png");
+        let output = command.args(["render", "--force"]).arg(desk.path(name)).arg("-o").arg(&out).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        image::open(out).unwrap().to_rgba8()
+    };
+    let (before, after) = (rendered("r.json"), rendered("back.json"));
+    let mask = image::open(desk.path("ball_mask.png")).unwrap().to_luma8();
+    let (mut sum, mut count) = (0u32, 0);
+    for (x, y, _) in mask.enumerate_pixels().filter(|(.., covered)| covered.0[0] > 0) {
+        let (a, b) = (before.get_pixel(x, y).0, after.get_pixel(x, y).0);
+        sum += (0..4).map(|c| u32::from(a[c].abs_diff(b[c]))).sum::<u32>();
+        count += 4;
+    }
+    assert!(count > 4000 && sum <= 2 * count, "{sum} of 255 in {count} values");
+}

@@ -3,7 +3,7 @@
 
 use super::dynamics::{Dynamics, Input, Property};
 use super::grain::{BrushGrain, GrainSource};
-use super::habits::{Cycle, Falloff, Hand, Offset, Pickup, Rate, Spread};
+use super::habits::{Cycle, Falloff, Hand, Measure, Offset, Pickup, Rate, Spread};
 use super::image::PictureSource;
 use super::tip::{Bristles, Hose, Noise};
 use crate::math::{Mat2, Range, UNIT, Vec2, range::held};
@@ -23,6 +23,8 @@ pub struct Brush {
     pub flow: f32,
     /// Distance between dabs, a ratio of the diameter, `> 0`; of a flat tip, of its width along the stroke.
     pub spacing: f32,
+    /// What that distance is measured on, and the cycle and the distance that dabs follow.
+    pub spacing_on: Measure,
     /// How many dabs lie over each other, `≥ 1`: each adds 1 − (1 − flow)^(1/overlap), so that together they come to
     /// the flow.
     pub overlap: f32,
@@ -258,6 +260,7 @@ impl Default for Brush {
             opacity: 1.0,
             flow: 1.0,
             spacing: 0.1,
+            spacing_on: Measure::default(),
             overlap: 1.0,
             falloff: Falloff::default(),
             rate: Rate::default(),

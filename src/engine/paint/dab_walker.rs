@@ -189,4 +189,6 @@ pub fn dabs(brush: &Brush, operator: Operator, color: Color, samples: &[Sample],
 }
 
 #[cfg(test)]
+mod measured;
+#[cfg(test)]
 mod tests;

@@ -34,6 +34,20 @@ impl Spread {
     pub const ALL: [(Spread, &str); 2] = [(Spread::Disc, "disc"), (Spread::Cloud, "cloud")];
 }
 
+/// What the way between a stroke's dabs is measured on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Measure {
+    /// As it is seen.
+    #[default]
+    Canvas,
+    /// As long as it is on the surface: dabs stand equally far apart all over the form.
+    Surface,
+}
+
+impl Measure {
+    pub const ALL: [(Measure, &str); 2] = [(Measure::Canvas, "canvas"), (Measure::Surface, "surface")];
+}
+
 /// Dabs beside those of the spacing.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Rate {

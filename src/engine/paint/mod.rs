@@ -36,7 +36,7 @@ pub use brush::{Brush, BrushMode, ColorJitter, Stabilizer, StrokeFrame, Tip};
 pub use dynamics::{Curve, DabInputs, Drive, Dynamics, Input, Property};
 pub use fill::Fill;
 pub use gradient::{Gradient, GradientStop};
-pub use habits::{Cycle, Falloff, Hand, Offset, Pickup, Rate, Spread};
+pub use habits::{Cycle, Falloff, Hand, Measure, Offset, Pickup, Rate, Spread};
 pub use home::{HomeFrame, StrokeHome};
 pub use image::{PictureSource, PlacedImage, Placement};
 pub use retouch::ActiveRetouching;

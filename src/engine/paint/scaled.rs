@@ -9,7 +9,9 @@ impl Brush {
     /// The same brush for a canvas `factor` times as large, `factor > 0` and finite: its strokes, their samples scaled
     /// too, look the same there. Lengths in px are multiplied; ratios, angles, times and seeds stay.
     pub fn scaled(&self, factor: f32) -> Self {
-        let Self { size, hardness, opacity, flow, spacing, overlap, falloff, rate, rotation, facing, .. } = *self;
+        let Self {
+            size, hardness, opacity, flow, spacing, spacing_on, overlap, falloff, rate, rotation, facing, ..
+        } = *self;
         let Self { softness, scatter, spread, size_jitter, offset, jitter, blend, erases, keeps_alpha, .. } = *self;
         let Self { bounded, reach, mode, pickup, stabilizer, hand, cycle, seed, .. } = *self;
         Self {
@@ -18,6 +20,7 @@ impl Brush {
             opacity,
             flow,
             spacing,
+            spacing_on,
             overlap,
             falloff,
             rate,

@@ -44,19 +44,39 @@ pub struct UnwrapSettings {
     pub smooth_px: f32,
 }
 
+impl UnwrapSettings {
+    /// Within what a surface can be unwrapped with; what is no number counts as 0.
+    fn held(self, size: Size) -> Self {
+        Self { amount: self.amount.max(0.0).min(2.0), smooth_px: self.smooth_px.max(0.0).min(size.longer_side()) }
+    }
+    fn key(self) -> [u32; 2] {
+        [self.amount.to_bits(), self.smooth_px.to_bits()]
+    }
+}
+
 /// How often S is turned as the solution turned it, and solved again.
 const TURNS: usize = 3;
 /// How far the solves go before S is turned again, and the last one.
 const ROUGH: Effort = Effort { goal: 3e-2, most_steps: 30 };
 const FINE: Effort = Effort { goal: 1e-3, most_steps: 60 };
 
+/// How many systems are solved for one unwrapping: what is told of as it comes.
+pub const SOLVES: u64 = (TURNS as u64 + 1) * 2;
+
+/// Called after each of [`SOLVES`]; whether to go on.
+pub type GoOn<'g> = &'g dyn Fn() -> bool;
+
 impl Unwrapping {
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Self {
+        Self::telling(surface, settings, &|| true).expect("nobody gives it up")
+    }
+    /// The same, telling how far it came; `None` where it is given up.
+    pub fn telling(surface: &Surface, settings: UnwrapSettings, go_on: GoOn) -> Option<Self> {
         let size = surface.size();
         let mut planes = [Plane::from_fn(size, |x, _| x as f32 + 0.5), Plane::from_fn(size, |_, y| y as f32 + 0.5)];
         let rect = covered(surface);
         if settings.amount > 0.0 && !rect.is_empty() {
-            let moved = solved(surface, rect, settings);
+            let moved = solved(surface, rect, settings, go_on)?;
             for (plane, moved) in planes.iter_mut().zip(&moved) {
                 let w = size.width as usize;
                 let rows = plane.values_mut()[rect.y0 as usize * w..rect.y1 as usize * w].chunks_mut(w);
@@ -66,7 +86,7 @@ impl Unwrapping {
             }
         }
         let [x, y] = planes;
-        Self { x, y, bounds: OnceLock::new() }
+        Some(Self { x, y, bounds: OnceLock::new() })
     }
     /// What the other populations of contour pixels lie on.
     fn on_sheet(size: Size, sheet: &SheetOf, settings: UnwrapSettings) -> Self {
@@ -106,8 +126,8 @@ fn covered(surface: &Surface) -> Rect {
     (0..coverage.height()).filter_map(row).fold(Rect::EMPTY, Rect::union)
 }
 
-/// δ = D − q over a rectangle, x and y: the steps of MATH 8.
-fn solved(surface: &Surface, rect: Rect, settings: UnwrapSettings) -> [Vec<f32>; 2] {
+/// δ = D − q over a rectangle, x and y: the steps of MATH 8; `None` where it is given up.
+fn solved(surface: &Surface, rect: Rect, settings: UnwrapSettings, go_on: GoOn) -> Option<[Vec<f32>; 2]> {
     let normals = smooth::normals(surface, rect, settings.smooth_px);
     let metric = Metric::of(&normals, settings.amount);
     let solver = SpringSolver::new(springs(surface, rect, &normals));
@@ -122,12 +142,15 @@ fn solved(surface: &Surface, rect: Rect, settings: UnwrapSettings) -> [Vec<f32>;
         let effort = if step < TURNS { ROUGH } else { FINE };
         for (v, b) in moved.iter_mut().zip(&sources) {
             solver.solve(b, v, effort, &mut scratch);
+            if !go_on() {
+                return None;
+            }
         }
     }
     let pieces = solver.pieces();
     drop((solver, scratch, sources, metric));
     settle::settle(surface, rect, &mut moved, pieces);
-    moved
+    Some(moved)
 }
 
 impl Metric {
@@ -172,15 +195,27 @@ impl Surface {
     /// The surface unwrapped, cached. Call it once before going parallel: threads that ask at the same time may each
     /// compute it. Settings that are not finite count as 0. Of a sheet it is that of its surface, continued.
     pub fn unwrapped(&self, settings: UnwrapSettings) -> Arc<Unwrapping> {
-        let amount = settings.amount.max(0.0).min(2.0);
-        let smooth_px = settings.smooth_px.max(0.0).min(self.size().longer_side());
-        let keep = (KEPT_PX / self.size().area().max(1)).clamp(2, 8);
-        let key = [amount.to_bits(), smooth_px.to_bits()];
-        let settings = UnwrapSettings { amount, smooth_px };
-        self.unwrappings().get_or_compute(key, keep, |_| match self.sheet_of() {
+        let settings = settings.held(self.size());
+        self.unwrappings().get_or_compute(settings.key(), self.kept_unwrappings(), |_| match self.sheet_of() {
             Some(sheet) => Unwrapping::on_sheet(self.size(), sheet, settings),
             None => Unwrapping::new(self, settings),
         })
+    }
+    /// The same, telling how far it came: `None` where it is given up. What is there already is not told of.
+    pub fn unwrapped_telling(&self, settings: UnwrapSettings, go_on: GoOn) -> Option<Arc<Unwrapping>> {
+        if self.is_unwrapped(settings) || self.sheet_of().is_some() {
+            return Some(self.unwrapped(settings));
+        }
+        let settings = settings.held(self.size());
+        let unwrapped = Unwrapping::telling(self, settings, go_on)?;
+        Some(self.unwrappings().get_or_compute(settings.key(), self.kept_unwrappings(), |_| unwrapped))
+    }
+    /// Whether it is unwrapped with these settings already.
+    pub fn is_unwrapped(&self, settings: UnwrapSettings) -> bool {
+        self.unwrappings().known(&settings.held(self.size()).key()).is_some()
+    }
+    fn kept_unwrappings(&self) -> usize {
+        (KEPT_PX / self.size().area().max(1)).clamp(2, 8)
     }
 }
 

@@ -4,13 +4,14 @@
 use crate::Result;
 use crate::json::{Fields, JsonObject};
 use crate::paint::habits::{Bearing, GROUPS, SETTINGS};
-use crate::paint::{Brush, Falloff, Offset, Spread};
+use crate::paint::{Brush, Falloff, Measure, Offset, Spread};
 
 /// What is not said stays as it is in `base`.
 pub fn read(fields: &mut Fields, base: Brush) -> Result<Brush> {
     let mut brush = base;
     brush.falloff = fields.one_of("falloff", &Falloff::ALL, brush.falloff)?;
     brush.spread = fields.one_of("spread", &Spread::ALL, brush.spread)?;
+    brush.spacing_on = fields.one_of("spacing_on", &Measure::ALL, brush.spacing_on)?;
     for group in GROUPS {
         if group.is_empty() {
             numbers(fields, group, &mut brush)?;
@@ -38,6 +39,7 @@ fn numbers(fields: &mut Fields, group: &str, brush: &mut Brush) -> Result<()> {
 pub fn write(out: &mut JsonObject, brush: &Brush) {
     out.word("falloff", &Falloff::ALL, brush.falloff, Falloff::default());
     out.word("spread", &Spread::ALL, brush.spread, Spread::default());
+    out.word("spacing_on", &Measure::ALL, brush.spacing_on, Measure::default());
     for group in GROUPS {
         let mut own = JsonObject::default();
         let numbers = if group.is_empty() { &mut *out } else { &mut own };
@@ -90,7 +92,7 @@ mod tests {
     #[test]
     fn choices_are_written_as_they_were_read_and_what_is_no_setting_is_refused() {
         let text = json!({
-            "falloff": "peaked", "spread": "cloud", "offset": { "amount": 0.5, "from": "stroke", "alternates": true },
+            "falloff": "peaked", "spread": "cloud", "spacing_on": "surface", "offset": { "amount": 0.5, "from": "stroke", "alternates": true },
         });
         assert_eq!(written(&read_text(&text).unwrap()), text);
         let said = |text: Value| read_text(&text).err().map(|error| error.to_string()).unwrap_or_default();

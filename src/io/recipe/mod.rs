@@ -52,7 +52,7 @@ use super::{Budget, Files, RecipeFolder, files, maps};
 use crate::document::{Content, Document, Guides, Layer, LayerLabel, SelectionList, SurfaceSource};
 use crate::math::Size;
 use crate::paint::grain::GrainSpace;
-use crate::paint::{Scene, Selection};
+use crate::paint::{Measure, Scene, Selection};
 use crate::raster::Asset;
 use crate::surface::{Operator, Surface, SurfaceError};
 use crate::{Error, Result};
@@ -72,8 +72,10 @@ fn unwraps(document: &Document) -> bool {
         Content::Image(live) => is_print(live.params().bend.operator),
         Content::Gradient(live) => is_print(live.params().operator),
         Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
-            let grain = stroke.brush().grain.as_ref();
-            is_print(stroke.operator()) || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
+            let (brush, grain) = (stroke.brush(), stroke.brush().grain.as_ref());
+            is_print(stroke.operator())
+                || brush.spacing_on == Measure::Surface
+                || grain.is_some_and(|grain| grain.lies == GrainSpace::Unwrapped)
         }),
         _ => false,
     };

@@ -6,7 +6,7 @@ use super::context::KeptContext;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolKind};
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
-use crate::paint::{Brush, Sample, StabilizedPen, Stabilizer};
+use crate::paint::{Brush, Measure, Sample, StabilizedPen, Stabilizer};
 use crate::surface::Surface;
 use crate::surface::unwrap::{CanvasPlace, PlaneLayout};
 use std::sync::Arc;
@@ -24,13 +24,13 @@ pub fn works(tool: ToolKind) -> bool {
     matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | SurfaceWand | Wand | Zoom)
 }
 
-/// The pen comes down on the sheet with a brush: strokes are stabilised there, painted with the operator that unwrapped
-/// it, and cut where they leave a piece. All of them are one step.
+/// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted with the operator that
+/// unwrapped it, and cut where they leave a piece. All of them are one step.
 ///
 /// `pen` is on the sheet; the context's points are on the canvas.
 pub fn paint(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, start: StrokeStart) -> GestureStart {
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
-    let brush = Brush { stabilizer: Stabilizer::None, ..context.brush.clone() };
+    let brush = Brush { stabilizer: Stabilizer::None, spacing_on: Measure::Surface, ..context.brush.clone() };
     // The line that Shift draws is drawn on the sheet.
     let hand = ToolContext { brush: &brush, operator: layout.bend().operator, last_end: None, ..*context };
     let sheet = Sheet { layout, surface };

@@ -30,7 +30,6 @@ use crate::math::{Affine2, Rect, Size, Vec2, vec2};
 use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
 use crate::session::{Action, CanvasView, Session, looks_same};
-use crate::surface::unwrap::PlaneLayout;
 use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{corners, on_screen, quad};
@@ -41,7 +40,6 @@ use overlay::{Insets, Overlay};
 use parts::PartMarks;
 use pointer::PointerState;
 use sheet::TileSheet;
-use std::sync::Arc;
 use std::time::Duration;
 use unwrapped::UnwrappedSheet;
 use wobble::Wobble;
@@ -273,15 +271,6 @@ impl Canvas {
         let is_sent = self.whole.send(ctx, self.is_busy) | self.draft.send(ctx, self.is_busy);
         self.is_draft_in_front = is_draft_next;
         self.small_is_old |= is_sent;
-    }
-    /// Brings the sheet of the unwrapped surface up to the picture, if it is shown.
-    fn follow_unwrapped(&mut self, ctx: &egui::Context, layout: Option<&Arc<PlaneLayout>>) {
-        let was_shown = self.sheet.shown.size().is_some();
-        match layout {
-            Some(layout) => self.small_is_old |= self.sheet.follow(ctx, layout, &self.whole.grid),
-            None => self.sheet.put_away(),
-        }
-        self.small_is_old |= was_shown != layout.is_some();
     }
     /// The small picture for the navigator, of the sheet while that is shown; updated when the render thread is idle.
     pub fn small(&mut self, ctx: &egui::Context, canvas: Size) -> Option<egui::TextureId> {

@@ -11,9 +11,10 @@ pub const RULER_PT: f32 = 18.0;
 const LABELS_PT: f32 = 56.0;
 const MARKS_PT: f32 = 6.0;
 
-/// How much room rulers take at the upper and the left edge, points.
+/// How much room rulers take at the upper and the left edge, points; they measure the picture, not the unwrapped sheet.
 pub fn room_pt(session: &Session) -> f32 {
-    if session.aids.rulers && session.active().is_some() { RULER_PT } else { 0.0 }
+    let is_picture = session.active().is_some_and(|tab| tab.unwrapped().is_none());
+    if session.aids.rulers && is_picture { RULER_PT } else { 0.0 }
 }
 
 /// Whether a point of the window lies on a ruler beside the canvas's area.

@@ -1,6 +1,7 @@
 //! The unwrapped surface on the screen: its sheet, pulled from the painted tiles of the picture as they come.
 //! Floor 7. Which point of the picture lies at each of its pixels is `surface::unwrap`'s.
 
+use super::Canvas;
 use super::sheet::TileSheet;
 use crate::math::Vec2;
 use crate::raster::{TILE, Tile, TileAt, TileGrid};
@@ -56,6 +57,18 @@ impl UnwrappedSheet {
         let pulled: Vec<_> = due.into_par_iter().map(|at| (at, pulled(layout, picture, at))).collect();
         self.shown.put(pulled);
         self.shown.send(ctx, false)
+    }
+}
+
+impl Canvas {
+    /// Brings the sheet of the unwrapped surface up to the picture, if it is shown.
+    pub(super) fn follow_unwrapped(&mut self, ctx: &egui::Context, layout: Option<&Arc<PlaneLayout>>) {
+        let was_shown = self.sheet.shown.size().is_some();
+        match layout {
+            Some(layout) => self.small_is_old |= self.sheet.follow(ctx, layout, &self.whole.grid),
+            None => self.sheet.put_away(),
+        }
+        self.small_is_old |= was_shown != layout.is_some();
     }
 }
 

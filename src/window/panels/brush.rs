@@ -4,7 +4,7 @@
 use super::curve;
 use crate::io::recipe::written_brush;
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
-use crate::paint::habits::{Bearing, Falloff, SETTINGS, Spread};
+use crate::paint::habits::{Bearing, Falloff, Measure, SETTINGS, Spread};
 use crate::paint::pattern::Pattern;
 use crate::paint::tip::{Bristles, Noise};
 use crate::paint::{Brush, Curve, Drive, Dynamics, Input, Property, Stabilizer, Tip};
@@ -249,6 +249,9 @@ fn habits(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
     let chosen = choice_row(ui, "Scatter as", to.spread, &Spread::ALL);
     took(chosen.is_some());
     to.spread = chosen.unwrap_or(to.spread);
+    let chosen = choice_row(ui, "Spacing on", to.spacing_on, &Measure::ALL);
+    took(chosen.is_some());
+    to.spacing_on = chosen.unwrap_or(to.spacing_on);
     let chosen = choice_row(ui, "Falls off", to.falloff, &Falloff::ALL);
     took(chosen.is_some());
     to.falloff = chosen.unwrap_or(to.falloff);

@@ -1,6 +1,7 @@
 //! The main window: shows the panels, performs their requests, and reports errors. Floor 7. `layout` arranges the
 //! panels; `files` and `leaving` handle files.
 
+mod by_name;
 mod files;
 mod interface;
 mod layout;
@@ -24,13 +25,14 @@ use super::saving::{Pending, Saving};
 use super::settings::{Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;
-use super::{commands, keys, sample};
+use super::{keys, sample};
 use crate::advice::with_advice;
 use crate::document::Progress;
 use crate::session::actions::GuideAction;
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
 use crate::surface::Surface;
+use crate::surface::unwrap::UnwrapSettings;
 use crate::tools::snap::ViewAids;
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};
@@ -59,8 +61,8 @@ pub struct MainWindow {
     export: export::ExportDialog,
     maps: maps::MapsDialog,
     unwrapped: unwrapped::UnwrappedDialog,
-    /// The surface that was laid flat last because the one that was shown so is gone.
-    unwrapping: Option<Arc<Surface>>,
+    /// The surface that was unwrapped ahead last.
+    unwrapping: Option<(Arc<Surface>, UnwrapSettings)>,
     /// The purpose of the open system dialog.
     title: String,
     /// Whether the stored theme was applied.
@@ -161,7 +163,7 @@ impl MainWindow {
         self.dress(ui.ctx());
         self.finish_jobs(ui.ctx());
         self.tell_troubles();
-        self.keep_unwrapped();
+        self.unwrap_ahead();
         self.thumbnails.collect(ui.ctx());
         if self.dialogs.is_empty() && self.jobs.editing().is_none() {
             keys::listen(ui.ctx(), &self.session, &self.settings.keymap, &mut requests);
@@ -336,21 +338,6 @@ impl MainWindow {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.title = title;
         }
-    }
-    /// The menus' titles, and the commands of each.
-    pub fn menus() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
-        let names =
-            |commands: &[commands::MenuCommand]| commands.iter().map(|command| command.name).collect::<Vec<_>>();
-        let menus = commands::MENUS.map(|(title, commands)| (title, names(commands)));
-        menus.into_iter().map(|(title, names)| (title, names.into_iter().filter(|name| !name.is_empty()).collect()))
-    }
-    /// Runs a command by its name, as a menu would.
-    pub fn command(&mut self, ctx: &egui::Context, name: &str) {
-        let mut requests = UiRequests::default();
-        if let Some(command) = commands::named(name).filter(|command| (command.can)(&self.session)) {
-            (command.run)(&self.session, &mut requests);
-        }
-        self.do_requests(ctx, requests);
     }
 }
 

@@ -2,12 +2,27 @@
 //! Floor 7.
 
 use super::MainWindow;
+use crate::document::Progress;
 use crate::jobs::{JobKind, JobResult, short};
 use crate::session::Action;
 use crate::session::actions::ViewAction;
 use crate::session::actions::files::read_picture;
+use crate::surface::Surface;
+use crate::surface::unwrap::{SOLVES, UnwrapSettings};
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// What the job is called.
+const UNWRAPPING: &str = "Unwrapping the surface";
+
+/// Tells how far an unwrapping came.
+fn is_to_go_on(progress: &Progress) -> bool {
+    if progress.read().1 == 0 {
+        progress.add_total(SOLVES);
+    }
+    progress.step();
+    !progress.is_cancelled()
+}
 
 impl MainWindow {
     /// Shows the surface of the document in front unwrapped, at once where it is laid flat already.
@@ -18,9 +33,11 @@ impl MainWindow {
         if surface.known_plane_layout(settings).is_some() {
             return self.unwrapped(key);
         }
-        self.jobs.start("Unwrapping the surface".into(), JobKind::Working, move |_| {
-            surface.plane_layout(settings);
-            JobResult::Unwrapped(key)
+        self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
+            match surface.unwrapped_telling(settings, &|| is_to_go_on(progress)) {
+                Some(_) => surface.plane_layout(settings).map_or(JobResult::Nothing, |_| JobResult::Unwrapped(key)),
+                None => JobResult::Nothing,
+            }
         });
     }
     /// A surface was laid flat; if its tab is still in front, it is shown so.
@@ -29,17 +46,33 @@ impl MainWindow {
             self.apply(&Action::View(ViewAction::Unwrapped { on: true }));
         }
     }
-    /// Where the surface that is shown unwrapped is another one by now, it is laid flat anew, once.
-    pub(super) fn keep_unwrapped(&mut self) {
+    /// Unwraps ahead, on a thread, what will be asked for: the surface that is shown unwrapped, where it is another one
+    /// by now, and the one that the brush in hand prints on. The hand does not wait for what it does not need yet.
+    pub(super) fn unwrap_ahead(&mut self) {
         let Some(tab) = self.session.active() else { return };
-        let (Some(settings), Some(surface)) = (tab.unwrapped(), tab.document().surface.clone()) else { return };
-        let is_asked = self.unwrapping.as_ref().is_some_and(|asked| Arc::ptr_eq(asked, &surface));
-        if is_asked || surface.known_plane_layout(settings).is_some() {
+        let Some(surface) = tab.document().surface.clone() else { return };
+        let shown = tab.unwrapped().filter(|settings| surface.known_plane_layout(*settings).is_none());
+        let is_shown = shown.is_some();
+        let printed = || self.session.operator.unwrapping().filter(|settings| !surface.is_unwrapped(*settings));
+        let Some(settings) = shown.or_else(printed) else { return };
+        if self.jobs.under_way.iter().any(|job| job.name == UNWRAPPING) {
             return;
         }
-        self.unwrapping = Some(surface.clone());
-        self.jobs.start("Unwrapping the surface".into(), JobKind::Working, move |_| {
-            surface.plane_layout(settings);
+        let is_asked =
+            |(asked, with): &(Arc<Surface>, UnwrapSettings)| Arc::ptr_eq(asked, &surface) && *with == settings;
+        if self.unwrapping.as_ref().is_some_and(is_asked) {
+            // It was given up.
+            if is_shown {
+                self.apply(&Action::View(ViewAction::Unwrapped { on: false }));
+            }
+            return;
+        }
+        self.unwrapping = Some((surface.clone(), settings));
+        self.jobs.start(UNWRAPPING.into(), JobKind::Working, move |progress| {
+            let unwrapped = surface.unwrapped_telling(settings, &|| is_to_go_on(progress));
+            if is_shown && unwrapped.is_some() {
+                surface.plane_layout(settings);
+            }
             JobResult::Nothing
         });
     }

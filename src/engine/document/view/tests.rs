@@ -140,7 +140,6 @@ fn a_picture_of_the_unwrapped_plane_lies_on_the_surface_as_what_it_was_taken_fro
         assert!(seen.size.width > 150 * scale, "a ball of 120 px is longer along its surface: {}", seen.size);
         for filter in [ImageFilter::Bilinear, ImageFilter::Antialias] {
             let (mean, most) = differences(&document, &laid_back(&document, &seen, filter));
-            println!("scale {scale} {filter:?}: mean {mean:.3}, most {most}");
             assert!(mean < 2.0, "scale {scale}, {filter:?}: {mean} of 255 in the mean, {most} at most");
         }
     }

@@ -3,14 +3,15 @@
 
 use super::hand::{CurvePoint, gauss};
 use super::{Dab, FAR_PX};
-use crate::math::{Mat2, Vec2, hash, srgb::Color, vec2};
+use crate::math::{Mat2, Rect, Vec2, hash, srgb::Color, vec2};
 use crate::paint::brush::{Brush, Tip};
 use crate::paint::dynamics::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, Input, Property, pace_of, turns_of};
-use crate::paint::habits::{Bearing, Spread};
+use crate::paint::habits::{Bearing, Measure, Spread};
 use crate::paint::rim::{Rim, Rims};
 use crate::paint::scene::Scene;
 use crate::paint::tint;
-use crate::surface::{Curvature, Operator};
+use crate::surface::unwrap::metric;
+use crate::surface::{Curvature, Operator, Surface};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
@@ -45,6 +46,8 @@ pub(super) struct DabRules {
     reads_surface: bool,
     /// Whether anything follows what arc tangents and logarithms tell of the pen.
     reads_pen: bool,
+    /// Where ways are measured on it, and a of MATH 8.
+    measured: Option<(Arc<Surface>, f32)>,
     varies_in_color: bool,
     rims: Option<Arc<Rims>>,
 }
@@ -89,6 +92,8 @@ impl Due {
 impl DabRules {
     pub fn new(brush: &Brush, operator: Operator, color: Color, scene: &Scene) -> Self {
         let follows = |input| brush.dynamics.follow(input);
+        let amount = operator.unwrapping().map_or(1.0, |settings| settings.amount);
+        let measured = scene.surface.clone().filter(|_| brush.spacing_on == Measure::Surface);
         let curvature = scene.surface.as_ref().filter(|_| follows(Input::Curvature));
         Self {
             brush: brush.clone(),
@@ -100,9 +105,34 @@ impl DabRules {
             curvature: curvature.map(|surface| surface.curvature(CURVATURE_BLUR_PX)),
             reads_pen: matches!(brush.tip, Tip::Hose(_)) || PEN.into_iter().any(follows),
             reads_surface: [Input::Slope, Input::Curvature, Input::Depth].into_iter().any(follows),
+            measured: measured.map(|surface| (surface, amount)),
             varies_in_color: tint::varies(brush),
             rims: Rims::of(brush),
         }
+    }
+    /// How long a px of a way is on the surface, where it is measured there: |S d| of MATH 8, between pixels; 1 off it.
+    pub fn stretch(&self, at: Vec2, way: Vec2) -> f64 {
+        let Some((surface, amount)) = &self.measured else { return 1.0 };
+        if !self.scene.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32) {
+            return 1.0;
+        }
+        let along = way.normalize_or_zero();
+        let on = |(x, y, share): (usize, usize, f32)| {
+            share * (metric::stretch(surface.nbar(x, y), surface.normal(x, y).z, *amount) * along).length()
+        };
+        let length: f32 = surface.around(at).map(on).sum();
+        if length.is_finite() && length > 0.0 { f64::from(length) } else { 1.0 }
+    }
+    /// In how many parts a piece of the way is measured: of a px where the surface is read, else in one.
+    pub fn parts(&self, from: Vec2, to: Vec2) -> usize {
+        /// A piece that leaps over more is measured coarsely.
+        const MOST_PARTS: f32 = 4096.0;
+        let (low, high) = (from.min(to).floor(), from.max(to).floor());
+        let over = Rect::new(low.x as i32, low.y as i32, high.x as i32 + 1, high.y as i32 + 1);
+        if self.measured.is_none() || over.intersect(self.scene.size.rect()).is_empty() {
+            return 1;
+        }
+        from.distance(to).ceil().max(1.0).min(MOST_PARTS) as usize
     }
     pub fn inputs(&self, moment: &Moment) -> DabInputs {
         let Moment { place, travelled_px, cycle, custom, number, .. } = *moment;

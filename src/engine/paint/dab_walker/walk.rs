@@ -114,6 +114,11 @@ impl Walk {
             let s = piece as f32 / pieces as f32;
             let at = curve.at(s);
             let place = if piece == pieces { CurvePoint { at, ..to } } else { CurvePoint { at, ..from.lerp(to, s) } };
+            let begin = self.from;
+            let parts = rules.parts(begin.at, at);
+            for part in 1..parts {
+                self.straight(begin.lerp(place, part as f32 / parts as f32), rules, dabs);
+            }
             self.straight(place, rules, dabs);
         }
     }
@@ -141,27 +146,29 @@ impl Walk {
         let way = to.at - from.at;
         let length = f64::from(from.at.distance(to.at));
         let secs = f64::from((to.secs - from.until_secs).max(0.0));
+        let stretch = rules.stretch(from.at.midpoint(to.at), way);
         let mut walked = 0.0;
         loop {
-            let per_px = self.due.per_px(way) + if length > 0.0 { self.due.per_sec * secs / length } else { 0.0 };
+            let per_px =
+                self.due.per_px(way) * stretch + if length > 0.0 { self.due.per_sec * secs / length } else { 0.0 };
             let to_next = self.left / per_px;
             if walked + to_next > length + ROUNDING_PX || to_next.is_nan() || self.number > MAX_STEPS {
                 self.left = (self.left - (length - walked) * per_px).max(0.0);
-                self.go(&to, way, length - walked, rules);
+                self.go(&to, way, [length - walked, (length - walked) * stretch], rules);
                 break;
             }
             walked += to_next;
             let place = from.lerp(to, (walked / length).min(1.0) as f32);
-            self.go(&place, way, to_next, rules);
+            self.go(&place, way, [to_next, to_next * stretch], rules);
             self.stand(place, rules, dabs);
         }
         self.from = to;
     }
-    /// What changes by a piece of the way.
-    fn go(&mut self, place: &CurvePoint, way: Vec2, px: f64, rules: &DabRules) {
+    /// What changes by a piece of the way, so long as it is seen and as it is measured.
+    fn go(&mut self, place: &CurvePoint, way: Vec2, [px, measured_px]: [f64; 2], rules: &DabRules) {
         let ahead = way.normalize_or_zero();
         self.direction += (ahead - self.direction) * settled(px as f32, rules.brush.hand.direction_px);
-        self.travelled_px += px;
-        self.turn_cycle(place, px as f32, rules);
+        self.travelled_px += measured_px;
+        self.turn_cycle(place, measured_px as f32, rules);
     }
 }

@@ -184,14 +184,14 @@ fn shelved(pieces: &mut [LaidPiece]) -> Option<Size> {
 impl Surface {
     /// The sheet of its unwrapped planes, cached like them; `None` where it has none.
     pub fn plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
-        let key = [settings.amount.to_bits(), settings.smooth_px.to_bits()];
-        let laid = self.plane_layouts().get_or_compute(key, 1, |_| PlaneLayout::new(self, settings).map(Arc::new));
+        let settings = settings.held(self.size());
+        let laid =
+            self.plane_layouts().get_or_compute(settings.key(), 1, |_| PlaneLayout::new(self, settings).map(Arc::new));
         Option::clone(&laid)
     }
     /// The same if it is there already.
     pub fn known_plane_layout(&self, settings: UnwrapSettings) -> Option<Arc<PlaneLayout>> {
-        let key = [settings.amount.to_bits(), settings.smooth_px.to_bits()];
-        self.plane_layouts().known(&key).and_then(|laid| Option::clone(&laid))
+        self.plane_layouts().known(&settings.held(self.size()).key()).and_then(|laid| Option::clone(&laid))
     }
 }
 

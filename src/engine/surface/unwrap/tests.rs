@@ -146,6 +146,36 @@ fn the_same_bytes_come_from_any_number_of_threads() {
     assert!(solved(1) == solved(2));
 }
 #[test]
+fn what_is_given_up_ends_at_once_and_what_is_told_of_is_all_of_it() {
+    let surface = sphere(Size::new(80, 80), 35.0, 0.1);
+    let told = std::cell::Cell::new(0);
+    let count = || {
+        told.set(told.get() + 1);
+        told.get() < 3
+    };
+    assert!(surface.unwrapped_telling(WHOLE, &count).is_none() && !surface.is_unwrapped(WHOLE));
+    assert_eq!(told.get(), 3);
+    told.set(-100);
+    assert!(surface.unwrapped_telling(WHOLE, &count).is_some() && surface.is_unwrapped(WHOLE));
+    assert_eq!(told.get(), SOLVES as i32 - 100);
+    assert!(surface.unwrapped_telling(WHOLE, &|| false).is_some(), "it is there");
+}
+#[test]
+fn normals_of_eight_bits_and_no_depth_unwrap_a_sphere_as_well() {
+    let (size, whole) = (Size::new(160, 160), sphere(Size::new(160, 160), 70.0, 0.2));
+    let coarse = |v: f32| ((v * 0.5 + 0.5) * 255.0).round() / 255.0 * 2.0 - 1.0;
+    let normal = |x: usize, y: usize| vec3(whole.nbar(x, y).x, -whole.nbar(x, y).y, whole.normal(x, y).z);
+    let normals = Plane::from_fn(size, |x, y| normal(x, y).to_array().map(coarse).into());
+    let normals = Plane::from_fn(size, |x, y| Vec3::normalize_or(normals.at(x, y), Vec3::Z));
+    let inside = Plane::from_fn(size, |x, y| whole.coverage(x, y) > 0);
+    let depth = crate::surface::integrate::depth_from_normals(&normals, &inside).unwrap().depth;
+    let surface = Surface::new(Maps { normals, depth, coverage: whole.coverage_plane().clone() }).unwrap();
+    let [a, b] = [&whole, &surface].map(|surface| Unwrapping::new(surface, WHOLE));
+    let covered = (0..size.area()).map(|i| (i % 160, i / 160)).filter(|&(x, y)| whole.coverage(x, y) > 0);
+    let far = covered.map(|(x, y)| a.at(x, y).distance(b.at(x, y))).fold(0.0, f32::max);
+    assert!(far < 1.0, "{far} px from that of exact normals");
+}
+#[test]
 fn a_thousand_holes_and_crumbs_leave_it_finite_and_whole() {
     let size = Size::new(200, 160);
     let hole = |x: f32, y: f32| hash::unit(7, x as u32, y as u32) < 0.1;
