@@ -165,9 +165,9 @@ fn live_layers_go_along_as_their_picture_does() {
                 if start.surface.is_some() { "on a ball" } else { "flat" }
             );
         }
-        // The measure can fail: the same layers on another canvas.
+        // The measure can fail: the same layers on the turned canvas.
         let (_, turn) = exact().remove(0);
-        let stays = Document { size: turn.to, ..start.clone() };
+        let stays = Document { layers: start.layers.clone(), ..start.on_other_canvas(&turn).unwrap() };
         assert!(farthest(&picture(&stays), &expected(&before, &turn)) > 20);
     }
 }
