@@ -220,7 +220,7 @@ pub(super) fn placed(source: &SurfaceSource, surface: &Arc<Surface>, canvas: Siz
     let origin = surface.origin();
     let maps = origin.surface.size();
     let is_fitted = origin.map.is_same_on(&Surface::fit_map(maps, canvas), maps);
-    let matrix = if is_fitted { None } else { origin.map.coefficients() };
+    let matrix = if is_fitted { None } else { origin.map.told_coefficients() };
     SurfaceSource { matrix, ..source.clone() }
 }
 

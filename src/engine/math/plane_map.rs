@@ -99,6 +99,10 @@ impl PlaneMap {
         let [a, b, g, c, d, h, e, f, i] = self.forward.to_cols_array();
         (g == 0.0 && h == 0.0).then(|| [a, b, c, d, e, f].map(|v| v / i))
     }
+    /// The same to fifteen digits, which every reader of files gives back as the same numbers.
+    pub fn told_coefficients(&self) -> Option<[f64; 6]> {
+        Some(self.coefficients()?.map(told))
+    }
     pub fn as_affine(&self) -> Option<Affine2> {
         let c = self.coefficients()?.map(|v| v as f32);
         Some(Affine2::from_cols_array(&c))
@@ -194,6 +198,14 @@ pub fn orthogonal(matrix: Mat2) -> Mat2 {
     }
     let (sine, cosine) = (sine / length, cosine / length);
     Mat2::from_cols(vec2(cosine, sine), vec2(-sine, cosine)) * mirror
+}
+
+/// A number to fifteen digits, and no more than fifteen behind the point: with more, a quick reader of decimals may be
+/// off by the last bit.
+pub fn told(v: f64) -> f64 {
+    let text = if v.abs() < 1.0 { format!("{v:.15}") } else { format!("{v:.14e}") };
+    // −0 is none.
+    text.parse().unwrap_or(v) + 0.0
 }
 
 /// A point under a projective map, and the map's Jacobian there.

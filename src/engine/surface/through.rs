@@ -38,7 +38,7 @@ impl Surface {
         let fit = Self::fit_map(self.size(), canvas);
         // To the last digit of what files hold, so that the same surface is read back.
         let map =
-            map.map_or(Some(fit), |map| PlaneMap::affine(map.coefficients()?)).ok_or(SurfaceError::Perspective)?;
+            map.map_or(Some(fit), |map| PlaneMap::affine(map.told_coefficients()?)).ok_or(SurfaceError::Perspective)?;
         let by = map.pixel_move_on(if self.size().area() > canvas.area() { self.size() } else { canvas });
         if by == Some(PixelMove::NONE) && canvas == self.size() {
             return Ok(self.clone());

@@ -207,8 +207,10 @@ fn maps_that_were_turned_come_back_as_their_files_and_a_matrix() {
     assert!(!text_of(&written(&plain)).contains("\"matrix\""), "nothing of it where it is not used");
     let turn = PlaneMap::rotation(30.0, plain.size.center());
     let surface = plain.surface.as_ref().unwrap().through(plain.size, &turn).unwrap();
-    let source =
-        SurfaceSource { matrix: turn.coefficients(), ..SurfaceSource::clone(plain.surface_source.as_ref().unwrap()) };
+    let source = SurfaceSource {
+        matrix: turn.told_coefficients(),
+        ..SurfaceSource::clone(plain.surface_source.as_ref().unwrap())
+    };
     let document = Document { surface_source: Some(Arc::new(source)), surface: Some(surface.clone()), ..plain.clone() };
     let bytes = written(&document);
     let back = read_back(&bytes).document;

@@ -4,7 +4,8 @@
 use super::homes::{kept, transform_of};
 use super::{LayerMap, LayerTransform, TransformShape, seen};
 use crate::document::{Content, Document, Group, Layer, LayerId, Live, StrokeList};
-use crate::math::{Affine2, PlaneMap, Size, Vec2, vec2};
+use crate::math::plane_map::told;
+use crate::math::{Affine2, DVec2, PlaneMap, Size, Vec2, vec2};
 use crate::paint::{PlacedImage, Placement, StrokeHome};
 use crate::raster::Resampling;
 use std::sync::Arc;
@@ -91,13 +92,14 @@ impl LayerTransform {
 }
 
 fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<LayerTransform> {
-    if let Some(coefficients) = map.coefficients() {
+    if let Some(coefficients) = map.told_coefficients() {
         return Some(LayerTransform { shape: TransformShape::Matrix(coefficients), filter });
     }
     let (w, h) = (canvas.width as f32, canvas.height as f32);
     let corners = [vec2(0.0, 0.0), vec2(w, 0.0), vec2(w, h), vec2(0.0, h)].map(|corner| map.to_canvas(corner));
     let [Some(a), Some(b), Some(c), Some(d)] = corners else { return None };
-    let shape = TransformShape::Quad([a, b, c, d].map(|corner| corner.as_dvec2()));
+    let shape =
+        TransformShape::Quad([a, b, c, d].map(|corner| DVec2::new(told(corner.x.into()), told(corner.y.into()))));
     let transform = LayerTransform { shape, filter };
     transform.map(canvas).map(|_| transform)
 }
