@@ -51,7 +51,9 @@ fn a_pixel_of_the_canvas_is_one_of_the_screen_at_any_density() {
 fn every_command_stands_in_its_menu() {
     let mut harness = window();
     for (title, commands) in MainWindow::menus() {
-        press(&mut harness, title);
+        // A tool may have the name of a menu; the menus come first.
+        harness.get_all_by_label(title).next().unwrap().click();
+        steps(&mut harness);
         for name in commands {
             assert!(harness.query_all_by_label_contains(name).count() > 0, "{name} in {title}");
         }

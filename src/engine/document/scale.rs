@@ -120,7 +120,7 @@ impl CanvasScale {
         let length = per_axis.element_product().sqrt();
         let is_some = to != from && to.area() > 0;
         let (filter, selections) = (Some(filter), Mutex::default());
-        is_some.then(|| Self { per_axis, length, from, to, is_draft: false, filter, selections })
+        is_some.then_some(Self { per_axis, length, from, to, is_draft: false, filter, selections })
     }
     fn map(&self) -> PlaneMap {
         let side = |to: u32, from: u32| f64::from(to) / f64::from(from);

@@ -77,7 +77,7 @@ fn about(from: Size, to: Size) -> String {
     let cm = |px: u32| px as f32 / PRINT_PPI * 2.54;
     let millions = to.area() as f32 / 1e6;
     let (w, h) = (cm(to.width), cm(to.height));
-    format!("{from} → {to} px, {millions:.1} megapixels; {w:.1} × {h:.1} cm printed at {PRINT_PPI} px an inch")
+    format!("{from} to {to} px, {millions:.1} megapixels; {w:.1} × {h:.1} cm printed at {PRINT_PPI} px an inch")
 }
 
 /// Borders that move.

@@ -59,7 +59,7 @@ impl ShapeDialog {
         let Some((index, tab)) = tab.map(|index| (index, &session.open_documents[index])) else {
             return DialogAnswer::Close;
         };
-        ui.heading(if self.is_first { "A drawing without a shape" } else { "Give it a shape" });
+        ui.heading(if self.is_first { "A drawing without a shape" } else { "A shape for this drawing" });
         if let Some(why) = self.refusal() {
             ui.label(why);
             return super::close(ui);

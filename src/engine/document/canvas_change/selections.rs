@@ -16,9 +16,12 @@ use std::sync::Arc;
 /// Selections and what became of them.
 pub struct CarriedSelections<'c> {
     change: &'c CanvasChange,
-    /// By the addresses of the old ones, which are kept so that no other takes them.
-    known: RefCell<HashMap<*const Selection, (Arc<Selection>, Arc<Selection>)>>,
+    /// By the addresses of the old ones.
+    known: RefCell<HashMap<*const Selection, Carried>>,
 }
+
+/// A selection with what became of it: the old one is kept so that no other takes its address.
+type Carried = (Arc<Selection>, Arc<Selection>);
 
 impl<'c> CarriedSelections<'c> {
     pub fn new(change: &'c CanvasChange) -> Self {

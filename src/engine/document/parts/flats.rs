@@ -56,9 +56,8 @@ pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
 
 /// The places of areas in a list, those in front last.
 ///
-/// Of two that share a border the one whose side of it bulges interrupts the outline of the other: around the border it
-/// has the smaller part of the neighbourhood. The clearest decisions count most: the farthest is always the one that
-/// least stands in front of what is left.
+/// What each pixel of a common border says of the two areas is added up ([`in_front_by`]). The clearest decisions count
+/// most: the farthest is always the one that least stands in front of what is left.
 pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     let n = areas.len();
     let Some(size) = areas.first().map(|area| area.size()) else { return Vec::new() };
@@ -70,12 +69,15 @@ pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     let mut in_front = vec![vec![0.0f64; n]; n];
     for (x, y) in (0..owner.height()).flat_map(|y| (0..owner.width()).map(move |x| (x, y))) {
         for (dx, dy) in [(1, 0), (0, 1), (2, 0), (0, 2)] {
-            let (a, Some(b)) = (owner.at(x, y), owner.get((x + dx) as i32, (y + dy) as i32)) else { continue };
+            let (a, beside) = (owner.at(x, y), (x + dx, y + dy));
+            let Some(b) = owner.get(beside.0 as i32, beside.1 as i32) else { continue };
             if a != b && a != u32::MAX && b != u32::MAX {
                 let (a, b) = (a as usize, b as usize);
-                let bulge = f64::from(shares[b].at(x, y) - shares[a].at(x, y));
-                in_front[a][b] += bulge;
-                in_front[b][a] -= bulge;
+                // Seen from the border itself: either pixel lies on one side of it.
+                let share = |of: usize| 0.5 * (shares[of].at(x, y) + shares[of].at(beside.0, beside.1));
+                let clearly = f64::from(in_front_by(share(a), share(b)));
+                in_front[a][b] += clearly;
+                in_front[b][a] -= clearly;
             }
         }
     }
@@ -87,6 +89,24 @@ pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
         order.push(left.remove(first));
     }
     order
+}
+
+/// How clearly an area lies in front of another at a pixel of their border, by what shares of the neighbourhood they
+/// have; below 0 it lies behind.
+///
+/// * Between the two alone the one whose side bulges lies in front: it has the smaller share.
+/// * Where a third meets them, the outline of the one in front goes on, so that it has half of the neighbourhood; the
+///   others end at it. If that is the third, nothing is told of the two.
+fn in_front_by(own: f32, other: f32) -> f32 {
+    const ALONE: f32 = 0.98;
+    const HALF: std::ops::RangeInclusive<f32> = 0.4..=0.6;
+    if own + other >= ALONE {
+        other - own
+    } else if HALF.contains(&own.max(other)) {
+        own - other
+    } else {
+        0.0
+    }
 }
 
 /// The share of an area in a square around each pixel, `[0, 1]`: running sums along rows, then columns.
@@ -107,4 +127,31 @@ fn share_around(area: &Plane<u8>, radius: usize) -> Plane<f32> {
         window(&|y| rows.at(x, y), h).into_iter().enumerate().for_each(|(y, v)| out.set(x, y, v));
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, vec2};
+
+    /// Discs (middle and radius), the last in front of the others, as the areas that are seen of each.
+    fn seen(discs: &[([f32; 2], f32)], scale: f32) -> Vec<Plane<u8>> {
+        let size = Size::new((320.0 * scale) as u32, (400.0 * scale) as u32);
+        let holds = |disc: &([f32; 2], f32), x: usize, y: usize| {
+            vec2(x as f32 + 0.5, y as f32 + 0.5).distance(vec2(disc.0[0], disc.0[1]) * scale) < disc.1 * scale
+        };
+        let front = |x, y| discs.iter().rposition(|disc| holds(disc, x, y));
+        (0..discs.len()).map(|i| Plane::from_fn(size, |x, y| if front(x, y) == Some(i) { 255 } else { 0 })).collect()
+    }
+
+    #[test]
+    fn who_interrupts_the_outline_of_another_lies_in_front() {
+        let (head, body, hand) = (([160.0, 120.0], 80.0), ([160.0, 260.0], 110.0), ([250.0, 200.0], 30.0));
+        for scale in [0.5, 1.0, 2.0] {
+            assert_eq!(farthest_first(&seen(&[body, head], scale)), [0, 1], "the head over the body, {scale}");
+            assert_eq!(farthest_first(&seen(&[head, body], scale)), [0, 1], "the body over the head, {scale}");
+            assert_eq!(farthest_first(&seen(&[body, head, hand], scale)), [0, 1, 2], "a hand over both, {scale}");
+            assert_eq!(farthest_first(&seen(&[head, body, hand], scale)), [0, 1, 2], "and the other way, {scale}");
+        }
+    }
 }

@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub enum OutlineKey {
     /// With what takes it to the canvas, or to the frame of the part, if it is carried by that.
-    Layer(Arc<Layer>, Option<FlatColor>, LayerMap),
+    Layer(Arc<Layer>, Option<FlatColor>, Box<LayerMap>),
     Coverage(Arc<Plane<u8>>),
     Selection(Arc<Selection>),
     /// A selection that follows the maps.
@@ -72,7 +72,7 @@ impl OutlineKey {
                 let is_home = home.zip(body).is_some_and(|(home, body)| home.id == body.id);
                 let map = if is_home { map.at_home() } else { map };
                 let color = color.map(|color| FlatColor { color, over: document.colors_over(part) });
-                Self::Layer(layer.clone(), color, map)
+                Self::Layer(layer.clone(), color, Box::new(map))
             }
             OutlineSource::File(CoverageFile { coverage, .. }) => Self::Coverage(coverage.clone()),
             OutlineSource::Selection(name) => {

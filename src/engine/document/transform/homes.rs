@@ -64,8 +64,8 @@ impl Document {
             Some(())
         })
     }
-    /// With everything on the parts that it is on in another document, showing where it shows. What cannot be said stays
-    /// on what is around it.
+    /// With everything on the parts that it is on in another document, showing where it shows. What cannot be said
+    /// stays on what is around it.
     pub(in crate::document) fn with_homes_of(&self, other: &Document) -> Document {
         let mut next = self.clone();
         for (_, layer) in other.walk() {

@@ -111,8 +111,11 @@ impl DabRules {
         }
     }
     /// How long a px of a way is on the surface, where it is measured there: |S d| of MATH 8, between pixels; 1 off it.
+    ///
+    /// * `at`: counted from where the stroke begins, as all places here.
     pub fn stretch(&self, at: Vec2, way: Vec2) -> f64 {
         let Some((surface, amount)) = &self.measured else { return 1.0 };
+        let at = at + self.origin.unwrap_or_default();
         if !self.scene.size.rect().contains(at.x.floor() as i32, at.y.floor() as i32) {
             return 1.0;
         }
@@ -127,7 +130,8 @@ impl DabRules {
     pub fn parts(&self, from: Vec2, to: Vec2) -> usize {
         /// A piece that leaps over more is measured coarsely.
         const MOST_PARTS: f32 = 4096.0;
-        let (low, high) = (from.min(to).floor(), from.max(to).floor());
+        let origin = self.origin.unwrap_or_default();
+        let (low, high) = ((from.min(to) + origin).floor(), (from.max(to) + origin).floor());
         let over = Rect::new(low.x as i32, low.y as i32, high.x as i32 + 1, high.y as i32 + 1);
         if self.measured.is_none() || over.intersect(self.scene.size.rect()).is_empty() {
             return 1;

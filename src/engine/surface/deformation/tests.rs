@@ -303,7 +303,8 @@ fn counted_from_another_corner_a_moved_surface_gives_the_same_bits() {
             Plane::from_fn(size, |x, y| (x as f32 - shift.0 as f32) * 0.01 + (y as f32 - shift.1 as f32) * 0.004);
         let mut depth = depth.map(|v| v.max(0.0).min(1.0));
         // The range stays the same.
-        (depth.set(0, 0, 0.0), depth.set(89, 69, 1.0));
+        depth.set(0, 0, 0.0);
+        depth.set(89, 69, 1.0);
         Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
     };
     let bend = |shift: (i32, i32)| {

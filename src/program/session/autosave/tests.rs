@@ -84,6 +84,7 @@ fn what_a_file_holds_is_offered_only_if_the_file_is_another_now() {
     let file = folder.path().join("a.ora");
     let logs = folder.path().join("logs");
     for is_changed in [false, true] {
+        let _ = std::fs::remove_file(&file);
         let mut session = painted(&logs);
         Action::File(FileAction::Save { file: file.clone() }).apply(&mut session).unwrap();
         session.keep();
