@@ -73,7 +73,8 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     // In the middle of the chosen part stands the handle of its height.
     drag(&mut harness, head, down);
     let part = |harness: &Story, id: &str| parts(harness).into_iter().find(|part| part.id == id).unwrap();
-    assert!(puff(&part(&harness, &chosen)) < 0.5, "dragged down it is flatter");
+    let flatter = part(&harness, &chosen);
+    assert!(puff(&flatter) < 0.5, "dragged down it is flatter: {flatter:?}");
 
     key(&mut harness, Modifiers::NONE, Key::N);
     let at = seen(&harness, 150.0, 300.0);

@@ -11,8 +11,8 @@ use crate::picture;
 /// The default print resolution.
 const DOTS_PER_INCH: u32 = 72;
 
-/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` stand beside it as channels, `ours`
-/// is our own resource.
+/// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` stand beside it as channels,
+/// `ours` is our own resource.
 pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], selections: &[NamedSelection], ours: &[u8]) -> Vec<u8> {
     let mut out = MAGIC.to_vec();
     short(&mut out, 1);

@@ -92,7 +92,8 @@ mod tests {
     #[test]
     fn choices_are_written_as_they_were_read_and_what_is_no_setting_is_refused() {
         let text = json!({
-            "falloff": "peaked", "spread": "cloud", "spacing_on": "surface", "offset": { "amount": 0.5, "from": "stroke", "alternates": true },
+            "falloff": "peaked", "spread": "cloud", "spacing_on": "surface",
+            "offset": { "amount": 0.5, "from": "stroke", "alternates": true },
         });
         assert_eq!(written(&read_text(&text).unwrap()), text);
         let said = |text: Value| read_text(&text).err().map(|error| error.to_string()).unwrap_or_default();

@@ -24,8 +24,8 @@ pub fn works(tool: ToolKind) -> bool {
     matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | SurfaceWand | Wand | Zoom)
 }
 
-/// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted with the operator that
-/// unwrapped it, and cut where they leave a piece. All of them are one step.
+/// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted with the operator
+/// that unwrapped it, and cut where they leave a piece. All of them are one step.
 ///
 /// `pen` is on the sheet; the context's points are on the canvas.
 pub fn paint(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, start: StrokeStart) -> GestureStart {

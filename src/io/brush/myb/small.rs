@@ -52,7 +52,7 @@ impl DabSmoothing {
         }
         let longer = LONGER_PX * (hard - FAINTEST).max(0.0) * wide / (wide + SPECK_PX);
         let covered = (wide + longer) * (wide + longer * self.elongation) * hard.max(0.0);
-        // Never smaller: where several inputs drive the radius, what one of them would take away others cannot give back.
+        // Never smaller: what one of several inputs would take away from the radius, others cannot give back.
         (covered / self.here).sqrt().max(radius_px)
     }
     /// Radius and hardness of a dab whose rim is as wide as it must be; the radius at which it covers one half stays.
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn a_small_dab_covers_what_mypaint_makes_of_it() {
-        // Radius, hardness, elongation; covered over what the profile itself covers, the mean of libmypaint's 64 places.
+        // Radius, hardness, elongation; coverage over the profile's own, the mean of libmypaint's 64 places.
         for (radius, hardness, elongation, times) in [
             (0.39, 1.0, 1.0, 3.06),
             (0.95, 1.0, 1.0, 1.81),
