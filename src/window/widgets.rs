@@ -3,7 +3,9 @@
 
 use super::canvas::color32;
 use crate::math::srgb::Color;
-use eframe::egui::{self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, Ui, vec2};
+use eframe::egui::{
+    self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, SliderClamping, Ui, vec2,
+};
 use std::ops::RangeInclusive;
 
 /// A new value from a widget: a preview, or final.
@@ -69,6 +71,8 @@ impl<'a> NumberField<'a> {
             .suffix(self.suffix)
             .fixed_decimals(self.decimals)
             .logarithmic(self.logarithmic)
+            // A value that it only shows is not rounded to the digits that it shows: that would be an edit of its own.
+            .clamping(SliderClamping::Edits)
             .trailing_fill(true)
     }
     /// A slider in a row of its own, the name to its left.
