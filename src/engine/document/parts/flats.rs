@@ -84,8 +84,9 @@ pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     let mut left: Vec<usize> = (0..n).collect();
     let mut order = Vec::with_capacity(n);
     while !left.is_empty() {
-        let score = |a: usize| left.iter().map(|b| in_front[a][*b]).sum::<f64>();
-        let first = (0..left.len()).min_by(|a, b| score(left[*a]).total_cmp(&score(left[*b]))).unwrap_or(0);
+        // What lies over it says nothing of what it lies over itself.
+        let over = |a: usize| left.iter().map(|b| in_front[a][*b].max(0.0)).sum::<f64>();
+        let first = (0..left.len()).min_by(|a, b| over(left[*a]).total_cmp(&over(left[*b]))).unwrap_or(0);
         order.push(left.remove(first));
     }
     order

@@ -67,6 +67,8 @@ pub fn shaped(document: &Document, layer: LayerId, inflation: Inflation, flats: 
     let place =
         next.place_of(layer).map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
     let next = next.with_inserted(base, place).ok_or("There is no such layer.")?.with_parts(list);
+    // A drawing that is one part goes where the part goes; of several parts each would take a piece of it.
+    let next = if flats { next } else { next.with_layer_on(layer, Some(&part)).unwrap_or(next) };
     match next.surface {
         Some(_) => Ok(FirstShape { document: next, part, base: id }),
         None => Err("Nothing in this layer is opaque enough to have a shape."),

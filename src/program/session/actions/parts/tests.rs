@@ -65,6 +65,22 @@ fn a_drawing_gets_a_shape_and_a_base_that_is_lit_in_one_step() {
     assert!(shown(&session).surface.is_none() && shown(&session).layers.len() == 1);
 }
 #[test]
+fn a_drawing_that_is_one_part_goes_where_the_part_goes() {
+    let mut session = opened(snowman(false));
+    tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"pillow","flats":false}"#);
+    let before = flatten(shown(&session), &Progress::default()).unwrap();
+    let moved = r#"{"in":"part","do":"set","part":{"id":"part-1","name":"snowman","kind":"inflate","outline":
+        {"layer":"snowman"},"matrix":[1,0,0,1,6,-4]},"done":true}"#;
+    tell(&mut session, &moved.replace('\n', " "));
+    assert_eq!(session.notes, Vec::<String>::new());
+    let after = flatten(shown(&session), &Progress::default()).unwrap();
+    for (x, y) in [(48, 36), (40, 30), (60, 90), (30, 100), (48, 84)] {
+        let (a, b) = (before.pixel(x, y), after.pixel(x + 6, y - 4));
+        assert!(a[3] == 255 && a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 2), "{x} {y}: {a:?} {b:?}");
+    }
+    assert_eq!(shown(&session).layers[0].on.as_ref().map(|home| &*home.part), Some("part-1"));
+}
+#[test]
 fn each_flat_colour_becomes_a_part() {
     let mut session = opened(snowman(false));
     tell(&mut session, r#"{"in":"part","do":"shape","layer":"0","preset":"tube","flats":true}"#);
