@@ -10,12 +10,21 @@ use crate::tools::{ToolKind, ToolRow};
 use crate::widgets::swatch;
 use eframe::egui::{Ui, vec2};
 
+/// Sides of a tool's button, points.
+const LARGEST_PT: f32 = 32.0;
+const SMALLEST_PT: f32 = 20.0;
+/// What the colours beneath the tools take, points.
+const COLOURS_PT: f32 = 124.0;
+
 pub fn show(ui: &mut Ui, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
     ui.vertical_centered(|ui| {
         ui.add_space(2.0);
         const TOOLS: &[ToolRow] = &ToolKind::ALL;
+        // In a low window they are smaller, so that all of them and the colours stay in sight.
+        let each = (ui.clip_rect().height() - COLOURS_PT) / TOOLS.len() as f32 - ui.spacing().item_spacing.y;
+        let side = each.max(SMALLEST_PT).min(LARGEST_PT);
         for row in TOOLS {
-            let response = sized_button(ui, Icon::Tool(row.kind), row.label, session.tool == row.kind, 32.0);
+            let response = sized_button(ui, Icon::Tool(row.kind), row.label, session.tool == row.kind, side);
             let keys = keymap
                 .of(KeyTarget::Tool(row))
                 .first()
