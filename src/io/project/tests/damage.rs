@@ -152,7 +152,7 @@ mod generated {
             for (x, y) in (0..32).flat_map(|y| (0..32).map(move |x| (x, y))) {
                 let (a, b) = (ours.pixel(x, y), theirs.pixel(x, y));
                 let off = (0..4).map(|c| a[c].abs_diff(b[c])).max().unwrap();
-                // Each layer's picture is rounded to bytes once more; hue and its like make more of that in faint pixels.
+                // Each layer's picture is rounded to bytes once more; of faint pixels hue and its like make more.
                 prop_assert!(off <= 8, "at {x}, {y}: {a:?} is {b:?} elsewhere");
             }
         }
