@@ -53,7 +53,7 @@ pub fn flatten_layers(document: &Document, ids: &[LayerId], progress: &Progress)
     flatten(&document.with_only(ids)?, progress)
 }
 
-/// The same with pixels on the surface's rim wholly covered: what a mask of [`Surface::shares`] around it cuts to the
+/// The same with pixels on the surface's rim wholly covered: what a mask of `Surface::shares` around it cuts to the
 /// picture that there is.
 pub fn flatten_whole(document: &Document, ids: &[LayerId], progress: &Progress) -> Option<TileGrid> {
     let document = document.with_only(ids)?;

@@ -56,7 +56,7 @@ pub fn colors_of(tiles: &TileGrid, rect: Rect) -> Vec<Color> {
 
 /// The places of areas in a list, those in front last.
 ///
-/// What each pixel of a common border says of the two areas is added up ([`in_front_by`]). The clearest decisions count
+/// What each pixel of a common border says of the two areas is added up (`in_front_by`). The clearest decisions count
 /// most: the farthest is always the one that least stands in front of what is left.
 pub fn farthest_first(areas: &[Plane<u8>]) -> Vec<usize> {
     let n = areas.len();
