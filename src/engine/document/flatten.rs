@@ -76,7 +76,7 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
     let shown = layers.iter().map(|layer| {
         let mut next = Layer::clone(layer);
         let is_chosen = ids.contains(&layer.id);
-        next.clip_below &= is_chosen && base_is_shown;
+        next.clip_below &= base_is_shown;
         if !layer.clip_below && !layer.content.shapes() {
             base_is_shown = is_chosen;
         }

@@ -195,6 +195,15 @@ fn one_layer_can_be_flattened_alone() {
     assert!(flatten_layer(&doc, LayerId::fresh(), &Progress::default()).is_none());
 }
 #[test]
+fn a_clipped_layer_left_out_does_not_come_between_the_base_and_what_is_clipped_to_it() {
+    let clipped = |layer| with(layer, |l| l.clip_below = true);
+    let hidden = with(clipped(fill("#00ff00")), |l| l.visible = false);
+    let document = document(vec![left_of(30, "#ff0000"), hidden, clipped(fill("#0000ff"))]);
+    let chosen = [document.layers[0].id, document.layers[2].id];
+    let alone = flatten_layers(&document, &chosen, &Progress::default()).unwrap();
+    assert_eq!((alone.pixel(10, 10), alone.pixel(40, 10)), ([0, 0, 255, 255], [0; 4]));
+}
+#[test]
 fn what_an_opaque_layer_hides_is_never_asked_for() {
     let prepared = PreparedDocument::new(
         &document(vec![fill("#00ff00"), fill("#ff0000"), left_of(10, "#0000ff")]),
