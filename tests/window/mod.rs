@@ -13,6 +13,7 @@ mod replayed;
 mod selecting;
 mod several;
 mod shape;
+mod transforming;
 mod unwrapped;
 
 use eframe::egui::{Key, Modifiers, Vec2};

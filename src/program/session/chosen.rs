@@ -3,6 +3,8 @@
 
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
+use crate::math::Vec2;
+use crate::tools::transform::{KeptFrame, TransformFrame};
 
 /// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone lets go
 /// of the others.
@@ -11,6 +13,8 @@ pub struct ChosenLayers {
     ids: Vec<LayerId>,
     /// Where a range begins that Shift extends.
     anchor: Option<LayerId>,
+    /// What the transform tool keeps of them.
+    frame: KeptFrame,
 }
 
 impl OpenDocument {
@@ -32,6 +36,27 @@ impl OpenDocument {
         let also = |primary| self.chosen_layers.ids.contains(&primary) && self.chosen_layers.ids.contains(&layer);
         self.selected == Some(layer) || self.selected.is_some_and(also)
     }
+    /// The frame of the transform tool around them, as they are shown.
+    pub fn frame(&self) -> Option<TransformFrame> {
+        self.chosen_layers.frame.around(self.shown(), &self.outermost_chosen())
+    }
+    /// The same as the last step left it.
+    pub fn frame_before(&self) -> Option<TransformFrame> {
+        self.chosen_layers.frame.around(self.document(), &self.outermost_chosen())
+    }
+    /// The frame around the chosen layers turns with them from now on.
+    pub(super) fn hold_frame(&mut self) {
+        let (document, layers) = (self.document().clone(), self.outermost_chosen());
+        self.chosen_layers.frame.hold(&document, &layers);
+    }
+    /// The frame around the chosen layers is turned about this point from now on, by shares of its sides.
+    pub(super) fn set_pivot(&mut self, share: Vec2) {
+        let (document, layers) = (self.document().clone(), self.outermost_chosen());
+        self.chosen_layers.frame.set_pivot(&document, &layers, share);
+    }
+    pub(super) fn kept_frame(&self) -> &KeptFrame {
+        &self.chosen_layers.frame
+    }
     /// Whether more than one layer is chosen.
     pub fn has_several(&self) -> bool {
         self.chosen_layers().len() > 1
@@ -44,7 +69,8 @@ impl OpenDocument {
     pub fn choose_layers(&mut self, ids: Vec<LayerId>) {
         if let Some(primary) = ids.last().copied() {
             self.selected = Some(primary);
-            self.chosen_layers = ChosenLayers { ids, anchor: Some(primary) };
+            let frame = std::mem::take(&mut self.chosen_layers.frame);
+            self.chosen_layers = ChosenLayers { ids, anchor: Some(primary), frame };
         }
     }
     /// The same, with the beginning of the range to extend.

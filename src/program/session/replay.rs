@@ -37,6 +37,25 @@ impl ReplayValue for f32 {
     }
 }
 
+impl ReplayValue for f64 {
+    fn written(&self) -> Value {
+        json!(self)
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        value.as_f64().filter(|v| v.is_finite()).ok_or_else(|| "must be a number".into())
+    }
+}
+
+impl<const N: usize> ReplayValue for [f64; N] {
+    fn written(&self) -> Value {
+        json!(self.as_slice())
+    }
+    fn read(value: &Value) -> std::result::Result<Self, String> {
+        let wrong = |_| format!("must be {N} numbers");
+        Vec::<f64>::read(value)?.try_into().map_err(wrong)
+    }
+}
+
 /// Whole numbers.
 macro_rules! whole {
     ($($ty:ty),+) => { $(impl ReplayValue for $ty {

@@ -4,6 +4,7 @@
 use super::crop::CropAspect;
 use super::snap::{SnapTargets, ViewAids};
 use super::symmetry::SymmetryAxes;
+use super::transform::KeptFrame;
 use super::{SelectSettings, ShapeSettings, Symmetry};
 use crate::document::{Document, LayerId};
 use crate::math::{Rect, Vec2, srgb::Color};
@@ -42,6 +43,8 @@ pub struct ToolContext<'a> {
     /// The frame of the crop tool, and the aspect that it keeps.
     pub crop: Option<Rect>,
     pub crop_aspect: CropAspect,
+    /// What the transform tool keeps of the chosen layers.
+    pub frame: &'a KeptFrame,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
     /// Where the axes of symmetry stand.
@@ -75,6 +78,7 @@ impl<'a> ToolContext<'a> {
             lasso: &[],
             crop: None,
             crop_aspect: CropAspect::Free,
+            frame: KeptFrame::nothing(),
             strokes: &[],
             axes: SymmetryAxes::default(),
             snap: SnapTargets::none(),
@@ -175,6 +179,7 @@ impl KeptContext {
             // Only strokes begin with a later sample.
             crop: None,
             crop_aspect: CropAspect::Free,
+            frame: KeptFrame::nothing(),
             strokes: &self.strokes,
             snap: &self.snap,
             aids,

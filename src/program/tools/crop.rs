@@ -125,7 +125,7 @@ impl CropGesture {
         match self.handle {
             FrameHandle::Corner(corner) => between(corners(frame)[(corner + 2) % 4], at, ratio),
             FrameHandle::Edge(side) => with_side(frame, side, at, ratio),
-            FrameHandle::Inside | FrameHandle::Outside => {
+            FrameHandle::Inside | FrameHandle::Outside | FrameHandle::Pivot => {
                 let by = place(at - self.from);
                 Rect::new(frame.x0 + by.0, frame.y0 + by.1, frame.x1 + by.0, frame.y1 + by.1)
             }

@@ -315,6 +315,8 @@ pub enum Outcome {
     CloneFrom(Vec2),
     /// Nothing was started, for a reason to show.
     Refused(&'static str),
+    /// The frame of the chosen layers is turned about this point, by shares of its sides, from now on.
+    Pivot(Vec2),
     /// The axes of symmetry stand here from now on.
     Axes(symmetry::SymmetryAxes),
     /// A colour was picked.

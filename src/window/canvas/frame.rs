@@ -3,7 +3,6 @@
 
 use crate::math::Vec2;
 use crate::session::Session;
-use crate::tools::transform::TransformFrame;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 
 /// Side of a handle, points.
@@ -12,7 +11,7 @@ const HANDLE_PT: f32 = 9.0;
 /// Draws the frame around the chosen layers.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(tab) = session.active() else { return };
-    let Some(frame) = TransformFrame::around(tab.shown(), &tab.outermost_chosen()) else { return };
+    let Some(frame) = tab.frame() else { return };
     let corners = frame.corners.map(to_screen);
     let dark = Stroke::new(3.0, Color32::from_black_alpha(110));
     let light = Stroke::new(1.2, Color32::from_rgb(120, 200, 255));
@@ -21,7 +20,10 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
     }
     let pivot = to_screen(frame.pivot());
     for look in [dark, light] {
-        painter.circle_stroke(pivot, 4.0, look);
+        painter.circle_stroke(pivot, 5.0, look);
+        for arm in [vec2(8.0, 0.0), vec2(0.0, 8.0)] {
+            painter.line_segment([pivot - arm, pivot + arm], look);
+        }
     }
     let edges = (0..4).map(|i| to_screen(frame.edge(i)));
     for at in corners.into_iter().chain(edges) {

@@ -40,6 +40,9 @@ fn bending(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.tool.shapes() {
         return drop(ui.weak("The shape is what everything bends over: parts, nearest first, are in the panel Shape"));
     }
+    if session.tool == ToolKind::Transform {
+        return transform::ways(ui, session, requests);
+    }
     if session.tool == ToolKind::Crop {
         return drop(ui.weak("Everything goes along with the canvas; paint beyond it is kept"));
     }

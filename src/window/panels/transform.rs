@@ -1,57 +1,112 @@
-//! The options of the transform tool: its commands as buttons, and how pixels are sampled.
+//! The options of the transform tool: what it does at once, how pixels are sampled, and its frame in numbers.
 //! Floor 7.
 
-use crate::commands::TRANSFORMS;
-use crate::document::{LayerLock, LayerTransform};
+use crate::commands::{MenuCommand, TRANSFORMS};
+use crate::document::LayerLock;
+use crate::math::Vec2;
 use crate::raster::Resampling;
 use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, Property, Session};
-use crate::tools::transform::{FrameNumbers, TransformFrame};
+use crate::tools::transform::{FrameNumbers, PIVOTS};
+use crate::widgets::{choice, named};
 use eframe::egui::{Button, DragValue, Ui};
 use std::ops::RangeInclusive;
 
-pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    for command in TRANSFORMS.iter().filter(|command| !command.is_line()) {
+/// The upper row: commands, sampling, pivot.
+pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let mut commands = TRANSFORMS.split(MenuCommand::is_line);
+    for command in commands.next().unwrap_or_default() {
         let button = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
         if button.clicked() {
             (command.run)(session, requests);
         }
     }
-    numbers(ui, session, requests);
-    let Some((transform, layer)) = session.layer().and_then(|layer| layer.transform).zip(session.layer_path()) else {
-        return;
-    };
+    ui.menu_button("Mirror and turn", |ui| {
+        for command in commands.flatten() {
+            let entry = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
+            if entry.clicked() {
+                (command.run)(session, requests);
+                ui.close();
+            }
+        }
+    });
     ui.add_space(6.0);
-    for (filter, label, hint) in FILTERS {
-        let is_on = transform.filter == filter;
-        if ui.add(Button::selectable(is_on, label)).on_hover_text(hint).clicked() && !is_on {
-            let to = Property::Transformed { transform: Some(LayerTransform { filter, ..transform }) };
-            requests.act(Action::Layer(LayerAction::Set { layer: layer.clone().into(), to, done: true }));
+    let Some(tab) = session.active() else { return };
+    let chosen = tab.outermost_chosen();
+    let transforms = chosen.iter().filter_map(|id| tab.document().layer(*id)?.transform);
+    if let Some(transform) = transforms.last() {
+        ui.label("Pixels");
+        if let Some(filter) = choice(ui, "How pixels are sampled", transform.filter, &FILTERS) {
+            let to = Property::Sampled { filter };
+            requests.act(Action::Layer(LayerAction::Set { layer: session.layer_paths(), to, done: true }));
+        }
+    }
+    if let Some(frame) = tab.frame() {
+        ui.label("Pivot");
+        let choices = PIVOTS.map(|(share, name)| (Some(share), name));
+        let known = PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == frame.pivot_share);
+        let mut all: Vec<(Option<Vec2>, &str)> = choices.into();
+        all.extend(known.is_none().then_some((None, "set by hand")));
+        if let Some(Some(at)) = choice(ui, "Pivot", known, &all) {
+            requests.act(Action::Layer(LayerAction::Pivot { at }));
         }
     }
 }
 
-/// The frame in numbers; sides and angles change about its middle.
-fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    let is_one = session.active().is_some_and(|tab| !tab.has_several());
-    let Some((document, layer)) = session.shown().zip(session.layer()).filter(|_| is_one) else { return };
-    let frame = TransformFrame::of(document, layer.id);
-    let Some(was) = frame.as_ref().and_then(FrameNumbers::of).filter(|_| layer.lock != LayerLock::All) else { return };
+/// The lower row: the frame in numbers; sides and angles change about the pivot.
+pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let Some(tab) = session.active() else { return };
+    let locked = |id| tab.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
+    let chosen = tab.outermost_chosen();
+    if chosen.is_empty() {
+        return drop(ui.weak("Choose layers to move, scale and turn them"));
+    }
+    if chosen.iter().any(|id| locked(*id)) {
+        return drop(ui.weak("What is locked cannot be transformed"));
+    }
+    let (Some(frame), Some(before)) = (tab.frame(), tab.frame_before()) else {
+        return drop(ui.weak("There is nothing on this layer to transform"));
+    };
+    let (Some(was), Some(before)) = (FrameNumbers::of(&frame), FrameNumbers::of(&before)) else {
+        return drop(ui.weak("In perspective: drag its corners with Ctrl, or remove the transform for numbers"));
+    };
+    let Some(edited) = numbers(ui, was) else { return };
+    let to = if edited.keeps_pivot { edited.to.about(frame.pivot_share, &was) } else { edited.to };
+    let layer = session.layer_paths();
+    if let Some(by) = to.map_from(&before) {
+        requests.act(Action::Layer(LayerAction::TakeAlong { layer, by, done: edited.done }));
+    }
+}
+
+/// Numbers that were typed or dragged.
+struct EditedNumbers {
+    to: FrameNumbers,
+    /// They change about the pivot.
+    keeps_pivot: bool,
+    done: bool,
+}
+
+fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
     let mut to = was;
     let (mut moved, mut changed, mut done) = (false, false, false);
     let mut number = |ui: &mut Ui, name: &str, value: &mut f64, range: RangeInclusive<f64>, suffix: &str| {
-        let label = ui.label(name);
+        // The share of a side stands after it, without a name of its own to be read.
+        let is_share = suffix == " %";
+        if !is_share {
+            ui.label(name);
+        }
         let field = DragValue::new(value).range(range).max_decimals(2).speed(0.5).suffix(suffix);
-        let response = ui.add(field).labelled_by(label.id);
+        let response = ui.add(field);
+        named(&response, name);
         done |= response.changed() && !response.dragged() || response.drag_stopped();
         response.changed() || response.drag_stopped()
     };
-    ui.add_space(6.0);
     moved |= number(ui, "X", &mut to.at.x, FrameNumbers::SIDE, " px");
     moved |= number(ui, "Y", &mut to.at.y, FrameNumbers::SIDE, " px");
-    changed |= number(ui, "Width", &mut to.width, 0.01..=*FrameNumbers::SIDE.end(), " px");
+    ui.add_space(4.0);
     let mut percent = [100.0 * to.width / to.own.x, 100.0 * to.height / to.own.y];
+    changed |= number(ui, "Width", &mut to.width, 0.01..=*FrameNumbers::SIDE.end(), " px");
     if number(ui, "Width in %", &mut percent[0], 0.01..=10_000.0, " %") {
         (to.width, changed) = (percent[0] * to.own.x / 100.0, true);
     }
@@ -59,20 +114,14 @@ fn numbers(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if number(ui, "Height in %", &mut percent[1], -10_000.0..=10_000.0, " %") {
         (to.height, changed) = (percent[1] * to.own.y / 100.0, true);
     }
+    ui.add_space(4.0);
     changed |= number(ui, "Angle", &mut to.angle, -360.0..=360.0, "°");
     changed |= number(ui, "Skew", &mut to.skew, FrameNumbers::SKEW, "°");
-    if !(moved || changed) {
-        return;
-    }
-    let to = if changed { to.about_middle_of(&was) } else { to };
-    if let (Some(transform), Some(layer)) = (to.transform(document, layer.id), session.layer_path()) {
-        let to = Property::Transformed { transform };
-        requests.act(Action::Layer(LayerAction::Set { layer: layer.into(), to, done }));
-    }
+    (moved || changed).then_some(EditedNumbers { to, keeps_pivot: changed, done })
 }
 
-const FILTERS: [(Resampling, &str, &str); 3] = [
-    (Resampling::Smooth, "Smooth", "Sampled without rings, a little soft"),
-    (Resampling::Sharp, "Sharp", "Sampled sharp, with faint rings at hard edges"),
-    (Resampling::Nearest, "Pixels", "The nearest pixel, for pixel art"),
+const FILTERS: [(Resampling, &str); 3] = [
+    (Resampling::Smooth, "smooth, a little soft"),
+    (Resampling::Sharp, "sharp, with faint rings"),
+    (Resampling::Nearest, "nearest, for pixel art"),
 ];

@@ -6,7 +6,7 @@ use super::layer_steps::{cleared, duplicated, kept, moves, ungrouped};
 pub use super::new_layers::NewLayer;
 use super::new_layers::{made, model_name, selecting};
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress};
-use crate::math::{PlaneMap, vec2};
+use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::raster::Plane;
 use crate::session::open_document::Edit;
@@ -14,7 +14,7 @@ use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, Shading};
 use crate::tools::brush::free_name;
-use crate::tools::transform;
+use crate::tools::transform::{self, mapped};
 use std::sync::Arc;
 
 actions! {
@@ -50,6 +50,10 @@ actions! {
         "mirror" Mirror { layer: LayerPaths, upright: bool }
         /// Turned about the middle of what they hold, counter-clockwise.
         "turn" Turn { layer: LayerPaths, degrees: f32 }
+        /// What they show is taken along by a map of the canvas (a, b, c, d, e, f); shown only, until it is `done`.
+        "take along" TakeAlong { layer: LayerPaths, by: [f64; 6], done: bool }
+        /// The frame of the chosen layers is turned about this point, by shares of its sides.
+        "pivot" Pivot { at: Vec2 }
         /// Into a group of their own, where the topmost stood.
         "group" Group { layer: LayerPaths }
         "ungroup" Ungroup { layer: LayerPaths }
@@ -93,6 +97,9 @@ impl LayerAction {
             }
             return set(tab, layer, to, *done);
         }
+        if let LayerAction::TakeAlong { layer, by, done } = self {
+            return take_along(session, layer, *by, *done);
+        }
         tab.forget_preview();
         let id = |path: &LayerPath| path.find(tab.document()).map(|layer| layer.id);
         match self {
@@ -113,6 +120,7 @@ impl LayerAction {
                 // Only if there is one to paint on.
                 tab.repair();
             }
+            LayerAction::Pivot { at } => tab.set_pivot(*at),
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 tab.solo = if tab.solo == id { None } else { id };
@@ -146,6 +154,7 @@ impl LayerAction {
             | LayerAction::Turn { layer, .. }
             | LayerAction::Group { layer }
             | LayerAction::Set { layer, .. }
+            | LayerAction::TakeAlong { layer, .. }
             | LayerAction::Clear { layer } => chosen(layer).map(drop),
             LayerAction::Ungroup { layer } => chosen(layer).and_then(|ids| match ids.iter().any(is_group) {
                 true => Ok(()),
@@ -251,6 +260,8 @@ impl LayerAction {
             | LayerAction::Choose { .. }
             | LayerAction::Solo { .. }
             | LayerAction::OnMask { .. }
+            | LayerAction::TakeAlong { .. }
+            | LayerAction::Pivot { .. }
             | LayerAction::Set { .. } => return None,
         };
         Some(Edit { label, document, select })
@@ -264,6 +275,21 @@ fn set(tab: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
         tab.commit(to.label(), document);
     } else {
         tab.show(to.label(), document);
+    }
+}
+
+/// The document with what layers show taken along by a map of the canvas: a step, or a preview of one.
+fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bool) {
+    let Some(tab) = session.active_mut() else { return };
+    tab.hold_frame();
+    let document = tab.document();
+    let ids = layers.find(document).map(|ids| document.outermost(&ids)).unwrap_or_default();
+    let map = PlaneMap::affine(by).filter(|_| !ids.is_empty());
+    let next = map.and_then(|map| ids.iter().try_fold(document.clone(), |next, id| mapped(&next, *id, map)));
+    match next {
+        Some(next) if done => drop(tab.commit("Transform", next)),
+        Some(next) => tab.show("Transform", next),
+        None => tab.forget_preview(),
     }
 }
 

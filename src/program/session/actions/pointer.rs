@@ -88,6 +88,9 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         }
         _ => None,
     };
+    if tool == ToolKind::Transform {
+        session.active_mut().into_iter().for_each(OpenDocument::hold_frame);
+    }
     let Some(tab) = session.active() else { return };
     let (strokes, layers) = (tab.chosen_strokes(), tab.outermost_chosen());
     let document = match works_in_place(tool, tab) {
@@ -126,6 +129,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         lasso: &session.lasso,
         crop: session.crop,
         crop_aspect: session.crop_aspect,
+        frame: tab.kept_frame(),
         strokes: &strokes,
         snap: &snap,
         aids: session.aids,
@@ -273,6 +277,7 @@ fn take(session: &mut Session, outcome: Outcome) {
                 tab.choose_strokes(layer, strokes);
             }
         }
+        Outcome::Pivot(share) => tab.set_pivot(share),
         Outcome::Axes(axes) => session.axes = axes,
         Outcome::Picked(color) => session.color = color,
         Outcome::Cancel => tab.forget_preview(),

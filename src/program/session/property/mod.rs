@@ -11,7 +11,7 @@ use crate::document::{Content, DetailSource, Layer, LayerLabel, LayerLock, Layer
 use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
-use crate::raster::{BlendMode, Outside};
+use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
 use crate::shading::{Features, Light, Model, Projection, RadianceScaling, Scaling, Shading, Term};
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
@@ -31,6 +31,8 @@ actions! {
         "clip to surface" ClipToSurface { on: bool }
         /// Where the layer's frame lies on the canvas; none: it is the canvas.
         "transform" Transformed { transform: Option<LayerTransform> }
+        /// How the pixels of a transformed layer are sampled.
+        "sampling" Sampled { filter: Resampling }
         "pass through" PassThrough { on: bool }
         "fill" Fill { color: Color }
         "operator" Bend { operator: Operator }
@@ -87,7 +89,7 @@ impl Property {
             Property::Locked { .. } => "Lock layer",
             Property::Labelled { .. } => "Label",
             Property::ClipToSurface { .. } => "Clip to surface",
-            Property::Transformed { .. } => "Transform",
+            Property::Transformed { .. } | Property::Sampled { .. } => "Transform",
             Property::PassThrough { .. } => "Pass through",
             Property::Fill { .. } => "Fill colour",
             Property::Bend { .. } => "Operator",
@@ -123,6 +125,11 @@ impl Property {
             Property::Name { name } => layer.name.clone_from(name),
             Property::Visible { on } => layer.visible = *on,
             Property::Transformed { transform } => layer.transform = *transform,
+            Property::Sampled { filter } => {
+                if let Some(transform) = &mut layer.transform {
+                    transform.filter = *filter;
+                }
+            }
             Property::Opacity { to } => layer.opacity = held(*to, &Layer::OPACITY),
             Property::Blend { mode } => layer.blend = *mode,
             Property::BlendLinear { on } => layer.blend_linear = *on,

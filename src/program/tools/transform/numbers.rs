@@ -3,7 +3,7 @@
 
 use super::{TransformFrame, said};
 use crate::document::{Document, LayerId, LayerTransform};
-use crate::math::{DVec2, PlaneMap};
+use crate::math::{DVec2, PlaneMap, Vec2};
 
 /// Where a frame stands that lies in no perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl FrameNumbers {
 
     /// `None` of a frame in perspective, and of one without area.
     pub fn of(frame: &TransformFrame) -> Option<Self> {
-        frame.map.plane.coefficients()?;
+        frame.plane.coefficients()?;
         let [a, b, _, d] = frame.corners.map(|corner| corner.as_dvec2());
         let (right, down) = (b - a, d - a);
         let width = right.length();
@@ -51,13 +51,22 @@ impl FrameNumbers {
         let lean = self.skew.to_radians().tan() * self.height.abs();
         (across * self.width, across.perp() * self.height + across * lean)
     }
-    fn middle(&self) -> DVec2 {
+    /// A point by shares of its sides, canvas px.
+    fn point(&self, share: Vec2) -> DVec2 {
         let (right, down) = self.sides();
-        self.at + 0.5 * (right + down)
+        self.at + right * f64::from(share.x) + down * f64::from(share.y)
     }
-    /// With the middle where another frame has it: sides and angles change about the middle.
-    pub fn about_middle_of(&self, other: &Self) -> Self {
-        Self { at: self.at + other.middle() - self.middle(), ..*self }
+    /// With a point, told by shares of the sides, where another frame has it: sides and angles change about it.
+    pub fn about(&self, pivot_share: Vec2, other: &Self) -> Self {
+        Self { at: self.at + other.point(pivot_share) - self.point(pivot_share), ..*self }
+    }
+    /// The map of the canvas that takes a frame with other numbers to this one, as a matrix.
+    pub fn map_from(&self, other: &Self) -> Option<[f64; 6]> {
+        let to_frame = |numbers: &Self| {
+            let (x, y) = numbers.sides();
+            PlaneMap::affine([x.x, x.y, y.x, y.y, numbers.at.x, numbers.at.y])
+        };
+        to_frame(other)?.inverse().then(&to_frame(self)?).told_coefficients()
     }
     /// A layer's own transform under which its frame has these numbers: `None` where that is no map, inner `None` where
     /// none is left.
@@ -65,13 +74,13 @@ impl FrameNumbers {
         let frame = TransformFrame::of(document, layer)?;
         let own = document.layer(layer)?.transform;
         let plane = own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(document.size))?;
-        let around = plane.inverse().then(&frame.map.plane);
+        let around = plane.inverse().then(&frame.plane);
         let low = frame.inner.low.as_dvec2();
         let (right, down) = self.sides();
         let (x, y) = (right / self.own.x, down / self.own.y);
         let from_low = PlaneMap::affine([x.x, x.y, y.x, y.y, self.at.x, self.at.y])?;
         let whole = PlaneMap::affine([1.0, 0.0, 0.0, 1.0, -low.x, -low.y])?.then(&from_low);
-        let filter = own.map_or(frame.map.filter, |own| own.filter);
+        let filter = own.map_or(frame.filter, |own| own.filter);
         said(&whole.then(&around.inverse()), filter, document.size)
     }
 }
@@ -118,11 +127,23 @@ mod tests {
         assert_eq!(back.layers[0].transform, None);
     }
     #[test]
-    fn sides_and_angles_change_about_the_middle() {
+    fn sides_and_angles_change_about_the_pivot() {
         let start = numbers(&document());
-        let turned = FrameNumbers { angle: 90.0, width: 80.0, ..start }.about_middle_of(&start);
-        assert!((turned.middle() - DVec2::new(60.0, 40.0)).length() < 1e-9);
-        let found = numbers(&with(&document(), &turned));
-        assert!((found.middle() - DVec2::new(60.0, 40.0)).length() < 1e-3);
+        for (share, stays) in [(Vec2::splat(0.5), DVec2::new(60.0, 40.0)), (Vec2::X, DVec2::new(80.0, 30.0))] {
+            let turned = FrameNumbers { angle: 90.0, width: 80.0, ..start }.about(share, &start);
+            assert!((turned.point(share) - stays).length() < 1e-9);
+            let found = numbers(&with(&document(), &turned));
+            assert!((found.point(share) - stays).length() < 1e-3);
+        }
+    }
+    #[test]
+    fn the_map_from_one_frame_to_another_takes_its_corners_there() {
+        let start = numbers(&document());
+        let to = FrameNumbers { at: DVec2::new(3.0, 4.0), width: 10.0, height: -30.0, angle: 40.0, ..start };
+        let map = PlaneMap::affine(to.map_from(&start).unwrap()).unwrap();
+        for share in [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE] {
+            let went = map.to_canvas(start.point(share).as_vec2()).unwrap();
+            assert!(went.distance(to.point(share).as_vec2()) < 1e-4, "{went}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 use super::*;
-use crate::document::{Content, Group, Layer, PixelLayer, TransformShape};
-use crate::math::Size;
+use crate::document::{Content, Group, Layer, LayerTransform, PixelLayer, TransformShape};
+use crate::math::{Size, vec2};
 use crate::paint::Brush;
 use crate::raster::TileGrid;
 use crate::tools::ModifierKeys;
@@ -42,11 +42,11 @@ fn the_frame_is_the_box_around_the_paint() {
 }
 #[test]
 fn the_inside_moves_by_whole_pixels_and_back_leaves_no_transform() {
-    let moved = dragged(&document(), vec2(60.0, 40.0), vec2(67.4, 37.1), NONE).unwrap();
+    let moved = dragged(&document(), vec2(50.0, 40.0), vec2(57.4, 37.1), NONE).unwrap();
     close(corners(&moved), [(47.0, 27.0), (87.0, 27.0), (87.0, 47.0), (47.0, 47.0)]);
     let back = dragged(&moved, vec2(60.0, 40.0), vec2(53.0, 43.0), NONE).unwrap();
     assert_eq!(back.layers[0].transform, None);
-    assert!(dragged(&document(), vec2(60.0, 40.0), vec2(60.2, 40.0), NONE).is_none(), "nothing was moved");
+    assert!(dragged(&document(), vec2(50.0, 40.0), vec2(50.2, 40.0), NONE).is_none(), "nothing was moved");
 }
 #[test]
 fn a_corner_goes_where_the_pen_goes_and_the_opposite_one_stays() {
@@ -79,7 +79,59 @@ fn a_corner_with_ctrl_gives_a_perspective_and_no_crossed_one() {
     let distorted = dragged(&document(), vec2(80.0, 50.0), vec2(82.0, 51.0), distort).unwrap();
     close(corners(&distorted), [(40.0, 30.0), (80.0, 30.0), (82.0, 51.0), (40.0, 50.0)]);
     assert!(matches!(distorted.layers[0].transform.unwrap().shape, TransformShape::Quad(_)));
-    assert!(dragged(&document(), vec2(80.0, 50.0), vec2(41.0, 31.0), distort).is_none(), "it would be folded");
+}
+#[test]
+fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
+    let distort = ModifierKeys { ctrl: true, ..NONE };
+    let corner = |to| corners(&dragged(&document(), vec2(80.0, 50.0), to, distort).expect("it goes on"))[2];
+    let folded = corner(vec2(41.0, 31.0));
+    assert!(folded.distance(vec2(80.0, 50.0)) > 5.0 && folded.y + 0.5 * folded.x > 70.0, "not folded: {folded}");
+    // Right beneath the upper right corner the far side of the canvas would lie behind the horizon.
+    for to in [vec2(80.2, 31.0), vec2(-500.0, 4000.0), vec2(1e30, -1e30), vec2(40.0, 30.0)] {
+        let at = corner(to);
+        assert!(at.is_finite() && at.x > 40.0 && at.y > 30.0, "{to} led to {at}");
+    }
+    // Step by step the corner goes no farther than the pen.
+    let mut last = corner(vec2(80.0, 50.5));
+    for step in 1..400 {
+        let to = vec2(80.0 - step as f32 * 0.3, 50.5 + (step as f32 * 0.1).sin() * 30.0);
+        let at = corner(to);
+        assert!(at.distance(last) < 6.0, "from {last} to {at} with the pen at {to}");
+        last = at;
+    }
+}
+#[test]
+fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about() {
+    let document = document();
+    let brush = Brush::default();
+    let (ids, mut kept) = ([document.layers[0].id], KeptFrame::default());
+    let context =
+        |kept| ToolContext { layer: Some(ids[0]), px_per_pt: 0.3, frame: kept, ..ToolContext::new(&document, &brush) };
+    let pivot_by = |from: Vec2, to: Vec2, keys| {
+        let mut gesture = press(&context(KeptFrame::nothing()), pen(from, keys)).0.unwrap();
+        match gesture.drag(&[pen(to, keys)]) {
+            Outcome::Pivot(share) => Some(share),
+            _ => None,
+        }
+    };
+    assert_eq!(pivot_by(vec2(60.5, 40.0), vec2(41.0, 31.0), NONE), Some(Vec2::ZERO), "the upper left corner");
+    assert_eq!(pivot_by(vec2(60.5, 40.0), vec2(90.0, 70.0), NONE), Some(vec2(1.25, 2.0)), "beyond the frame");
+    assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), NONE), None, "the inside moves");
+    let alt = ModifierKeys { alt: true, ..NONE };
+    assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), alt), Some(vec2(0.25, 0.25)));
+    kept.set_pivot(&document, &ids, Vec2::ZERO);
+    let done = |from: Vec2, to: Vec2, keys| {
+        let mut gesture = press(&context(&kept), pen(from, keys)).0.unwrap();
+        gesture.drag(&[pen(to, keys)]);
+        let Outcome::Commit { document, .. } = gesture.release() else { panic!("transformed") };
+        corners(&document)
+    };
+    // A quarter counter-clockwise about the upper left corner.
+    let turned = done(vec2(140.0, 30.0), vec2(40.0, -70.0), ModifierKeys { shift: true, ..NONE });
+    close(turned, [(40.0, 30.0), (40.0, -10.0), (60.0, -10.0), (60.0, 30.0)]);
+    let scaled = done(vec2(80.0, 50.0), vec2(60.0, 90.0), alt);
+    close(scaled, [(40.0, 30.0), (60.0, 30.0), (60.0, 90.0), (40.0, 90.0)]);
+    assert_eq!(kept.around(&document, &[LayerId::fresh()]), None);
 }
 #[test]
 fn within_a_transformed_group_the_pen_still_leads() {
@@ -96,7 +148,7 @@ fn within_a_transformed_group_the_pen_still_leads() {
     let before = TransformFrame::of(&document, id).unwrap();
     let brush = Brush::default();
     let context = ToolContext { layer: Some(id), px_per_pt: 0.1, ..ToolContext::new(&document, &brush) };
-    for (from, by) in [(before.pivot(), vec2(10.0, -6.0)), (before.corners[2], vec2(5.0, -4.0))] {
+    for (from, by) in [(before.pivot() + vec2(2.0, 2.0), vec2(10.0, -6.0)), (before.corners[2], vec2(5.0, -4.0))] {
         let mut gesture = press(&context, PenSample::at(from)).0.unwrap();
         gesture.drag(&[PenSample::at(from + by)]);
         let Outcome::Commit { document, .. } = gesture.release() else { panic!("moved") };
@@ -159,6 +211,26 @@ fn several_layers_have_one_frame_and_each_goes_along_in_its_own() {
     assert!(corners_of(&distorted, 0)[0].distance(vec2(20.0, 40.0)) < 1e-2);
     let about = about_middle(&both, &ids, mirror(false)).unwrap();
     close(corners_of(&about, 0), [(140.0, 40.0), (120.0, 40.0), (120.0, 60.0), (140.0, 60.0)]);
+}
+#[test]
+fn the_frame_of_several_layers_turns_with_them() {
+    let both = two();
+    let ids: Vec<LayerId> = both.layers.iter().map(|layer| layer.id).collect();
+    let mut kept = KeptFrame::default();
+    kept.hold(&both, &ids);
+    let turn = PlaneMap::rotation(30.0, vec2(80.0, 50.0));
+    let turned = ids.iter().fold(both.clone(), |next, id| mapped(&next, *id, turn).unwrap());
+    kept.hold(&turned, &ids);
+    let frame = kept.around(&turned, &ids).unwrap();
+    let numbers = FrameNumbers::of(&frame).unwrap();
+    assert!((numbers.angle - 30.0).abs() < 1e-3 && (numbers.width - 120.0).abs() < 1e-3, "{numbers:?}");
+    // One of them alone moved: the frame is the box around both again.
+    let apart = mapped(&turned, ids[0], PlaneMap::translation(vec2(9.0, 0.0))).unwrap();
+    assert!(FrameNumbers::of(&kept.around(&apart, &ids).unwrap()).unwrap().angle.abs() < 1e-6);
+    let back = FrameNumbers { angle: 0.0, ..numbers }.about(Vec2::splat(0.5), &numbers);
+    let by = PlaneMap::affine(back.map_from(&numbers).unwrap()).unwrap();
+    let back = ids.iter().fold(turned, |next, id| mapped(&next, *id, by).unwrap());
+    assert!(back.layers.iter().all(|layer| layer.transform.is_none()), "nothing is left of it");
 }
 #[test]
 fn a_locked_layer_among_several_keeps_all_of_them() {

@@ -1,0 +1,208 @@
+//! The frame of the transform tool: a box around the chosen layers, where it lies on the canvas, and the point that it
+//! is turned about.
+//! Floor 5.
+
+use crate::document::transform::FrameBox;
+use crate::document::{Document, LayerId, LayerMap};
+use crate::math::{PlaneMap, Vec2};
+use crate::raster::Resampling;
+use crate::tools::GRAB_PT;
+
+/// The frame of a layer, or of several, on the canvas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransformFrame {
+    /// In the layer's own frame; that of several is the canvas as it was when they were first held.
+    pub inner: FrameBox,
+    /// From there to the canvas, groups included.
+    pub plane: PlaneMap,
+    /// How the pixels of what is in it are sampled.
+    pub filter: Resampling,
+    /// Upper left, upper right, lower right, lower left of the untransformed box, canvas px.
+    pub corners: [Vec2; 4],
+    /// What it is turned about, as shares of its sides from the upper left corner.
+    pub pivot_share: Vec2,
+}
+
+/// What of a frame the pen holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameHandle {
+    /// By its number among the corners.
+    Corner(usize),
+    /// Between a corner and the next.
+    Edge(usize),
+    /// The point that the frame is turned about.
+    Pivot,
+    Inside,
+    /// Anywhere else: the frame is turned about its pivot.
+    Outside,
+}
+
+/// The pivot is held from nearer than other handles, screen points: around it the inside is dragged.
+const PIVOT_GRAB_PT: f32 = 6.0;
+/// The pivot of a frame whose shorter side is less than this, screen points, is only held with Alt.
+const PIVOT_ROOM_PT: f32 = 56.0;
+
+impl TransformFrame {
+    /// `None` where a corner lies beyond the horizon.
+    fn new(inner: FrameBox, plane: PlaneMap, filter: Resampling) -> Option<Self> {
+        let [a, b, c, d] = inner.corners().map(|corner| plane.to_canvas(corner));
+        Some(Self { inner, plane, filter, corners: [a?, b?, c?, d?], pivot_share: MIDDLE })
+    }
+    /// Of a layer; `None` if it is empty or lies beyond the horizon.
+    pub fn of(document: &Document, layer: LayerId) -> Option<Self> {
+        let map = document.map_of(layer)?;
+        Self::new(document.frame_box(layer)?, map.plane, map.filter)
+    }
+    /// Around layers: of one its own frame, of several a box on the canvas. `None` if all are empty.
+    pub fn around(document: &Document, layers: &[LayerId]) -> Option<Self> {
+        if let [layer] = layers {
+            return Self::of(document, *layer);
+        }
+        let frames = layers.iter().filter_map(|layer| Self::of(document, *layer));
+        let corners: Vec<Vec2> = frames.flat_map(|frame| frame.corners).collect();
+        let low = corners.iter().copied().reduce(Vec2::min)?;
+        let high = corners.iter().copied().reduce(Vec2::max)?;
+        let filter = document.map_of(*layers.first()?)?.filter;
+        Self::new(FrameBox { low, high }, PlaneMap::IDENTITY, filter)
+    }
+    /// The upper left and the lower right corner of the box around it, canvas px.
+    pub fn bounds(&self) -> [Vec2; 2] {
+        let [a, b, c, d] = self.corners;
+        [a.min(b).min(c).min(d), a.max(b).max(c).max(d)]
+    }
+    /// The middle of the side from a corner to the next.
+    pub fn edge(&self, index: usize) -> Vec2 {
+        (self.corners[index % 4] + self.corners[(index + 1) % 4]) * 0.5
+    }
+    /// A point of the frame by shares of its sides, canvas px.
+    pub fn point(&self, share: Vec2) -> Vec2 {
+        let FrameBox { low, high } = self.inner;
+        let middle = || self.corners.iter().sum::<Vec2>() * 0.25;
+        self.plane.to_canvas(low + share * (high - low)).unwrap_or_else(middle)
+    }
+    /// The point that it is turned about, canvas px.
+    pub fn pivot(&self) -> Vec2 {
+        self.point(self.pivot_share)
+    }
+    /// The same in the frame's own px.
+    pub fn inner_pivot(&self) -> Vec2 {
+        self.inner.low + self.pivot_share * (self.inner.high - self.inner.low)
+    }
+    /// A canvas point as shares of its sides; `None` beyond the horizon, and of a frame without area.
+    pub fn share_of(&self, at: Vec2) -> Option<Vec2> {
+        let (inner, _) = self.plane.from_canvas(at)?;
+        let share = (inner - self.inner.low) / (self.inner.high - self.inner.low);
+        share.is_finite().then_some(share)
+    }
+    /// What lies at a canvas point; `px_per_pt`: canvas px per screen point. With `alt` the inside is the pivot.
+    pub fn handle_at(&self, at: Vec2, px_per_pt: f32, alt: bool) -> FrameHandle {
+        let near = |p: Vec2, pt: f32| p.distance(at) <= pt * px_per_pt;
+        if let Some(corner) = (0..4).find(|&i| near(self.corners[i], GRAB_PT)) {
+            return FrameHandle::Corner(corner);
+        }
+        if let Some(edge) = (0..4).find(|&i| near(self.edge(i), GRAB_PT)) {
+            return FrameHandle::Edge(edge);
+        }
+        let side = |i: usize| self.corners[(i + 1) % 4].distance(self.corners[i]);
+        let is_roomy = side(0).min(side(1)) >= PIVOT_ROOM_PT * px_per_pt;
+        if is_roomy && near(self.pivot(), PIVOT_GRAB_PT) {
+            return FrameHandle::Pivot;
+        }
+        let sides = (0..4).map(|i| (self.corners[(i + 1) % 4] - self.corners[i]).perp_dot(at - self.corners[i]));
+        let sides: Vec<f32> = sides.collect();
+        let inside = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
+        match inside {
+            true if alt => FrameHandle::Pivot,
+            true => FrameHandle::Inside,
+            false => FrameHandle::Outside,
+        }
+    }
+}
+
+/// The pivot that a frame begins with.
+pub const MIDDLE: Vec2 = Vec2::splat(0.5);
+
+/// What the transform tool keeps of the layers in its frame until others are chosen: the pivot, and of several layers
+/// the box that they lay in at first, so that their frame turns with them.
+#[derive(Clone, Debug)]
+pub struct KeptFrame {
+    layers: Vec<LayerId>,
+    pivot_share: Vec2,
+    /// Around all of them as they lay at first.
+    first: Option<FirstFrame>,
+}
+
+#[derive(Clone, Debug)]
+struct FirstFrame {
+    inner: FrameBox,
+    /// The own box of each layer then, and its map to the canvas.
+    each: Vec<Option<(FrameBox, LayerMap)>>,
+}
+
+/// Nothing is kept.
+static NOTHING: KeptFrame = KeptFrame { layers: Vec::new(), pivot_share: MIDDLE, first: None };
+
+impl Default for KeptFrame {
+    fn default() -> Self {
+        NOTHING.clone()
+    }
+}
+
+impl KeptFrame {
+    pub fn nothing() -> &'static Self {
+        &NOTHING
+    }
+    /// What is kept of these layers as they lie: of others than the last everything is new.
+    pub fn hold(&mut self, document: &Document, layers: &[LayerId]) {
+        if self.layers != layers {
+            *self = Self { layers: layers.to_vec(), ..Self::default() };
+        }
+        if layers.len() > 1 && self.taken_along(document).is_none() {
+            let inner = TransformFrame::around(document, layers).map(|frame| frame.inner);
+            self.first = inner.map(|inner| FirstFrame { inner, each: each(document, layers) });
+        }
+    }
+    /// The frame around layers, with what is kept if they are the same ones.
+    pub fn around(&self, document: &Document, layers: &[LayerId]) -> Option<TransformFrame> {
+        let known = Some(self).filter(|kept| kept.layers == layers);
+        let turned = known.and_then(|kept| Some((kept.first.as_ref()?.inner, kept.taken_along(document)?)));
+        let plain = || TransformFrame::around(document, layers);
+        let frame = match turned {
+            Some((inner, plane)) => {
+                let filter = document.map_of(*layers.first()?)?.filter;
+                TransformFrame::new(inner, plane, filter).or_else(plain)
+            }
+            None => plain(),
+        };
+        let pivot_share = known.map_or(MIDDLE, |kept| kept.pivot_share);
+        frame.map(|frame| TransformFrame { pivot_share, ..frame })
+    }
+    /// The pivot of some layers from now on, as shares of the sides of their frame.
+    pub fn set_pivot(&mut self, document: &Document, layers: &[LayerId], share: Vec2) {
+        self.hold(document, layers);
+        if share.is_finite() {
+            self.pivot_share = share.clamp(-FARTHEST_PIVOT, FARTHEST_PIVOT);
+        }
+    }
+    /// Where all of several layers were taken since they were first held; `None` if that is not the same for all, or
+    /// something else was done to them.
+    fn taken_along(&self, document: &Document) -> Option<PlaneMap> {
+        let first = self.first.as_ref()?;
+        let now = each(document, &self.layers);
+        let mut moves = first.each.iter().zip(now).filter(|(then, now)| then.is_some() || now.is_some());
+        let by = |(then, now): (&Option<(FrameBox, LayerMap)>, Option<(FrameBox, LayerMap)>)| {
+            let ((old_box, old), (new_box, new)) = (then.as_ref()?, now.as_ref()?);
+            (old_box == new_box).then(|| old.plane.inverse().then(&new.plane))
+        };
+        let all = by(moves.next()?)?;
+        let agrees = moves.all(|both| by(both).is_some_and(|other| other.is_same_on(&all, document.size)));
+        agrees.then_some(all)
+    }
+}
+
+/// Farther from a frame than so many of its sides no pivot lies.
+const FARTHEST_PIVOT: Vec2 = Vec2::splat(100.0);
+
+fn each(document: &Document, layers: &[LayerId]) -> Vec<Option<(FrameBox, LayerMap)>> {
+    layers.iter().map(|layer| document.frame_box(*layer).zip(document.map_of(*layer))).collect()
+}

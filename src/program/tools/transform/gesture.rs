@@ -1,0 +1,213 @@
+//! The frame in the hand: what a drag of each handle does to all layers in it.
+//! Floor 5.
+
+use super::corner::within_convex;
+use super::frame::{FrameHandle, TransformFrame};
+use super::{said, taken_along};
+use crate::document::transform::FrameBox;
+use crate::document::{Document, LayerId, LayerMap, LayerTransform};
+use crate::math::{PlaneMap, Vec2, vec2};
+use crate::tools::snap::{SnapLines, SnapTargets};
+use crate::tools::{Gesture, Outcome, PenSample};
+
+/// A layer that is dragged, as it was before.
+pub struct HeldLayer {
+    pub id: LayerId,
+    pub own: Option<LayerTransform>,
+    pub map: LayerMap,
+}
+
+pub struct TransformGesture {
+    pub document: Document,
+    pub layers: Vec<HeldLayer>,
+    pub frame: TransformFrame,
+    pub handle: FrameHandle,
+    pub from: Vec2,
+    /// The transforms as they were last dragged, one a layer; inner `None`: it stands where it was made.
+    pub found: Option<Vec<Option<LayerTransform>>>,
+    pub snap: SnapTargets,
+    pub lines: SnapLines,
+}
+
+/// What a drag does to all that is in the frame.
+enum FrameMap {
+    OnCanvas(PlaneMap),
+    /// Before the frame's own map.
+    InFrame(PlaneMap),
+}
+
+impl TransformGesture {
+    /// The layers' own transforms with the handle at the pen; `None` where one of them is no map.
+    fn dragged(&self, pen: &PenSample) -> Option<Vec<Option<LayerTransform>>> {
+        let inner = self.frame.inner;
+        match self.handle {
+            FrameHandle::Inside => self.all(&FrameMap::OnCanvas(PlaneMap::translation(self.moved_by(pen)))),
+            FrameHandle::Outside => self.all(&FrameMap::OnCanvas(self.turned_by(pen)?)),
+            FrameHandle::Corner(corner) if pen.keys.ctrl => self.distorted(corner, pen.place()),
+            FrameHandle::Edge(edge) if pen.keys.ctrl => self.all(&FrameMap::InFrame(self.skewed(edge, pen.place())?)),
+            FrameHandle::Corner(corner) => {
+                self.all(&FrameMap::InFrame(self.scaled(inner.corners()[corner], [true; 2], pen)?))
+            }
+            FrameHandle::Edge(edge) => {
+                let [a, b] = [edge % 4, (edge + 1) % 4].map(|i| inner.corners()[i]);
+                // The upper and the lower edge are dragged up and down.
+                let along_y = edge.is_multiple_of(2);
+                self.all(&FrameMap::InFrame(self.scaled((a + b) * 0.5, [!along_y, along_y], pen)?))
+            }
+            FrameHandle::Pivot => None,
+        }
+    }
+    fn all(&self, map: &FrameMap) -> Option<Vec<Option<LayerTransform>>> {
+        let on_canvas = match map {
+            FrameMap::OnCanvas(map) => *map,
+            FrameMap::InFrame(map) => self.frame.plane.inverse().then(map).then(&self.frame.plane),
+        };
+        self.layers.iter().map(|layer| self.dragged_layer(layer, map, on_canvas)).collect()
+    }
+    fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<Option<LayerTransform>> {
+        let canvas = self.document.size;
+        let own = layer.own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
+        let plane = match map {
+            // The frame of one layer is its own: numbers stay as exact as they can.
+            FrameMap::InFrame(map) if self.layers.len() == 1 => map.then(&own),
+            _ => taken_along(own, &layer.map.plane, on_canvas),
+        };
+        said(&plane, layer.own.map_or(layer.map.filter, |own| own.filter), canvas)
+    }
+    /// The pen where it snaps: with a handle itself, with the inside so that the frame does.
+    fn snapped(&mut self, pen: &PenSample) -> PenSample {
+        let at = pen.place();
+        let (at, lines) = match self.handle {
+            FrameHandle::Inside => {
+                let by = at - self.from;
+                let [low, high] = self.frame.bounds().map(|corner| corner + by);
+                let shift = self.snap.shift(low, high);
+                (at + shift.at, shift.lines)
+            }
+            FrameHandle::Corner(_) | FrameHandle::Edge(_) => {
+                let found = self.snap.point(at);
+                (found.at, found.lines)
+            }
+            FrameHandle::Outside | FrameHandle::Pivot => (at, SnapLines::default()),
+        };
+        self.lines = lines;
+        let mut snapped = *pen;
+        snapped.sample.at = at;
+        snapped
+    }
+    fn moved_by(&self, pen: &PenSample) -> Vec2 {
+        // Whole pixels, so that paint is not sampled where it need not be.
+        let by = (pen.place() - self.from).round();
+        match pen.keys.shift {
+            true if by.x.abs() >= by.y.abs() => vec2(by.x, 0.0),
+            true => vec2(0.0, by.y),
+            false => by,
+        }
+    }
+    fn turned_by(&self, pen: &PenSample) -> Option<PlaneMap> {
+        let pivot = self.frame.pivot();
+        let (before, after) = (self.from - pivot, pen.place() - pivot);
+        if before.length() < 1.0 || after.length() < 1.0 {
+            return None;
+        }
+        // Counter-clockwise as seen is clockwise in y-down coordinates.
+        let degrees = f64::from(before.to_angle() - after.to_angle()).to_degrees();
+        let degrees = if pen.keys.shift { (degrees / STEP_DEGREES).round() * STEP_DEGREES } else { degrees };
+        Some(PlaneMap::rotation(degrees, pivot))
+    }
+    /// A scaling in the frame that takes a handle to the pen. Shift keeps the aspect, Alt the pivot.
+    fn scaled(&self, handle: Vec2, axes: [bool; 2], pen: &PenSample) -> Option<PlaneMap> {
+        let inner = self.frame.inner;
+        let center = inner.center();
+        let fixed = if pen.keys.alt { self.frame.inner_pivot() } else { center * 2.0 - handle };
+        let (to, _) = self.frame.plane.from_canvas(pen.place())?;
+        let ratio = |k: usize| {
+            let long = handle[k] - fixed[k];
+            if axes[k] && long.abs() > 1e-3 { (to[k] - fixed[k]) / long } else { 1.0 }
+        };
+        let mut factors = [ratio(0), ratio(1)];
+        if pen.keys.shift {
+            let most = if (factors[0] - 1.0).abs() >= (factors[1] - 1.0).abs() { factors[0] } else { factors[1] };
+            factors = [most; 2];
+        }
+        let [x, y] = factors.map(f64::from);
+        let fixed = fixed.as_dvec2();
+        PlaneMap::affine([x, 0.0, 0.0, y, fixed.x * (1.0 - x), fixed.y * (1.0 - y)])
+    }
+    /// A shear in the frame that takes an edge along itself.
+    fn skewed(&self, edge: usize, at: Vec2) -> Option<PlaneMap> {
+        let corners = self.frame.inner.corners().map(|corner| corner.as_dvec2());
+        let (a, opposite) = (corners[edge % 4], corners[(edge + 2) % 4]);
+        let (to, _) = self.frame.plane.from_canvas(at)?;
+        let (from, _) = self.frame.plane.from_canvas(self.from)?;
+        let by = (to - from).as_dvec2();
+        if edge.is_multiple_of(2) {
+            let k = by.x / (a.y - opposite.y);
+            return PlaneMap::affine([1.0, 0.0, k, 1.0, -k * opposite.y, 0.0]);
+        }
+        let k = by.y / (a.x - opposite.x);
+        PlaneMap::affine([1.0, k, 0.0, 1.0, 0.0, -k * opposite.x])
+    }
+    /// The layers' own transforms in a perspective that takes one corner to the pen, or as far toward it as there is
+    /// one, and leaves the others.
+    fn distorted(&self, corner: usize, at: Vec2) -> Option<Vec<Option<LayerTransform>>> {
+        let held = self.frame.corners.map(|c| c.as_dvec2());
+        let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
+        let FrameBox { low, high } = self.frame.inner;
+        let at_share = |share: f64| {
+            let mut corners = held;
+            corners[corner] = from.lerp(to, share);
+            let whole = PlaneMap::rect_to_quad(low.as_dvec2(), high.as_dvec2(), corners)?;
+            self.all(&FrameMap::OnCanvas(self.frame.plane.inverse().then(&whole)))
+        };
+        // Of a convex frame the horizon may still cross the canvas, which no file can tell.
+        at_share(1.0).or_else(|| {
+            let (mut low, mut high, mut found) = (0.0, 1.0, None);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                match at_share(middle) {
+                    Some(all) => (low, found) = (middle, Some(all)),
+                    None => high = middle,
+                }
+            }
+            found
+        })
+    }
+    fn with(&self, transforms: &[Option<LayerTransform>]) -> Option<Document> {
+        let all = self.layers.iter().zip(transforms);
+        all.into_iter().try_fold(self.document.clone(), |next, (held, transform)| {
+            next.with_layer(held.id, |layer| layer.transform = *transform)
+        })
+    }
+}
+
+/// How often the way of a corner is halved to find how far it may go: less than a pixel is left.
+const HALVINGS: usize = 16;
+/// Turns with Shift go from one multiple of this to the next.
+const STEP_DEGREES: f64 = 15.0;
+
+impl Gesture for TransformGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        let Some(pen) = pens.last() else { return Outcome::Idle };
+        let pen = &self.snapped(pen);
+        let Some(found) = self.dragged(pen) else { return Outcome::Idle };
+        let shown = self.with(&found);
+        self.found = Some(found);
+        shown.map_or(Outcome::Idle, Outcome::Preview)
+    }
+    fn release(&mut self) -> Outcome {
+        let label = match self.handle {
+            FrameHandle::Inside => "Move",
+            FrameHandle::Outside => "Turn",
+            FrameHandle::Corner(_) | FrameHandle::Edge(_) | FrameHandle::Pivot => "Transform",
+        };
+        let is_other = |found: &Vec<_>| found.iter().zip(&self.layers).any(|(found, held)| *found != held.own);
+        match self.found.as_ref().filter(|found| is_other(found)).and_then(|found| self.with(found)) {
+            Some(document) => Outcome::Commit { label: label.into(), document, select: None },
+            None => Outcome::Cancel,
+        }
+    }
+    fn snap_lines(&self) -> SnapLines {
+        self.lines
+    }
+}
