@@ -7,7 +7,7 @@ use rilievo_engine::document::{Content, Document, DocumentReducer, Layer, Live, 
 use rilievo_engine::math::{Size, vec2, vec3};
 use rilievo_engine::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt};
-use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
+use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface};
 use std::process::Command;
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
@@ -38,7 +38,7 @@ fn image(operator: Operator, filter: ImageFilter, anchors: usize) -> PlacedImage
         source: SOURCE.clone(),
         placement: Placement::covering(SIZE),
         outside: Outside::Mirror,
-        bend: Bend { operator, anchors, weights: Weights::default() },
+        bend: Bend { operator, anchors, ..Bend::default() },
         filter,
         frame: Default::default(),
     }

@@ -10,7 +10,7 @@ use rilievo_engine::math::srgb::Color;
 use rilievo_engine::math::{Size, Vec2, hash, vec2, vec3};
 use rilievo_engine::paint::{Adjust, Brush, ImageFilter, PictureSource, PlacedImage, Placement, Sample};
 use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt, TileGrid};
-use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface, Weights};
+use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface};
 use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
 use std::sync::Arc;
 use std::time::Instant;
@@ -48,7 +48,7 @@ fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Co
         bend: Bend {
             operator: Operator::Normal { alpha, beta: 0.0, detail: 0.0 },
             anchors: anchors.iter().map(|&at| Anchor::fixed(at)).collect(),
-            weights: Weights::default(),
+            ..Bend::default()
         },
         filter: ImageFilter::Antialias,
         frame: Default::default(),

@@ -9,7 +9,7 @@ use rilievo_engine::math::{Size, vec2, vec3};
 use rilievo_engine::raster::Plane;
 use rilievo_engine::surface::deformation::DeformedRect;
 use rilievo_engine::surface::unwrap::{UnwrapSettings, Unwrapping};
-use rilievo_engine::surface::{Anchor, Bend, Deformation, Maps, Operator, Surface, Weights};
+use rilievo_engine::surface::{Anchor, Bend, Deformation, Maps, Operator, Surface};
 
 fn main() {
     divan::main();
@@ -96,7 +96,7 @@ fn unwrapped_under_a_moved_anchor(bencher: Bencher, anchors: usize) {
     let mut bend = Bend {
         operator: Operator::Surface { amount: 1.0, smooth: 0.0 },
         anchors: at[..anchors].iter().map(|&at| Anchor::fixed(at)).collect(),
-        weights: Weights::default(),
+        ..Bend::default()
     };
     let mut deformed = DeformedRect::default();
     Deformation::new(Some(&surface), UNWRAPPED, &bend).fill(UNWRAPPED.rect(), &mut deformed);

@@ -123,7 +123,10 @@ impl Total {
         self.deepest = self.deepest.max(depth);
         self.values += Self::A_LAYER;
         match &layer.content {
-            Content::Image(live) => self.values += marks::AN_ANCHOR * live.params().bend.anchors.len(),
+            Content::Image(live) => {
+                let crate::surface::Bend { anchors, pieces, .. } = &live.params().bend;
+                self.values += marks::AN_ANCHOR * (anchors.len() + pieces.len());
+            }
             Content::Gradient(live) => self.values += marks::A_STOP * live.params().stops.len(),
             Content::Strokes(live) => {
                 let (samples, values) = marks::measured(&live.params().strokes);

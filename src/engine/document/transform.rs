@@ -20,7 +20,6 @@ use crate::math::{COORDINATE, DVec2, Mat2, PlaneMap, Rect, Size, Vec2, range};
 use crate::paint::{HomeFrame, StrokeHome};
 use crate::raster::warp::{PixelMap, warped_plane};
 use crate::raster::{Plane, Resampling};
-use crate::surface::Anchor;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Where a layer's frame lies, and how its pixels are sampled.
@@ -150,8 +149,9 @@ impl LayerMap {
     pub(super) fn point(&self, p: Vec2) -> Vec2 {
         self.plane.to_canvas(p).unwrap_or(p)
     }
-    pub(super) fn anchors(&self, anchors: &[Anchor]) -> Vec<Anchor> {
-        anchors.iter().map(|a| Anchor { at: self.point(a.at), source: self.point(a.source) }).collect()
+    /// How lengths and directions change about a point of the frame.
+    pub(super) fn stretch_at(&self, p: Vec2) -> Mat2 {
+        self.plane.stretch_at(p).unwrap_or(Mat2::IDENTITY)
     }
     /// How much longer lengths become about a point of the frame: √|det J|.
     pub fn length_at(&self, p: Vec2) -> f32 {

@@ -38,7 +38,7 @@ impl Gradient {
     pub fn bend(&self) -> Bend {
         let on_canvas = |p: Vec2| self.frame.to_canvas(p).unwrap_or(p);
         let anchors = vec![Anchor::fixed(on_canvas(self.from)), Anchor::fixed(on_canvas(self.to))];
-        Bend { operator: self.operator, anchors, weights: Weights::Segment }
+        Bend { operator: self.operator, anchors, weights: Weights::Segment, pieces: Vec::new() }
     }
     /// One tile of the layer. `None` where it is transparent, without stops, or beyond the canvas.
     pub fn render_tile(&self, scene: &Scene, at: TileAt) -> Option<Tile> {

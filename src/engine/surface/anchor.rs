@@ -2,7 +2,8 @@
 //! Floor 2.
 
 use super::operator::Operator;
-use crate::math::Vec2;
+use super::unwrap::PlanePiece;
+use crate::math::{Mat2, Vec2};
 
 /// Pins the point `source` of the undeformed image at the canvas point `at`: D(at) = source.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,18 @@ pub enum Weights {
 
 impl Bend {
     pub const MOST_ANCHORS: usize = 10_000;
+
+    /// Takes anchors and pieces along with the canvas.
+    ///
+    /// * `point`: where a point is now; `stretch`: how lengths and directions changed about it.
+    pub fn go_along(&mut self, point: impl Fn(Vec2) -> Vec2, stretch: impl Fn(Vec2) -> Mat2) {
+        for Anchor { at, source } in &mut self.anchors {
+            (*at, *source) = (point(*at), point(*source));
+        }
+        for piece in &mut self.pieces {
+            *piece = piece.mapped(point(piece.at), stretch(piece.at));
+        }
+    }
 }
 
 impl Default for Weights {
@@ -44,6 +57,8 @@ pub struct Bend {
     pub operator: Operator,
     pub anchors: Vec<Anchor>,
     pub weights: Weights,
+    /// Of the operator that unwraps the surface: pieces whose picture is turned, moved and scaled alone.
+    pub pieces: Vec<PlanePiece>,
 }
 
 impl Weights {

@@ -67,7 +67,9 @@ impl<'a> Deformation<'a> {
     /// Anchors that are not finite are dropped, and parameters that are not finite count as 0: D is finite everywhere.
     pub fn new(surface: Option<&'a Surface>, size: Size, bend: &Bend) -> Self {
         let deformation = Self::pinned(surface, size, (bend.operator, bend.weights, &bend.anchors), at_anchor);
-        deformation.laid(|surface, settings, anchors| LaidPlanes::pinned(surface, settings, anchors, bend.weights))
+        deformation.laid(|surface, settings, anchors| {
+            LaidPlanes::pinned(surface, settings, &Bend { anchors: anchors.to_vec(), ..bend.clone() })
+        })
     }
     /// D of a dab, its one anchor at the centre `at` with weight 1. Off the surface it reads the nearest surface
     /// values, so that a stroke continues over the silhouette.

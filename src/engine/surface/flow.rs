@@ -117,7 +117,7 @@ impl FlowField {
 mod tests {
     use super::*;
     use crate::math::vec3;
-    use crate::surface::{Anchor, Maps, Operator, Weights};
+    use crate::surface::{Anchor, Maps, Operator};
 
     const RADIUS_PX: f32 = 40.0;
 
@@ -162,7 +162,7 @@ mod tests {
     fn an_operator_that_moves_nothing_flows_nowhere() {
         let surface = sphere();
         let anchors = vec![Anchor::fixed(vec2(50.5, 50.5))];
-        let bend = |operator| Bend { operator, anchors: anchors.clone(), weights: Weights::default() };
+        let bend = |operator| Bend { operator, anchors: anchors.clone(), ..Bend::default() };
         let still = FlowField::of_deformation(Some(&surface), surface.size(), &bend(Operator::None));
         assert_near(still.magnitude(70, 49), 0.0, 1e-6);
         let bent = Operator::Normal { alpha: 1.0, beta: 0.0, detail: 0.0 };

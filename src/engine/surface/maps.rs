@@ -10,7 +10,7 @@ use super::{
     objects::Objects,
     pyramid::MapPyramids,
     through::Origin,
-    unwrap::{PlaneLayout, Unwrapping},
+    unwrap::{NearView, PlaneLayout, PlaneSprings, PlaneYield, Unwrapping, YieldKey},
     view::Eye,
 };
 use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
@@ -69,6 +69,9 @@ pub struct Surface {
     /// By amount and blur.
     unwrappings: RecentCache<[u32; 2], Unwrapping>,
     plane_layouts: RecentCache<[u32; 2], Option<Arc<PlaneLayout>>>,
+    pub(super) plane_yields: RecentCache<YieldKey, PlaneYield>,
+    pub(super) plane_springs: RecentCache<[u32; 2], PlaneSprings>,
+    pub(super) near_view: OnceLock<Option<NearView>>,
     bounds: MapPyramids,
     objects: OnceLock<Objects>,
     /// Which part each pixel shows, where the surface was made of parts; their objects are these.
@@ -160,6 +163,9 @@ impl Surface {
             regions: RecentCache::default(),
             unwrappings: RecentCache::default(),
             plane_layouts: RecentCache::default(),
+            plane_yields: RecentCache::default(),
+            plane_springs: RecentCache::default(),
+            near_view: OnceLock::new(),
             bounds: MapPyramids::default(),
             objects: OnceLock::new(),
             parts: None,

@@ -7,11 +7,13 @@
 //! springs join them. So no level mixes what a cut or a row of weak springs parts, and cuts cost no convergence.
 
 mod graph;
+mod held;
 mod merge;
 mod rows;
 
 use crate::memory::filled_or_unwind;
 use graph::SpringGraph;
+pub use held::Held;
 use rayon::prelude::*;
 use rows::{GridRow, relaxed_row, residual_row, start_row};
 
@@ -48,7 +50,6 @@ impl SpringGrid {
         GridRow { right: &self.right[at.clone()], up, down: &self.down[at] }
     }
     /// Σ_j w_ij of an unknown, and Σ_j w_ij v_j: what reads like the equation.
-    #[cfg(test)]
     fn pull(&self, v: &[f32], i: usize) -> (f32, f32) {
         let w = self.w;
         let left = if !i.is_multiple_of(w) { (self.right[i - 1], v[i - 1]) } else { (0.0, 0.0) };
@@ -128,6 +129,19 @@ impl SpringSolver {
     /// * `b`: adds up to 0 over every piece.
     /// * `v`: where to begin; a constant a piece stays free.
     pub fn solve(&self, b: &[f32], v: &mut [f32], effort: Effort, scratch: &mut SolveScratch) -> usize {
+        self.solve_held(&Held::default(), b, v, effort, scratch)
+    }
+    /// The same with some unknowns held: (A + K) v = b, K the stiffness of what holds them.
+    ///
+    /// * `b`: adds up to 0 over every piece of which nothing is held.
+    pub fn solve_held(
+        &self,
+        held: &Held,
+        b: &[f32],
+        v: &mut [f32],
+        effort: Effort,
+        scratch: &mut SolveScratch,
+    ) -> usize {
         let n = b.len();
         let SolveScratch { residual, direction, pulled, z, levels } = scratch;
         for buffer in [&mut *residual, direction, pulled].into_iter().chain(z.iter_mut()) {
@@ -137,7 +151,7 @@ impl SpringSolver {
         }
         levels.resize_with(self.graphs.len(), Default::default);
         let goal = self.dot(b, b) * effort.goal * effort.goal;
-        let mut left = self.residual(v, b, residual);
+        let mut left = self.residual(held, v, b, residual);
         let (mut rz_before, mut least, mut least_at) = (0.0, left, 0);
         for step in 0..effort.most_steps {
             if left < least {
@@ -146,10 +160,10 @@ impl SpringSolver {
             if left.is_nan() || left <= goal || step > least_at + PATIENCE {
                 return step;
             }
-            self.cycle(residual, z, levels);
+            self.cycle(held, residual, z, levels);
             let rz = self.dot(residual, &z[0]);
             let turn = if step == 0 { 0.0 } else { (rz / rz_before) as f32 };
-            let energy = self.turned(&z[0], turn, direction, pulled);
+            let energy = self.turned(held, &z[0], turn, direction, pulled);
             if energy.is_nan() || energy <= 0.0 || rz <= 0.0 {
                 return step;
             }
@@ -165,18 +179,19 @@ impl SpringSolver {
         bands.iter().sum()
     }
     /// `out` = b − A v; returns its length, squared.
-    fn residual(&self, v: &[f32], b: &[f32], out: &mut [f32]) -> f64 {
+    fn residual(&self, held: &Held, v: &[f32], b: &[f32], out: &mut [f32]) -> f64 {
         let w = self.grid.w;
         let bands = out.par_chunks_mut(w * BAND).enumerate().map(|(band, out)| {
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
                 residual_row(self.grid.row(y), around(v, w, y), &b[y * w..(y + 1) * w], out);
+                held.each_in(y * w..(y + 1) * w, |i, stiffness| out[i - y * w] -= stiffness * v[i]);
             }
             rows::dot(out, out)
         });
         bands.collect::<Vec<f64>>().iter().sum()
     }
     /// `direction` = z + turn · direction and `pulled` = A direction; returns the two's product.
-    fn turned(&self, z: &[f32], turn: f32, direction: &mut [f32], pulled: &mut [f32]) -> f64 {
+    fn turned(&self, held: &Held, z: &[f32], turn: f32, direction: &mut [f32], pulled: &mut [f32]) -> f64 {
         let w = self.grid.w;
         direction.par_chunks_mut(w * BAND).zip(z.par_chunks(w * BAND)).for_each(|(d, z)| rows::turn(z, turn, d));
         let direction = &*direction;
@@ -184,6 +199,7 @@ impl SpringSolver {
             let mut sum = 0.0;
             for (y, out) in (band * BAND..).zip(out.chunks_mut(w)) {
                 rows::apply_row(self.grid.row(y), around(direction, w, y), out);
+                held.each_in(y * w..(y + 1) * w, |i, stiffness| out[i - y * w] += stiffness * direction[i]);
                 sum += rows::dot(&direction[y * w..(y + 1) * w], out);
             }
             sum
@@ -202,7 +218,7 @@ impl SpringSolver {
         bands.collect::<Vec<f64>>().iter().sum()
     }
     /// One symmetric V-cycle: `z[0]` becomes an approximate solution of A z = b.
-    fn cycle(&self, b: &[f32], [z, twin]: &mut [Vec<f32>; 2], levels: &mut [graph::GraphScratch]) {
+    fn cycle(&self, held: &Held, b: &[f32], [z, twin]: &mut [Vec<f32>; 2], levels: &mut [graph::GraphScratch]) {
         let w = self.grid.w;
         let rows_of = |out: &mut [f32], each: &(dyn Fn(usize, &mut [f32]) + Sync)| {
             out.par_chunks_mut(w * BAND).enumerate().for_each(|(band, out)| {
@@ -212,13 +228,22 @@ impl SpringSolver {
         let relax = |step: f32, from: &[f32], to: &mut [f32]| {
             rows_of(to, &|y, out| {
                 relaxed_row(self.grid.row(y), around(from, w, y), &b[y * w..(y + 1) * w], step, out);
+                held.each_in(y * w..(y + 1) * w, |i, stiffness| {
+                    let (sum, pull) = self.grid.pull(from, i);
+                    out[i - y * w] = from[i] + step * ((b[i] + pull) / (sum + stiffness) - from[i]);
+                });
             });
         };
-        rows_of(twin, &|y, out| start_row(self.grid.row(y), &b[y * w..(y + 1) * w], STEPS[0], out));
+        rows_of(twin, &|y, out| {
+            start_row(self.grid.row(y), &b[y * w..(y + 1) * w], STEPS[0], out);
+            held.each_in(y * w..(y + 1) * w, |i, stiffness| {
+                out[i - y * w] = STEPS[0] * b[i] / (self.grid.pull(b, i).0 + stiffness);
+            });
+        });
         relax(STEPS[1], twin, z);
-        rows_of(twin, &|y, out| residual_row(self.grid.row(y), around(z, w, y), &b[y * w..(y + 1) * w], out));
+        self.residual(held, z, b, twin);
         graph::gather(&self.parent, twin, levels, &self.graphs);
-        graph::cycle(&self.graphs, levels);
+        graph::cycle(&self.graphs, levels, held.coarser());
         if let Some(coarse) = levels.first() {
             let parents = self.parent.par_chunks(w * BAND);
             z.par_chunks_mut(w * BAND).zip(parents).for_each(|(z, parents)| graph::spread(parents, coarse, z));

@@ -4,15 +4,22 @@
 
 mod layout;
 pub mod metric;
+mod near;
+mod pieces;
 mod place;
 mod seen;
 mod settle;
 mod smooth;
 mod steps;
+mod yields;
 
 pub use layout::{CanvasPlace, LaidPiece, PlaneLayout};
+pub use near::NearView;
+pub use pieces::PlanePiece;
 pub use place::PlanePlace;
 pub use seen::PlaneView;
+pub(super) use yields::YieldKey;
+pub use yields::{PlaneHold, PlaneSprings, PlaneYield};
 
 use super::contours::SheetOf;
 use super::pyramid::{Pyramid, TurnSpan};
@@ -129,7 +136,7 @@ fn covered(surface: &Surface) -> Rect {
 /// δ = D − q over a rectangle, x and y: the steps of MATH 8; `None` where it is given up.
 fn solved(surface: &Surface, rect: Rect, settings: UnwrapSettings, go_on: GoOn) -> Option<[Vec<f32>; 2]> {
     let normals = smooth::normals(surface, rect, settings.smooth_px);
-    let metric = Metric::of(&normals, settings.amount);
+    let metric = Metric::of(surface, rect, &normals, settings.amount);
     let solver = SpringSolver::new(springs(surface, rect, &normals));
     drop(normals);
     let n = rect.width() * rect.height();
@@ -154,13 +161,22 @@ fn solved(surface: &Surface, rect: Rect, settings: UnwrapSettings, go_on: GoOn) 
 }
 
 impl Metric {
-    fn of(normals: &smooth::Normals, amount: f32) -> Self {
+    /// S − 1 over a rectangle of a surface whose normals there are these.
+    fn of(surface: &Surface, rect: Rect, normals: &smooth::Normals, amount: f32) -> Self {
         let [nx, ny, nz] = &normals.0;
-        let entries = |(nx, (ny, nz)): (&f32, (&f32, &f32))| {
-            let s = metric::stretch(vec2(*nx, *ny), *nz, amount);
+        let (w, near) = (rect.width(), surface.near_view());
+        let entries = |(i, (nx, (ny, nz))): (usize, (&f32, (&f32, &f32)))| {
+            let (nbar, nz) = (vec2(*nx, *ny), *nz);
+            let s = match near {
+                None => metric::stretch(nbar, nz, amount),
+                Some(near) => {
+                    let (x, y) = (rect.x0 as usize + i % w, rect.y0 as usize + i / w);
+                    metric::stretch_from_near(nbar, nz, near.beside(x, y), near.farness(surface.depth(x, y)), amount)
+                }
+            };
             (s.x_axis.x - 1.0, (s.x_axis.y, s.y_axis.y - 1.0))
         };
-        let (xx, (xy, yy)) = nx.par_iter().zip(ny.par_iter().zip(nz)).map(entries).unzip();
+        let (xx, (xy, yy)) = nx.par_iter().zip(ny.par_iter().zip(nz)).enumerate().map(entries).unzip();
         Self { xx, xy, yy }
     }
 }
@@ -170,7 +186,14 @@ fn springs(surface: &Surface, rect: Rect, normals: &smooth::Normals) -> SpringGr
     let (w, n) = (rect.width(), rect.width() * rect.height());
     let [nx, ny, nz] = &normals.0;
     let normal = |i: usize| crate::math::vec3(nx[i], -ny[i], nz[i]);
-    let facing = |i: usize| nz[i].max(metric::STEEPEST_NZ).min(1.0);
+    let near = surface.near_view();
+    let facing = |i: usize| {
+        let facing = near.map_or(nz[i], |near| {
+            let (x, y) = (rect.x0 as usize + i % w, rect.y0 as usize + i / w);
+            metric::facing_from_near(vec2(nx[i], ny[i]), nz[i], near.beside(x, y))
+        });
+        facing.max(metric::STEEPEST_NZ).min(1.0)
+    };
     let plane = |bit: u8, step: usize, along: Vec2| {
         let mut plane = filled_or_unwind(n, 0.0f32);
         plane.par_chunks_mut(w).enumerate().for_each(|(y, row)| {

@@ -64,6 +64,7 @@ impl Surface {
     /// The same surface seen by another eye.
     pub fn seen_by(mut self, eye: Eye) -> Self {
         self.eye = eye;
+        self.near_view = Default::default();
         self
     }
     pub fn eye(&self) -> Eye {

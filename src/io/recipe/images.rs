@@ -9,6 +9,7 @@ use crate::math::range::STOPS;
 use crate::math::{Size, TURNS, UNIT, Vec2, srgb::Color, vec2};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::Outside;
+use crate::surface::unwrap::PlanePiece;
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use serde_json::Value;
 
@@ -48,7 +49,10 @@ impl LayerReader<'_> {
             None => default_anchors(operator, center),
         };
         let weights = fields.get("weights").map_or(Ok(Weights::default()), |node| weights(&node))?;
-        Ok(Bend { operator, anchors, weights })
+        let pieces = fields
+            .get("pieces")
+            .map_or(Ok(Vec::new()), |node| node.list(PlanePiece::MOST)?.iter().map(piece).collect::<Result<_>>())?;
+        Ok(Bend { operator, anchors, weights, pieces })
     }
     pub fn placement(&self, fields: &mut Fields) -> Result<Placement> {
         let covering = Placement::covering(self.size);
@@ -105,6 +109,19 @@ fn anchor(node: &JsonNode) -> Result<Anchor> {
     Ok(Anchor { at, source })
 }
 
+fn piece(node: &JsonNode) -> Result<PlanePiece> {
+    let mut fields = node.fields()?;
+    let still = PlanePiece::at(fields.required("at")?.point()?);
+    let piece = PlanePiece {
+        moved: fields.point("move", still.moved)?,
+        scale: fields.number("scale", still.scale, PlanePiece::SCALE)?,
+        rotation: fields.number("rotation", still.rotation, PlanePiece::ROTATION)?,
+        ..still
+    };
+    fields.finish()?;
+    Ok(piece)
+}
+
 fn weights(node: &JsonNode) -> Result<Weights> {
     let mut fields = node.fields()?;
     let power = fields.number("power", 2.0, Weights::POWER)?;
@@ -151,11 +168,25 @@ fn write_bend(out: &mut JsonObject, bend: &Bend, center: Vec2) {
     if bend.anchors != default_anchors(bend.operator, center) {
         out.set("anchors", bend.anchors.iter().map(write_anchor).collect());
     }
+    if !bend.pieces.is_empty() {
+        out.set("pieces", bend.pieces.iter().map(write_piece).collect());
+    }
     if let Weights::Shepard { power } = bend.weights {
         let mut weights = JsonObject::default();
         weights.number("power", power, 2.0);
         out.object("weights", weights);
     }
+}
+
+fn write_piece(piece: &PlanePiece) -> Value {
+    let (mut out, still) = (JsonObject::default(), PlanePiece::at(piece.at));
+    out.set("at", object::point(piece.at));
+    if piece.moved != still.moved {
+        out.set("move", object::point(piece.moved));
+    }
+    out.number("scale", piece.scale, still.scale);
+    out.number("rotation", piece.rotation, still.rotation);
+    out.done()
 }
 
 fn write_anchor(anchor: &Anchor) -> Value {

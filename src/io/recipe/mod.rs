@@ -69,7 +69,10 @@ pub const VERSION: i64 = 2;
 fn unwraps(document: &Document) -> bool {
     let is_print = |operator: Operator| matches!(operator, Operator::Surface { .. });
     let is_new = |layer: &Layer| match &layer.content {
-        Content::Image(live) => is_print(live.params().bend.operator),
+        Content::Image(live) => {
+            let bend = &live.params().bend;
+            is_print(bend.operator) || !bend.pieces.is_empty()
+        }
         Content::Gradient(live) => is_print(live.params().operator),
         Content::Strokes(live) => live.params().strokes.iter().any(|stroke| {
             let (brush, grain) = (stroke.brush(), stroke.brush().grain.as_ref());

@@ -179,7 +179,7 @@ mod tests {
     use crate::math::{Size, srgb::Color, vec2};
     use crate::paint::{Adjust, Brush, ImageFilter, PictureSource, Placement};
     use crate::raster::{Outside, Picture};
-    use crate::surface::{Bend, Operator, Weights};
+    use crate::surface::{Bend, Operator};
     use crate::tools::ModifierKeys;
 
     fn document(anchors: Vec<Anchor>) -> Document {
@@ -189,7 +189,7 @@ mod tests {
             source: PictureSource::new("p.png".into(), picture, Adjust::default()),
             placement: Placement::covering(size),
             outside: Outside::Mirror,
-            bend: Bend { operator: Operator::None, anchors, weights: Weights::default() },
+            bend: Bend { operator: Operator::None, anchors, ..Bend::default() },
             filter: ImageFilter::Antialias,
             frame: Default::default(),
         };

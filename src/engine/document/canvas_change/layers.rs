@@ -16,7 +16,6 @@ use crate::paint::{Gradient, PlacedImage, Stroke};
 use crate::raster::warp::{warped, warped_plane_onto};
 use crate::raster::{BlendMode, TileAt};
 use crate::shading::{LightKind, Shading};
-use crate::surface::Anchor;
 use std::sync::Arc;
 
 /// Carries layers.
@@ -153,9 +152,7 @@ impl Carrier<'_> {
         let placement = image.placement.on_canvas_of(self.change.from, self.change.to, image.source.picture.size);
         next.placement = placed(&placement, frame).unwrap_or(placement);
         let at = |p: Vec2| frame.to_canvas(p).unwrap_or(p);
-        next.bend.anchors.iter_mut().for_each(|anchor| {
-            *anchor = Anchor { at: at(anchor.at), source: at(anchor.source) };
-        });
+        next.bend.go_along(at, |p| frame.stretch_at(p).unwrap_or(Mat2::IDENTITY));
         next.bend.operator = image.bend.operator.on_canvas_of(self.ratio());
         next
     }

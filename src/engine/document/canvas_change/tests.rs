@@ -10,7 +10,7 @@ use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, PictureSource, Pl
 use crate::raster::{CoverageGrid, Outside, Picture, Plane, TileGrid};
 use crate::shading::{Light, LightKind, Model, Shading};
 use crate::shape::{Body, Primitive, Touch};
-use crate::surface::{Anchor, Bend, Maps, Operator, Weights};
+use crate::surface::{Anchor, Bend, Maps, Operator};
 
 const SIZE: Size = Size::new(150, 100);
 
@@ -45,7 +45,7 @@ fn image(operator: Operator) -> Layer {
         source: PictureSource::new("w".into(), Picture::srgb8(SIZE, waves(SIZE)).unwrap(), Adjust::default()),
         placement: Placement { center: vec2(70.0, 52.0), scale: 1.4, rotation: 20.0 },
         outside: Outside::Mirror,
-        bend: Bend { operator, anchors, weights: Weights::default() },
+        bend: Bend { operator, anchors, ..Bend::default() },
         filter: ImageFilter::Bilinear,
         frame: PlaneMap::IDENTITY,
     };

@@ -5,10 +5,10 @@ use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, Til
 use crate::Result;
 use crate::document::deep::Marks;
 use crate::document::{LayerMap, Live, Progress};
-use crate::math::Vec2;
+use crate::math::{Mat2, Vec2};
 use crate::paint::{ImageFilter, PlacedImage, Placement, Scene};
 use crate::raster::{DeepTexture, PlanarTile, TileAt};
-use crate::surface::{Anchor, Bend, Deformation};
+use crate::surface::{Bend, Deformation};
 use std::sync::Arc;
 
 impl Marks for PlacedImage {
@@ -48,9 +48,7 @@ impl LayerKind for Live<PlacedImage> {
         let mut image = self.params().clone();
         image.placement.center *= scale.per_axis;
         image.bend.operator = image.bend.operator.scaled(scale.length);
-        for Anchor { at, source } in &mut image.bend.anchors {
-            (*at, *source) = (*at * scale.per_axis, *source * scale.per_axis);
-        }
+        image.bend.go_along(|p| p * scale.per_axis, |_| Mat2::from_diagonal(scale.per_axis));
         if image.filter == ImageFilter::Antialias {
             let texture = image.source.texture().size();
             let texels_per_px = image.placement.texels_from_canvas(scale.to(), texture).matrix2.x_axis.length();
@@ -69,7 +67,7 @@ impl LayerKind for Live<PlacedImage> {
     fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
         let mut image = self.params().clone();
         image.frame = map.plane;
-        image.bend.anchors = map.anchors(&image.bend.anchors);
+        image.bend.go_along(|p| map.point(p), |p| map.stretch_at(p));
         Some(Content::Image(Live::new(image)))
     }
     fn bend(&self) -> Option<Bend> {

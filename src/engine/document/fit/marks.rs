@@ -11,6 +11,7 @@ use crate::paint::{
     Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke,
     StrokeSelection, Tip,
 };
+use crate::surface::unwrap::PlanePiece;
 use crate::surface::{Bend, Operator, Weights};
 use std::sync::Arc;
 
@@ -165,10 +166,20 @@ pub fn image(image: &PlacedImage) -> Fit {
         .anchors
         .iter()
         .try_for_each(|anchor| point("an anchor", anchor.at).and(point("an anchor", anchor.source)))?;
+    at_most("pieces", image.bend.pieces.len(), PlanePiece::MOST)?;
+    image.bend.pieces.iter().try_for_each(piece)?;
     match image.bend.weights {
         Weights::Shepard { power } => within("the sharpness of the anchors", power, &Weights::POWER),
         Weights::Segment => Err("the anchors of an image share by their distances".into()),
     }
+}
+
+fn piece(piece: &PlanePiece) -> Fit {
+    point("a piece", piece.at)?;
+    let moved = [piece.moved.x, piece.moved.y];
+    moved.into_iter().try_for_each(|v| within("how far a piece is moved", v, &PlanePiece::MOVED))?;
+    within("the size of a piece", piece.scale, &PlanePiece::SCALE)?;
+    within("the turn of a piece", piece.rotation, &PlanePiece::ROTATION)
 }
 
 pub fn gradient(gradient: &Gradient) -> Fit {

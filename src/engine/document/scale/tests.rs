@@ -6,7 +6,7 @@ use crate::math::{srgb::Color, vec3};
 use crate::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{BlendMode, Outside, Picture};
 use crate::shading::RadianceScaling;
-use crate::surface::{Anchor, Bend, Maps, Operator, Surface, Weights};
+use crate::surface::{Anchor, Bend, Maps, Operator, Surface};
 
 const SIZE: Size = Size::new(240, 160);
 
@@ -36,7 +36,7 @@ fn document() -> Document {
         source: PictureSource::new("w".into(), Picture::srgb8(SIZE, waves(SIZE)).unwrap(), Adjust::default()),
         placement: Placement { center: vec2(110.0, 90.0), scale: 1.5, rotation: 20.0 },
         outside: Outside::Mirror,
-        bend: Bend { operator, anchors: vec![anchor], weights: Weights::default() },
+        bend: Bend { operator, anchors: vec![anchor], ..Bend::default() },
         filter: ImageFilter::Bilinear,
         frame: Default::default(),
     };

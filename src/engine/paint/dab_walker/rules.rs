@@ -10,7 +10,6 @@ use crate::paint::habits::{Bearing, Measure, Spread};
 use crate::paint::rim::{Rim, Rims};
 use crate::paint::scene::Scene;
 use crate::paint::tint;
-use crate::surface::unwrap::metric;
 use crate::surface::{Curvature, Operator, Surface};
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -120,9 +119,7 @@ impl DabRules {
             return 1.0;
         }
         let along = way.normalize_or_zero();
-        let on = |(x, y, share): (usize, usize, f32)| {
-            share * (metric::stretch(surface.nbar(x, y), surface.normal(x, y).z, *amount) * along).length()
-        };
+        let on = |(x, y, share): (usize, usize, f32)| share * (surface.stretch(x, y, *amount) * along).length();
         let length: f32 = surface.around(at).map(on).sum();
         if length.is_finite() && length > 0.0 { f64::from(length) } else { 1.0 }
     }

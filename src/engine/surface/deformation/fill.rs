@@ -11,8 +11,8 @@ use crate::surface::anchor::{Weights, segment_slope};
 use crate::surface::operator::{Operator, first_order, reflection, second_order};
 use kernels::{
     DepthKernel, KernelSpan, MirrorKernel, NormalKernel, add_mean, coverage_gain, depth_add, depth_one, inverse_powers,
-    inverse_squares, laid_row, mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, segment_weights,
-    shifted_row, still_add, still_one,
+    inverse_squares, laid_row, mirror_add, mirror_one, mirror_row, nearer, normal_add, normal_one, pulled_row,
+    segment_weights, shifted_row, still_add, still_one,
 };
 use std::ops::Range;
 
@@ -87,8 +87,14 @@ fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f
     let [u, v] = planes.unwrapping.planes().map(|plane| at.of(plane));
     let objects = at.of(planes.objects);
     let one = objects.iter().all(|object| *object == objects[0]);
-    match planes.fits().iter().find(|fit| fit.object == objects[0]).filter(|fit| one && fit.is_rigid()) {
-        Some(fit) => laid_row(u, v, fit.linear, fit.shift, out_x, out_y),
+    match planes.fits().iter().find(|fit| fit.object == objects[0]).filter(|_| one) {
+        Some(fit) => {
+            laid_row(u, v, fit.linear, fit.shift, out_x, out_y);
+            if let Some((pulled, yields)) = fit.pulled.zip(planes.yields.as_ref()) {
+                let [by_x, by_y] = yields.planes().map(|plane| at.of(plane));
+                pulled_row(by_x, by_y, pulled, out_x, out_y);
+            }
+        }
         None if one && planes.fits().iter().all(|fit| fit.object != objects[0]) => {
             let away = planes.elsewhere_px();
             shifted_row(u, v, away, out_x, out_y);
@@ -98,7 +104,7 @@ fn laid_span(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f
     true
 }
 
-/// D_s at the pixels of a span that the surface covers, one by one: where objects meet, and under many anchors.
+/// D_s at the pixels of a span that the surface covers, one by one: where objects meet, and at edges.
 fn laid_over(planes: &LaidPlanes, surface: &Surface, at: MapSpan, out_x: &mut [f32], out_y: &mut [f32]) {
     for (k, (out_x, out_y)) in out_x.iter_mut().zip(out_y).enumerate() {
         if surface.coverage(at.x + k, at.y) > 0 {

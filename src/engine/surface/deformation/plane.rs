@@ -1,13 +1,14 @@
 //! D_s: how the plane of an unwrapped surface is laid under its anchors (MATH 8).
-//! Floor 2. Not here: the unwrapping (`unwrap`), the operators that are sums over anchors (`Deformation::at`).
+//! Floor 2. Not here: the unwrapping and how it yields to many anchors (`unwrap`), the operators that are sums over
+//! anchors (`Deformation::at`).
 //!
 //! Each object has a plane of its own: anchors move, and a pair of them turns, the plane of the object that they stand
 //! on; the others stay where they are in the picture.
 
-use crate::math::{Mat2, Vec2, vec2};
+use crate::math::{Affine2, Mat2, Vec2, vec2};
 use crate::raster::Plane;
-use crate::surface::unwrap::{PlanePlace, UnwrapSettings, Unwrapping};
-use crate::surface::{Anchor, Surface, Weights};
+use crate::surface::unwrap::{PlaneHold, PlanePiece, PlanePlace, PlaneYield, UnwrapSettings, Unwrapping};
+use crate::surface::{Bend, Surface, Weights};
 use std::sync::Arc;
 
 /// An unwrapped surface whose planes are laid under anchors.
@@ -15,25 +16,27 @@ pub(super) struct LaidPlanes<'a> {
     pub unwrapping: Arc<Unwrapping>,
     pub objects: &'a Plane<u32>,
     fits: Vec<PlaneFit>,
+    /// How planes yield where a rigid fit misses anchors.
+    pub yields: Option<Arc<PlaneYield>>,
     /// What is not laid lies out of reach: a dab paints on the object under it alone.
     is_bounded: bool,
 }
 
-/// How one object's plane is laid: D = linear U + shift, then what its pins still lack.
+/// How one object's plane is laid: D = linear U + shift, and where its anchors pull it, `pulled` times how it yields.
 pub(super) struct PlaneFit {
     pub object: u32,
     pub linear: Mat2,
     pub shift: Vec2,
-    pins: Vec<PlanePin>,
-    power: f32,
+    pub pulled: Option<Mat2>,
 }
 
-/// What a fit misses at one of its anchors.
+/// An anchor's place in the unwrapped plane, and where it is to lie.
 #[derive(Clone, Copy)]
 struct PlanePin {
-    /// In the unwrapped plane.
+    /// Canvas px.
+    on_canvas: Vec2,
     at: Vec2,
-    lacks: Vec2,
+    source: Vec2,
 }
 
 /// How far away lies what a dab must not touch, px.
@@ -44,26 +47,60 @@ const MET_PX: f32 = 1e-3;
 
 impl<'a> LaidPlanes<'a> {
     /// D(q_i) = s_i at every anchor. Two or more on one object turn its plane as a whole, so that they are met as
-    /// nearly as a turn can; what each still lacks is shared by their weights, measured in the plane.
+    /// nearly as a turn can; what each still lacks the plane yields, by the equation that unwrapped it.
     ///
     /// With `Weights::Segment`, the gradient tool's, the plane is scaled as well: its two ends are met exactly, and the
     /// ramp runs evenly over the surface between them.
-    pub fn pinned(surface: &'a Surface, settings: UnwrapSettings, anchors: &[Anchor], weights: Weights) -> Self {
+    ///
+    /// Then the picture is turned, moved and scaled on the bend's pieces.
+    pub fn pinned(surface: &'a Surface, settings: UnwrapSettings, bend: &Bend) -> Self {
         let unwrapping = surface.unwrapped(settings);
         // Anchors stand on the surface, also of a sheet.
         let whole = surface.sheet_of().and_then(|sheet| sheet.surface());
         let pinned = whole.as_deref().unwrap_or(surface);
         let laid = pinned.unwrapped(settings);
-        let mut groups: Vec<(u32, Vec<(Vec2, Vec2)>)> = Vec::new();
-        for anchor in anchors {
+        let mut groups: Vec<(u32, Vec<PlanePin>)> = Vec::new();
+        for anchor in &bend.anchors {
             let PlanePlace { object, at, .. } = laid.place(pinned, anchor.at);
+            let pin = PlanePin { on_canvas: anchor.at, at, source: anchor.source };
             match groups.iter_mut().find(|(known, _)| *known == object) {
-                Some((_, pairs)) => pairs.push((at, anchor.source)),
-                None => groups.push((object, vec![(at, anchor.source)])),
+                Some((_, pins)) => pins.push(pin),
+                None => groups.push((object, vec![pin])),
             }
         }
-        let fits = groups.iter().map(|(object, pairs)| PlaneFit::new(*object, pairs, weights)).collect();
-        Self { unwrapping, objects: surface.objects().labels(), fits, is_bounded: false }
+        let mut holds = Vec::new();
+        let fits: Vec<PlaneFit> =
+            groups.iter().map(|(object, pins)| PlaneFit::new(*object, pins, bend.weights, &mut holds)).collect();
+        let yields = yields_of(surface, settings, &holds);
+        let mut laid = Self { unwrapping, objects: surface.objects().labels(), fits, yields, is_bounded: false };
+        let of_whole = yields_of(pinned, settings, &holds);
+        bend.pieces.iter().for_each(|piece| laid.set_apart(pinned, settings, piece, of_whole.as_deref()));
+        laid
+    }
+    /// Turns, moves and scales the picture on the piece that a point lies on.
+    fn set_apart(
+        &mut self,
+        surface: &Surface,
+        settings: UnwrapSettings,
+        piece: &PlanePiece,
+        yields: Option<&PlaneYield>,
+    ) {
+        if piece.is_still() || !piece.at.is_finite() {
+            return;
+        }
+        let PlanePlace { object, at, .. } = surface.unwrapped(settings).place(surface, piece.at);
+        let fit = match self.fits.iter().position(|fit| fit.object == object) {
+            Some(known) => &mut self.fits[known],
+            None => {
+                self.fits.push(PlaneFit { object, linear: Mat2::IDENTITY, shift: Vec2::ZERO, pulled: None });
+                let last = self.fits.len() - 1;
+                &mut self.fits[last]
+            }
+        };
+        let (x, y) = surface.pixel_of(piece.at);
+        let shown = fit.at(at, yields.map_or(Vec2::ZERO, |yields| yields.at(x, y)));
+        let Affine2 { matrix2, .. } = fit.looked_up(piece.looked_up(shown));
+        fit.pulled = fit.pulled.map(|pulled| matrix2 * pulled);
     }
     /// `D(q) − q_0 = R(q_0)ᵀ (U(q) − U(q_0))`: a decal, upright where it is put down.
     pub fn of_dab(surface: &'a Surface, settings: UnwrapSettings, at: Vec2) -> Self {
@@ -72,8 +109,8 @@ impl<'a> LaidPlanes<'a> {
         let pinned = whole.as_deref().unwrap_or(surface);
         let PlanePlace { object, at: there, turn } = pinned.unwrapped(settings).place(pinned, at);
         let linear = turn.transpose();
-        let fit = PlaneFit { object, linear, shift: at - linear * there, pins: Vec::new(), power: 2.0 };
-        Self { unwrapping, objects: surface.objects().labels(), fits: vec![fit], is_bounded: true }
+        let fit = PlaneFit { object, linear, shift: at - linear * there, pulled: None };
+        Self { unwrapping, objects: surface.objects().labels(), fits: vec![fit], yields: None, is_bounded: true }
     }
     /// The same, laid wherever there is surface: what is not under the anchor stays where it is.
     pub fn unbounded(self) -> Self {
@@ -83,7 +120,7 @@ impl<'a> LaidPlanes<'a> {
     pub fn at(&self, x: usize, y: usize) -> Vec2 {
         let (object, u) = (self.objects.at(x, y), self.unwrapping.at(x, y));
         match self.fits.iter().find(|fit| fit.object == object) {
-            Some(fit) => fit.at(u),
+            Some(fit) => fit.at(u, self.yields.as_ref().map_or(Vec2::ZERO, |yields| yields.at(x, y))),
             None if self.is_bounded => u + OUT_OF_REACH_PX,
             None => u,
         }
@@ -97,51 +134,52 @@ impl<'a> LaidPlanes<'a> {
     }
 }
 
+/// How a surface yields to some holds, if there are any.
+fn yields_of(surface: &Surface, settings: UnwrapSettings, holds: &[PlaneHold]) -> Option<Arc<PlaneYield>> {
+    (!holds.is_empty()).then(|| surface.plane_yield(settings, holds))
+}
+
 impl PlaneFit {
-    fn new(object: u32, pairs: &[(Vec2, Vec2)], weights: Weights) -> Self {
-        let n = pairs.len().max(1) as f32;
-        let (from, to) = pairs.iter().fold((Vec2::ZERO, Vec2::ZERO), |(a, b), (u, s)| (a + *u, b + *s));
+    /// The rigid part of a fit; where it misses a pin, all of them are held.
+    fn new(object: u32, pins: &[PlanePin], weights: Weights, holds: &mut Vec<PlaneHold>) -> Self {
+        let n = pins.len().max(1) as f32;
+        let (from, to) = pins.iter().fold((Vec2::ZERO, Vec2::ZERO), |(a, b), pin| (a + pin.at, b + pin.source));
         let (from, to) = (from / n, to / n);
         // Of all rotations the one that leaves the least, squared.
         let (mut dot, mut cross, mut spread) = (0.0, 0.0, 0.0);
-        for (u, s) in pairs {
-            let (u, s) = (*u - from, *s - to);
+        for pin in pins {
+            let (u, s) = (pin.at - from, pin.source - to);
             (dot, cross, spread) = (dot + u.dot(s), cross + u.perp_dot(s), spread + u.length_squared());
         }
         let turned = vec2(dot, cross);
-        let (linear, power) = match weights {
-            _ if spread <= MET_PX || turned.length() <= MET_PX * spread => (Vec2::X, 2.0),
-            Weights::Segment => (turned / spread, 2.0),
-            Weights::Shepard { power } => (turned.normalize_or(Vec2::X), power),
+        let linear = match weights {
+            _ if spread <= MET_PX || turned.length() <= MET_PX * spread => Vec2::X,
+            Weights::Segment => turned / spread,
+            Weights::Shepard { .. } => turned.normalize_or(Vec2::X),
         };
         let linear = Mat2::from_cols(linear, linear.perp());
         let shift = to - linear * from;
-        let lacking = |(u, s): &(Vec2, Vec2)| PlanePin { at: *u, lacks: *s - (linear * *u + shift) };
-        let mut pins: Vec<PlanePin> = pairs.iter().map(lacking).collect();
-        if pins.iter().all(|pin| pin.lacks.length() < MET_PX) {
-            pins.clear();
+        let held = |pin: &PlanePin| PlaneHold { at: pin.on_canvas, lacks: pin.source - (linear * pin.at + shift) };
+        let held: Vec<PlaneHold> = pins.iter().map(held).collect();
+        // Anchors thrown beyond all reach are met by no plane.
+        let is_pulled =
+            held.iter().any(|hold| hold.lacks.length() >= MET_PX) && held.iter().all(|hold| hold.lacks.is_finite());
+        if is_pulled {
+            holds.extend(held);
         }
-        Self { object, linear, shift, pins, power }
+        Self { object, linear, shift, pulled: is_pulled.then_some(Mat2::IDENTITY) }
     }
-    pub fn is_rigid(&self) -> bool {
-        self.pins.is_empty()
+    /// Looks a picture up where `look` leads what was looked up before; returns it.
+    fn looked_up(&mut self, look: Affine2) -> Affine2 {
+        (self.linear, self.shift) = (look.matrix2 * self.linear, look.transform_point2(self.shift));
+        look
     }
     /// D of a point of the unwrapped plane.
-    pub fn at(&self, u: Vec2) -> Vec2 {
+    ///
+    /// * `yields`: how it yields there; only where anchors pull.
+    #[inline(always)]
+    pub fn at(&self, u: Vec2, yields: Vec2) -> Vec2 {
         let laid = self.linear * u + self.shift;
-        if self.pins.is_empty() {
-            return laid;
-        }
-        let nearest = self.pins.iter().map(|pin| pin.at.distance_squared(u)).fold(f32::INFINITY, f32::min);
-        if nearest < 1e-12 {
-            return self.pins.iter().find(|pin| pin.at.distance_squared(u) == nearest).map_or(laid, |p| laid + p.lacks);
-        }
-        let (mut sum, mut lacks) = (0.0, Vec2::ZERO);
-        for pin in &self.pins {
-            let near = nearest / pin.at.distance_squared(u);
-            let weight = if self.power == 2.0 { near } else { near.powf(0.5 * self.power) };
-            (sum, lacks) = (sum + weight, lacks + weight * pin.lacks);
-        }
-        laid + lacks / sum
+        self.pulled.map_or(laid, |pulled| laid + pulled * yields)
     }
 }

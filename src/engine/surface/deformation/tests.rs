@@ -4,6 +4,7 @@ use super::*;
 use crate::math::{Vec3, vec3};
 use crate::raster::Plane;
 use crate::surface::Maps;
+use crate::surface::unwrap::PlanePiece;
 use proptest::prelude::*;
 
 const SIZE: Size = Size::new(160, 120);
@@ -51,7 +52,7 @@ const OPERATORS: [Operator; 8] = [
 fn bends(operator: Operator) -> [Bend; 4] {
     let dragged = Anchor { at: vec2(100.5, 80.5), source: vec2(90.0, 85.0) };
     let three = vec![Anchor::fixed(vec2(60.5, 40.5)), dragged, Anchor::fixed(vec2(45.0, 70.0))];
-    let bend = |anchors: &[Anchor], weights| Bend { operator, anchors: anchors.to_vec(), weights };
+    let bend = |anchors: &[Anchor], weights| Bend { operator, anchors: anchors.to_vec(), weights, ..Bend::default() };
     [
         bend(&three[1..2], Weights::default()),
         bend(&three, Weights::default()),
@@ -127,7 +128,7 @@ fn a_ball_reflects_the_whole_image_and_a_plane_none_of_it() {
     let (ball, alpha) = (sphere(), 0.5);
     let operator = Operator::Normal { alpha, beta: 0.0, detail: 0.0 };
     let center = vec2(80.5, 60.5);
-    let bend = Bend { operator, anchors: vec![Anchor::fixed(center)], weights: Weights::default() };
+    let bend = Bend { operator, anchors: vec![Anchor::fixed(center)], ..Bend::default() };
     let d = Deformation::new(Some(&ball), SIZE, &bend).at(110, 60);
     // f_n(u) d = α u d (eq. 14 at β = 0), u = |d|, L = 160.
     let u = 30.0 / 70.0;
@@ -144,7 +145,7 @@ fn detail_bends_more_where_the_surface_is_convex() {
     let bend = |detail| Bend {
         operator: Operator::Normal { alpha: 0.5, beta: 1.0, detail },
         anchors: vec![Anchor::fixed(vec2(80.5, 60.5))],
-        weights: Weights::default(),
+        ..Bend::default()
     };
     let offset = |detail| Deformation::new(Some(&surface), SIZE, &bend(detail)).at(90, 70) - vec2(90.5, 70.5);
     let kappa = surface.curvature(DETAIL_BLUR_PX).kappa(90, 70, DETAIL_SCALE_PX);
@@ -240,10 +241,35 @@ fn an_anchor_moves_the_plane_of_its_object_and_two_turn_it() {
 }
 
 #[test]
+fn a_piece_has_its_picture_turned_moved_and_scaled_alone() {
+    let surface = cylinder_and_plate();
+    let still = vec![Anchor { at: vec2(70.5, 60.5), source: vec2(60.0, 61.0) }, Anchor::fixed(vec2(100.5, 62.5))];
+    let piece = PlanePiece { moved: vec2(4.0, -7.0), scale: 2.0, rotation: 90.0, ..PlanePiece::at(vec2(90.5, 80.5)) };
+    let before = Bend { operator: ON_SURFACE, anchors: still, ..Bend::default() };
+    let after = Bend { pieces: vec![PlanePiece::at(vec2(30.5, 30.5)), piece], ..before.clone() };
+    let [d, e] = [&before, &after].map(|bend| Deformation::new(Some(&surface), SIZE, bend));
+    let middle = d.at(90, 80);
+    for (x, y) in [(90, 80), (120, 40), (64, 110)] {
+        // A quarter turn counter-clockwise takes what lies to the right to above: it is looked up clockwise.
+        let away = d.at(x, y) - middle - piece.moved;
+        let found = e.at(x, y);
+        assert!(found.distance(middle + 0.5 * vec2(-away.y, away.x)) < 2e-3, "({x}, {y}): {found}");
+        assert!((e.jacobian(x, y).determinant() / d.jacobian(x, y).determinant() - 0.25).abs() < 1e-3);
+    }
+    assert_eq!(d.at(30, 30), e.at(30, 30), "the plate");
+    let (mut filled, rect) = (DeformedRect::default(), Rect::new(20, 20, 140, 115));
+    e.fill(rect, &mut filled);
+    for (x, y) in (20..115).flat_map(|y| (20..140).map(move |x| (x, y))) {
+        let i = (y - 20) as usize * 120 + (x - 20) as usize;
+        assert!(vec2(filled.x[i], filled.y[i]).distance(e.at(x, y)) < 1e-3, "({x}, {y})");
+    }
+}
+
+#[test]
 fn a_gradient_on_the_surface_runs_evenly_along_it() {
     let surface = cylinder_and_plate();
     let anchors = vec![Anchor::fixed(vec2(80.5, 100.5)), Anchor::fixed(vec2(130.5, 100.5))];
-    let bend = Bend { operator: ON_SURFACE, anchors, weights: Weights::Segment };
+    let bend = Bend { operator: ON_SURFACE, anchors, weights: Weights::Segment, ..Bend::default() };
     let d = Deformation::new(Some(&surface), SIZE, &bend);
     for x in [90, 100, 110, 120, 128] {
         let share = (arc(x as f32 + 0.5) - arc(80.5)) / (arc(130.5) - arc(80.5));
@@ -258,7 +284,7 @@ fn anchors_anywhere_leave_the_surface_finite() {
     for at in [vec2(-50.0, 40.0), huge, vec2(f32::NAN, 1.0), vec2(90.5, 60.5)] {
         let anchors = vec![Anchor::fixed(vec2(90.5, 60.5)), Anchor { at, source: huge }, Anchor::fixed(at)];
         for weights in [Weights::Shepard { power: 2.0 }, Weights::Shepard { power: 0.3 }, Weights::Segment] {
-            let bend = Bend { operator: ON_SURFACE, anchors: anchors.clone(), weights };
+            let bend = Bend { operator: ON_SURFACE, anchors: anchors.clone(), weights, ..Bend::default() };
             let d = Deformation::new(Some(&surface), SIZE, &bend);
             assert!([(90, 60), (30, 30), (2, 2)].iter().all(|&(x, y)| d.at(x, y).is_finite()), "{at} {weights:?}");
         }
@@ -283,7 +309,7 @@ proptest! {
             Operator::Reflection { alpha, detail: alpha },
         ] {
             for weights in [Weights::Shepard { power: 2.0 }, Weights::Shepard { power }, Weights::Segment] {
-                let bend = Bend { operator, anchors: anchors.clone(), weights };
+                let bend = Bend { operator, anchors: anchors.clone(), weights, ..Bend::default() };
                 let deformation = Deformation::new(Some(&surface), SIZE, &bend);
                 let mut filled = DeformedRect::default();
                 deformation.fill(Rect::new(60, 50, 90, 52), &mut filled);

@@ -177,32 +177,41 @@ impl SpringGraph {
         let (labels, roots) = numbered(&mut first);
         (labels, roots.len())
     }
-    /// Takes the mean of every piece away: what rounding leaves there no spring answers, and it would grow.
-    fn centre(&self, values: &mut [f32]) {
+    /// Takes the mean of every piece away of which nothing is held: what rounding leaves there no spring answers, and it would grow.
+    fn centre(&self, values: &mut [f32], held: &[(u32, f32)]) {
         let (labels, count) = &self.pieces;
         let mut sums = vec![(0.0f32, 0.0f32); *count];
+        let mut is_free = vec![true; *count];
+        held.iter().for_each(|(i, _)| is_free[labels[*i as usize] as usize] = false);
         for (v, &label) in values.iter().zip(labels) {
             let sum = &mut sums[label as usize];
             *sum = (sum.0 + v, sum.1 + 1.0);
         }
-        for (v, &label) in values.iter_mut().zip(labels) {
+        for (v, &label) in values.iter_mut().zip(labels).filter(|(_, label)| is_free[**label as usize]) {
             *v -= sums[label as usize].0 / sums[label as usize].1;
         }
     }
     /// One sweep of Jacobi: `v + step ((b + Σ w v) / Σ w − v)`.
-    fn relax(&self, b: &[f32], v: &[f32], step: f32, out: &mut [f32]) {
+    fn relax(&self, held: &[(u32, f32)], b: &[f32], v: &[f32], step: f32, out: &mut [f32]) {
         let one = |(i, out): (usize, &mut f32)| {
             let pull: f32 = self.springs(i).map(|(j, s)| s * v[j as usize]).sum();
             *out = v[i] + step * ((b[i] + pull) * self.inverse[i] - v[i]);
         };
         self.each(out, one);
+        for &(i, stiffness) in held {
+            let i = i as usize;
+            let (sum, pull) =
+                self.springs(i).fold((0.0, 0.0), |(sum, pull), (j, s)| (sum + s, pull + s * v[j as usize]));
+            out[i] = v[i] + step * ((b[i] + pull) / (sum + stiffness) - v[i]);
+        }
     }
     /// b − A v.
-    fn residual(&self, b: &[f32], v: &[f32], out: &mut [f32]) {
+    fn residual(&self, held: &[(u32, f32)], b: &[f32], v: &[f32], out: &mut [f32]) {
         let one = |(i, out): (usize, &mut f32)| {
             *out = b[i] - self.springs(i).map(|(j, s)| s * (v[i] - v[j as usize])).sum::<f32>();
         };
         self.each(out, one);
+        held.iter().for_each(|&(i, stiffness)| out[i as usize] -= stiffness * v[i as usize]);
     }
     fn each(&self, out: &mut [f32], one: impl Fn((usize, &mut f32)) + Sync) {
         if self.len() <= CHUNK {
@@ -234,31 +243,36 @@ pub(super) fn spread(parents: &[u32], coarse: &GraphScratch, fine: &mut [f32]) {
 }
 
 /// One symmetric V-cycle from the first graph down: solves each level's `b` for its `v`.
-pub(super) fn cycle(graphs: &[SpringGraph], levels: &mut [GraphScratch]) {
+pub(super) fn cycle(graphs: &[SpringGraph], levels: &mut [GraphScratch], held: &[Vec<(u32, f32)>]) {
     let (Some((graph, below)), Some((level, levels))) = (graphs.split_first(), levels.split_first_mut()) else {
         return;
     };
     let GraphScratch { b, v, twin } = level;
+    let (held, held_below) = held.split_first().map_or((&[][..], held), |(here, below)| (&here[..], below));
     v.resize(graph.len(), 0.0);
     twin.resize(graph.len(), 0.0);
     if below.is_empty() {
-        graph.centre(b);
+        graph.centre(b, held);
     }
     graph.each(twin, |(i, out)| *out = super::STEPS[0] * b[i] * graph.inverse[i]);
-    graph.relax(b, twin, super::STEPS[1], v);
+    for &(i, stiffness) in held {
+        let sum: f32 = graph.springs(i as usize).map(|spring| spring.1).sum();
+        twin[i as usize] = super::STEPS[0] * b[i as usize] / (sum + stiffness);
+    }
+    graph.relax(held, b, twin, super::STEPS[1], v);
     if below.is_empty() {
         // Few unknowns, or many that hardly any spring joins.
         for _ in 0..20 {
-            graph.relax(b, v, super::STEPS[0], twin);
-            graph.relax(b, twin, super::STEPS[1], v);
+            graph.relax(held, b, v, super::STEPS[0], twin);
+            graph.relax(held, b, twin, super::STEPS[1], v);
         }
-        graph.centre(v);
+        graph.centre(v, held);
         return;
     }
-    graph.residual(b, v, twin);
+    graph.residual(held, b, v, twin);
     gather(&graph.parent, twin, levels, below);
-    cycle(below, levels);
+    cycle(below, levels, held_below);
     spread(&graph.parent, &levels[0], v);
-    graph.relax(b, v, super::STEPS[0], twin);
-    graph.relax(b, twin, super::STEPS[1], v);
+    graph.relax(held, b, v, super::STEPS[0], twin);
+    graph.relax(held, b, twin, super::STEPS[1], v);
 }

@@ -3,7 +3,7 @@
 
 use super::{PlaneView, UnwrapSettings, Unwrapping};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
-use crate::surface::{Anchor, Bend, Operator, Surface, Weights};
+use crate::surface::{Anchor, Bend, Operator, Surface};
 use std::sync::Arc;
 
 /// The planes of a surface's objects side by side, and the canvas point at each pixel of the sheet.
@@ -82,7 +82,7 @@ impl PlaneLayout {
         Bend {
             operator: Operator::Surface { amount, smooth: smooth_px },
             anchors: self.pieces.iter().take(Bend::MOST_ANCHORS).map(pinned).collect(),
-            weights: Weights::default(),
+            ..Bend::default()
         }
     }
     /// What lies under a point of the sheet. Beside a piece its plane goes on flat; `None` where that would be on
@@ -105,6 +105,21 @@ impl PlaneLayout {
         let place = self.unwrapping.place(surface, q);
         let piece = self.pieces.iter().find(|piece| piece.object == place.object)?;
         Some(place.at + piece.shift)
+    }
+    /// The number of the object whose plane a canvas point lies in.
+    pub fn object_at(&self, surface: &Surface, q: Vec2) -> u32 {
+        self.unwrapping.place(surface, q).object
+    }
+    /// ∂U/∂q at a pixel of the canvas: the sheet's own shifts leave it as it is.
+    pub fn jacobian(&self, surface: &Surface, x: usize, y: usize) -> Mat2 {
+        self.unwrapping.jacobian(surface, x, y)
+    }
+    /// The canvas point in the middle of a piece; of one that is hollow there, some point of it.
+    pub fn middle_of(&self, surface: &Surface, piece: &LaidPiece) -> Vec2 {
+        let Rect { x0, y0, x1, y1 } = piece.rect;
+        let middle = vec2(0.5 * (x0 + x1) as f32, 0.5 * (y0 + y1) as f32);
+        let shown = self.sheet.between(middle).filter(|at| self.object_at(surface, *at) == piece.object);
+        shown.unwrap_or(piece.at)
     }
     fn piece_at(&self, p: Vec2) -> Option<&LaidPiece> {
         let (x, y) = (p.x.floor() as i32, p.y.floor() as i32);

@@ -1,7 +1,7 @@
 //! The surface's own metric, as its normals tell it in the picture: how long a step of a pixel is on the surface.
 //! Floor 2. Pure functions; each is an equation of MATH 8. Not here: solving for the deformation (`steps`).
 
-use crate::math::{Mat2, Vec2, Vec3};
+use crate::math::{Mat2, Vec2, Vec3, vec2};
 use crate::surface::operator::outer;
 
 /// Below this n_z the surface is seen edge-on: it counts as no steeper, so that no picture is stretched more than five
@@ -18,6 +18,37 @@ pub const STEEPEST_NZ: f32 = 0.2;
 pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
     let along = nbar / nbar.length().max(1e-9);
     Mat2::IDENTITY + outer(along, along) * (nz.max(STEEPEST_NZ).min(1.0).powf(-amount) - 1.0)
+}
+
+/// S(q) of MATH 8 of a surface that is seen from near: the symmetric root of its first fundamental form, to the power a.
+///
+/// The point seen at q lies at Z (b, 1), b = (q − c)/f. Its normal tells how Z grows, ∇Z/Z = g/f with g = n̄/ν and
+/// ν = n_z − n̄·b, so that ∂P/∂q has the metric `(Z/Z̄)² (1 + b gᵀ + g bᵀ + (1 + |b|²) g gᵀ)`, where a px is as long
+/// as on the picture plane at Z̄. With b = 0 it is that of a parallel view.
+///
+/// * `nbar`, `nz`: a unit normal, image axes; ν is held ≥ 0.2 of the length of (b, 1).
+/// * `beside`: b, focal lengths from the point before the eye; image axes.
+/// * `farness`: Z/Z̄, `> 0`.
+/// * `amount`: a, as in [`stretch`].
+pub fn stretch_from_near(nbar: Vec2, nz: f32, beside: Vec2, farness: f32, amount: f32) -> Mat2 {
+    let away = 1.0 + beside.length_squared();
+    let slope = nbar / facing_from_near(nbar, nz, beside).max(STEEPEST_NZ) / away.sqrt();
+    let metric = Mat2::IDENTITY + outer(beside, slope) + outer(slope, beside) + outer(slope, slope) * away;
+    // Its larger axis u, and both eigenvalues.
+    let half = 0.5 * vec2(metric.x_axis.x - metric.y_axis.y, 2.0 * metric.x_axis.y);
+    let (middle, reach) = (0.5 * (metric.x_axis.x + metric.y_axis.y), half.length());
+    let root = |v: f32| v.max(1e-4).sqrt().min(1.0 / STEEPEST_NZ).powf(amount);
+    let (most, least) = (root(middle + reach), root(middle - reach));
+    let twice = half / reach.max(1e-9);
+    // u uᵀ from the double angle.
+    let along = Mat2::from_cols(vec2(1.0 + twice.x, twice.y), vec2(twice.y, 1.0 - twice.x)) * 0.5;
+    (Mat2::IDENTITY * least + along * (most - least)) * farness.powf(amount)
+}
+
+/// n·v of a surface that is seen from near: ν over the length of (b, 1); see [`stretch_from_near`].
+#[inline(always)]
+pub fn facing_from_near(nbar: Vec2, nz: f32, beside: Vec2) -> f32 {
+    (nz - nbar.dot(beside)) / (1.0 + beside.length_squared()).sqrt()
 }
 
 /// R(q) of MATH 8: the rotation in J S⁻¹, by which the solution turned the surface at a pixel.
@@ -62,7 +93,7 @@ pub fn hollow(a: Vec3, b: Vec3, along: Vec2) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{vec2, vec3};
+    use crate::math::vec3;
 
     #[test]
     fn the_root_squared_is_the_metric_of_the_slope() {
@@ -73,6 +104,28 @@ mod tests {
             let metric = Mat2::IDENTITY + outer(slope, slope);
             assert!((root * root).abs_diff_eq(metric, 1e-4), "{:?} and {metric:?}", root * root);
         }
+    }
+    #[test]
+    fn from_near_the_metric_is_that_of_the_points_that_are_seen() {
+        // A plane through (0, 0, 3) with any normal: Z (b, 1) lies on it where Z n·(b, −1) = −3 n_z.
+        let n = vec3(0.4, -0.25, 0.8).normalize();
+        let point = |b: Vec2| vec3(b.x, b.y, 1.0) * (3.0 * n.z / (n.z - n.x * b.x - n.y * b.y));
+        for b in [Vec2::ZERO, vec2(0.3, 0.1), vec2(-0.4, 0.35)] {
+            let h = 1e-3;
+            let [dx, dy] = [Vec2::X, Vec2::Y].map(|d| (point(b + d * h) - point(b - d * h)) / (2.0 * h));
+            let metric = Mat2::from_cols(vec2(dx.dot(dx), dx.dot(dy)), vec2(dx.dot(dy), dy.dot(dy))) * (1.0 / 9.0);
+            let root = stretch_from_near(n.truncate(), n.z, b, point(b).z / 3.0, 1.0);
+            assert!((root * root).abs_diff_eq(metric, 3e-3), "{b}: {:?} and {metric:?}", root * root);
+            let double = stretch_from_near(n.truncate(), n.z, b, point(b).z / 3.0, 2.0);
+            assert!(double.abs_diff_eq(root * root, 1e-4));
+        }
+        for (x, y) in [(0.3f32, 0.4f32), (-0.7, 0.1), (0.0, 0.0)] {
+            let (nbar, nz) = (vec2(x, y), (1.0 - x * x - y * y).sqrt());
+            let near = stretch_from_near(nbar, nz, Vec2::ZERO, 1.0, 1.3);
+            assert!(near.abs_diff_eq(stretch(nbar, nz, 1.3), 1e-5), "straight ahead it is the parallel one");
+        }
+        let edge_on = stretch_from_near(vec2(1.0, 0.0), -0.3, vec2(0.2, 0.4), 1.0, 1.0);
+        assert!(edge_on.x_axis.is_finite() && edge_on.y_axis.is_finite() && edge_on.determinant() > 0.0);
     }
     #[test]
     fn edge_on_it_is_held_and_flat_it_is_the_identity() {

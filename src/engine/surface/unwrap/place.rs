@@ -46,7 +46,7 @@ impl Unwrapping {
 }
 
 /// The pixel that holds a point, or the nearest on the surface: looked for in growing squares around it.
-fn nearest_covered(surface: &Surface, q: Vec2) -> (usize, usize) {
+pub(super) fn nearest_covered(surface: &Surface, q: Vec2) -> (usize, usize) {
     let coverage = surface.coverage_plane();
     let held = surface.pixel_of(q);
     if coverage.at(held.0, held.1) > 0 || !q.is_finite() {

@@ -65,6 +65,33 @@ fn a_tilted_plane_is_isometric() {
     assert!(all[all.len() - 1] < 1.005, "{}", all[all.len() - 1]);
 }
 #[test]
+fn a_plane_seen_from_near_is_isometric_in_space() {
+    let (size, n) = (Size::new(120, 90), vec3(0.5, -0.35, 0.8).normalize_or(Vec3::Z));
+    let eye = crate::surface::view::Eye::of_fov(Some(55.0), size);
+    let focal = 60.0 / 27.5f32.to_radians().tan();
+    // Where the pixel's ray meets the plane; y down, z away from the eye.
+    let point = |x: usize, y: usize| {
+        let b = (vec2(x as f32 + 0.5, y as f32 + 0.5) - size.center()) / focal;
+        vec3(b.x, b.y, 1.0) * (n.z / (n.z - n.x * b.x + n.y * b.y))
+    };
+    let all = || (0..90).flat_map(|y| (0..120).map(move |x| (x, y)));
+    let far = |pick: fn(f32, f32) -> f32| all().map(|(x, y)| point(x, y).z).reduce(pick).unwrap();
+    let (low, high) = (far(f32::min), far(f32::max));
+    let depth = Plane::from_fn(size, |x, y| (point(x, y).z - low) / (high - low));
+    let maps = Maps { normals: Plane::filled(size, n), depth, coverage: Plane::filled(size, 255) };
+    let surface = Surface::new(maps).unwrap().seen_by(eye);
+    let d = Unwrapping::new(&surface, WHOLE);
+    let ratio = |a: (usize, usize), b: (usize, usize)| {
+        d.at(a.0, a.1).distance(d.at(b.0, b.1)) / point(a.0, a.1).distance(point(b.0, b.1))
+    };
+    let one = ratio((20, 20), (100, 70));
+    for (a, b) in [((5, 5), (30, 10)), ((90, 10), (110, 80)), ((10, 80), (60, 45)), ((60, 45), (64, 41))] {
+        assert!((ratio(a, b) / one - 1.0).abs() < 0.01, "{a:?} to {b:?}: {} and {one}", ratio(a, b));
+    }
+    let mean = all().map(|(x, y)| point(x, y).z).sum::<f32>() / 10_800.0;
+    assert!((one * mean / focal - 1.0).abs() < 0.03, "lengths at the mean depth are as they are seen");
+}
+#[test]
 fn a_cylinder_unrolls_to_its_arc_length() {
     let radius = 60.0f32;
     let surface = of_height(Size::new(140, 50), |x, _| {
@@ -212,7 +239,7 @@ fn rows_do_as_the_equations_say() {
     let surface = sphere(Size::new(70, 60), 28.0, 0.1);
     let rect = covered(&surface);
     let normals = smooth::normals(&surface, rect, 0.0);
-    let (metric, grid) = (Metric::of(&normals, 1.0), springs(&surface, rect, &normals));
+    let (metric, grid) = (Metric::of(&surface, rect, &normals, 1.0), springs(&surface, rect, &normals));
     let (w, h) = (rect.width(), rect.height());
     let moved: [Vec<f32>; 2] =
         [0, 1].map(|k| (0..w * h).map(|i| (i % w) as f32 * 0.3 * hash::unit(3, i as u32, k)).collect());

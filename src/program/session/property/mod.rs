@@ -14,6 +14,7 @@ use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, P
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
 use crate::shading::{Features, Light, Model, Projection, RadianceScaling, Scaling, Shading, Term};
+use crate::surface::unwrap::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
 use values::set_mask;
 
@@ -37,6 +38,8 @@ actions! {
         "fill" Fill { color: Color }
         "operator" Bend { operator: Operator }
         "anchors" Anchors { anchors: Vec<Anchor> }
+        /// Of an image on the unwrapped surface: pieces whose picture is turned, moved and scaled alone.
+        "pieces" Pieces { pieces: Vec<PlanePiece> }
         "power" Power { to: f32 }
         "placement" Place { placement: Placement }
         "outside" Beyond { outside: Outside }
@@ -94,6 +97,7 @@ impl Property {
             Property::Fill { .. } => "Fill colour",
             Property::Bend { .. } => "Operator",
             Property::Anchors { .. } => "Anchors",
+            Property::Pieces { .. } => "Pieces",
             Property::Power { .. } => "Anchor weights",
             Property::Place { .. } => "Placement",
             Property::Beyond { .. } => "Outside",
@@ -194,6 +198,7 @@ impl Property {
         match self {
             Property::Bend { operator } => next.bend.operator = *operator,
             Property::Anchors { anchors } => next.bend.anchors.clone_from(anchors),
+            Property::Pieces { pieces } => next.bend.pieces.clone_from(pieces),
             Property::Power { to } => next.bend.weights = Weights::Shepard { power: *to },
             Property::Place { placement } => next.placement = *placement,
             Property::Beyond { outside } => next.outside = *outside,

@@ -11,6 +11,7 @@ use crate::session::replay::{names, record};
 use crate::shading::scaling::Reference;
 use crate::shading::{FeatureScale, Features, Light, LightKind, Model, Projection, Scaling, Term};
 use crate::surface::region::SurfaceRegion;
+use crate::surface::unwrap::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
 names!(BlendMode);
@@ -33,6 +34,7 @@ record!(NoiseRelief { size_px, octaves, roughness, stretch, seed });
 record!(Placement { center, scale, rotation });
 record!(Adjust { blur, exposure, hue, saturation, brightness, contrast });
 record!(Anchor { at, source });
+record!(PlanePiece { at, moved, scale, rotation });
 record!(GradientStop { t, color });
 record!(Scaling { alpha, gamma_convex, gamma_concave });
 record!(Term { color, weight, scaling });

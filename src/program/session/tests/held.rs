@@ -64,7 +64,7 @@ const NUMBERS: [f32; 22] = [
     -2e6, 1e30, -1e30,
 ];
 /// Edits with `#` for a number and `%` for a whole one; the property of a layer, or an action.
-const PROPERTIES: [&str; 45] = [
+const PROPERTIES: [&str; 46] = [
     r#"{"do":"mask","mask":{"region":{"kind":"shine","at":[5,#],"tolerance":#,"softness":#,"contiguous":false}}}"#,
     r#"{"do":"opacity","to":#}"#,
     r#"{"do":"linear","on":true}"#,
@@ -81,6 +81,7 @@ const PROPERTIES: [&str; 45] = [
     r#"{"do":"operator","operator":{"kind":"reflection","alpha":0.5,"detail":#}}"#,
     r#"{"do":"anchors","anchors":[{"at":[#,2],"source":[3,#]},{"at":[5,6],"source":[7,8]}]}"#,
     r#"{"do":"anchors","anchors":[]}"#,
+    r#"{"do":"pieces","pieces":[{"at":[#,2],"moved":[3,#],"scale":2,"rotation":#}]}"#,
     r#"{"do":"power","to":#}"#,
     r#"{"do":"transform","transform":{"matrix":[0.75,0.5,-0.25,0.5,12.5,-3],"filter":"sharp"}}"#,
     r#"{"do":"transform","transform":{"quad":[[0.25,1],[40,3],[38,29.5],[2,30.125]]}}"#,

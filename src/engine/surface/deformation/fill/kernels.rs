@@ -221,6 +221,16 @@ crate::widest! {
             out_y[k] = yx * u[k] + yy * v[k] + shift.y;
         }
     }
+    /// Adds what a plane yields, turned and scaled as the plane is.
+    pub(super) fn pulled_row(by_x: &[f32], by_y: &[f32], pulled: Mat2, out_x: &mut [f32], out_y: &mut [f32]) {
+        let n = out_x.len();
+        let (by_x, by_y, out_y) = (&by_x[..n], &by_y[..n], &mut out_y[..n]);
+        let ([xx, yx], [xy, yy]) = (pulled.x_axis.to_array(), pulled.y_axis.to_array());
+        for k in 0..n {
+            out_x[k] += xx * by_x[k] + xy * by_y[k];
+            out_y[k] += yx * by_x[k] + yy * by_y[k];
+        }
+    }
     /// Points of the unwrapped plane where they lie, but for a shift in both directions.
     pub(super) fn shifted_row(u: &[f32], v: &[f32], by: f32, out_x: &mut [f32], out_y: &mut [f32]) {
         for (out, from) in out_x.iter_mut().zip(u).chain(out_y.iter_mut().zip(v)) {
