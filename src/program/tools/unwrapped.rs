@@ -1,6 +1,8 @@
 //! Painting flat: the pen on the unwrapped sheet is led to the canvas, so that a straight line drawn flat lies bent on
 //! the form. Floor 5. The tools do not know; the sheet is `surface::unwrap`'s.
 
+pub mod pieces;
+
 use super::assistants::StrokeStart;
 use super::context::KeptContext;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext, ToolKind};
@@ -20,8 +22,8 @@ const CUT_PX: f32 = 6.0 * STEP_PX;
 
 /// Whether a tool works on the sheet; others need what they hold to lie as it does in the picture.
 pub fn works(tool: ToolKind) -> bool {
-    use ToolKind::{Brush, Eraser, Eyedropper, Fill, Hand, SurfaceWand, Wand, Zoom};
-    matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | SurfaceWand | Wand | Zoom)
+    use ToolKind::{Brush, Eraser, Eyedropper, Fill, Hand, Image, SurfaceWand, Wand, Zoom};
+    matches!(tool, Brush | Eraser | Eyedropper | Fill | Hand | Image | SurfaceWand | Wand | Zoom)
 }
 
 /// The pen comes down on the sheet with a brush: strokes are stabilised and spaced there, painted with the operator
@@ -59,6 +61,9 @@ pub fn paint(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, st
 /// The pen comes down on the sheet with a tool that is not a brush: it gets the points of the canvas under the pen.
 pub fn point(context: &ToolContext, pen: PenSample, layout: Arc<PlaneLayout>, tool: ToolKind) -> GestureStart {
     let Some(surface) = context.document.surface.clone() else { return (None, Outcome::Idle) };
+    if tool == ToolKind::Image {
+        return pieces::press(context, pen, &layout);
+    }
     let sheet = Sheet { layout, surface };
     let Some((pen, _)) = sheet.led(pen) else { return (None, Outcome::Idle) };
     let (gesture, outcome) = super::press(tool, context, pen);

@@ -2,11 +2,13 @@
 //! Floor 7.
 
 mod held;
+mod pieces;
 
 use crate::document::Content;
 use crate::math::{Affine2, Vec2};
 use crate::paint::{BrushMode, Scene, Stroke as PaintStroke};
 use crate::session::Session;
+use crate::surface::unwrap::PlaneLayout;
 use crate::tools::{ToolKind, anchors, outline};
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use std::sync::Arc;
@@ -64,6 +66,7 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
 pub fn draw_unwrapped(
     painter: &Painter,
     session: &Session,
+    layout: &PlaneLayout,
     screen_from_sheet: Affine2,
     under: Option<Vec2>,
     tool: ToolKind,
@@ -72,6 +75,10 @@ pub fn draw_unwrapped(
         let p = screen_from_sheet.transform_point2(p);
         pos2(p.x, p.y)
     };
+    if tool == ToolKind::Image {
+        let px_per_pt = 1.0 / screen_from_sheet.matrix2.x_axis.length().max(1e-6);
+        pieces::draw(painter, session, layout, under, px_per_pt, &to_screen);
+    }
     let Some(at) = under else { return };
     match tool {
         ToolKind::Brush | ToolKind::Eraser => {

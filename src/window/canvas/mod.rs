@@ -188,7 +188,7 @@ impl Canvas {
         let tool = self.hand.tool(session);
         if let Some((layout, surface)) = layout.as_ref().zip(tab.document().surface.as_ref()) {
             self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
-            marks::draw_unwrapped(&painter, session, screen_from_canvas, under, tool);
+            marks::draw_unwrapped(&painter, session, layout, screen_from_canvas, under, tool);
         } else {
             let to_screen = |p: Vec2| {
                 let p = screen_from_canvas.transform_point2(p);

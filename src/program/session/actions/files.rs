@@ -14,7 +14,7 @@ use crate::session::actions::unwrapped;
 use crate::session::replay::{ReplayValue, actions};
 use crate::session::{OpenDocument, Session, brushes, storage};
 use crate::surface::operator::reflection;
-use crate::surface::{Anchor, Bend, Operator, Weights};
+use crate::surface::{Anchor, Bend, Operator};
 use crate::tools::brush::free_name;
 use crate::{Error, Result};
 use serde_json::Value;
@@ -222,21 +222,37 @@ pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
     let document = tab.document();
     let operator = if document.surface.is_some() { operator } else { Operator::None };
     let at = at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
-    let image = PlacedImage {
-        source: PictureSource::new(free_file(document, name), picture, Adjust::default()),
+    let lies = Lies {
         placement: placement(document, operator, at),
         outside: Outside::Mirror,
-        bend: Bend { operator, anchors: vec![Anchor::fixed(at)], weights: Weights::default() },
-        filter: ImageFilter::Antialias,
-        frame: Default::default(),
+        bend: Bend { operator, anchors: vec![Anchor::fixed(at)], ..Bend::default() },
     };
+    add_image(tab, name, picture, lies, "Place image");
+}
+
+/// How a picture lies on the canvas.
+pub(super) struct Lies {
+    pub placement: Placement,
+    pub outside: Outside,
+    pub bend: Bend,
+}
+
+/// A picture becomes an image layer above the selected one, which is selected; whether it could.
+pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, lies: Lies, label: &str) -> bool {
+    let document = tab.document();
+    let Lies { placement, outside, bend } = lies;
+    let source = PictureSource::new(free_file(document, name), picture, Adjust::default());
+    let filter = ImageFilter::Antialias;
+    let image = PlacedImage { source, placement, outside, bend, filter, frame: Default::default() };
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));
     let id = layer.id;
     let next = document.with_inserted(layer, above(tab));
-    if next.is_some_and(|next| tab.commit("Place image", next)) {
+    let is_added = next.is_some_and(|next| tab.commit(label, next));
+    if is_added {
         tab.selected = Some(id);
     }
+    is_added
 }
 
 /// Where a picture lies that is pinned at a point: over the canvas, or over all that a mirror looks up.

@@ -2,17 +2,14 @@
 //! Floor 6. Drawing them is `document::view`'s, the sheet `surface::unwrap`'s.
 
 use crate::document::view::{UnwrapOptions, placed_over, unwrapped};
-use crate::document::{Content, Document, Highlights, Layer, Live, Progress};
+use crate::document::{Document, Highlights, Progress};
 use crate::io::Terms;
 use crate::io::export::deep::encode as encode_deep;
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile, encode};
 use crate::math::srgb::Color;
-use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage};
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
 use crate::session::Session;
-use crate::session::actions::files::free_file;
-use crate::session::actions::layers::above;
-use crate::tools::brush::free_name;
+use crate::session::actions::files::{Lies, add_image};
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -59,20 +56,9 @@ pub fn place(session: &mut Session, name: &str, picture: Picture) {
         return session.notes.push("There is no surface here that could be unwrapped.".into());
     };
     let (sheet, size) = (layout.size(), picture.size);
-    let image = PlacedImage {
-        placement: placed_over(sheet.rect(), size, document.size),
-        source: PictureSource::new(free_file(document, name), picture, Adjust::default()),
-        outside: Outside::None,
-        bend: layout.bend(),
-        filter: ImageFilter::Antialias,
-        frame: Default::default(),
-    };
-    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-    let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));
-    let id = layer.id;
-    let next = document.with_inserted(layer, above(tab));
-    if next.is_some_and(|next| tab.commit("Import unwrapped", next)) {
-        tab.selected = Some(id);
+    let lies =
+        Lies { placement: placed_over(sheet.rect(), size, document.size), outside: Outside::None, bend: layout.bend() };
+    if add_image(tab, name, picture, lies, "Import unwrapped") {
         let aspect = |size: crate::math::Size| size.width as f32 / size.height.max(1) as f32;
         if (aspect(size) / aspect(sheet) - 1.0).abs() > SAME_ASPECT {
             session.notes.push(format!(

@@ -25,11 +25,11 @@ fn surface() -> Arc<Surface> {
     let coverage = Plane::from_fn(size, |x, _| if is_round(x) || x > 200 { 255 } else { 0 });
     Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
 }
-fn document() -> Document {
+pub fn document() -> Document {
     let surface = surface();
     Document { surface: Some(surface.clone()), ..Document::empty(surface.size()) }
 }
-fn laid(document: &Document) -> Arc<PlaneLayout> {
+pub fn laid(document: &Document) -> Arc<PlaneLayout> {
     document.surface.as_ref().unwrap().plane_layout(UnwrapSettings { amount: 1.0, smooth_px: 0.0 }).unwrap()
 }
 const BRUSH: StrokeStart = |context, pen| crate::tools::press(ToolKind::Brush, context, pen);
