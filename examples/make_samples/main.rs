@@ -7,6 +7,7 @@ mod landscape;
 mod muse;
 mod noise;
 mod output;
+mod patterns;
 mod pictures;
 mod render;
 mod sdf;

@@ -8,6 +8,7 @@ use image::{Rgb, Rgba, RgbaImage};
 use rayon::prelude::*;
 
 use crate::noise::{fbm2, hash, noise2};
+use crate::patterns;
 use crate::sdf::{segment2, smooth_step, v};
 
 /// Side of the square textures, in pixels.
@@ -17,12 +18,14 @@ const TEXTURE: u32 = 512;
 pub type Picture = (&'static str, fn() -> RgbaImage);
 
 /// Every picture of this module.
-pub const PICTURES: [Picture; 12] = [
+pub const PICTURES: [Picture; 14] = [
     ("studio.jpg", studio),
     ("tartan.jpg", tartan),
     ("scales.jpg", scales),
     ("marble.jpg", marble),
     ("bricks.jpg", bricks),
+    ("knit.jpg", patterns::knit),
+    ("tiles.jpg", patterns::tiles),
     ("soft_noise.jpg", soft_noise),
     ("star.png", star),
     ("leaf.png", leaf),
