@@ -5,6 +5,12 @@
 //! it shows. Where the source is magnified along an axis of the pixel, the weights are a cubic's; where it is reduced,
 //! they are the share of each source pixel's tent in the pixel's own piece of the source.
 
+mod source;
+mod tile_map;
+
+use source::{GridSource, PixelSource, PlaneSource};
+pub use tile_map::TileMap;
+
 use super::tile::{TILE, Tile, TileAt, transparent_f32};
 use super::{Plane, TileGrid};
 use crate::math::plane_map::PixelMove;
@@ -54,11 +60,22 @@ pub fn warped(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, wanted: &
 
 /// One tile of a grid seen through a map; `None` where it is transparent.
 pub fn warped_tile(grid: &TileGrid, map: &dyn PixelMap, filter: Resampling, at: TileAt) -> Option<Arc<Tile>> {
+    warped_tile_within(grid, None, map, filter, at)
+}
+
+/// The same of pixels whose border goes on beyond a rectangle, if there is one.
+pub fn warped_tile_within(
+    grid: &TileGrid,
+    border: Option<Rect>,
+    map: &dyn PixelMap,
+    filter: Resampling,
+    at: TileAt,
+) -> Option<Arc<Tile>> {
     if let Some(by) = map.pixel_move() {
         return moved_tile(grid, by, at);
     }
     let mut pixels = transparent_f32();
-    let source = GridSource { grid, bounds: grid.bounds() };
+    let source = GridSource { grid, bounds: border.unwrap_or_else(|| grid.bounds()), continues: border.is_some() };
     Warp { source: &source, map, filter }.block(at.rect(), &mut |x, y, value| {
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
         // Rings of a cubic may leave what a pixel can be.
@@ -100,71 +117,24 @@ pub fn warped_plane_onto(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampli
     let warp = Warp { source: &source, map, filter };
     let canvas = size.rect();
     let blocks: Vec<TileAt> = TileAt::covering(canvas).collect();
-    let values: Vec<Vec<(i32, i32, u8)>> = blocks
-        .par_iter()
-        .map(|at| {
-            let mut out = Vec::with_capacity(TILE * TILE);
-            warp.block(at.rect().intersect(canvas), &mut |x, y, value| out.push((x, y, quantise(value[3]))));
-            out
-        })
-        .collect();
+    let values: Vec<Vec<(i32, i32, u8)>> =
+        blocks.par_iter().map(|at| warp.values(at.rect().intersect(canvas))).collect();
     let mut out = Plane::filled(size, 0);
     values.into_iter().flatten().for_each(|(x, y, value)| out.set(x as usize, y as usize, value));
     out
 }
 
-/// Where pixels come from: premultiplied, in `[0, 1]`.
-trait PixelSource: Sync {
-    /// What of a rectangle must be read.
-    fn held(&self, rect: Rect) -> Rect;
-    /// Whether the border continues beyond what is held; else there is nothing.
-    const CONTINUES: bool;
-    /// The pixels of a rectangle, row by row.
-    fn read(&self, rect: Rect) -> Vec<[f32; 4]>;
-}
-
-struct GridSource<'a> {
-    grid: &'a TileGrid,
-    bounds: Rect,
-}
-
-impl PixelSource for GridSource<'_> {
-    const CONTINUES: bool = false;
-    fn held(&self, rect: Rect) -> Rect {
-        rect.intersect(self.bounds)
+/// The pixels of a rectangle of such a map, each with its place.
+pub fn warped_block(plane: &Plane<u8>, map: &dyn PixelMap, filter: Resampling, rect: Rect) -> Vec<(i32, i32, u8)> {
+    if let Some(by) = map.pixel_move() {
+        let places = (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| (x, y)));
+        let moved = |(x, y): (i32, i32)| {
+            let (sx, sy) = by.source(x, y);
+            (x, y, plane.clamped(sx, sy))
+        };
+        return places.map(moved).collect();
     }
-    fn read(&self, rect: Rect) -> Vec<[f32; 4]> {
-        let mut out = vec![[0.0; 4]; rect.width() * rect.height()];
-        for at in TileAt::covering(rect) {
-            let Some(tile) = self.grid.tile(at) else { continue };
-            let (from, area) = (at.rect(), at.rect().intersect(rect));
-            for y in area.y0..area.y1 {
-                let start = ((y - from.y0) as usize * TILE + (area.x0 - from.x0) as usize) * 4;
-                let bytes = tile.bytes()[start..start + area.width() * 4].as_chunks::<4>().0;
-                let to = (y - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize;
-                out[to..].iter_mut().zip(bytes).for_each(|(v, b)| *v = b.map(|c| f32::from(c) / 255.0));
-            }
-        }
-        out
-    }
-}
-
-struct PlaneSource<'a> {
-    plane: &'a Plane<u8>,
-}
-
-impl PixelSource for PlaneSource<'_> {
-    const CONTINUES: bool = true;
-    /// At least the nearest pixel of the border.
-    fn held(&self, rect: Rect) -> Rect {
-        let (w, h) = (self.plane.width() as i32, self.plane.height() as i32);
-        let (x0, y0) = (rect.x0.clamp(0, w - 1), rect.y0.clamp(0, h - 1));
-        Rect::new(x0, y0, rect.x1.clamp(x0 + 1, w), rect.y1.clamp(y0 + 1, h))
-    }
-    fn read(&self, rect: Rect) -> Vec<[f32; 4]> {
-        let at = |x: i32, y: i32| [0.0, 0.0, 0.0, f32::from(self.plane.at(x as usize, y as usize)) / 255.0];
-        (rect.y0..rect.y1).flat_map(|y| (rect.x0..rect.x1).map(move |x| at(x, y))).collect()
-    }
+    Warp { source: &PlaneSource { plane }, map, filter }.values(rect)
 }
 
 struct Warp<'a, S> {
@@ -181,6 +151,12 @@ const MOST_READ_ALONG: f32 = 24.0;
 const WIDEST_PX: f32 = 512.0;
 
 impl<S: PixelSource> Warp<'_, S> {
+    /// The alpha of every pixel of a block, as bytes.
+    fn values(&self, block: Rect) -> Vec<(i32, i32, u8)> {
+        let mut out = Vec::with_capacity(block.width() * block.height());
+        self.block(block, &mut |x, y, value| out.push((x, y, quantise(value[3]))));
+        out
+    }
     /// Every pixel of a block that shows anything of the source.
     fn block(&self, block: Rect, put: &mut impl FnMut(i32, i32, [f32; 4])) {
         if block.is_empty() {
@@ -200,7 +176,7 @@ impl<S: PixelSource> Warp<'_, S> {
             }
             return;
         }
-        let window = Window { rect: wanted, pixels: self.source.read(wanted), continues: S::CONTINUES };
+        let window = Window { rect: wanted, pixels: self.source.read(wanted), continues: self.source.continues() };
         for y in block.y0..block.y1 {
             for x in block.x0..block.x1 {
                 let q = vec2(x as f32 + 0.5, y as f32 + 0.5);

@@ -1,0 +1,227 @@
+//! Displacements on a lattice: what is seen at a point is what would be seen a little aside. Floor 1. Sparse, by
+//! blocks of a tile's size; a block in which nothing is displaced is not held, so that pixels there stay untouched.
+//!
+//! A node stands at every eighth pixel's upper left corner. Between nodes runs Catmull and Rom's cubic: it passes
+//! through them, is smooth, and is 0 where all nodes around are.
+
+use super::grid::Grid;
+use super::tile::{TILE, TILE_AREA, TileAt};
+use crate::math::{Mat2, PlaneMap, Rect, Vec2, vec2};
+use std::sync::Arc;
+
+/// From one node to the next, px.
+pub const CELL: usize = 8;
+/// Nodes along a block's side.
+pub const SIDE: usize = TILE / CELL;
+/// Nodes along the side of all that a tile's pixels are interpolated from.
+const AROUND: usize = SIDE + 3;
+
+/// The nodes of one tile, row by row: displacements, px.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LatticeBlock(pub [Vec2; SIDE * SIDE]);
+
+/// A displacement u of every point of a plane: at q is seen what would be seen at q + u(q).
+#[derive(Clone, Default)]
+pub struct Lattice {
+    blocks: Grid<LatticeBlock>,
+}
+
+/// A displacement, and how it changes with the point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Displaced {
+    pub by: Vec2,
+    pub jacobian: Mat2,
+}
+
+impl PartialEq for Lattice {
+    fn eq(&self, other: &Self) -> bool {
+        let holds = |a: &Self, b: &Self| {
+            a.blocks.iter().all(|(at, block)| b.blocks.tile(at).is_some_and(|o| Arc::ptr_eq(block, o) || block == o))
+        };
+        self.blocks.ptr_eq(&other.blocks) || holds(self, other) && holds(other, self)
+    }
+}
+
+impl std::fmt::Debug for Lattice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Lattice of {} blocks", self.blocks.iter().count())
+    }
+}
+
+impl Lattice {
+    /// Parts of a pixel that displacements are held in, so that files give them back to the last bit.
+    pub const PER_PX: f32 = 64.0;
+    /// The longest displacement along an axis, px.
+    pub const FARTHEST_PX: f32 = 16_384.0;
+    /// Blocks lie at most so far from the canvas's corner.
+    pub const FARTHEST_BLOCK: i32 = 15_000;
+
+    pub fn is_empty(&self) -> bool {
+        self.blocks.iter().next().is_none()
+    }
+    /// The blocks that displace something, row by row.
+    pub fn blocks(&self) -> impl Iterator<Item = (TileAt, &Arc<LatticeBlock>)> {
+        self.blocks.iter()
+    }
+    /// Puts a block in place, rounded; one that displaces nothing is none.
+    pub fn set(&mut self, at: TileAt, mut block: LatticeBlock) {
+        block.0.iter_mut().for_each(|u| *u = held(*u));
+        let is_none = block.0.iter().all(|u| *u == Vec2::ZERO);
+        match self.blocks.tile(at) {
+            Some(old) if **old == block => {}
+            _ => self.blocks.set(at, (!is_none).then(|| Arc::new(block))),
+        }
+    }
+    /// Of the node `(i, j)`, which stands at `8 (i, j)`.
+    pub fn node(&self, i: i32, j: i32) -> Vec2 {
+        let side = SIDE as i32;
+        let at = TileAt::new(i.div_euclid(side), j.div_euclid(side));
+        let place = (j.rem_euclid(side) * side + i.rem_euclid(side)) as usize;
+        self.blocks.tile(at).map_or(Vec2::ZERO, |block| block.0[place])
+    }
+    /// Changes every node of a rectangle of pixels: its place and its displacement make a new one.
+    pub fn change(&mut self, rect: Rect, new: impl Fn(&Lattice, Vec2, Vec2) -> Vec2) {
+        let old = self.clone();
+        let cell = CELL as i32;
+        for at in TileAt::covering(rect) {
+            let corner = at.rect();
+            let place = |k: usize| ((corner.x0 + (k % SIDE) as i32 * cell), (corner.y0 + (k / SIDE) as i32 * cell));
+            let block = std::array::from_fn(|k| {
+                let (x, y) = place(k);
+                let was = old.blocks.tile(at).map_or(Vec2::ZERO, |block| block.0[k]);
+                if rect.contains(x, y) { new(&old, vec2(x as f32, y as f32), was) } else { was }
+            });
+            self.set(at, LatticeBlock(block));
+        }
+    }
+    /// At any point.
+    pub fn at(&self, q: Vec2) -> Displaced {
+        let cell = q / CELL as f32;
+        let first = cell.floor();
+        let (x, y) = (Cubic::at(cell.x - first.x), Cubic::at(cell.y - first.y));
+        let (i, j) = (first.x as i32, first.y as i32);
+        let (mut by, mut right, mut down) = (Vec2::ZERO, Vec2::ZERO, Vec2::ZERO);
+        for (k, row) in (j.saturating_sub(1)..).take(4).enumerate() {
+            for (l, column) in (i.saturating_sub(1)..).take(4).enumerate() {
+                let u = self.node(column, row);
+                by += u * (x.value[l] * y.value[k]);
+                right += u * (x.slope[l] * y.value[k]);
+                down += u * (x.value[l] * y.slope[k]);
+            }
+        }
+        Displaced { by, jacobian: Mat2::from_cols(right, down) }
+    }
+    /// All nodes that a tile's pixels are interpolated from, row by row; `None` where none displaces.
+    fn around(&self, at: TileAt) -> Option<[[Vec2; AROUND]; AROUND]> {
+        let near = |d: i32| (-1..=1).map(move |c| TileAt::new(at.col + c, at.row + d));
+        if (-1..=1).flat_map(near).all(|at| self.blocks.tile(at).is_none()) {
+            return None;
+        }
+        let side = SIDE as i32;
+        let (i, j) = (at.col * side - 1, at.row * side - 1);
+        let mut nodes = [[Vec2::ZERO; AROUND]; AROUND];
+        for (row, j) in nodes.iter_mut().zip(j..) {
+            for (node, i) in row.iter_mut().zip(i..) {
+                *node = self.node(i, j);
+            }
+        }
+        nodes.as_flattened().iter().any(|u| *u != Vec2::ZERO).then_some(nodes)
+    }
+    /// Whether the pixels of a tile show themselves.
+    pub fn is_none_on(&self, at: TileAt) -> bool {
+        self.around(at).is_none()
+    }
+    /// At the middle of every pixel of a tile, row by row; `None` where the tile shows itself. The same as
+    /// [`Lattice::at`], along rows.
+    pub fn on_tile(&self, at: TileAt) -> Option<Vec<Displaced>> {
+        let nodes = self.around(at)?;
+        let phases: [Cubic; CELL] = std::array::from_fn(|k| Cubic::at((k as f32 + 0.5) / CELL as f32));
+        let mut out = Vec::with_capacity(TILE_AREA);
+        for y in 0..TILE {
+            let (first, phase) = (y / CELL, &phases[y % CELL]);
+            let column = |weights: &[f32; 4], i: usize| (0..4).map(|k| nodes[first + k][i] * weights[k]).sum::<Vec2>();
+            let row: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.value, i));
+            let slope: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.slope, i));
+            for x in 0..TILE {
+                let (first, phase) = (x / CELL, &phases[x % CELL]);
+                let sum =
+                    |of: &[Vec2; AROUND], weights: &[f32; 4]| (0..4).map(|k| of[first + k] * weights[k]).sum::<Vec2>();
+                let jacobian = Mat2::from_cols(sum(&row, &phase.slope), sum(&slope, &phase.value));
+                out.push(Displaced { by: sum(&row, &phase.value), jacobian });
+            }
+        }
+        Some(out)
+    }
+    /// The tiles in which two displacements may differ.
+    pub fn changed_tiles(&self, other: &Lattice) -> Vec<TileAt> {
+        let mut near: Vec<TileAt> = Vec::new();
+        for at in self.blocks.changed_tiles(&other.blocks) {
+            near.extend((-1..=1).flat_map(|r| (-1..=1).map(move |c| TileAt::new(at.col + c, at.row + r))));
+        }
+        near.sort_unstable_by_key(|at| (at.row, at.col));
+        near.dedup();
+        near.retain(|at| self.around(*at) != other.around(*at));
+        near
+    }
+    /// The same displacement of a plane that a map took elsewhere: what was displaced there is displaced likewise.
+    ///
+    /// * `within`: nodes beyond it are forgotten.
+    pub fn carried(&self, map: &PlaneMap, within: Rect) -> Lattice {
+        let held = self.blocks.bounds().grown(2 * CELL as i32);
+        let corner = |x: i32, y: i32| map.to_canvas(vec2(x as f32, y as f32));
+        let Rect { x0, y0, x1, y1 } = held;
+        let corners: Option<Vec<Vec2>> =
+            [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| corner(x, y)).into_iter().collect();
+        let Some(corners) = corners.filter(|_| !self.is_empty()) else { return Lattice::default() };
+        let low = corners.iter().copied().fold(Vec2::INFINITY, Vec2::min).floor();
+        let high = corners.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max).ceil();
+        let area = Rect::new(low.x as i32, low.y as i32, high.x as i32, high.y as i32).intersect(within);
+        let mut out = Lattice::default();
+        out.change(area, |_, q, _| {
+            let Some((p, _)) = map.from_canvas(q) else { return Vec2::ZERO };
+            let by = self.at(p).by;
+            if by == Vec2::ZERO { by } else { map.to_canvas(p + by).map_or(Vec2::ZERO, |to| to - q) }
+        });
+        out
+    }
+}
+
+/// A displacement as it is held: in range, in whole parts of a pixel; none of what is no number.
+fn held(u: Vec2) -> Vec2 {
+    let side = |v: f32| {
+        let v = if v.is_finite() { v } else { 0.0 };
+        let far = Lattice::FARTHEST_PX;
+        // −0 is none.
+        (v.max(-far).min(far) * Lattice::PER_PX).round() / Lattice::PER_PX + 0.0
+    };
+    vec2(side(u.x), side(u.y))
+}
+
+/// The weights of four nodes at a share of the way from the second to the third, and their slopes, per px.
+struct Cubic {
+    value: [f32; 4],
+    slope: [f32; 4],
+}
+
+impl Cubic {
+    fn at(t: f32) -> Self {
+        let (t2, t3) = (t * t, t * t * t);
+        let value = [
+            0.5 * (-t + 2.0 * t2 - t3),
+            0.5 * (2.0 - 5.0 * t2 + 3.0 * t3),
+            0.5 * (t + 4.0 * t2 - 3.0 * t3),
+            0.5 * (t3 - t2),
+        ];
+        let per = 0.5 / CELL as f32;
+        let slope = [
+            per * (-1.0 + 4.0 * t - 3.0 * t2),
+            per * (-10.0 * t + 9.0 * t2),
+            per * (1.0 + 8.0 * t - 9.0 * t2),
+            per * (3.0 * t2 - 2.0 * t),
+        ];
+        Self { value, slope }
+    }
+}
+
+#[cfg(test)]
+mod tests;
