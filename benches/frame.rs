@@ -4,12 +4,15 @@
 //! the picture.
 
 use rilievo_engine::document::{
-    Content, Document, DocumentReducer, Layer, Live, PixelLayer, PreparedDocument, Progress, diff, flatten,
+    Content, Document, DocumentReducer, Layer, LayerTransform, Live, Mesh, MeshFrame, PixelLayer, PreparedDocument,
+    Progress, TransformShape, diff, flatten,
 };
 use rilievo_engine::math::srgb::Color;
-use rilievo_engine::math::{Size, Vec2, hash, vec2, vec3};
-use rilievo_engine::paint::{Adjust, Brush, ImageFilter, PictureSource, PlacedImage, Placement, Sample};
-use rilievo_engine::raster::{Outside, Picture, Plane, Tile, TileAt, TileGrid};
+use rilievo_engine::math::{PlaneMap, Size, Vec2, hash, vec2, vec3};
+use rilievo_engine::paint::{
+    Adjust, Brush, ImageFilter, LiquifySettings, PictureSource, PlacedImage, Placement, Sample,
+};
+use rilievo_engine::raster::{Outside, Picture, Plane, Resampling, Tile, TileAt, TileGrid};
 use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface};
 use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
 use std::sync::Arc;
@@ -71,6 +74,68 @@ fn drag(size: Size, step: u32, content: impl Fn(f32) -> Content) -> Vec<f64> {
         Some(start.elapsed().as_secs_f64() * 1e3)
     };
     (1..40).filter_map(frame).collect()
+}
+
+/// A photo as paint over a ground.
+fn photo_painted(size: Size) -> Document {
+    let texel = |i: u32, j: u32| [i as u8, j as u8, (i ^ j) as u8, 255];
+    let rgba: Vec<u8> = (0..size.height).flat_map(|j| (0..size.width).flat_map(move |i| texel(i, j))).collect();
+    let tiles = TileGrid::from_straight_rgba(&rgba, size.width as usize, size.height as usize, 0, 0);
+    let ground = Layer::new("ground", Content::Fill(Color { r: 90, g: 90, b: 90, a: 255 }));
+    let photo = Layer::new("photo", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+    Document { layers: vec![Arc::new(ground), Arc::new(photo)], ..Document::empty(size) }
+}
+
+/// ms from a frame's events (16 samples, 2 px apart) of liquify, 200 px wide, to its flattened tiles.
+fn liquified(document: &Document) -> Vec<f64> {
+    let (brush, layer) = (Brush::default(), Some(document.layers[1].id));
+    let liquify = LiquifySettings { size: 200.0, ..LiquifySettings::default() };
+    let context = ToolContext { layer, liquify, ..ToolContext::new(document, &brush) };
+    let pen = |i: usize| PenSample::at(vec2(300.0 + 2.0 * i as f32, 500.0));
+    let (gesture, _) = tools::press(ToolKind::Liquify, &context, pen(0));
+    let mut gesture = gesture.expect("paint can be displaced");
+    let progress = Progress::default();
+    let all = PreparedDocument::new(document, &progress).expect("nobody cancels");
+    let mut picture = all.flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress).expect("nobody cancels");
+    let mut shown = document.clone();
+    let frame = |frame: usize| {
+        let pens: Vec<PenSample> = (1..=16).map(|i| pen(frame * 16 + i)).collect();
+        let start = Instant::now();
+        let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
+        let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
+        picture = PreparedDocument::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
+        shown = next;
+        Some(start.elapsed().as_secs_f64() * 1e3)
+    };
+    (0..30).map_while(frame).collect()
+}
+
+/// ms of each frame of a drag of a layer's transform, a pixel to `step` × `step` of the canvas.
+fn placed(document: &Document, step: u32, shape: impl Fn(f32) -> TransformShape) -> Vec<f64> {
+    let (id, progress) = (document.layers[1].id, Progress::default());
+    let mut reduced = DocumentReducer::new(1.0 / step as f32);
+    reduced.of(document).expect("nothing that cannot be made small");
+    let frame = |i: u32| {
+        let transform = Some(LayerTransform { shape: shape(i as f32), filter: Resampling::Smooth });
+        let next = document.with_layer(id, |layer| layer.transform = transform)?;
+        let start = Instant::now();
+        divan::black_box(flatten(&reduced.of(&next).ok()?, &progress));
+        Some(start.elapsed().as_secs_f64() * 1e3)
+    };
+    (1..20).filter_map(frame).collect()
+}
+
+fn turned(t: f32) -> TransformShape {
+    let map = PlaneMap::rotation(f64::from(t) * 0.3, HD.center());
+    TransformShape::Matrix(map.coefficients().expect("a turn is affine"))
+}
+
+/// A point of 4 × 4 dragged.
+fn meshed(t: f32) -> TransformShape {
+    let even = Mesh::even(4, 4, MeshFrame::of(HD)).expect("4 × 4 is a mesh");
+    let mut points = even.points().to_vec();
+    points[5] += vec2(4.0 * t, 2.0 * t);
+    TransformShape::Mesh(Arc::new(even.with_points(points).expect("points near the canvas")))
 }
 
 /// Half-transparent paint layers, every tile its own.
@@ -171,6 +236,12 @@ fn main() {
     };
     row(&format!("a copy of {HD}"), (0..20).map(|_| copy()).collect());
     row("brush: D_n, radius 64, 2048² of 10 layers", strokes());
+    let document = photo_painted(HD);
+    row("liquify, 200 px wide, 1920 × 1080", liquified(&document));
+    for step in [1, 2, 4, 8] {
+        row(&format!("a point of a mesh, {HD}, one pixel in {step} × {step}"), placed(&document, step, meshed));
+        row(&format!("a turn by a matrix, {HD}, one pixel in {step} × {step}"), placed(&document, step, turned));
+    }
     for step in [2, 4, 8] {
         let [all, longest] = first_small(step);
         println!("20 layers of 4096² made small, {step}: {all:.1} ms at once, {longest:.1} at most in parts");

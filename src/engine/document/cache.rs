@@ -1,7 +1,7 @@
 //! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles are cached in
 //! `live`.
 
-use super::{Layer, normals::Combination, transform::CanvasCache};
+use super::{Layer, normals::Combination, transform::CanvasCache, warp::WarpCache};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::shading::RadianceScaling;
@@ -17,6 +17,8 @@ pub struct LayerCache {
     pub pixels: Memo<(), EncodedPixels>,
     /// The layer seen through its transforms.
     pub(super) on_canvas: CanvasCache,
+    /// What was composed of it to be displaced.
+    pub(super) warped: WarpCache,
     /// Of a normal layer: the surface with its detail.
     pub(super) combined: Memo<Combination, Arc<Surface>>,
     /// The greatest luminance.

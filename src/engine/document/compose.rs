@@ -7,10 +7,11 @@ use super::content::TileContent;
 use super::deep::DeepTiles;
 use super::prepare::{PreparedDocument, PreparedLayer};
 use super::{Role, mask};
-use crate::raster::{BlendMode, Mix, PlanarTile, TILE, TileAt, TileCoverage, TilePaint};
+use crate::raster::{BlendMode, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TilePaint};
 use crate::shading::RadianceScaling;
 use crate::shading::radiance::{BackdropStats, Exactness};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Breaks with the composite so far when the sought adjustment is reached.
 pub(super) type ComposeFlow<T = ()> = ControlFlow<PlanarTile, T>;
@@ -50,7 +51,7 @@ impl Composer<'_> {
         match node.layer.content.role() {
             Role::Adjusts(_) => self.adjustment(node, onto, &coverage),
             // Clipped to something, or with something clipped to it, a group needs pixels of its own.
-            Role::Groups(group) if group.pass_through && !atop && node.clipped.is_empty() => {
+            Role::Groups(group) if group.pass_through && !atop && node.clipped.is_empty() && node.warp.is_none() => {
                 self.pass_through(node, onto, &coverage)
             }
             _ => self.paint(node, onto, &coverage, atop),
@@ -97,6 +98,12 @@ impl Composer<'_> {
     }
     fn content(&self, node: &PreparedLayer) -> ComposeFlow<TileContent> {
         if let Role::Groups(_) = node.layer.content.role() {
+            // What lies beneath an adjustment in it is measured where it stands.
+            if !node.children.iter().any(|child| self.is_sought_in(child))
+                && let Some(shown) = self.displaced(node)
+            {
+                return ComposeFlow::Continue(shown);
+            }
             let mut pixels = self.blank();
             self.stack(&node.children, &mut pixels)?;
             return ComposeFlow::Continue(TileContent::Group(pixels));
@@ -104,6 +111,49 @@ impl Composer<'_> {
         ComposeFlow::Continue(self.painted(node))
     }
     fn painted(&self, node: &PreparedLayer) -> TileContent {
+        self.displaced(node).unwrap_or_else(|| self.painted_in_place(node))
+    }
+    /// What a displaced layer shows; `None` where it shows itself, and of one that is not displaced. Both populations
+    /// of a contour pixel see the same, as of paint.
+    fn displaced(&self, node: &PreparedLayer) -> Option<TileContent> {
+        let shown = node.warp.as_ref()?.shown(self.at, &|at| self.in_place(node, at))?;
+        let Some(tile) = shown else { return Some(TileContent::Nothing) };
+        Some(match self.behind {
+            Some(behind) => TileContent::Packed(Arc::new(behind.same(&tile))),
+            None => TileContent::Tile(tile),
+        })
+    }
+    /// A tile of a layer alone where it stands, undisplaced: its contours mixed, not yet clipped to the surface.
+    fn in_place(&self, node: &PreparedLayer, at: TileAt) -> Option<Arc<Tile>> {
+        let composed = |behind: Option<Behind>| {
+            let composer = Composer { prepared: self.prepared, at, behind, sought: None, deep: None };
+            let mut pixels = composer.blank();
+            match node.layer.content.role() {
+                Role::Groups(_) => drop(composer.stack(&node.children, &mut pixels)),
+                _ => {
+                    if let Some(paint) = composer.painted_in_place(node).as_paint() {
+                        pixels.blend(Mix::default(), paint, &TileCoverage::FULL);
+                    }
+                }
+            }
+            pixels
+        };
+        let mut pixels = composed(None);
+        if let Some(contours) = self.prepared.contours.as_ref().and_then(|contours| contours.on(at)) {
+            let behind = Behind::new(at, contours);
+            let other = composed(Some(behind));
+            match mask::clip(node) {
+                // The surface cuts what is shown, so that all of a rim's pixel is the surface's here.
+                Some(surface) => {
+                    let covered = |x, y| surface.coverage_plane().get(x, y).is_some_and(|c| c > 0);
+                    behind.take_surface_into(&other, &mut pixels, covered);
+                }
+                None => behind.mix_into(&other, &mut pixels, 1.0),
+            }
+        }
+        pixels.quantised().map(Arc::new)
+    }
+    fn painted_in_place(&self, node: &PreparedLayer) -> TileContent {
         if let (Some(deep), Some(marks)) = (self.deep, node.layer.content.marks()) {
             return deep.content(node, marks, self.at, self.behind);
         }

@@ -18,6 +18,10 @@ impl Document {
         // Pixels, strokes and masks lie where they show.
         let shown = self.with_transform_applied(layer)?;
         let old = shown.layer(layer)?;
+        // What is still displaced does not lie where it shows.
+        if old.is_warped() {
+            return None;
+        }
         let left = covered.inverted(self.size.rect());
         match &old.content {
             Content::Pixels(pixels) => {
@@ -46,6 +50,9 @@ impl Document {
     pub fn copied_from(&self, layer: LayerId, covered: &CoverageGrid) -> Option<Layer> {
         let shown = self.with_transform_applied(layer)?;
         let old = shown.layer(layer)?;
+        if old.is_warped() {
+            return None;
+        }
         let mut next = Layer { id: LayerId::fresh(), cache: Default::default(), ..Layer::clone(old) };
         match &old.content {
             Content::Pixels(pixels) => {

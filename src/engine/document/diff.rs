@@ -4,7 +4,7 @@
 
 use super::content::{Changed, Touched};
 use super::transform::on_canvas;
-use super::{Document, Layer, LayerId, LayerMap, mask};
+use super::{Content, Document, Layer, LayerId, LayerMap, LayerTransform, LayerWarp, mask};
 use crate::math::Rect;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -134,6 +134,12 @@ impl Diff<'_> {
         if self.old.get(&old.id) != self.new.get(&new.id) || !looks_alike(old, new) {
             return self.both(old, new);
         }
+        if !same_liquify(old, new) {
+            let (was, is) = (self.warp(old, Version::Old), self.warp(new, Version::New));
+            let Some(tiles) = LayerWarp::changed_tiles(was.as_ref(), is.as_ref()) else { return self.both(old, new) };
+            let unmoved = Arc::new(Layer { liquify: old.liquify.clone(), ..Layer::clone(new) });
+            return self.tiles(tiles) | self.layer(old, &unmoved, beneath);
+        }
         if let (Some(a), Some(b)) = (&old.mask, &new.mask)
             && !a.is_same(b)
         {
@@ -149,7 +155,8 @@ impl Diff<'_> {
             && a.pass_through == b.pass_through
         {
             // Children of an isolated group have a scope of their own.
-            return self.stack(&a.layers, &b.layers, beneath && b.pass_through);
+            let beneath = beneath && b.pass_through && !new.is_warped();
+            return self.displaced(new, Version::New, |diff| diff.stack(&a.layers, &b.layers, beneath));
         }
         if beneath && new.content.measures_beneath() {
             return self.both(old, new);
@@ -161,8 +168,23 @@ impl Diff<'_> {
         match new_seen.content.changed_from(&old_seen.content, &|| self.seen_by(new.id)) {
             Changed::Nowhere => false,
             Changed::Wholly => self.both(old, new),
-            Changed::Tiles(tiles) => self.tiles(tiles),
+            // Paint was displaced when it was taken to the canvas.
+            Changed::Tiles(tiles) if matches!(new.content, Content::Pixels(_)) => self.tiles(tiles),
+            Changed::Tiles(tiles) => self.displaced(new, Version::New, |diff| diff.tiles(tiles)),
         }
+    }
+    fn warp(&self, layer: &Layer, version: Version) -> Option<LayerWarp> {
+        let contexts = if version == Version::Old { &self.old } else { &self.new };
+        let around = contexts.get(&layer.id).and_then(|context| context.around);
+        LayerWarp::of(layer, &around.unwrap_or(LayerMap::none(self.document.size)).within(layer))
+    }
+    /// Reports what a layer shows of what `report` reports of it where it stands.
+    fn displaced(&mut self, layer: &Layer, version: Version, report: impl FnOnce(&mut Self) -> bool) -> bool {
+        let Some(warp) = self.warp(layer, version) else { return report(self) };
+        let before = std::mem::take(&mut self.changed);
+        let is_any = report(self);
+        let own = std::mem::replace(&mut self.changed, before);
+        self.tiles(warp.showing(&own.into_iter().collect::<Vec<_>>())) | is_any
     }
     /// What both versions of a layer see.
     fn seen_by(&self, layer: LayerId) -> Scene {
@@ -181,7 +203,7 @@ impl Diff<'_> {
     /// Whether its own frame or that of a group around it is not the canvas.
     fn stands_elsewhere(&self, layer: &Layer) -> bool {
         let is_taken = self.new.get(&layer.id).is_some_and(|context| context.around.is_some());
-        layer.transform.is_some() || layer.on.is_some() || is_taken
+        layer.transform.is_some() || layer.liquify.is_some() || layer.on.is_some() || is_taken
     }
     fn both(&mut self, old: &Arc<Layer>, new: &Arc<Layer>) -> bool {
         self.whole(old, Version::Old) | self.whole(new, Version::New)
@@ -192,7 +214,12 @@ impl Diff<'_> {
             return false;
         }
         if let Some(group) = layer.content.group() {
-            return group.layers.iter().fold(false, |changed, layer| self.whole(layer, version) | changed);
+            let all = |diff: &mut Self| group.layers.iter().fold(false, |any, layer| diff.whole(layer, version) | any);
+            return self.displaced(layer, version, all);
+        }
+        if layer.is_warped() && !matches!(layer.content, Content::Pixels(_)) {
+            let bare = Arc::new(Layer { liquify: None, transform: unmeshed(layer), ..Layer::clone(layer) });
+            return self.displaced(layer, version, |diff| diff.whole(&bare, version));
         }
         let layer = self.on_canvas(layer, version);
         let canvas = self.scene.size.rect();
@@ -218,7 +245,19 @@ impl Diff<'_> {
     }
 }
 
-/// Whether all but the content, the name, the lock and the mask's pixels is equal.
+/// The transform of a layer without its mesh.
+fn unmeshed(layer: &Layer) -> Option<LayerTransform> {
+    layer.transform.clone().filter(|own| own.mesh().is_none_or(|mesh| mesh.as_affine().is_some()))
+}
+
+fn same_liquify(a: &Layer, b: &Layer) -> bool {
+    match (&a.liquify, &b.liquify) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    }
+}
+
+/// Whether all but the content, the liquify, the name, the lock and the mask's pixels is equal.
 fn looks_alike(a: &Layer, b: &Layer) -> bool {
     a.visible == b.visible
         && a.opacity == b.opacity

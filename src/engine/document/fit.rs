@@ -7,6 +7,7 @@ mod marks;
 mod selections;
 
 use super::TransformShape;
+use super::warp;
 use super::{
     Assistant, Content, DetailSource, Document, HomeFrame, Layer, LayerMask, LayerTransform, MaskKind, PixelLayer,
 };
@@ -104,6 +105,9 @@ fn named(layer: &Layer, why: &str) -> String {
     format!("“{name}”: {why}.")
 }
 
+/// Values that a block of liquify takes at most.
+const A_BLOCK: usize = 150;
+
 /// What counts over all layers.
 #[derive(Default)]
 struct Total {
@@ -122,6 +126,8 @@ impl Total {
         // A group that holds nothing stands in no deeper group.
         self.deepest = self.deepest.max(depth);
         self.values += Self::A_LAYER;
+        self.values += layer.liquify.as_ref().map_or(0, |liquify| A_BLOCK * liquify.blocks().count());
+        self.values += layer.transform.as_ref().and_then(|own| own.mesh()).map_or(0, |mesh| 10 * mesh.points().len());
         match &layer.content {
             Content::Image(live) => {
                 let crate::surface::Bend { anchors, pieces, .. } = &live.params().bend;
@@ -159,7 +165,10 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
     }
     within("opacity", layer.opacity, &Layer::OPACITY)?;
     layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
-    layer.transform.map_or(Ok(()), |transform| transform.fits())?;
+    layer.transform.as_ref().map_or(Ok(()), |transform| transform.fits())?;
+    if layer.is_warped() && !warp::can_be_warped(&layer.content) {
+        return Err("shows nothing of its own, so that no mesh and no liquify can displace it".into());
+    }
     match &layer.content {
         Content::Fill(_) | Content::Group(_) => Ok(()),
         Content::Pixels(pixels) => pixels_fit(pixels, canvas),

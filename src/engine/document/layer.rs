@@ -5,7 +5,8 @@ use super::{Content, LayerTransform, cache::LayerCache, mask::LayerMask};
 use crate::math::srgb::Color;
 use crate::math::{Range, UNIT};
 use crate::paint::HomeFrame;
-use crate::raster::BlendMode;
+use crate::raster::{BlendMode, Lattice};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The identity of a layer: it stays the same through every edit, as long as the program runs. Not stored in files.
@@ -41,6 +42,8 @@ pub struct Layer {
     pub clip_to_surface: bool,
     /// Where the frame that content and mask lie in stands on the canvas; absent: it is the canvas.
     pub transform: Option<LayerTransform>,
+    /// How far from itself each point of the list that it stands in looks, its own transform done; never empty.
+    pub liquify: Option<Arc<Lattice>>,
     /// The part of the shape that carries it, after its own transform; absent: what carries the group around it, or
     /// the canvas.
     pub on: Option<HomeFrame>,
@@ -69,6 +72,7 @@ impl Layer {
             label: LayerLabel::None,
             clip_to_surface: true,
             transform: None,
+            liquify: None,
             on: None,
             content,
             cache: LayerCache::default(),

@@ -95,7 +95,7 @@ pub(super) fn is_whole_behind(node: &PreparedLayer, behind: &Behind) -> bool {
 
 /// The surface that a layer is clipped to, if any. A group is not clipped, because its layers clip themselves; clipping
 /// twice would thin their rims. An adjustment changes only what is painted already.
-fn clip(node: &PreparedLayer) -> Option<&Surface> {
+pub(super) fn clip(node: &PreparedLayer) -> Option<&Surface> {
     let paints = matches!(node.layer.content.role(), Role::Paints | Role::Shapes(_));
     node.scene.surface.as_deref().filter(|_| paints && node.layer.clip_to_surface)
 }

@@ -32,6 +32,7 @@ pub mod source;
 mod strokes;
 pub mod transform;
 pub mod view;
+pub mod warp;
 mod weight;
 
 pub use crate::paint::{HomeFrame, StrokeHome};
@@ -54,7 +55,8 @@ pub use progress::Progress;
 pub use scale::{DocumentReducer, ReducedSurface, SurfaceReduction};
 pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
-pub use transform::{LayerMap, LayerTransform, TransformShape};
+pub use transform::{LayerMap, LayerTransform, Mesh, MeshFrame, TransformShape};
+pub use warp::LayerWarp;
 
 use crate::paint::{Scene, Selection};
 use crate::{math::Size, raster::Asset, surface::Surface};

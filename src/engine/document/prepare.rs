@@ -2,7 +2,8 @@
 //! sees. Floor 4. Done once before the tiles; composing one tile is `compose`.
 
 use super::transform::{LayerMap, on_canvas};
-use super::{Document, Group, Layer, MaskKind, Progress, Role, normals};
+use super::warp::{LayerWarp, WarpTiles, can_be_warped};
+use super::{Content, Document, Group, Layer, MaskKind, Progress, Role, normals};
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -36,6 +37,8 @@ pub(super) struct PreparedLayer {
     /// What it sees behind contours.
     pub behind: Option<Scene>,
     pub behind_curvature: Option<Arc<Curvature>>,
+    /// What it shows, if it is a live layer or a group that is displaced.
+    pub warp: Option<Arc<WarpTiles>>,
     /// Of a group, bottom first.
     pub children: Vec<PreparedLayer>,
     /// The run of layers clipped to this one, bottom first.
@@ -165,11 +168,12 @@ impl StackBuilder<'_> {
     }
     fn node(&mut self, layer: &Arc<Layer>, scene: &mut Scene, scope: Scope) -> PreparedLayer {
         let within = Scope { map: scope.map.within(layer), ..scope };
+        let warp = LayerWarp::of(layer, &within.map).filter(|_| is_composed_first(layer));
         let layer = &on_canvas(layer, &scope.map);
         let first = self.adjustments.len();
         let visible_scene = scene.clone();
         let children = match layer.content.role() {
-            Role::Groups(group) => self.children(group, scene, within),
+            Role::Groups(group) => self.children(group, scene, within, warp.is_some()),
             _ => Vec::new(),
         };
         layer.content.warm(&visible_scene, self.progress);
@@ -190,6 +194,7 @@ impl StackBuilder<'_> {
             curvature: curvature_of_mask(layer, &visible_scene),
             behind_curvature: behind.as_ref().and_then(|behind| curvature_of_mask(layer, behind)),
             behind,
+            warp: warp.map(|warp| layer.cache.warped.tiles(&visible_scene, &layer.content, &within.map, warp)),
             layer: layer.clone(),
             scene: visible_scene,
             children,
@@ -197,12 +202,19 @@ impl StackBuilder<'_> {
             adjustments: first..self.adjustments.len(),
         }
     }
-    fn children(&mut self, group: &Group, scene: &mut Scene, scope: Scope) -> Vec<PreparedLayer> {
-        if group.pass_through {
+    /// * `isolated`: what lies beneath is none of its own, whatever the group says.
+    fn children(&mut self, group: &Group, scene: &mut Scene, scope: Scope, isolated: bool) -> Vec<PreparedLayer> {
+        if group.pass_through && !isolated {
             return self.nodes(&group.layers, scene, scope);
         }
         self.nodes(&group.layers, &mut scene.clone(), Scope { beneath: Beneath::NOTHING, ..scope })
     }
+}
+
+/// Whether a displaced layer is composed where it stands and then sampled: paint is sampled at once, and one colour is
+/// the same everywhere.
+fn is_composed_first(layer: &Layer) -> bool {
+    can_be_warped(&layer.content) && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_))
 }
 
 pub(super) fn curvature_of_mask(layer: &Layer, scene: &Scene) -> Option<Arc<Curvature>> {

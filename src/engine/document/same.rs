@@ -105,7 +105,7 @@ fn layer(a: &Layer, b: &Layer) -> Option<String> {
     let what = if a.name != b.name {
         "name"
     } else if !meets_alike(a, b) {
-        "opacity, blend mode, clipping, lock, label or home"
+        "opacity, blend mode, clipping, lock, label, home or liquify"
     } else if !same_mask(a.mask.as_ref(), b.mask.as_ref()) {
         "mask"
     } else {
@@ -119,9 +119,9 @@ fn meets_alike(a: &Layer, b: &Layer) -> bool {
     let on = |l: &Layer| l.on.as_ref().map(|home| home.part.clone());
     let meets = |l: &Layer| {
         let kind = (l.visible, l.opacity, l.blend, l.blend_linear, l.clip_below);
-        (kind, l.lock, l.clip_to_surface, l.transform, l.label, on(l))
+        (kind, l.lock, l.clip_to_surface, l.transform.clone(), l.label, on(l))
     };
-    meets(a) == meets(b)
+    meets(a) == meets(b) && a.liquify == b.liquify
 }
 
 fn same_mask(a: Option<&LayerMask>, b: Option<&LayerMask>) -> bool {

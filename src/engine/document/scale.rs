@@ -8,6 +8,7 @@ mod selections;
 pub use reducer::{DocumentReducer, ReducedSurface, SurfaceReduction};
 
 use super::cache::LayerCache;
+use super::warp::carried_liquify;
 use super::{
     Content, DetailSource, Document, Layer, LayerMap, LayerTransform, Live, MaskKind, NormalLayer, Part, PixelLayer,
     canvas_change, transform,
@@ -156,8 +157,11 @@ impl CanvasScale {
             }
             _ => return None,
         };
-        let own = layer.transform.map_or(Some(PlaneMap::IDENTITY), |own| own.map(self.from))?;
-        let filter = layer.transform.map_or(filter, |own| own.filter);
+        if layer.is_warped() {
+            return None;
+        }
+        let own = layer.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(self.from))?;
+        let filter = layer.transform.as_ref().map_or(filter, |own| own.filter);
         let transform = Some(LayerTransform::of_map(&own.then(&self.map()), filter, self.to)?);
         Some(Layer { content, transform, cache: LayerCache::default(), ..layer.clone() })
     }
@@ -177,7 +181,8 @@ impl CanvasScale {
             return stretched;
         }
         let mut next = Layer { content: layer.content.scaled(self), cache: LayerCache::default(), ..layer.clone() };
-        next.transform = layer.transform.map(|transform| transform.scaled(self.per_axis));
+        next.transform = layer.transform.as_ref().map(|transform| transform.scaled(self.per_axis));
+        next.liquify = carried_liquify(layer, &self.map(), self.to);
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
             Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
             Some(MaskKind::Curvature { scale, blur, .. }) => {

@@ -11,66 +11,81 @@
 pub(super) mod apply;
 mod extent;
 mod homes;
+mod mesh;
+mod seen;
 
 pub use extent::FrameBox;
+pub use mesh::{Mesh, MeshFrame};
+pub(super) use seen::CanvasCache;
 
-use super::{Content, Group, Layer, LayerMask, MaskKind};
+use super::warp::LayerWarp;
+use super::{Content, Group, Layer};
 use crate::math::plane_map::{PixelMove, orthogonal};
 use crate::math::{COORDINATE, DVec2, Mat2, PlaneMap, Rect, Size, Vec2, range};
 use crate::paint::{HomeFrame, StrokeHome};
-use crate::raster::warp::{PixelMap, warped_plane};
-use crate::raster::{Plane, Resampling};
-use std::sync::{Arc, Mutex, PoisonError};
+use crate::raster::Resampling;
+use crate::raster::warp::PixelMap;
+use std::sync::Arc;
 
 /// Where a layer's frame lies, and how its pixels are sampled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LayerTransform {
     pub shape: TransformShape,
     pub filter: Resampling,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum TransformShape {
     /// a, b, c, d, e, f: x′ = a x + c y + e, y′ = b x + d y + f.
     Matrix([f64; 6]),
     /// Where the canvas's corners go: upper left, upper right, lower right, lower left.
     Quad([DVec2; 4]),
+    /// Where the points of a grid go.
+    Mesh(Arc<Mesh>),
 }
 
 impl LayerTransform {
     /// Factors and shears; places have the range of coordinates.
     pub const FACTOR: range::Range = -1e4..=1e4;
 
-    /// The map of the plane; `None` where a matrix cannot be inverted or corners form no convex quadrilateral.
+    /// The map of the plane; `None` where a matrix cannot be inverted or corners form no convex quadrilateral. A mesh
+    /// that no matrix says leaves the plane and displaces what is seen ([`LayerWarp`]).
     pub fn map(&self, canvas: Size) -> Option<PlaneMap> {
-        match self.shape {
-            TransformShape::Matrix(coefficients) => PlaneMap::affine(coefficients),
-            TransformShape::Quad(corners) => PlaneMap::quad(canvas, corners),
+        match &self.shape {
+            TransformShape::Matrix(coefficients) => PlaneMap::affine(*coefficients),
+            TransformShape::Quad(corners) => PlaneMap::quad(canvas, *corners),
+            TransformShape::Mesh(mesh) => Some(mesh.as_affine().unwrap_or_default()),
         }
+    }
+    /// The mesh that it is, if it is one.
+    pub fn mesh(&self) -> Option<&Arc<Mesh>> {
+        if let TransformShape::Mesh(mesh) = &self.shape { Some(mesh) } else { None }
     }
     /// Refuses numbers that no file gives back, and what is no map.
     pub fn fits(&self) -> Result<(), String> {
         let place = |v: f64| range::within("a place of the transform", v as f32, &COORDINATE);
-        match self.shape {
+        match &self.shape {
             TransformShape::Matrix([a, b, c, d, e, f]) => {
                 [a, b, c, d]
                     .into_iter()
-                    .try_for_each(|v| range::within("a factor of the transform", v as f32, &Self::FACTOR))?;
-                [e, f].into_iter().try_for_each(place)?;
+                    .try_for_each(|v| range::within("a factor of the transform", *v as f32, &Self::FACTOR))?;
+                [*e, *f].into_iter().try_for_each(place)?;
                 self.map(Size::new(1, 1)).map(|_| ()).ok_or_else(|| "cannot be inverted: it leaves no area".into())
             }
             TransformShape::Quad(corners) => {
-                corners.into_iter().flat_map(|corner| corner.to_array()).try_for_each(place)?;
+                corners.iter().flat_map(|corner| corner.to_array()).try_for_each(place)?;
                 self.map(Size::new(1, 1)).map(|_| ()).ok_or_else(|| "is no convex quadrilateral".into())
             }
+            TransformShape::Mesh(mesh) => mesh.fits(),
         }
     }
     /// The same picture on a canvas `per_axis` times as large.
     pub(super) fn scaled(&self, per_axis: Vec2) -> Self {
         let s = per_axis.as_dvec2();
-        let shape = match self.shape {
-            TransformShape::Matrix(coefficients) => TransformShape::Matrix(scaled(coefficients, per_axis)),
+        let shape = match &self.shape {
+            TransformShape::Matrix(coefficients) => TransformShape::Matrix(scaled(*coefficients, per_axis)),
             TransformShape::Quad(corners) => TransformShape::Quad(corners.map(|corner| corner * s)),
+            TransformShape::Mesh(mesh) => TransformShape::Mesh(Arc::new(mesh.scaled(per_axis))),
         };
         Self { shape, ..*self }
     }
@@ -110,9 +125,9 @@ impl LayerMap {
     }
     /// With the transform and the home of one more layer inside.
     pub fn within(&self, layer: &Layer) -> Self {
-        let own = layer.transform.and_then(|transform| transform.map(self.canvas)).unwrap_or_default();
+        let own = layer.transform.as_ref().and_then(|transform| transform.map(self.canvas)).unwrap_or_default();
         let plane = own.then(&self.outside(layer.on.as_ref()));
-        let filter = layer.transform.map_or(self.filter, |transform| transform.filter);
+        let filter = layer.transform.as_ref().map_or(self.filter, |transform| transform.filter);
         Self { plane, filter, own, around: self.without_homes(), ..*self }
     }
     /// What takes the frame of a layer inside, its own transform done, to the canvas.
@@ -121,6 +136,14 @@ impl LayerMap {
             Some(home) => home.map().then(&self.without_homes()),
             None => self.plane,
         }
+    }
+    /// The map of the list that the layer stands in.
+    pub fn of_list(&self) -> Self {
+        Self { plane: self.outside_own(), own: PlaneMap::IDENTITY, ..*self }
+    }
+    /// What takes the list that the layer stands in to the canvas.
+    pub fn outside_own(&self) -> PlaneMap {
+        if self.own == PlaneMap::IDENTITY { self.plane } else { self.own.inverse().then(&self.plane) }
     }
     /// As [`LayerMap::plane`] while every part stands where it was made.
     pub(super) fn without_homes(&self) -> PlaneMap {
@@ -179,7 +202,7 @@ impl LayerMap {
     /// A layer of which this is the map, as it lies on the canvas: content and mask taken there, no transform, no home.
     pub fn layer_on_canvas(&self, layer: &Arc<Layer>) -> Arc<Layer> {
         let seen = seen(layer, self);
-        Arc::new(Layer { transform: None, on: None, ..Layer::clone(&seen) })
+        Arc::new(Layer { transform: None, liquify: None, on: None, ..Layer::clone(&seen) })
     }
 }
 
@@ -190,74 +213,12 @@ pub(super) fn on_canvas(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
 
 /// The same with the layer's own transform and home in the map.
 fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
-    if map.is_none() && !layer.content.has_homes() {
+    let warp = LayerWarp::of(layer, map);
+    if map.is_none() && warp.is_none() && !layer.content.has_homes() {
         return layer.clone();
     }
-    let (content, mask) = layer.cache.on_canvas.get(layer, map);
-    Arc::new(Layer { content, mask, transform: None, on: None, ..Layer::clone(layer) })
-}
-
-/// What layers were last seen as; shared by the versions of a layer.
-#[derive(Clone, Default)]
-pub struct CanvasCache {
-    /// The newest last.
-    entries: Arc<Mutex<Vec<CanvasEntry>>>,
-}
-
-#[derive(Clone)]
-struct CanvasEntry {
-    map: LayerMap,
-    own: Content,
-    own_mask: Option<LayerMask>,
-    content: Content,
-    mask: Option<LayerMask>,
-}
-
-impl CanvasCache {
-    /// Of the picture before an edit and the one after it.
-    const KEPT: usize = 2;
-
-    fn get(&self, layer: &Layer, map: &LayerMap) -> (Content, Option<LayerMask>) {
-        let entries = self.lock().clone();
-        let mut alike = entries.iter().rev().filter(|entry| entry.map == *map);
-        let same = alike.clone().find(|entry| entry.own.is_identical(&layer.content));
-        let last = same.or_else(|| alike.next());
-        let same_mask = |a: &Option<LayerMask>| match (a, &layer.mask) {
-            (Some(a), Some(b)) => a.is_same(b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        let content = last.map_or_else(
-            || layer.content.on_canvas(map, None),
-            |last| layer.content.on_canvas(map, Some((&last.own, &last.content))),
-        );
-        let mask = match last.filter(|last| same_mask(&last.own_mask)) {
-            Some(last) => last.mask.clone(),
-            None if map.is_none() => layer.mask.clone(),
-            None => layer.mask.as_ref().map(|mask| mask_on_canvas(mask, map)),
-        };
-        let entry = CanvasEntry {
-            map: *map,
-            own: layer.content.clone(),
-            own_mask: layer.mask.clone(),
-            content: content.clone(),
-            mask: mask.clone(),
-        };
-        let mut entries = self.lock();
-        entries.retain(|other| !(other.map == entry.map && other.own.is_identical(&entry.own)));
-        entries.push(entry);
-        let surplus = entries.len().saturating_sub(Self::KEPT);
-        entries.drain(..surplus);
-        (content, mask)
-    }
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<CanvasEntry>> {
-        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-fn mask_on_canvas(mask: &LayerMask, map: &LayerMap) -> LayerMask {
-    let MaskKind::File { file, coverage } = &mask.kind else { return mask.clone() };
-    let coverage: Plane<u8> = warped_plane(coverage, map, map.filter);
-    LayerMask { kind: MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) }, ..mask.clone() }
+    let (content, mask) = layer.cache.on_canvas.get(layer, map, warp.as_ref());
+    Arc::new(Layer { content, mask, transform: None, liquify: None, on: None, ..Layer::clone(layer) })
 }
 
 /// Visits the layers of a list with the map of each, groups opened, bottom first.

@@ -55,15 +55,18 @@ fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
         Some(MaskKind::Region(region)) => area * region_bytes(region.kind),
         _ => 0,
     };
-    mask + match &layer.content {
-        Content::Fill(_) | Content::Pixels(_) => 0,
-        Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
-        Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,
-        Content::Shading(_) => area * (TILE_BYTES + CURVATURE_BYTES),
-        Content::RadianceScaling(_) => area * CURVATURE_BYTES,
-        Content::Normals(_) => area * SURFACE_BYTES,
-        Content::Group(group) => of_layers(&group.layers, canvas, area),
-    }
+    // What it is sampled from, and what it shows.
+    let warped = if layer.is_warped() { 2 * area * TILE_BYTES } else { 0 };
+    mask + warped
+        + match &layer.content {
+            Content::Fill(_) | Content::Pixels(_) => 0,
+            Content::Image(_) | Content::Gradient(_) => area * TILE_BYTES,
+            Content::Strokes(live) => of_strokes(live.params(), canvas).min(area) * TILE_BYTES,
+            Content::Shading(_) => area * (TILE_BYTES + CURVATURE_BYTES),
+            Content::RadianceScaling(_) => area * CURVATURE_BYTES,
+            Content::Normals(_) => area * SURFACE_BYTES,
+            Content::Group(group) => of_layers(&group.layers, canvas, area),
+        }
 }
 
 /// Pixels of the boxes around the strokes, unbent.

@@ -284,3 +284,33 @@ fn a_layer_that_keeps_to_what_is_beneath_is_clipped_to_all_of_it() {
     let pixels = [(0, 0), (1, 1), (2, 2)].map(|(x, y)| seen.pixel(x, y));
     assert_eq!(pixels, [[0, 0, 255, 255], [0, 0, 255, 255], [0; 4]]);
 }
+#[test]
+fn meshes_and_liquify_come_back_to_the_last_bit_and_are_of_the_second_version() {
+    use crate::document::{LayerTransform, Mesh, MeshFrame, TransformShape};
+    use crate::math::{Rect, Size, vec2};
+    use crate::raster::{Lattice, Resampling};
+    let plain = Document {
+        layers: vec![Arc::new(Layer::new("fill", Content::Fill(Color::BLACK)))],
+        ..Document::empty(Size::new(128, 96))
+    };
+    let mut lattice = Lattice::default();
+    lattice.change(Rect::new(20, 20, 90, 70), |_, q, _| vec2(q.y * 0.07, 3.3 - q.x * 0.05));
+    let even = Mesh::even(3, 4, MeshFrame::of(plain.size)).unwrap();
+    let points = even.points().iter().map(|p| *p * 1.013 + vec2(0.1, -7.7)).collect();
+    let shape = TransformShape::Mesh(Arc::new(even.with_points(points).unwrap()));
+    let id = plain.layers[0].id;
+    let warped = plain.with_layer(id, |layer| {
+        layer.transform = Some(LayerTransform { shape, filter: Resampling::Sharp });
+        layer.liquify = Some(Arc::new(lattice));
+    });
+    let warped = warped.unwrap();
+    assert_eq!(warped.fits(None), Ok(()));
+    let back = read_back(&written(&warped)).document;
+    assert_eq!(warped.difference(&back), None);
+    assert_eq!(
+        plain.difference(&back),
+        Some("“fill”: its opacity, blend mode, clipping, lock, label, home or liquify".into())
+    );
+    let recipe = crate::recipe::write;
+    assert_eq!((recipe(&plain)["version"].as_i64(), recipe(&warped)["version"].as_i64()), (Some(1), Some(2)));
+}

@@ -3,7 +3,8 @@
 
 use super::LayerReader;
 use super::names::{BLEND_SPACES, LOCKS};
-use super::{images, masks, normals, shading, strokes, transforms};
+use super::{images, liquify, masks, normals, shading, strokes, transforms};
+use crate::document::warp::can_be_warped;
 use crate::document::{Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
@@ -49,15 +50,22 @@ impl LayerReader<'_> {
         let label = fields.one_of("label", &LayerLabel::ALL, LayerLabel::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
-        let transform = fields.get("transform").map(|node| transforms::read(&node)).transpose()?;
+        let transform = fields.get("transform").map(|node| transforms::read(&node, Some(self.size))).transpose()?;
+        let warped = fields.get("liquify");
+        let liquify = warped.as_ref().map(liquify::read).transpose()?.flatten();
         let on = fields.get("on").map(|node| self.home(&node)).transpose()?;
         // Outside of groups the canvas is what is around.
         let on = on.filter(|home| depth > 0 || !home.is_canvas());
         let content = read_content(self, &mut fields, depth)?;
         fields.finish()?;
         let layer = Layer::new(name, content);
+        let is_warped = liquify.is_some() || transform.as_ref().is_some_and(|own| own.mesh().is_some());
+        if is_warped && !can_be_warped(&layer.content) {
+            let why = "shows nothing of its own, so that no mesh and no liquify can displace it";
+            return Err(warped.as_ref().unwrap_or(node).refused(why));
+        }
         let layer = Layer { visible, opacity, blend, blend_linear, clip_below, lock, ..layer };
-        Ok(Layer { label, mask, clip_to_surface, transform, on, ..layer })
+        Ok(Layer { label, mask, clip_to_surface, transform, liquify, on, ..layer })
     }
     /// What a layer or a stroke lies on.
     pub fn home(&self, node: &JsonNode) -> Result<HomeFrame> {
@@ -139,6 +147,7 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
         out.set("mask", masks::write(mask));
     }
     out.said("transform", layer.transform.as_ref(), transforms::write);
+    out.said("liquify", layer.liquify.as_deref(), liquify::write);
     out.said("on", layer.on.as_ref(), |home| (*home.part).into());
     write_content(&mut out, &layer.content, canvas);
     out

@@ -25,6 +25,7 @@ mod guides;
 mod habits;
 mod images;
 mod layers;
+mod liquify;
 mod masks;
 mod names;
 mod normals;
@@ -314,7 +315,7 @@ fn needs_second_version(document: &Document) -> bool {
     let has_matrix = document.surface_source.as_ref().is_some_and(|source| source.matrix.is_some());
     let is_new = |layer: &Layer| {
         let is_carried = layer.on.is_some() || layer.content.has_homes();
-        is_carried || layer.transform.is_some() || layer.label != LayerLabel::None
+        is_carried || layer.transform.is_some() || layer.liquify.is_some() || layer.label != LayerLabel::None
     };
     has_matrix || !document.parts.is_empty() || document.walk().iter().any(|(_, layer)| is_new(layer))
 }

@@ -60,9 +60,9 @@ impl LayerReader<'_> {
         };
         let mut home = StrokeHome::new(self.home(&on)?);
         if let Some(node) = transform {
-            home.own = match transforms::read(&node)?.shape {
+            home.own = match transforms::read(&node, None)?.shape {
                 TransformShape::Matrix(coefficients) => coefficients,
-                TransformShape::Quad(_) => return Err(node.refused("must be a matrix")),
+                TransformShape::Quad(_) | TransformShape::Mesh(_) => return Err(node.refused("must be a matrix")),
             };
         }
         Ok(Some(Arc::new(home)))

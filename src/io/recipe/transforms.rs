@@ -2,22 +2,27 @@
 //! Floor 5.
 
 use crate::Result;
-use crate::document::{LayerTransform, TransformShape};
-use crate::json::{JsonNode, JsonObject};
-use crate::math::{COORDINATE, DVec2};
+use crate::document::{LayerTransform, Mesh, MeshFrame, TransformShape};
+use crate::json::{JsonNode, JsonObject, object};
+use crate::math::{COORDINATE, DVec2, Size, vec2};
 use crate::raster::Resampling;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
-/// `{ "matrix": [a, b, c, d, e, f] }` or `{ "quad": [[x, y] × 4] }`, with a `filter`.
-pub fn read(node: &JsonNode) -> Result<LayerTransform> {
+/// `{ "matrix": [a, b, c, d, e, f] }`, `{ "quad": [[x, y] × 4] }` or `{ "mesh": … }`, with a `filter`.
+///
+/// * `canvas`: the frame of a mesh that tells none; without it a mesh must tell one.
+pub fn read(node: &JsonNode, canvas: Option<Size>) -> Result<LayerTransform> {
     let mut fields = node.fields()?;
     let filter = fields.one_of("filter", &Resampling::ALL, Resampling::default())?;
-    let (matrix, quad) = (fields.get("matrix"), fields.get("quad"));
-    let shape = match (&matrix, &quad) {
-        (Some(node), None) => TransformShape::Matrix(matrix_of(node)?),
-        (None, Some(node)) => TransformShape::Quad(corners(node)?),
-        (None, None) => return Err(node.refused("has neither “matrix” nor “quad”")),
-        (Some(_), Some(_)) => return Err(node.refused("has both “matrix” and “quad”; it must have one")),
+    let (matrix, quad, mesh) = (fields.get("matrix"), fields.get("quad"), fields.get("mesh"));
+    let shape = match (&matrix, &quad, &mesh) {
+        (Some(node), None, None) => TransformShape::Matrix(matrix_of(node)?),
+        (None, Some(node), None) => TransformShape::Quad(corners(node)?),
+        (None, None, Some(node)) => TransformShape::Mesh(Arc::new(mesh_of(node, canvas)?)),
+        (None, None, None) => return Err(node.refused("has neither “matrix” nor “quad” nor “mesh”")),
+        (Some(_), Some(_), _) => return Err(node.refused("has both “matrix” and “quad”; it must have one")),
+        _ => return Err(node.refused("has “mesh” beside another shape; it must have one")),
     };
     fields.finish()?;
     let transform = LayerTransform { shape, filter };
@@ -36,6 +41,39 @@ pub fn matrix_of(node: &JsonNode) -> Result<[f64; 6]> {
     Ok([a?, b?, c?, d?, e?, f?])
 }
 
+/// `{ "columns": 4, "rows": 4, "frame": [x, y, width, height], "points": [[x, y], …] }`, points row by row.
+fn mesh_of(node: &JsonNode, canvas: Option<Size>) -> Result<Mesh> {
+    let mut fields = node.fields()?;
+    let side = *Mesh::SIDE.start() as i64..=*Mesh::SIDE.end() as i64;
+    let columns = fields.required("columns")?.integer(side.clone())? as usize;
+    let rows = fields.required("rows")?.integer(side)? as usize;
+    let frame = match (fields.get("frame"), canvas) {
+        (Some(node), _) => {
+            let items = node.list(4)?;
+            let [x, y, w, h] = &items[..] else { return Err(node.refused("is no frame [x, y, width, height]")) };
+            let side = |node: &JsonNode| node.number(MeshFrame::SIDE_PX);
+            let corner = vec2(x.number(COORDINATE)?, y.number(COORDINATE)?);
+            MeshFrame { corner, size: vec2(side(w)?, side(h)?) }
+        }
+        (None, Some(canvas)) => MeshFrame::of(canvas),
+        (None, None) => return Err(node.refused("needs a “frame”")),
+    };
+    let list = fields.required("points")?;
+    let items = list.list(columns * rows)?;
+    if items.len() != columns * rows {
+        let (found, wanted) = (items.len(), columns * rows);
+        return Err(list.refused(format!("has {found} points; {columns} × {rows} make {wanted}")));
+    }
+    let point = |node: &JsonNode| -> Result<_> {
+        let items = node.list(2)?;
+        let [x, y] = &items[..] else { return Err(node.refused("is no point [x, y]")) };
+        Ok(vec2(x.number(COORDINATE)?, y.number(COORDINATE)?))
+    };
+    let points = items.iter().map(point).collect::<Result<_>>()?;
+    fields.finish()?;
+    Mesh::new(columns, rows, frame, points).ok_or_else(|| node.refused("is no mesh"))
+}
+
 fn corners(node: &JsonNode) -> Result<[DVec2; 4]> {
     let corner = |node: &JsonNode| -> Result<DVec2> {
         let items = node.list(2)?;
@@ -49,9 +87,16 @@ fn corners(node: &JsonNode) -> Result<[DVec2; 4]> {
 
 pub fn write(transform: &LayerTransform) -> Value {
     let mut out = JsonObject::default();
-    match transform.shape {
+    match &transform.shape {
         TransformShape::Matrix(coefficients) => out.set("matrix", json!(coefficients)),
         TransformShape::Quad(corners) => out.set("quad", json!(corners.map(|corner| [corner.x, corner.y]))),
+        TransformShape::Mesh(mesh) => {
+            let MeshFrame { corner, size } = mesh.frame();
+            let frame = [corner.x, corner.y, size.x, size.y].map(object::number);
+            let points: Vec<Value> = mesh.points().iter().map(|p| object::point(*p)).collect();
+            let (columns, rows) = (mesh.columns(), mesh.rows());
+            out.set("mesh", json!({ "columns": columns, "rows": rows, "frame": frame, "points": points }));
+        }
     }
     out.word("filter", &Resampling::ALL, transform.filter, Resampling::default());
     out.done()
@@ -64,13 +109,14 @@ mod tests {
 
     fn parsed(text: &str) -> Result<LayerTransform> {
         let value: Value = serde_json::from_str(text).unwrap();
-        read(&JsonNode::root(Path::new("r.json"), &value))
+        read(&JsonNode::root(Path::new("r.json"), &value), Some(Size::new(80, 60)))
     }
 
     #[test]
     fn what_is_written_is_read_back_to_the_last_digit() {
         for text in [
             r#"{"matrix":[0.8090169943749475,-0.5877852522924731,0.5877852522924731,0.8090169943749475,12.5,-3.0]}"#,
+            r#"{"mesh":{"columns":2,"rows":2,"frame":[0,0,80,60],"points":[[1.5,2],[70,3],[4,55.25],[79,61]]}}"#,
             r#"{"quad":[[0.1,0.2],[99.0,1.0],[90.5,80.25],[3.0,70.0]],"filter":"nearest"}"#,
         ] {
             let transform = parsed(text).unwrap();
@@ -87,6 +133,16 @@ mod tests {
             (r#"{"matrix":[1,0,0,1,1e9,0]}"#, "must be between"),
             (r#"{"quad":[[0,0],[9,9],[9,0],[0,9]]}"#, "no convex quadrilateral"),
             (r#"{"quad":[[0,0],[9,0],[9,9],[0,9]],"matrix":[1,0,0,1,0,0]}"#, "has both"),
+            (r#"{"mesh":{"columns":1,"rows":2,"points":[]}}"#, "mesh.columns"),
+            (r#"{"mesh":{"columns":2,"rows":34,"points":[]}}"#, "mesh.rows"),
+            (r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1]]}}"#, "has 3 points; 2 × 2 make 4"),
+            (r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1],[1,null]]}}"#, "mesh.points[3][1]"),
+            (r#"{"mesh":{"columns":2,"rows":2,"points":[[0,0],[1,0],[0,1],[1,1e9]]}}"#, "mesh.points[3][1]"),
+            (
+                r#"{"mesh":{"columns":2,"rows":2,"frame":[0,0,0,9],"points":[[0,0],[1,0],[0,1],[1,1]]}}"#,
+                "mesh.frame[2]",
+            ),
+            (r#"{"matrix":[1,0,0,1,0,0],"mesh":{}}"#, "beside another shape"),
             (r#"{"matrix":[1,0,0,1,0,0],"filter":"best"}"#, "filter"),
             (r#"{"matrix":[1,0,0,1,0,0],"turn":3}"#, "turn"),
         ] {

@@ -29,7 +29,7 @@ use crate::io::recipe::{Preset, presets};
 use crate::io::replace::is_same_file;
 use crate::io::{Overwrite, Terms};
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::paint::{Brush, Fill};
+use crate::paint::{Brush, Fill, LiquifySettings};
 use crate::surface::Operator;
 use crate::surface::unwrap::UnwrapSettings;
 use crate::tools::crop::CropAspect;
@@ -73,6 +73,10 @@ pub struct Session {
     pub aids: ViewAids,
     /// The settings of the tools that touch and sculpt the shape.
     pub shape: ShapeSettings,
+    /// The settings of the liquify tool.
+    pub liquify: LiquifySettings,
+    /// The points of the selected layer's mesh that are chosen.
+    pub mesh_points: Vec<usize>,
     /// The corners of the lasso that is being set.
     pub lasso: Vec<Vec2>,
     /// The frame of the crop tool, canvas px.
@@ -127,6 +131,8 @@ impl Default for Session {
             select: SelectSettings::default(),
             aids: ViewAids::default(),
             shape: ShapeSettings::default(),
+            liquify: LiquifySettings::default(),
+            mesh_points: Vec::new(),
             lasso: Vec::new(),
             crop: None,
             crop_aspect: CropAspect::Free,

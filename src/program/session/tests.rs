@@ -7,6 +7,7 @@ mod several;
 mod snapping;
 mod steps;
 mod unwrapped;
+mod warping;
 
 use super::actions::{Action, LayerAction};
 use super::replay::ReplayValue;

@@ -8,7 +8,7 @@ use super::transform::KeptFrame;
 use super::{SelectSettings, ShapeSettings, Symmetry};
 use crate::document::{Document, LayerId};
 use crate::math::{Rect, Vec2, srgb::Color};
-use crate::paint::{Brush, Fill};
+use crate::paint::{Brush, Fill, LiquifySettings};
 use crate::surface::Operator;
 
 /// Everything a tool works with, as it is when the pen comes down.
@@ -36,6 +36,8 @@ pub struct ToolContext<'a> {
     pub select: SelectSettings,
     /// The settings of the tools that touch and sculpt.
     pub shape: ShapeSettings,
+    /// The settings of the liquify tool.
+    pub liquify: LiquifySettings,
     /// The chosen part of the shape, by its id.
     pub part: Option<&'a str>,
     /// The corners of the lasso that is being set.
@@ -47,6 +49,8 @@ pub struct ToolContext<'a> {
     pub frame: &'a KeptFrame,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
+    /// The points of the selected layer's mesh that are chosen.
+    pub mesh_points: &'a [usize],
     /// Where the axes of symmetry stand.
     pub axes: SymmetryAxes,
     /// What the pen snaps to.
@@ -74,12 +78,14 @@ impl<'a> ToolContext<'a> {
             fill: Fill::default(),
             select: SelectSettings::default(),
             shape: ShapeSettings::default(),
+            liquify: LiquifySettings::default(),
             part: None,
             lasso: &[],
             crop: None,
             crop_aspect: CropAspect::Free,
             frame: KeptFrame::nothing(),
             strokes: &[],
+            mesh_points: &[],
             axes: SymmetryAxes::default(),
             snap: SnapTargets::none(),
             aids: ViewAids::default(),
@@ -174,13 +180,15 @@ impl KeptContext {
             fill,
             select,
             shape,
+            // Only strokes begin with a later sample.
+            liquify: LiquifySettings::default(),
             part: self.part.as_deref(),
             lasso: &self.lasso,
-            // Only strokes begin with a later sample.
             crop: None,
             crop_aspect: CropAspect::Free,
             frame: KeptFrame::nothing(),
             strokes: &self.strokes,
+            mesh_points: &[],
             snap: &self.snap,
             aids,
             clone_offset,

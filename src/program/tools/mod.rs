@@ -13,6 +13,7 @@ pub mod gradient;
 pub mod guides;
 pub mod image;
 pub mod lights;
+pub mod liquify;
 pub mod mask;
 pub mod move_content;
 pub mod outline;
@@ -46,6 +47,7 @@ pub enum ToolKind {
     Anchors,
     Move,
     Transform,
+    Liquify,
     Assistants,
     Crop,
     Strokes,
@@ -77,7 +79,7 @@ pub struct ToolRow {
 }
 
 impl ToolKind {
-    pub const ALL: [ToolRow; 22] = [
+    pub const ALL: [ToolRow; 23] = [
         ToolRow {
             kind: ToolKind::Brush,
             name: "brush",
@@ -135,6 +137,14 @@ impl ToolKind {
             key: 'T',
             hint: "Drag corners, edges, the inside to move, the outside to turn. Shift keeps aspect or steps, Alt the \
                    middle, Ctrl skews and distorts; Enter applies it",
+        },
+        ToolRow {
+            kind: ToolKind::Liquify,
+            name: "liquify",
+            label: "Liquify",
+            key: 'K',
+            hint: "Push, swell, twirl what the layer or group shows; it stays live. Ctrl turns a dab about (push: \
+                   restores), Shift smooths",
         },
         ToolRow {
             kind: ToolKind::Assistants,
@@ -318,6 +328,8 @@ pub enum Outcome {
     Refused(&'static str),
     /// The frame of the chosen layers is turned about this point, by shares of its sides, from now on.
     Pivot(Vec2),
+    /// These points of the layer's mesh are chosen from now on.
+    MeshPoints(Vec<usize>),
     /// The axes of symmetry stand here from now on.
     Axes(symmetry::SymmetryAxes),
     /// A colour was picked.
@@ -359,6 +371,7 @@ pub fn press(kind: ToolKind, context: &ToolContext, pen: PenSample) -> GestureSt
         ToolKind::Anchors => anchors::press(context, pen),
         ToolKind::Move => move_content::press(context, pen),
         ToolKind::Transform => transform::press(context, pen),
+        ToolKind::Liquify => liquify::press(context, pen),
         ToolKind::Assistants => assistants::press(context, pen),
         ToolKind::Crop => crop::press(context, pen),
         ToolKind::Strokes => strokes::press(context, pen),

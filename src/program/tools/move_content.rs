@@ -88,7 +88,8 @@ impl MoveGesture {
 /// A document with a layer moved on the canvas; `by` in whole pixels.
 fn with_moved(document: &Document, layer: LayerId, by: Vec2) -> Option<Document> {
     // Where the layer's frame lies elsewhere, the frame is moved.
-    if document.map_of(layer).is_some_and(|map| !map.is_none()) {
+    let is_warped = document.layer(layer).is_some_and(|layer| layer.is_warped());
+    if is_warped || document.map_of(layer).is_some_and(|map| !map.is_none()) {
         return transform::mapped(document, layer, PlaneMap::translation(by));
     }
     document.with_layer(layer, |layer| *layer = moved(layer, by))

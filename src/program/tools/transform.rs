@@ -4,8 +4,10 @@
 mod corner;
 mod frame;
 mod gesture;
+pub mod mesh;
 mod numbers;
 mod pivot;
+mod placed;
 
 pub use frame::{FrameHandle, KeptFrame, TransformFrame};
 pub use numbers::FrameNumbers;
@@ -13,11 +15,11 @@ pub use pivot::PIVOTS;
 
 use super::snap::SnapLines;
 use super::{GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::{Document, Layer, LayerId, LayerLock, LayerTransform};
-use crate::math::{PlaneMap, Size, Vec2};
-use crate::raster::Resampling;
+use crate::document::{Document, Layer, LayerId, LayerLock};
+use crate::math::{PlaneMap, Vec2};
 use gesture::{HeldLayer, TransformGesture};
 use pivot::PivotGesture;
+use placed::{FrameMap, Placed, said};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
@@ -29,6 +31,9 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let is_one = layers.len() == 1;
         return (None, Outcome::Refused(if is_one { "The layer is locked." } else { "One of the layers is locked." }));
     }
+    if let Some(begun) = mesh::press(context, pen) {
+        return begun;
+    }
     let Some(frame) = context.frame.around(document, context.chosen()) else {
         return (None, Outcome::Refused("The layer is empty: there is nothing to transform."));
     };
@@ -38,7 +43,8 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let gesture = PivotGesture { frame, snap, snaps, px_per_pt, lines: SnapLines::default() };
         return (Some(Box::new(gesture)), Outcome::Idle);
     }
-    let held = |layer: &&Layer| Some(HeldLayer { id: layer.id, own: layer.transform, map: document.map_of(layer.id)? });
+    let held =
+        |layer: &&Layer| Some(HeldLayer { id: layer.id, own: Placed::of(layer), map: document.map_of(layer.id)? });
     let layers = layers.iter().filter_map(held).collect();
     let (document, snap) = (document.clone(), context.snap.clone());
     let (from, lines) = (pen.place(), SnapLines::default());
@@ -68,27 +74,9 @@ pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> O
 
 /// A layer with what it shows taken along by a map of the canvas; `None` where that cannot be said.
 pub fn mapped(document: &Document, layer: LayerId, on_canvas: PlaneMap) -> Option<Document> {
-    let (own, whole) = (document.layer(layer)?.transform, document.map_of(layer)?);
-    let plane = own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(document.size))?;
-    let next = taken_along(plane, &whole.plane, on_canvas);
-    let transform = said(&next, own.map_or(whole.filter, |own| own.filter), document.size)?;
-    document.with_layer(layer, |layer| layer.transform = transform)
-}
-
-/// A layer's own map so that what shows is taken along by a map of the canvas; `whole`: its own and those of the groups
-/// around it.
-fn taken_along(own: PlaneMap, whole: &PlaneMap, on_canvas: PlaneMap) -> PlaneMap {
-    let around = own.inverse().then(whole);
-    own.then(&around).then(&on_canvas).then(&around.inverse())
-}
-
-/// A map as a transform that a file holds, or none where it moves nothing; outer `None` where there is no such one.
-fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Option<LayerTransform>> {
-    if map.is_identity_on(canvas) {
-        return Some(None);
-    }
-    let transform = LayerTransform::of_map(map, filter, canvas)?;
-    transform.fits().ok().map(|()| Some(transform))
+    let (own, whole) = (Placed::of(document.layer(layer)?), document.map_of(layer)?);
+    let next = own.then(&whole, &FrameMap::OnCanvas(on_canvas), document.size)?;
+    document.with_layer(layer, |layer| next.put(layer))
 }
 
 #[cfg(test)]

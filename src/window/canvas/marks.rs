@@ -57,6 +57,9 @@ pub fn draw(painter: &Painter, session: &Session, screen_from_canvas: Affine2, u
                 clone_source(painter, session, at, &to_screen);
             }
         }
+        ToolKind::Liquify => {
+            footprint(painter, outline::circle(at, 0.5 * session.liquify.size), at, &to_screen);
+        }
         ToolKind::Eyedropper => picked(painter, session, to_screen(at)),
         _ => {}
     }

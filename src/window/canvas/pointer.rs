@@ -100,7 +100,9 @@ impl PointerState {
             (_, ToolKind::Zoom) => CursorIcon::ZoomIn,
             (_, ToolKind::Move | ToolKind::Image) => CursorIcon::Move,
             // The footprint's outline is the cursor.
-            (_, ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt) if on_canvas => CursorIcon::None,
+            (_, ToolKind::Brush | ToolKind::Eraser | ToolKind::Sculpt | ToolKind::Liquify) if on_canvas => {
+                CursorIcon::None
+            }
             _ => CursorIcon::Crosshair,
         }
     }
@@ -205,6 +207,9 @@ impl PointerState {
             (PointerButton::Middle, _) => PointerGesture::Panning,
             (PointerButton::Secondary, ToolKind::Sculpt) => {
                 PointerGesture::Sizing { from: pos, size: session.shape.size }
+            }
+            (PointerButton::Secondary, ToolKind::Liquify) => {
+                PointerGesture::Sizing { from: pos, size: session.liquify.size }
             }
             (PointerButton::Secondary, _) if is_brush => PointerGesture::Sizing { from: pos, size: session.brush.size },
             (PointerButton::Primary, ToolKind::Hand) if self.space && self.keys.command => {

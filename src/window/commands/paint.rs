@@ -13,7 +13,11 @@ fn hand(requests: &mut UiRequests, action: HandAction) {
     requests.act(Action::Hand(action));
 }
 fn resize(session: &Session, requests: &mut UiRequests, factor: f32) {
-    let size = if session.tool == ToolKind::Sculpt { session.shape.size } else { session.brush.size };
+    let size = match session.tool {
+        ToolKind::Sculpt => session.shape.size,
+        ToolKind::Liquify => session.liquify.size,
+        _ => session.brush.size,
+    };
     let to = if factor > 1.0 { (size * factor).max(size + 1.0) } else { (size * factor).min(size - 1.0) };
     hand(requests, HandAction::Size { to: to.round() });
 }

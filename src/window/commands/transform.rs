@@ -21,6 +21,18 @@ pub const COMMANDS: &[MenuCommand] = &[
             LayerAction::Set { layer, to, done: true }
         })
     }),
+    row(
+        "Remove liquify",
+        &[],
+        "The layer shows itself as it was before it was liquified",
+        is_liquified,
+        |session, requests| {
+            with_chosen(session, requests, |layer| {
+                let to = Property::Unliquified {};
+                LayerAction::Set { layer, to, done: true }
+            })
+        },
+    ),
     LINE,
     row(
         "Mirror left and right",
@@ -49,8 +61,14 @@ fn is_transformed(session: &Session) -> bool {
     let Some(tab) = session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none()) else {
         return false;
     };
-    let has_transform = |id| tab.document().layer(id).is_some_and(|layer| layer.transform.is_some());
-    tab.chosen_layers().into_iter().any(has_transform)
+    let is_placed = |id| tab.document().layer(id).is_some_and(|layer| layer.transform.is_some() || layer.is_warped());
+    tab.chosen_layers().into_iter().any(is_placed)
+}
+
+fn is_liquified(session: &Session) -> bool {
+    let Some(tab) = session.active() else { return false };
+    let has_liquify = |id| tab.document().layer(id).is_some_and(|layer| layer.liquify.is_some());
+    tab.chosen_layers().into_iter().any(has_liquify)
 }
 
 fn with_chosen(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPaths) -> LayerAction) {

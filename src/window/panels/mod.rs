@@ -11,6 +11,7 @@ mod curve;
 pub mod fill;
 pub mod history;
 pub mod layers;
+mod liquify;
 pub mod mask;
 pub mod material;
 pub mod menu;

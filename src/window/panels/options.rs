@@ -1,7 +1,7 @@
 //! The options bar above the canvas: the operator with its sliders, and the options of the current tool.
 //! Floor 7.
 
-use super::{assistants, brush_mode, crop, fill, select, shaping, transform};
+use super::{assistants, brush_mode, crop, fill, liquify, select, shaping, transform};
 use crate::operators::{OPERATORS, OfferedOperator, OperatorOwner, give, has, hint_of, set, whose};
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
@@ -93,6 +93,7 @@ fn of_tool(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         tool if tool.selects() => select::options(ui, session, requests),
         tool if tool.shapes() => shaping::options(ui, session, requests),
         ToolKind::Transform => transform::options(ui, session, requests),
+        ToolKind::Liquify => liquify::options(ui, session.liquify, requests),
         ToolKind::Assistants => assistants::options(ui, session, requests),
         ToolKind::Crop => crop::options(ui, session, requests),
         tool => drop(ui.weak(tool.row().hint)),

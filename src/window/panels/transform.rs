@@ -31,10 +31,11 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             }
         }
     });
+    meshes(ui, session, requests);
     ui.add_space(6.0);
     let Some(tab) = session.active() else { return };
     let chosen = tab.outermost_chosen();
-    let transforms = chosen.iter().filter_map(|id| tab.document().layer(*id)?.transform);
+    let transforms = chosen.iter().filter_map(|id| tab.document().layer(*id)?.transform.as_ref());
     if let Some(transform) = transforms.last() {
         ui.label("Pixels");
         if let Some(filter) = choice(ui, "How pixels are sampled", transform.filter, &FILTERS) {
@@ -52,6 +53,24 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             requests.act(Action::Layer(LayerAction::Pivot { at }));
         }
     }
+}
+
+/// A mesh over the layer, by how many points it has along a side.
+fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let Some(layer) = session.layer().filter(|layer| layer.lock != LayerLock::All) else { return };
+    let now = layer.transform.as_ref().and_then(|own| own.mesh()).map(|mesh| [mesh.columns(), mesh.rows()]);
+    let known = now.map_or("Mesh".to_owned(), |[columns, rows]| format!("Mesh {columns} × {rows}"));
+    let menu = ui.menu_button(known, |ui| {
+        for side in [2, 3, 4, 5, 6, 8, 12] {
+            if ui.selectable_label(now == Some([side, side]), format!("{side} × {side} points")).clicked() {
+                let layer = session.layer_paths();
+                requests.act(Action::Layer(LayerAction::Mesh { layer, columns: side, rows: side }));
+                ui.close();
+            }
+        }
+    });
+    let hint = "Lays a grid over the layer whose points are dragged; Shift chooses several. Enter applies it";
+    menu.response.on_hover_text(hint);
 }
 
 /// The lower row: the frame in numbers; sides and angles change about the pivot.

@@ -7,9 +7,10 @@ use super::{CanvasChange, TURNED};
 use crate::document::cache::LayerCache;
 use crate::document::transform::apply::{in_place, placed};
 use crate::document::transform::on_canvas;
+use crate::document::warp::carried_liquify;
 use crate::document::{
     Content, DetailSource, Group, Layer, LayerId, LayerMap, LayerMask, LayerTransform, Live, MaskKind, NormalLayer,
-    PixelLayer, StrokeList,
+    PixelLayer, StrokeList, TransformShape,
 };
 use crate::math::{Mat2, PlaneMap, Size, Vec2, vec2, vec3};
 use crate::paint::{Gradient, PlacedImage, Stroke};
@@ -31,9 +32,9 @@ impl Carrier<'_> {
     fn layer(&self, layer: &Arc<Layer>) -> Result<Layer, String> {
         let has_picture = matches!(&layer.mask, Some(LayerMask { kind: MaskKind::File { .. }, .. }));
         // A mask is as large as the canvas: what a transform brings back from beyond it would be lost.
-        if has_picture && layer.transform.is_some() && !self.change.holds_all() {
+        if has_picture && (layer.transform.is_some() || layer.is_warped()) && !self.change.holds_all() {
             let shown = in_place(layer, &LayerMap::none(self.change.from));
-            if shown.transform.is_none() {
+            if shown.transform.is_none() && !shown.is_warped() {
                 return self.carried(&shown, &self.frame_of(&shown));
             }
             if !shown.content.shapes() {
@@ -45,9 +46,11 @@ impl Carrier<'_> {
     /// N: where a layer's frame goes.
     fn frame_of(&self, layer: &Layer) -> PlaneMap {
         let map = self.change.map;
-        let own = layer.transform.and_then(|transform| transform.map(self.change.from)).unwrap_or_default();
+        let own = layer.transform.as_ref().and_then(|transform| transform.map(self.change.from)).unwrap_or_default();
         let whole = own.then(&map);
         match &layer.content {
+            // A mesh goes on where its frame stays a rectangle: `carried` sees to it.
+            _ if layer.is_warped() && is_mesh(layer) => map,
             // Paint needs no transform that only moves its pixels.
             Content::Pixels(_) if whole.pixel_move_on(self.change.reach()).is_some() => whole,
             // Paint turns by its transform, but where its mask would not fit the canvas.
@@ -67,12 +70,19 @@ impl Carrier<'_> {
     /// A layer whose frame goes along `frame`.
     fn carried(&self, layer: &Layer, frame: &PlaneMap) -> Result<Layer, String> {
         let CanvasChange { map, from, to } = self.change;
-        let own = layer.transform.and_then(|transform| transform.map(*from)).unwrap_or_default();
+        let own = layer.transform.as_ref().and_then(|transform| transform.map(*from)).unwrap_or_default();
         let next = frame.inverse().then(&own).then(map);
-        let transform = if next.is_identity_on(*to) {
+        let mesh = layer.transform.as_ref().filter(|_| layer.is_warped()).and_then(|own| own.mesh());
+        let transform = if let Some(mesh) = mesh {
+            let carried = mesh.carried(map).map(|mesh| TransformShape::Mesh(Arc::new(mesh)));
+            let why =
+                || format!("“{}” is warped by a mesh, which no such turn takes along. Apply it first.", layer.name);
+            let filter = layer.transform.as_ref().map_or(TURNED, |transform| transform.filter);
+            Some(LayerTransform { shape: carried.ok_or_else(why)?, filter })
+        } else if next.is_identity_on(*to) {
             None
         } else {
-            let filter = layer.transform.map_or(TURNED, |transform| transform.filter);
+            let filter = layer.transform.as_ref().map_or(TURNED, |transform| transform.filter);
             let told = LayerTransform::of_map(&next, filter, *to);
             Some(told.ok_or_else(|| {
                 format!(
@@ -86,6 +96,7 @@ impl Carrier<'_> {
             content: self.content(&layer.content, frame)?,
             mask: layer.mask.as_ref().map(|mask| self.mask(mask, frame)),
             transform,
+            liquify: carried_liquify(layer, map, *to),
             cache: LayerCache::default(),
             ..layer.clone()
         })
@@ -199,11 +210,16 @@ impl Carrier<'_> {
     }
 }
 
+/// A mesh that no matrix says displaces it.
+fn is_mesh(layer: &Layer) -> bool {
+    layer.transform.as_ref().and_then(|own| own.mesh()).is_some_and(|mesh| mesh.as_affine().is_none())
+}
+
 /// A layer without its mask, in a group that has it as it lies on the canvas.
 fn under_its_mask(layer: &Arc<Layer>, canvas: Size) -> Layer {
     let bare = Layer { mask: None, opacity: 1.0, blend: BlendMode::Normal, clip_below: false, ..Layer::clone(layer) };
     let inner = Layer { id: LayerId::fresh(), visible: true, cache: LayerCache::default(), ..bare };
     let content = Content::Group(Group { layers: vec![Arc::new(inner)], pass_through: false });
     let mask = on_canvas(layer, &LayerMap::none(canvas)).mask.clone();
-    Layer { content, mask, transform: None, cache: LayerCache::default(), ..Layer::clone(layer) }
+    Layer { content, mask, transform: None, liquify: None, cache: LayerCache::default(), ..Layer::clone(layer) }
 }

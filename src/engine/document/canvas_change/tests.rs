@@ -202,15 +202,15 @@ fn transforms_masks_and_groups_keep_their_places() {
     let masked = |layer: Layer| Layer { mask: mask(), ..layer };
     let turn = TransformShape::Matrix(PlaneMap::rotation(90.0, SIZE.center()).coefficients().unwrap());
     let starts = [
-        transformed(paint(), skew),
-        transformed(paint(), quad),
+        transformed(paint(), skew.clone()),
+        transformed(paint(), quad.clone()),
         masked(paint()),
-        transformed(masked(paint()), skew),
-        transformed(image(Operator::None), quad),
-        transformed(masked(image(Operator::None)), skew),
-        transformed(strokes(Operator::None), skew),
-        group(transformed(image(Operator::None), skew), turn),
-        group(transformed(paint(), quad), skew),
+        transformed(masked(paint()), skew.clone()),
+        transformed(image(Operator::None), quad.clone()),
+        transformed(masked(image(Operator::None)), skew.clone()),
+        transformed(strokes(Operator::None), skew.clone()),
+        group(transformed(image(Operator::None), skew.clone()), turn.clone()),
+        group(transformed(paint(), quad.clone()), skew.clone()),
     ];
     for (i, start) in starts.map(under).into_iter().enumerate() {
         let before = picture(&start);

@@ -166,6 +166,10 @@ fn same_pixels(a: &Layer, b: &Layer) -> bool {
 /// What a layer paints where a map takes it: its own pixels, or what it shows alone, without any surface, which follows
 /// from it.
 fn pixels(document: &Document, layer: &Arc<Layer>, map: &LayerMap) -> Option<TileGrid> {
+    if layer.is_warped() {
+        let bare = Document { surface: None, ..document.clone() };
+        return flatten_layer(&bare, layer.id, &Progress::default());
+    }
     let layer = match &layer.content {
         Content::Pixels(pixels) => return Some(pixels.taken_along(map).tiles),
         Content::Group(_) => {

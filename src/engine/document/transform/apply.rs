@@ -42,7 +42,7 @@ fn is_in_place(layer: &Layer, map: &LayerMap) -> bool {
         }
         _ => true,
     };
-    map.is_none() && (layer.transform.is_none() || is_carried) && strokes_are()
+    map.is_none() && !layer.is_warped() && (layer.transform.is_none() || is_carried) && strokes_are()
 }
 
 /// A list of layers with the transforms on the way to a layer handed down; `None` if it is not among them.
@@ -69,6 +69,10 @@ fn holds(layer: &Layer, id: LayerId) -> bool {
 /// A group whose frame is the canvas: each layer in it has its transform instead. `None` where that cannot be said.
 fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     let was = around.within(group);
+    // What displaces it as a whole cannot be handed down.
+    if group.is_warped() {
+        return was.is_none().then(|| Layer::clone(group));
+    }
     if is_in_place(group, &was) {
         return Some(Layer::clone(group));
     }
@@ -110,6 +114,10 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
         return handed_down(layer, around).map_or_else(|| layer.clone(), Arc::new);
     }
     let map = around.within(layer);
+    // Of live layers only pixels say what is displaced.
+    if layer.is_warped() && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_)) {
+        return layer.clone();
+    }
     let seen = seen(layer, &map);
     let content = match &seen.content {
         Content::Image(live) => live.params().unframed().map(|image| Content::Image(Live::new(image))),
@@ -121,11 +129,13 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
     };
     let transform = transform_of(&around.outside(layer.on.as_ref()).inverse(), &map);
     let (Some(content), Some(transform)) = (content, transform) else { return layer.clone() };
-    let mut next = Layer { content, transform, mask: seen.mask.clone(), ..Layer::clone(layer) };
+    let mut next = Layer { content, transform, liquify: None, mask: seen.mask.clone(), ..Layer::clone(layer) };
     let now = around.within(&next);
     match &layer.content {
         // What lies beyond the canvas comes back with its part.
-        Content::Pixels(pixels) if layer.on.is_some() => next.content = Content::Pixels(pixels.taken_along(&map)),
+        Content::Pixels(pixels) if layer.on.is_some() && !layer.is_warped() => {
+            next.content = Content::Pixels(pixels.taken_along(&map))
+        }
         Content::Strokes(own) if layer.content.has_homes() => match carried_on(own.params(), &seen.content, &now) {
             Some(list) => next.content = Content::Strokes(Live::new(list)),
             None => return layer.clone(),

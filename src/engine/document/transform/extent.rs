@@ -38,7 +38,13 @@ impl Document {
     /// end the canvas. `None` of an empty layer.
     pub fn frame_box(&self, id: LayerId) -> Option<FrameBox> {
         let scene = self.scene_of(id)?;
-        box_of(self.layer(id)?, &scene, &self.map_of(id)?)
+        let layer = self.layer(id)?;
+        // The points of a mesh lie where its layer shows.
+        if let Some(mesh) = layer.transform.as_ref().and_then(|own| own.mesh()) {
+            let low = mesh.points().iter().copied().reduce(Vec2::min)?;
+            return Some(FrameBox { low, high: mesh.points().iter().copied().reduce(Vec2::max)? });
+        }
+        box_of(layer, &scene, &self.map_of(id)?)
     }
 }
 

@@ -1,8 +1,9 @@
 //! Edits of homes: what lies on which part of the shape. Whatever else changes, what lies there shows where it showed.
 //! Floor 4. How homes and transforms meet is `LayerMap`'s.
 
-use super::{LayerMap, LayerTransform};
+use super::{LayerMap, LayerTransform, TransformShape};
 use crate::document::content::strokes::{SeenSelections, taken_along};
+use crate::document::warp::carried_liquify;
 use crate::document::{Content, Document, Group, Layer, LayerId, Live, Parts, StrokeList};
 use crate::math::{Affine2, PlaneMap};
 use crate::paint::{HomeFrame, Stroke, StrokeHome};
@@ -200,11 +201,19 @@ fn kept_on(
     rehome: &Rehome,
 ) -> Option<Arc<Layer>> {
     let (was, outside) = (old.within(layer), new.outside(on.as_ref()));
-    let transform = match old.outside(layer.on.as_ref()) == outside {
-        true => layer.transform,
-        false => transform_of(&was.plane.then(&outside.inverse()), &was)?,
-    };
-    let next = Layer { transform, on, ..Layer::clone(layer) };
+    let (stood, mut next) = (old.outside(layer.on.as_ref()), Layer { on, ..Layer::clone(layer) });
+    if stood != outside {
+        // From the list that it stood in to the one that it stands in.
+        let outer = stood.then(&outside.inverse());
+        next.liquify = carried_liquify(layer, &outer, old.canvas);
+        next.transform = match layer.transform.as_ref().and_then(|own| own.mesh()) {
+            Some(mesh) => {
+                let shape = TransformShape::Mesh(Arc::new(mesh.then(&outer)?));
+                Some(LayerTransform { shape, filter: was.filter })
+            }
+            None => transform_of(&was.plane.then(&outside.inverse()), &was)?,
+        };
+    }
     let now = new.within(&next);
     let content = match &layer.content {
         Content::Group(group) => {
@@ -225,7 +234,8 @@ fn kept_on(
         }
         _ => None,
     };
-    if content.is_none() && next.transform == layer.transform && next.on == layer.on {
+    let is_same = next.transform == layer.transform && next.liquify == layer.liquify && next.on == layer.on;
+    if content.is_none() && is_same {
         return Some(layer.clone());
     }
     Some(Arc::new(Layer { content: content.unwrap_or_else(|| layer.content.clone()), ..next }))

@@ -1,9 +1,8 @@
 use super::*;
-use crate::document::Document;
-use crate::document::{Live, PixelLayer, Progress, StrokeList, diff, flatten};
+use crate::document::{Document, LayerMask, Live, MaskKind, PixelLayer, Progress, StrokeList, diff, flatten};
 use crate::math::{hash, srgb::Color, vec2, vec3};
 use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, Sample, Stroke};
-use crate::raster::{Outside, Picture, TileAt, TileGrid};
+use crate::raster::{Outside, Picture, Plane, TileAt, TileGrid};
 use crate::surface::{Anchor, Bend, Maps, Operator, Surface};
 
 const SIZE: Size = Size::new(192, 128);
@@ -60,10 +59,10 @@ fn turns_that_add_up_to_none_give_the_untouched_picture() {
 fn a_group_takes_along_paint_strokes_and_images_as_each_alone_would_go() {
     let shape = TransformShape::Matrix([0.8, 0.3, -0.25, 0.9, 20.0, -10.0]);
     for layer in [paint(), stroke(&[vec2(40.0, 40.0), vec2(150.0, 90.0)], 20.0), image(Bend::default())] {
-        let alone = picture(&document(vec![with(layer.clone(), shape)]));
+        let alone = picture(&document(vec![with(layer.clone(), shape.clone())]));
         let group = Group { layers: vec![Arc::new(layer)], pass_through: true };
         let group = Layer {
-            transform: Some(LayerTransform { shape, filter: Resampling::Sharp }),
+            transform: Some(LayerTransform { shape: shape.clone(), filter: Resampling::Sharp }),
             ..Layer::new("g", Content::Group(group))
         };
         // The group's filter is that of layers without their own transform.
@@ -185,7 +184,7 @@ fn a_transform_keeps_its_place_on_a_canvas_of_another_size() {
         TransformShape::Matrix([0.5, 0.2, -0.2, 0.5, 30.0, 9.0]),
     );
     let twice = document(vec![layer.clone()]).scaled(2.0).unwrap();
-    let LayerTransform { shape: TransformShape::Matrix(m), .. } = twice.layers[0].transform.unwrap() else {
+    let LayerTransform { shape: TransformShape::Matrix(m), .. } = twice.layers[0].transform.clone().unwrap() else {
         unreachable!()
     };
     assert_eq!(m, [0.5, 0.2, -0.2, 0.5, 60.0, 18.0]);
@@ -206,7 +205,7 @@ fn an_applied_transform_shows_what_it_showed() {
     let strokes = stroke(&[vec2(30.0, 40.0), vec2(160.0, 90.0)], 14.0);
     for layer in [paint(), strokes, image(Bend::default()), ramp] {
         let id = layer.id;
-        let group = Group { layers: vec![Arc::new(with(layer, shape))], pass_through: false };
+        let group = Group { layers: vec![Arc::new(with(layer, shape.clone()))], pass_through: false };
         let group =
             with(Layer::new("g", Content::Group(group)), TransformShape::Matrix([1.0, 0.0, 0.0, 1.0, 9.0, 4.0]));
         let before = document(vec![group]);

@@ -49,7 +49,7 @@ pub fn painted(name: &str, tiles: TileGrid) -> Layer {
 }
 
 /// A live layer or a group as paint: what it shows alone, its opacity, mask and blending left to the layer.
-fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Document> {
+pub(super) fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Document> {
     let document = &document.with_transform_applied(layer.id)?;
     let mask = document.map_of(layer.id)?.layer_on_canvas(document.layer(layer.id)?).mask.clone();
     let bare = document.with_layer(layer.id, |layer| {
@@ -60,18 +60,28 @@ fn baked(document: &Document, layer: &Layer, progress: &Progress) -> Option<Docu
     let transform = document.transform_to_canvas(layer.id)?;
     document.with_layer(layer.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
-        (layer.transform, layer.mask) = (transform, mask);
+        (layer.transform, layer.liquify, layer.mask) = (transform, None, mask);
     })
+}
+
+/// With a layer that a mesh or liquify displaces as paint of what it shows, where its kind cannot say so itself.
+pub(super) fn undisplaced(document: &Document, id: LayerId, progress: &Progress) -> Option<Document> {
+    let next = document.with_transform_applied(id)?;
+    let layer = next.layer(id)?;
+    if layer.is_warped() { baked(&next, layer, progress) } else { Some(next) }
 }
 
 /// A layer and the one beneath it as one paint layer.
 fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit> {
     // Groups around hand their transforms down, so that what is merged lies as it shows.
-    let document = &document.with_transform_applied(id)?;
+    let document = &undisplaced(document, id, progress)?;
     let layer = document.layer(id)?;
     let place = document.place_of(layer.id)?;
     let beneath: LayerId = sibling(document, LayerSlot { index: place.index.checked_sub(1)?, ..place })?;
-    let beneath = document.layer(beneath)?.clone();
+    let is_group = document.layer(beneath)?.content.group().is_some();
+    let is_warped = document.layer(beneath)?.is_warped() && !is_group;
+    let document = &if is_warped { undisplaced(document, beneath, progress)? } else { document.clone() };
+    let (layer, beneath) = (document.layer(id)?, document.layer(beneath)?.clone());
     // The two alone, in a canvas of their own that sees the same surface.
     // Groups take their layers along one by one.
     let seen = |layer: &Arc<Layer>| match layer.content.group() {
@@ -84,7 +94,7 @@ fn merged(document: &Document, id: LayerId, progress: &Progress) -> Option<Edit>
     let transform = document.transform_to_canvas(beneath.id)?;
     let document = document.without_layer(layer.id)?.with_layer(beneath.id, |layer| {
         layer.content = Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() });
-        (layer.opacity, layer.mask, layer.transform) = (1.0, None, transform);
+        (layer.opacity, layer.mask, layer.transform, layer.liquify) = (1.0, None, transform, None);
     })?;
     Some(Edit { label: "Merge down", document, select: vec![beneath.id] })
 }

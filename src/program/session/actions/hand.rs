@@ -4,7 +4,7 @@
 use crate::io::recipe::read_brush;
 use crate::math::range::held;
 use crate::math::{TURNS, UNIT, Vec2, srgb::Color};
-use crate::paint::{Brush, BrushMode, Fill, Property};
+use crate::paint::{Brush, BrushMode, Fill, LiquifySettings, LiquifyTool, Property};
 use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, field, names, record};
 use crate::shape::SculptStroke;
@@ -15,6 +15,8 @@ use serde_json::{Value, json};
 
 names!(ToolKind);
 names!(PaintLimit);
+names!(LiquifyTool);
+record!(LiquifySettings { tool, size, strength, one_object, foreshortened });
 record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
 /// A kind with its numbers, as in recipes.
@@ -88,6 +90,7 @@ actions! {
         /// Where the axes of symmetry stand; without a point about the middle of the canvas.
         "axes" Axes { center: Option<Vec2>, turn: f32 }
         "fill" Fill { fill: Fill }
+        "liquify" Liquify { liquify: LiquifySettings }
         /// Whether a mouse presses less the faster it moves.
         "press by speed" PressBySpeed { on: bool }
         /// Whether the brush paints, smudges, blurs or clones.
@@ -110,6 +113,7 @@ impl HandAction {
             HandAction::Tool { tool } => {
                 session.drop_gesture();
                 session.lasso.clear();
+                session.mesh_points.clear();
                 session.crop = None;
                 session.tool = *tool;
             }
@@ -121,6 +125,10 @@ impl HandAction {
             HandAction::Size { to } if session.tool == ToolKind::Sculpt => {
                 session.shape.size = held(*to, &SculptStroke::SIZE);
             }
+            HandAction::Size { to } if session.tool == ToolKind::Liquify => {
+                session.liquify.size = held(*to, &LiquifySettings::SIZE);
+            }
+            HandAction::Liquify { liquify } => session.liquify = liquify.held(),
             HandAction::Size { to } => brush.size = to.max(SIZES[0]).min(SIZES[1]),
             HandAction::Hardness { to } => brush.hardness = unit(*to),
             HandAction::Opacity { to } => brush.opacity = unit(*to),

@@ -1,11 +1,13 @@
 //! Actions on the layer tree and its layers. Floor 6. The edits themselves are in `document::edit` and
 //! `document::several`, new layers in `new_layers`.
 
+use super::flattening::undisplaced;
 pub(super) use super::layer_steps::copied;
 use super::layer_steps::{cleared, duplicated, kept, moves, ungrouped};
 pub use super::new_layers::NewLayer;
 use super::new_layers::{made, model_name, selecting};
-use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Progress};
+use crate::document::warp::can_be_warped;
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Mesh, Progress};
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 use crate::raster::Plane;
@@ -46,6 +48,9 @@ actions! {
         "on mask" OnMask { layer: LayerPath, on: bool }
         /// The layer's transform is applied for good: its frame becomes the canvas.
         "apply transform" ApplyTransform { layer: LayerPaths }
+        /// A grid of points over what the layer shows, which the transform tool drags; one that it has takes other
+        /// points.
+        "mesh" Mesh { layer: LayerPaths, columns: usize, rows: usize }
         /// Mirrored about the middle of what they hold: left and right, or up and down.
         "mirror" Mirror { layer: LayerPaths, upright: bool }
         /// Turned about the middle of what they hold, counter-clockwise.
@@ -141,6 +146,11 @@ impl LayerAction {
     /// Why there is nothing to act on, in a sentence for the user.
     pub fn refusal(&self, document: &Document) -> Option<&'static str> {
         let is_group = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.content.group().is_some());
+        let is_warped = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.is_warped());
+        let shows = |id: &LayerId| {
+            let can = document.layer(*id).is_some_and(|layer| can_be_warped(&layer.content));
+            can && document.frame_box(*id).is_some_and(|frame| (frame.high - frame.low).min_element() >= 1.0)
+        };
         let lies_lowest = |id: &LayerId| document.place_of(*id).is_none_or(|place| place.index == 0);
         let chosen = |layer: &LayerPaths| layer.find(document).ok_or("Choose a layer first.");
         let refusal = match self {
@@ -156,7 +166,17 @@ impl LayerAction {
             | LayerAction::Set { layer, .. }
             | LayerAction::TakeAlong { layer, .. }
             | LayerAction::Clear { layer } => chosen(layer).map(drop),
+            LayerAction::Mesh { layer, columns, rows } if [columns, rows].iter().all(|n| Mesh::SIDE.contains(n)) => {
+                chosen(layer).and_then(|ids| match ids.iter().all(shows) {
+                    true => Ok(()),
+                    false => Err("There is nothing on the layer that a mesh could displace."),
+                })
+            }
+            LayerAction::Mesh { .. } => Err("A mesh has 2 to 33 points along a side."),
             LayerAction::Ungroup { layer } => chosen(layer).and_then(|ids| match ids.iter().any(is_group) {
+                true if ids.iter().filter(|id| is_group(id)).any(is_warped) => {
+                    Err("A mesh or liquify displaces the group: apply or remove it first.")
+                }
                 true => Ok(()),
                 false => Err("There is no group among the chosen layers."),
             }),
@@ -239,8 +259,13 @@ impl LayerAction {
                 ("Turn layer", transform::about_middle(document, &chosen(layer)?, turn)?, Vec::new())
             }
             LayerAction::ApplyTransform { layer } => {
-                let applied = |next: Document, id| next.with_transform_applied(id);
+                let applied = |next: Document, id| undisplaced(&next, id, &Progress::default());
                 ("Apply transform", chosen(layer)?.into_iter().try_fold(document.clone(), applied)?, Vec::new())
+            }
+            LayerAction::Mesh { layer, columns, rows } => {
+                let ids = chosen(layer)?;
+                let meshed = |next: Document, id| transform::mesh::meshed(&next, id, *columns, *rows);
+                ("Mesh", ids.into_iter().try_fold(document.clone(), meshed)?, Vec::new())
             }
             LayerAction::MergeDown { .. } | LayerAction::Flatten {} | LayerAction::Bake { .. } => {
                 return self.flattened(document, &Progress::default());

@@ -125,12 +125,14 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         fill: session.fill,
         select: session.select,
         shape: session.shape,
+        liquify: session.liquify,
         part: tab.part.as_deref(),
         lasso: &session.lasso,
         crop: session.crop,
         crop_aspect: session.crop_aspect,
         frame: tab.kept_frame(),
         strokes: &strokes,
+        mesh_points: &session.mesh_points,
         snap: &snap,
         aids: session.aids,
         clone_offset,
@@ -222,12 +224,14 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
                 .is_some_and(|layer| !matches!(layer.content, Content::Strokes(_))));
     let looks_only = is_moved_whole
         || tool.shapes()
+        || tool.selects()
         || matches!(
             tool,
             ToolKind::Eyedropper
                 | ToolKind::Hand
                 | ToolKind::Zoom
                 | ToolKind::Transform
+                | ToolKind::Liquify
                 | ToolKind::Crop
                 | ToolKind::Assistants
         );
@@ -235,8 +239,12 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
     let Some(applied) = document.with_transform_applied(layer) else { return Ok(document.clone()) };
     let is_in_place = applied.map_of(layer).is_none_or(|map| map.is_none());
     let is_group = applied.layer(layer).is_some_and(|layer| layer.content.group().is_some());
-    if is_in_place || is_group {
+    let is_warped = applied.layer(layer).is_some_and(|layer| layer.is_warped());
+    if is_in_place && !is_warped || is_group {
         return Ok(applied);
+    }
+    if is_warped {
+        return Err("A mesh or liquify displaces the layer: apply it (Edit, Transform), or remove it, to work on it.");
     }
     Err("The layer is skewed by its transform; bake it, or remove the transform, to work on it.")
 }
@@ -278,6 +286,7 @@ fn take(session: &mut Session, outcome: Outcome) {
             }
         }
         Outcome::Pivot(share) => tab.set_pivot(share),
+        Outcome::MeshPoints(points) => session.mesh_points = points,
         Outcome::Axes(axes) => session.axes = axes,
         Outcome::Picked(color) => session.color = color,
         Outcome::Cancel => tab.forget_preview(),

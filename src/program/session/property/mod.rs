@@ -34,6 +34,8 @@ actions! {
         "transform" Transformed { transform: Option<LayerTransform> }
         /// How the pixels of a transformed layer are sampled.
         "sampling" Sampled { filter: Resampling }
+        /// Without its liquify.
+        "without liquify" Unliquified {}
         "pass through" PassThrough { on: bool }
         "fill" Fill { color: Color }
         "operator" Bend { operator: Operator }
@@ -93,6 +95,7 @@ impl Property {
             Property::Labelled { .. } => "Label",
             Property::ClipToSurface { .. } => "Clip to surface",
             Property::Transformed { .. } | Property::Sampled { .. } => "Transform",
+            Property::Unliquified {} => "Remove liquify",
             Property::PassThrough { .. } => "Pass through",
             Property::Fill { .. } => "Fill colour",
             Property::Bend { .. } => "Operator",
@@ -128,12 +131,13 @@ impl Property {
         match self {
             Property::Name { name } => layer.name.clone_from(name),
             Property::Visible { on } => layer.visible = *on,
-            Property::Transformed { transform } => layer.transform = *transform,
             Property::Sampled { filter } => {
                 if let Some(transform) = &mut layer.transform {
                     transform.filter = *filter;
                 }
             }
+            Property::Transformed { transform } => layer.transform.clone_from(transform),
+            Property::Unliquified {} => layer.liquify = None,
             Property::Opacity { to } => layer.opacity = held(*to, &Layer::OPACITY),
             Property::Blend { mode } => layer.blend = *mode,
             Property::BlendLinear { on } => layer.blend_linear = *on,

@@ -48,7 +48,8 @@ impl crate::session::replay::ReplayValue for LayerTransform {
         transforms::write(self)
     }
     fn read(value: &serde_json::Value) -> Result<Self, String> {
-        transforms::read(&JsonNode::root(std::path::Path::new("transform"), value)).map_err(|error| error.to_string())
+        transforms::read(&JsonNode::root(std::path::Path::new("transform"), value), None)
+            .map_err(|error| error.to_string())
     }
 }
 

@@ -31,6 +31,16 @@ fn edit() -> impl Strategy<Value = String> {
             "{{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"brush\",\"pen\":[{x},{y}],\"px_per_pt\":1}}\n\
              {{\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[{u},{v}]]}}\n{{\"in\":\"pointer\",\"do\":\"release\"}}"
         )),
+        1 => (layer(), 2..5usize).prop_map(|(layer, side)| {
+            format!(r#"{{"in":"layer","do":"mesh","layer":"{layer}","columns":{side},"rows":3}}"#)
+        }),
+        1 => layer().prop_map(|layer| format!(r#"{{"in":"layer","do":"apply transform","layer":"{layer}"}}"#)),
+        2 => (prop::sample::select(vec!["liquify", "transform"]), [0..60i32, 0..40, 0..60, 0..40]).prop_map(
+            |(tool, [x, y, u, v])| format!(
+                "{{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"{tool}\",\"pen\":[{x},{y}],\"px_per_pt\":1}}\n\
+                 {{\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[[{u},{v}]]}}\n{{\"in\":\"pointer\",\"do\":\"release\"}}"
+            )
+        ),
         4 => (-4..4i32).prop_map(|steps| format!(r#"{{"in":"edit","do":"walk","steps":{steps}}}"#)),
     ]
 }

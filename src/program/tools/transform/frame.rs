@@ -51,7 +51,10 @@ impl TransformFrame {
     /// Of a layer; `None` if it is empty or lies beyond the horizon.
     pub fn of(document: &Document, layer: LayerId) -> Option<Self> {
         let map = document.map_of(layer)?;
-        Self::new(document.frame_box(layer)?, map.plane, map.filter)
+        let is_mesh = document.layer(layer)?.transform.as_ref().is_some_and(|own| own.mesh().is_some());
+        // The points of a mesh lie where it took them.
+        let plane = if is_mesh { map.outside_own() } else { map.plane };
+        Self::new(document.frame_box(layer)?, plane, map.filter)
     }
     /// Around layers: of one its own frame, of several a box on the canvas. `None` if all are empty.
     pub fn around(document: &Document, layers: &[LayerId]) -> Option<Self> {

@@ -3,9 +3,9 @@
 
 use super::corner::within_convex;
 use super::frame::{FrameHandle, TransformFrame};
-use super::{said, taken_along};
+use super::placed::{FrameMap, Placed};
 use crate::document::transform::FrameBox;
-use crate::document::{Document, LayerId, LayerMap, LayerTransform};
+use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::tools::snap::{SnapLines, SnapTargets};
 use crate::tools::{Gesture, Outcome, PenSample};
@@ -13,7 +13,7 @@ use crate::tools::{Gesture, Outcome, PenSample};
 /// A layer that is dragged, as it was before.
 pub struct HeldLayer {
     pub id: LayerId,
-    pub own: Option<LayerTransform>,
+    pub own: Placed,
     pub map: LayerMap,
 }
 
@@ -23,22 +23,15 @@ pub struct TransformGesture {
     pub frame: TransformFrame,
     pub handle: FrameHandle,
     pub from: Vec2,
-    /// The transforms as they were last dragged, one a layer; inner `None`: it stands where it was made.
-    pub found: Option<Vec<Option<LayerTransform>>>,
+    /// The layers as they were last dragged.
+    pub found: Option<Vec<Placed>>,
     pub snap: SnapTargets,
     pub lines: SnapLines,
 }
 
-/// What a drag does to all that is in the frame.
-enum FrameMap {
-    OnCanvas(PlaneMap),
-    /// Before the frame's own map.
-    InFrame(PlaneMap),
-}
-
 impl TransformGesture {
-    /// The layers' own transforms with the handle at the pen; `None` where one of them is no map.
-    fn dragged(&self, pen: &PenSample) -> Option<Vec<Option<LayerTransform>>> {
+    /// The layers with the handle at the pen; `None` where one of them is no map.
+    fn dragged(&self, pen: &PenSample) -> Option<Vec<Placed>> {
         let inner = self.frame.inner;
         match self.handle {
             FrameHandle::Inside => self.all(&FrameMap::OnCanvas(PlaneMap::translation(self.moved_by(pen)))),
@@ -57,22 +50,18 @@ impl TransformGesture {
             FrameHandle::Pivot => None,
         }
     }
-    fn all(&self, map: &FrameMap) -> Option<Vec<Option<LayerTransform>>> {
+    fn all(&self, map: &FrameMap) -> Option<Vec<Placed>> {
         let on_canvas = match map {
             FrameMap::OnCanvas(map) => *map,
             FrameMap::InFrame(map) => self.frame.plane.inverse().then(map).then(&self.frame.plane),
         };
         self.layers.iter().map(|layer| self.dragged_layer(layer, map, on_canvas)).collect()
     }
-    fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<Option<LayerTransform>> {
-        let canvas = self.document.size;
-        let own = layer.own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
-        let plane = match map {
-            // The frame of one layer is its own: numbers stay as exact as they can.
-            FrameMap::InFrame(map) if self.layers.len() == 1 => map.then(&own),
-            _ => taken_along(own, &layer.map.plane, on_canvas),
-        };
-        said(&plane, layer.own.map_or(layer.map.filter, |own| own.filter), canvas)
+    fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<Placed> {
+        let on_canvas = FrameMap::OnCanvas(on_canvas);
+        // The frame of one layer is its own: numbers stay as exact as they can.
+        let map = if self.layers.len() == 1 { map } else { &on_canvas };
+        layer.own.then(&layer.map, map, self.document.size)
     }
     /// The pen where it snaps: with a handle itself, with the inside so that the frame does.
     fn snapped(&mut self, pen: &PenSample) -> PenSample {
@@ -148,9 +137,9 @@ impl TransformGesture {
         let k = by.y / (a.x - opposite.x);
         PlaneMap::affine([1.0, k, 0.0, 1.0, 0.0, -k * opposite.x])
     }
-    /// The layers' own transforms in a perspective that takes one corner to the pen, or as far toward it as there is
+    /// The layers in a perspective that takes one corner to the pen, or as far toward it as there is
     /// one, and leaves the others.
-    fn distorted(&self, corner: usize, at: Vec2) -> Option<Vec<Option<LayerTransform>>> {
+    fn distorted(&self, corner: usize, at: Vec2) -> Option<Vec<Placed>> {
         let held = self.frame.corners.map(|c| c.as_dvec2());
         let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
         let FrameBox { low, high } = self.frame.inner;
@@ -173,11 +162,10 @@ impl TransformGesture {
             found
         })
     }
-    fn with(&self, transforms: &[Option<LayerTransform>]) -> Option<Document> {
-        let all = self.layers.iter().zip(transforms);
-        all.into_iter().try_fold(self.document.clone(), |next, (held, transform)| {
-            next.with_layer(held.id, |layer| layer.transform = *transform)
-        })
+    fn with(&self, placed: &[Placed]) -> Option<Document> {
+        let all = self.layers.iter().zip(placed);
+        all.into_iter()
+            .try_fold(self.document.clone(), |next, (held, placed)| next.with_layer(held.id, |layer| placed.put(layer)))
     }
 }
 

@@ -72,7 +72,8 @@ impl FrameNumbers {
     /// none is left.
     pub fn transform(&self, document: &Document, layer: LayerId) -> Option<Option<LayerTransform>> {
         let frame = TransformFrame::of(document, layer)?;
-        let own = document.layer(layer)?.transform;
+        // A mesh has no sides and angles.
+        let own = document.layer(layer)?.transform.as_ref().filter(|own| own.mesh().is_none());
         let plane = own.map_or(Some(PlaneMap::IDENTITY), |own| own.map(document.size))?;
         let around = plane.inverse().then(&frame.plane);
         let low = frame.inner.low.as_dvec2();

@@ -78,7 +78,7 @@ fn a_corner_with_ctrl_gives_a_perspective_and_no_crossed_one() {
     let distort = ModifierKeys { ctrl: true, ..NONE };
     let distorted = dragged(&document(), vec2(80.0, 50.0), vec2(82.0, 51.0), distort).unwrap();
     close(corners(&distorted), [(40.0, 30.0), (80.0, 30.0), (82.0, 51.0), (40.0, 50.0)]);
-    assert!(matches!(distorted.layers[0].transform.unwrap().shape, TransformShape::Quad(_)));
+    assert!(matches!(distorted.layers[0].transform.clone().unwrap().shape, TransformShape::Quad(_)));
 }
 #[test]
 fn a_corner_dragged_past_the_others_or_the_horizon_stays_as_near_as_it_can() {
@@ -238,4 +238,38 @@ fn a_locked_layer_among_several_keeps_all_of_them() {
     let id = both.layers[1].id;
     let locked = both.with_layer(id, |layer| layer.lock = LayerLock::All).unwrap();
     assert!(dragged_both(&locked, vec2(50.0, 50.0), vec2(60.0, 50.0), NONE).is_none());
+}
+
+#[test]
+fn the_points_of_a_mesh_are_dragged_one_or_several() {
+    let tiles = TileGrid::from_straight_rgba(&[9, 90, 200, 255].repeat(120 * 60), 120, 60, 40, 30);
+    let paint = Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }));
+    let plain = Document { layers: vec![Arc::new(paint)], ..Document::empty(Size::new(200, 120)) };
+    let id = plain.layers[0].id;
+    let document = mesh::meshed(&plain, id, 3, 3).unwrap();
+    assert!(!document.layers[0].is_warped(), "an even mesh moves nothing");
+    let brush = Brush::default();
+    let drag = |chosen: &[usize], from: Vec2, to: Vec2| {
+        let context = ToolContext { layer: Some(id), mesh_points: chosen, ..ToolContext::new(&document, &brush) };
+        let (gesture, outcome) = press(&context, PenSample::at(from));
+        assert!(matches!(outcome, Outcome::MeshPoints(_)));
+        let mut gesture = gesture.unwrap();
+        gesture.drag(&[PenSample::at(to)]);
+        match gesture.release() {
+            Outcome::Commit { document, .. } => document.layers[0].transform.as_ref().unwrap().mesh().unwrap().clone(),
+            _ => panic!("nothing was moved"),
+        }
+    };
+    // The middle of the paint, then two points together.
+    let moved = drag(&[], vec2(100.0, 60.0), vec2(110.0, 55.0));
+    assert!(moved.points()[4].distance(vec2(110.0, 55.0)) < 1e-3, "{:?}", moved.points());
+    assert_eq!(moved.points()[0], vec2(40.0, 30.0));
+    let both = drag(&[4, 5], vec2(100.0, 60.0), vec2(100.0, 70.0));
+    assert_eq!([both.points()[4].y, both.points()[5].y, both.points()[3].y], [70.0, 70.0, 60.0]);
+    // With Shift points are chosen, and no longer.
+    let shift = ModifierKeys { shift: true, ..ModifierKeys::default() };
+    let context = ToolContext { layer: Some(id), mesh_points: &[4], ..ToolContext::new(&document, &brush) };
+    let at = |p: Vec2| PenSample { keys: shift, ..PenSample::at(p) };
+    assert!(matches!(press(&context, at(vec2(40.0, 30.0))).1, Outcome::MeshPoints(all) if all == [4, 0]));
+    assert!(matches!(press(&context, at(vec2(100.0, 60.0))).1, Outcome::MeshPoints(all) if all.is_empty()));
 }

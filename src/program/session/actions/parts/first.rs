@@ -96,6 +96,7 @@ fn without_flat_ground(
     let next = document.with_layer(layer, |layer| {
         // The mask and the transform are in the pixels now.
         (layer.content, layer.mask, layer.transform) = (paint, None, None);
+        layer.liquify = None;
     })?;
     let drawing = next.layer(layer)?;
     let ground = Layer {

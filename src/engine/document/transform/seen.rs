@@ -1,0 +1,130 @@
+//! Layers as they lie on the canvas, kept as long as nothing of them changes.
+//! Floor 4.
+
+use super::LayerMap;
+use crate::document::warp::{LastWarp, LayerWarp, displaced_mask};
+use crate::document::{Content, Layer, LayerMask, MaskKind};
+use crate::raster::Plane;
+use crate::raster::warp::warped_plane;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What layers were last seen as; shared by the versions of a layer.
+#[derive(Clone, Default)]
+pub struct CanvasCache {
+    /// The newest last.
+    entries: Arc<Mutex<Vec<CanvasEntry>>>,
+}
+
+#[derive(Clone)]
+struct CanvasEntry {
+    map: LayerMap,
+    warp: Option<LayerWarp>,
+    own: Content,
+    own_mask: Option<LayerMask>,
+    content: Content,
+    mask: Option<LayerMask>,
+}
+
+impl CanvasCache {
+    /// Of the picture before an edit and the one after it.
+    const KEPT: usize = 2;
+
+    pub(super) fn get(&self, layer: &Layer, map: &LayerMap, warp: Option<&LayerWarp>) -> (Content, Option<LayerMask>) {
+        let entries = self.lock().clone();
+        if let Some(warp) = warp {
+            return self.warped(layer, map, warp, &entries);
+        }
+        let entries: Vec<_> = entries.into_iter().filter(|entry| entry.warp.is_none()).collect();
+        let mut alike = entries.iter().rev().filter(|entry| entry.map == *map);
+        let same = alike.clone().find(|entry| entry.own.is_identical(&layer.content));
+        let last = same.or_else(|| alike.next());
+        let same_mask = |a: &Option<LayerMask>| match (a, &layer.mask) {
+            (Some(a), Some(b)) => a.is_same(b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        let content = last.map_or_else(
+            || layer.content.on_canvas(map, None),
+            |last| layer.content.on_canvas(map, Some((&last.own, &last.content))),
+        );
+        let mask = match last.filter(|last| same_mask(&last.own_mask)) {
+            Some(last) => last.mask.clone(),
+            None if map.is_none() => layer.mask.clone(),
+            None => layer.mask.as_ref().map(|mask| mask_on_canvas(mask, map)),
+        };
+        self.keep(CanvasEntry {
+            map: *map,
+            warp: None,
+            own: layer.content.clone(),
+            own_mask: layer.mask.clone(),
+            content: content.clone(),
+            mask: mask.clone(),
+        });
+        (content, mask)
+    }
+    /// The same of a displaced layer: its paint and its mask are displaced here, all else when it is composed.
+    fn warped(
+        &self,
+        layer: &Layer,
+        map: &LayerMap,
+        warp: &LayerWarp,
+        entries: &[CanvasEntry],
+    ) -> (Content, Option<LayerMask>) {
+        let alike = || entries.iter().rev().filter(|entry| entry.map == *map && entry.own.is_identical(&layer.content));
+        let same = alike().find(|entry| entry.warp.as_ref() == Some(warp));
+        let last = same.or_else(|| alike().next());
+        let content = match (&layer.content, last) {
+            (_, Some(same)) if same.warp.as_ref() == Some(warp) => same.content.clone(),
+            (Content::Pixels(own), last) => {
+                let last = last.and_then(|last| match (&last.own, &last.content) {
+                    (Content::Pixels(own), Content::Pixels(seen)) => {
+                        Some(LastWarp { own, seen, warp: last.warp.as_ref() })
+                    }
+                    _ => None,
+                });
+                Content::Pixels(own.displaced(map, warp, last))
+            }
+            (_, Some(last)) => last.content.clone(),
+            (content, None) => match map.is_none() && !content.has_homes() {
+                true => content.clone(),
+                false => content.on_canvas(map, None),
+            },
+        };
+        let mask = layer.mask.as_ref().map(|mask| {
+            let last = last.and_then(|last| {
+                let (own, seen) = last.own_mask.as_ref().zip(last.mask.as_ref())?;
+                own.is_same(mask).then_some(LastWarp { own, seen, warp: last.warp.as_ref() })
+            });
+            match last {
+                Some(last) if last.warp == Some(warp) => last.seen.clone(),
+                last => displaced_mask(mask, map, warp, last),
+            }
+        });
+        self.keep(CanvasEntry {
+            map: *map,
+            warp: Some(warp.clone()),
+            own: layer.content.clone(),
+            own_mask: layer.mask.clone(),
+            content: content.clone(),
+            mask: mask.clone(),
+        });
+        (content, mask)
+    }
+    fn keep(&self, entry: CanvasEntry) {
+        let mut entries = self.lock();
+        entries.retain(|other| {
+            !(other.map == entry.map && other.warp == entry.warp && other.own.is_identical(&entry.own))
+        });
+        entries.push(entry);
+        let surplus = entries.len().saturating_sub(Self::KEPT);
+        entries.drain(..surplus);
+    }
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<CanvasEntry>> {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn mask_on_canvas(mask: &LayerMask, map: &LayerMap) -> LayerMask {
+    let MaskKind::File { file, coverage } = &mask.kind else { return mask.clone() };
+    let coverage: Plane<u8> = warped_plane(coverage, map, map.filter);
+    LayerMask { kind: MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) }, ..mask.clone() }
+}

@@ -1,0 +1,279 @@
+//! Warps of layers: what a layer shows, seen through its mesh and its liquify. Floor 4.
+//!
+//! Both are one displacement backward, evaluated a tile at a time: a pixel of the canvas shows what the layer would
+//! show elsewhere. Paint and masks are sampled once through it and their transforms. Live layers and groups are
+//! composed where they stand, both populations of a contour pixel mixed, and seen through it; what was composed stays
+//! while the displacement alone changes. Tiles that show themselves are composed as if there were no warp.
+
+mod cache;
+
+pub(super) use cache::{WarpCache, WarpTiles};
+
+use super::transform::LayerMap;
+use super::{Content, Document, Layer, LayerMask, MaskKind, PixelLayer, Role, TransformShape};
+use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2, vec2};
+use crate::raster::warp::{PixelMap, TileMap, warped_block, warped_tile};
+use crate::raster::{Lattice, Plane, Resampling, TileAt, TileGrid};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// The displacement of a layer by its mesh and its liquify.
+#[derive(Clone)]
+pub struct LayerWarp {
+    canvas: Size,
+    /// What takes the list that the layer stands in to the canvas.
+    outside: PlaneMap,
+    /// Backward.
+    mesh: Option<Arc<Lattice>>,
+    liquify: Option<Arc<Lattice>>,
+    /// How pixels are sampled through it.
+    pub filter: Resampling,
+}
+
+impl PartialEq for LayerWarp {
+    fn eq(&self, other: &Self) -> bool {
+        let same = |a: &Option<Arc<Lattice>>, b: &Option<Arc<Lattice>>| match (a, b) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        (self.canvas, self.outside, self.filter) == (other.canvas, other.outside, other.filter)
+            && same(&self.mesh, &other.mesh)
+            && same(&self.liquify, &other.liquify)
+    }
+}
+
+impl Layer {
+    /// A mesh or liquify displaces it.
+    pub fn is_warped(&self) -> bool {
+        self.liquify.is_some() || self.mesh_warp().is_some()
+    }
+    /// The mesh of it that no matrix says.
+    fn mesh_warp(&self) -> Option<&Arc<super::Mesh>> {
+        match self.transform.as_ref().map(|transform| &transform.shape) {
+            Some(TransformShape::Mesh(mesh)) if mesh.as_affine().is_none() => Some(mesh),
+            _ => None,
+        }
+    }
+}
+
+impl LayerWarp {
+    /// Of a layer with its map; `None` where nothing displaces it.
+    pub(super) fn of(layer: &Layer, map: &LayerMap) -> Option<Self> {
+        let (mesh, liquify) = (layer.mesh_warp(), layer.liquify.clone().filter(|lattice| !lattice.is_empty()));
+        if mesh.is_none() && liquify.is_none() {
+            return None;
+        }
+        // What stays in place is to look as it did, so the cubic must pass through the pixels, as Mitchell's does not.
+        let is_kept = mesh.is_none() && map.pixel_move().is_some() && map.filter != Resampling::Nearest;
+        let filter = if is_kept { Resampling::Sharp } else { map.filter };
+        let mesh = mesh.map(|mesh| mesh.backward(map.canvas()));
+        Some(Self { canvas: map.canvas(), outside: map.outside_own(), mesh, liquify, filter })
+    }
+    /// What a mesh takes from beyond the canvas is nothing; liquify lets the picture's border go on.
+    pub(super) fn continues(&self) -> bool {
+        self.mesh.is_none()
+    }
+    /// Which point of the unwarped layer shows at each pixel of a tile, seen through one more map of its own; `None`
+    /// where the tile shows itself.
+    ///
+    /// * `own`: what takes the layer's frame to the canvas; the identity of what is composed on the canvas.
+    pub(super) fn tile_map(&self, at: TileAt, own: &PlaneMap) -> Option<TileMap> {
+        let rect = at.rect();
+        let middle = |k: usize| {
+            let (x, y) = (k % rect.width(), k / rect.width());
+            vec2((rect.x0 + x as i32) as f32 + 0.5, (rect.y0 + y as i32) as f32 + 0.5)
+        };
+        let nowhere = (Vec2::splat(-1e6), Mat2::IDENTITY);
+        let mut points: Vec<(Vec2, Mat2)> = if self.outside == PlaneMap::IDENTITY {
+            self.on_list(at, middle)?
+        } else {
+            let shown = self.outside.source_rect(rect);
+            let is_still = |of: &Option<Arc<Lattice>>| {
+                of.as_ref().is_none_or(|lattice| {
+                    lattice.blocks().all(|(b, _)| {
+                        b.rect().grown(2 * crate::raster::lattice::CELL as i32).intersect(shown).is_empty()
+                    })
+                })
+            };
+            if is_still(&self.mesh) && is_still(&self.liquify) {
+                return None;
+            }
+            let point = |k: usize| {
+                let (q, first) = self.outside.from_canvas(middle(k))?;
+                let (p, inner) = self.aside(q);
+                let last = self.outside.stretch_at(p)?;
+                Some((self.outside.to_canvas(p)?, last * inner * first))
+            };
+            (0..rect.width() * rect.height()).map(|k| point(k).unwrap_or(nowhere)).collect()
+        };
+        if *own != PlaneMap::IDENTITY {
+            for (p, jacobian) in &mut points {
+                (*p, *jacobian) = match own.from_canvas(*p) {
+                    Some((at, inner)) => (at, inner * *jacobian),
+                    None => nowhere,
+                };
+            }
+        }
+        Some(TileMap::new(rect, points))
+    }
+    /// The same of a list that is the canvas, along rows.
+    fn on_list(&self, at: TileAt, middle: impl Fn(usize) -> Vec2) -> Option<Vec<(Vec2, Mat2)>> {
+        let on_tile = |of: &Option<Arc<Lattice>>| of.as_ref().and_then(|lattice| lattice.on_tile(at));
+        match (on_tile(&self.liquify), &self.mesh) {
+            (None, _) => {
+                let moved = on_tile(&self.mesh)?.into_iter().enumerate();
+                Some(moved.map(|(k, u)| (middle(k) + u.by, Mat2::IDENTITY + u.jacobian)).collect())
+            }
+            (Some(moved), None) => {
+                let moved = moved.into_iter().enumerate();
+                Some(moved.map(|(k, u)| (middle(k) + u.by, Mat2::IDENTITY + u.jacobian)).collect())
+            }
+            (Some(moved), Some(mesh)) => {
+                let both = moved.into_iter().enumerate().map(|(k, u)| {
+                    let q = middle(k) + u.by;
+                    let v = mesh.at(q);
+                    (q + v.by, (Mat2::IDENTITY + v.jacobian) * (Mat2::IDENTITY + u.jacobian))
+                });
+                Some(both.collect())
+            }
+        }
+    }
+    /// What shows at a point of the list, and how it moves with the point.
+    fn aside(&self, q: Vec2) -> (Vec2, Mat2) {
+        let (mut p, mut jacobian) = (q, Mat2::IDENTITY);
+        for lattice in [&self.liquify, &self.mesh].into_iter().flatten() {
+            let u = lattice.at(p);
+            (p, jacobian) = (p + u.by, (Mat2::IDENTITY + u.jacobian) * jacobian);
+        }
+        (p, jacobian)
+    }
+    /// The point of the unwarped layer that shows at a point of the canvas.
+    pub fn source_of(&self, q: Vec2) -> Vec2 {
+        let source = self.outside.from_canvas(q).and_then(|(q, _)| self.outside.to_canvas(self.aside(q).0));
+        source.unwrap_or(q)
+    }
+    /// The tiles that show some of the unwarped layer's tiles.
+    pub(super) fn showing(&self, source: &[TileAt]) -> Vec<TileAt> {
+        if source.is_empty() {
+            return Vec::new();
+        }
+        let around = source.iter().map(|at| at.rect()).reduce(Rect::union).unwrap_or(Rect::EMPTY);
+        let shows = |at: &TileAt| match self.tile_map(*at, &PlaneMap::IDENTITY) {
+            None => source.contains(at),
+            Some(map) => {
+                let shown = self.within(map.source_rect(at.rect()));
+                let meets = |from: &TileAt| !from.rect().intersect(shown).is_empty();
+                !around.intersect(shown).is_empty() && source.iter().any(meets)
+            }
+        };
+        let all: Vec<TileAt> = TileAt::covering(self.canvas.rect()).collect();
+        all.into_par_iter().filter(shows).collect()
+    }
+    /// What is read for a rectangle: where the border goes on, the border.
+    fn within(&self, rect: Rect) -> Rect {
+        if !self.continues() {
+            return rect;
+        }
+        let (w, h) = (self.canvas.width as i32, self.canvas.height as i32);
+        let (x0, y0) = (rect.x0.clamp(0, w - 1), rect.y0.clamp(0, h - 1));
+        Rect::new(x0, y0, rect.x1.clamp(x0 + 1, w), rect.y1.clamp(y0 + 1, h))
+    }
+    /// The tiles in which two displacements of one layer may differ; `None`: anywhere.
+    pub(super) fn changed_tiles(old: Option<&Self>, new: Option<&Self>) -> Option<Vec<TileAt>> {
+        let any = old.or(new)?;
+        let alike = |a: &Self| a.mesh.is_none() && a.outside == PlaneMap::IDENTITY && a.canvas == any.canvas;
+        if ![old, new].into_iter().flatten().all(alike) {
+            return None;
+        }
+        let lattice = |warp: Option<&Self>| warp.and_then(|warp| warp.liquify.clone()).unwrap_or_default();
+        let canvas = any.canvas.rect();
+        let is_seen = |at: &TileAt| !at.rect().intersect(canvas).is_empty();
+        Some(lattice(old).changed_tiles(&lattice(new)).into_iter().filter(is_seen).collect())
+    }
+}
+
+/// What was known of a layer's paint or mask under another displacement.
+pub(super) struct LastWarp<'l, T> {
+    pub own: &'l T,
+    pub seen: &'l T,
+    pub warp: Option<&'l LayerWarp>,
+}
+
+impl PixelLayer {
+    /// Its pixels on the canvas, sampled once through its map and its displacement.
+    pub(super) fn displaced(&self, map: &LayerMap, warp: &LayerWarp, last: Option<LastWarp<Self>>) -> Self {
+        let mut tiles = TileGrid::default();
+        let canvas = map.canvas().rect();
+        let mut wanted: Vec<TileAt> = TileAt::covering(canvas).collect();
+        if let Some(last) = last
+            && let Some(other) = LayerWarp::changed_tiles(last.warp, Some(warp))
+        {
+            let changed = last.own.tiles.changed_tiles(&self.tiles);
+            if changed.is_empty() {
+                wanted = other;
+                tiles = last.seen.tiles.clone();
+            }
+        }
+        let one = |at: &TileAt| match warp.tile_map(*at, &map.plane) {
+            Some(moved) => warped_tile(&self.tiles, &moved, warp.filter, *at),
+            None => warped_tile(&self.tiles, map, map.filter, *at),
+        };
+        let seen: Vec<_> = wanted.par_iter().map(one).collect();
+        tiles.reserve(canvas);
+        wanted.into_iter().zip(seen).for_each(|(at, tile)| tiles.set(at, tile));
+        Self { tiles, ..self.clone() }
+    }
+}
+
+/// A mask's picture on the canvas, sampled once through the layer's map and displacement.
+pub(super) fn displaced_mask(
+    mask: &LayerMask,
+    map: &LayerMap,
+    warp: &LayerWarp,
+    last: Option<LastWarp<LayerMask>>,
+) -> LayerMask {
+    let MaskKind::File { file, coverage } = &mask.kind else { return mask.clone() };
+    let canvas = coverage.size().rect();
+    let mut wanted: Vec<TileAt> = TileAt::covering(canvas).collect();
+    let mut out: Plane<u8> = Plane::filled(coverage.size(), 0);
+    if let Some(last) = last
+        && let MaskKind::File { coverage: seen, .. } = &last.seen.kind
+        && let Some(other) = LayerWarp::changed_tiles(last.warp, Some(warp))
+        && seen.size() == coverage.size()
+    {
+        (wanted, out) = (other, Plane::clone(seen));
+    }
+    let one = |at: &TileAt| {
+        let rect = at.rect().intersect(canvas);
+        match warp.tile_map(*at, &map.plane) {
+            Some(moved) => warped_block(coverage, &moved, warp.filter, rect),
+            None => warped_block(coverage, map, map.filter, rect),
+        }
+    };
+    let values: Vec<Vec<(i32, i32, u8)>> = wanted.par_iter().map(one).collect();
+    values.into_iter().flatten().for_each(|(x, y, value)| out.set(x as usize, y as usize, value));
+    LayerMask { kind: MaskKind::File { file: file.clone(), coverage: Arc::new(out) }, ..mask.clone() }
+}
+
+/// The liquify of a layer on a plane that a map took elsewhere; what lies far beyond the canvas is forgotten.
+pub fn carried_liquify(layer: &Layer, map: &PlaneMap, canvas: Size) -> Option<Arc<Lattice>> {
+    let within = canvas.rect().grown(canvas.longer_side() as i32);
+    let carried = layer.liquify.as_ref()?.carried(map, within);
+    (!carried.is_empty()).then(|| Arc::new(carried))
+}
+
+/// Whether a kind of layer can be displaced: what shapes the surface or adjusts what lies beneath shows nothing of its
+/// own.
+pub fn can_be_warped(content: &Content) -> bool {
+    matches!(content.role(), Role::Paints | Role::Groups(_))
+}
+
+impl Document {
+    /// The displacement of a layer; `None` where nothing displaces it, or there is no such layer.
+    pub fn warp_of(&self, id: super::LayerId) -> Option<LayerWarp> {
+        LayerWarp::of(self.layer(id)?, &self.map_of(id)?)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,125 @@
+//! What was composed of a warped layer: the tiles that it is sampled from, and those that it shows. Floor 4.
+
+use super::LayerWarp;
+use crate::document::{Content, LayerMap};
+use crate::math::Rect;
+use crate::paint::Scene;
+use crate::raster::warp::{PixelMap, warped_tile_within};
+use crate::raster::{Tile, TileAt, TileGrid};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+type Cell = OnceLock<Option<Arc<Tile>>>;
+
+/// One cell for each tile of the canvas.
+struct Cells {
+    cols: i32,
+    cells: Vec<Cell>,
+}
+
+impl Cells {
+    fn new(canvas: Rect) -> Self {
+        let count = TileAt::covering(canvas).count();
+        let cols = TileAt::covering(canvas).take_while(|at| at.row == 0).count() as i32;
+        Self { cols, cells: (0..count).map(|_| OnceLock::new()).collect() }
+    }
+    fn cell(&self, at: TileAt) -> Option<&Cell> {
+        let inside = at.col >= 0 && at.row >= 0 && at.col < self.cols;
+        inside.then(|| self.cells.get((at.row * self.cols + at.col) as usize)).flatten()
+    }
+}
+
+/// The tiles of a warped layer, found when they are asked for.
+pub struct WarpTiles {
+    pub warp: LayerWarp,
+    canvas: Rect,
+    /// As it is composed where it stands.
+    source: Arc<Cells>,
+    /// As it shows.
+    shown: Cells,
+}
+
+impl WarpTiles {
+    /// What the layer shows on a tile. `None`: there it shows itself.
+    pub fn shown(&self, at: TileAt, compose: &dyn Fn(TileAt) -> Option<Arc<Tile>>) -> Option<Option<Arc<Tile>>> {
+        let cell = self.shown.cell(at)?;
+        if let Some(known) = cell.get() {
+            return Some(known.clone());
+        }
+        let map = self.warp.tile_map(at, &crate::math::PlaneMap::IDENTITY)?;
+        Some(cell.get_or_init(|| self.sampled(at, &map, compose)).clone())
+    }
+    fn sampled(
+        &self,
+        at: TileAt,
+        map: &dyn PixelMap,
+        compose: &dyn Fn(TileAt) -> Option<Arc<Tile>>,
+    ) -> Option<Arc<Tile>> {
+        let wanted = self.warp.within(map.source_rect(at.rect().intersect(self.canvas))).intersect(self.canvas);
+        let mut grid = TileGrid::default();
+        for from in TileAt::covering(wanted) {
+            let tile = self.source.cell(from).map(|cell| cell.get_or_init(|| compose(from)).clone());
+            grid.set(from, tile.flatten());
+        }
+        let border = self.warp.continues().then_some(self.canvas);
+        warped_tile_within(&grid, border, map, self.warp.filter, at)
+    }
+}
+
+/// What was last composed of a layer; shared by its versions.
+#[derive(Clone, Default)]
+pub struct WarpCache {
+    last: Arc<Mutex<Option<Entry>>>,
+}
+
+#[derive(Clone)]
+struct Entry {
+    scene: Scene,
+    content: Content,
+    map: LayerMap,
+    tiles: Arc<WarpTiles>,
+}
+
+impl WarpCache {
+    /// The tiles of a layer that shows `content` on a scene. What was composed of the same is kept; what it shows is,
+    /// too, where it is displaced as it was.
+    pub fn tiles(&self, scene: &Scene, content: &Content, map: &LayerMap, warp: LayerWarp) -> Arc<WarpTiles> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let canvas = scene.size.rect();
+        let known = last
+            .as_ref()
+            .filter(|entry| entry.scene.is_same(scene) && entry.map == *map && is_same(&entry.content, content));
+        let tiles = match known {
+            Some(entry) if entry.tiles.warp == warp => return entry.tiles.clone(),
+            Some(entry) => {
+                let shown = Cells::new(canvas);
+                if let Some(changed) = LayerWarp::changed_tiles(Some(&entry.tiles.warp), Some(&warp))
+                    && entry.tiles.warp.filter == warp.filter
+                {
+                    for at in TileAt::covering(canvas).filter(|at| !changed.contains(at)) {
+                        if let (Some(to), Some(from)) = (shown.cell(at), entry.tiles.shown.cell(at))
+                            && let Some(tile) = from.get()
+                        {
+                            let _ = to.set(tile.clone());
+                        }
+                    }
+                }
+                WarpTiles { warp, canvas, source: entry.tiles.source.clone(), shown }
+            }
+            None => WarpTiles { warp, canvas, source: Arc::new(Cells::new(canvas)), shown: Cells::new(canvas) },
+        };
+        let tiles = Arc::new(tiles);
+        let (scene, content, map) = (scene.clone(), content.clone(), *map);
+        *last = Some(Entry { scene, content, map, tiles: tiles.clone() });
+        tiles
+    }
+}
+
+/// The very same content: of a group, the very same layers.
+fn is_same(a: &Content, b: &Content) -> bool {
+    match (a, b) {
+        (Content::Group(a), Content::Group(b)) => {
+            a.layers.len() == b.layers.len() && a.layers.iter().zip(&b.layers).all(|(a, b)| Arc::ptr_eq(a, b))
+        }
+        _ => a.is_identical(b),
+    }
+}

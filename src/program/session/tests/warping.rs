@@ -1,0 +1,89 @@
+//! Meshes and liquify, told as the lines of a replay: a photo, a stroke layer and a group are displaced, applied and
+//! undone.
+
+use super::*;
+
+fn story(session: &mut Session, lines: &str) {
+    session.replay(Path::new("story"), lines).unwrap_or_else(|e| panic!("{e}"));
+}
+fn picture(session: &Session) -> Vec<u8> {
+    let document = session.active().unwrap().document();
+    flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
+}
+fn layer(session: &Session) -> Arc<crate::document::Layer> {
+    session.layer().unwrap().clone()
+}
+
+/// A push to the right from (60, 70).
+const PUSH: &str = r#"
+{"in":"hand","do":"liquify","liquify":{"tool":"push","size":80,"strength":1,"one_object":false,"foreshortened":true}}
+{"in":"pointer","do":"press","tool":"liquify","pen":[60,70],"px_per_pt":1}
+{"in":"pointer","do":"drag","pens":[[70,72],[85,75]]}
+{"in":"pointer","do":"release"}"#;
+const UNDO: &str = r#"{"in":"edit","do":"undo"}"#;
+
+#[test]
+fn a_stroke_layer_is_liquified_live_and_each_stroke_is_a_step() {
+    let strokes = r#"{"in":"layer","do":"add","kind":"strokes"}"#;
+    let mut session = told(&format!("{PAPER}\n{strokes}{STROKE}"));
+    let plain = picture(&session);
+    story(&mut session, PUSH);
+    let once = picture(&session);
+    assert!(once != plain && layer(&session).liquify.is_some());
+    assert!(matches!(&layer(&session).content, crate::document::Content::Strokes(_)), "it stays live");
+    story(&mut session, PUSH);
+    assert!(picture(&session) != once);
+    story(&mut session, UNDO);
+    assert!(picture(&session) == once);
+    story(&mut session, UNDO);
+    assert!(picture(&session) == plain);
+    // Done again, and recorded lines give the same bytes.
+    story(&mut session, r#"{"in":"edit","do":"redo"}"#);
+    assert!(picture(&session) == once);
+    let again = told(&format!("{PAPER}\n{strokes}{STROKE}{PUSH}"));
+    assert!(picture(&again) == once);
+    // A brush would paint where it does not show.
+    story(&mut session, STROKE);
+    assert!(session.notes.iter().any(|note| note.contains("liquify displaces the layer")), "{:?}", session.notes);
+    assert!(picture(&session) == once);
+    // Applied, it is paint that looks the same, and takes paint.
+    story(&mut session, r#"{"in":"layer","do":"apply transform","layer":"1"}"#);
+    assert!(picture(&session) == once && !layer(&session).is_warped());
+    story(&mut session, STROKE);
+    assert!(picture(&session) != once);
+}
+#[test]
+fn removed_liquify_leaves_the_layer_as_it_was() {
+    let mut session = told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
+    let plain = picture(&session);
+    story(&mut session, PUSH);
+    assert!(picture(&session) != plain);
+    story(&mut session, r#"{"in":"layer","do":"set","layer":"1","to":{"do":"without liquify"},"done":true}"#);
+    assert!(picture(&session) == plain);
+}
+#[test]
+fn a_mesh_is_laid_dragged_applied_and_undone() {
+    let mut session = told(&format!("{PAPER}\n{{\"in\":\"layer\",\"do\":\"add\",\"kind\":\"paint\"}}{STROKE}"));
+    let plain = picture(&session);
+    story(&mut session, r#"{"in":"layer","do":"mesh","layer":"1","columns":3,"rows":3}"#);
+    assert!(picture(&session) == plain, "an even mesh moves nothing");
+    let mesh = layer(&session).transform.as_ref().unwrap().mesh().unwrap().clone();
+    let [x, y] = mesh.points()[4].to_array();
+    let to = [x + 9.0, y + 6.0];
+    story(
+        &mut session,
+        &format!(
+            "{{\"in\":\"pointer\",\"do\":\"press\",\"tool\":\"transform\",\"pen\":[{x},{y}],\"px_per_pt\":0.1}}\n\
+             {{\"in\":\"pointer\",\"do\":\"drag\",\"pens\":[{to:?}]}}\n{{\"in\":\"pointer\",\"do\":\"release\"}}"
+        ),
+    );
+    let bent = picture(&session);
+    assert!(bent != plain && layer(&session).is_warped());
+    story(&mut session, r#"{"in":"layer","do":"apply transform","layer":"1"}"#);
+    assert!(picture(&session) == bent && layer(&session).transform.is_none());
+    story(&mut session, UNDO);
+    story(&mut session, UNDO);
+    assert!(picture(&session) == plain && layer(&session).transform.is_some());
+    story(&mut session, r#"{"in":"layer","do":"mesh","layer":"1","columns":40,"rows":3}"#);
+    assert!(picture(&session) == plain);
+}

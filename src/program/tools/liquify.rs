@@ -1,0 +1,83 @@
+//! The liquify tool: strokes that displace what the selected layer or group shows. The layer itself stays as it is.
+//! Floor 5. What a dab does is `paint::liquify`'s.
+
+use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::document::warp::can_be_warped;
+use crate::document::{Content, Document, LayerId, LayerLock};
+use crate::paint::{LiquifyStroke, LiquifyTool};
+use crate::raster::Lattice;
+use std::sync::Arc;
+
+pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
+    let document = context.document;
+    let Some(layer) = context.layer.and_then(|id| document.layer(id)) else {
+        return (None, Outcome::Refused("Choose a layer or a group to liquify."));
+    };
+    let why = match &layer.content {
+        _ if layer.lock == LayerLock::All => Some("The layer is locked."),
+        Content::Fill(_) => Some("A layer of one colour looks the same however it is displaced."),
+        content if !can_be_warped(content) => Some("This layer shows nothing of its own that could be displaced."),
+        _ => None,
+    };
+    let map = document.map_of(layer.id);
+    let (Some(map), None) = (map, why) else { return (None, why.map_or(Outcome::Idle, Outcome::Refused)) };
+    // Ctrl turns what a tool does about, Shift smooths.
+    let tool = match context.liquify.tool {
+        _ if pen.keys.shift => LiquifyTool::Smooth,
+        LiquifyTool::Grow if pen.keys.ctrl => LiquifyTool::Shrink,
+        LiquifyTool::Shrink if pen.keys.ctrl => LiquifyTool::Grow,
+        LiquifyTool::TwirlLeft if pen.keys.ctrl => LiquifyTool::TwirlRight,
+        LiquifyTool::TwirlRight if pen.keys.ctrl => LiquifyTool::TwirlLeft,
+        _ if pen.keys.ctrl => LiquifyTool::Restore,
+        tool => tool,
+    };
+    let settings = crate::paint::LiquifySettings { tool, ..context.liquify };
+    let selection = document.active_selection.as_ref().map(|selection| selection.coverage.clone());
+    let stroke = LiquifyStroke::new(settings, document.scene(), selection, map.outside_own(), pen.place());
+    let old = layer.liquify.clone();
+    let mut lattice = old.as_deref().cloned().unwrap_or_default();
+    stroke.begin(&mut lattice, pen.sample.pressure);
+    let gesture = LiquifyGesture { document: document.clone(), layer: layer.id, old, lattice, stroke };
+    let outcome = gesture.shown();
+    (Some(Box::new(gesture)), outcome)
+}
+
+struct LiquifyGesture {
+    document: Document,
+    layer: LayerId,
+    old: Option<Arc<Lattice>>,
+    lattice: Lattice,
+    stroke: LiquifyStroke,
+}
+
+impl LiquifyGesture {
+    fn with(&self) -> Option<Document> {
+        let next = (!self.lattice.is_empty()).then(|| Arc::new(self.lattice.clone()));
+        self.document.with_layer(self.layer, |layer| layer.liquify = next)
+    }
+    fn shown(&self) -> Outcome {
+        self.with().map_or(Outcome::Idle, Outcome::Preview)
+    }
+}
+
+impl Gesture for LiquifyGesture {
+    fn drag(&mut self, pens: &[PenSample]) -> Outcome {
+        for pen in pens {
+            self.stroke.draw_to(&mut self.lattice, pen.place(), pen.sample.pressure);
+        }
+        self.shown()
+    }
+    fn release(&mut self) -> Outcome {
+        let is_same = match &self.old {
+            Some(old) => **old == self.lattice,
+            None => self.lattice.is_empty(),
+        };
+        match self.with().filter(|_| !is_same) {
+            Some(document) => Outcome::Commit { label: "Liquify".into(), document, select: None },
+            None => Outcome::Cancel,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

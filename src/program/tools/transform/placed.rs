@@ -1,0 +1,76 @@
+//! Where layers are placed, and where a drag of their frame takes them.
+//! Floor 5.
+
+use crate::document::{Layer, LayerMap, LayerTransform, Mesh, TransformShape};
+use crate::math::{PlaneMap, Size};
+use crate::raster::{Lattice, Resampling};
+use std::sync::Arc;
+
+/// Where a layer is placed: its transform and its liquify.
+#[derive(Clone, PartialEq)]
+pub(super) struct Placed {
+    pub transform: Option<LayerTransform>,
+    pub liquify: Option<Arc<Lattice>>,
+}
+
+impl Placed {
+    pub fn of(layer: &Layer) -> Self {
+        Self { transform: layer.transform.clone(), liquify: layer.liquify.clone() }
+    }
+    pub fn put(&self, layer: &mut Layer) {
+        layer.transform.clone_from(&self.transform);
+        layer.liquify.clone_from(&self.liquify);
+    }
+    /// The same with what shows mapped; `None` where that is no map.
+    ///
+    /// * `whole`: the layer's map.
+    pub fn then(&self, whole: &LayerMap, map: &FrameMap, canvas: Size) -> Option<Self> {
+        let own = self.transform.as_ref().map_or(Some(PlaneMap::IDENTITY), |own| own.map(canvas))?;
+        let plane = match map {
+            FrameMap::OnCanvas(map) => taken_along(own, &whole.plane, *map),
+            // A mesh is drawn where it shows.
+            FrameMap::InFrame(map) if self.mesh().is_some() => own.then(map),
+            FrameMap::InFrame(map) => map.then(&own),
+        };
+        // The same in the list that the layer stands in.
+        let outer = own.inverse().then(&plane);
+        let filter = self.transform.as_ref().map_or(whole.filter, |own| own.filter);
+        let transform = match self.mesh() {
+            Some(mesh) => {
+                let shape = TransformShape::Mesh(Arc::new(mesh.then(&outer)?));
+                Some(LayerTransform { shape, filter })
+            }
+            None => said(&plane, filter, canvas)?,
+        };
+        let within = canvas.rect().grown(canvas.longer_side() as i32);
+        let carried = self.liquify.as_ref().map(|lattice| lattice.carried(&outer, within));
+        let liquify = carried.filter(|lattice| !lattice.is_empty()).map(Arc::new);
+        Some(Self { transform, liquify })
+    }
+    fn mesh(&self) -> Option<&Arc<Mesh>> {
+        self.transform.as_ref().and_then(|own| own.mesh())
+    }
+}
+
+/// A layer's own map so that what shows is taken along by a map of the canvas; `whole`: its own and those of the groups
+/// around it.
+fn taken_along(own: PlaneMap, whole: &PlaneMap, on_canvas: PlaneMap) -> PlaneMap {
+    let around = own.inverse().then(whole);
+    own.then(&around).then(&on_canvas).then(&around.inverse())
+}
+
+/// A map as a transform that a file holds, or none where it moves nothing; outer `None` where there is no such one.
+pub(super) fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Option<LayerTransform>> {
+    if map.is_identity_on(canvas) {
+        return Some(None);
+    }
+    let transform = LayerTransform::of_map(map, filter, canvas)?;
+    transform.fits().ok().map(|()| Some(transform))
+}
+
+/// What a drag does to all that is in the frame.
+pub(super) enum FrameMap {
+    OnCanvas(PlaneMap),
+    /// Before the frame's own map.
+    InFrame(PlaneMap),
+}

@@ -1,0 +1,47 @@
+//! The options of the liquify tool.
+//! Floor 7.
+
+use crate::paint::{LiquifySettings, LiquifyTool};
+use crate::requests::UiRequests;
+use crate::session::Action;
+use crate::session::actions::HandAction;
+use crate::widgets::{NumberField, sentence};
+use eframe::egui::{Button, Ui};
+
+pub fn options(ui: &mut Ui, now: LiquifySettings, requests: &mut UiRequests) {
+    let mut to = None;
+    for (tool, word) in LiquifyTool::ALL {
+        let button = Button::selectable(now.tool == tool, sentence(word));
+        if ui.add(button).on_hover_text(about(tool)).clicked() {
+            to = Some(LiquifySettings { tool, ..now });
+        }
+    }
+    ui.add_space(6.0);
+    let field = NumberField::new("Size", LiquifySettings::SIZE, "Diameter of a dab ([ and ], or the right button)");
+    to = field.px().inline(ui, now.size, 70.0).map(|c| LiquifySettings { size: c.to, ..now }).or(to);
+    let hint = "How much a dab does; a push at 1 goes as far as the pen. Pressure weakens it";
+    let field = NumberField::new("Strength", LiquifySettings::STRENGTH, hint);
+    to = field.inline(ui, now.strength, 60.0).map(|c| LiquifySettings { strength: c.to, ..now }).or(to);
+    let mut next = now;
+    let hint = "Nothing but the object under the first dab is displaced";
+    if ui.checkbox(&mut next.one_object, "Keep to one object").on_hover_text(hint).changed() {
+        to = Some(LiquifySettings { one_object: next.one_object, ..now });
+    }
+    let hint = "Dabs, and how far they go, are measured along the surface: less where it turns away";
+    if ui.checkbox(&mut next.foreshortened, "Foreshortened").on_hover_text(hint).changed() {
+        to = Some(LiquifySettings { foreshortened: next.foreshortened, ..now });
+    }
+    requests.actions.extend(to.map(|liquify| Action::Hand(HandAction::Liquify { liquify })));
+}
+
+fn about(tool: LiquifyTool) -> &'static str {
+    match tool {
+        LiquifyTool::Push => "Takes what lies under the pen along (Ctrl restores)",
+        LiquifyTool::Grow => "Makes it larger about the middle of the dab (Ctrl shrinks)",
+        LiquifyTool::Shrink => "Makes it smaller (Ctrl grows)",
+        LiquifyTool::TwirlLeft => "Turns it counter-clockwise (Ctrl: clockwise)",
+        LiquifyTool::TwirlRight => "Turns it clockwise (Ctrl: counter-clockwise)",
+        LiquifyTool::Smooth => "Evens out how it is displaced (Shift with any tool)",
+        LiquifyTool::Restore => "Takes it back to where it was",
+    }
+}
