@@ -278,8 +278,7 @@ impl<'m> Backward<'m> {
     fn lay(&mut self, corners: [(Vec2, Vec2); 3]) {
         let [(a, p), (b, q), (c, r)] = corners;
         let area = (b - a).perp_dot(c - a);
-        // Written so that what is no number is left out as well.
-        if !(area.abs() > 1e-6) {
+        if area.is_nan() || area.abs() <= 1e-6 {
             return;
         }
         let cell = lattice::CELL as f32;
@@ -307,7 +306,7 @@ impl<'m> Backward<'m> {
             let (q, jacobian) = self.mesh.at(now);
             let miss = node - q;
             // What diverges, and what is no number, is no better.
-            if !(miss.length() < off) {
+            if miss.is_nan() || miss.length() >= off {
                 break;
             }
             (best, off) = (now, miss.length());

@@ -139,8 +139,11 @@ pub struct KeptFrame {
 struct FirstFrame {
     inner: FrameBox,
     /// The own box of each layer then, and its map to the canvas.
-    each: Vec<Option<(FrameBox, LayerMap)>>,
+    each: Vec<Option<PlacedBox>>,
 }
+
+/// A box and where it lies.
+type PlacedBox = (FrameBox, LayerMap);
 
 /// Nothing is kept.
 static NOTHING: KeptFrame = KeptFrame { layers: Vec::new(), pivot_share: MIDDLE, first: None };
@@ -193,7 +196,7 @@ impl KeptFrame {
         let first = self.first.as_ref()?;
         let now = each(document, &self.layers);
         let mut moves = first.each.iter().zip(now).filter(|(then, now)| then.is_some() || now.is_some());
-        let by = |(then, now): (&Option<(FrameBox, LayerMap)>, Option<(FrameBox, LayerMap)>)| {
+        let by = |(then, now): (&Option<PlacedBox>, Option<PlacedBox>)| {
             let ((old_box, old), (new_box, new)) = (then.as_ref()?, now.as_ref()?);
             (old_box == new_box).then(|| old.plane.inverse().then(&new.plane))
         };
@@ -206,6 +209,6 @@ impl KeptFrame {
 /// Farther from a frame than so many of its sides no pivot lies.
 const FARTHEST_PIVOT: Vec2 = Vec2::splat(100.0);
 
-fn each(document: &Document, layers: &[LayerId]) -> Vec<Option<(FrameBox, LayerMap)>> {
+fn each(document: &Document, layers: &[LayerId]) -> Vec<Option<PlacedBox>> {
     layers.iter().map(|layer| document.frame_box(*layer).zip(document.map_of(*layer))).collect()
 }
