@@ -1,6 +1,7 @@
 //! Decodes raster files within a budget: PNG, JPEG, WebP, TIFF, BMP, TGA and Radiance HDR.
 //! Floor 5. Not here: what the numbers mean (`picture`, `maps`), EXR (`exr`).
 
+mod passes;
 mod tiff;
 mod weight;
 
@@ -75,6 +76,9 @@ fn decode_as(
             let decoded = decoder.total_bytes().saturating_mul(8);
             let stored = weight::png_pixel_bits(bytes).filter(|_| format == ImageFormat::Png);
             weight::plausible(file, size, stored.map_or(decoded, |bits| bits * size.area() as u64), bytes.len())?;
+        }
+        if format == ImageFormat::Jpeg {
+            passes::check(file, bytes, size, budget)?;
         }
         room(file, size, decoder.total_bytes(), budget)?;
         let icc = decoder.icc_profile().ok().flatten();

@@ -2,12 +2,16 @@
 //! alpha, 1 to 64 bits, integers and floats, in planes or pixel by pixel. Floor 5. Strips, tiles and compressions are
 //! the `tiff` crate's; `image` reads only part of what that decodes.
 
+mod directory;
 mod sample;
+mod unpack;
+mod within;
 
 use super::{Bitmap, room, weight};
 use crate::Budget;
 use crate::math::Size;
 use crate::{Error, Remedy, Result};
+use directory::Directory;
 use image::{DynamicImage, metadata::Orientation};
 use sample::TiffSample;
 use std::io::Cursor;
@@ -78,7 +82,7 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     let mut limits = Limits::default();
     (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (most, most);
     let cursor = Cursor::new(as_grey.as_deref().unwrap_or(bytes));
-    let mut decoder = Decoder::new(cursor).map_err(failed)?.with_limits(limits);
+    let mut decoder = Decoder::new(cursor).map_err(failed)?.with_limits(limits.clone());
     let (width, height) = decoder.dimensions().map_err(failed)?;
     let size = budget.size(file, width.into(), height.into())?;
     let color = decoder.colortype().map_err(failed)?;
@@ -90,8 +94,13 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     weight::plausible(file, size, row_bits.saturating_mul(size.height.into()), bytes.len())?;
     // What is decoded, those samples sorted, and the picture made of them.
     room(file, size, values.saturating_mul(2 * u64::from(color.bit_depth()).div_ceil(8)), budget)?;
-    if compression == Some(JPEG) && claims_more(bytes, size) {
-        return Err(Error::too_large(file, "a JPEG within the TIFF claims more pixels than the picture has"));
+    if compression == Some(JPEG) {
+        within::check(file, &mut decoder, bytes, budget)?;
+    }
+    parts(file, &mut decoder)?;
+    let unpacked = unpack::readable(file, as_grey.as_deref().unwrap_or(bytes), &mut decoder, budget)?;
+    if let Some(unpacked) = &unpacked {
+        decoder = Decoder::new(Cursor::new(&unpacked[..])).map_err(failed)?.with_limits(limits);
     }
     let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).ok().flatten().unwrap_or_default();
     let alpha = match extra.first() {
@@ -112,26 +121,28 @@ pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Bitmap> {
     Ok(Bitmap { image, icc, orientation, format: "TIFF", warning: None })
 }
 
+/// Strips and tiles of one picture; each takes some fifty microseconds, however small. The longest side in strips of a
+/// row and four planes has as many.
+const MOST_PARTS: u64 = 4 << 15;
+
+/// Refuses a picture in more pieces than can be read in a few seconds.
+fn parts(file: &Path, decoder: &mut Decoder<Cursor<&[u8]>>) -> Result<()> {
+    let (size, part) = (decoder.dimensions(), decoder.chunk_dimensions());
+    let (width, height) = size.map_err(|e| failure(file, &e))?;
+    let planes = decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).ok().flatten() == Some(2);
+    let planes = if planes { decoder.colortype().map_or(1, |color| samples(color) as u64) } else { 1 };
+    let count = u64::from(width.div_ceil(part.0.max(1))) * u64::from(height.div_ceil(part.1.max(1))) * planes;
+    if count > MOST_PARTS {
+        let reason = format!("the TIFF is in {count} pieces; {MOST_PARTS} are allowed");
+        return Err(Error::too_large(file, reason));
+    }
+    Ok(())
+}
+
 /// Compressions of fax machines: a white row takes a bit.
 const FAX: std::ops::RangeInclusive<u16> = 2..=4;
 /// The compression that is a JPEG in each strip or tile.
 const JPEG: u16 = 7;
-/// Pixels of a JPEG within that are always allowed for: tiles may be larger than the picture.
-const TILE_PX: u64 = 1 << 22;
-
-/// Refuses an embedded JPEG that claims to be larger than the picture: its decoder would allocate that size first.
-fn claims_more(bytes: &[u8], size: Size) -> bool {
-    let most = TILE_PX.max(size.area() as u64);
-    // The header of a frame: its mark, a length for 1 to 4 components, 8 bits, height, width. Nothing coded holds such
-    // a mark.
-    bytes.windows(9).any(|header| match *header {
-        [0xff, 0xc0..=0xc2, 0, 11 | 14 | 17 | 20, 8, h1, h0, w1, w0] => {
-            u64::from(u16::from_be_bytes([h1, h0])) * u64::from(u16::from_be_bytes([w1, w0])) > most
-        }
-        _ => false,
-    })
-}
-
 /// The number of samples per pixel that the crate returns.
 fn samples(color: ColorType) -> usize {
     match color {
@@ -158,7 +169,7 @@ fn failure(file: &Path, error: &TiffError) -> Error {
 /// The position of the photometric tag's value.
 struct Photometric {
     at: usize,
-    is_little: bool,
+    directory: Directory,
     value: u16,
 }
 
@@ -166,9 +177,8 @@ impl Photometric {
     /// The file with another value.
     fn with_value(&self, bytes: &[u8], value: u16) -> Vec<u8> {
         let mut out = bytes.to_vec();
-        let value = if self.is_little { value.to_le_bytes() } else { value.to_be_bytes() };
         if let Some(place) = out.get_mut(self.at..self.at + 2) {
-            place.copy_from_slice(&value);
+            place.copy_from_slice(&self.directory.digits(value.into(), 2));
         }
         out
     }
@@ -176,22 +186,10 @@ impl Photometric {
 
 /// Finds that tag in the first directory of a TIFF or BigTIFF.
 fn photometric(bytes: &[u8]) -> Option<Photometric> {
-    const TAG: u64 = 262;
-    let is_little = bytes.starts_with(b"II");
-    let number = |at: usize, length: usize| {
-        let digits = bytes.get(at..at.checked_add(length)?)?.iter();
-        let push = |sum: u64, digit: &u8| sum << 8 | u64::from(*digit);
-        Some(if is_little { digits.rev().fold(0, push) } else { digits.fold(0, push) })
-    };
-    // Lengths of an address, of the number of entries, of an entry, and where in an entry its value stands.
-    let (address_at, address, count, entry, value) =
-        if number(2, 2)? == 43 { (8, 8, 8, 20, 12) } else { (4, 4, 2, 12, 8) };
-    let directory = usize::try_from(number(address_at, address)?).ok()?;
-    let entries = usize::try_from(number(directory, count)?).ok()?.min(4096);
-    let first = directory.checked_add(count)?;
-    let found = (0..entries).map(|i| first.saturating_add(i * entry)).find(|at| number(*at, 2) == Some(TAG))?;
-    let at = found.checked_add(value)?;
-    Some(Photometric { at, is_little, value: number(at, 2)? as u16 })
+    let directory = Directory::first(bytes)?;
+    let at = directory.place(bytes, 262)?;
+    let value = directory.number(bytes, at, 2)? as u16;
+    Some(Photometric { at, directory, value })
 }
 
 /// How the samples lie, and what they mean.

@@ -6,6 +6,9 @@ fn file(is_big_endian: bool, size: [u16; 2], tags: &[(u16, &[u16])], data: &[u8]
     let long = |v: u32| if is_big_endian { v.to_be_bytes() } else { v.to_le_bytes() };
     let (width, height, start, length) = ([size[0]], [size[1]], [8], [data.len() as u16]);
     let mut all = vec![(256, &width[..]), (257, &height), (259, &[1]), (273, &start), (278, &height), (279, &length)];
+    // A file is in strips or in tiles.
+    let in_tiles = tags.iter().any(|(tag, _)| *tag == 324);
+    all.retain(|(tag, _)| !(in_tiles && [273, 278, 279].contains(tag)));
     all.retain(|(tag, _)| tags.iter().all(|(other, _)| other != tag));
     all.extend(tags);
     all.sort();
@@ -93,15 +96,94 @@ fn what_has_signs_or_is_cut_short_gets_a_sentence() {
     let tags: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[32]), (SAMPLES, &[1]), (FORMAT, FLOATS)];
     assert!(said(&file(false, [200, 100], tags, &[0; 8])).contains("a.tif"));
 }
+/// Tiles of 16 × 16 that are all the same JPEG.
+fn tiles_of_jpeg(size: [u16; 2], jpeg: &[u8]) -> Vec<u8> {
+    let count = usize::from(size[0] / 16) * usize::from(size[1] / 16);
+    let (starts, lengths) = (vec![8u16; count], vec![jpeg.len() as u16; count]);
+    let tiles: &[(u16, &[u16])] = &[(322, &[16]), (323, &[16]), (324, &starts), (325, &lengths), (259, &[7])];
+    let colours: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[6]), (BITS, &[8, 8, 8]), (SAMPLES, &[3])];
+    file(false, size, &[tiles, colours].concat(), jpeg)
+}
+fn jpeg(side: u32) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let grey = image::RgbImage::from_pixel(side, side, image::Rgb([90; 3]));
+    grey.write_to(&mut bytes, image::ImageFormat::Jpeg).unwrap();
+    bytes.into_inner()
+}
 #[test]
-fn a_jpeg_within_that_claims_more_than_the_picture_is_told_by_its_header() {
-    let header = |height: u16, width: u16| {
-        let [h, w] = [height.to_be_bytes(), width.to_be_bytes()];
-        [&[9, 9, 0xff, 0xc0, 0, 17, 8][..], &h, &w, &[3]].concat()
+fn tiles_that_are_jpegs_are_read() {
+    assert_eq!(decoded(&tiles_of_jpeg([32, 32], &jpeg(16))).into_rgb8().get_pixel(20, 20).0, [90; 3]);
+}
+#[test]
+fn a_jpeg_within_may_be_as_large_as_its_tile_and_all_together_as_a_picture() {
+    let said = |bytes: &[u8], budget: &Budget| decode(Path::new("a.tif"), bytes, budget).err().unwrap().to_string();
+    let large = tiles_of_jpeg([512, 512], &jpeg(128));
+    assert!(said(&large, &Budget::default()).contains("claims more pixels than its part"));
+    // Each tile of 16 × 16 hides a picture of 64 × 64.
+    let (budget, many) = (Budget { area_px: 512 * 512, ..Budget::default() }, tiles_of_jpeg([512, 512], &jpeg(64)));
+    assert!(decode(Path::new("a.tif"), &many, &budget).is_ok(), "sixteen times the picture");
+    let scan = jpeg(64);
+    let at = scan.windows(2).position(|pair| pair == [0xff, 0xda]).unwrap();
+    let thrice = [&scan[..at], &scan[at..scan.len() - 2].repeat(3), &[0xff, 0xd9]].concat();
+    let refused = said(&tiles_of_jpeg([512, 512], &thrice), &budget);
+    assert!(refused.contains("go over 12582912 pixels; 8388608 are allowed"), "{refused}");
+}
+#[test]
+fn a_picture_in_a_million_pieces_is_refused_before_any_is_read() {
+    // Tiles of a pixel each, all the same.
+    let (places, lengths) = (vec![8; 160_000], vec![1; 160_000]);
+    let tiles: &[(u16, &[u16])] = &[(322, &[1]), (323, &[1]), (324, &places), (325, &lengths)];
+    let colours: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[8]), (SAMPLES, &[1])];
+    let bytes = file(false, [400, 400], &[tiles, colours].concat(), &[9; 64]);
+    let said = decode(Path::new("a.tif"), &bytes, &Budget::default()).err().unwrap().to_string();
+    assert_eq!(said, "a.tif: too large: the TIFF is in 160000 pieces; 131072 are allowed");
+}
+/// Bits written as text, filled up to a byte.
+fn bits(text: &str) -> Vec<u8> {
+    let bits: Vec<u8> = text.bytes().filter(u8::is_ascii_digit).map(|digit| digit - b'0').collect();
+    bits.chunks(8).map(|byte| byte.iter().enumerate().fold(0, |sum, (i, bit)| sum | bit << (7 - i))).collect()
+}
+#[test]
+fn zstd_is_unpacked_strip_by_strip() {
+    // Frames of one block that is stored as it is.
+    let frame = |data: &[u8]| {
+        let block = (data.len() as u32) << 3 | 1;
+        [&[0x28, 0xb5, 0x2f, 0xfd, 0x20, data.len() as u8][..], &block.to_le_bytes()[..3], data].concat()
     };
-    let size = Size::new(64, 64);
-    assert!(claims_more(&header(16_384, 16_384), size));
-    assert!(!claims_more(&header(512, 512), size), "a tile");
-    assert!(!claims_more(&header(4_000, 4_000), Size::new(4_000, 8_000)), "a strip");
-    assert!(!claims_more(&[0xff, 0xc0, 0], size));
+    let (first, second) = (frame(&[1, 2, 3, 4]), frame(&[5, 6]));
+    let starts = [8, 8 + first.len() as u16];
+    let (length, lengths) = (first.len() as u16, second.len() as u16);
+    for number in [50_000, 34_926] {
+        let strips: &[(u16, &[u16])] = &[(259, &[number]), (273, &starts), (278, &[2]), (279, &[length, lengths])];
+        let colours: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[8]), (SAMPLES, &[1])];
+        for is_big_endian in [false, true] {
+            let bytes = file(is_big_endian, [2, 3], &[strips, colours].concat(), &[&first[..], &second].concat());
+            assert_eq!(decoded(&bytes).into_luma8().into_raw(), [1, 2, 3, 4, 5, 6]);
+        }
+    }
+}
+#[test]
+fn a_fax_of_group_3_is_read_with_and_without_its_first_mark_and_from_either_end_of_its_bytes() {
+    let tags: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[0]), (BITS, &[1]), (SAMPLES, &[1]), (259, &[3])];
+    // White 4, black 3, white 1; then black 2 after no white, white 6.
+    let (mark, rows) = ("000000000001", ["1011 10 000111", "00110101 11 1110"]);
+    let text = [mark, rows[0], mark, rows[1]].concat();
+    let pixels = [255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255];
+    let marked = bits(&text);
+    assert_eq!(decoded(&file(false, [8, 2], tags, &marked)).into_luma8().into_raw(), pixels);
+    let bare = bits(&text[mark.len()..]);
+    assert_eq!(decoded(&file(true, [8, 2], tags, &bare)).into_luma8().into_raw(), pixels);
+    let mirrored: Vec<u8> = marked.iter().map(|byte| byte.reverse_bits()).collect();
+    let from_the_right = [tags, &[(266, &[2][..])]].concat();
+    assert_eq!(decoded(&file(false, [8, 2], &from_the_right, &mirrored)).into_luma8().into_raw(), pixels);
+    let in_two_dimensions = [tags, &[(292, &[1][..])]].concat();
+    let said = decode(Path::new("a.tif"), &file(false, [8, 2], &in_two_dimensions, &marked), &Budget::default());
+    assert!(said.err().unwrap().to_string().contains("fax of group 3 in two dimensions"));
+}
+#[test]
+fn a_damaged_zstd_strip_gets_a_sentence() {
+    let tags: &[(u16, &[u16])] = &[(PHOTOMETRIC, &[1]), (BITS, &[8]), (SAMPLES, &[1]), (259, &[50_000])];
+    let bytes = file(false, [64, 64], tags, &[0x28, 0xb5, 0x2f, 0xfd, 0, 0, 0, 0]);
+    let said = decode(Path::new("a.tif"), &bytes, &Budget::default()).err().unwrap().to_string();
+    assert!(said.starts_with("a.tif: cannot be read: its ZSTD data is damaged"), "{said}");
 }
