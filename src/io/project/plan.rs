@@ -15,7 +15,7 @@
 //!   plus, blending in linear light, a pass-through group with a mask or opacity) is composed with all that lies
 //!   beneath it in its scope.
 
-use crate::document::{Content, Document, Group, Layer, LayerId, LayerLock, LayerMask, MaskKind, Role};
+use crate::document::{Content, Document, Group, Layer, LayerId, LayerLabel, LayerLock, LayerMask, MaskKind, Role};
 use crate::raster::{BlendMode, Plane};
 use crate::surface::Surface;
 use std::sync::Arc;
@@ -27,6 +27,7 @@ pub struct PlanItem {
     pub opacity: f32,
     pub blend: BlendMode,
     pub lock: LayerLock,
+    pub label: LayerLabel,
     /// Whether it is clipped to the item beneath, if the format has clipping.
     pub clipped: bool,
     /// A mask that is not part of the pixels, if the format has masks.
@@ -269,6 +270,7 @@ fn item(layer: &Layer) -> PlanItem {
         opacity: layer.opacity,
         blend: layer.blend,
         lock: layer.lock,
+        label: layer.label,
         clipped: false,
         mask: None,
         whole_rim: false,
@@ -283,6 +285,7 @@ fn picture(name: String, shows: ItemContent) -> PlanItem {
         opacity: 1.0,
         blend: BlendMode::Normal,
         lock: LayerLock::None,
+        label: LayerLabel::None,
         clipped: false,
         mask: None,
         whole_rim: false,

@@ -5,7 +5,7 @@ use super::colours::Colours;
 use super::cursor::ByteCursor;
 use super::descriptor::{self, DescriptorObject};
 use super::outline::Outline;
-use super::{LayerRecord, RecordSection, fill};
+use super::{LayerRecord, RecordSection, fill, marks};
 use crate::math::Rect;
 use crate::math::srgb::Color;
 
@@ -56,6 +56,7 @@ pub fn take(record: &mut LayerRecord, key: [u8; 4], mut data: ByteCursor, colour
             record.lock_all = locks & 0x8000_0002 != 0;
             record.lock_alpha |= locks & 1 != 0;
         }
+        b"lclr" => record.label = marks::label(data),
         b"iOpa" => record.fill_opacity = data.u8().unwrap_or(255),
         b"SoCo" | b"GdFl" | b"PtFl" => record.fill = fill::read(key, data, colours),
         b"vmsk" | b"vsms" => {

@@ -2,9 +2,9 @@
 //! Floor 5.
 
 use super::channel::pack;
-use super::kept;
 use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, RESOLUTION, RecordMask, RecordSection, VERSION_INFO};
-use crate::document::NamedSelection;
+use super::{kept, marks};
+use crate::document::{Guides, LayerLabel, NamedSelection};
 use crate::math::{Rect, Size};
 use crate::picture;
 
@@ -13,7 +13,13 @@ const DOTS_PER_INCH: u32 = 72;
 
 /// The whole file. `merged` is RGBA of the canvas [on white](on_white), `selections` stand beside it as channels,
 /// `ours` is our own resource.
-pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], selections: &[NamedSelection], ours: &[u8]) -> Vec<u8> {
+pub fn emit(
+    size: Size,
+    records: &[LayerRecord],
+    merged: &[u8],
+    (selections, guides): (&[NamedSelection], &Guides),
+    ours: &[u8],
+) -> Vec<u8> {
     let mut out = MAGIC.to_vec();
     short(&mut out, 1);
     out.extend([0; 6]);
@@ -24,7 +30,7 @@ pub fn emit(size: Size, records: &[LayerRecord], merged: &[u8], selections: &[Na
     // RGB, and no table of colours.
     short(&mut out, 3);
     long(&mut out, 0);
-    section(&mut out, &resources(selections, ours));
+    section(&mut out, &resources(selections, guides, ours));
     let mut layers = Vec::new();
     section(&mut layers, &layer_info(records));
     // No mask of all layers.
@@ -63,7 +69,7 @@ fn unicode(out: &mut Vec<u8>, text: &str) {
     units.iter().for_each(|unit| short(out, *unit));
 }
 
-fn resources(selections: &[NamedSelection], ours: &[u8]) -> Vec<u8> {
+fn resources(selections: &[NamedSelection], guides: &Guides, ours: &[u8]) -> Vec<u8> {
     let mut resolution = Vec::new();
     for _ in 0..2 {
         // Fixed point; shown per inch, lengths in inches.
@@ -80,7 +86,8 @@ fn resources(selections: &[NamedSelection], ours: &[u8]) -> Vec<u8> {
     long(&mut version, 1);
     let mut out = Vec::new();
     let profile = picture::own_srgb();
-    let named = kept::resources(selections);
+    let mut named = kept::resources(selections);
+    named.extend(marks::guides_resource(guides));
     let own = [(RESOLUTION, &resolution[..]), (ICC_PROFILE, &profile), (VERSION_INFO, &version), (OURS, ours)];
     for (id, data) in named.iter().map(|(id, data)| (*id, &data[..])).chain(own) {
         out.extend(b"8BIM");
@@ -169,6 +176,9 @@ fn header(out: &mut Vec<u8>, record: &LayerRecord, channels: &[(i16, Vec<u8>)], 
     block(&mut extra, b"lyid", &id.to_be_bytes());
     if record.lock_all {
         block(&mut extra, b"lspf", &7u32.to_be_bytes());
+    }
+    if record.label != LayerLabel::None {
+        block(&mut extra, b"lclr", &marks::label_block(record.label));
     }
     let kind: u32 = match record.section {
         RecordSection::Layer => 0,

@@ -1,8 +1,9 @@
 //! Converts a document to records: what Photoshop can express is kept, the rest becomes pixels; the document itself is
 //! stored beside them. Floor 5. `emit` writes the records as bytes, `verify` reads them again.
 
+use super::alone::stands_alone;
 use super::{
-    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, kept, signature, verify,
+    LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, kept, marks, signature, verify,
 };
 use crate::document::cache::EncodedPixels;
 use crate::document::{Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten};
@@ -56,12 +57,13 @@ pub fn write(file: &Path, document: &Document, progress: &Progress) -> Cancellab
     if selections.len() < document.selections.len() {
         notes.push("selections beyond the first 52, and empty ones, are kept for this program alone".into());
     }
-    let bytes = emit::emit(document.size, &records, &merged, &selections, &ours);
+    let guides = marks::written(document);
+    let bytes = emit::emit(document.size, &records, &merged, (&selections, &guides), &ours);
     if bytes.len() > LONGEST_BYTES {
         let reason = format!("a Photoshop file has at most 2 GB, not {}", memory::spoken(bytes.len() as u64));
         return Err(Error::unsupported(file, reason));
     }
-    verify::read_back(file, &bytes, verify::Meant { document, records: &records, merged, selections })?;
+    verify::read_back(file, &bytes, verify::Meant { document, records: &records, merged, selections, guides })?;
     Ok(Some(WrittenPsd { bytes, notes }))
 }
 
@@ -107,12 +109,17 @@ impl RecordBuilder {
                 section: RecordSection::End,
                 ..LayerRecord::default()
             });
+            let first = self.records.len();
             let around = self.is_hidden;
             self.is_hidden |= !item.visible;
             self.items(file, items)?;
             self.is_hidden = around;
-            let blend = if *isolated { key(item.blend) } else { PASS_THROUGH };
             let mask = item.mask.as_ref().and_then(|mask| self.mask(mask));
+            let alone = *isolated || (mask.is_some() && stands_alone(self.size, &self.records[first..]));
+            if mask.is_some() && !alone && item.visible && !self.is_hidden {
+                self.notes.push(format!("“{}” passes through, and Krita leaves its mask out", item.name));
+            }
+            let blend = if alone { key(item.blend) } else { PASS_THROUGH };
             self.records.push(LayerRecord { blend, mask, section: RecordSection::Group, ..record(item) });
             return Ok(());
         }
@@ -189,6 +196,7 @@ fn record(item: &PlanItem) -> LayerRecord {
         // A fully locked layer also has its transparency locked.
         lock_alpha: item.lock != LayerLock::None,
         lock_all: item.lock == LayerLock::All,
+        label: marks::carried(item.label),
         ..LayerRecord::default()
     }
 }

@@ -10,15 +10,18 @@
 //! | `masks`, `outline` | masks that are pictures, and those that are paths |
 //! | `fill`, `pattern`, `filled` | what fill layers are filled with, beside the pixels that show it |
 //! | `kept` | selections, the channels beside the colours |
+//! | `marks` | guides, and the colours of layers in the list |
 //! | `merged` | the picture that the file holds of all its layers |
 //! | `tree` | records into a document |
 //! | `judge` | whether that looks like the file's own picture, and what is done where it does not |
 //! | `lower` | a document into records |
+//! | `alone` | whether a group can be composed by itself |
 //! | `emit` | records into a file |
 //! | `verify` | that file read again and compared |
 //!
 //! Our files hold a private resource with the document itself, so that live layers come back live.
 
+mod alone;
 mod blocks;
 pub(super) mod channel;
 mod colours;
@@ -31,6 +34,7 @@ mod judge;
 mod kept;
 mod layers;
 mod lower;
+mod marks;
 mod masks;
 mod merged;
 mod outline;
@@ -44,7 +48,7 @@ mod verify;
 pub use lower::write;
 pub use tree::read;
 
-use crate::document::Document;
+use crate::document::{Document, LayerLabel};
 use crate::math::Rect;
 use blocks::Ground;
 use fill::Fill;
@@ -77,6 +81,8 @@ pub struct LayerRecord {
     pub visible: bool,
     pub lock_alpha: bool,
     pub lock_all: bool,
+    /// As the format has it.
+    pub label: LayerLabel,
     pub section: RecordSection,
     pub mask: Option<RecordMask>,
     pub outline: Option<Outline>,
@@ -125,6 +131,7 @@ impl Default for LayerRecord {
             visible: true,
             lock_alpha: false,
             lock_all: false,
+            label: LayerLabel::None,
             section: RecordSection::Layer,
             mask: None,
             outline: None,

@@ -8,7 +8,8 @@ use super::cursor::ByteCursor;
 use super::layers::RecordReader;
 use super::merged::{Merged, merged};
 use super::pattern::{self, Pattern};
-use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS};
+use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, marks};
+use crate::document::Guides;
 use crate::math::Size;
 use crate::{Budget, picture};
 use crate::{Error, Result};
@@ -27,6 +28,8 @@ pub struct ParsedPsd<'a> {
     /// The picture that the file holds of all its layers; absent where it is damaged.
     pub merged: Option<Merged>,
     pub patterns: Vec<Pattern>,
+    /// And how many were left out.
+    pub guides: (Guides, usize),
     /// What could not be read.
     pub damage: Vec<String>,
     /// What the layers and the picture take in memory.
@@ -106,7 +109,8 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     if merged.is_none() && records.is_empty() {
         return Err(Error::decode(file, "it holds no layers, and its picture is damaged or cut short"));
     }
-    Ok(ParsedPsd { header, ours: resource(resources, OURS), records, merged, patterns, damage, held_bytes })
+    let guides = marks::guides(resources);
+    Ok(ParsedPsd { header, ours: resource(resources, OURS), records, merged, patterns, guides, damage, held_bytes })
 }
 
 fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<PsdHeader> {

@@ -6,9 +6,9 @@ use super::colours::Mode;
 use super::judge::judged;
 use super::parse::{ParsedPsd, parse};
 use super::pattern::Pattern;
-use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, signature};
+use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks, signature};
 use crate::Budget;
-use crate::document::{Content, Document, Group, Layer, LayerLock, LayerMask, MaskKind};
+use crate::document::{Content, Document, Group, Guides, Layer, LayerLock, LayerMask, MaskKind};
 use crate::math::Size;
 use crate::project::archive::Archive;
 use crate::project::manifest::Manifest;
@@ -28,7 +28,9 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
         match restored(file, ours, &parsed.records, budget) {
             Ok(Some(contents)) => {
                 notes.extend(contents.notes);
-                return Ok(ProjectContents { is_whole: contents.is_whole && damage.is_empty(), notes, ..contents });
+                let document = with_guides_of(contents.document, parsed.guides.0);
+                let is_whole = contents.is_whole && damage.is_empty();
+                return Ok(ProjectContents { document, is_whole, notes, ..contents });
             }
             Ok(None) => notes.push("the layers were changed by another program: live layers became pixels".into()),
             Err(error) => notes.push(format!("live layers became pixels: {error}")),
@@ -51,13 +53,22 @@ pub fn read(file: &Path, bytes: &[u8], budget: &Budget) -> Result<ProjectContent
     if inks > 0 {
         notes.push("inks beside its colours are left out".into());
     }
-    let document = Document { layers, selections, ..Document::empty(size) };
+    let (guides, lost) = parsed.guides;
+    if lost > 0 {
+        notes.push(format!("{lost} of its guides are left out: they are too many, or too far away"));
+    }
+    let document = Document { layers, selections, guides: guides.into(), ..Document::empty(size) };
     if parsed.merged.is_some() {
         let compared = parsed.held_bytes.saturating_add(document.flattening_bytes());
         budget.room(file, "comparing its layers with its own picture", compared)?;
     }
     let document = judged(document, parsed.merged.take(), is_less || !damage.is_empty(), &mut notes);
     Ok(ProjectContents { document, notes, is_whole: damage.is_empty(), picture: None })
+}
+
+/// Ours keep their places to the last digit, unless another program moved them.
+fn with_guides_of(document: Document, found: Guides) -> Document {
+    if marks::written(&document) == found { document } else { Document { guides: found.into(), ..document } }
 }
 
 /// What became of the file's colours.
@@ -199,6 +210,7 @@ impl TreeBuilder<'_> {
                 (false, true) => LayerLock::Alpha,
                 (false, false) => LayerLock::None,
             },
+            label: record.label,
             mask: record.mask.as_ref().map(|mask| self.mask(mask)),
             clip_to_surface: false,
             ..Layer::new(record.name, content)

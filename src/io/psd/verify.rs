@@ -6,7 +6,7 @@ use super::parse::{ParsedPsd, parse};
 use super::tree::restored;
 use super::{LayerRecord, RecordSection};
 use crate::Budget;
-use crate::document::{Document, NamedSelection};
+use crate::document::{Document, Guides, NamedSelection};
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -17,6 +17,7 @@ pub struct Meant<'a> {
     /// RGBA of the canvas, on white where it is transparent.
     pub merged: Vec<u8>,
     pub selections: Vec<NamedSelection>,
+    pub guides: Guides,
 }
 
 /// Fails with a sentence that says what would not come back: to other programs, or here.
@@ -59,6 +60,9 @@ fn difference(parsed: &mut ParsedPsd, meant: &Meant) -> Option<String> {
     if differs.is_some() {
         return differs;
     }
+    if parsed.guides != (meant.guides.clone(), 0) {
+        return Some("the guides".into());
+    }
     let mut expected = meant.merged.clone();
     if !meant.records.is_empty() {
         // As the reader takes the white away: no two pixels become the same by that.
@@ -88,6 +92,7 @@ fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static s
             "what it is clipped to, or whether it is seen",
         ),
         ((read.lock_alpha, read.lock_all) == (meant.lock_alpha, meant.lock_all), "the lock"),
+        (read.label == meant.label, "the label"),
         // Effects, fills, outlines: none is written.
         (read == meant, "something that was not put there"),
     ];
@@ -97,10 +102,10 @@ fn differing_field(read: &LayerRecord, meant: &LayerRecord) -> Option<&'static s
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Progress, flatten};
+    use crate::document::{LayerLabel, Progress, flatten};
     use crate::math::Rect;
     use crate::project::sample::everything;
-    use crate::psd::{emit, kept, lower};
+    use crate::psd::{emit, kept, lower, marks};
 
     const FILE: &str = "a.psd";
 
@@ -112,7 +117,8 @@ mod tests {
         let shown = flatten(document, &Progress::default()).unwrap();
         let mut merged = emit::on_white(&shown.to_straight_rgba(document.size.rect()));
         change(&mut records, &mut merged);
-        let meant = Meant { document, records: &records, merged, selections: kept::written(document) };
+        let (selections, guides) = (kept::written(document), marks::written(document));
+        let meant = Meant { document, records: &records, merged, selections, guides };
         read_back(file, bytes, meant).err().map(|error| error.to_string()).unwrap_or_default()
     }
     #[test]
@@ -121,7 +127,7 @@ mod tests {
         let document = everything(32);
         let bytes = lower::write(Path::new(FILE), &document, &Progress::default()).unwrap().unwrap().bytes;
         assert_eq!(said(&bytes, &document, |_, _| ()), "");
-        let changes: [(Change, &str); 9] = [
+        let changes: [(Change, &str); 10] = [
             (|records, _| records[1].name.push('x'), "the name of"),
             (|records, _| records[1].opacity ^= 1, "the opacity of"),
             (|records, _| records[1].blend = *b"scrn", "the blend mode of"),
@@ -129,6 +135,7 @@ mod tests {
             (|records, _| records.iter_mut().find(|r| !r.rgba.is_empty()).unwrap().rgba[0] ^= 1, "the pixels of"),
             (|records, _| records[1].visible ^= true, "whether it is seen"),
             (|records, _| records[1].lock_all ^= true, "the lock of"),
+            (|records, _| records[1].label = LayerLabel::Purple, "the label of"),
             (|records, _| drop(records.pop()), "layers and groups"),
             (|_, merged| merged[0] ^= 1, "the picture of all layers"),
         ];
@@ -149,11 +156,9 @@ mod tests {
             let records = parse(Path::new(FILE), &bytes, &Budget::default()).unwrap().records;
             let shown = flatten(&everything(32), &Progress::default()).unwrap();
             let merged = emit::on_white(&shown.to_straight_rgba(other.size.rect()));
-            read_back(
-                Path::new(FILE),
-                &bytes,
-                Meant { document, records: &records, merged, selections: kept::written(document) },
-            )
+            let (selections, guides) = (kept::written(document), marks::written(document));
+            let meant = Meant { document, records: &records, merged, selections, guides };
+            read_back(Path::new(FILE), &bytes, meant)
         };
         assert!(meant(&document).is_ok());
         let said = meant(&other).unwrap_err().to_string();
