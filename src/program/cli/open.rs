@@ -15,5 +15,26 @@ pub struct OpenArgs {
 
 pub fn run(args: OpenArgs, window: Option<OpenWindow>) -> Result<()> {
     let none = || Error::unsupported("window", "this build has none; “rilievo render” paints without one");
-    window.ok_or_else(none)?(args.files)
+    window.ok_or_else(none)?(args.files.into_iter().map(whole).collect())
+}
+
+/// A name from the root, so that a folder can give its name to what lies in it.
+fn whole(file: PathBuf) -> PathBuf {
+    std::path::absolute(&file).unwrap_or(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_is_given_names_from_the_root() {
+        let window: OpenWindow = |files| {
+            let folder = std::env::current_dir().map_err(|e| Error::io("here", e))?;
+            assert_eq!(files, [folder.join("normal.png"), PathBuf::from("/art/pot_n.png")]);
+            Ok(())
+        };
+        let files = ["normal.png", "/art/pot_n.png"].map(PathBuf::from).to_vec();
+        run(OpenArgs { files }, Some(window)).unwrap();
+    }
 }
