@@ -15,6 +15,7 @@ mod several;
 mod shape;
 mod transforming;
 mod unwrapped;
+mod warping;
 
 use eframe::egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;

@@ -2,7 +2,7 @@
 //! Floor 3. What a displacement is, is `raster::lattice`'s; what layers show through it, `document::warp`'s.
 
 use super::Scene;
-use crate::math::{Mat2, PlaneMap, Range, Rect, UNIT, Vec2, vec2};
+use crate::math::{COORDINATE, Mat2, PlaneMap, Range, Rect, UNIT, Vec2, vec2};
 use crate::raster::{CoverageGrid, Lattice};
 use crate::surface::Surface;
 use std::sync::Arc;
@@ -91,6 +91,8 @@ pub struct LiquifyStroke {
 
 /// From one dab to the next, radii.
 const SPACING: f32 = 0.1;
+/// Radius of a dab in the frame of the displacement, px.
+const MOST_RADIUS_PX: f32 = 4096.0;
 /// What a dab grows by or shrinks in its middle.
 const SWELL: f32 = 0.06;
 /// What a dab turns its middle by, radians.
@@ -124,7 +126,7 @@ impl LiquifyStroke {
     }
     /// On to a point of the canvas.
     pub fn draw_to(&mut self, lattice: &mut Lattice, at: Vec2, pressure: f32) {
-        if !at.is_finite() || at.abs().max_element() > 1e6 {
+        if !at.is_finite() || at.abs().max_element() > *COORDINATE.end() {
             return;
         }
         let spacing = (SPACING * self.radius()).max(1.0);
@@ -150,6 +152,10 @@ impl LiquifyStroke {
     fn dab(&self, lattice: &mut Lattice, at: Vec2, step: Vec2, pressure: f32) {
         let Some((center, back)) = self.to_canvas.from_canvas(at) else { return };
         let radius = self.radius() * back.determinant().abs().sqrt();
+        // In a group that is scaled down to nothing a dab would hold no end of nodes.
+        if radius.is_nan() || radius > MOST_RADIUS_PX || center.abs().max_element() > *COORDINATE.end() {
+            return;
+        }
         let reach = radius + 1.0;
         let rect = Rect::new(
             (center.x - reach).floor() as i32,

@@ -54,7 +54,7 @@ impl Lattice {
     /// The longest displacement along an axis, px.
     pub const FARTHEST_PX: f32 = 16_384.0;
     /// Blocks lie at most so far from the canvas's corner.
-    pub const FARTHEST_BLOCK: i32 = 15_000;
+    pub const FARTHEST_BLOCK: i32 = 16_000;
 
     pub fn is_empty(&self) -> bool {
         self.blocks.iter().next().is_none()

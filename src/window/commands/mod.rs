@@ -36,6 +36,7 @@ pub const GUIDES: &[MenuCommand] = guides::COMMANDS;
 pub const PARTS: &[MenuCommand] = parts::COMMANDS;
 /// A menu within Edit.
 pub const TRANSFORMS: &[MenuCommand] = transform::COMMANDS;
+pub use transform::REMOVE_LIQUIFY;
 
 /// Every command, menu by menu.
 pub fn all() -> impl Iterator<Item = &'static MenuCommand> {

@@ -5,7 +5,10 @@ use super::row::{LINE, MenuCommand, has_layer, key, row};
 use crate::requests::UiRequests;
 use crate::session::actions::LayerAction;
 use crate::session::{Action, LayerPaths, Property, Session};
+use crate::tools::ToolKind;
 use eframe::egui::Key;
+
+pub const REMOVE_LIQUIFY: &str = "Remove liquify";
 
 pub const COMMANDS: &[MenuCommand] = &[
     row(
@@ -21,18 +24,6 @@ pub const COMMANDS: &[MenuCommand] = &[
             LayerAction::Set { layer, to, done: true }
         })
     }),
-    row(
-        "Remove liquify",
-        &[],
-        "The layer shows itself as it was before it was liquified",
-        is_liquified,
-        |session, requests| {
-            with_chosen(session, requests, |layer| {
-                let to = Property::Unliquified {};
-                LayerAction::Set { layer, to, done: true }
-            })
-        },
-    ),
     LINE,
     row(
         "Mirror left and right",
@@ -54,6 +45,19 @@ pub const COMMANDS: &[MenuCommand] = &[
     row("Turn layer right", &[], "Turns the chosen layers by a quarter, clockwise", has_layer, |session, requests| {
         with_chosen(session, requests, |layer| LayerAction::Turn { layer, degrees: -90.0 })
     }),
+    LINE,
+    row(
+        REMOVE_LIQUIFY,
+        &[],
+        "The layer shows itself as it was before it was liquified",
+        is_liquified,
+        |session, requests| {
+            with_chosen(session, requests, |layer| {
+                let to = Property::Unliquified {};
+                LayerAction::Set { layer, to, done: true }
+            })
+        },
+    ),
 ];
 
 /// There is a transform, and Enter neither closes a lasso nor crops.
@@ -61,7 +65,12 @@ fn is_transformed(session: &Session) -> bool {
     let Some(tab) = session.active().filter(|_| session.lasso.is_empty() && session.crop.is_none()) else {
         return false;
     };
-    let is_placed = |id| tab.document().layer(id).is_some_and(|layer| layer.transform.is_some() || layer.is_warped());
+    // With a brush in hand Enter makes no paint of what is live.
+    let in_hand = matches!(session.tool, ToolKind::Transform | ToolKind::Liquify);
+    let is_placed = |id| {
+        let layer = tab.document().layer(id);
+        layer.is_some_and(|layer| layer.transform.is_some() || in_hand && layer.liquify.is_some())
+    };
     tab.chosen_layers().into_iter().any(is_placed)
 }
 

@@ -1,15 +1,16 @@
 //! The options of the liquify tool.
 //! Floor 7.
 
+use crate::commands::{REMOVE_LIQUIFY, TRANSFORMS};
 use crate::paint::{LiquifySettings, LiquifyTool};
 use crate::requests::UiRequests;
-use crate::session::Action;
 use crate::session::actions::HandAction;
+use crate::session::{Action, Session};
 use crate::widgets::{NumberField, sentence};
 use eframe::egui::{Button, Ui};
 
-pub fn options(ui: &mut Ui, now: LiquifySettings, requests: &mut UiRequests) {
-    let mut to = None;
+pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    let (now, mut to) = (session.liquify, None);
     for (tool, word) in LiquifyTool::ALL {
         let button = Button::selectable(now.tool == tool, sentence(word));
         if ui.add(button).on_hover_text(about(tool)).clicked() {
@@ -30,6 +31,12 @@ pub fn options(ui: &mut Ui, now: LiquifySettings, requests: &mut UiRequests) {
     let hint = "Dabs, and how far they go, are measured along the surface: less where it turns away";
     if ui.checkbox(&mut next.foreshortened, "Foreshortened").on_hover_text(hint).changed() {
         to = Some(LiquifySettings { foreshortened: next.foreshortened, ..now });
+    }
+    if let Some(command) = TRANSFORMS.iter().find(|command| command.name == REMOVE_LIQUIFY) {
+        let button = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
+        if button.clicked() {
+            (command.run)(session, requests);
+        }
     }
     requests.actions.extend(to.map(|liquify| Action::Hand(HandAction::Liquify { liquify })));
 }

@@ -23,7 +23,7 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     }
     ui.menu_button("Mirror and turn", |ui| {
-        for command in commands.flatten() {
+        for command in commands.next().unwrap_or_default() {
             let entry = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
             if entry.clicked() {
                 (command.run)(session, requests);
