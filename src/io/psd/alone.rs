@@ -99,7 +99,7 @@ mod tests {
         assert!(alone(&[layer(all, b"norm", 120), layer(left, b"norm", 7)]));
         assert!(alone(&[fill.clone(), glaze.clone()]));
         assert!(alone(&[layer(left, b"norm", 255), glaze.clone()]));
-        assert!(!alone(&[glaze.clone()]) && !alone(&[layer(all, b"norm", 254), glaze.clone()]));
+        assert!(!alone(std::slice::from_ref(&glaze)) && !alone(&[layer(all, b"norm", 254), glaze.clone()]));
         assert!(!alone(&[layer(left, b"norm", 255), layer(all, b"scrn", 1)]));
         assert!(!alone(&[LayerRecord { opacity: 254, ..fill.clone() }, glaze.clone()]));
         assert!(!alone(&[LayerRecord { visible: false, ..fill }, glaze.clone()]));
