@@ -27,6 +27,16 @@ pub fn filled_or_unwind<T: Clone>(len: usize, value: T) -> Vec<T> {
     filled(len, value).unwrap_or_else(|refused| std::panic::panic_any(refused))
 }
 
+/// A copy of values, for those who cannot fail: unwinds as [`filled_or_unwind`] does.
+pub fn copied_or_unwind<T: Clone>(values: &[T]) -> Vec<T> {
+    let mut copy = Vec::new();
+    if copy.try_reserve_exact(values.len()).is_err() {
+        std::panic::panic_any(OutOfMemory { bytes: size_of_val(values) as u64 });
+    }
+    copy.extend_from_slice(values);
+    copy
+}
+
 /// Does work of which some buffer may find no room.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, OutOfMemory> {
     // What the work made is dropped with it; nothing half done is seen again.

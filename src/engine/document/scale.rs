@@ -60,7 +60,7 @@ impl Document {
             assistants: Arc::new(self.assistants.iter().map(|own| own.scaled(scale.per_axis)).collect()),
             ..scale.selected(self)
         };
-        let part = |part: &Arc<Part>| Arc::new(part.scaled(scale.per_axis, scale.length, |plane| scale.plane(plane)));
+        let part = |part: &Arc<Part>| scale.part(part);
         let shaped = match self.parts.is_empty() {
             true => scaled,
             false => scaled.with_parts(self.parts.list.iter().map(part).collect()),
@@ -167,11 +167,13 @@ impl CanvasScale {
     }
     /// Parts with their lengths scaled, and the surface that they make on the new canvas.
     fn parts(&self, old: &Document, new: Document) -> Result<Document, SurfaceError> {
-        let part = |part: &Arc<Part>| Arc::new(part.scaled(self.per_axis, self.length, |plane| self.plane(plane)));
-        let list = old.parts.list.iter().map(part).collect();
+        let list = old.parts.list.iter().map(|part| self.part(part)).collect();
         let maps = old.maps_surface().map(|maps| maps.stretched(self.to).map(Arc::new)).transpose()?;
         let bare = Document { surface: maps, parts: Arc::default(), ..new };
         Ok(bare.with_parts(list))
+    }
+    fn part(&self, part: &Part) -> Arc<Part> {
+        Arc::new(part.scaled(self.per_axis, self.length, |plane| self.plane(plane)))
     }
     pub fn layers(&self, layers: &[Arc<Layer>]) -> Vec<Arc<Layer>> {
         layers.iter().map(|layer| Arc::new(self.layer(layer))).collect()

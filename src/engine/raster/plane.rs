@@ -2,13 +2,20 @@
 //! Floor 1. Not for layers, which are sparse tiles (`grid`).
 
 use crate::math::Size;
-use crate::memory::filled_or_unwind;
+use crate::memory::{copied_or_unwind, filled_or_unwind};
 
 /// `size.area()` values; pixel (x, y) is at index `y · width + x`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Plane<T> {
     size: Size,
     values: Vec<T>,
+}
+
+/// A copy that finds no room is refused as a new plane is.
+impl<T: Clone> Clone for Plane<T> {
+    fn clone(&self) -> Self {
+        Self { size: self.size, values: copied_or_unwind(&self.values) }
+    }
 }
 
 impl<T: Copy> Plane<T> {

@@ -179,20 +179,15 @@ impl Relief {
             .fold((0.0f64, 0u32), |(sum, n), (beneath, own, _)| (sum + f64::from(beneath - own), n + 1));
         if count == 0 { 0.0 } else { (sum / f64::from(count)) as f32 }
     }
-    /// The maps of a surface: heights become depths, 0 near … 1 far over all that is covered.
-    pub fn maps(&self) -> Maps {
-        let covered = || self.height.values().iter().zip(self.coverage.values()).filter(|(_, c)| **c > 0);
-        let (low, high) = covered().fold((f32::MAX, f32::MIN), |(l, h), (z, _)| (l.min(*z), h.max(*z)));
+    /// The surface, whose objects are the parts: heights become depths, 0 near … 1 far over all that is covered.
+    pub fn into_surface(self) -> Result<Surface, SurfaceError> {
+        let Self { height, normals, coverage, ids, piece_of } = self;
+        let covered = height.values().par_iter().zip(coverage.values()).filter(|(_, c)| **c > 0);
+        let wider = |(a, b): (f32, f32), (c, d): (f32, f32)| (a.min(c), b.max(d));
+        let (low, high) = covered.map(|(z, _)| (*z, *z)).reduce(|| (f32::MAX, f32::MIN), wider);
         let range = if high > low { high - low } else { 1.0 };
-        let depth = Plane::from_fn(self.height.size(), |x, y| match self.coverage.at(x, y) {
-            0 => f32::NAN,
-            _ => (high - self.height.at(x, y)) / range,
-        });
-        Maps { normals: self.normals.clone(), depth, coverage: self.coverage.clone() }
-    }
-    /// The surface, whose objects are the parts.
-    pub fn surface(&self) -> Result<Surface, SurfaceError> {
-        Surface::with_parts(self.maps(), self.ids.clone(), &self.piece_of)
+        let depth = height.updated(|x, y, z| if coverage.at(x, y) == 0 { f32::NAN } else { (high - z) / range });
+        Surface::with_parts(Maps { normals, depth, coverage }, ids, &piece_of)
     }
 }
 
@@ -288,7 +283,7 @@ mod tests {
                 assert!(relief.height.at(x, y) > alone.height.at(x, y), "({x}, {y})");
             }
         }
-        let surface = relief.surface().unwrap();
+        let surface = relief.into_surface().unwrap();
         assert_eq!(surface.objects().count(), 2);
         let object = |x, y| surface.objects().at(x, y);
         assert_ne!(object(60, 60), object(120, 60));

@@ -64,8 +64,12 @@ impl Form {
     }
     /// The same form elsewhere.
     pub fn moved(&self, by: (i32, i32)) -> Self {
+        self.clone().shifted(by)
+    }
+    /// The same in the same memory.
+    pub fn shifted(self, by: (i32, i32)) -> Self {
         let corner = (self.corner.0.saturating_add(by.0), self.corner.1.saturating_add(by.1));
-        Self { corner, ..self.clone() }
+        Self { corner, ..self }
     }
     /// The form as it is seen through a map of its plane; `None` where the map flattens it, or its picture would have
     /// more than `most_px` pixels. Whole pixels are moved as they are.

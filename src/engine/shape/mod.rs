@@ -31,7 +31,7 @@ pub use outline::Outline;
 pub use primitive::{Body, Primitive};
 pub use relief::Detail;
 pub use rim::Rim;
-pub use sculpt::{SculptStroke, SculptTool};
+pub use sculpt::{SculptStroke, SculptTool, Sculpting};
 pub use sweep::Ball;
 pub use touches::Touch;
 

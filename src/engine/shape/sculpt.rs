@@ -92,17 +92,64 @@ impl SculptStroke {
 
 /// The height layer that strokes make over a form, px, as large as its planes; 0 where no dab lands.
 pub fn sculpted(form: &Form, strokes: &[SculptStroke]) -> Plane<f32> {
-    let mut layer = Plane::filled(form.height.size(), 0.0);
-    let corner = vec2(form.corner.0 as f32, form.corner.1 as f32);
-    for stroke in strokes.iter().filter(|s| s.size.is_finite() && s.size > 0.0) {
-        let dabs = stroke.dabs();
-        let first = dabs.first().map(|dab| SculptPlane::under(form, &layer, dab.0 - corner, 0.5 * stroke.size));
-        for (at, pressure) in &dabs {
-            let dab = Dab { center: *at - corner, radius: 0.5 * stroke.size, stroke, pressure: *pressure };
-            dab.press(form, &mut layer, first.flatten());
-        }
+    Sculpting::of(form).go_on(form, strokes).layer
+}
+
+/// How far strokes came over a form: more samples of the last one, and more strokes, go on from there.
+pub struct Sculpting {
+    /// Those that are done, the last as far as it was.
+    strokes: Vec<SculptStroke>,
+    layer: Plane<f32>,
+    /// Dabs of the last stroke, and the plane under its first.
+    dabs: usize,
+    first: Option<SculptPlane>,
+}
+
+impl Sculpting {
+    /// Nothing done yet.
+    pub fn of(form: &Form) -> Self {
+        Self { strokes: Vec::new(), layer: Plane::filled(form.height.size(), 0.0), dabs: 0, first: None }
     }
-    layer
+    /// The heights, px, as large as the form's planes.
+    pub fn layer(&self) -> &Plane<f32> {
+        &self.layer
+    }
+    /// Whether strokes begin as those that are done.
+    pub fn goes_on(&self, strokes: &[SculptStroke]) -> bool {
+        let Some((last, before)) = self.strokes.split_last() else { return true };
+        let begins = |now: &SculptStroke| {
+            let same = |a: &SculptStroke, b: &SculptStroke| {
+                (a.tool, a.size, a.hardness, a.strength) == (b.tool, b.size, b.hardness, b.strength)
+            };
+            same(last, now) && now.samples.starts_with(&last.samples)
+        };
+        strokes.len() > before.len() && strokes.starts_with(before) && begins(&strokes[before.len()])
+    }
+    /// With what the strokes have more than those that are done; they must go on from there. To the bit as if all were
+    /// done anew.
+    pub fn go_on(mut self, form: &Form, strokes: &[SculptStroke]) -> Self {
+        let done = self.strokes.len().saturating_sub(1);
+        let corner = vec2(form.corner.0 as f32, form.corner.1 as f32);
+        for (i, stroke) in strokes.iter().enumerate().skip(done) {
+            if i > done || self.strokes.is_empty() {
+                (self.dabs, self.first) = (0, None);
+            }
+            if !(stroke.size.is_finite() && stroke.size > 0.0) {
+                continue;
+            }
+            let dabs = stroke.dabs();
+            if let Some(dab) = dabs.first().filter(|_| self.dabs == 0) {
+                self.first = SculptPlane::under(form, &self.layer, dab.0 - corner, 0.5 * stroke.size);
+            }
+            for (at, pressure) in &dabs[self.dabs.min(dabs.len())..] {
+                let dab = Dab { center: *at - corner, radius: 0.5 * stroke.size, stroke, pressure: *pressure };
+                dab.press(form, &mut self.layer, self.first);
+            }
+            self.dabs = dabs.len();
+        }
+        strokes.clone_into(&mut self.strokes);
+        self
+    }
 }
 
 /// A plane through heights: `height + slope · (p − at)`.
@@ -255,6 +302,25 @@ mod tests {
             let layer = sculpted(&rough, &[stroke(tool, 0.6, &line)]);
             assert!(spread(&layer) < 0.5 * before, "{tool:?}: {} of {before}", spread(&layer));
             assert!(tool != SculptTool::Scrape || layer.values().iter().all(|h| *h <= 0.0));
+        }
+    }
+    #[test]
+    fn strokes_that_go_on_are_to_the_bit_what_they_are_at_once() {
+        let rough = plate(|x, y| 8.0 * hash::unit(3, x as u32, y as u32));
+        let way: Vec<(f32, f32)> =
+            (0..30).map(|i| (40.0 + 2.3 * i as f32, 60.0 + (i as f32 * 0.4).sin() * 9.0)).collect();
+        for (tool, name) in &SculptTool::ALL {
+            let first = stroke(SculptTool::Raise, 2.0, &[(60.0, 50.0), (80.0, 70.0)]);
+            let strokes = |n: usize| vec![first.clone(), stroke(*tool, 0.6, &way[..n])];
+            let mut going = Sculpting::of(&rough).go_on(&rough, std::slice::from_ref(&first));
+            for n in [1, 2, 9, 30] {
+                assert!(going.goes_on(&strokes(n)), "{name} {n}");
+                going = going.go_on(&rough, &strokes(n));
+                assert!(going.layer() == &sculpted(&rough, &strokes(n)), "{name} {n}");
+            }
+            assert!(!going.goes_on(&strokes(29)) && !going.goes_on(&[]));
+            let other = vec![first.clone(), SculptStroke { size: 41.0, ..strokes(30).remove(1) }];
+            assert!(!going.goes_on(&other));
         }
     }
     #[test]

@@ -230,3 +230,37 @@ fn a_part_that_is_joined_runs_level_into_its_neighbour() {
     let everywhere = Plane::filled(strip.size(), true);
     assert!(inflate(&strip, Some(&everywhere), None).values().iter().all(|v| v.is_finite()));
 }
+#[test]
+fn thousands_of_holes_combs_and_specks_make_a_form_without_nan() {
+    let size = Size::new(480, 420);
+    let hole = |x: usize, y: usize, step: usize, side: usize| x % step < side && y % step < side;
+    type Hostile = fn(usize, usize) -> bool;
+    let drawings: [(&str, Hostile); 6] = [
+        ("single pixels", |x, y| x % 4 == 1 && y % 5 == 2),
+        ("one pixel", |x, y| (x, y) == (240, 7)),
+        ("a comb of single columns", |x, y| x % 2 == 0 || y < 3),
+        ("a chessboard", |x, y| (x + y) % 2 == 0),
+        ("a line across", |_, y| y == 200),
+        ("all of it", |_, _| true),
+    ];
+    let holes = [(5, 1), (5, 4), (9, 3)].map(|(step, side)| (step, side, move |x, y| !hole(x, y, step, side)));
+    let planes = drawings
+        .iter()
+        .map(|(name, is)| (name.to_string(), Plane::from_fn(size, |x, y| if is(x, y) { 255 } else { 0 })));
+    let holed = holes.iter().map(|(step, side, is)| {
+        (format!("holes of {side} every {step}"), Plane::from_fn(size, |x, y| if is(x, y) { 255 } else { 0 }))
+    });
+    for (name, plane) in planes.chain(holed) {
+        let outline = Outline::new((0, 0), &plane).unwrap_or_else(|| panic!("{name}"));
+        for profile in [0.0, 1.0] {
+            let squares = if profile == 0.0 { inflate(&outline, None, None) } else { tube(&outline, None, None) };
+            let form = Form::of_squares(&outline, &squares, &Rim::silhouette(&outline), SILHOUETTE);
+            assert!(form.height.values().iter().all(|z| z.is_finite()), "{name}, {profile}");
+            assert!(form.normals.values().iter().all(|n| (n.length() - 1.0).abs() < 1e-5), "{name}, {profile}");
+            let mut relief = Relief::empty(size);
+            relief.add(&form, Combine::Over, 1);
+            let surface = relief.into_surface().unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!(surface.depth_plane().values().iter().all(|z| (0.0..=1.0).contains(z)), "{name}, {profile}");
+        }
+    }
+}

@@ -3,7 +3,7 @@
 
 use super::{Inflation, PartMaps, ProfilePicture};
 use crate::math::srgb::decode;
-use crate::math::{Affine2, Vec3};
+use crate::math::{Affine2, Rect, Vec3};
 use crate::raster::Plane;
 use crate::shape::profiles::{self, Profile};
 use crate::shape::{Form, Outline, Rim, Roundness, inflate, tube};
@@ -35,24 +35,57 @@ pub fn inflated(outline: Arc<Outline>, joined: Option<Arc<Plane<bool>>>, known: 
 /// How far a part goes on beneath the edge of one in front of it.
 const EDGE_PX: i32 = 3;
 
+/// An outline where it stands.
+#[derive(Clone)]
+pub struct StandingOutline {
+    /// But for its whole px.
+    pub outline: Arc<Outline>,
+    /// Those.
+    pub moved: (i32, i32),
+}
+
+/// The very same outline in the same place.
+impl PartialEq for StandingOutline {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.outline, &other.outline) && self.moved == other.moved
+    }
+}
+
+impl StandingOutline {
+    fn corner(&self) -> (i32, i32) {
+        let (x, y) = self.outline.corner();
+        (x.saturating_add(self.moved.0), y.saturating_add(self.moved.1))
+    }
+    fn rect(&self) -> Rect {
+        let ((x, y), size) = (self.corner(), self.outline.size());
+        Rect::new(x, y, x.saturating_add(size.width as i32), y.saturating_add(size.height as i32))
+    }
+    /// Those of some outlines whose planes overlap this one's, moved as if this one stood still.
+    pub fn met_by(&self, others: &[Option<StandingOutline>]) -> Vec<StandingOutline> {
+        let met = others.iter().flatten().filter(|other| !other.rect().intersect(self.rect()).is_empty());
+        let beside = |other: &StandingOutline| {
+            let moved = (other.moved.0.saturating_sub(self.moved.0), other.moved.1.saturating_sub(self.moved.1));
+            StandingOutline { outline: other.outline.clone(), moved }
+        };
+        met.map(beside).collect()
+    }
+}
+
 /// Where the rim of an outline is no silhouette: outside pixels in which a part in front begins. `None` where there are
 /// none. A rim that lies hidden under such a part stays one: what is inside of it is covered as well.
-pub fn joined(own: &Outline, in_front: &[Option<Arc<Outline>>]) -> Option<Plane<bool>> {
-    let corner = own.corner();
-    let met: Vec<&Outline> =
-        in_front.iter().flatten().map(|o| &**o).filter(|o| !o.rect().intersect(own.rect()).is_empty()).collect();
+pub fn joined(own: &Outline, met: &[StandingOutline]) -> Option<Plane<bool>> {
     if met.is_empty() {
         return None;
     }
-    let inside = own.inside();
-    let covers = |other: &Outline, x: i32, y: i32| {
-        let at = (x + corner.0 - other.corner().0, y + corner.1 - other.corner().1);
-        other.inside().get(at.0, at.1).unwrap_or(false)
+    let (corner, inside) = (own.corner(), own.inside());
+    let covers = |other: &StandingOutline, x: i32, y: i32| {
+        let (ox, oy) = other.corner();
+        other.outline.inside().get(x + corner.0 - ox, y + corner.1 - oy).unwrap_or(false)
     };
     let free = Plane::from_fn(own.size(), |x, y| {
         let (x, y) = (x as i32, y as i32);
         // What lies behind goes on beneath the edge of what lies over it, as far as that is blurred.
-        let begins = |other: &&Outline| {
+        let begins = |other: &StandingOutline| {
             let is_in = |x: i32, y: i32| inside.get(x, y).unwrap_or(false);
             let opens = |(dx, dy): (i32, i32)| {
                 let mut way = (1..=EDGE_PX).map(|k| (x + k * dx, y + k * dy)).take_while(|p| is_in(p.0, p.1));

@@ -1,13 +1,15 @@
 //! The surface of a document from its parts and its maps; what of a part did not change is not made again.
 //! Floor 4.
 
-use super::body::{self, Body, cut_to, formed, inflated, joined, of_surface};
+use super::body::{self, Body, StandingOutline, formed, inflated, joined, of_surface};
 use super::outlines::OutlineKey;
-use super::{Part, PartKind, turned};
-use crate::document::Document;
+use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
+use super::upon::{changed, lined};
+use super::{Part, PartKind, Parts};
+use crate::document::{Document, Progress};
 use crate::math::{Affine2, Size};
 use crate::raster::Plane;
-use crate::shape::{Form, Lines, Outline, Relief, Rim, Roundness, Touch, bevel, lines, relief, sculpt, sweep, touches};
+use crate::shape::{Form, Outline, Relief, Rim, Roundness, Sculpting, bevel, sweep};
 use crate::surface::Surface;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -35,34 +37,68 @@ struct MadePart {
     /// What the lines among them are made of.
     inks: Vec<OutlineKey>,
     source: Option<OutlineKey>,
+    /// What in front of it its rim may be free at.
+    met: Vec<StandingOutline>,
     body: Arc<Body>,
+    /// What it was made through; not of one so large that copies would be too many.
+    stages: Option<Stages>,
+    /// How far sculpting came, if that is the last that lies on it.
+    sculpting: Arc<Mutex<Option<Sculpting>>>,
     form: Arc<Form>,
     /// How far the form was moved from where the body stands, whole px.
     moved: (i32, i32),
 }
 
+/// A form on the way, before it is leaned, raised and moved.
+#[derive(Clone)]
+struct Stages {
+    /// Without what lies on it.
+    plain: Arc<Form>,
+    /// Without the last that lies on it.
+    before_last: Arc<Form>,
+}
+
+/// Stages of forms with more pixels than this are not kept.
+const MOST_KEPT_PX: usize = 1 << 24;
+
 impl Document {
     /// The document with the surface that its parts, layers and maps make now, and with what lies on parts where they
     /// stand; itself where nothing changed.
     pub fn reshaped(&self) -> Document {
-        let placed = self.with_homes_placed();
-        if self.parts.is_empty() { placed } else { placed.derived() }
+        // Nobody gives it up, so it is whole.
+        self.reshaped_telling(&Progress::default()).unwrap_or_else(|| self.clone())
     }
-    fn derived(&self) -> Document {
+    /// The same, a step for each part; `None` if it was given up.
+    pub fn reshaped_telling(&self, progress: &Progress) -> Option<Document> {
+        let placed = self.with_homes_placed();
+        if self.parts.is_empty() { Some(placed) } else { placed.derived(progress) }
+    }
+    fn derived(&self, progress: &Progress) -> Option<Document> {
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
+        progress.add_total(shown().count() as u64);
         let outlines: Vec<_> = shown().map(|part| self.standing_outline(part)).collect();
-        let forms: Vec<_> = shown()
-            .enumerate()
-            .filter_map(|(i, part)| Some((self.form(part, outlines[i].clone(), &outlines[i + 1..])?, part.combine)))
-            .collect();
+        let mut forms = Vec::with_capacity(outlines.len());
+        for (i, part) in shown().enumerate() {
+            if progress.is_cancelled() {
+                return None;
+            }
+            let form = self.form(part, outlines[i].clone(), &outlines[i + 1..]);
+            forms.extend(form.map(|form| (form, part.combine)));
+            progress.step();
+        }
         self.forget_others();
         let surface = self.whole(forms);
+        if self.parts.is_ahead {
+            let parts = Arc::new(Parts { is_ahead: false, ..Parts::clone(&self.parts) });
+            let next = Document { surface, parts, ..self.clone() };
+            return Some(next.with_selections_found());
+        }
         let is_same = match (&surface, &self.surface) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             (a, b) => a.is_none() && b.is_none(),
         };
         // What was selected by the surface is found anew on another.
-        if is_same { self.clone() } else { Document { surface, ..self.clone() }.with_selections_found() }
+        Some(if is_same { self.clone() } else { Document { surface, ..self.clone() }.with_selections_found() })
     }
     /// The forms together; the last ones are remembered.
     fn whole(&self, forms: Vec<(Arc<Form>, crate::shape::Combine)>) -> Option<Arc<Surface>> {
@@ -91,7 +127,7 @@ impl Document {
             id += 1;
             whole.add(form, *combine, id);
         }
-        let surface = whole.surface().ok().map(Arc::new);
+        let surface = whole.into_surface().ok().map(Arc::new);
         let maps = self.parts.maps.clone();
         *lock() = Some(MadeSurface { forms, maps, size: self.size, surface: surface.clone() });
         surface
@@ -102,7 +138,7 @@ impl Document {
         made.retain(|made| self.parts.part(&made.part.id).is_some());
     }
     /// The outline of a part where it stands; `None` where it has none.
-    fn standing_outline(&self, part: &Arc<Part>) -> Option<Arc<Outline>> {
+    fn standing_outline(&self, part: &Arc<Part>) -> Option<StandingOutline> {
         let source = OutlineKey::of_part(self, part)??;
         let (still, moved) = apart(part.matrix);
         let known = self.known(&part.id).filter(|made| {
@@ -112,7 +148,7 @@ impl Document {
             Some(made) => made.body.outline.clone(),
             None => Arc::new(source.outline(self, self.most_px())?.through(still, self.most_px())?),
         };
-        Some(if moved == (0, 0) { outline } else { Arc::new(outline.moved(moved)) })
+        Some(StandingOutline { outline, moved })
     }
     /// The form of a part as it was made last, if neither the part nor what lies on it was changed since.
     pub(super) fn made_form(&self, part: &Arc<Part>) -> Option<Arc<Form>> {
@@ -127,6 +163,10 @@ impl Document {
     fn upon(&self, part: &Part) -> Vec<Arc<Part>> {
         self.parts.list.iter().filter(|p| p.visible && p.on() == Some(part.id.as_str())).cloned().collect()
     }
+    /// The form of a part as it was made last, whatever became of the part since, and the part as it was then.
+    pub(super) fn last_form(&self, id: &str) -> Option<(Arc<Part>, Arc<Form>)> {
+        self.known(id).map(|made| (made.part, made.form))
+    }
     fn known(&self, id: &str) -> Option<MadePart> {
         let made = self.parts.cache.made.lock().unwrap_or_else(PoisonError::into_inner);
         made.iter().find(|made| made.part.id == id).cloned()
@@ -138,8 +178,8 @@ impl Document {
     fn form(
         &self,
         part: &Arc<Part>,
-        standing: Option<Arc<Outline>>,
-        in_front: &[Option<Arc<Outline>>],
+        standing: Option<StandingOutline>,
+        in_front: &[Option<StandingOutline>],
     ) -> Option<Arc<Form>> {
         let upon = self.upon(part);
         let known = self.known(&part.id);
@@ -151,8 +191,15 @@ impl Document {
             (a, b) => a.is_none() && b.is_none(),
         };
         let same_place = |made: &MadePart| apart(made.part.matrix).0 == still;
-        let joined = standing.as_ref().and_then(|own| joined(own, in_front)).map(Arc::new);
-        let known = known.filter(|made| same_source(made) && same_place(made) && made.body.joined == joined);
+        let known = known.filter(|made| same_source(made) && same_place(made));
+        // Only what is inflated has a rim that can be free.
+        let own = standing.as_ref().filter(|_| matches!(part.kind, PartKind::Inflate { .. }));
+        let met = own.map(|own| own.met_by(in_front)).unwrap_or_default();
+        let free = match known.as_ref().filter(|made| made.met == met) {
+            Some(made) => made.body.joined.clone(),
+            None => own.and_then(|own| joined(&own.outline, &met)).map(Arc::new),
+        };
+        let known = known.filter(|made| made.body.joined == free);
         if let Some(made) = known
             .as_ref()
             .filter(|made| same_shape(&made.part, part) && same_list(&made.upon, &upon) && same_inks(&made.inks, &inks))
@@ -162,16 +209,61 @@ impl Document {
             }
             let by = (moved.0 - made.moved.0, moved.1 - made.moved.1);
             let form = if by == (0, 0) { made.form.clone() } else { Arc::new(made.form.moved(by)) };
-            let next = MadePart { part: part.clone(), form: form.clone(), moved, source, ..made.clone() };
+            let next = MadePart { part: part.clone(), form: form.clone(), moved, source, met, ..made.clone() };
             self.remember(next);
             return Some(form);
         }
-        let body = known.map(|made| made.body);
-        let own = standing.map(|own| if moved == (0, 0) { own } else { Arc::new(own.moved((-moved.0, -moved.1))) });
-        let (body, form) = self.made(part, (own, source.as_ref()), joined, still, body, &upon)?;
-        let form = Arc::new(form.moved(moved));
-        self.remember(MadePart { part: part.clone(), upon, inks, source, body, form: form.clone(), moved });
-        Some(form)
+        let own = standing.map(|own| own.outline);
+        let kept = known.as_ref().filter(|made| same_kind(&made.part.kind, &part.kind));
+        let (body, plain) = match kept.and_then(|made| Some((made.body.clone(), made.stages.as_ref()?.plain.clone()))) {
+            Some(known) => known,
+            None => {
+                let body = known.as_ref().map(|made| made.body.clone());
+                let (body, form) = self.made(part, (own, source.as_ref()), free, still, body)?;
+                (body, Arc::new(form))
+            }
+        };
+        // What lies beneath the last of those that lie on it is mostly known: a hand works on the last.
+        let last = upon.len().saturating_sub(1);
+        let beneath = known.and_then(|made| {
+            let as_many = made.upon.len() == upon.len() && same_list(&made.upon[..last], &upon[..last]);
+            let stages = made.stages.filter(|stages| Arc::ptr_eq(&stages.plain, &plain))?;
+            let sculpting = made.sculpting.lock().unwrap_or_else(PoisonError::into_inner).take();
+            (as_many && same_inks(&made.inks, &inks)).then_some((stages.before_last, sculpting))
+        });
+        let (before_last, mut sculpting) = beneath.unwrap_or_else(|| {
+            let on =
+                |form: Arc<Form>, other: &Arc<Part>| Arc::new(self.with_upon(&form, &body, other, still, &mut None));
+            (upon[..last].iter().fold(plain.clone(), on), None)
+        });
+        let is_small = plain.height.size().area() <= MOST_KEPT_PX;
+        let stages = is_small.then(|| Stages { plain: plain.clone(), before_last: before_last.clone() });
+        drop(plain);
+        let form = match upon.last() {
+            Some(other) => self.with_upon(&before_last, &body, other, still, &mut sculpting),
+            None => Arc::unwrap_or_clone(before_last),
+        };
+        let form = Arc::new(form.tilted(part.tilt_deg).raised(part.raise).shifted(moved));
+        let (part, sculpting) = (part.clone(), Arc::new(Mutex::new(sculpting.filter(|_| is_small))));
+        let of_it = form.clone();
+        self.remember(MadePart { part, upon, inks, source, met, body, stages, sculpting, form, moved });
+        Some(of_it)
+    }
+    /// A form with what one more part that lies on it does to it.
+    fn with_upon(
+        &self,
+        form: &Form,
+        body: &Body,
+        other: &Part,
+        still: Affine2,
+        sculpting: &mut Option<Sculpting>,
+    ) -> Form {
+        let PartKind::Lines { lines, .. } = &other.kind else {
+            return changed(form, &body.outline, other, still, sculpting);
+        };
+        let ink = OutlineKey::of_part(self, other).flatten().and_then(|ink| ink.outline(self, self.most_px()));
+        let ink = ink.and_then(|ink| ink.through(still, self.most_px()));
+        ink.map_or_else(|| form.clone(), |ink| lined(form, &body.outline, &ink, *lines))
     }
     fn remember(&self, made: MadePart) {
         let mut all = self.parts.cache.made.lock().unwrap_or_else(PoisonError::into_inner);
@@ -182,7 +274,8 @@ impl Document {
     fn most_px(&self) -> usize {
         self.size.area().saturating_mul(4).max(1 << 20)
     }
-    /// A part made anew, but for the fields of its body that are known; not yet moved by whole px.
+    /// A part made anew, but for the fields of its body that are known; without what lies on it, not leaned and not yet
+    /// moved by whole px.
     fn made(
         &self,
         part: &Part,
@@ -190,7 +283,6 @@ impl Document {
         joined: Option<Arc<Plane<bool>>>,
         still: Affine2,
         known: Option<Arc<Body>>,
-        upon: &[Arc<Part>],
     ) -> Option<(Arc<Body>, Form)> {
         let most_px = self.most_px();
         let bare = |outline: Arc<Outline>| Body { outline, joined: None, pillow: None, tube: None };
@@ -247,101 +339,6 @@ impl Document {
                 return None;
             }
         };
-        let form = upon.iter().fold(form, |form, other| match &other.kind {
-            PartKind::Lines { lines, .. } => {
-                let ink = OutlineKey::of_part(self, other).flatten().and_then(|ink| ink.outline(self, most_px));
-                let ink = ink.and_then(|ink| ink.through(still, most_px));
-                ink.map_or(form.clone(), |ink| lined(form, &body.outline, &ink, *lines))
-            }
-            _ => changed(form, &body.outline, other, still),
-        });
-        let form = form.tilted(part.tilt_deg).raised(part.raise);
         Some((Arc::new(body), form))
-    }
-}
-
-/// The matrix without its whole px, and those.
-fn apart(matrix: Affine2) -> (Affine2, (i32, i32)) {
-    let whole = matrix.translation.floor();
-    let still = Affine2 { translation: matrix.translation - whole, ..matrix };
-    (still, (whole.x as i32, whole.y as i32))
-}
-
-fn same_list(a: &[Arc<Part>], b: &[Arc<Part>]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
-}
-
-fn same_inks(a: &[OutlineKey], b: &[OutlineKey]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.is_same(b))
-}
-
-/// A form with ink as lines on it.
-fn lined(form: Form, outline: &Outline, ink: &Outline, lines: Lines) -> Form {
-    if form.height.size() != outline.size() {
-        let cut = cut_to(&form, outline);
-        return if cut.height.size() == outline.size() { lined(cut, outline, ink, lines) } else { form };
-    }
-    let shift = (outline.corner().0 - ink.corner().0, outline.corner().1 - ink.corner().1);
-    let inked =
-        Plane::from_fn(outline.size(), |x, y| ink.coverage().get(x as i32 + shift.0, y as i32 + shift.1).unwrap_or(0));
-    lines::lined(&form, outline, &inked, lines)
-}
-
-/// Whether two versions of a part have the same form, wherever it stands.
-fn same_shape(a: &Arc<Part>, b: &Arc<Part>) -> bool {
-    Arc::ptr_eq(a, b) || (same_kind(&a.kind, &b.kind) && a.tilt_deg == b.tilt_deg && a.raise == b.raise)
-}
-
-/// Whether two kinds make the same of the same outline, whatever they call it.
-fn same_kind(a: &PartKind, b: &PartKind) -> bool {
-    match (a, b) {
-        (PartKind::Inflate { inflation: a, .. }, PartKind::Inflate { inflation: b, .. }) => a == b,
-        (PartKind::Bevel { bevel: a, .. }, PartKind::Bevel { bevel: b, .. }) => a == b,
-        (PartKind::Lathe { axis: a, puff: x, .. }, PartKind::Lathe { axis: b, puff: y, .. }) => a == b && x == y,
-        _ => a == b,
-    }
-}
-
-/// A form with what another part does to it. Its marks lie in the frame of the part that they are on.
-fn changed(form: Form, outline: &Outline, part: &Part, still: Affine2) -> Form {
-    if form.height.size() != outline.size() {
-        // A primitive's planes reach beyond its outline; cut to it they fit.
-        let cut = cut_to(&form, outline);
-        return if cut.height.size() == outline.size() { changed(cut, outline, part, still) } else { form };
-    }
-    match &part.kind {
-        PartKind::Touches { touches: list, .. } => {
-            let length = still.matrix2.determinant().abs().sqrt();
-            let through = list.iter().map(|touch| Touch {
-                at: still.transform_point2(touch.at),
-                radius: touch.radius * length,
-                reach: touch.reach * length,
-                normal: turned(touch.normal, still),
-            });
-            touches::touched(&form, outline, &through.collect::<Vec<_>>())
-        }
-        PartKind::Sculpt { strokes, .. } => {
-            let length = still.matrix2.determinant().abs().sqrt();
-            let mut through = strokes.clone();
-            for stroke in &mut through {
-                stroke.size *= length;
-                stroke.strength *= if stroke.tool.is_by_height() { length } else { 1.0 };
-            }
-            for sample in through.iter_mut().flat_map(|stroke| &mut stroke.samples) {
-                sample.0 = still.transform_point2(sample.0);
-            }
-            let layer = sculpt::sculpted(&form, &through);
-            form.with_added(&layer)
-        }
-        PartKind::Relief { picture, detail, .. } => {
-            // The picture lies on the canvas, where the part stands when it is not moved.
-            let corner = outline.corner();
-            let luminance = Plane::from_fn(outline.size(), |x, y| {
-                let at = (x as i32 + corner.0, y as i32 + corner.1);
-                f32::from(picture.coverage.get(at.0, at.1).unwrap_or(0)) / 255.0
-            });
-            form.with_added(&relief::relief(outline, &luminance, *detail))
-        }
-        _ => form,
     }
 }

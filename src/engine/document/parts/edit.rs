@@ -2,7 +2,7 @@
 //! carried by it. Floor 4. What lies where is `document::transform::homes`.
 
 use super::{CoverageFile, OutlineSource, Part, Parts};
-use crate::document::{Document, LayerId, NamedSelection};
+use crate::document::{Document, LayerId, NamedSelection, Progress};
 use crate::surface::Surface;
 use std::sync::Arc;
 
@@ -13,6 +13,14 @@ impl Document {
     }
     /// With other parts, and the surface that follows from them. What lies on parts that go stays where it shows.
     pub fn with_parts(&self, list: Vec<Arc<Part>>) -> Document {
+        self.with_list(list).reshaped()
+    }
+    /// The same, a step for each part; `None` if it was given up.
+    pub fn with_parts_telling(&self, list: Vec<Arc<Part>>, progress: &Progress) -> Option<Document> {
+        self.with_list(list).reshaped_telling(progress)
+    }
+    /// With other parts, but not yet with their surface.
+    fn with_list(&self, list: Vec<Arc<Part>>) -> Document {
         let maps = self.maps_surface().cloned();
         let stays = |id: &str| list.iter().any(|part| part.id == id);
         let goes = |part: &Arc<Part>| !stays(&part.id);
@@ -23,17 +31,38 @@ impl Document {
         if list.is_empty() {
             next.surface = maps.clone();
         }
-        next.parts = Arc::new(Parts { list, maps, cache: self.parts.cache.clone() });
-        next.reshaped()
+        next.parts = Arc::new(Parts { list, maps, is_ahead: false, cache: self.parts.cache.clone() });
+        next
     }
     /// With a part in the place of the one of its id, or in front of all.
     pub fn with_part(&self, part: Part) -> Document {
+        self.with_parts(self.list_with(part))
+    }
+    fn list_with(&self, part: Part) -> Vec<Arc<Part>> {
         let mut list = self.parts.list.clone();
         match list.iter_mut().find(|known| known.id == part.id) {
             Some(known) => *known = Arc::new(part),
             None => list.push(Arc::new(part)),
         }
-        self.with_parts(list)
+        list
+    }
+    /// With other parts while a hand drags: what lies on parts goes along at once, the surface stays that of the parts
+    /// before until [`Document::reshaped`], which takes longer than a hand may wait.
+    pub fn with_parts_ahead(&self, list: Vec<Arc<Part>>) -> Document {
+        let next = self.with_list(list);
+        if next.parts.is_empty() {
+            return next;
+        }
+        let parts = Arc::new(Parts { is_ahead: true, ..Parts::clone(&next.parts) });
+        Document { parts, ..next }.with_homes_placed()
+    }
+    /// The same with one part, as [`Document::with_part`] has it.
+    pub fn with_part_ahead(&self, part: Part) -> Document {
+        self.with_parts_ahead(self.list_with(part))
+    }
+    /// Whether its surface is that of its parts.
+    pub fn is_shaped(&self) -> bool {
+        !self.parts.is_ahead
     }
     /// Without a part and those that change it. What lies on it stays where it shows, carried no more. `None` if there
     /// is no such part.

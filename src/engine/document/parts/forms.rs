@@ -3,19 +3,34 @@
 
 use super::Part;
 use crate::document::Document;
-use crate::math::Vec2;
+use crate::math::{Affine2, Vec2};
 use crate::shape::Form;
 use std::sync::Arc;
 
 impl Document {
     /// The forms that are seen, with their parts, the farthest first. Of the shape that was made last nothing is made
     /// again. Parts that make no form, such as an outline of nothing, are left out.
+    ///
+    /// While a hand drags parts their forms are those that were made last, where the parts stood then.
     pub fn part_forms(&self) -> Vec<(Arc<Part>, Arc<Form>)> {
+        if !self.is_shaped() {
+            return self.last_part_forms().into_iter().map(|(part, form, _)| (part, form)).collect();
+        }
         let shown = || self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
         if shown().any(|part| self.made_form(part).is_none()) {
             self.make_forms();
         }
         shown().filter_map(|part| Some((part.clone(), self.made_form(part)?))).collect()
+    }
+    /// The forms that were made last, with their parts as they are now, and what takes each form from where it was made
+    /// to where its part stands.
+    pub fn last_part_forms(&self) -> Vec<(Arc<Part>, Arc<Form>, Affine2)> {
+        let shown = self.parts.list.iter().filter(|part| part.visible && part.on().is_none());
+        let last = |part: &Arc<Part>| {
+            let (then, form) = self.last_form(&part.id)?;
+            Some((part.clone(), form, part.matrix * then.matrix.inverse()))
+        };
+        shown.filter_map(last).collect()
     }
     /// The nearest part whose form covers a canvas point by half or more.
     pub fn part_at(&self, at: Vec2) -> Option<Arc<Part>> {

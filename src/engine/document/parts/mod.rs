@@ -1,6 +1,6 @@
 //! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
 //! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `body` one
-//! form, and `forms` tells what was made; `outlines` finds the outlines, `flats` makes parts of a layer of flat
+//! form, `upon` what lies on one, and `forms` tells what was made; `outlines` finds the outlines, `flats` makes parts of a layer of flat
 //! colours, whose mixed pixels `shares` shares out, and `drawing` says what can be made of one; `edit` changes the
 //! list, `scale` the canvas, `fit` holds it to what files can hold.
 
@@ -12,15 +12,18 @@ mod fit;
 pub mod flats;
 pub mod forms;
 mod outlines;
+mod part;
 mod scale;
 mod shares;
+mod unchanged;
+mod upon;
 
 #[cfg(test)]
 mod tests;
 
 use super::source::SurfaceSource;
 use crate::math::srgb::Color;
-use crate::math::{Affine2, COORDINATE, Range, UNIT, Vec2, Vec3, vec2, vec3};
+use crate::math::{Affine2, Range, UNIT, Vec2, Vec3, vec2, vec3};
 use crate::raster::{Asset, Plane};
 use crate::shape::{Ball, Bevel, Combine, Detail, Lines, Primitive, SculptStroke, Touch};
 use crate::surface::Surface;
@@ -35,6 +38,8 @@ pub struct Parts {
     pub list: Vec<Arc<Part>>,
     /// The surface of the document's maps, beneath all parts; while there are none it is the document's own.
     pub maps: Option<Arc<Surface>>,
+    /// The document's surface is still that of the parts as they were: a hand drags them.
+    is_ahead: bool,
     cache: PartCache,
 }
 
@@ -44,6 +49,10 @@ impl Parts {
 
     pub fn new(list: Vec<Part>) -> Self {
         Self { list: list.into_iter().map(Arc::new).collect(), ..Self::default() }
+    }
+    /// None of them, with what is kept for speed.
+    pub(in crate::document) fn emptied(&self) -> Self {
+        Self { cache: self.cache.clone(), ..Self::default() }
     }
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
@@ -240,77 +249,6 @@ pub struct CoverageFile {
 impl PartialEq for CoverageFile {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.coverage, &other.coverage) || self.coverage == other.coverage
-    }
-}
-
-impl Part {
-    pub const TILT: Range = -80.0..=80.0;
-    pub const RAISE: Range = -8192.0..=8192.0;
-    /// Letters of an id and of a name.
-    pub const LONGEST_NAME: usize = 1000;
-    /// Each number of a matrix.
-    pub const MATRIX: Range = COORDINATE;
-
-    /// A part as it is first made.
-    pub fn new(id: impl Into<String>, kind: PartKind) -> Self {
-        let id = id.into();
-        let combine = Combine::default();
-        let (tilt_deg, raise, matrix) = (Vec2::ZERO, 0.0, Affine2::IDENTITY);
-        Self { name: id.clone(), id, visible: true, combine, tilt_deg, raise, matrix, kind }
-    }
-    /// The whole alpha of a layer, inflated.
-    pub fn of_layer(id: impl Into<String>, layer: impl Into<String>, inflation: Inflation) -> Self {
-        let outline = OutlineSource::Layer { layer: layer.into(), color: None };
-        Self::new(id, PartKind::Inflate { outline, inflation })
-    }
-    /// The part that this one changes, where it is no form of its own.
-    pub fn on(&self) -> Option<&str> {
-        match &self.kind {
-            PartKind::Touches { on, .. }
-            | PartKind::Sculpt { on, .. }
-            | PartKind::Relief { on, .. }
-            | PartKind::Lines { on, .. } => Some(on),
-            _ => None,
-        }
-    }
-    /// What it is made of; of lines their ink.
-    pub fn outline(&self) -> Option<&OutlineSource> {
-        match &self.kind {
-            PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
-                Some(outline)
-            }
-            PartKind::Lines { ink, .. } => Some(ink),
-            PartKind::Profiles { outline, .. } => outline.as_ref(),
-            _ => None,
-        }
-    }
-    pub(super) fn outline_mut(&mut self) -> Option<&mut OutlineSource> {
-        match &mut self.kind {
-            PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
-                Some(outline)
-            }
-            PartKind::Lines { ink, .. } => Some(ink),
-            PartKind::Profiles { outline, .. } => outline.as_mut(),
-            _ => None,
-        }
-    }
-    /// The pictures that it names, to be given other names. Maps have names of their own.
-    pub fn files_mut(&mut self) -> Vec<&mut CoverageFile> {
-        fn of_outline(outline: &mut OutlineSource) -> Option<&mut CoverageFile> {
-            if let OutlineSource::File(file) = outline { Some(file) } else { None }
-        }
-        match &mut self.kind {
-            PartKind::Inflate { outline, .. }
-            | PartKind::Bevel { outline, .. }
-            | PartKind::Lathe { outline, .. }
-            | PartKind::Lines { ink: outline, .. } => of_outline(outline).into_iter().collect(),
-            PartKind::Profiles { outline, shadings } => {
-                let own = outline.as_mut().and_then(of_outline);
-                own.into_iter().chain(shadings.iter_mut().map(|shading| &mut shading.picture)).collect()
-            }
-            PartKind::Relief { picture, .. } => vec![picture],
-            _ => Vec::new(),
-        }
     }
 }
 

@@ -49,7 +49,8 @@ impl Part {
             }),
             PartKind::Sculpt { strokes, .. } => strokes.iter_mut().for_each(|stroke| {
                 stroke.size *= length;
-                stroke.strength *= length;
+                // Of tools that go a share of the way it is no length.
+                stroke.strength *= if stroke.tool.is_by_height() { length } else { 1.0 };
                 stroke.samples.iter_mut().for_each(|sample| sample.0 *= scale);
             }),
             PartKind::Lines { ink, lines, .. } => {

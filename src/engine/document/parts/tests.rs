@@ -4,7 +4,7 @@ use super::*;
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::math::{Mat2, Size};
 use crate::raster::TileGrid;
-use crate::shape::Body;
+use crate::shape::{Body, SculptTool};
 
 const SIZE: Size = Size::new(160, 120);
 
@@ -252,4 +252,12 @@ fn maps_that_are_turned_show_the_turned_object_and_come_back_where_they_lay() {
     assert!((turned.depth_range_px() / was.depth_range_px() - 1.5).abs() < 0.05);
     let moved = seen(Affine2::from_translation(vec2(21.0, -7.0)));
     assert_eq!(moved.normal(91, 53), was.normal(70, 60));
+}
+#[test]
+fn a_share_of_the_way_stays_one_on_a_larger_canvas() {
+    let stroke = |tool| SculptStroke { tool, size: 20.0, hardness: 0.5, strength: 0.3, samples: Vec::new() };
+    let strokes = [SculptTool::Raise, SculptTool::Smooth].map(stroke).to_vec();
+    let part = Part::new("s", PartKind::Sculpt { on: "a".into(), strokes });
+    let PartKind::Sculpt { strokes, .. } = part.scaled(Vec2::splat(2.0), 2.0, Plane::clone).kind else { panic!() };
+    assert_eq!(strokes.iter().map(|stroke| stroke.strength).collect::<Vec<_>>(), [0.6, 0.3]);
 }

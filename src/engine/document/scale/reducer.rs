@@ -1,7 +1,7 @@
 //! Scales a changing document down again and again: parts that did not change are not scaled twice. Floor 4. The
 //! scaling of one layer is in `scale`.
 
-use super::super::{Content, Document, Group, Layer, LayerId};
+use super::super::{Content, Document, Group, Layer, LayerId, Part, Parts};
 use super::CanvasScale;
 use crate::math::Size;
 use crate::surface::{Surface, SurfaceError};
@@ -15,6 +15,9 @@ pub struct DocumentReducer {
     factor: f32,
     surface: Option<(Weak<Surface>, Arc<Surface>)>,
     layers: HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
+    /// Small parts by their ids, and what was made of them: of documents whose parts a hand drags.
+    parts: HashMap<String, (Weak<Part>, Arc<Part>)>,
+    shaped: Arc<Parts>,
 }
 
 /// A surface that is yet to be made small; where that must not hold anything up, on another thread.
@@ -43,21 +46,42 @@ impl SurfaceReduction {
 impl DocumentReducer {
     /// `factor`: as of [`Document::scaled`].
     pub fn new(factor: f32) -> Self {
-        Self { factor, surface: None, layers: HashMap::new() }
+        let (layers, parts) = (HashMap::new(), HashMap::new());
+        Self { factor, surface: None, layers, parts, shaped: Arc::default() }
     }
     /// The reduced document: as [`Document::scaled`], with the same errors; but pictures of image layers are read from
     /// levels as much coarser, and what was selected by the surface is resampled and not found anew.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
         let Some(scale) = self.scale(document) else { return Ok(document.clone()) };
-        let surface = document.surface.as_ref().map(|surface| self.surface(surface, &scale)).transpose()?;
+        let of = if document.is_shaped() { document.surface.as_ref() } else { document.maps_surface() };
+        let surface = of.map(|surface| self.surface(surface, &scale)).transpose()?;
         let mut layers = HashMap::new();
         let small = self.stack(&document.layers, &scale, &mut layers);
         self.layers = layers;
-        Ok(Document { size: scale.to, surface, layers: small, ..scale.selected(document) })
+        let small = Document { size: scale.to, surface, layers: small, ..scale.selected(document) };
+        Ok(if document.is_shaped() { small } else { self.shaped(document, small, &scale) })
+    }
+    /// A small document with the surface of its parts, which are made small themselves: a hand drags them.
+    fn shaped(&mut self, document: &Document, small: Document, scale: &CanvasScale) -> Document {
+        let mut parts = HashMap::new();
+        for part in &document.parts.list {
+            let known = self.parts.get(&part.id).filter(|(known, _)| known.as_ptr() == Arc::as_ptr(part));
+            let made = known.map_or_else(|| scale.part(part), |(_, made)| made.clone());
+            parts.insert(part.id.clone(), (Arc::downgrade(part), made));
+        }
+        self.parts = parts;
+        let list = document.parts.list.iter().filter_map(|part| Some(self.parts.get(&part.id)?.1.clone()));
+        let bare = Document { parts: Arc::new(self.shaped.emptied()), ..small };
+        let shaped = bare.with_parts(list.collect());
+        self.shaped = shaped.parts.clone();
+        shaped
     }
     /// What of a document's surface [`DocumentReducer::of`] would have to make small; `None` where nothing.
     pub fn missing_surface(&self, document: &Document) -> Option<SurfaceReduction> {
         let scale = self.scale(document)?;
+        if !document.is_shaped() {
+            return None;
+        }
         let surface = document.surface.as_ref().filter(|surface| self.known_surface(surface, scale.to).is_none())?;
         Some(SurfaceReduction { of: surface.clone(), to: scale.to })
     }
@@ -215,5 +239,43 @@ mod tests {
         assert!(small.layers.iter().zip(&made).all(|(a, b)| Arc::ptr_eq(a, b)));
         let changed = document.with_layer(document.layers[1].id, |layer| layer.opacity = 0.5).unwrap();
         assert!(reduced.prepare(&changed) && !reduced.prepare(&changed), "only the layer that changed");
+    }
+    #[test]
+    fn parts_that_a_hand_drags_are_shaped_small_and_those_at_rest_are_not_made_again() {
+        use crate::document::parts::{Inflation, OutlineSource, PartKind};
+        use crate::math::vec2;
+        let disc = |x: f32, r: f32| {
+            let at = |i: usize| vec2(x, 120.0) + r * crate::math::Vec2::from_angle(i as f32 * 0.1);
+            OutlineSource::Path((0..63).map(at).collect())
+        };
+        let part = |id: &str, x: f32, puff: f32| {
+            let inflation = Inflation { puff, ..Inflation::default() };
+            Part::new(id, PartKind::Inflate { outline: disc(x, 60.0), inflation })
+        };
+        let document = Document::empty(Size::new(400, 240));
+        let document = document.with_part(part("a", 100.0, 1.0)).with_part(part("b", 280.0, 1.0));
+        let mut reduced = DocumentReducer::new(0.5);
+        let dragged = document.with_part_ahead(part("a", 100.0, 0.4));
+        assert!(
+            !dragged.is_shaped() && Arc::ptr_eq(dragged.surface.as_ref().unwrap(), document.surface.as_ref().unwrap())
+        );
+        let small = reduced.of(&dragged).unwrap();
+        let apart = |small: &Document, puff: f32| {
+            let whole = document.with_part(part("a", 100.0, puff)).scaled(0.5).unwrap();
+            let (a, b) = (small.surface.as_ref().unwrap(), whole.surface.as_ref().unwrap());
+            let at = |s: &Surface, x, y| s.normal(x, y);
+            [(30, 50), (60, 70), (140, 60), (160, 80)].map(|(x, y)| at(a, x, y).distance(at(b, x, y)))
+        };
+        assert!(apart(&small, 0.4).iter().all(|d| *d < 1e-3), "{:?}", apart(&small, 0.4));
+        let b = small.part_forms()[1].1.clone();
+        let next = reduced.of(&document.with_part_ahead(part("a", 100.0, 0.7))).unwrap();
+        assert!(apart(&next, 0.7).iter().all(|d| *d < 1e-3) && Arc::ptr_eq(&next.part_forms()[1].1, &b));
+        // At rest it is the surface that it would have been at once.
+        let rested = dragged.reshaped();
+        let at_once = document.with_part(part("a", 100.0, 0.4));
+        assert!(rested.is_shaped() && rested.parts.list.len() == 2);
+        let normals =
+            |document: &Document| document.surface.as_ref().unwrap().normal_planes().map(|p| p.values().to_vec());
+        assert!(normals(&rested) == normals(&at_once));
     }
 }
