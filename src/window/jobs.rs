@@ -2,6 +2,7 @@
 //! Floor 7.
 
 use crate::clipboard::{Clipboard, PastedContent};
+use crate::document::parts::drawing::DrawingLook;
 use crate::document::{Document, LayerId, Progress, SurfaceSource};
 use crate::files::FilePurpose;
 use crate::io::recipe::Preset;
@@ -11,9 +12,10 @@ use crate::memory;
 use crate::raster::Picture;
 use crate::saving::{Pending, Saving};
 use crate::session::Edit;
-use crate::session::actions::LayerAction;
 use crate::session::actions::files::read_picture;
+use crate::session::actions::parts::FirstShape;
 use crate::session::actions::pictures::{PicturePart, ReadPart};
+use crate::session::actions::{LayerAction, PartAction};
 use crate::session::autosave::RecoveredTab;
 use crate::session::storage::{self, FileUse, OpenedTab, SortedFiles};
 use crate::{Error, Result};
@@ -61,6 +63,12 @@ pub enum JobResult {
     Refused(Pending, String),
     /// An edit of the document of a tab that took long.
     Edited(Box<EditResult>),
+    /// A drawing was given a shape: of a tab, by its key, as it was, and by what action.
+    Shaped(Box<ShapedResult>),
+    /// Something cannot be done; why.
+    Declined(&'static str),
+    /// What drawing a tab, by its key, holds.
+    Looked(usize, Option<(LayerId, DrawingLook)>),
     /// The flattened picture is in the clipboard as long as this is kept.
     Copied(Clipboard),
     Pasted(PastedContent),
@@ -109,6 +117,15 @@ pub struct EditResult {
     /// What was edited.
     pub from: Document,
     pub edit: Edit,
+}
+
+pub struct ShapedResult {
+    /// By its key.
+    pub tab: usize,
+    pub action: PartAction,
+    /// What was given a shape.
+    pub from: Document,
+    pub shape: FirstShape,
 }
 
 /// What the user can do while a job runs.

@@ -72,6 +72,8 @@ const REST: Duration = Duration::from_millis(180);
 const PAUSE: Duration = Duration::from_millis(600);
 /// Between two looks at what another thread makes ready.
 const LOOK: Duration = Duration::from_millis(30);
+/// What the surface of parts takes a pixel of the canvas, before it was measured.
+const SHAPING: Duration = Duration::from_nanos(120);
 /// Canvas pixels to a pixel of the smallest picture.
 const COARSEST: u32 = 8;
 
@@ -118,6 +120,9 @@ struct RenderWork {
     is_resting: bool,
     /// Whether the reduced document is ready for a drag.
     is_prepared: bool,
+    /// The whole picture is still to get the surface of parts that a hand drags, and how long that took last.
+    is_behind: bool,
+    shaping: Duration,
 }
 
 /// `None` once the window is gone.
@@ -217,13 +222,28 @@ impl RenderWork {
             (self.whole, self.draft) = (RenderPass::default(), None);
         }
         self.whole.take_up(next.document.clone());
+        self.is_behind = !next.document.is_shaped();
+        // The first frame of a large canvas is not waited for, either.
+        let area = next.document.size.area();
+        let shaping = if self.shaping.is_zero() { SHAPING.mul_f32(area as f32) } else { self.shaping };
+        let is_slow = self.is_behind && shaping > FRAME;
+        if is_slow && self.draft.is_none() {
+            self.draft = Some(DraftRender::new(step_for(self.whole.slowest().max(shaping))));
+        }
         let was_quick =
             self.draft.as_ref().is_none_or(|draft| draft.is_unused() || draft.would_be_quick_in_whole_pixels());
-        self.is_drafting = next.is_dragged && !was_quick;
+        self.is_drafting = next.is_dragged && (is_slow || !was_quick);
         (self.wanted, self.is_resting, self.is_prepared) = (Some(next), false, false);
         if self.is_drafting {
             self.redraft();
         }
+    }
+    /// Gives the whole picture the surface of its parts.
+    fn catch_up(&mut self) {
+        let Some(wanted) = self.wanted.as_ref().filter(|_| self.is_behind) else { return };
+        let begun = Instant::now();
+        self.whole.take_up(wanted.document.reshaped());
+        (self.shaping, self.is_behind) = (begun.elapsed(), false);
     }
     /// Hands the wanted document to the draft.
     fn redraft(&mut self) {
@@ -241,7 +261,7 @@ impl RenderWork {
     fn has_more(&self) -> bool {
         match &self.draft {
             Some(draft) if self.is_drafting => draft.pass.has_more(),
-            _ => self.whole.has_more(),
+            _ => self.is_behind || self.whole.has_more(),
         }
     }
     fn nothing(&self) -> RenderedTileBatch {
@@ -262,6 +282,7 @@ impl RenderWork {
             let (step, size) = (draft.step, draft.pass.size()?);
             return Some(done.painted(picture, step, size));
         }
+        self.catch_up();
         let done = self.whole.paint(visible, if is_dragged { FEW } else { BATCH })?;
         if is_dragged && !self.is_resting && !done.is_settled && done.took > FRAME {
             let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
@@ -289,61 +310,4 @@ fn step_for(whole: Duration) -> u32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::document::{Content, Layer, Progress, flatten};
-    use crate::math::{Size, srgb::Color};
-    use crate::raster::TileGrid;
-
-    /// All that is painted until it is settled.
-    fn settled(render_thread: &RenderThread, grid: &mut TileGrid) -> usize {
-        let mut count = 0;
-        loop {
-            let painted = render_thread.painted.recv_timeout(Duration::from_secs(60)).unwrap();
-            count += painted.tiles.len();
-            painted.tiles.into_iter().for_each(|(at, tile)| grid.set(at, tile));
-            if painted.is_settled {
-                return count;
-            }
-        }
-    }
-
-    #[test]
-    fn without_memory_the_picture_waits_and_the_next_one_is_painted_whole() {
-        let size = Size::new(100, 80);
-        let fill = Layer::new("fill", Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 }));
-        let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(size) };
-        let wanted =
-            || RenderRequest { picture: 3, document: document.clone(), visible: size.rect(), is_dragged: false };
-        let mut work = RenderWork::default();
-        work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
-        let none: Result<Vec<u8>, _> = work.if_there_is_memory(|_| memory::filled_or_unwind(usize::MAX / 2, 0u8));
-        assert!(none.is_err() && !work.has_more(), "the thread does not try again at once");
-        assert!(work.nothing().is_settled);
-        work.if_there_is_memory(|work| work.take_up(wanted())).unwrap();
-        let painted = work.if_there_is_memory(RenderWork::paint).unwrap().unwrap();
-        assert_eq!((painted.tiles.len(), painted.refused), (4, None));
-    }
-    #[test]
-    fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
-        let size = Size::new(300, 200);
-        let fill = Layer::new("fill", Content::Fill(Color { r: 9, g: 90, b: 200, a: 255 }));
-        let document = Document { layers: vec![Arc::new(fill)], ..Document::empty(size) };
-        let render_thread = RenderThread::new(|| {}).unwrap();
-        let mut grid = TileGrid::default();
-        let visible = size.rect();
-        render_thread.want(RenderRequest { picture: 1, document: document.clone(), visible, is_dragged: false });
-        assert_eq!(settled(&render_thread, &mut grid), 5 * 4);
-        let whole = flatten(&document, &Progress::default()).unwrap();
-        assert!(grid.to_straight_rgba(visible) == whole.to_straight_rgba(visible));
-        let dot = TileGrid::from_straight_rgba(&[255, 0, 0, 255], 1, 1, 100, 100);
-        let pixels = crate::document::PixelLayer { file: String::new(), x: 0, y: 0, tiles: dot };
-        let mut next = document.clone();
-        next.layers.push(Arc::new(Layer::new("dot", Content::Pixels(pixels))));
-        render_thread.want(RenderRequest { picture: 1, document: next.clone(), visible, is_dragged: false });
-        assert_eq!(settled(&render_thread, &mut grid), 1);
-        assert_eq!(grid.pixel(100, 100), [255, 0, 0, 255]);
-        render_thread.want(RenderRequest { picture: 1, document: next, visible, is_dragged: false });
-        assert_eq!(settled(&render_thread, &mut grid), 0, "what is the same is settled at once");
-    }
-}
+mod tests;

@@ -30,6 +30,8 @@ pub enum WindowRequest {
     OpenDialog,
     OpenMapsDialog,
     ReplaceMapsDialog,
+    /// For a part of the shape.
+    PartMapsDialog,
     PlaceDialog,
     /// For the drawing of the document in front.
     ShapeDialog,

@@ -1,6 +1,7 @@
 //! The shape workshop: from a drawing to a lit, bent picture, by the window's own controls.
 
 use super::{Story, choose, command, drag, key, layers, press, session, steps, stroke, until, window, window_of};
+use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_engine::document::{Part, PartKind};
@@ -34,6 +35,11 @@ fn opening(file: &Path) -> Story {
 fn asked(harness: &mut Story) {
     until(harness, |harness| harness.query_by_label("Only paint").is_some());
 }
+/// Answers the question with yes, and waits for the shape.
+fn give(harness: &mut Story) {
+    press(harness, "Give it a shape");
+    until(harness, |harness| !parts(harness).is_empty());
+}
 fn parts(harness: &Story) -> Vec<Arc<Part>> {
     session(harness).active().unwrap().document().parts.list.clone()
 }
@@ -56,7 +62,7 @@ fn a_drawing_gets_a_shape_is_puffed_touched_sculpted_painted_saved_and_opened_ag
     let mut harness = opening(&drawing(&folder));
     asked(&mut harness);
     harness.get_by_label("A part for each colour (2)");
-    press(&mut harness, "Give it a shape");
+    give(&mut harness);
     assert_eq!(layers(&harness), ["creature", "Base"]);
     let made = parts(&harness);
     assert_eq!(made.len(), 2);
@@ -119,9 +125,10 @@ fn who_only_wants_to_paint_is_not_asked_again_but_told_where_marks_lie_flat() {
     key(&mut harness, Modifiers::NONE, Key::F3);
     harness.get_by_label_contains("No surface here");
     press(&mut harness, "Give it a shape…");
+    until(&mut harness, |harness| harness.query_by_label("One part").is_some());
     press(&mut harness, "One part");
     press(&mut harness, "Coin");
-    press(&mut harness, "Give it a shape");
+    give(&mut harness);
     assert_eq!(parts(&harness).len(), 1);
     assert!(puff(&parts(&harness)[0]) < 0.3);
 }
@@ -162,4 +169,38 @@ fn maps_of_the_shape_are_exported_under_the_names_that_engines_expect() {
     let normals = image::open(folder.path().join("ball_n.png")).unwrap().into_rgba8();
     let above = normals.get_pixel(512, 300).0;
     assert!(above[1] < 100 && above[3] == 255, "green points down: {above:?}");
+}
+#[test]
+fn a_layer_is_carried_by_a_part_that_is_chosen_in_its_properties() {
+    let mut harness = window();
+    command(&mut harness, "Sphere");
+    command(&mut harness, "New paint layer");
+    press(&mut harness, "Properties");
+    harness.get_by_role_and_label(Role::ComboBox, "Lies on").click_accesskit();
+    steps(&mut harness);
+    harness.get_by_label("Sphere").click_accesskit();
+    steps(&mut harness);
+    let home = |harness: &Story| {
+        let document = session(harness).active().unwrap().document();
+        document.layers.last().unwrap().on.as_ref().map(|home| home.part.to_string())
+    };
+    assert_eq!(home(&harness).as_deref(), Some("part-1"));
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(home(&harness), None);
+}
+#[test]
+fn a_bevel_shows_its_profile_and_lines_their_angle() {
+    let folder = TempDir::new().unwrap();
+    let mut harness = opening(&drawing(&folder));
+    asked(&mut harness);
+    press(&mut harness, "Only paint");
+    command(&mut harness, "Bevel");
+    until(&mut harness, |harness| harness.query_by_label("Layers").is_some());
+    let tabs: Vec<_> = harness.get_all_by_label("Shape").collect();
+    tabs.last().unwrap().click();
+    steps(&mut harness);
+    assert!(harness.query_by_label("Profile of the bevel").is_some());
+    command(&mut harness, "Lines as form");
+    assert_eq!(parts(&harness)[1].kind.name(), "lines");
+    assert!(harness.query_all_by_label("Angle").next().is_some());
 }

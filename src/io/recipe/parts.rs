@@ -38,6 +38,9 @@ pub fn read_part(file: &Path, value: &Value, document: &Document, budget: &Budge
         for known in Part::clone(part).files_mut() {
             pictures.know_coverage(&known.file, &known.coverage);
         }
+        if let PartKind::Maps(maps) = &part.kind {
+            pictures.know_maps(maps);
+        }
     }
     let Budget { layers: layers_left, document_samples: samples_left, .. } = *budget;
     let size = document.size;
@@ -171,6 +174,17 @@ impl LayerReader<'_> {
     }
     fn maps(&mut self, fields: &mut Fields) -> Result<PartKind> {
         let node = fields.node().clone();
+        // Those of an edit are known, wherever they came from: their files are not read again.
+        let told = |known: &PartMaps| {
+            let written = surface::write(&known.source);
+            written.fields().iter().all(|(name, value)| node.value().get(name) == Some(value))
+        };
+        if let Some(known) = self.pictures.known_maps(told) {
+            for name in ["normal", "depth", "mask"] {
+                fields.get(name);
+            }
+            return Ok(PartKind::Maps(known));
+        }
         let source = surface::maps_of(fields)?;
         if source.normal.is_none() && source.depth.is_none() {
             return Err(node.refused("names neither a normal map nor a depth map"));

@@ -2,6 +2,7 @@
 //! Floor 5. Decoding is in `io::picture`.
 
 use super::RecipeSource;
+use crate::document::parts::PartMaps;
 use crate::document::source::NormalConvention;
 use crate::json::JsonNode;
 use crate::maps::detail;
@@ -24,6 +25,7 @@ pub struct PictureCache {
     /// By set of adjustments, so that layers share the adjusted texture as well.
     sources: HashMap<String, Vec<PictureSource>>,
     coverages: HashMap<String, Arc<Plane<u8>>>,
+    maps: Vec<PartMaps>,
     tiles: TileGrids,
     details: Vec<CachedDetail>,
     used_px: u64,
@@ -128,6 +130,13 @@ impl PictureCache {
     /// A mask that is known already by its name.
     pub fn know_coverage(&mut self, file: &str, coverage: &Arc<Plane<u8>>) {
         self.coverages.insert(file.to_owned(), coverage.clone());
+    }
+    pub fn know_maps(&mut self, maps: &PartMaps) {
+        self.maps.push(maps.clone());
+    }
+    /// Those of the maps that are known already which are meant.
+    pub fn known_maps(&self, is_meant: impl Fn(&PartMaps) -> bool) -> Option<PartMaps> {
+        self.maps.iter().find(|maps| is_meant(maps)).cloned()
     }
     /// The mask that a field names; it has the canvas's size.
     pub fn coverage(

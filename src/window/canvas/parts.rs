@@ -86,9 +86,17 @@ impl PartMarks {
         }
         if let Some((part, form)) = chosen.and_then(form_of) {
             let look = Stroke::new(1.4, LIGHT);
-            outline(painter, self.chosen.runs(form, level), &to_screen, look);
+            // While it is dragged its last form goes along.
+            let map = self.known.moved(&part.id);
+            let moved = |p: Vec2| to_screen(map.transform_point2(p));
+            outline(painter, self.chosen.runs(form, level), &moved, look);
             if tool == ToolKind::Shape {
-                handles(painter, part, &PartFrame::of(part, form, 1.0 / scale), &to_screen);
+                let frame = PartFrame::of(part, form, 1.0 / scale).through(map);
+                handles(painter, part, &frame, &to_screen);
+                let told = under.and_then(|at| Some((at, frame.handle_at(at)?.told(part)?)));
+                if let Some((at, text)) = told {
+                    hint(painter, to_screen(at), &text);
+                }
             }
         }
         if tool == ToolKind::Touch {
@@ -145,12 +153,49 @@ fn handles(painter: &Painter, part: &Part, frame: &PartFrame, to_screen: &impl F
             painter.add(Shape::convex_polygon(points, Color32::WHITE, Stroke::new(1.2, DARK)));
         }
     }
+    inflation_handles(painter, frame, to_screen);
+    if let Some(at) = frame.depth().map(to_screen) {
+        // A small sheet before a larger one.
+        for (by, side) in [(-2.0, 10.0), (2.0, 8.0)] {
+            let center = at + eframe::egui::vec2(by, by);
+            let sheet = Rect::from_center_size(center, eframe::egui::Vec2::splat(side));
+            painter.rect(sheet, 1.5, Color32::WHITE, Stroke::new(1.2, DARK), StrokeKind::Outside);
+        }
+    }
     if let Some(at) = frame.tilt().map(to_screen) {
         let tilt = part.tilt_deg;
         // The way it faces: the surface falls there.
         let slope = vec2(tilt.x.to_radians().tan(), tilt.y.to_radians().tan());
         ball(painter, at, 9.0, Vec3::new(-slope.x, slope.y, 1.0).normalize_or(Vec3::Z));
     }
+}
+
+/// The handles of the profile, a cushion, and of the rim, a quarter of a circle.
+fn inflation_handles(painter: &Painter, frame: &PartFrame, to_screen: &impl Fn(Vec2) -> Pos2) {
+    if let Some(at) = frame.profile().map(to_screen) {
+        let cushion = Rect::from_center_size(at, eframe::egui::vec2(16.0, 8.0));
+        painter.rect(cushion, 4.0, Color32::WHITE, Stroke::new(1.2, DARK), StrokeKind::Outside);
+    }
+    if let Some(at) = frame.rim().map(to_screen) {
+        let arc = |i: usize| {
+            let angle = std::f32::consts::FRAC_PI_2 * i as f32 / 8.0;
+            at + eframe::egui::vec2(6.0 - 12.0 * angle.cos(), 6.0 - 12.0 * angle.sin())
+        };
+        let points: Vec<Pos2> = (0..=8).map(arc).collect();
+        for (width, color) in [(5.0, DARK), (2.6, Color32::WHITE)] {
+            painter.line(points.clone(), Stroke::new(width, color));
+        }
+    }
+}
+
+/// What a handle changes, beside the pointer.
+fn hint(painter: &Painter, at: Pos2, text: &str) {
+    let font = eframe::egui::FontId::proportional(12.5);
+    let galley = painter.layout_no_wrap(text.to_owned(), font, Color32::WHITE);
+    let corner = at + eframe::egui::vec2(16.0, 14.0);
+    let ground = Rect::from_min_size(corner, galley.size()).expand(4.0);
+    painter.rect_filled(ground, 3.0, Color32::from_black_alpha(190));
+    painter.galley(corner, galley, Color32::WHITE);
 }
 
 /// A small lit ball with a needle in a direction (camera space, y up).

@@ -2,20 +2,26 @@
 //! Floor 7. What each is made of is `session::actions::parts::new`'s.
 
 use super::row::{MenuCommand, has_document, row};
+use crate::requests::WindowRequest;
 use crate::session::Action;
 use crate::session::actions::{NewPart, PartAction};
 
 /// A command for each kind, in the order of its table.
 macro_rules! commands {
-    ($($index:literal),+) => { &[$({
+    ($($index:literal),+; $other:expr) => { &[$({
         let (_, _, label, hint) = NewPart::ALL[$index];
         row(label, &[], hint, has_document, |_, requests| {
             requests.act(Action::Part(PartAction::Add { kind: NewPart::ALL[$index].0 }));
         })
-    }),+] };
+    }),+, $other] };
 }
 
-pub const COMMANDS: &[MenuCommand] = commands!(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13);
+const MAPS: MenuCommand =
+    row("Maps…", &[], "Normals and depths that were made elsewhere, as a part", has_document, |_, requests| {
+        requests.request(WindowRequest::PartMapsDialog);
+    });
+
+pub const COMMANDS: &[MenuCommand] = commands!(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16; MAPS);
 
 #[cfg(test)]
 mod tests {
@@ -24,6 +30,6 @@ mod tests {
     #[test]
     fn every_kind_of_part_has_a_command() {
         let named = |(_, _, label, _): &(NewPart, &str, &str, &str)| COMMANDS.iter().any(|row| row.name == *label);
-        assert!(NewPart::ALL.iter().all(named) && COMMANDS.len() == NewPart::ALL.len());
+        assert!(NewPart::ALL.iter().all(named) && COMMANDS.len() == NewPart::ALL.len() + 1);
     }
 }

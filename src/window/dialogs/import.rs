@@ -35,8 +35,18 @@ pub struct ImportDialog {
     lit: Vec<TextureHandle>,
     /// Which of them was clicked: it is the one chosen while the maps are read anew.
     clicked: usize,
-    /// For the document in front, not for a new one.
-    replaces: bool,
+    becomes: MapsBecome,
+}
+
+/// What is made of the maps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum MapsBecome {
+    #[default]
+    Document,
+    /// The maps of the document in front.
+    ItsMaps,
+    /// A part of the shape of the document in front.
+    ItsPart,
 }
 
 /// What each of the four pictures changes: x and y flipped.
@@ -56,7 +66,12 @@ impl ImportDialog {
             let file = normal.or(source.depth.as_ref().map(|map| &map.file));
             file.is_some_and(|file| Path::new(file).is_file())
         };
-        Self { source: source.filter(is_there).cloned().unwrap_or_default(), replaces: true, ..Self::default() }
+        let becomes = MapsBecome::ItsMaps;
+        Self { source: source.filter(is_there).cloned().unwrap_or_default(), becomes, ..Self::default() }
+    }
+    /// Opens the dialog for a part of the document in front.
+    pub fn for_part() -> Self {
+        Self { becomes: MapsBecome::ItsPart, ..Self::default() }
     }
     /// A file was chosen for one of the maps.
     pub fn take_file(&mut self, purpose: FilePurpose, file: PathBuf) {
@@ -95,7 +110,11 @@ impl ImportDialog {
     }
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(560.0);
-        ui.heading(if self.replaces { "Other maps for this document" } else { "New document from maps" });
+        ui.heading(match self.becomes {
+            MapsBecome::Document => "New document from maps",
+            MapsBecome::ItsMaps => "Other maps for this document",
+            MapsBecome::ItsPart => "Maps as a part of the shape",
+        });
         let mut ask = None;
         self.files(ui, &mut ask);
         if let Some(purpose) = ask {
@@ -130,13 +149,18 @@ impl ImportDialog {
             ui.checkbox(&mut self.is_sure, "Use it as a normal map anyway");
         }
         if let Some((name, _)) = &self.picture
-            && !self.replaces
+            && self.becomes == MapsBecome::Document
         {
             let text = format!("Begin with the picture in the file, “{name}”");
             ui.checkbox(&mut self.takes_picture, text);
         }
         let is_ready = !self.is_reading && matches!(self.found, Some(Ok(_))) && (!is_doubtful || self.is_sure);
-        match buttons(ui, if self.replaces { "Replace" } else { "Create" }, is_ready) {
+        let yes = match self.becomes {
+            MapsBecome::Document => "Create",
+            MapsBecome::ItsMaps => "Replace",
+            MapsBecome::ItsPart => "Add",
+        };
+        match buttons(ui, yes, is_ready) {
             Some(true) => self.create(),
             Some(false) => DialogAnswer::Close,
             None => DialogAnswer::Open,
@@ -265,7 +289,12 @@ impl ImportDialog {
     }
     fn create(&mut self) -> DialogAnswer {
         match self.found.take() {
-            Some(Ok(import)) if self.replaces => DialogAnswer::Replaced(Box::new((self.source.clone(), import))),
+            Some(Ok(import)) if self.becomes == MapsBecome::ItsMaps => {
+                DialogAnswer::Replaced(Box::new((self.source.clone(), import)))
+            }
+            Some(Ok(import)) if self.becomes == MapsBecome::ItsPart => {
+                DialogAnswer::Added(Box::new((self.source.clone(), import)))
+            }
             Some(Ok(import)) => {
                 let opened = storage::of_import(&self.source, import);
                 DialogAnswer::Imported(Box::new(match self.picture.take().filter(|_| self.takes_picture) {

@@ -66,6 +66,8 @@ pub enum DialogAnswer {
     Imported(import::MadeDocument),
     /// The new maps of the document in front.
     Replaced(Box<(SurfaceSource, ImportedSurface)>),
+    /// Maps for a new part of the document in front.
+    Added(Box<(SurfaceSource, ImportedSurface)>),
     /// Discard unsaved changes, then do this.
     Discard(AfterUnsaved),
     /// Save first, then do this.

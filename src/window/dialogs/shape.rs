@@ -25,27 +25,31 @@ pub struct ShapeDialog {
     is_first: bool,
 }
 
+/// The drawing of a document: the selected layer, or the topmost that has an outline. Takes long on large canvases.
+pub fn looked(document: &Document, selected: Option<LayerId>) -> Option<(LayerId, DrawingLook)> {
+    let others = document.walk().into_iter().rev().map(|(_, layer)| layer);
+    let others = others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
+    let mut first = None;
+    for id in selected.into_iter().chain(others).take(MOST_LOOKS) {
+        let Some(look) = first::look(document, id) else { continue };
+        if look.has_outline() {
+            return Some((id, look));
+        }
+        first.get_or_insert((id, look));
+    }
+    first
+}
+
 impl ShapeDialog {
     /// For a document that was opened from a picture, whose only layer is the drawing.
     pub fn of_picture(tab: &OpenDocument, look: DrawingLook) -> Self {
         let layer = tab.document().layers.last().map(|layer| layer.id);
         Self { is_first: true, ..Self::new(tab, layer, look) }
     }
-    /// For the drawing of a document: the selected layer, or the topmost that has an outline.
-    pub fn of(tab: &OpenDocument) -> Self {
-        let document = tab.document();
-        let others = document.walk().into_iter().rev().map(|(_, layer)| layer);
-        let others = others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
-        let looked: Vec<(LayerId, DrawingLook)> = tab
-            .selected
-            .into_iter()
-            .chain(others)
-            .take(MOST_LOOKS)
-            .filter_map(|id| Some((id, first::look(document, id)?)))
-            .collect();
-        let found = looked.iter().find(|(_, look)| look.has_outline()).or(looked.first());
+    /// For the drawing that was found in a document.
+    pub fn of(tab: &OpenDocument, found: Option<(LayerId, DrawingLook)>) -> Self {
         match found {
-            Some((id, look)) => Self::new(tab, Some(*id), *look),
+            Some((id, look)) => Self::new(tab, Some(id), look),
             None => Self::new(tab, None, DrawingLook { ground: Ground::Empty, colors: 0, flat_share: 0.0 }),
         }
     }

@@ -274,7 +274,7 @@ fn dynamics(ui: &mut Ui, brush: &Brush) -> Option<Brush> {
             });
         });
         let bent = curve::show(ui, &format!("Curve of {}", label.to_lowercase()), shape, 64.0);
-        to = bent.map(|bent| brush.dynamics.with(*property, *input, bent)).or(to.take());
+        to = bent.map(|bent| brush.dynamics.with(*property, *input, bent.to)).or(to.take());
     }
     let menu = ui.menu_button("+ Let something follow…", |ui| {
         for (property, name) in Property::ALL {

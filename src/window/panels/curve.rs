@@ -5,7 +5,7 @@ use crate::math::{Vec2, vec2};
 use crate::paint::Curve;
 use crate::paint::dynamics::{MAX_POINTS, MOST_ADDED};
 use crate::theme::ACCENT;
-use crate::widgets::named;
+use crate::widgets::{ValueChange, named};
 use eframe::egui::{self, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2};
 
 /// The distance within which the pointer grabs a point, screen points.
@@ -43,7 +43,7 @@ fn span_of(curve: &Curve) -> f32 {
 }
 
 /// Shows a curve and bends it: a click adds a point, a drag moves one, a right click takes one away.
-pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<Curve> {
+pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<ValueChange<Curve>> {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(ui.available_width(), height_pt), Sense::click_and_drag());
     named(&response, label);
     let inner = rect.shrink(5.0);
@@ -69,7 +69,10 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<C
     if response.secondary_clicked() {
         let gone = at.and_then(|at| nearest(at, &points)).filter(|_| points.len() > 1)?;
         points.remove(gone);
-        return through(curve, points, span);
+        return through(curve, points, span).map(|to| ValueChange { to, done: true });
+    }
+    if response.drag_stopped() {
+        return Some(ValueChange { to: curve.clone(), done: true });
     }
     if response.drag_started() || response.clicked() {
         let at = ui.input(|i| i.pointer.press_origin()).or(at)?;
@@ -83,7 +86,7 @@ pub fn show(ui: &mut Ui, label: &str, curve: &Curve, height_pt: f32) -> Option<C
     let least = i.checked_sub(1).map_or(0.0, |before| points[before].x);
     let most = points.get(i + 1).map_or(1.0, |after| after.x);
     points[i] = vec2(to.x.max(least).min(most), to.y);
-    through(curve, points, span)
+    through(curve, points, span).map(|to| ValueChange { to, done: response.clicked() })
 }
 
 /// Adds a point in its place; returns its index.

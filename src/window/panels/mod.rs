@@ -10,6 +10,7 @@ mod crop;
 mod curve;
 pub mod fill;
 pub mod history;
+mod home;
 pub mod layers;
 mod liquify;
 pub mod mask;

@@ -2,13 +2,14 @@
 //! `material`.
 
 use super::setter::LayerSetter;
-use super::{colors, mask, material, options, strokes};
-use crate::document::{Content, DetailSource, Layer, NormalLayer};
+use super::{colors, home, mask, material, options, strokes};
+use crate::document::{Content, DetailSource, Document, Layer, NormalLayer};
 use crate::math::{Vec2, vec2};
 use crate::operators::{OPERATORS, OfferedOperator};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PlacedImage, Placement};
 use crate::raster::Outside;
 use crate::requests::UiRequests;
+use crate::session::actions::LayerAction;
 use crate::session::actions::pictures::PicturePart;
 use crate::session::{Property, Session};
 use crate::surface::{NoiseRelief, Weights};
@@ -50,7 +51,19 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     }
     ui.separator();
     let on_mask = session.active().is_some_and(|tab| tab.on_mask);
+    if let Some(document) = session.shown() {
+        home(ui, document, layer, &mut setter);
+    }
     common(ui, layer, has_surface, on_mask, &mut setter);
+}
+
+/// Which part carries the layer.
+fn home(ui: &mut Ui, document: &Document, layer: &Layer, setter: &mut LayerSetter) {
+    let in_group = document.place_of(layer.id).is_some_and(|place| place.group.is_some());
+    let around = if in_group { "As its group" } else { home::CANVAS };
+    if let Some(part) = home::choice(ui, document, layer.on.as_ref(), around) {
+        setter.act(|layer| LayerAction::Home { layer: layer.into(), part });
+    }
 }
 
 fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: &mut LayerSetter) {

@@ -1,7 +1,7 @@
 //! The strokes of the selected stroke layer: list, selection, style, order, deletion, baking.
 //! Floor 7.
 
-use super::{colors, options};
+use super::{colors, home, options};
 use crate::icons::{Icon, icon_button};
 use crate::operators::{OPERATORS, OfferedOperator};
 use crate::paint::Stroke;
@@ -29,6 +29,12 @@ pub fn show(ui: &mut Ui, session: &Session, layer: &LayerPath, strokes: &[Arc<St
     };
     buttons(ui, layer, n, &chosen, requests);
     title(ui, if chosen.len() == 1 { "Stroke" } else { "Strokes" });
+    if let Some(document) = session.shown()
+        && let Some(part) = home::choice(ui, document, first.home().map(|home| &home.frame), "As its layer")
+    {
+        let (layer, strokes) = (layer.clone(), chosen.clone());
+        requests.act(Action::Stroke(StrokeAction::Home { layer, strokes, part }));
+    }
     styles(ui, first, |to, done| {
         let (layer, strokes) = (layer.clone(), chosen.clone());
         requests.act(Action::Stroke(StrokeAction::Restyle { layer, strokes, to, done }));

@@ -5,9 +5,11 @@ use super::MainWindow;
 use crate::advice::with_advice;
 use crate::clipboard::PastedContent;
 use crate::dialogs::{Dialog, import, losses, path, replace, shape};
+use crate::document::SurfaceSource;
 use crate::document::parts::drawing::DrawingLook;
 use crate::files::{self, FilePurpose};
 use crate::io::Overwrite;
+use crate::io::maps::ImportedSurface;
 use crate::jobs::{JobKind, JobResult, PartResult, PinPosition, short};
 use crate::math::Vec2;
 use crate::raster::Picture;
@@ -17,9 +19,12 @@ use crate::session::actions::FileAction;
 use crate::session::actions::files::place;
 use crate::session::actions::pictures::{self, PicturePart};
 use crate::session::actions::unwrapped;
-use crate::session::{brushes, storage};
+use crate::session::{Session, brushes, storage};
 use eframe::egui;
 use std::path::{Path, PathBuf};
+
+/// What is done with maps.
+type GiveMaps = fn(&mut Session, &SurfaceSource, ImportedSurface) -> crate::Result<()>;
 
 impl MainWindow {
     pub(super) fn finish_jobs(&mut self, ctx: &egui::Context) {
@@ -99,6 +104,13 @@ impl MainWindow {
                 self.dialogs.push(Dialog::Replace(replace::Replace::new(pending, reason)));
             }
             JobResult::Edited(edited) => self.edited(*edited),
+            JobResult::Shaped(shaped) => self.shaped(*shaped),
+            JobResult::Declined(why) => self.messages.push(why.into()),
+            JobResult::Looked(tab, found) => {
+                if let Some(tab) = self.session.open_documents.iter().find(|other| other.key == tab) {
+                    self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(tab, found)));
+                }
+            }
             JobResult::Pasted(PastedContent::Picture(picture)) => {
                 self.pictured("pasted.png", picture, PinPosition::Pointer);
             }
@@ -162,6 +174,12 @@ impl MainWindow {
         }
     }
     /// A file was chosen to be written. Where it is there the dialog asked about it, unless it gets another name here.
+    /// Gives the document in front maps, as another dialog asked.
+    pub(super) fn take_maps(&mut self, (source, import): (SurfaceSource, ImportedSurface), give: GiveMaps) {
+        let done = give(&mut self.session, &source, import);
+        self.messages.extend(done.err().map(|error| with_advice(&error)));
+        self.messages.append(&mut self.session.notes);
+    }
     fn chosen_to_write(&mut self, purpose: FilePurpose, file: PathBuf) {
         let named = purpose.named(file.clone(), self.export.extension);
         let was_asked = named == file && named.exists();

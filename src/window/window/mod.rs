@@ -13,7 +13,7 @@ mod work;
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
 use super::dialogs::{
-    AfterUnsaved, Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shape, shortcuts, unwrapped,
+    AfterUnsaved, Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shortcuts, unwrapped,
 };
 use super::files::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
@@ -28,7 +28,7 @@ use super::thumbnails::Thumbnails;
 use super::{keys, sample};
 use crate::advice::with_advice;
 use crate::document::Progress;
-use crate::session::actions::GuideAction;
+use crate::session::actions::{self, GuideAction};
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
 use crate::surface::Surface;
@@ -218,11 +218,8 @@ impl MainWindow {
         match answer {
             DialogAnswer::Chosen(purpose, file) => self.chosen(purpose, file),
             DialogAnswer::Imported(opened) => self.session.adopt(*opened),
-            DialogAnswer::Replaced(maps) => {
-                let done = crate::session::actions::files::replace_maps(&mut self.session, &maps.0, maps.1);
-                self.messages.extend(done.err().map(|error| with_advice(&error)));
-                self.messages.append(&mut self.session.notes);
-            }
+            DialogAnswer::Replaced(maps) => self.take_maps(*maps, actions::files::replace_maps),
+            DialogAnswer::Added(maps) => self.take_maps(*maps, actions::files::add_maps),
             DialogAnswer::Discard(then) => self.proceed(ctx, then, true),
             DialogAnswer::SaveThen(then) => self.save(Some(then)),
             DialogAnswer::Replace(pending) => self.put(pending.forced()),
@@ -264,11 +261,8 @@ impl MainWindow {
                 let import = import::ImportDialog::replacing(source.as_deref());
                 self.dialogs.push(Dialog::Import(Box::new(import)));
             }
-            WindowRequest::ShapeDialog => {
-                if let Some(tab) = self.session.active() {
-                    self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(tab)));
-                }
-            }
+            WindowRequest::PartMapsDialog => self.dialogs.push(Dialog::Import(import::ImportDialog::for_part().into())),
+            WindowRequest::ShapeDialog => self.look_for_drawing(),
             WindowRequest::Choose(purpose) => self.ask_for(purpose, ""),
             WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
             WindowRequest::Open(file) => self.jobs.open(vec![file], None),

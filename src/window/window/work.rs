@@ -3,18 +3,18 @@
 
 use super::MainWindow;
 use crate::clipboard::{self, PastedContent};
-use crate::dialogs::AfterUnsaved;
+use crate::dialogs::{AfterUnsaved, shape};
 use crate::document::Progress;
 use crate::files::FilePurpose;
 use crate::io::export::ExportOptions;
 use crate::io::replace::FileStamp;
 use crate::io::{Overwrite, Terms};
-use crate::jobs::{EditResult, JobKind, JobResult, short};
+use crate::jobs::{EditResult, JobKind, JobResult, ShapedResult, short};
 use crate::math::Size;
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
 use crate::saving::{Exporting, ExportingMaps, Pending, Saving};
-use crate::session::actions::LayerAction;
+use crate::session::actions::{LayerAction, PartAction};
 use crate::session::{Action, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
@@ -128,7 +128,11 @@ impl MainWindow {
     }
     /// Whether an action takes long, and was begun on a thread instead.
     pub(super) fn begin_edit(&mut self, action: &Action) -> bool {
-        let Action::Layer(action) = action else { return false };
+        let action = match action {
+            Action::Layer(action) => action,
+            Action::Part(action) => return self.begin_shape(action),
+            _ => return false,
+        };
         let Some(name) = action.takes_long() else { return false };
         self.session.drop_gesture();
         let Some(tab) = self.session.active_mut() else { return true };
@@ -151,6 +155,36 @@ impl MainWindow {
         if crate::session::is_same(tab.document(), &from) {
             tab.take(edit);
             self.did(|| Action::Layer(action));
+        }
+    }
+    /// The same of parts.
+    fn begin_shape(&mut self, action: &PartAction) -> bool {
+        let Some(name) = action.takes_long() else { return false };
+        self.session.drop_gesture();
+        let Some(tab) = self.session.active_mut() else { return true };
+        tab.forget_preview();
+        let (tab, from, action) = (tab.key, tab.document().clone(), action.clone());
+        self.jobs.start(name.into(), JobKind::Editing, move |progress| match action.shaped(&from, progress) {
+            Ok(Some(shape)) => JobResult::Shaped(Box::new(ShapedResult { tab, action, from, shape })),
+            Ok(None) => JobResult::Nothing,
+            Err(why) => JobResult::Declined(why),
+        });
+        true
+    }
+    /// Looks for the drawing that is to have a shape; then a dialog asks what shape.
+    pub(super) fn look_for_drawing(&mut self) {
+        let Some(tab) = self.session.active() else { return };
+        let (key, document, selected) = (tab.key, tab.document().clone(), tab.selected);
+        let look = move |_: &Progress| JobResult::Looked(key, shape::looked(&document, selected));
+        self.jobs.start("Looking at the drawing".into(), JobKind::Working, look);
+    }
+    pub(super) fn shaped(&mut self, shaped: ShapedResult) {
+        let ShapedResult { tab, action, from, shape } = shaped;
+        let Some(tab) = self.session.open_documents.iter_mut().find(|other| other.key == tab) else { return };
+        // As of other long edits.
+        if crate::session::is_same(tab.document(), &from) {
+            shape.put(tab);
+            self.did(|| Action::Part(action));
         }
     }
     /// Shows the edit that blocks others, once it takes long.

@@ -1,5 +1,6 @@
 //! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
 
+use crate::document::parts::PartMaps;
 use crate::document::view::UnwrapOptions;
 use crate::document::{Content, Document, Highlights, Layer, Live, Progress, SurfaceSource};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
@@ -9,6 +10,7 @@ use crate::math::{Size, Vec2, srgb::Color};
 use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::{Outside, Picture};
 use crate::session::actions::layers::above;
+use crate::session::actions::parts;
 use crate::session::actions::pictures::{self, PicturePart};
 use crate::session::actions::unwrapped;
 use crate::session::replay::{ReplayValue, actions};
@@ -63,6 +65,8 @@ actions! {
         "use" Use { part: PicturePart, file: PathBuf }
         /// The document's surface anew, of these maps: what is live bends over it.
         "replace maps" ReplaceMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
+        /// A part of these maps, in front of all others.
+        "add maps" AddMaps { normal: Option<PathBuf>, depth: Option<PathBuf> }
         "tab" Tab { index: usize }
         /// Whether saved or not.
         "close" Close { index: usize }
@@ -146,6 +150,11 @@ impl FileAction {
                 let source = storage::maps_of(normal.as_deref(), depth.as_deref());
                 let import = storage::import(&source)?;
                 replace_maps(session, &source, import)?;
+            }
+            FileAction::AddMaps { normal, depth } => {
+                let source = storage::maps_of(normal.as_deref(), depth.as_deref());
+                let import = storage::import(&source)?;
+                add_maps(session, &source, import)?;
             }
             FileAction::Tab { index } => {
                 session.crop = None;
@@ -295,6 +304,23 @@ pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps:
         tab.reads.extend(storage::map_files(source));
         session.notes.extend(notes);
     }
+    Ok(())
+}
+
+/// A part of maps in front of all others, stretched to the canvas, as a step. Fails if no surface of the canvas's size
+/// can be made of them.
+pub fn add_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
+    let maps::ImportedSurface { surface, findings, files } = import;
+    let Some(tab) = session.active_mut() else { return Ok(()) };
+    let (canvas, found) = (tab.document().size, surface.size());
+    let mut notes = findings.notes;
+    if found != canvas {
+        notes.push(format!("The maps have {found} pixels and were stretched to the canvas, {canvas}."));
+    }
+    let surface = Arc::new(surface).onto(canvas, None).map_err(|error| Error::unsupported("maps", error))?;
+    parts::new::add_maps(tab, PartMaps { source: Arc::new(source.clone()), files: Arc::new(files), surface });
+    tab.reads.extend(storage::map_files(source));
+    session.notes.extend(notes);
     Ok(())
 }
 

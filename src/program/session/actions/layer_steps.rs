@@ -55,6 +55,17 @@ pub(super) fn ungrouped(document: &Document, ids: &[LayerId]) -> Option<Step> {
     Some(("Ungroup", next, freed))
 }
 
+/// Layers on a part of the shape, on the canvas, or on what is around each; or why not, for the user.
+pub(super) fn homed(document: &Document, ids: &[LayerId], part: Option<&str>) -> Result<Step, &'static str> {
+    if part.is_some_and(|part| document.parts.home(part).is_none()) {
+        return Err("There is no such part.");
+    }
+    let on = |next: Document, id: &LayerId| next.with_layer_on(*id, part);
+    let next = ids.iter().try_fold(document.clone(), on);
+    let why = "This layer is bent as no part can carry it. Apply its transform first.";
+    next.map(|next| ("Carry with part", next, Vec::new())).ok_or(why)
+}
+
 /// What is selected taken out of layers, or all that they hold; a layer that cannot be cleared stays as it is.
 pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<Step> {
     let (mut next, mut is_any) = (document.clone(), false);

@@ -3,7 +3,7 @@
 
 use super::flattening::undisplaced;
 pub(super) use super::layer_steps::copied;
-use super::layer_steps::{cleared, duplicated, kept, moves, ungrouped};
+use super::layer_steps::{cleared, duplicated, homed, kept, moves, ungrouped};
 pub use super::new_layers::NewLayer;
 use super::new_layers::{made, model_name, selecting};
 use crate::document::warp::can_be_warped;
@@ -66,6 +66,8 @@ actions! {
         "solo" Solo { layer: LayerPath }
         /// A property; shown only, until it is `done`.
         "set" Set { layer: LayerPaths, to: Property, done: bool }
+        /// On a part of the shape by its id, on `canvas`, or on what is around it; it shows where it showed.
+        "home" Home { layer: LayerPaths, part: Option<String> }
         /// The strokes or pixels are taken out of a layer, or what is selected of them.
         "clear" Clear { layer: LayerPaths }
     }
@@ -180,6 +182,9 @@ impl LayerAction {
                 true => Ok(()),
                 false => Err("There is no group among the chosen layers."),
             }),
+            LayerAction::Home { layer, part } => {
+                chosen(layer).and_then(|ids| homed(document, &ids, part.as_deref()).map(drop))
+            }
             LayerAction::MergeDown { layer } => chosen(layer).and_then(|ids| match &ids[..] {
                 [one] if lies_lowest(one) => Err("There is no layer beneath to merge with."),
                 _ => Ok(()),
@@ -280,6 +285,7 @@ impl LayerAction {
                 (label, document.with_one_for(&ids, group)?, vec![id])
             }
             LayerAction::Ungroup { layer } => ungrouped(document, &chosen(layer)?)?,
+            LayerAction::Home { layer, part } => homed(document, &layer.find(document)?, part.as_deref()).ok()?,
             LayerAction::Clear { layer } => cleared(document, &chosen(layer)?)?,
             LayerAction::Select { .. }
             | LayerAction::Choose { .. }

@@ -1,15 +1,18 @@
 //! Actions on the shape of the document in front: its parts, the farthest first. What cannot be done says why.
-//! Floor 6. `new` makes parts, `first` gives a drawing its first shape, `list` orders them. Parts that the pen changes
+//! Floor 6. `new` makes parts, of layers' pictures by `greys`, `first` gives a drawing its first shape, `list` orders
+//! them. Parts that the pen changes
 //! on the canvas are `tools::shape`'s.
 
 pub mod first;
+mod greys;
 mod list;
 pub mod new;
 
+pub use first::FirstShape;
 pub use new::NewPart;
 
 use crate::document::parts::Part;
-use crate::document::{Document, Inflation};
+use crate::document::{Document, Inflation, Progress};
 use crate::io::Budget;
 use crate::io::recipe::parts::read_part;
 use crate::session::replay::{ReplayValue, actions, names, record};
@@ -87,6 +90,16 @@ impl PartAction {
         };
         session.notes.extend(done.err());
     }
+    /// A description of an edit that takes long.
+    pub fn takes_long(&self) -> Option<&'static str> {
+        matches!(self, PartAction::Shape { .. }).then_some("Giving it a shape")
+    }
+    /// Performs a long edit on a document, on any thread; `None` for any other.
+    pub fn shaped(&self, document: &Document, progress: &Progress) -> Result<Option<FirstShape>, Refusal> {
+        let PartAction::Shape { layer, preset, flats } = self else { return Ok(None) };
+        let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
+        first::shaped(document, layer, preset.0, *flats, progress).map(Some)
+    }
     fn step(&self, tab: &mut OpenDocument) -> Result<(), Refusal> {
         let document = tab.document();
         let of = |id: &str| document.parts.part(id).cloned().ok_or(NO_PART);
@@ -102,20 +115,17 @@ impl PartAction {
                 }
                 ("Add part", next, Some(id))
             }
-            PartAction::Shape { layer, preset, flats } => {
-                let layer = layer.find(document).map(|layer| layer.id).ok_or("There is no such layer.")?;
-                let first::FirstShape { document: next, part, base } =
-                    first::shaped(document, layer, preset.0, *flats)?;
-                if tab.commit("Give it a shape", next) {
-                    (tab.part, tab.selected) = (Some(part), Some(base));
+            PartAction::Shape { .. } => {
+                if let Some(shaped) = self.shaped(document, &Progress::default())? {
+                    shaped.put(tab);
                 }
                 return Ok(());
             }
-            PartAction::Delete { part } => ("Delete part", list::without(document, &of(part)?.id), None),
+            PartAction::Delete { part } => ("Delete part", document.without_part(part).ok_or(NO_PART)?, None),
             PartAction::Order { part, index } => ("Order parts", list::ordered(document, &of(part)?.id, *index), None),
             PartAction::Visible { part, on } => {
                 let next = Part { visible: *on, ..Part::clone(&*of(part)?) };
-                (if *on { "Show part" } else { "Hide part" }, list::with(document, next), None)
+                (if *on { "Show part" } else { "Hide part" }, document.with_part(next), None)
             }
             PartAction::Duplicate { part } => {
                 let (next, id) = list::duplicated(document, &*of(part)?);
@@ -147,10 +157,12 @@ fn set(tab: &mut OpenDocument, value: &Value, done: bool) -> Result<(), String> 
         return Err(NO_PART.into());
     };
     let label = label(old, &next);
-    let next = list::with(document, next);
     if done {
+        let next = document.with_part(next);
         tab.commit(label, next);
     } else {
+        // A hand waits for nothing: whoever shows it shapes it.
+        let next = document.with_part_ahead(next);
         tab.show(label, next);
     }
     Ok(())

@@ -24,6 +24,8 @@ actions! {
         "delete" Delete { layer: LayerPath, strokes: Vec<usize> }
         /// To pixels, on a paint layer of their own.
         "bake" Bake { layer: LayerPath, strokes: Vec<usize> }
+        /// On a part of the shape by its id, on `canvas`, or on what the layer lies on; they show where they showed.
+        "home" Home { layer: LayerPath, strokes: Vec<usize>, part: Option<String> }
         /// Takes over its brush, operator and colour.
         "take" Take { layer: LayerPath, stroke: usize }
     }
@@ -110,6 +112,11 @@ impl StrokeAction {
             StrokeAction::Delete { layer, strokes } => {
                 let id = id(layer)?;
                 ("Delete stroke", document.without_strokes(id, strokes)?, id, Vec::new())
+            }
+            StrokeAction::Home { layer, strokes, part } => {
+                let id = id(layer)?;
+                let next = document.with_strokes_on(id, strokes, part.as_deref())?;
+                ("Carry with part", next, id, strokes.clone())
             }
             StrokeAction::Bake { layer, strokes } => {
                 let id = id(layer)?;

@@ -68,19 +68,26 @@ impl ShapeSettings {
     }
 }
 
-/// With a part in the place of the one of its id.
-pub fn changed(document: &Document, part: Part) -> Document {
-    let part = Arc::new(part);
-    let same = |other: &Arc<Part>| if other.id == part.id { part.clone() } else { other.clone() };
-    document.with_parts(document.parts.list.iter().map(same).collect())
-}
-
 /// With one more part: in front of all others, or of all that lies on the same part.
 pub fn with_new(document: &Document, part: Part) -> Document {
+    document.with_parts(list_with_new(document, part))
+}
+
+/// With a part that a hand works on, new or not: shaped later, or, once the hand lifts, at once.
+fn with_worked(document: &Document, part: &Part, is_new: bool, is_done: bool) -> Document {
+    match (is_new, is_done) {
+        (true, true) => with_new(document, part.clone()),
+        (true, false) => document.with_parts_ahead(list_with_new(document, part.clone())),
+        (false, true) => document.with_part(part.clone()),
+        (false, false) => document.with_part_ahead(part.clone()),
+    }
+}
+
+fn list_with_new(document: &Document, part: Part) -> Vec<Arc<Part>> {
     let mut list = document.parts.list.clone();
     let beside = part.on().and_then(|on| list.iter().rposition(|other| other.id == on || other.on() == Some(on)));
     list.insert(beside.map_or(list.len(), |at| at + 1), Arc::new(part));
-    document.with_parts(list)
+    list
 }
 
 /// An id that no part of a document has: `part-1`, `part-2`, …

@@ -1,7 +1,7 @@
 //! The shape tool: the part under the pen is chosen and moved; handles around the chosen one scale, turn, puff and tilt
 //! it. Floor 5. The numbers that have no handle are the panel's.
 
-use super::{changed, map_about};
+use super::map_about;
 use crate::document::Document;
 use crate::document::parts::{Inflation, Part, PartKind};
 use crate::math::range::held;
@@ -19,6 +19,8 @@ pub struct PartFrame {
     pub px_per_pt: f32,
     /// Whether it has a height to drag.
     pub has_puff: bool,
+    /// Whether it is inflated, so that it has a profile and a rim.
+    pub is_inflated: bool,
 }
 
 /// What of a part the pen holds.
@@ -32,25 +34,61 @@ pub enum PartHandle {
     Puff,
     /// The ball below the middle: dragged to a side the part leans there.
     Tilt,
+    /// Left of the middle: dragged to the right a pillow becomes a tube.
+    Profile,
+    /// Right of the middle: dragged up the rim turns away, dragged down it becomes a low relief.
+    Rim,
+    /// Above the middle: dragged up the part comes nearer.
+    Depth,
     /// All else of the part.
     Body,
 }
 
-/// How far above the box its turning handle stands, and the ball below the middle, points.
+/// How far above the box its turning handle stands, and how far from the middle the handles around it, points.
 const TURN_PT: f32 = 26.0;
-const TILT_PT: f32 = 34.0;
+const AROUND_PT: f32 = 34.0;
 /// In a smaller box there is no room for handles within, points.
 const LEAST_BOX_PT: f32 = 84.0;
 /// A degree of tilt for so many points.
 const TILT_PT_A_DEGREE: f32 = 2.0;
+/// A drag of so many points takes a pillow to a tube.
+const PROFILE_PT: f32 = 120.0;
+/// A degree of the rim for so many points.
+const RIM_PT_A_DEGREE: f32 = 1.5;
 /// Turns with Shift go from one multiple of this to the next.
 const STEP_DEGREES: f32 = 15.0;
+
+impl PartHandle {
+    /// What a hand at it reads: what it changes, and how much of that there is.
+    pub fn told(self, part: &Part) -> Option<String> {
+        let inflation = match &part.kind {
+            PartKind::Inflate { inflation, .. } => Some(*inflation),
+            _ => None,
+        };
+        Some(match self {
+            PartHandle::Puff => format!("Height {:.2}", height_of(&part.kind)?.0),
+            PartHandle::Tilt => format!("Tilt {:.0}°, {:.0}°", part.tilt_deg.x, part.tilt_deg.y),
+            PartHandle::Profile => format!("Pillow – tube {:.2}", inflation?.profile),
+            PartHandle::Rim => format!("Rim {:.0}°", inflation?.rim_deg),
+            PartHandle::Depth => format!("Raise {:.0} px", part.raise),
+            PartHandle::Corner(_) | PartHandle::Turn | PartHandle::Body => return None,
+        })
+    }
+}
 
 impl PartFrame {
     /// Of a part by its form.
     pub fn of(part: &Part, form: &Form, px_per_pt: f32) -> Self {
         let rect = covered(form);
-        Self { low: rect.0, high: rect.1, px_per_pt, has_puff: height_of(&part.kind).is_some() }
+        let is_inflated = matches!(part.kind, PartKind::Inflate { .. });
+        Self { low: rect.0, high: rect.1, px_per_pt, has_puff: height_of(&part.kind).is_some(), is_inflated }
+    }
+    /// As it stands seen through a map of the canvas.
+    pub fn through(self, map: Affine2) -> Self {
+        let corners = self.corners().map(|corner| map.transform_point2(corner));
+        let low = corners.iter().fold(Vec2::MAX, |a, b| a.min(*b));
+        let high = corners.iter().fold(Vec2::MIN, |a, b| a.max(*b));
+        Self { low, high, ..self }
     }
     /// Upper left, upper right, lower right, lower left.
     pub fn corners(&self) -> [Vec2; 4] {
@@ -67,7 +105,20 @@ impl PartFrame {
         (self.has_puff && self.has_room()).then(|| self.middle())
     }
     pub fn tilt(&self) -> Option<Vec2> {
-        self.has_room().then(|| self.middle() + vec2(0.0, TILT_PT * self.px_per_pt))
+        self.around(vec2(0.0, 1.0))
+    }
+    pub fn profile(&self) -> Option<Vec2> {
+        self.around(vec2(-1.0, 0.0)).filter(|_| self.is_inflated)
+    }
+    pub fn rim(&self) -> Option<Vec2> {
+        self.around(vec2(1.0, 0.0)).filter(|_| self.is_inflated)
+    }
+    pub fn depth(&self) -> Option<Vec2> {
+        self.around(vec2(0.0, -1.0))
+    }
+    /// Beside the middle, where there is room.
+    fn around(&self, way: Vec2) -> Option<Vec2> {
+        self.has_room().then(|| self.middle() + way * (AROUND_PT * self.px_per_pt))
     }
     fn has_room(&self) -> bool {
         (self.high - self.low).min_element() >= LEAST_BOX_PT * self.px_per_pt
@@ -78,8 +129,14 @@ impl PartFrame {
         if let Some(corner) = self.corners().iter().position(|corner| near(*corner)) {
             return Some(PartHandle::Corner(corner));
         }
-        let inner =
-            [(Some(self.turn()), PartHandle::Turn), (self.puff(), PartHandle::Puff), (self.tilt(), PartHandle::Tilt)];
+        let inner = [
+            (Some(self.turn()), PartHandle::Turn),
+            (self.puff(), PartHandle::Puff),
+            (self.tilt(), PartHandle::Tilt),
+            (self.profile(), PartHandle::Profile),
+            (self.rim(), PartHandle::Rim),
+            (self.depth(), PartHandle::Depth),
+        ];
         inner.into_iter().find(|(p, _)| p.is_some_and(near)).map(|(_, handle)| handle)
     }
 }
@@ -154,7 +211,18 @@ struct PartGesture {
     found: Option<Part>,
 }
 
+/// An inflated part with other numbers.
+fn inflated(part: &Part, to: impl Fn(Inflation) -> Inflation) -> Option<Part> {
+    let PartKind::Inflate { outline, inflation } = &part.kind else { return None };
+    let kind = PartKind::Inflate { outline: outline.clone(), inflation: to(*inflation) };
+    Some(Part { kind, ..part.clone() })
+}
+
 impl PartGesture {
+    /// Points of the screen in canvas px.
+    fn pt(&self, points: f32) -> f32 {
+        points * self.frame.px_per_pt.max(1e-6)
+    }
     fn dragged(&self, pen: &PenSample) -> Option<Part> {
         let (to, part) = (pen.place(), &*self.part);
         let by = to - self.from;
@@ -185,9 +253,19 @@ impl PartGesture {
                 let half = (0.5 * (self.frame.high - self.frame.low).min_element()).max(1.0);
                 Some(Part { kind: with_height(&part.kind, height - per_half * by.y / half), ..part.clone() })
             }
+            PartHandle::Profile => inflated(part, |now| {
+                let profile = now.profile + by.x / self.pt(PROFILE_PT);
+                Inflation { profile: (held(profile, &Inflation::PROFILE) * 100.0).round() / 100.0, ..now }
+            }),
+            PartHandle::Rim => inflated(part, |now| {
+                let rim_deg = (now.rim_deg - by.y / self.pt(RIM_PT_A_DEGREE)).round();
+                Inflation { rim_deg: held(rim_deg, &Inflation::RIM), ..now }
+            }),
+            // As the hand goes: a px of height for a px of the canvas.
+            PartHandle::Depth => Some(Part { raise: held((part.raise - by.y).round(), &Part::RAISE), ..part.clone() }),
             PartHandle::Tilt => {
                 // Where the ball goes the part faces, so it falls there.
-                let by = by / (TILT_PT_A_DEGREE * self.frame.px_per_pt.max(1e-6));
+                let by = by / self.pt(TILT_PT_A_DEGREE);
                 let tilt = (part.tilt_deg - by).round();
                 let tilt_deg = vec2(held(tilt.x, &Part::TILT), held(tilt.y, &Part::TILT));
                 Some(Part { tilt_deg, ..part.clone() })
@@ -209,7 +287,7 @@ impl Gesture for PartGesture {
     fn drag(&mut self, pens: &[PenSample]) -> Outcome {
         let Some(part) = pens.last().and_then(|pen| self.dragged(pen)) else { return Outcome::Idle };
         self.found = Some(part.clone());
-        Outcome::Preview(changed(&self.document, part))
+        Outcome::Preview(self.document.with_part_ahead(part))
     }
     fn release(&mut self) -> Outcome {
         let label = match self.handle {
@@ -218,10 +296,13 @@ impl Gesture for PartGesture {
             PartHandle::Turn => "Turn part",
             PartHandle::Puff => "Puff part",
             PartHandle::Tilt => "Tilt part",
+            PartHandle::Profile => "Pillow – tube",
+            PartHandle::Rim => "Turn rim",
+            PartHandle::Depth => "Raise part",
         };
         match self.found.take().filter(|found| *found != *self.part) {
             Some(part) => {
-                let document = changed(&self.document, part);
+                let document = self.document.with_part(part);
                 Outcome::Commit { label: label.into(), document, select: None }
             }
             None => Outcome::Cancel,

@@ -1,8 +1,8 @@
 //! The sculpting tool: strokes that raise, lower and smooth the part under the pen; they stay strokes.
 //! Floor 5. What a dab does is `shape::sculpt`'s.
 
+use super::length_of;
 use super::touch::layer_on;
-use super::{changed, length_of};
 use crate::document::Document;
 use crate::document::parts::{Part, PartKind};
 use crate::math::{Affine2, COORDINATE, Vec2};
@@ -64,12 +64,8 @@ struct SculptGesture {
 }
 
 impl SculptGesture {
-    fn with(&self) -> Document {
-        if self.is_new {
-            super::with_new(&self.document, self.part.clone())
-        } else {
-            changed(&self.document, self.part.clone())
-        }
+    fn with(&self, is_done: bool) -> Document {
+        super::with_worked(&self.document, &self.part, self.is_new, is_done)
     }
     fn samples(&mut self) -> Option<&mut Vec<(Vec2, f32)>> {
         let PartKind::Sculpt { strokes, .. } = &mut self.part.kind else { return None };
@@ -90,11 +86,11 @@ impl Gesture for SculptGesture {
                 samples.push((at, pressure));
             }
         }
-        if samples.len() > before { Outcome::Preview(self.with()) } else { Outcome::Idle }
+        if samples.len() > before { Outcome::Preview(self.with(false)) } else { Outcome::Idle }
     }
     fn release(&mut self) -> Outcome {
         match self.samples().is_some_and(|samples| !samples.is_empty()) {
-            true => Outcome::Commit { label: "Sculpt".into(), document: self.with(), select: None },
+            true => Outcome::Commit { label: "Sculpt".into(), document: self.with(true), select: None },
             false => Outcome::Cancel,
         }
     }

@@ -71,6 +71,15 @@ fn handles_puff_tilt_scale_and_turn_the_chosen_part() {
     assert!(label == "Puff part" && (inflation.puff - 2.0).abs() < 0.05, "{}", inflation.puff);
     let (_, part) = drag(frame.tilt().unwrap(), vec2(20.0, -40.0));
     assert_eq!(part.tilt_deg, vec2(-10.0, 20.0), "it faces where the ball goes");
+    let (label, part) = drag(frame.profile().unwrap(), vec2(60.0, 3.0));
+    let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
+    assert!(label == "Pillow – tube" && inflation.profile == 0.5, "{}", inflation.profile);
+    assert_eq!(PartHandle::Profile.told(&part).as_deref(), Some("Pillow – tube 0.50"));
+    let (label, part) = drag(frame.rim().unwrap(), vec2(0.0, 60.0));
+    let PartKind::Inflate { inflation, .. } = &part.kind else { panic!("{}", part.kind.name()) };
+    assert!(label == "Turn rim" && inflation.rim_deg == 50.0, "{}", inflation.rim_deg);
+    let (label, part) = drag(frame.depth().unwrap(), vec2(8.0, -25.0));
+    assert_eq!((label.as_str(), part.raise), ("Raise part", 25.0));
     let (_, part) = drag(frame.high, vec2(-100.0, -100.0));
     assert!((part.matrix.matrix2.x_axis.x - 0.5).abs() < 0.01, "{}", part.matrix);
     let turn = frame.turn();
@@ -127,7 +136,7 @@ fn what_is_put_on_a_moved_and_turned_part_lies_under_the_pen() {
     let mut document = scene();
     let mut part = Part::clone(document.parts.part("square").unwrap());
     part.matrix = map_about(vec2(160.0, 160.0), Mat2::from_angle(0.6) * Mat2::from_diagonal(Vec2::splat(0.8)));
-    document = changed(&document, part);
+    document = document.with_part(part);
     let (_, last) = dragged(&document, ToolKind::Touch, "square", &[(170.0, 180.0)], NONE);
     let touch = touch::touches(&committed(last).1).remove(0);
     assert!(touch.at.distance(vec2(170.0, 180.0)) < 0.01);

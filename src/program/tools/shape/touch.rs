@@ -1,7 +1,7 @@
 //! The touch tool: a click or a drag gives the part under the pen a direction there; touches are moved by dragging and
 //! taken away with Alt. Floor 5. How they spread is `shape::touches`'.
 
-use super::{changed, free_id, inverse_direction, on_canvas_direction};
+use super::{free_id, inverse_direction, on_canvas_direction};
 use crate::document::Document;
 use crate::document::parts::{Part, PartKind};
 use crate::math::{COORDINATE, Vec2, Vec3};
@@ -120,7 +120,7 @@ fn without(document: &Document, touch: &StandingTouch) -> Outcome {
     {
         touches.remove(touch.index);
     }
-    Outcome::Commit { label: "Remove touch".into(), document: changed(document, next), select: None }
+    Outcome::Commit { label: "Remove touch".into(), document: document.with_part(next), select: None }
 }
 
 /// Touches being put down.
@@ -139,12 +139,8 @@ struct TouchGesture {
 }
 
 impl TouchGesture {
-    fn with(&self) -> Document {
-        if self.is_new {
-            super::with_new(&self.document, self.part.clone())
-        } else {
-            changed(&self.document, self.part.clone())
-        }
+    fn with(&self, is_done: bool) -> Document {
+        super::with_worked(&self.document, &self.part, self.is_new, is_done)
     }
 }
 
@@ -164,11 +160,11 @@ impl Gesture for TouchGesture {
                 (self.last, is_changed) = (Some(at), true);
             }
         }
-        if is_changed { Outcome::Preview(self.with()) } else { Outcome::Idle }
+        if is_changed { Outcome::Preview(self.with(false)) } else { Outcome::Idle }
     }
     fn release(&mut self) -> Outcome {
         match self.last {
-            Some(_) => Outcome::Commit { label: "Touch".into(), document: self.with(), select: None },
+            Some(_) => Outcome::Commit { label: "Touch".into(), document: self.with(true), select: None },
             None => Outcome::Cancel,
         }
     }
@@ -195,12 +191,12 @@ impl Gesture for MovingTouch {
         }
         touch.at = own;
         self.moved = Some(next.clone());
-        Outcome::Preview(changed(&self.document, next))
+        Outcome::Preview(self.document.with_part_ahead(next))
     }
     fn release(&mut self) -> Outcome {
         match self.moved.take() {
             Some(part) => {
-                let document = changed(&self.document, part);
+                let document = self.document.with_part(part);
                 Outcome::Commit { label: "Move touch".into(), document, select: None }
             }
             None => Outcome::Cancel,

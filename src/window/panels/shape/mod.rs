@@ -1,6 +1,7 @@
 //! The shape: its parts, the nearest on top, with the numbers of the chosen one beneath. Floor 7. `row` shows one part,
-//! `numbers` what can be set of it, `pictures` paints the small lit pictures.
+//! `numbers` and `kinds` what can be set of it, `pictures` paints the small lit pictures.
 
+mod kinds;
 mod numbers;
 pub mod pictures;
 mod row;

@@ -1,12 +1,14 @@
 //! What can be set of a part, with the ranges of its type.
 //! Floor 7.
 
+use super::kinds;
 use crate::document::parts::OutlineSource;
 use crate::document::{Inflation, Part, PartKind};
 use crate::math::{Vec2, Vec3};
-use crate::shape::{Bevel, BevelCurve, Body, Combine, Detail, Primitive};
+use crate::shape::{Body, Combine, Primitive};
 use crate::widgets::{NumberField, ValueChange, choice_row, name, sentence};
 use eframe::egui::{Button, Ui};
+use std::path::Path;
 
 /// The rows of a part; a part with other values, if one was changed.
 pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
@@ -28,28 +30,28 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
 }
 
 /// A number in a row.
-struct NumberRow<'a> {
+pub(super) struct NumberRow<'a> {
     field: NumberField<'a>,
     value: f32,
 }
 
 impl NumberRow<'_> {
-    fn show<T>(self, ui: &mut Ui, made: impl FnOnce(f32) -> T) -> Option<ValueChange<T>> {
+    pub(super) fn show<T>(self, ui: &mut Ui, made: impl FnOnce(f32) -> T) -> Option<ValueChange<T>> {
         self.field.row(ui, self.value).map(|changed| changed.map(made))
     }
 }
 
-fn number<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+pub(super) fn number<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
     NumberRow { field: NumberField::new(label, range.clone(), hint), value }
 }
 
 /// Lengths: near 0 they are set more finely.
-fn length<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+pub(super) fn length<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
     let row = number(label, range, hint, value);
     NumberRow { field: row.field.pixels().logarithmic(), ..row }
 }
 
-fn degrees<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
+pub(super) fn degrees<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
     let row = number(label, range, hint, value);
     NumberRow { field: row.field.degrees(), ..row }
 }
@@ -66,9 +68,8 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
     match kind {
         PartKind::Inflate { outline, inflation } => inflated(ui, *inflation)
             .map(|changed| changed.map(|inflation| PartKind::Inflate { outline: outline.clone(), inflation })),
-        PartKind::Bevel { outline, bevel } => {
-            beveled(ui, bevel).map(|changed| changed.map(|bevel| PartKind::Bevel { outline: outline.clone(), bevel }))
-        }
+        PartKind::Bevel { outline, bevel } => kinds::beveled(ui, bevel)
+            .map(|changed| changed.map(|bevel| PartKind::Bevel { outline: outline.clone(), bevel })),
         PartKind::Primitive(body) => primitive(ui, body).map(|changed| changed.map(PartKind::Primitive)),
         PartKind::Lathe { outline, axis, puff: value } => {
             puff(*value).show(ui, |puff| PartKind::Lathe { outline: outline.clone(), axis: *axis, puff })
@@ -77,8 +78,20 @@ fn of_kind(ui: &mut Ui, kind: &PartKind) -> Option<ValueChange<PartKind>> {
             ui.weak(format!("{} balls along a stroke", balls.len()));
             puff(*value).show(ui, |puff| PartKind::Sweep { balls: balls.clone(), puff })
         }
-        PartKind::Relief { on, picture, detail } => relief(ui, *detail)
+        PartKind::Relief { on, picture, detail } => kinds::relief(ui, *detail)
             .map(|changed| changed.map(|detail| PartKind::Relief { on: on.clone(), picture: picture.clone(), detail })),
+        PartKind::Lines { on, ink, lines } => kinds::lines(ui, *lines)
+            .map(|changed| changed.map(|lines| PartKind::Lines { on: on.clone(), ink: ink.clone(), lines })),
+        PartKind::Profiles { outline, shadings } => kinds::profiles(ui, shadings)
+            .map(|changed| changed.map(|shadings| PartKind::Profiles { outline: outline.clone(), shadings })),
+        PartKind::Maps(maps) => {
+            let (normal, depth) = (&maps.source.normal, &maps.source.depth);
+            let files = [normal.as_ref().map(|map| &map.file), depth.as_ref().map(|map| &map.file)];
+            let names = files.into_iter().flatten().map(|file| Path::new(file).file_name().unwrap_or_default());
+            let names: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
+            ui.weak(format!("Maps that were made elsewhere: {}", names.join(", ")));
+            None
+        }
         other => by_hand(ui, other),
     }
 }
@@ -138,23 +151,6 @@ fn about(preset: &str) -> &'static str {
     }
 }
 
-fn beveled(ui: &mut Ui, now: &Bevel) -> Option<ValueChange<Bevel>> {
-    let hint = "How far in from the rim it rises";
-    let width = length("Width", &Bevel::WIDTH, hint, now.width).show(ui, |width| Bevel { width, ..now.clone() });
-    let height = length("Height", &Bevel::HEIGHT, "How high it rises; below 0 it falls", now.height)
-        .show(ui, |height| Bevel { height, ..now.clone() });
-    let mut curves: Vec<(usize, &str)> =
-        BevelCurve::NAMED.iter().enumerate().map(|(i, (_, word))| (i, *word)).collect();
-    let named = BevelCurve::NAMED.iter().position(|(curve, _)| *curve == now.curve);
-    if named.is_none() {
-        curves.push((curves.len(), "its own"));
-    }
-    let chosen = choice_row(ui, "Curve", named.unwrap_or(BevelCurve::NAMED.len()), &curves);
-    let curve = chosen.and_then(|i| BevelCurve::NAMED.get(i));
-    let curve = curve.map(|(curve, _)| ValueChange { to: Bevel { curve: curve.clone(), ..now.clone() }, done: true });
-    width.or(height).or(curve)
-}
-
 /// One of three numbers: its name, how it is set, and what it is.
 type AxisRow = (&'static str, fn(Vec3, f32) -> Vec3, f32);
 
@@ -204,18 +200,6 @@ fn primitive(ui: &mut Ui, now: &Primitive) -> Option<ValueChange<Primitive>> {
         }
     }
     changed
-}
-
-fn relief(ui: &mut Ui, now: Detail) -> Option<ValueChange<Detail>> {
-    let coarse = length("Coarse", &Detail::HEIGHT, "How high the coarse detail stands", now.coarse)
-        .show(ui, |coarse| Detail { coarse, ..now });
-    let fine = length("Fine", &Detail::HEIGHT, "How high the fine detail stands", now.fine)
-        .show(ui, |fine| Detail { fine, ..now });
-    let radius = length("Radius", &Detail::RADIUS, "What is larger is form, not detail", now.radius)
-        .show(ui, |radius| Detail { radius, ..now });
-    let edge = number("Edge", &Detail::EDGE, "Steps of brightness above this are edges, which stay", now.edge)
-        .show(ui, |edge| Detail { edge, ..now });
-    coarse.or(fine).or(radius).or(edge)
 }
 
 /// How it leans, how near it is, and how it meets what lies beneath.

@@ -3,7 +3,7 @@
 
 use crate::document::parts::Parts;
 use crate::document::{Document, Part};
-use crate::math::{Vec3, srgb, vec3};
+use crate::math::{Affine2, Vec3, srgb, vec3};
 use crate::shape::Form;
 use crate::surface::Surface;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2};
@@ -19,6 +19,8 @@ pub struct PartPictures {
     /// What the forms were asked of last: while it is the same, so are they.
     of: Option<(Arc<Parts>, Option<Arc<Surface>>)>,
     forms: Vec<(Arc<Part>, Arc<Form>)>,
+    /// What takes each form to where its part stands now.
+    moved: Vec<Affine2>,
     painted: HashMap<String, (Arc<Form>, TextureHandle)>,
 }
 
@@ -43,10 +45,20 @@ impl PartPictures {
             Arc::ptr_eq(parts, &document.parts) && surfaces[0] == surfaces[1]
         });
         if !is_same {
-            self.forms = document.part_forms();
+            let forms = match document.is_shaped() {
+                true => document.part_forms().into_iter().map(|(part, form)| (part, form, Affine2::IDENTITY)).collect(),
+                // A hand drags: nothing is made for it here.
+                false => document.last_part_forms(),
+            };
+            (self.forms, self.moved) = forms.into_iter().map(|(part, form, map)| ((part, form), map)).unzip();
             self.of = Some((document.parts.clone(), document.surface.clone()));
         }
         &self.forms
+    }
+    /// What takes the form of a part, as it was made last, to where the part stands.
+    pub fn moved(&self, id: &str) -> Affine2 {
+        let at = self.forms.iter().position(|(part, _)| part.id == id);
+        at.and_then(|at| self.moved.get(at)).copied().unwrap_or(Affine2::IDENTITY)
     }
     /// A picture and its size.
     pub fn picture(&self, part: &Part) -> Option<(TextureId, Vec2)> {

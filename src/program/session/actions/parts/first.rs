@@ -10,6 +10,7 @@ use crate::document::{
 };
 use crate::math::{srgb::Color, vec3};
 use crate::raster::{BlendMode, TileGrid};
+use crate::session::OpenDocument;
 use crate::shading::{Light, LightKind, Model, Shading, Term};
 use crate::tools::brush::free_name;
 use std::sync::Arc;
@@ -23,11 +24,25 @@ pub struct FirstShape {
     pub base: LayerId,
 }
 
+impl FirstShape {
+    /// Into an open document, as one step.
+    pub fn put(self, tab: &mut OpenDocument) {
+        if tab.commit("Give it a shape", self.document) {
+            (tab.part, tab.selected) = (Some(self.part), Some(self.base));
+        }
+    }
+}
+
 /// What a layer paints on the canvas, without any surface.
 pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
+    painted_telling(document, layer, &Progress::default())
+}
+
+/// The same; `None` if it was given up, too.
+fn painted_telling(document: &Document, layer: LayerId, progress: &Progress) -> Option<TileGrid> {
     let flat = Document { surface: None, parts: Arc::default(), ..document.clone() };
     let flat = flat.with_layer(layer, |layer| (layer.visible, layer.opacity) = (true, 1.0))?;
-    flatten_layer(&flat, layer, &Progress::default())
+    flatten_layer(&flat, layer, progress)
 }
 
 /// What a layer of a document looks like as a drawing.
@@ -35,9 +50,16 @@ pub fn look(document: &Document, layer: LayerId) -> Option<DrawingLook> {
     Some(DrawingLook::of(&painted(document, layer)?, document.size))
 }
 
-/// A layer of a document gets a shape.
-pub fn shaped(document: &Document, layer: LayerId, inflation: Inflation, flats: bool) -> Result<FirstShape, Refusal> {
-    let tiles = painted(document, layer).ok_or("This layer paints nothing of its own, so it has no outline.")?;
+/// A layer of a document gets a shape. What is given up has no result that anyone asks for.
+pub fn shaped(
+    document: &Document,
+    layer: LayerId,
+    inflation: Inflation,
+    flats: bool,
+    progress: &Progress,
+) -> Result<FirstShape, Refusal> {
+    let tiles = painted_telling(document, layer, progress)
+        .ok_or("This layer paints nothing of its own, so it has no outline.")?;
     let look = DrawingLook::of(&tiles, document.size);
     let (document, tiles) = match look.ground {
         Ground::Transparent => (document.clone(), tiles),
@@ -66,7 +88,8 @@ pub fn shaped(document: &Document, layer: LayerId, inflation: Inflation, flats: 
     let id = base.id;
     let place =
         next.place_of(layer).map_or(LayerSlot::top_level(usize::MAX), |at| LayerSlot { index: at.index + 1, ..at });
-    let next = next.with_inserted(base, place).ok_or("There is no such layer.")?.with_parts(list);
+    let next = next.with_inserted(base, place).ok_or("There is no such layer.")?;
+    let next = next.with_parts_telling(list, progress).ok_or("It was given up.")?;
     // A drawing that is one part goes where the part goes; of several parts each would take a piece of it.
     let next = if flats { next } else { next.with_layer_on(layer, Some(&part)).unwrap_or(next) };
     match next.surface {

@@ -1,13 +1,13 @@
 //! New parts: of the selected layer, the selection, the chosen stroke, or bodies in the middle of the canvas.
 //! Floor 6.
 
-use super::{Refusal, free_id};
-use crate::document::parts::{CoverageFile, OutlineSource, Part, PartKind};
-use crate::document::{Document, Inflation};
+use super::{Refusal, free_id, greys};
+use crate::document::parts::{CoverageFile, OutlineSource, Part, PartKind, PartMaps};
+use crate::document::{Document, Inflation, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::session::OpenDocument;
 use crate::session::replay::names;
-use crate::shape::{Ball, Bevel, Body, Primitive};
+use crate::shape::{Ball, Bevel, Body, Detail, Lines, Primitive};
 use std::sync::Arc;
 
 /// What a new part is.
@@ -21,13 +21,16 @@ pub enum NewPart {
     Sweep,
     Touches,
     Sculpt,
+    Lines,
+    Relief,
+    Profiles,
 }
 
 /// A new part with its name in replays, what the window calls it, and a hint.
 pub type NewPartRow = (NewPart, &'static str, &'static str, &'static str);
 
 impl NewPart {
-    pub const ALL: [NewPartRow; 14] = [
+    pub const ALL: [NewPartRow; 17] = [
         (NewPart::InflateLayer, "inflate", "Inflate this layer", "What the selected layer covers, filled with air"),
         (NewPart::InflateSelection, "inflate selection", "Inflate selection", "What is selected, filled with air"),
         (NewPart::Bevel, "bevel", "Bevel", "The selection, or the selected layer, with a slope along its rim"),
@@ -47,6 +50,24 @@ impl NewPart {
         ),
         (NewPart::Touches, "touches", "Touches", "Normals put down by hand on the chosen part"),
         (NewPart::Sculpt, "sculpt", "Sculpt", "Heights sculpted by hand on the chosen part"),
+        (
+            NewPart::Lines,
+            "lines",
+            "Lines as form",
+            "Ink of the selected layer turns the chosen part: folds, creases, chins",
+        ),
+        (
+            NewPart::Relief,
+            "relief",
+            "Relief of this layer",
+            "Light and dark of the selected layer as detail on the chosen part: scales, bark, cloth",
+        ),
+        (
+            NewPart::Profiles,
+            "profiles",
+            "Lighting profiles",
+            "Of two to five chosen layers: greys of one drawing shaded by hand, each with the light elsewhere",
+        ),
     ];
     fn row(self) -> NewPartRow {
         Self::ALL.into_iter().find(|row| row.0 == self).unwrap_or(Self::ALL[0])
@@ -68,7 +89,10 @@ impl NewPart {
     pub(super) fn why_empty(self) -> Refusal {
         match self {
             NewPart::InflateSelection => "The selection holds no whole pixel, so it has no outline.",
-            NewPart::Touches | NewPart::Sculpt => "The chosen part has no form to put anything on.",
+            NewPart::Touches | NewPart::Sculpt | NewPart::Lines | NewPart::Relief => {
+                "The chosen part has no form to put anything on."
+            }
+            NewPart::Profiles => "The chosen layers are black all over, so they say nothing of the light.",
             _ => "The layer is empty, so it has no outline: paint on it, or select another.",
         }
     }
@@ -99,13 +123,30 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, Refusal> {
         NewPart::Sweep => PartKind::Sweep { balls: of_stroke(tab).unwrap_or_else(|| tail(document)), puff: 1.0 },
         NewPart::Touches => PartKind::Touches { on: form_of_chosen(tab)?, touches: Vec::new() },
         NewPart::Sculpt => PartKind::Sculpt { on: form_of_chosen(tab)?, strokes: Vec::new() },
+        NewPart::Lines => PartKind::Lines { on: form_of_chosen(tab)?, ink: of_layer(tab)?, lines: Lines::default() },
+        NewPart::Relief => {
+            let picture = greys::detail(document, selected(tab)?)?;
+            PartKind::Relief { on: form_of_chosen(tab)?, picture, detail: Detail::default() }
+        }
+        NewPart::Profiles => PartKind::Profiles { outline: None, shadings: greys::shadings(tab)? },
     };
     let name = match (kind, tab.selected.and_then(|id| document.layer(id))) {
-        (NewPart::InflateLayer | NewPart::Lathe, Some(layer)) => layer.name.clone(),
+        (NewPart::InflateLayer | NewPart::Lathe | NewPart::Lines | NewPart::Relief, Some(layer)) => layer.name.clone(),
         (NewPart::InflateSelection, _) => "Selection".to_owned(),
         _ => kind.label().to_owned(),
     };
     Ok(Part { name: free_name(document, &name), ..Part::new(free_id(document, &[]), made) })
+}
+
+/// A part of maps in front of all others, as a step.
+pub fn add_maps(tab: &mut OpenDocument, maps: PartMaps) {
+    let document = tab.document();
+    let part = Part::new(free_id(document, &[]), PartKind::Maps(maps));
+    let part = Part { name: free_name(document, "Maps"), ..part };
+    let id = part.id.clone();
+    if tab.commit("Add part", document.with_part(part)) {
+        tab.part = Some(id);
+    }
 }
 
 /// A name that no part has, as short as a file takes.
@@ -123,9 +164,15 @@ fn form_of_chosen(tab: &OpenDocument) -> Result<String, Refusal> {
     Ok(part.on().unwrap_or(&part.id).to_owned())
 }
 
+const NO_LAYER: Refusal = "No layer is selected.";
+
+fn selected(tab: &OpenDocument) -> Result<LayerId, Refusal> {
+    tab.selected.ok_or(NO_LAYER)
+}
+
 fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, Refusal> {
     let document = tab.document();
-    let layer = tab.selected.and_then(|id| document.layer(id)).ok_or("No layer is selected.")?;
+    let layer = document.layer(selected(tab)?).ok_or(NO_LAYER)?;
     if !layer.content.paints() {
         return Err("This layer paints nothing of its own, so it has no outline. Select another.");
     }
@@ -140,14 +187,7 @@ fn of_layer(tab: &OpenDocument) -> Result<OutlineSource, Refusal> {
 /// The selection as a picture of coverage, under a name that no part's picture has.
 fn of_selection(document: &Document) -> Option<OutlineSource> {
     let coverage = Arc::new(document.selected()?.to_plane(document.size.rect()));
-    let names: Vec<String> = document
-        .parts
-        .list
-        .iter()
-        .flat_map(|part| Part::clone(part).files_mut().into_iter().map(|file| file.file.clone()).collect::<Vec<_>>())
-        .collect();
-    let file = (1..).map(|i| format!("outline-{i}.png")).find(|name| !names.contains(name))?;
-    Some(OutlineSource::File(CoverageFile { file, coverage }))
+    Some(OutlineSource::File(CoverageFile { file: greys::free_files(document, "outline").next()?, coverage }))
 }
 
 /// Balls along the stroke that is chosen, or was painted last, of the selected layer.

@@ -122,7 +122,9 @@ fn a_drag_of_a_number_is_one_step_and_reshapes_meanwhile() {
     let before = shown(&session).surface.clone().unwrap();
     tell(&mut session, &part(0.5, false));
     assert!(puff(&session, "part-1") == 0.5 && session.active().unwrap().is_previewing());
-    let flatter = shown(&session).surface.clone().unwrap();
+    let drags = shown(&session);
+    assert!(!drags.is_shaped() && drags.surface.as_ref().unwrap().normal(70, 84) == before.normal(70, 84));
+    let flatter = drags.reshaped().surface.unwrap();
     assert!(flatter.normal(70, 84).z > before.normal(70, 84).z + 0.1);
     tell(&mut session, &part(0.25, true));
     assert_eq!(session.active().unwrap().history.past().count(), steps + 1);
@@ -183,4 +185,87 @@ fn a_selection_is_inflated_and_keeps_its_outline_when_it_is_let_go_of() {
     tell(&mut session, r#"{"in":"selection","do":"none"}"#);
     let at = |x: f32, y: f32| shown(&session).part_at(vec2(x, y)).is_some();
     assert!(at(48.0, 64.0) && !at(8.0, 64.0));
+}
+#[test]
+fn layers_and_strokes_are_put_on_parts_and_taken_off_where_they_show() {
+    let mut session = opened(snowman(false));
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"sphere"}"#);
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"box"}"#);
+    tell(&mut session, r#"{"in":"layer","do":"add","kind":"strokes"}"#);
+    for (x, y) in [(40, 60), (50, 70)] {
+        let press = r#"{"in":"pointer","do":"press","tool":"brush","pen":[X,Y],"px_per_pt":1}"#;
+        tell(&mut session, &press.replace('X', &x.to_string()).replace('Y', &y.to_string()));
+        tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
+    }
+    let picture = |session: &Session| {
+        let document = shown(session);
+        flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
+    };
+    let before = picture(&session);
+    let home = |session: &Session| shown(session).layers[1].on.as_ref().map(|home| home.part.to_string());
+    tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":"part-1"}"#);
+    assert!(home(&session).as_deref() == Some("part-1") && picture(&session) == before);
+    tell(&mut session, r#"{"in":"stroke","do":"home","layer":"1","strokes":[1],"part":"part-2"}"#);
+    let homes = |session: &Session| {
+        let layer = shown(session).layers[1].id;
+        let strokes = shown(session).strokes(layer);
+        strokes.iter().map(|s| s.home().map(|home| home.frame.part.to_string())).collect::<Vec<_>>()
+    };
+    assert_eq!(homes(&session), [None, Some("part-2".to_owned())]);
+    assert!(picture(&session) == before);
+    tell(&mut session, r#"{"in":"stroke","do":"home","layer":"1","strokes":[1],"part":null}"#);
+    tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":null}"#);
+    assert!(home(&session).is_none() && homes(&session) == [None, None] && picture(&session) == before);
+    assert!(session.said.is_empty(), "{:?}", session.said);
+    tell(&mut session, r#"{"in":"layer","do":"home","layer":"1","part":"nobody"}"#);
+    assert_eq!(session.said, ["There is no such part."]);
+}
+#[test]
+fn layers_become_lines_reliefs_and_lighting_profiles() {
+    let mut session = opened(snowman(false));
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"sphere"}"#);
+    tell(&mut session, r#"{"in":"layer","do":"add","kind":"paint"}"#);
+    tell(&mut session, r#"{"in":"pointer","do":"press","tool":"brush","pen":[40,60],"px_per_pt":1}"#);
+    tell(&mut session, r#"{"in":"pointer","do":"drag","pens":[[60,64]]}"#);
+    tell(&mut session, r#"{"in":"pointer","do":"release"}"#);
+    let ball = shown(&session).surface.clone().unwrap();
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"lines"}"#);
+    let folded = shown(&session).surface.clone().unwrap();
+    assert!(ball.normal_planes()[1].values() != folded.normal_planes()[1].values());
+    tell(&mut session, r#"{"in":"layer","do":"select","layer":"0"}"#);
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"relief"}"#);
+    assert_eq!(session.notes, Vec::<String>::new());
+    let kinds = |session: &Session| shown(session).parts.list.iter().map(|p| p.kind.name()).collect::<Vec<_>>();
+    assert_eq!(kinds(&session), ["primitive", "lines", "relief"]);
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"profiles"}"#);
+    assert!(session.notes.remove(0).contains("two to five layers"));
+    tell(&mut session, r#"{"in":"layer","do":"choose","layer":["0","1"],"primary":"1","anchor":null}"#);
+    tell(&mut session, r#"{"in":"part","do":"add","kind":"profiles"}"#);
+    assert_eq!((session.notes.clone(), kinds(&session).len()), (Vec::new(), 4));
+    let names = shown(&session).parts.list.iter().flat_map(|part| {
+        let mut part = crate::document::parts::Part::clone(part);
+        part.files_mut().iter().map(|file| file.file.clone()).collect::<Vec<_>>()
+    });
+    assert_eq!(names.collect::<Vec<_>>(), ["relief-1.png", "shading-1.png", "shading-2.png"]);
+}
+#[test]
+fn maps_become_a_part_that_is_set_without_being_read_again() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let file = folder.path().join("n.png");
+    let up = |x: u32| if x < 24 { [90, 128, 240, 255] } else { [128, 128, 255, 255] };
+    image::RgbaImage::from_fn(48, 64, |x, _| image::Rgba(up(x))).save(&file).unwrap();
+    let mut session = opened(snowman(false));
+    let line = serde_json::json!({ "in": "file", "do": "add maps", "normal": file, "depth": null });
+    tell(&mut session, &line.to_string());
+    assert_eq!(session.active().unwrap().part.as_deref(), Some("part-1"));
+    let part = shown(&session).parts.part("part-1").unwrap().clone();
+    assert!(shown(&session).surface.as_ref().unwrap().normal(10, 60).x < -0.2, "stretched to the canvas");
+    std::fs::remove_file(&file).unwrap();
+    let mut raised = crate::io::recipe::parts::write_part(&part);
+    raised["raise"] = 20.into();
+    let line = serde_json::json!({ "in": "part", "do": "set", "part": raised, "done": true });
+    let notes = session.notes.len();
+    tell(&mut session, &line.to_string());
+    assert_eq!(session.notes.len(), notes, "{:?}", session.notes);
+    assert_eq!(shown(&session).parts.part("part-1").unwrap().raise, 20.0);
 }
