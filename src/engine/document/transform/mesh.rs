@@ -115,8 +115,8 @@ impl Mesh {
         let points = self.points.iter().map(|p| *p * per_axis).collect();
         Self { frame, points, backward: Arc::default(), ..self.clone() }
     }
-    /// The same of a plane that was taken elsewhere, where its frame stays a rectangle: by moves, mirrors, quarter turns.
-    /// `None` of other maps.
+    /// The same of a plane that was taken elsewhere, where its frame stays a rectangle: by moves, mirrors, quarter
+    /// turns. `None` of other maps.
     pub(in crate::document) fn carried(&self, map: &PlaneMap) -> Option<Self> {
         let [a, b, c, d, _, _] = map.coefficients()?;
         let (is_upright, is_turned) = (b == 0.0 && c == 0.0, a == 0.0 && d == 0.0);
