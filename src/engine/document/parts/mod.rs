@@ -1,8 +1,9 @@
 //! Parts: the shape of a drawing as a list of values, the farthest first, from which the document's surface follows.
 //! Floor 4. What each kind computes is `shape`'s; `derive` makes the surface and keeps what did not change, `body` one
-//! form, `upon` what lies on one, and `forms` tells what was made; `outlines` finds the outlines, `flats` makes parts of a layer of flat
-//! colours, whose mixed pixels `shares` shares out, and `drawing` says what can be made of one; `edit` changes the
-//! list, `scale` the canvas, `fit` holds it to what files can hold.
+//! form, `upon` what lies on one, `unchanged` tells what is the same, and `forms` what was made; `part` is one of them,
+//! `outlines` finds the outlines, `flats` makes parts of a layer of flat colours, whose mixed pixels `shares` shares
+//! out, and `drawing` says what can be made of one; `edit` changes the list, `scale` the canvas, `fit` holds it to what
+//! files can hold.
 
 mod body;
 mod derive;

@@ -1,7 +1,6 @@
 //! Actions on the shape of the document in front: its parts, the farthest first. What cannot be done says why.
 //! Floor 6. `new` makes parts, of layers' pictures by `greys`, `first` gives a drawing its first shape, `list` orders
-//! them. Parts that the pen changes
-//! on the canvas are `tools::shape`'s.
+//! them. Parts that the pen changes on the canvas are `tools::shape`'s.
 
 pub mod first;
 mod greys;
