@@ -11,13 +11,13 @@ use crate::io::{maps, recovery};
 use crate::memory;
 use crate::raster::Picture;
 use crate::saving::{Pending, Saving};
-use crate::session::Edit;
+use crate::session::actions::PartAction;
 use crate::session::actions::files::read_picture;
 use crate::session::actions::parts::FirstShape;
 use crate::session::actions::pictures::{PicturePart, ReadPart};
-use crate::session::actions::{LayerAction, PartAction};
 use crate::session::autosave::RecoveredTab;
 use crate::session::storage::{self, FileUse, OpenedTab, SortedFiles};
+use crate::session::{Action, Edit};
 use crate::{Error, Result};
 use eframe::egui;
 use std::path::{Path, PathBuf};
@@ -69,6 +69,8 @@ pub enum JobResult {
     Declined(&'static str),
     /// What drawing a tab, by its key, holds.
     Looked(usize, Option<(LayerId, DrawingLook)>),
+    /// There is nothing to do; why.
+    Said(String),
     /// The flattened picture is in the clipboard as long as this is kept.
     Copied(Clipboard),
     Pasted(PastedContent),
@@ -113,7 +115,7 @@ pub enum PinPosition {
 pub struct EditResult {
     /// By its key.
     pub tab: usize,
-    pub action: LayerAction,
+    pub action: Action,
     /// What was edited.
     pub from: Document,
     pub edit: Edit,

@@ -1,6 +1,6 @@
 //! The Image menu and the crop tool.
 
-use super::{Story, command, drag, key, press, session, steps, window};
+use super::{Story, command, drag, key, press, session, steps, until, window};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_engine::math::Size;
@@ -50,4 +50,20 @@ fn the_canvas_grows_from_its_anchor_the_picture_shrinks_and_turns() {
     command(&mut harness, "Turn canvas left");
     command(&mut harness, "Mirror canvas left and right");
     assert_eq!(session(&harness).active().unwrap().history.done(), Some("Mirror canvas"));
+}
+#[test]
+fn the_canvas_is_trimmed_to_what_is_painted_beside_the_window() {
+    let mut harness = window();
+    command(&mut harness, "Trim canvas");
+    until(&mut harness, |harness| harness.query_by_label_contains("the picture reaches every border").is_some());
+    command(&mut harness, "Delete layer");
+    command(&mut harness, "New paint layer");
+    press(&mut harness, "Brush");
+    drag(&mut harness, vec2(-60.0, -20.0), vec2(60.0, 30.0));
+    command(&mut harness, "Trim canvas");
+    until(&mut harness, |harness| size(harness).width < 1024);
+    assert!(size(&harness).height < 1024 && size(&harness).width > 100);
+    assert_eq!(session(&harness).active().unwrap().history.done(), Some("Trim"));
+    key(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(size(&harness), Size::new(1024, 1024));
 }

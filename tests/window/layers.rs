@@ -1,7 +1,7 @@
 //! Layers and their masks, by the buttons of their panel and the commands of their menu.
 
 use super::{Story, click, command, layers, press, session, steps, stroke, until, window};
-use eframe::egui::vec2;
+use eframe::egui::{Modifiers, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use rilievo_engine::document::{Content, MaskKind};
 
@@ -55,4 +55,45 @@ fn a_mask_is_made_painted_on_inverted_put_aside_and_deleted() {
     assert!(masked(&harness).is_none());
     command(&mut harness, "Paint on mask");
     assert!(masked(&harness).is_some(), "every command is in the palette");
+}
+/// From the middle of a row of the list to a share of the height of another one.
+fn drag_row(harness: &mut Story, from: &str, to: &str, share: f32) {
+    let row = |harness: &Story, name: &str| harness.get_by_label_contains(&format!("Layer {name}")).rect();
+    let (start, end) = (row(harness, from), row(harness, to));
+    let at = pos2(end.center().x, end.top() + share * end.height());
+    harness.drag_at(start.center());
+    steps(harness);
+    for step in [0.3, 0.7, 1.0] {
+        harness.hover_at(start.center() + (at - start.center()) * step);
+        steps(harness);
+    }
+    harness.drop_at(at);
+    steps(harness);
+}
+#[test]
+fn rows_are_dragged_to_another_place_and_into_a_group_one_or_several() {
+    let mut harness = window();
+    ["New fill layer", "New gradient layer", "New group"].into_iter().for_each(|name| command(&mut harness, name));
+    assert_eq!(layers(&harness), ["Background", "Fill", "Gradient", "Group"]);
+    drag_row(&mut harness, "Gradient", "Fill", 0.9);
+    assert_eq!(layers(&harness), ["Background", "Gradient", "Fill", "Group"]);
+    drag_row(&mut harness, "Background", "Fill", 0.1);
+    assert_eq!(layers(&harness), ["Gradient", "Fill", "Background", "Group"]);
+    let row = |harness: &mut Story, name: &str, keys| {
+        harness.get_by_label_contains(&format!("Layer {name}")).click_modifiers(keys);
+        steps(harness);
+    };
+    row(&mut harness, "Gradient", Modifiers::NONE);
+    row(&mut harness, "Background", Modifiers::COMMAND);
+    drag_row(&mut harness, "Background", "Group", 0.5);
+    assert_eq!(layers(&harness), ["Fill", "Group"]);
+    let inner = |harness: &Story| {
+        let document = session(harness).active().unwrap().document();
+        let group = document.layer_named("Group").unwrap().content.group().unwrap().clone();
+        group.layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(inner(&harness), ["Gradient", "Background"]);
+    assert_eq!(session(&harness).active().unwrap().history.done(), Some("Move layers"));
+    command(&mut harness, "Undo");
+    assert_eq!(layers(&harness), ["Gradient", "Fill", "Background", "Group"]);
 }

@@ -111,6 +111,7 @@ impl MainWindow {
                     self.dialogs.push(Dialog::Shape(shape::ShapeDialog::of(tab, found)));
                 }
             }
+            JobResult::Said(why) => self.jobs.say(why),
             JobResult::Pasted(PastedContent::Picture(picture)) => {
                 self.pictured("pasted.png", picture, PinPosition::Pointer);
             }

@@ -14,7 +14,8 @@ use crate::math::Size;
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
 use crate::saving::{Exporting, ExportingMaps, Pending, Saving};
-use crate::session::actions::{LayerAction, PartAction};
+use crate::session::actions::PartAction;
+use crate::session::actions::canvas::forget_places;
 use crate::session::{Action, storage};
 use crate::widgets::bar;
 use eframe::egui::{self, Modal};
@@ -128,23 +129,38 @@ impl MainWindow {
     }
     /// Whether an action takes long, and was begun on a thread instead.
     pub(super) fn begin_edit(&mut self, action: &Action) -> bool {
-        let action = match action {
-            Action::Layer(action) => action,
-            Action::Part(action) => return self.begin_shape(action),
-            _ => return false,
+        if let Action::Part(action) = action {
+            return self.begin_shape(action);
+        }
+        let takes_long = match action {
+            Action::Layer(action) => action.takes_long(),
+            Action::Canvas(action) => action.takes_long(),
+            _ => None,
         };
-        let Some(name) = action.takes_long() else { return false };
+        let Some(name) = takes_long else { return false };
         self.session.drop_gesture();
         let Some(tab) = self.session.active_mut() else { return true };
         tab.forget_preview();
-        if let Some(why) = action.refusal(tab.document()) {
+        let refusal = match action {
+            Action::Layer(action) => action.refusal(tab.document()),
+            _ => None,
+        };
+        if let Some(why) = refusal {
             self.session.say(why);
             return true;
         }
-        let (key, from, action) = (tab.key, tab.document().clone(), LayerAction::clone(action));
-        self.jobs.start(name.into(), JobKind::Editing, move |progress| match action.flattened(&from, progress) {
-            Some(edit) => JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit })),
-            None => JobResult::Nothing,
+        let (key, from, action) = (tab.key, tab.document().clone(), action.clone());
+        self.jobs.start(name.into(), JobKind::Editing, move |progress| {
+            let edit = match &action {
+                Action::Layer(action) => action.flattened(&from, progress).map(Ok),
+                Action::Canvas(action) => action.long_step(&from, progress),
+                _ => None,
+            };
+            match edit {
+                Some(Ok(edit)) => JobResult::Edited(Box::new(EditResult { tab: key, action, from, edit })),
+                Some(Err(why)) => JobResult::Said(why),
+                None => JobResult::Nothing,
+            }
         });
         true
     }
@@ -154,7 +170,11 @@ impl MainWindow {
         // No other edits are possible meanwhile; an edit that happened anyway must not be lost.
         if crate::session::is_same(tab.document(), &from) {
             tab.take(edit);
-            self.did(|| Action::Layer(action));
+            if matches!(action, Action::Canvas(_)) {
+                forget_places(tab);
+                self.session.crop = None;
+            }
+            self.did(|| action);
         }
     }
     /// The same of parts.

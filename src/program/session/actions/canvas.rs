@@ -6,8 +6,9 @@ use crate::document::{Document, Progress, flatten};
 use crate::io::Budget;
 use crate::math::{Rect, Size};
 use crate::raster::{CoverageGrid, Resampling};
-use crate::session::Session;
+use crate::session::open_document::Edit;
 use crate::session::replay::{ReplayValue, actions, names, record};
+use crate::session::{OpenDocument, Session};
 use crate::tools::crop::CropAspect;
 use serde_json::Value;
 use std::path::Path;
@@ -66,18 +67,27 @@ impl CanvasAction {
         }
         let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
         tab.forget_preview();
-        match self.step(tab.document()) {
+        match self.step(tab.document(), &Progress::default()) {
             Ok((label, next)) => {
                 if tab.commit(label, next) {
-                    // Places of the old canvas.
-                    (tab.last_end, tab.clone_source, tab.last_selection) = (None, None, None);
+                    forget_places(tab);
                 }
             }
             Err(why) => session.say(&why),
         }
     }
+    /// What a step is doing that takes long, so that the window does it beside itself.
+    pub fn takes_long(&self) -> Option<&'static str> {
+        matches!(self, CanvasAction::Trim {}).then_some("Trimming the canvas")
+    }
+    /// The step on a document, or why there is none; `None` once it is cancelled.
+    pub fn long_step(&self, document: &Document, progress: &Progress) -> Option<Result<Edit, String>> {
+        let done = self.step(document, progress);
+        let edit = done.map(|(label, document)| Edit { label, document, select: Vec::new() });
+        (!progress.is_cancelled()).then_some(edit)
+    }
     /// The step: its name and the resulting document; or why there is none.
-    fn step(&self, document: &Document) -> Result<(&'static str, Document), String> {
+    fn step(&self, document: &Document, progress: &Progress) -> Result<(&'static str, Document), String> {
         let size = document.size;
         let (label, change) = match self {
             CanvasAction::Crop { to } => ("Crop", cropped(size, *to)?),
@@ -87,7 +97,7 @@ impl CanvasAction {
             }
             CanvasAction::Trim {} => {
                 let nothing = || "Nothing is painted: there is nothing to trim to.".to_owned();
-                let painted = flatten(document, &Progress::default()).ok_or_else(nothing)?;
+                let painted = flatten(document, progress).ok_or_else(nothing)?;
                 let painted = CoverageGrid::of_alpha(&painted).covered().intersect(size.rect());
                 if painted.is_empty() {
                     return Err(nothing());
@@ -123,6 +133,11 @@ impl CanvasAction {
         }
         Ok((label, document.on_other_canvas(&change)?))
     }
+}
+
+/// Places of the old canvas mean nothing on another one.
+pub fn forget_places(tab: &mut OpenDocument) {
+    (tab.last_end, tab.clone_source, tab.last_selection) = (None, None, None);
 }
 
 /// A frame no farther away than pixels can lie.
