@@ -3,10 +3,10 @@
 
 use super::commands::MenuCommand;
 use super::keymap::{KeyTarget, Keymap};
-use super::requests::UiRequests;
+use super::requests::{UiRequests, WindowRequest};
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
-use eframe::egui::{Context, Event, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Event, Key, KeyboardShortcut, Modifiers};
 
 /// Requests what the keys of this frame mean; nothing while a text is being typed.
 pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut UiRequests) {
@@ -22,7 +22,7 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut 
             let Modifiers { alt, shift, command, .. } = keys.modifiers;
             std::cmp::Reverse(u8::from(alt) + u8::from(shift) + u8::from(command))
         });
-        for (keys, keyed) in all {
+        for &(keys, keyed) in &all {
             // A key without effect is left to others: Enter also closes a lasso.
             let can = |command: &MenuCommand| (command.can)(session);
             if matches!(keyed, KeyTarget::Command(command) if !can(command))
@@ -33,6 +33,16 @@ pub fn listen(ctx: &Context, session: &Session, keymap: &Keymap, requests: &mut 
             match keyed {
                 KeyTarget::Command(command) => (command.run)(session, requests),
                 KeyTarget::Tool(row) => requests.act(Action::Hand(HandAction::Tool { tool: row.kind })),
+            }
+        }
+        // What nobody took says why nothing happens; Enter and Escape mean whatever is under way.
+        let silent = |keys: &KeyboardShortcut| matches!(keys.logical_key, Key::Enter | Key::Escape);
+        for (keys, keyed) in all.iter().filter(|(keys, _)| !silent(keys)) {
+            if let KeyTarget::Command(command) = keyed
+                && !(command.can)(session)
+                && ctx.input_mut(|i| i.consume_shortcut(keys))
+            {
+                requests.request(WindowRequest::Say(command.refusal(session)));
             }
         }
     }

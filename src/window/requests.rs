@@ -48,6 +48,8 @@ pub enum WindowRequest {
     ExportMaps,
     /// Sways the picture by its depth, until a key or a click.
     Wobble,
+    /// A sentence in the status bar.
+    Say(String),
     /// Asks where to, for a file of this ending.
     Export(&'static str),
     ExportUnwrappedDialog,

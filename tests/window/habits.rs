@@ -3,6 +3,7 @@
 use super::{Story, command, key, layers, press, session, steps, until, window, window_at};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use rilievo_program::tools::ToolKind;
 use rilievo_window::MainWindow;
 
 #[test]
@@ -74,6 +75,40 @@ fn every_command_is_done_by_its_name() {
     }
     command(&mut harness, "Close");
     press(&mut harness, "Do not save");
+}
+#[test]
+fn the_keys_of_krita_do_what_they_do_there_and_say_so_where_they_cannot() {
+    let mut harness = window();
+    let (ctrl, shift) = (Modifiers::COMMAND, Modifiers::SHIFT);
+    let is_selected = |harness: &Story| session(harness).active().unwrap().document().selected().is_some();
+    for (modifiers, letter, selects) in
+        [(ctrl, Key::A, true), (ctrl | shift, Key::A, false), (ctrl, Key::D, true), (ctrl | shift, Key::I, false)]
+    {
+        key(&mut harness, modifiers, letter);
+        assert_eq!(is_selected(&harness), selects, "{letter:?}");
+    }
+    for (modifiers, letter, tool) in [(ctrl, Key::T, ToolKind::Transform), (Modifiers::NONE, Key::C, ToolKind::Crop)] {
+        key(&mut harness, modifiers, letter);
+        assert_eq!(session(&harness).tool, tool);
+    }
+    key(&mut harness, ctrl, Key::J);
+    assert_eq!(layers(&harness).len(), 2);
+    (0..3).for_each(|_| key(&mut harness, shift, Key::Delete));
+    assert_eq!(layers(&harness).len(), 0);
+    key(&mut harness, ctrl, Key::J);
+    harness.get_by_label("Layer via copy: no layer is chosen.");
+    key(&mut harness, ctrl, Key::W);
+    press(&mut harness, "Do not save");
+    for (modifiers, letter, name) in [
+        (ctrl, Key::J, "Layer via copy"),
+        (shift, Key::Delete, "Delete layer"),
+        (ctrl, Key::G, "Group layer"),
+        (ctrl, Key::E, "Merge down"),
+        (ctrl | Modifiers::ALT, Key::C, "Canvas size…"),
+    ] {
+        key(&mut harness, modifiers, letter);
+        harness.get_by_label(&format!("{name}: there is no document."));
+    }
 }
 #[test]
 fn the_interface_is_made_larger_and_the_picture_stays_as_it_is() {

@@ -36,6 +36,15 @@ impl MenuCommand {
     pub const fn ticked(self, is_on: fn(&Session, &PanelLayout) -> bool) -> Self {
         Self { is_on: Some(is_on), ..self }
     }
+    /// Why it cannot be done now, for the user; what it would do is in its hint.
+    pub fn refusal(&self, session: &Session) -> String {
+        let why = match (session.active(), session.layer()) {
+            (None, _) => "there is no document",
+            (_, None) => "no layer is chosen",
+            _ => "there is nothing here to do it to",
+        };
+        format!("{}: {why}.", self.name)
+    }
     pub const fn is_line(&self) -> bool {
         self.name.is_empty()
     }

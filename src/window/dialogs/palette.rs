@@ -4,7 +4,7 @@
 use super::DialogAnswer;
 use crate::commands::{self, MenuCommand};
 use crate::keymap::{Keymap, shown};
-use crate::requests::UiRequests;
+use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Session;
 use crate::widgets::{list, named};
 use eframe::egui::{Button, Key, TextEdit, Ui};
@@ -64,7 +64,11 @@ impl CommandPalette {
                 (command.run)(session, requests);
                 DialogAnswer::Close
             }
-            _ => DialogAnswer::Open,
+            Some(command) => {
+                requests.request(WindowRequest::Say(command.refusal(session)));
+                DialogAnswer::Close
+            }
+            None => DialogAnswer::Open,
         }
     }
 }
