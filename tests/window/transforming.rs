@@ -8,6 +8,7 @@ use rilievo_program::tools::transform::FrameNumbers;
 /// A paint layer with a stroke on it, and the transform tool in hand.
 fn painted() -> Story {
     let mut harness = window();
+    command(&mut harness, "Sphere");
     command(&mut harness, "New paint layer");
     press(&mut harness, "Brush");
     drag(&mut harness, vec2(-60.0, -30.0), vec2(60.0, 30.0));
@@ -15,7 +16,7 @@ fn painted() -> Story {
     harness
 }
 fn numbers(harness: &Story) -> FrameNumbers {
-    FrameNumbers::of(&session(harness).active().unwrap().frame().unwrap()).unwrap()
+    FrameNumbers::of(&session(harness).active().unwrap().frame(session(harness).carried).unwrap()).unwrap()
 }
 
 #[test]
@@ -25,7 +26,14 @@ fn the_options_of_the_transform_tool_fit_a_small_window_in_two_rows() {
     harness.set_size(vec2(1024.0, 700.0));
     steps(&mut harness);
     let rows = [
-        &["Apply transform", "Remove transform", "Mirror and turn", "How pixels are sampled", "Pivot"][..],
+        &[
+            "What is transformed",
+            "Apply transform",
+            "Remove transform",
+            "Mirror and turn",
+            "How pixels are sampled",
+            "Pivot",
+        ][..],
         &["X", "Y", "Width", "Width in %", "Height", "Height in %", "Angle", "Skew"],
     ];
     for row in rows {

@@ -8,6 +8,7 @@
 mod layers;
 mod parts;
 mod selections;
+mod shape_move;
 
 #[cfg(test)]
 mod tests;

@@ -94,6 +94,10 @@ trait LayerKind {
     fn on_canvas(&self, _map: &LayerMap, _last: Option<(&Content, &Content)>) -> Option<Content> {
         None
     }
+    /// Whether it goes along where the shape that it lies on goes: not so light, and what is the same everywhere.
+    fn goes_with_shape(&self) -> bool {
+        true
+    }
     /// Whether marks of it have homes of their own.
     fn has_homes(&self) -> bool {
         false
@@ -188,6 +192,10 @@ impl Content {
     /// It changes the surface for what stands above.
     pub fn shapes(&self) -> bool {
         matches!(self.role(), Role::Shapes(_))
+    }
+    /// It goes along where the shape that it lies on goes.
+    pub(super) fn goes_with_shape(&self) -> bool {
+        self.kind().goes_with_shape()
     }
     /// The group that it is, if it is one.
     pub fn group(&self) -> Option<&Group> {

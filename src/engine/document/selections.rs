@@ -119,7 +119,7 @@ pub(super) fn picture(coverage: &Plane<u8>) -> MaskKind {
 }
 
 /// A layer with the selections of its strokes replaced; the very same where none was.
-fn selecting(layer: &Arc<Layer>, next: &impl Fn(&Arc<Selection>) -> Arc<Selection>) -> Arc<Layer> {
+pub(super) fn selecting(layer: &Arc<Layer>, next: &impl Fn(&Arc<Selection>) -> Arc<Selection>) -> Arc<Layer> {
     let content = match &layer.content {
         Content::Strokes(live) => {
             let mut changed = false;

@@ -15,6 +15,7 @@ mod mesh;
 mod seen;
 
 pub use extent::FrameBox;
+pub(in crate::document) use homes::transform_of;
 pub use mesh::{Mesh, MeshFrame};
 pub(super) use seen::CanvasCache;
 

@@ -4,7 +4,7 @@
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
-use crate::tools::transform::{KeptFrame, TransformFrame};
+use crate::tools::transform::{Carried, Framed, KeptFrame, TransformFrame};
 
 /// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone lets go
 /// of the others.
@@ -36,23 +36,27 @@ impl OpenDocument {
         let also = |primary| self.chosen_layers.ids.contains(&primary) && self.chosen_layers.ids.contains(&layer);
         self.selected == Some(layer) || self.selected.is_some_and(also)
     }
-    /// The frame of the transform tool around them, as they are shown.
-    pub fn frame(&self) -> Option<TransformFrame> {
-        self.chosen_layers.frame.around(self.shown(), &self.outermost_chosen())
+    /// The frame of the transform tool around them, or around the shape, as they are shown.
+    pub fn frame(&self, carried: Carried) -> Option<TransformFrame> {
+        self.frame_in(self.shown(), carried)
     }
     /// The same as the last step left it.
-    pub fn frame_before(&self) -> Option<TransformFrame> {
-        self.chosen_layers.frame.around(self.document(), &self.outermost_chosen())
+    pub fn frame_before(&self, carried: Carried) -> Option<TransformFrame> {
+        self.frame_in(self.document(), carried)
+    }
+    fn frame_in(&self, document: &Document, carried: Carried) -> Option<TransformFrame> {
+        let chosen = self.outermost_chosen();
+        self.chosen_layers.frame.around(document, Framed::new(carried, document, &chosen))
     }
     /// The frame around the chosen layers turns with them from now on.
-    pub(super) fn hold_frame(&mut self) {
+    pub(super) fn hold_frame(&mut self, carried: Carried) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
-        self.chosen_layers.frame.hold(&document, &layers);
+        self.chosen_layers.frame.hold(&document, Framed::new(carried, &document, &layers));
     }
     /// The frame around the chosen layers is turned about this point from now on, by shares of its sides.
-    pub(super) fn set_pivot(&mut self, share: Vec2) {
+    pub(super) fn set_pivot(&mut self, carried: Carried, share: Vec2) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
-        self.chosen_layers.frame.set_pivot(&document, &layers, share);
+        self.chosen_layers.frame.set_pivot(&document, Framed::new(carried, &document, &layers), share);
     }
     pub(super) fn kept_frame(&self) -> &KeptFrame {
         &self.chosen_layers.frame

@@ -36,6 +36,7 @@ use crate::tools::crop::CropAspect;
 use crate::tools::select::SelectSettings;
 use crate::tools::snap::{SnapLines, ViewAids};
 use crate::tools::symmetry::SymmetryAxes;
+use crate::tools::transform::Carried;
 use crate::tools::{Gesture, ShapeSettings, Symmetry, ToolKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -65,6 +66,8 @@ pub struct Session {
     pub symmetry: Symmetry,
     /// Where its axes stand.
     pub axes: SymmetryAxes,
+    /// What the transform tool takes along.
+    pub carried: Carried,
     /// The settings of the fill tool.
     pub fill: Fill,
     /// The settings of the selection tools.
@@ -127,6 +130,7 @@ impl Default for Session {
             operator: Operator::None,
             symmetry: Symmetry::None,
             axes: SymmetryAxes::default(),
+            carried: Carried::default(),
             fill: Fill::default(),
             select: SelectSettings::default(),
             aids: ViewAids::default(),

@@ -6,6 +6,7 @@ mod selecting;
 mod several;
 mod snapping;
 mod steps;
+mod transforming;
 mod unwrapped;
 mod warping;
 

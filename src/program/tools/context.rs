@@ -4,7 +4,7 @@
 use super::crop::CropAspect;
 use super::snap::{SnapTargets, ViewAids};
 use super::symmetry::SymmetryAxes;
-use super::transform::KeptFrame;
+use super::transform::{Carried, KeptFrame};
 use super::{SelectSettings, ShapeSettings, Symmetry};
 use crate::document::{Document, LayerId};
 use crate::math::{Rect, Vec2, srgb::Color};
@@ -47,6 +47,8 @@ pub struct ToolContext<'a> {
     pub crop_aspect: CropAspect,
     /// What the transform tool keeps of the chosen layers.
     pub frame: &'a KeptFrame,
+    /// What it takes along.
+    pub carried: Carried,
     /// The strokes of the selected layer that are chosen.
     pub strokes: &'a [usize],
     /// The points of the selected layer's mesh that are chosen.
@@ -84,6 +86,7 @@ impl<'a> ToolContext<'a> {
             crop: None,
             crop_aspect: CropAspect::Free,
             frame: KeptFrame::nothing(),
+            carried: Carried::Paint,
             strokes: &[],
             mesh_points: &[],
             axes: SymmetryAxes::default(),
@@ -187,6 +190,7 @@ impl KeptContext {
             crop: None,
             crop_aspect: CropAspect::Free,
             frame: KeptFrame::nothing(),
+            carried: Carried::Paint,
             strokes: &self.strokes,
             mesh_points: &[],
             snap: &self.snap,

@@ -9,7 +9,7 @@ mod numbers;
 mod pivot;
 mod placed;
 
-pub use frame::{FrameHandle, KeptFrame, TransformFrame};
+pub use frame::{Carried, FrameHandle, Framed, KeptFrame, TransformFrame};
 pub use numbers::FrameNumbers;
 pub use pivot::PIVOTS;
 
@@ -23,18 +23,21 @@ use placed::{FrameMap, Placed, said};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let document = context.document;
-    let layers: Vec<&Layer> = context.chosen().iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
-    if layers.is_empty() {
-        return (None, Outcome::Idle);
+    let framed = Framed::new(context.carried, document, context.chosen());
+    let of_shape = framed == Framed::Shape;
+    let chosen = if of_shape { &[] } else { context.chosen() };
+    let layers: Vec<&Layer> = chosen.iter().filter_map(|id| document.layer(*id)).map(|l| &**l).collect();
+    if layers.is_empty() && !of_shape {
+        return (None, Outcome::Refused("Choose a layer first."));
     }
     if layers.iter().any(|layer| layer.lock == LayerLock::All) {
         let is_one = layers.len() == 1;
         return (None, Outcome::Refused(if is_one { "The layer is locked." } else { "One of the layers is locked." }));
     }
-    if let Some(begun) = mesh::press(context, pen) {
+    if !of_shape && let Some(begun) = mesh::press(context, pen) {
         return begun;
     }
-    let Some(frame) = context.frame.around(document, context.chosen()) else {
+    let Some(frame) = context.frame.around(document, framed) else {
         return (None, Outcome::Refused("The layer is empty: there is nothing to transform."));
     };
     let handle = frame.handle_at(pen.place(), context.px_per_pt, pen.keys.alt);
@@ -43,12 +46,15 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
         let gesture = PivotGesture { frame, snap, snaps, px_per_pt, lines: SnapLines::default() };
         return (Some(Box::new(gesture)), Outcome::Idle);
     }
+    if of_shape && pen.keys.ctrl && matches!(handle, FrameHandle::Corner(_)) {
+        return (None, Outcome::Refused("A shape has no perspective: its depth would not fit. Drag its sides."));
+    }
     let held =
         |layer: &&Layer| Some(HeldLayer { id: layer.id, own: Placed::of(layer), map: document.map_of(layer.id)? });
     let layers = layers.iter().filter_map(held).collect();
     let (document, snap) = (document.clone(), context.snap.clone());
     let (from, lines) = (pen.place(), SnapLines::default());
-    let gesture = TransformGesture { document, layers, frame, handle, from, found: None, snap, lines };
+    let gesture = TransformGesture { document, layers, of_shape, frame, handle, from, found: None, snap, lines };
     (Some(Box::new(gesture)), Outcome::Idle)
 }
 
@@ -70,6 +76,14 @@ pub fn about_middle(document: &Document, layers: &[LayerId], map: PlaneMap) -> O
     let pivot = if map.coefficients().is_some_and(|c| c[1] != 0.0) { pivot.round() } else { pivot };
     let on_canvas = PlaneMap::translation(-pivot).then(&map).then(&PlaneMap::translation(pivot));
     layers.iter().try_fold(document.clone(), |next, layer| mapped(&next, *layer, on_canvas))
+}
+
+/// A map about the middle of the shape as a matrix on the canvas. `None` where there is no shape.
+pub fn about_shape(document: &Document, map: PlaneMap) -> Option<[f64; 6]> {
+    let [low, high] = TransformFrame::of_shape(document)?.bounds();
+    let middle = (low + high) * 0.5;
+    let pivot = if map.coefficients().is_some_and(|c| c[1] != 0.0) { middle.round() } else { middle };
+    PlaneMap::translation(-pivot).then(&map).then(&PlaneMap::translation(pivot)).coefficients()
 }
 
 /// A layer with what it shows taken along by a map of the canvas; `None` where that cannot be said.

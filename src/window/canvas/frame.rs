@@ -4,7 +4,7 @@
 use crate::document::Mesh;
 use crate::math::Vec2;
 use crate::session::Session;
-use crate::tools::transform::mesh;
+use crate::tools::transform::{Carried, mesh};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 
 /// Side of a handle, points.
@@ -14,7 +14,8 @@ const HANDLE_PT: f32 = 9.0;
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some(tab) = session.active() else { return };
     let chosen = tab.outermost_chosen();
-    if let [one] = chosen[..]
+    if session.carried == Carried::Paint
+        && let [one] = chosen[..]
         && let Some((mesh, points)) = tab.shown().layer(one).and_then(|layer| mesh::points_of(tab.shown(), layer))
     {
         let Some(map) = tab.shown().map_of(one) else { return };
@@ -26,7 +27,7 @@ pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> P
             painter.circle(to_screen(point), 0.5 * HANDLE_PT, color, Stroke::new(1.2, Color32::from_black_alpha(190)));
         }
     }
-    let Some(frame) = tab.frame() else { return };
+    let Some(frame) = tab.frame(session.carried) else { return };
     let corners = frame.corners.map(to_screen);
     let dark = Stroke::new(3.0, Color32::from_black_alpha(110));
     let light = Stroke::new(1.2, Color32::from_rgb(120, 200, 255));

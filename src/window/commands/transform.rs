@@ -2,10 +2,12 @@
 //! Floor 7.
 
 use super::row::{LINE, MenuCommand, has_layer, key, row};
+use crate::math::PlaneMap;
 use crate::requests::UiRequests;
-use crate::session::actions::LayerAction;
+use crate::session::actions::{LayerAction, PartAction};
 use crate::session::{Action, LayerPaths, Property, Session};
 use crate::tools::ToolKind;
+use crate::tools::transform::{self, Carried};
 use eframe::egui::Key;
 
 pub const REMOVE_LIQUIFY: &str = "Remove liquify";
@@ -30,20 +32,20 @@ pub const COMMANDS: &[MenuCommand] = &[
         &[],
         "Mirrors the chosen layers about their middle",
         has_layer,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Mirror { layer, upright: false }),
+        |session, requests| mirror(session, requests, false),
     ),
     row("Mirror up and down", &[], "Mirrors the chosen layers about their middle", has_layer, |session, requests| {
-        with_chosen(session, requests, |layer| LayerAction::Mirror { layer, upright: true })
+        mirror(session, requests, true)
     }),
     row(
         "Turn layer left",
         &[],
         "Turns the chosen layers by a quarter, counter-clockwise",
         has_layer,
-        |session, requests| with_chosen(session, requests, |layer| LayerAction::Turn { layer, degrees: 90.0 }),
+        |session, requests| turn(session, requests, 90.0),
     ),
     row("Turn layer right", &[], "Turns the chosen layers by a quarter, clockwise", has_layer, |session, requests| {
-        with_chosen(session, requests, |layer| LayerAction::Turn { layer, degrees: -90.0 })
+        turn(session, requests, -90.0)
     }),
     LINE,
     row(
@@ -78,6 +80,28 @@ fn is_liquified(session: &Session) -> bool {
     let Some(tab) = session.active() else { return false };
     let has_liquify = |id| tab.document().layer(id).is_some_and(|layer| layer.liquify.is_some());
     tab.chosen_layers().into_iter().any(has_liquify)
+}
+
+fn mirror(session: &Session, requests: &mut UiRequests, upright: bool) {
+    match shape_by(session, Some(transform::mirror(upright))) {
+        Some(action) => requests.act(action),
+        None => with_chosen(session, requests, |layer| LayerAction::Mirror { layer, upright }),
+    }
+}
+
+fn turn(session: &Session, requests: &mut UiRequests, degrees: f32) {
+    match shape_by(session, transform::turn(degrees.into())) {
+        Some(action) => requests.act(action),
+        None => with_chosen(session, requests, |layer| LayerAction::Turn { layer, degrees }),
+    }
+}
+
+/// The shape mapped about its middle, while the transform tool takes it along.
+fn shape_by(session: &Session, map: Option<PlaneMap>) -> Option<Action> {
+    let takes_shape = session.tool == ToolKind::Transform && session.carried == Carried::Shape;
+    let tab = session.active().filter(|_| takes_shape)?;
+    let by = transform::about_shape(tab.document(), map?)?;
+    Some(Action::Part(PartAction::TakeAlong { by, done: true }))
 }
 
 fn with_chosen(session: &Session, requests: &mut UiRequests, action: impl FnOnce(LayerPaths) -> LayerAction) {

@@ -6,15 +6,21 @@ use crate::document::LayerLock;
 use crate::math::Vec2;
 use crate::raster::Resampling;
 use crate::requests::UiRequests;
-use crate::session::actions::LayerAction;
+use crate::session::actions::{HandAction, LayerAction, PartAction};
 use crate::session::{Action, Property, Session};
-use crate::tools::transform::{FrameNumbers, PIVOTS};
+use crate::tools::transform::{Carried, FrameNumbers, PIVOTS};
 use crate::widgets::{choice, named};
 use eframe::egui::{Button, DragValue, Ui};
 use std::ops::RangeInclusive;
 
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
+    if session.shown().is_some_and(|document| document.surface.is_some()) {
+        let ways = Carried::ALL.map(|(carried, _, label)| (carried, label));
+        if let Some(carried) = choice(ui, "What is transformed", session.carried, &ways) {
+            requests.act(Action::Hand(HandAction::Carried { carried }));
+        }
+    }
     let mut commands = TRANSFORMS.split(MenuCommand::is_line);
     for command in commands.next().unwrap_or_default() {
         let button = ui.add_enabled((command.can)(session), Button::new(command.name)).on_hover_text(command.hint);
@@ -43,7 +49,7 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
             requests.act(Action::Layer(LayerAction::Set { layer: session.layer_paths(), to, done: true }));
         }
     }
-    if let Some(frame) = tab.frame() {
+    if let Some(frame) = tab.frame(session.carried) {
         ui.label("Pivot");
         let choices = PIVOTS.map(|(share, name)| (Some(share), name));
         let known = PIVOTS.iter().map(|(share, _)| *share).find(|share| *share == frame.pivot_share);
@@ -76,15 +82,16 @@ fn meshes(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 /// The lower row: the frame in numbers; sides and angles change about the pivot.
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let Some(tab) = session.active() else { return };
+    let of_shape = session.carried == Carried::Shape && tab.document().surface.is_some();
     let locked = |id| tab.document().layer(id).is_none_or(|layer| layer.lock == LayerLock::All);
     let chosen = tab.outermost_chosen();
-    if chosen.is_empty() {
+    if chosen.is_empty() && !of_shape {
         return drop(ui.weak("Choose layers to move, scale and turn them"));
     }
-    if chosen.iter().any(|id| locked(*id)) {
+    if !of_shape && chosen.iter().any(|id| locked(*id)) {
         return drop(ui.weak("What is locked cannot be transformed"));
     }
-    let (Some(frame), Some(before)) = (tab.frame(), tab.frame_before()) else {
+    let (Some(frame), Some(before)) = (tab.frame(session.carried), tab.frame_before(session.carried)) else {
         return drop(ui.weak("There is nothing on this layer to transform"));
     };
     let (Some(was), Some(before)) = (FrameNumbers::of(&frame), FrameNumbers::of(&before)) else {
@@ -94,7 +101,11 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let to = if edited.keeps_pivot { edited.to.about(frame.pivot_share, &was) } else { edited.to };
     let layer = session.layer_paths();
     if let Some(by) = to.map_from(&before) {
-        requests.act(Action::Layer(LayerAction::TakeAlong { layer, by, done: edited.done }));
+        let done = edited.done;
+        requests.act(match of_shape {
+            true => Action::Part(PartAction::TakeAlong { by, done }),
+            false => Action::Layer(LayerAction::TakeAlong { layer, by, done }),
+        });
     }
 }
 

@@ -24,14 +24,14 @@ pub fn carried(list: &[Arc<Part>], change: &CanvasChange, maps: Option<[&Arc<Sur
     let one = |part: &Arc<Part>| {
         let mut next = Frame::of(list, part.on().unwrap_or(&part.id), change).part(part, change);
         if let (Some(OutlineSource::Object(object)), Some([old, new])) = (outline_mut(&mut next.kind), maps) {
-            *object = same_object(*object, old, new, change);
+            *object = same_object(*object, old, new, |p| change.point(p));
         }
         Arc::new(next)
     };
     list.iter().map(one).collect()
 }
 
-fn outline_mut(kind: &mut PartKind) -> Option<&mut OutlineSource> {
+pub(super) fn outline_mut(kind: &mut PartKind) -> Option<&mut OutlineSource> {
     match kind {
         PartKind::Inflate { outline, .. } | PartKind::Bevel { outline, .. } | PartKind::Lathe { outline, .. } => {
             Some(outline)
@@ -41,13 +41,13 @@ fn outline_mut(kind: &mut PartKind) -> Option<&mut OutlineSource> {
 }
 
 /// The number of the object that most pixels of another one became; of one that is gone a number that none has.
-fn same_object(object: u32, old: &Arc<Surface>, new: &Arc<Surface>, change: &CanvasChange) -> u32 {
+pub(super) fn same_object(object: u32, old: &Arc<Surface>, new: &Arc<Surface>, to: impl Fn(Vec2) -> Vec2) -> u32 {
     let (labels, now) = (old.objects().labels(), new.objects());
     let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
     let own = labels.values().iter().enumerate().filter(|(_, label)| **label == object);
     for (i, _) in own {
         let center = vec2((i % labels.width()) as f32 + 0.5, (i / labels.width()) as f32 + 0.5);
-        let at = change.point(center).floor();
+        let at = to(center).floor();
         if let Some(label) = now.labels().get(at.x as i32, at.y as i32).filter(|label| *label > 0) {
             *counts.entry(label).or_default() += 1;
         }
@@ -123,7 +123,7 @@ impl Frame {
 }
 
 /// What a part is made of where a rigid map takes it.
-fn carry(kind: &mut PartKind, map: Affine2) {
+pub(super) fn carry(kind: &mut PartKind, map: Affine2) {
     let at = |p: &mut Vec2| *p = map.transform_point2(*p);
     let path = |outline: &mut OutlineSource| {
         if let OutlineSource::Path(points) = outline {

@@ -14,7 +14,7 @@ use crate::surface::{Anchor, Bend, Maps, Operator};
 
 const SIZE: Size = Size::new(150, 100);
 
-fn dome() -> Arc<Surface> {
+pub(super) fn dome() -> Arc<Surface> {
     let at = |x: usize, y: usize| (vec2(x as f32, y as f32) + 0.5 - vec2(72.0, 51.0)) / 46.0;
     let z = |x: usize, y: usize| (1.0 - at(x, y).length_squared()).max(0.0).sqrt();
     let coverage = Plane::from_fn(SIZE, |x, y| if at(x, y).length() < 1.0 { 255 } else { 0 });
@@ -31,12 +31,12 @@ fn waves(size: Size) -> Vec<[u8; 4]> {
     (0..size.height).flat_map(|y| (0..size.width).map(move |x| [wave(x, y), wave(y, x), 90, 255])).collect()
 }
 /// Paint that reaches beyond the canvas.
-fn paint() -> Layer {
+pub(super) fn paint() -> Layer {
     let size = Size::new(120, 90);
     let tiles = TileGrid::from_straight_rgba(noise(size).as_flattened(), 120, 90, -20, 25);
     Layer::new("paint", Content::Pixels(PixelLayer { tiles, ..PixelLayer::default() }))
 }
-fn bent() -> Operator {
+pub(super) fn bent() -> Operator {
     Operator::Normal { alpha: 0.15, beta: 0.5, detail: 0.0 }
 }
 fn image(operator: Operator) -> Layer {
@@ -51,7 +51,7 @@ fn image(operator: Operator) -> Layer {
     };
     Layer::new("image", Content::Image(Live::new(image)))
 }
-fn ramp(operator: Operator) -> Layer {
+pub(super) fn ramp(operator: Operator) -> Layer {
     let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];
     // Anchors read the pixel that holds them: on its border a turn would take them to the next, and what a crop takes
     // away tells nothing any more.
@@ -76,7 +76,7 @@ fn shading() -> Layer {
     ];
     Layer::new("lit", Content::Shading(Live::new(Shading { lights, ..Shading::new(Model::Phong) })))
 }
-fn under(layer: Layer) -> Document {
+pub(super) fn under(layer: Layer) -> Document {
     let ground =
         Layer { clip_to_surface: false, ..Layer::new("ground", Content::Fill(Color { r: 40, g: 60, b: 80, a: 255 })) };
     Document { layers: vec![Arc::new(ground), Arc::new(layer)], ..Document::empty(SIZE) }
@@ -84,7 +84,7 @@ fn under(layer: Layer) -> Document {
 fn on_dome(layer: Layer) -> Document {
     Document { surface: Some(dome()), ..under(layer) }
 }
-fn picture(document: &Document) -> Vec<u8> {
+pub(super) fn picture(document: &Document) -> Vec<u8> {
     flatten(document, &Progress::default()).unwrap().to_straight_rgba(document.size.rect())
 }
 /// Moves of whole pixels that hold all of the canvas, and two that do not.

@@ -22,6 +22,9 @@ impl LayerKind for Color {
     fn scaled(&self, _scale: &CanvasScale) -> Content {
         Content::Fill(*self)
     }
+    fn goes_with_shape(&self) -> bool {
+        false
+    }
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::Fill(old) if old == self))
     }

@@ -24,6 +24,9 @@ impl LayerKind for RadianceScaling {
         scale.features(&mut scaling.features);
         Content::RadianceScaling(scaling)
     }
+    fn goes_with_shape(&self) -> bool {
+        false
+    }
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::wholly_if(!matches!(old, Content::RadianceScaling(old) if old == self))
     }

@@ -84,6 +84,9 @@ impl LayerKind for Live<Shading> {
         let reason = || format!("is missing; “{}” shows nothing else", shading.model.name());
         shading.lacks_environment().then(|| ("environment", reason()))
     }
+    fn goes_with_shape(&self) -> bool {
+        false
+    }
     fn changed_from(&self, old: &Content, _scene: &dyn Fn() -> Scene) -> Changed {
         Changed::of_live(self, if let Content::Shading(old) = old { Some(old) } else { None })
     }

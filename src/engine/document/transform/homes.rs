@@ -265,7 +265,7 @@ fn stroke_on(
 }
 
 /// A map as a layer's transform that files hold, none where it moves nothing; outer `None` where there is no such one.
-pub(super) fn transform_of(map: &PlaneMap, of: &LayerMap) -> Option<Option<LayerTransform>> {
+pub(in crate::document) fn transform_of(map: &PlaneMap, of: &LayerMap) -> Option<Option<LayerTransform>> {
     if map.is_identity_on(of.canvas) {
         return Some(None);
     }

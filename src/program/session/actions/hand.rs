@@ -10,6 +10,7 @@ use crate::session::replay::{ReplayValue, actions, field, names, record};
 use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
+use crate::tools::transform::Carried;
 use crate::tools::{Symmetry, ToolKind};
 use serde_json::{Value, json};
 
@@ -17,6 +18,7 @@ names!(ToolKind);
 names!(PaintLimit);
 names!(LiquifyTool);
 record!(LiquifySettings { tool, size, strength, one_object, foreshortened });
+names!(Carried);
 record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
 /// A kind with its numbers, as in recipes.
@@ -95,6 +97,8 @@ actions! {
         "press by speed" PressBySpeed { on: bool }
         /// Whether the brush paints, smudges, blurs or clones.
         "mark" Mark { mark: BrushMode }
+        /// What the transform tool takes along.
+        "carried" Carried { carried: Carried }
         /// Where the brush may paint.
         "bounded" Bounded { bounded: PaintLimit }
         /// How far from the pen its marks may land, in diameters; 0 is anywhere.
@@ -150,6 +154,7 @@ impl HandAction {
             HandAction::Fill { fill } => session.fill = *fill,
             HandAction::PressBySpeed { on } => session.presses_by_speed = *on,
             HandAction::Mark { mark: mode } => brush.mode = mode.held(),
+            HandAction::Carried { carried } => session.carried = *carried,
             HandAction::Bounded { bounded } => brush.bounded = *bounded,
             HandAction::Reach { to } => brush.reach = to.max(*Brush::REACHES.start()).min(*Brush::REACHES.end()),
         }

@@ -16,7 +16,7 @@ use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, Shading};
 use crate::tools::brush::free_name;
-use crate::tools::transform::{self, mapped};
+use crate::tools::transform::{self, Carried, mapped};
 use std::sync::Arc;
 
 actions! {
@@ -96,6 +96,7 @@ impl LayerAction {
             frame: Default::default(),
         };
         session.drop_gesture();
+        let carried = session.carried;
         let Some(tab) = session.active_mut() else { return };
         if let LayerAction::Set { layer, to, done } = self {
             if let Some(why) = self.refusal(tab.document()) {
@@ -127,7 +128,7 @@ impl LayerAction {
                 // Only if there is one to paint on.
                 tab.repair();
             }
-            LayerAction::Pivot { at } => tab.set_pivot(*at),
+            LayerAction::Pivot { at } => tab.set_pivot(carried, *at),
             LayerAction::Solo { layer } => {
                 let id = id(layer);
                 tab.solo = if tab.solo == id { None } else { id };
@@ -312,7 +313,7 @@ fn set(tab: &mut OpenDocument, layers: &LayerPaths, to: &Property, done: bool) {
 /// The document with what layers show taken along by a map of the canvas: a step, or a preview of one.
 fn take_along(session: &mut Session, layers: &LayerPaths, by: [f64; 6], done: bool) {
     let Some(tab) = session.active_mut() else { return };
-    tab.hold_frame();
+    tab.hold_frame(Carried::Paint);
     let document = tab.document();
     let ids = layers.find(document).map(|ids| document.outermost(&ids)).unwrap_or_default();
     let map = PlaneMap::affine(by).filter(|_| !ids.is_empty());

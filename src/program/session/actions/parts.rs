@@ -14,6 +14,7 @@ use crate::document::parts::Part;
 use crate::document::{Document, Inflation, Progress};
 use crate::io::Budget;
 use crate::io::recipe::parts::read_part;
+use crate::math::PlaneMap;
 use crate::session::replay::{ReplayValue, actions, names, record};
 use crate::session::{LayerPath, OpenDocument, Session};
 use crate::shape::SculptTool;
@@ -56,6 +57,9 @@ actions! {
         "visible" Visible { part: String, on: bool }
         "duplicate" Duplicate { part: String }
         "select" Select { part: String }
+        /// The whole shape taken along by a map of the canvas (a, b, c, d, e, f), and what is painted on it; shown only,
+        /// until it is `done`.
+        "take along" TakeAlong { by: [f64; 6], done: bool }
         /// What the tools that touch and sculpt do.
         "settings" Settings { shape: ShapeSettings }
     }
@@ -75,6 +79,7 @@ impl PartAction {
         let Some(tab) = session.active_mut() else { return session.say("There is no document.") };
         let done = match self {
             PartAction::Set { part, done } => set(tab, part, *done),
+            PartAction::TakeAlong { by, done } => take_along(tab, *by, *done),
             PartAction::Select { part } => match tab.document().parts.part(part) {
                 Some(_) => {
                     tab.part = Some(part.clone());
@@ -130,7 +135,10 @@ impl PartAction {
                 let (next, id) = list::duplicated(document, &*of(part)?);
                 ("Duplicate part", next, Some(id))
             }
-            PartAction::Set { .. } | PartAction::Select { .. } | PartAction::Settings { .. } => return Ok(()),
+            PartAction::Set { .. }
+            | PartAction::TakeAlong { .. }
+            | PartAction::Select { .. }
+            | PartAction::Settings { .. } => return Ok(()),
         };
         if tab.commit(label, next) {
             tab.part = chosen.or(tab.part.take());
@@ -138,6 +146,17 @@ impl PartAction {
         }
         Ok(())
     }
+}
+
+/// The document with its shape taken along by a map of the canvas: a step, or a preview of one.
+fn take_along(tab: &mut OpenDocument, by: [f64; 6], done: bool) -> Result<(), String> {
+    let map = PlaneMap::affine(by).ok_or("A shape cannot be made without area.")?;
+    let next = tab.document().with_shape_through(&map).inspect_err(|_| tab.forget_preview())?;
+    match done {
+        true => drop(tab.commit("Transform shape", next)),
+        false => tab.show("Transform shape", next),
+    }
+    Ok(())
 }
 
 /// A part of the document anew.

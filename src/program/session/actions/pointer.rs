@@ -88,8 +88,9 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         }
         _ => None,
     };
-    if tool == ToolKind::Transform {
-        session.active_mut().into_iter().for_each(OpenDocument::hold_frame);
+    let carried = session.carried;
+    if let Some(tab) = session.active_mut().filter(|_| tool == ToolKind::Transform) {
+        tab.hold_frame(carried);
     }
     let Some(tab) = session.active() else { return };
     let (strokes, layers) = (tab.chosen_strokes(), tab.outermost_chosen());
@@ -131,6 +132,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         crop: session.crop,
         crop_aspect: session.crop_aspect,
         frame: tab.kept_frame(),
+        carried,
         strokes: &strokes,
         mesh_points: &session.mesh_points,
         snap: &snap,
@@ -251,6 +253,7 @@ fn works_in_place(tool: ToolKind, tab: &OpenDocument) -> Result<Document, &'stat
 
 fn take(session: &mut Session, outcome: Outcome) {
     let end = session.last_pen;
+    let carried = session.carried;
     let Some(tab) = session.active_mut() else { return };
     match outcome {
         Outcome::Idle => {}
@@ -285,7 +288,7 @@ fn take(session: &mut Session, outcome: Outcome) {
                 tab.choose_strokes(layer, strokes);
             }
         }
-        Outcome::Pivot(share) => tab.set_pivot(share),
+        Outcome::Pivot(share) => tab.set_pivot(carried, share),
         Outcome::MeshPoints(points) => session.mesh_points = points,
         Outcome::Axes(axes) => session.axes = axes,
         Outcome::Picked(color) => session.color = color,

@@ -7,6 +7,7 @@ use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2};
 use crate::raster::Resampling;
 use crate::tools::GRAB_PT;
+use std::sync::Arc;
 
 /// The frame of a layer, or of several, on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,53 @@ pub struct TransformFrame {
     pub corners: [Vec2; 4],
     /// What it is turned about, as shares of its sides from the upper left corner.
     pub pivot_share: Vec2,
+}
+
+/// What the transform tool takes along, where there is a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Carried {
+    /// The chosen layers alone: they slide over the shape, which stays.
+    #[default]
+    Paint,
+    /// The whole shape, and what is painted on it.
+    Shape,
+}
+
+impl Carried {
+    /// With their names in replays, and what the window calls them.
+    pub const ALL: [(Carried, &'static str, &'static str); 2] = [
+        (Carried::Paint, "paint", "slide paint over the shape"),
+        (Carried::Shape, "shape", "move paint with the shape"),
+    ];
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|row| row.0 == self).map_or("paint", |row| row.1)
+    }
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+}
+
+/// What a frame is around.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Framed<'a> {
+    Layers(&'a [LayerId]),
+    Shape,
+}
+
+impl<'a> Framed<'a> {
+    /// The shape, if that is to be taken along and there is one; else the chosen layers.
+    pub fn new(carried: Carried, document: &Document, chosen: &'a [LayerId]) -> Self {
+        match carried {
+            Carried::Shape if document.surface.is_some() => Framed::Shape,
+            _ => Framed::Layers(chosen),
+        }
+    }
+    fn layers(self) -> &'a [LayerId] {
+        match self {
+            Framed::Layers(layers) => layers,
+            Framed::Shape => &[],
+        }
+    }
 }
 
 /// What of a frame the pen holds.
@@ -67,6 +115,15 @@ impl TransformFrame {
         let high = corners.iter().copied().reduce(Vec2::max)?;
         let filter = document.map_of(*layers.first()?)?.filter;
         Self::new(FrameBox { low, high }, PlaneMap::IDENTITY, filter)
+    }
+    /// Around the shape: of maps the frame that turned with them, of parts a box on the canvas.
+    pub fn of_shape(document: &Document) -> Option<Self> {
+        let surface = document.surface.as_ref()?;
+        let origin = surface.origin();
+        match document.parts.is_empty() && !Arc::ptr_eq(&origin.surface, surface) {
+            true => Self::new(FrameBox::of_surface(&origin.surface)?, origin.map, Resampling::default()),
+            false => Self::new(FrameBox::of_surface(surface)?, PlaneMap::IDENTITY, Resampling::default()),
+        }
     }
     /// The upper left and the lower right corner of the box around it, canvas px.
     pub fn bounds(&self) -> [Vec2; 2] {
@@ -129,7 +186,9 @@ pub const MIDDLE: Vec2 = Vec2::splat(0.5);
 /// the box that they lay in at first, so that their frame turns with them.
 #[derive(Clone, Debug)]
 pub struct KeptFrame {
+    /// Of none: of the shape.
     layers: Vec<LayerId>,
+    of_shape: bool,
     pivot_share: Vec2,
     /// Around all of them as they lay at first.
     first: Option<FirstFrame>,
@@ -146,7 +205,7 @@ struct FirstFrame {
 type PlacedBox = (FrameBox, LayerMap);
 
 /// Nothing is kept.
-static NOTHING: KeptFrame = KeptFrame { layers: Vec::new(), pivot_share: MIDDLE, first: None };
+static NOTHING: KeptFrame = KeptFrame { layers: Vec::new(), of_shape: false, pivot_share: MIDDLE, first: None };
 
 impl Default for KeptFrame {
     fn default() -> Self {
@@ -158,21 +217,29 @@ impl KeptFrame {
     pub fn nothing() -> &'static Self {
         &NOTHING
     }
+    fn is_of(&self, framed: Framed) -> bool {
+        self.of_shape == (framed == Framed::Shape) && self.layers == framed.layers()
+    }
     /// What is kept of these layers as they lie: of others than the last everything is new.
-    pub fn hold(&mut self, document: &Document, layers: &[LayerId]) {
-        if self.layers != layers {
-            *self = Self { layers: layers.to_vec(), ..Self::default() };
+    pub fn hold(&mut self, document: &Document, framed: Framed) {
+        let layers = framed.layers();
+        if !self.is_of(framed) {
+            *self = Self { layers: layers.to_vec(), of_shape: framed == Framed::Shape, ..Self::default() };
         }
         if layers.len() > 1 && self.taken_along(document).is_none() {
             let inner = TransformFrame::around(document, layers).map(|frame| frame.inner);
             self.first = inner.map(|inner| FirstFrame { inner, each: each(document, layers) });
         }
     }
-    /// The frame around layers, with what is kept if they are the same ones.
-    pub fn around(&self, document: &Document, layers: &[LayerId]) -> Option<TransformFrame> {
-        let known = Some(self).filter(|kept| kept.layers == layers);
+    /// The frame around layers or the shape, with what is kept if they are the same ones.
+    pub fn around(&self, document: &Document, framed: Framed) -> Option<TransformFrame> {
+        let known = Some(self).filter(|kept| kept.is_of(framed));
+        let layers = framed.layers();
         let turned = known.and_then(|kept| Some((kept.first.as_ref()?.inner, kept.taken_along(document)?)));
-        let plain = || TransformFrame::around(document, layers);
+        let plain = || match framed {
+            Framed::Layers(layers) => TransformFrame::around(document, layers),
+            Framed::Shape => TransformFrame::of_shape(document),
+        };
         let frame = match turned {
             Some((inner, plane)) => {
                 let filter = document.map_of(*layers.first()?)?.filter;
@@ -184,8 +251,8 @@ impl KeptFrame {
         frame.map(|frame| TransformFrame { pivot_share, ..frame })
     }
     /// The pivot of some layers from now on, as shares of the sides of their frame.
-    pub fn set_pivot(&mut self, document: &Document, layers: &[LayerId], share: Vec2) {
-        self.hold(document, layers);
+    pub fn set_pivot(&mut self, document: &Document, framed: Framed, share: Vec2) {
+        self.hold(document, framed);
         if share.is_finite() {
             self.pivot_share = share.clamp(-FARTHEST_PIVOT, FARTHEST_PIVOT);
         }

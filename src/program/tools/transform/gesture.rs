@@ -19,19 +19,29 @@ pub struct HeldLayer {
 
 pub struct TransformGesture {
     pub document: Document,
+    /// None, where the shape is dragged.
     pub layers: Vec<HeldLayer>,
+    pub of_shape: bool,
     pub frame: TransformFrame,
     pub handle: FrameHandle,
     pub from: Vec2,
-    /// The layers as they were last dragged.
-    pub found: Option<Vec<Placed>>,
+    /// As it was last dragged.
+    pub found: Option<Dragged>,
     pub snap: SnapTargets,
     pub lines: SnapLines,
 }
 
+/// What a drag came to.
+pub enum Dragged {
+    /// The layers in their places, in the order of those held.
+    Layers(Vec<Placed>),
+    /// Where the shape goes on the canvas.
+    Shape(PlaneMap),
+}
+
 impl TransformGesture {
-    /// The layers with the handle at the pen; `None` where one of them is no map.
-    fn dragged(&self, pen: &PenSample) -> Option<Vec<Placed>> {
+    /// What it comes to with the handle at the pen; `None` where that is no map for one of them.
+    fn dragged(&self, pen: &PenSample) -> Option<Dragged> {
         let inner = self.frame.inner;
         match self.handle {
             FrameHandle::Inside => self.all(&FrameMap::OnCanvas(PlaneMap::translation(self.moved_by(pen)))),
@@ -50,12 +60,16 @@ impl TransformGesture {
             FrameHandle::Pivot => None,
         }
     }
-    fn all(&self, map: &FrameMap) -> Option<Vec<Placed>> {
+    fn all(&self, map: &FrameMap) -> Option<Dragged> {
         let on_canvas = match map {
             FrameMap::OnCanvas(map) => *map,
             FrameMap::InFrame(map) => self.frame.plane.inverse().then(map).then(&self.frame.plane),
         };
-        self.layers.iter().map(|layer| self.dragged_layer(layer, map, on_canvas)).collect()
+        if self.of_shape {
+            return on_canvas.coefficients().map(|_| Dragged::Shape(on_canvas));
+        }
+        let layers = self.layers.iter().map(|layer| self.dragged_layer(layer, map, on_canvas));
+        layers.collect::<Option<_>>().map(Dragged::Layers)
     }
     fn dragged_layer(&self, layer: &HeldLayer, map: &FrameMap, on_canvas: PlaneMap) -> Option<Placed> {
         let on_canvas = FrameMap::OnCanvas(on_canvas);
@@ -137,9 +151,9 @@ impl TransformGesture {
         let k = by.y / (a.x - opposite.x);
         PlaneMap::affine([1.0, k, 0.0, 1.0, 0.0, -k * opposite.x])
     }
-    /// The layers in a perspective that takes one corner to the pen, or as far toward it as there is
+    /// What it comes to in a perspective that takes one corner to the pen, or as far toward it as there is
     /// one, and leaves the others.
-    fn distorted(&self, corner: usize, at: Vec2) -> Option<Vec<Placed>> {
+    fn distorted(&self, corner: usize, at: Vec2) -> Option<Dragged> {
         let held = self.frame.corners.map(|c| c.as_dvec2());
         let (from, to) = (held[corner], within_convex(held, corner, at.as_dvec2()));
         let FrameBox { low, high } = self.frame.inner;
@@ -162,7 +176,11 @@ impl TransformGesture {
             found
         })
     }
-    fn with(&self, placed: &[Placed]) -> Option<Document> {
+    fn with(&self, dragged: &Dragged) -> Option<Document> {
+        let placed = match dragged {
+            Dragged::Shape(map) => return self.document.with_shape_through(map).ok(),
+            Dragged::Layers(placed) => placed,
+        };
         let all = self.layers.iter().zip(placed);
         all.into_iter()
             .try_fold(self.document.clone(), |next, (held, placed)| next.with_layer(held.id, |layer| placed.put(layer)))
@@ -185,12 +203,18 @@ impl Gesture for TransformGesture {
     }
     fn release(&mut self) -> Outcome {
         let label = match self.handle {
+            FrameHandle::Inside if self.of_shape => "Move shape",
+            FrameHandle::Outside if self.of_shape => "Turn shape",
+            _ if self.of_shape => "Transform shape",
             FrameHandle::Inside => "Move",
             FrameHandle::Outside => "Turn",
             FrameHandle::Corner(_) | FrameHandle::Edge(_) | FrameHandle::Pivot => "Transform",
         };
-        let is_other = |found: &Vec<_>| found.iter().zip(&self.layers).any(|(found, held)| *found != held.own);
-        match self.found.as_ref().filter(|found| is_other(found)).and_then(|found| self.with(found)) {
+        let is_other = |found: &&Dragged| match found {
+            Dragged::Layers(found) => found.iter().zip(&self.layers).any(|(found, held)| *found != held.own),
+            Dragged::Shape(map) => !map.is_identity_on(self.document.size),
+        };
+        match self.found.as_ref().filter(is_other).and_then(|found| self.with(found)) {
             Some(document) => Outcome::Commit { label: label.into(), document, select: None },
             None => Outcome::Cancel,
         }

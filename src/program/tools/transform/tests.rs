@@ -119,7 +119,7 @@ fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about(
     assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), NONE), None, "the inside moves");
     let alt = ModifierKeys { alt: true, ..NONE };
     assert_eq!(pivot_by(vec2(50.0, 36.0), vec2(50.0, 35.0), alt), Some(vec2(0.25, 0.25)));
-    kept.set_pivot(&document, &ids, Vec2::ZERO);
+    kept.set_pivot(&document, Framed::Layers(&ids), Vec2::ZERO);
     let done = |from: Vec2, to: Vec2, keys| {
         let mut gesture = press(&context(&kept), pen(from, keys)).0.unwrap();
         gesture.drag(&[pen(to, keys)]);
@@ -131,7 +131,7 @@ fn the_pivot_is_dragged_snaps_to_corners_and_is_what_is_turned_and_scaled_about(
     close(turned, [(40.0, 30.0), (40.0, -10.0), (60.0, -10.0), (60.0, 30.0)]);
     let scaled = done(vec2(80.0, 50.0), vec2(60.0, 90.0), alt);
     close(scaled, [(40.0, 30.0), (60.0, 30.0), (60.0, 90.0), (40.0, 90.0)]);
-    assert_eq!(kept.around(&document, &[LayerId::fresh()]), None);
+    assert_eq!(kept.around(&document, Framed::Layers(&[LayerId::fresh()])), None);
 }
 #[test]
 fn within_a_transformed_group_the_pen_still_leads() {
@@ -217,16 +217,16 @@ fn the_frame_of_several_layers_turns_with_them() {
     let both = two();
     let ids: Vec<LayerId> = both.layers.iter().map(|layer| layer.id).collect();
     let mut kept = KeptFrame::default();
-    kept.hold(&both, &ids);
+    kept.hold(&both, Framed::Layers(&ids));
     let turn = PlaneMap::rotation(30.0, vec2(80.0, 50.0));
     let turned = ids.iter().fold(both.clone(), |next, id| mapped(&next, *id, turn).unwrap());
-    kept.hold(&turned, &ids);
-    let frame = kept.around(&turned, &ids).unwrap();
+    kept.hold(&turned, Framed::Layers(&ids));
+    let frame = kept.around(&turned, Framed::Layers(&ids)).unwrap();
     let numbers = FrameNumbers::of(&frame).unwrap();
     assert!((numbers.angle - 30.0).abs() < 1e-3 && (numbers.width - 120.0).abs() < 1e-3, "{numbers:?}");
     // One of them alone moved: the frame is the box around both again.
     let apart = mapped(&turned, ids[0], PlaneMap::translation(vec2(9.0, 0.0))).unwrap();
-    assert!(FrameNumbers::of(&kept.around(&apart, &ids).unwrap()).unwrap().angle.abs() < 1e-6);
+    assert!(FrameNumbers::of(&kept.around(&apart, Framed::Layers(&ids)).unwrap()).unwrap().angle.abs() < 1e-6);
     let back = FrameNumbers { angle: 0.0, ..numbers }.about(Vec2::splat(0.5), &numbers);
     let by = PlaneMap::affine(back.map_from(&numbers).unwrap()).unwrap();
     let back = ids.iter().fold(turned, |next, id| mapped(&next, *id, by).unwrap());
