@@ -82,6 +82,15 @@ impl OpenDocument {
         self.choose_layers(ids);
         self.chosen_layers.anchor = anchor.or(self.chosen_layers.anchor);
     }
+    /// Chooses the layer that came, or came back, since a document: of several the choice stays.
+    pub(super) fn choose_new_since(&mut self, before: &Document) {
+        let document = self.document();
+        let came: Vec<LayerId> =
+            document.walk().iter().map(|(_, layer)| layer.id).filter(|id| before.layer(*id).is_none()).collect();
+        if let [one] = document.outermost(&came)[..] {
+            self.choose_layers(vec![one]);
+        }
+    }
     /// With a layer added to those chosen, or taken away from them, the primary one last. The last one stays.
     pub fn toggled(&self, layer: LayerId) -> Vec<LayerId> {
         let mut ids = self.chosen_layers();

@@ -47,7 +47,9 @@ impl RecoveryDialog {
         let mut answer = DialogAnswer::Open;
         ui.horizontal(|ui| {
             let can = self.lost.iter().any(|(lost, _)| !lost.has_failed);
-            if ui.add_enabled(can, eframe::egui::Button::new("Recover all")).clicked() {
+            // Enter recovers, as long as no button of the dialog has the focus.
+            let enter = ui.input(|i| i.key_pressed(eframe::egui::Key::Enter)) && ui.memory(|m| m.focused().is_none());
+            if ui.add_enabled(can, eframe::egui::Button::new("Recover all")).clicked() || (can && enter) {
                 answer =
                     DialogAnswer::Recover(self.lost.extract_if(.., |(lost, _)| !lost.has_failed).map(first).collect());
             }

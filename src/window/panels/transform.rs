@@ -136,8 +136,8 @@ fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
     moved |= number(ui, "Y", &mut to.at.y, FrameNumbers::SIDE, " px");
     ui.add_space(4.0);
     let mut percent = [100.0 * to.width / to.own.x, 100.0 * to.height / to.own.y];
-    changed |= number(ui, "Width", &mut to.width, 0.01..=*FrameNumbers::SIDE.end(), " px");
-    if number(ui, "Width in %", &mut percent[0], 0.01..=10_000.0, " %") {
+    changed |= number(ui, "Width", &mut to.width, FrameNumbers::SIDE, " px");
+    if number(ui, "Width in %", &mut percent[0], -10_000.0..=10_000.0, " %") {
         (to.width, changed) = (percent[0] * to.own.x / 100.0, true);
     }
     changed |= number(ui, "Height", &mut to.height, FrameNumbers::SIDE, " px");
@@ -150,8 +150,5 @@ fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
     (moved || changed).then_some(EditedNumbers { to, keeps_pivot: changed, done })
 }
 
-const FILTERS: [(Resampling, &str); 3] = [
-    (Resampling::Smooth, "smooth, a little soft"),
-    (Resampling::Sharp, "sharp, with faint rings"),
-    (Resampling::Nearest, "nearest, for pixel art"),
-];
+const FILTERS: [(Resampling, &str); 3] =
+    [(Resampling::Smooth, "smooth"), (Resampling::Sharp, "sharp"), (Resampling::Nearest, "nearest")];

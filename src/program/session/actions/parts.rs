@@ -57,8 +57,8 @@ actions! {
         "visible" Visible { part: String, on: bool }
         "duplicate" Duplicate { part: String }
         "select" Select { part: String }
-        /// The whole shape taken along by a map of the canvas (a, b, c, d, e, f), and what is painted on it; shown only,
-        /// until it is `done`.
+        /// The whole shape taken along by a map of the canvas (a, b, c, d, e, f), with what is painted on it; shown
+        /// only, until it is `done`.
         "take along" TakeAlong { by: [f64; 6], done: bool }
         /// What the tools that touch and sculpt do.
         "settings" Settings { shape: ShapeSettings }

@@ -10,7 +10,7 @@ use crate::math::{DVec2, PlaneMap, Vec2};
 pub struct FrameNumbers {
     /// Its upper left corner, canvas px.
     pub at: DVec2,
-    /// Sides, px; a negative height is a mirrored frame.
+    /// Sides, px; one of them is negative in a mirrored frame.
     pub width: f64,
     pub height: f64,
     /// Degrees, counter-clockwise as seen.
@@ -35,14 +35,14 @@ impl FrameNumbers {
         let across = right / width;
         let (along, height) = (across.dot(down), across.perp_dot(down));
         let own = (frame.inner.high - frame.inner.low).as_dvec2();
-        let numbers = Self {
-            at: a,
-            width,
-            height,
-            angle: -across.y.atan2(across.x).to_degrees(),
-            skew: (along / height.abs()).atan().to_degrees(),
-            own,
-        };
+        // No angle is −0.
+        let angle = 0.0 - across.y.atan2(across.x).to_degrees();
+        let skew = (along / height.abs()).atan().to_degrees();
+        let upright = Self { at: a, width, height, angle, skew, own };
+        // Mirrored left and right and not turned, instead of up and down and turned by a half.
+        let turned =
+            Self { width: -width, height: -height, angle: angle - 180.0f64.copysign(angle), skew: -skew, ..upright };
+        let numbers = if height < 0.0 && angle.abs() > 90.0 { turned } else { upright };
         (width > 1e-6 && height.abs() > 1e-6 && own.min_element() > 0.0).then_some(numbers)
     }
     /// Its sides as vectors: to the right and down.
@@ -88,6 +88,7 @@ impl FrameNumbers {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{about_middle, mirror};
     use super::*;
     use crate::document::{Content, Layer, PixelLayer};
     use crate::math::Size;
@@ -126,6 +127,22 @@ mod tests {
         assert!(off.iter().all(|off| off.abs() < 1e-3), "{found:?}");
         let back = with(&with(&document(), &wanted), &start);
         assert_eq!(back.layers[0].transform, None);
+    }
+    #[test]
+    fn what_is_mirrored_has_a_negative_side_and_is_not_turned() {
+        let start = numbers(&document());
+        for (upright, sides) in [(false, [-40.0, 20.0]), (true, [40.0, -20.0])] {
+            let document = document();
+            let mirrored = about_middle(&document, &[document.layers[0].id], mirror(upright)).unwrap();
+            let found = numbers(&mirrored);
+            assert!((found.width - sides[0]).abs() < 1e-3 && (found.height - sides[1]).abs() < 1e-3, "{found:?}");
+            assert!(found.angle.abs() < 1e-6 && found.angle.is_sign_positive(), "{found:?}");
+            let skewed = FrameNumbers { skew: 25.0, angle: 10.0, ..found };
+            let again = numbers(&with(&mirrored, &skewed));
+            assert!((again.skew - 25.0).abs() < 1e-2 && (again.angle - 10.0).abs() < 1e-2, "{again:?}");
+            let back = FrameNumbers { width: 40.0, height: 20.0, ..found }.about(Vec2::splat(0.5), &found);
+            assert!((numbers(&with(&mirrored, &back)).at - start.at).length() < 1e-3);
+        }
     }
     #[test]
     fn sides_and_angles_change_about_the_pivot() {
