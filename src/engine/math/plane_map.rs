@@ -184,6 +184,11 @@ impl PixelMove {
     pub fn turned(&self, dx: i32, dy: i32) -> (i32, i32) {
         (self.right.0 * dx + self.down.0 * dy, self.right.1 * dx + self.down.1 * dy)
     }
+    /// Any vector of the frame as one of the canvas.
+    pub fn turned_vector(&self, v: Vec2) -> Vec2 {
+        let as_vec = |(x, y): (i32, i32)| vec2(x as f32, y as f32);
+        as_vec(self.right) * v.x + as_vec(self.down) * v.y
+    }
 }
 
 /// The turn, or the mirror and turn, that is nearest to a map's matrix: its orthogonal factor. The identity of one that

@@ -263,7 +263,7 @@ impl<'f> DeformationField<'f> {
             let range = start(y)..start(y) + span.n + 2;
             (&self.d.x[range.clone()], &self.d.y[range])
         };
-        let linked = &self.surface.links_plane().row(span.y as usize)[span.x as usize..][..span.n];
+        let linked = &self.surface.smooth_links_plane().row(span.y as usize)[span.x as usize..][..span.n];
         SpanNeighbours { above: row(span.y - 1), row: row(span.y), below: row(span.y + 1), linked }
     }
 }

@@ -106,7 +106,7 @@ impl RampPositions {
     ///
     /// Differences are taken only between neighbours of one surface; a pixel without neighbours counts as unbent.
     fn footprint(&self, x: i32, y: i32, scene: &Scene) -> f32 {
-        let linked = scene.surface.as_deref().map_or(0, |s| s.links_plane().at(x as usize, y as usize));
+        let linked = scene.surface.as_deref().map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
         let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: f32| {
             let back = if linked & before != 0 { 1 } else { 0 };
             let ahead = if linked & after != 0 { 1 } else { 0 };

@@ -58,13 +58,13 @@ fn links_or_outside(surface: &Surface, x0: i32, y: i32, bits: &mut [u8]) {
     if map.contains(x0, y) && map.contains(x1 - 1, y) {
         let row = x0 as usize..x1 as usize;
         if surface.coverage_plane().row(y as usize)[row.clone()].iter().all(|&c| c > 0) {
-            return bits.copy_from_slice(&surface.links_plane().row(y as usize)[row]);
+            return bits.copy_from_slice(&surface.smooth_links_plane().row(y as usize)[row]);
         }
     }
     let covered = |x: i32, y: i32| surface.coverage_plane().get(x, y).is_some_and(|c| c > 0);
     for (x, bits) in (x0..).zip(bits) {
         *bits = if covered(x, y) {
-            surface.links_plane().get(x, y).unwrap_or(0)
+            surface.smooth_links_plane().get(x, y).unwrap_or(0)
         } else {
             SIDES.iter().filter(|(_, dx, dy)| !covered(x + dx, y + dy)).fold(0, |bits, side| bits | side.0)
         };

@@ -127,7 +127,7 @@ impl<'a> SurfaceRow<'a> {
     }
     /// Which neighbours continue the surface, along the row: bits of [`crate::surface::links`].
     pub fn links(&self) -> &[u8] {
-        &self.surface.links_plane().row(self.y)[self.x0..self.x0 + self.width]
+        &self.surface.smooth_links_plane().row(self.y)[self.x0..self.x0 + self.width]
     }
     /// Coverage by the surface, `[0, 1]`, along the row.
     pub fn coverage(&self) -> &[u8] {

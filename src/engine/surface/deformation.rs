@@ -308,7 +308,7 @@ pub(super) struct DifferencePairs {
 
 impl DifferencePairs {
     pub(super) fn linked(surface: &Surface, x: usize, y: usize) -> Self {
-        let bits = surface.links_plane().at(x, y);
+        let bits = surface.smooth_links_plane().at(x, y);
         let side = |bit: u8| usize::from(bits & bit != 0);
         let (left, right) = (x - side(links::LEFT), x + side(links::RIGHT));
         let (up, down) = (y - side(links::UP), y + side(links::DOWN));

@@ -5,6 +5,7 @@ use super::region::SurfaceRegion;
 use super::{
     cache::RecentCache,
     contours::{self, ContourMaps, Contours, Found, SheetOf},
+    creases,
     curvature::{Curvature, Kappa, Rims},
     grow, links,
     objects::Objects,
@@ -54,6 +55,8 @@ pub struct Surface {
     pub(super) eye: Eye,
     /// Which neighbours belong to the same piece of surface (`links`).
     links: Plane<u8>,
+    /// The same without those across creases; absent where there are none.
+    pub(super) smooth_links: Option<Arc<Plane<u8>>>,
     depth_range_px: f32,
     /// By blur.
     curvatures: RecentCache<u32, Curvature>,
@@ -154,6 +157,7 @@ impl Surface {
             coverage,
             eye: Eye::Afar,
             links,
+            smooth_links: None,
             depth_range_px,
             curvatures: RecentCache::default(),
             rims: RecentCache::default(),
@@ -191,12 +195,14 @@ impl Surface {
             piece_of.get(part as usize).copied().unwrap_or(part)
         });
         surface.parts = Some(Arc::new(parts));
+        surface.find_creases();
         // Where parts touch without a jump there are contours, too.
         surface.contours = Arc::new(surface.with_contour_maps(None, contours::find).contours);
         Ok(surface)
     }
     /// Finds the contours, and puts readings of one side where the maps hold some of neither.
     fn find_contours(&mut self, valid: &Plane<bool>) {
+        self.find_creases();
         let Found { contours, amended } = self.with_contour_maps(Some(valid), contours::find);
         self.contours = Arc::new(contours);
         let mut moved = false;
@@ -210,12 +216,17 @@ impl Surface {
         if moved {
             let [nx, ny, nz] = [&self.nbar_x, &self.nbar_y, &self.nz];
             self.links = links::find(nx, ny, nz, &self.depth, &self.coverage, self.depth_range_px);
+            self.find_creases();
         }
+    }
+    fn find_creases(&mut self) {
+        self.smooth_links = creases::smooth_links(&self.links, [&self.nbar_x, &self.nbar_y]).map(Arc::new);
     }
     /// Calls with the maps that contours are found in. `valid`: where the maps told something, if it is known.
     pub(super) fn with_contour_maps<T>(&self, valid: Option<&Plane<bool>>, with: impl FnOnce(&ContourMaps) -> T) -> T {
-        let Self { size, nbar_x, nbar_y, depth, coverage, links, .. } = self;
-        with(&ContourMaps { size: *size, nbar: [nbar_x, nbar_y], depth, coverage, links, valid })
+        let Self { size, nbar_x, nbar_y, depth, coverage, links: all_links, .. } = self;
+        let links = self.smooth_links_plane();
+        with(&ContourMaps { size: *size, nbar: [nbar_x, nbar_y], depth, coverage, links, all_links, valid })
     }
     /// The sheet of a surface from its planes.
     pub(super) fn sheet_of_planes(&self, reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], of: SheetOf) -> Self {
@@ -229,6 +240,7 @@ impl Surface {
             base: Some(self.base.as_ref().unwrap_or(self).clone()),
             eye: self.eye,
             contours: self.contours.clone(),
+            smooth_links: self.smooth_links.clone(),
             parts: self.parts.clone(),
             sheet_normals: of_sheet,
             ..Self::of_planes(reading, [self.coverage.clone(), self.links.clone()], self.depth_range_px)
@@ -298,6 +310,10 @@ impl Surface {
     /// For each pixel, which of its four neighbours continue the same surface: bits of [`links`].
     pub fn links_plane(&self) -> &Plane<u8> {
         &self.links
+    }
+    /// The same without links across creases: for what is differenced to tell how it changes within a pixel.
+    pub fn smooth_links_plane(&self) -> &Plane<u8> {
+        self.smooth_links.as_deref().unwrap_or(&self.links)
     }
     /// Z: how many pixels deep the range 0 … 1 of depth is, estimated from how depth and normals agree.
     pub fn depth_range_px(&self) -> f32 {

@@ -8,6 +8,7 @@ pub mod anchor;
 mod cache;
 pub mod combine;
 pub mod contours;
+mod creases;
 pub mod curvature;
 pub mod deformation;
 pub mod differentiate;

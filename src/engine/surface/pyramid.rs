@@ -178,7 +178,7 @@ impl BlockRing {
         let mut longest = 0.0f32;
         for y in y0 as usize..y1 as usize {
             for x in x0 as usize..x1 as usize {
-                let linked = surface.links_plane().at(x, y);
+                let linked = surface.smooth_links_plane().at(x, y);
                 let step = |bit: u8| usize::from(linked & bit != 0);
                 let (l, r, u, d) = (step(links::LEFT), step(links::RIGHT), step(links::UP), step(links::DOWN));
                 let dx = (self.at(x + r, y) - self.at(x - l, y)) / (l + r).max(1) as f32;

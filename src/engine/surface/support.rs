@@ -383,7 +383,7 @@ mod tests {
     }
     /// |∂(|D − q_0|)/∂q| by differences between linked neighbours, as the marks take it.
     fn pixel_length(surface: &Surface, d: &Deformation, at: Vec2, x: i32, y: i32) -> f32 {
-        let linked = surface.links_plane().at(x as usize, y as usize);
+        let linked = surface.smooth_links_plane().at(x as usize, y as usize);
         let along = (d.at(x, y) - at).normalize_or_zero();
         let slope = |before: u8, after: u8, dx: i32, dy: i32, flat: f32| {
             let (l, r) = (i32::from(linked & before != 0), i32::from(linked & after != 0));

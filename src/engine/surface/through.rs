@@ -95,14 +95,15 @@ impl Surface {
             moved(&|x, y| nz.at(x, y)),
             moved(&|x, y| self.depth(x, y)),
         ];
-        let linked = Plane::from_fn(canvas, |x, y| {
-            source(x, y).map_or(0, |at| {
-                turned_links(self.links_plane().at(at.0, at.1), by, |dx, dy| {
-                    canvas.rect().contains(x as i32 + dx, y as i32 + dy)
-                })
+        let moved_links = |links: &Plane<u8>| {
+            Plane::from_fn(canvas, |x, y| {
+                let is_inside = |dx, dy| canvas.rect().contains(x as i32 + dx, y as i32 + dy);
+                source(x, y).map_or(0, |at| turned_links(links.at(at.0, at.1), by, is_inside))
             })
-        });
+        };
+        let linked = moved_links(self.links_plane());
         let mut next = Self::of_planes(readings, [coverage, linked], self.depth_range_px());
+        next.smooth_links = self.smooth_links.as_deref().map(moved_links).map(Arc::new);
         next.contours = Arc::new(self.contours().moved(by, canvas));
         next.parts = self
             .parts_plane()

@@ -47,7 +47,7 @@ fn dab_at(dab: &Dab, operator: Operator, scene: &Scene, x: i32, y: i32) -> f32 {
     let d = Deformation::of_dab(scene.surface.as_deref(), scene.size, operator, dab.at);
     let from_center = d.at(x, y) - dab.at;
     let toward = from_center.normalize_or_zero();
-    let linked = scene.surface.as_ref().map_or(0, |s| s.links_plane().at(x as usize, y as usize));
+    let linked = scene.surface.as_ref().map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
     let difference = |before: u8, after: u8, dx: i32, dy: i32, flat: Vec2| {
         let (l, r) = (i32::from(linked & before != 0), i32::from(linked & after != 0));
         match l + r {

@@ -58,7 +58,7 @@ fn defined(shape: TipShape, brush: &Brush, operator: Operator, scene: &Scene, (x
     let d = Deformation::of_dab(scene.surface.as_deref(), scene.size, operator, dab.at);
     let map = shape.tip_from_canvas(&dab);
     let at = |x: i32, y: i32| map.transform_point2(d.at(x, y));
-    let linked = scene.surface.as_ref().map_or(0, |s| s.links_plane().at(x as usize, y as usize));
+    let linked = scene.surface.as_ref().map_or(0, |s| s.smooth_links_plane().at(x as usize, y as usize));
     let difference = |before: u8, after: u8, dx: i32, dy: i32, flat: Vec2| {
         let (l, r) = (i32::from(linked & before != 0), i32::from(linked & after != 0));
         match l + r {

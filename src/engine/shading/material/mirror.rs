@@ -56,7 +56,7 @@ pub fn shade(shading: &Shading, surface_row: &SurfaceRow, light: &mut Light3) {
 
 /// How a ray changes from pixel to pixel along x and y; differences do not cross depth jumps or the mask's edge.
 fn changes(surface: &Surface, x: usize, y: usize, r: Vec3, ray: impl Fn(Vec3, Vec3) -> Vec3) -> (Vec3, Vec3) {
-    let joined = surface.links_plane().at(x, y);
+    let joined = surface.smooth_links_plane().at(x, y);
     let ray = |x: usize, y: usize| ray(surface.normal(x, y), surface.view(x, y));
     let change = |back: u8, forth: u8, step: (usize, usize)| {
         let before = (joined & back != 0).then(|| ray(x - step.0, y - step.1));

@@ -44,14 +44,15 @@ impl Continued {
     }
 }
 
-/// Any map of the canvas, continued likewise, at a distance from a contour pixel's centre, px.
+/// Any map of the canvas, continued likewise, at a distance from the middle of what a contour pixel's other population
+/// sees, px.
 pub fn plane_of(pixel: &ContourPixel, map: impl Fn(usize, usize) -> f32, from_center: Vec2) -> f32 {
     let ridge = if pixel.others.count_ones() < LEAST_FOR_A_PLANE { f32::MAX } else { RIDGE };
     let fitted = PlaneFit::weighted(bits(pixel.others), ridge, |i| {
         let (dx, dy) = steps_of(i);
         (CONTINUED_WEIGHTS.at(i), map((pixel.x + dx) as usize, (pixel.y + dy) as usize))
     });
-    fitted.map_or(0.0, |fit| fit.here + fit.slope.dot(from_center))
+    fitted.map_or(0.0, |fit| fit.here + fit.slope.dot(pixel.other_at + from_center))
 }
 
 /// n_z of an n̄ within the disc.

@@ -16,7 +16,10 @@ pub struct ContourMaps<'m> {
     pub nbar: [&'m Plane<f32>; 2],
     pub depth: &'m Plane<f32>,
     pub coverage: &'m Plane<u8>,
+    /// Those across creases left out.
     pub links: &'m Plane<u8>,
+    /// Those across creases, too.
+    pub all_links: &'m Plane<u8>,
     /// Where the maps told something, if it is known: elsewhere the nearest values were repeated.
     pub valid: Option<&'m Plane<bool>>,
 }
@@ -111,6 +114,24 @@ struct Across {
     /// Empty where there is no surface.
     other: u64,
     is_near: bool,
+    /// Both go on into each other.
+    is_crease: bool,
+}
+
+/// How a pixel is shared.
+#[derive(Clone, Copy)]
+struct Shared {
+    /// What its own population sees.
+    own: f32,
+    /// The middle of what the other one sees, from the pixel's centre, px.
+    other_at: Vec2,
+}
+
+impl Shared {
+    fn by(line: ContourLine, own_is_near: bool) -> Self {
+        let line = if own_is_near { line } else { line.turned() };
+        Self { own: line.near_share(), other_at: line.turned().near_middle() }
+    }
 }
 
 impl Examined {
@@ -121,7 +142,7 @@ impl Examined {
             return if is_soft { Self::default() } else { Self::outside(&window, (x, y)) };
         }
         if coverage < 255 {
-            let contour = ContourPixel { x, y, share: f32::from(coverage) / 255.0, others: 0 };
+            let contour = ContourPixel { x, y, share: f32::from(coverage) / 255.0, others: 0, other_at: Vec2::ZERO };
             let own = window.pieces(1 << CENTER, 0).0 & !(1 << CENTER);
             let is_told = maps.valid.is_none_or(|valid| valid.at(x as usize, y as usize));
             return Self { contour: Some(contour), amended: if is_told { None } else { continued(&window, own) } };
@@ -133,8 +154,7 @@ impl Examined {
             return between;
         }
         let Some(across) = across(&window, linked, is_soft) else { return Self::default() };
-        let share = share(&window, across).filter(|&share| share < WHOLLY);
-        let contour = share.map(|share| ContourPixel { x, y, share, others: across.other });
+        let contour = contour_pixel(shared(&window, across), (x, y), across.other);
         Self { contour, amended: unmixed(&window, across) }
     }
     /// A pixel without surface beside one.
@@ -145,9 +165,8 @@ impl Examined {
         if other == 0 {
             return Self::default();
         }
-        let share = share(window, Across { own: window.nothing(), other, is_near: false });
-        let contour = share.filter(|&share| share < WHOLLY).map(|share| ContourPixel { x, y, share, others: other });
-        Self { contour, amended: None }
+        let across = Across { own: window.nothing(), other, is_near: false, is_crease: false };
+        Self { contour: contour_pixel(shared(window, across), (x, y), other), amended: None }
     }
     /// A pixel that continues none of its neighbours, at a depth between theirs: a renderer mixed both sides in it.
     fn between(window: &Window, (x, y): (i32, i32)) -> Option<Self> {
@@ -166,10 +185,11 @@ impl Examined {
         let line = guess.and_then(|guess| ContourLine::of_normals(window, near, window.inside & !center, guess));
         // Depth is mixed in the same shares.
         let by_depth = (back - here) / (back - front);
-        let share = line.map_or(by_depth, ContourLine::near_share);
-        let (own, others, share) = if share >= 0.5 { (near, far, share) } else { (far, near, 1.0 - share) };
-        let contour = (share < WHOLLY).then_some(ContourPixel { x, y, share, others });
-        Some(Self { contour, amended: continued(window, own) })
+        let own_is_near = line.map_or(by_depth, ContourLine::near_share) >= 0.5;
+        let (own, others) = if own_is_near { (near, far) } else { (far, near) };
+        let by_depth = Shared { own: by_depth.max(1.0 - by_depth), other_at: Vec2::ZERO };
+        let shared = line.map_or(by_depth, |line| Shared::by(line, own_is_near));
+        Some(Self { contour: contour_pixel(Some(shared), (x, y), others), amended: continued(window, own) })
     }
 }
 
@@ -186,10 +206,11 @@ fn across(window: &Window, linked: u8, is_soft: bool) -> Option<Across> {
             if is_soft {
                 continue;
             }
-            Across { own: window.pieces(center, 0).0, other: 0, is_near: true }
+            Across { own: window.pieces(center, 0).0, other: 0, is_near: true, is_crease: false }
         } else {
             let (own, other) = window.pieces(center, there);
-            Across { own, other, is_near: window.depth(CENTER) <= window.depth(i) }
+            let is_near = window.depth(CENTER) <= window.depth(i);
+            Across { own, other, is_near, is_crease: window.goes_on(link) }
         };
         let size = if across.other == 0 { window.nothing() } else { across.other }.count_ones();
         // A single pixel is a mixed one, or noise.
@@ -200,19 +221,30 @@ fn across(window: &Window, linked: u8, is_soft: bool) -> Option<Across> {
     found.map(|(_, across)| across)
 }
 
-/// The share of the middle pixel that its own population sees; `None` where no single edge passes.
-fn share(window: &Window, across: Across) -> Option<f32> {
+/// A pixel of which both populations see something.
+fn contour_pixel(shared: Option<Shared>, (x, y): (i32, i32), others: u64) -> Option<ContourPixel> {
+    let Shared { own: share, other_at } = shared.filter(|shared| shared.own < WHOLLY)?;
+    Some(ContourPixel { x, y, share, others, other_at })
+}
+
+/// How the middle pixel is shared; `None` where no single edge passes.
+fn shared(window: &Window, across: Across) -> Option<Shared> {
+    if across.is_crease {
+        let guess = ContourLine::of_mask(across.own, window.inside)?;
+        let line = ContourLine::of_depths(window, across.own, across.other).unwrap_or(guess);
+        return Some(Shared::by(line.with_center(true), true));
+    }
     let near = if across.is_near { across.own } else { across.other };
     let guess = ContourLine::of_mask(near, window.inside)?;
     let line = ContourLine::of_normals(window, near, window.inside, guess).unwrap_or(guess);
-    let share = line.with_center(across.is_near).near_share();
-    Some(if across.is_near { share } else { 1.0 - share })
+    Some(Shared::by(line.with_center(across.is_near), across.is_near))
 }
 
 /// The middle pixel's own reading, where its normal is mixed of both sides'.
-fn unmixed(window: &Window, Across { own, other, .. }: Across) -> Option<AmendedReading> {
+fn unmixed(window: &Window, Across { own, other, is_crease, .. }: Across) -> Option<AmendedReading> {
     let rest = own & !(1 << CENTER);
-    if other == 0 || rest.count_ones() < 4 {
+    // Where the surface goes on, what lies between is its own shape.
+    if is_crease || other == 0 || rest.count_ones() < 4 {
         return None;
     }
     let (mine, theirs) = (Continued::from(window, rest)?, Continued::from(window, other)?);

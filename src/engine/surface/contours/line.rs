@@ -29,6 +29,8 @@ const EXPLAINED_PX: f32 = 2.24;
 const FARTHEST_PX: f32 = 0.7;
 /// Cosine of the greatest angle between both lines.
 const ALIKE: f32 = 0.7;
+/// Fewer pixels tell no plane of depths.
+const LEAST_FOR_A_LINE: u32 = 6;
 /// The share of a straight edge's contrast that a mask must have to be taken for one.
 const LEAST_CONTRAST: f32 = 0.5;
 
@@ -46,6 +48,33 @@ impl ContourLine {
         };
         let share = share.clamp(0.0, 1.0);
         if d >= 0.0 { share } else { 1.0 - share }
+    }
+    /// The same line with its sides exchanged.
+    pub fn turned(self) -> Self {
+        Self { distance_px: -self.distance_px, toward_near: -self.toward_near }
+    }
+    /// The centroid of the unit pixel's area on the nearer side, from the pixel's centre, px; the centre where there is
+    /// no such area.
+    pub fn near_middle(self) -> Vec2 {
+        let height = |p: Vec2| self.distance_px + self.toward_near.dot(p);
+        let corners = [vec2(-0.5, -0.5), vec2(0.5, -0.5), vec2(0.5, 0.5), vec2(-0.5, 0.5)];
+        let mut outline: Vec<Vec2> = Vec::with_capacity(5);
+        for (a, b) in std::iter::zip(corners, [corners[1], corners[2], corners[3], corners[0]]) {
+            let (from, to) = (height(a), height(b));
+            if from >= 0.0 {
+                outline.push(a);
+            }
+            if (from >= 0.0) != (to >= 0.0) {
+                outline.push(a.lerp(b, from / (from - to)));
+            }
+        }
+        // Triangles around the first corner.
+        let (mut area, mut moment) = (0.0, Vec2::ZERO);
+        for pair in outline.windows(2).skip(1) {
+            let twice = (pair[0] - outline[0]).perp_dot(pair[1] - outline[0]);
+            (area, moment) = (area + twice, moment + twice * (outline[0] + pair[0] + pair[1]) / 3.0);
+        }
+        if area > 1e-6 { moment / area } else { Vec2::ZERO }
     }
     /// The line that a binary mask of the nearer side tells: a Gaussian mean of a step is Φ(d / σ), so that d = σ Φ⁻¹
     /// of it; its direction is that of the first moments. `None` where the mask is no single edge, such as at a thin
@@ -87,18 +116,40 @@ impl ContourLine {
         }
         let line = Self { distance_px: fitted.here / steepness, toward_near: fitted.slope / steepness };
         let in_reach = (-1.2..1.5).contains(&line.distance_px) && line.toward_near.dot(guess.toward_near) >= ALIKE;
-        let explains = |i: u32| {
-            let at = offset_of(i);
-            let d = line.distance_px + line.toward_near.dot(at);
-            let away = at.length();
-            let tolerance = TOLERANCE_PX + BEND_PER_PX * away * away;
-            away > EXPLAINED_PX || if near >> i & 1 == 1 { d } else { -d } >= -tolerance
-        };
-        if !in_reach || !bits(known).all(explains) {
+        if !in_reach || !line.explains(near, known) {
             return None;
         }
         let distance_px = line.distance_px.clamp(guess.distance_px - FARTHEST_PX, guess.distance_px + FARTHEST_PX);
         Some(Self { distance_px, ..line })
+    }
+    /// The line along which two pieces of surface meet at a crease: where planes fitted to their depths are equally
+    /// deep. `None` where it contradicts which pixels show which: coarse depth does not tell.
+    ///
+    /// * `own`, `other`: bits of the window; the nearer side of the line is `own`.
+    pub fn of_depths(window: &Window, own: u64, other: u64) -> Option<Self> {
+        let fit = |members: u64| {
+            let is_plane = members.count_ones() >= LEAST_FOR_A_LINE;
+            let depth = |i: u32| (CONTINUED_WEIGHTS.at(i), window.depth(i));
+            is_plane.then(|| PlaneFit::weighted(bits(members), 1e-9, depth)).flatten()
+        };
+        let (own_fit, other_fit) = (fit(own)?, fit(other)?);
+        let (here, slope) = (own_fit.here - other_fit.here, own_fit.slope - other_fit.slope);
+        let steepness = slope.length();
+        if steepness < 1e-7 {
+            return None;
+        }
+        let line = Self { distance_px: here / steepness, toward_near: slope / steepness };
+        [line, line.turned()].into_iter().find(|line| line.explains(own, own | other))
+    }
+    /// Pixels lie on their side of the line, those nearby, but for a little.
+    fn explains(&self, near: u64, known: u64) -> bool {
+        bits(known).all(|i| {
+            let at = offset_of(i);
+            let d = self.distance_px + self.toward_near.dot(at);
+            let away = at.length();
+            let tolerance = TOLERANCE_PX + BEND_PER_PX * away * away;
+            away > EXPLAINED_PX || if near >> i & 1 == 1 { d } else { -d } >= -tolerance
+        })
     }
     /// The same line, moved so far that the middle pixel's centre lies on the side that it was seen on.
     pub fn with_center(self, is_near: bool) -> Self {

@@ -16,7 +16,7 @@ mod tests;
 
 pub use sheet::{SheetOf, place_of};
 
-use crate::math::{Rect, Size};
+use crate::math::{Rect, Size, Vec2};
 use crate::raster::TileAt;
 use std::ops::Range;
 
@@ -37,6 +37,8 @@ pub struct ContourPixel {
     /// Which pixels of the window around it belong to the other population's piece of surface; none where it sees no
     /// surface.
     others: u64,
+    /// The middle of what the other population sees, from the pixel's centre, px: what is read for it is read there.
+    other_at: Vec2,
 }
 
 impl ContourPixel {

@@ -25,7 +25,9 @@ impl Contours {
             // What it saw beyond its own edge was cut away.
             let is_blind = others == 0 && pixel.others != 0;
             if canvas.rect().contains(x, y) && !is_blind {
-                tiles[y as usize / TILE * columns + x as usize / TILE].push(ContourPixel { x, y, others, ..*pixel });
+                let other_at = by.turned_vector(pixel.other_at);
+                let tile = &mut tiles[y as usize / TILE * columns + x as usize / TILE];
+                tile.push(ContourPixel { x, y, others, other_at, ..*pixel });
             }
         }
         Self::of_tiles(canvas, tiles)

@@ -84,6 +84,10 @@ impl<'m> Window<'m> {
         }
         window
     }
+    /// The surface of the middle pixel goes on across one of its sides, if at a crease.
+    pub fn goes_on(&self, link: u8) -> bool {
+        self.maps.all_links.at(self.x as usize, self.y as usize) & link != 0
+    }
     /// The canvas pixel of a bit that is inside.
     pub fn pixel(&self, i: u32) -> (usize, usize) {
         let (dx, dy) = steps_of(i);

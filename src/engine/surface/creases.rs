@@ -1,0 +1,206 @@
+//! Creases: where the surface goes on but its direction turns within a pixel, as at an edge of a cube. Nothing that
+//! changes smoothly over a surface is differenced across one.
+//! Floor 2.
+
+use super::links;
+use crate::math::{Vec2, vec2};
+use crate::raster::Plane;
+use std::collections::HashSet;
+
+/// A step of n̄ of at least this length turns at a crease where it is so many times as long as the steps before and
+/// after it; one that touches such a step does from the second pair on. n̄ changes steadily up to a smooth silhouette,
+/// where n_z falls ever faster.
+const CERTAIN: Sharpness = Sharpness { least: 0.3, times: 4.0 };
+const LIKELY: Sharpness = Sharpness { least: 0.12, times: 2.5 };
+/// A renderer may have mixed both sides in a pixel: the way over it is at most this much longer than past it.
+const DETOUR: f32 = 1.15;
+/// Fewer steps side by side are noise.
+const LEAST_STEPS: usize = 6;
+
+#[derive(Clone, Copy)]
+struct Sharpness {
+    least: f32,
+    times: f32,
+}
+
+impl Sharpness {
+    fn is_met(self, step: f32, beside: f32) -> bool {
+        step >= self.least && step >= self.times * beside
+    }
+}
+
+/// The links without those across creases; `None` where there are no creases.
+///
+/// * `nbar`: n̄_x, n̄_y.
+pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u8>> {
+    let maps = NormalSteps { links, nbar };
+    let mut steps = Plane::from_fn(links.size(), |x, y| {
+        maps.flags((x, y), Axis::Across) | maps.flags((x, y), Axis::Down) << Axis::Down.shift()
+    });
+    keep_chains(&mut steps);
+    if steps.values().iter().all(|&flags| flags & ANY_CREASE == 0) {
+        return None;
+    }
+    let is_crease = |x: usize, y: usize, axis: Axis| steps.at(x, y) >> axis.shift() & CREASE != 0;
+    Some(Plane::from_fn(links.size(), |x, y| {
+        let mut linked = links.at(x, y);
+        let mut cut = |bit: u8, is: bool| linked &= if is { !bit } else { u8::MAX };
+        cut(links::RIGHT, is_crease(x, y, Axis::Across));
+        cut(links::DOWN, is_crease(x, y, Axis::Down));
+        cut(links::LEFT, x > 0 && is_crease(x.saturating_sub(1), y, Axis::Across));
+        cut(links::UP, y > 0 && is_crease(x, y.saturating_sub(1), Axis::Down));
+        linked
+    }))
+}
+
+/// Flags of the step from a pixel to its right neighbour; those of the step to the pixel below follow.
+const CREASE: u8 = 1;
+const LIKELY_CREASE: u8 = 2;
+const ANY_CREASE: u8 = CREASE | CREASE << 2;
+const ANY: u8 = 15;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Axis {
+    Across,
+    Down,
+}
+
+impl Axis {
+    fn shift(self) -> u8 {
+        if self == Axis::Across { 0 } else { 2 }
+    }
+}
+
+/// Turns likely creases into creases where they touch one, over the eight neighbours of a pixel, and drops what is too
+/// short.
+fn keep_chains(steps: &mut Plane<u8>) {
+    let width = steps.width();
+    let mut seeds: Vec<usize> = (0..steps.values().len()).filter(|&i| steps.values()[i] & ANY_CREASE != 0).collect();
+    let mut seen = HashSet::new();
+    while let Some(seed) = seeds.pop() {
+        if !seen.insert(seed) {
+            continue;
+        }
+        let (mut chain, mut next) = (vec![seed], 0);
+        while next < chain.len() {
+            let (x, y) = ((chain[next] % width) as i32, (chain[next] / width) as i32);
+            for (x, y) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))) {
+                let is_step = steps.get(x, y).is_some_and(|flags| flags & ANY != 0);
+                if is_step && seen.insert(y as usize * width + x as usize) {
+                    chain.push(y as usize * width + x as usize);
+                }
+            }
+            next += 1;
+        }
+        let is_kept = chain.len() >= LEAST_STEPS;
+        for i in chain {
+            let flags = &mut steps.values_mut()[i];
+            *flags = if is_kept { (*flags | *flags >> 1) & ANY_CREASE } else { 0 };
+        }
+    }
+}
+
+/// What a step from one pixel to the next is judged by.
+struct NormalSteps<'m> {
+    links: &'m Plane<u8>,
+    nbar: [&'m Plane<f32>; 2],
+}
+
+impl NormalSteps<'_> {
+    fn nbar(&self, (x, y): (usize, usize)) -> Vec2 {
+        vec2(self.nbar[0].at(x, y), self.nbar[1].at(x, y))
+    }
+    fn after(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
+        let bit = if axis == Axis::Across { links::RIGHT } else { links::DOWN };
+        let next = if axis == Axis::Across { (x + 1, y) } else { (x, y + 1) };
+        (self.links.at(x, y) & bit != 0).then_some(next)
+    }
+    fn before(&self, (x, y): (usize, usize), axis: Axis) -> Option<(usize, usize)> {
+        let bit = if axis == Axis::Across { links::LEFT } else { links::UP };
+        let last = if axis == Axis::Across { (x.wrapping_sub(1), y) } else { (x, y.wrapping_sub(1)) };
+        (self.links.at(x, y) & bit != 0).then_some(last)
+    }
+    /// Whether the step after a pixel crosses a crease, or is likely to.
+    fn flags(&self, at: (usize, usize), axis: Axis) -> u8 {
+        let Some(next) = self.after(at, axis) else { return 0 };
+        let (here, there) = (self.nbar(at), self.nbar(next));
+        let step = here.distance(there);
+        // Half of a mixed step may be shorter than the whole.
+        if step < LIKELY.least {
+            return 0;
+        }
+        let before = self.before(at, axis).map(|at| (at, self.nbar(at)));
+        let after = self.after(next, axis).map(|at| (at, self.nbar(at)));
+        let sharp = |step: f32, beside: [Option<f32>; 2]| {
+            let longest = beside.into_iter().flatten().reduce(f32::max);
+            match longest {
+                Some(beside) if CERTAIN.is_met(step, beside) => CREASE,
+                Some(beside) if LIKELY.is_met(step, beside) => LIKELY_CREASE,
+                _ => 0,
+            }
+        };
+        let alone = sharp(step, [before.map(|b| b.1.distance(here)), after.map(|a| a.1.distance(there))]);
+        // Over a mixed pixel at the step's end, or at its start: its longer half is where the crease is.
+        let over = |from: Vec2, mixed: Vec2, to: Vec2, beside: [Option<f32>; 2]| {
+            let (whole, halves) = (from.distance(to), [from.distance(mixed), mixed.distance(to)]);
+            let is_between = halves[0] + halves[1] < DETOUR * whole;
+            if is_between && step >= halves[0].max(halves[1]) { sharp(whole, beside) } else { 0 }
+        };
+        let from_before = before.map(|b| b.1.distance(here));
+        let ahead = after.map_or(0, |(at, nbar)| {
+            let beyond = self.after(at, axis).map(|at| self.nbar(at).distance(nbar));
+            over(here, there, nbar, [from_before, beyond])
+        });
+        let behind = before.map_or(0, |(at, nbar)| {
+            let earlier = self.before(at, axis).map(|at| self.nbar(at).distance(nbar));
+            over(nbar, here, there, [earlier, after.map(|a| a.1.distance(there))])
+        });
+        let all = alone | ahead | behind;
+        if all & CREASE != 0 { CREASE } else { all }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{Size, Vec3, vec3};
+
+    const SIZE: Size = Size::new(40, 30);
+
+    /// The rows and columns of the right steps that are cut.
+    fn cut(normal: impl Fn(usize, usize) -> Vec3 + Sync) -> Vec<(usize, usize)> {
+        let all = Plane::from_fn(SIZE, |x, y| {
+            let side = |bit: u8, is: bool| if is { bit } else { 0 };
+            side(links::LEFT, x > 0) | side(links::RIGHT, x < 39) | side(links::UP, y > 0) | side(links::DOWN, y < 29)
+        });
+        let of = |axis: usize| Plane::from_fn(SIZE, |x, y| normal(x, y).normalize()[axis]);
+        let [x, y] = [of(0), of(1)];
+        let Some(smooth) = smooth_links(&all, [&x, &y]) else { return Vec::new() };
+        let at = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));
+        at.filter(|&(x, y)| all.at(x, y) & links::RIGHT != smooth.at(x, y) & links::RIGHT).collect()
+    }
+
+    #[test]
+    fn a_roof_is_cut_at_its_ridge_alone() {
+        let roof = |x: usize, _| vec3(if x < 20 { -0.5 } else { 0.5 }, 0.0, 1.0);
+        assert_eq!(cut(roof), (0..30).map(|y| (19, y)).collect::<Vec<_>>());
+    }
+    #[test]
+    fn a_ridge_that_a_renderer_mixed_in_a_pixel_is_cut_at_its_longer_half() {
+        let roof = |x: usize, _| vec3([-0.5, -0.2, 0.5][(x + 1).clamp(19, 21) - 19], 0.0, 1.0);
+        assert_eq!(cut(roof), (0..30).map(|y| (19, y)).collect::<Vec<_>>());
+    }
+    #[test]
+    fn round_bodies_and_noise_have_no_creases() {
+        let ball = |x: usize, y: usize| {
+            let p = vec2(x as f32 - 19.5, y as f32 - 14.5) / 24.0;
+            p.extend((1.0 - p.length_squared()).max(1e-4).sqrt())
+        };
+        assert_eq!(cut(ball), []);
+        let noise = |x: usize, y: usize| {
+            let wave = |k: f32| (x as f32 * 12.9898 * k + y as f32 * 78.233).sin() * 43_758.547;
+            vec3(wave(1.0).fract() * 0.6, wave(2.0).fract() * 0.6, 1.0)
+        };
+        assert!(cut(noise).len() < 12, "{:?}", cut(noise));
+    }
+}
