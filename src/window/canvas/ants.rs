@@ -1,6 +1,7 @@
 //! The outline of the selection: dashes that march, one screen point wide at any zoom. Floor 7. The outline is found
 //! tile by tile (`raster::coverage::contour`) and cached; only tiles in view are drawn.
 
+use super::unwrapped::OnSheet;
 use crate::math::{Affine2, Rect, Vec2, vec2};
 use crate::raster::coverage::contour::{self, Run, RunsKey};
 use crate::raster::{CoverageGrid, TileAt};
@@ -45,13 +46,43 @@ impl Ants {
     }
     /// Draws the outline of the selection as shown. `visible`: the canvas pixels in view.
     pub fn draw(&mut self, painter: &Painter, session: &Session, screen_from_canvas: Affine2, visible: Rect) {
+        let scale = screen_from_canvas.matrix2.x_axis.length();
+        self.draw_runs(painter, session, scale, visible, |mesh, run, phase| {
+            let ends = ends(run).map(|p| screen_from_canvas.transform_point2(p));
+            line(mesh, ends, phase);
+        });
+    }
+    /// The same as it lies on the unwrapped sheet.
+    pub fn draw_unwrapped(
+        &mut self,
+        painter: &Painter,
+        session: &Session,
+        on_sheet: OnSheet,
+        screen_from_sheet: Affine2,
+    ) {
+        let scale = screen_from_sheet.matrix2.x_axis.length();
+        self.draw_runs(painter, session, scale, on_sheet.surface.size().rect(), |mesh, run, phase| {
+            let [from, to] = ends(run);
+            for piece in on_sheet.line(from, to) {
+                line(mesh, piece.map(|p| screen_from_sheet.transform_point2(p)), phase);
+            }
+        });
+    }
+    /// `scale`: screen points to a canvas pixel.
+    fn draw_runs(
+        &mut self,
+        painter: &Painter,
+        session: &Session,
+        scale: f32,
+        visible: Rect,
+        draw: impl Fn(&mut Mesh, &Run, f32),
+    ) {
         let selected = session.shown().and_then(|document| document.selected());
         self.follow(selected);
         let Some(grid) = selected else { return };
         if session.hides_selection || session.active().is_some_and(|tab| tab.quick_mask) {
             return;
         }
-        let scale = screen_from_canvas.matrix2.x_axis.length();
         // Blocks of at least a screen point.
         let finest = (1.0 / scale.max(1e-6)).log2().floor().max(0.0) as u32;
         if finest != self.finest {
@@ -65,7 +96,7 @@ impl Ants {
         let phase = (time_secs * PACE_PT / DASHES_PT).fract();
         for at in TileAt::covering(reach) {
             for run in self.runs_of(grid, at, level).iter() {
-                line(&mut mesh, run, screen_from_canvas, phase);
+                draw(&mut mesh, run, phase);
             }
         }
         // Four corners a piece.
@@ -105,12 +136,16 @@ impl Ants {
     }
 }
 
-/// A piece of the outline as a band of one screen point. Its dashes follow its place on the screen, so that they go on
-/// from piece to piece.
-fn line(mesh: &mut Mesh, run: &Run, screen_from_canvas: Affine2, phase: f32) {
+/// Where a piece of the outline begins and ends, canvas px.
+fn ends(run: &Run) -> [Vec2; 2] {
     let from = vec2(run.x as f32, run.y as f32);
     let along = if run.is_vertical { vec2(0.0, run.length as f32) } else { vec2(run.length as f32, 0.0) };
-    let [a, b] = [from, from + along].map(|p| screen_from_canvas.transform_point2(p));
+    [from, from + along]
+}
+
+/// A piece of the outline as a band of one screen point. Its dashes follow its place on the screen, so that they go on
+/// from piece to piece.
+fn line(mesh: &mut Mesh, [a, b]: [Vec2; 2], phase: f32) {
     let way = (b - a).normalize_or_zero();
     // Half a point longer at both ends, so that corners are closed.
     let (a, b, aside) = (a - 0.5 * way, b + 0.5 * way, 0.5 * vec2(-way.y, way.x));

@@ -1,6 +1,7 @@
 //! Guides, the grid, and the lines that what is dragged snapped to, over the picture.
 //! Floor 7. What snaps is `tools::snap`'s.
 
+use super::unwrapped::OnSheet;
 use crate::math::{Rect, Vec2, vec2};
 use crate::session::Session;
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke};
@@ -9,6 +10,18 @@ use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke};
 const CLOSEST_PT: f32 = 6.0;
 const GUIDE: Color32 = Color32::from_rgb(40, 170, 240);
 const SNAPPED: Color32 = Color32::from_rgb(255, 70, 190);
+
+/// The document's guides as they lie on the unwrapped sheet.
+pub fn draw_unwrapped(painter: &Painter, session: &Session, on_sheet: OnSheet, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let Some(document) = session.shown().filter(|_| session.aids.guides) else { return };
+    let (w, h) = (document.size.width as f32, document.size.height as f32);
+    let upright = document.guides.vertical.iter().map(|&x| [vec2(x, 0.0), vec2(x, h)]);
+    let level = document.guides.horizontal.iter().map(|&y| [vec2(0.0, y), vec2(w, y)]);
+    for [from, to] in upright.chain(level) {
+        let pieces = on_sheet.line(from, to).map(|piece| piece.map(to_screen));
+        painter.extend(pieces.map(|piece| Shape::line_segment(piece, Stroke::new(1.0, GUIDE))));
+    }
+}
 
 /// `visible`: the canvas px in sight; `zoom`: points to a canvas px.
 pub fn draw(painter: &Painter, session: &Session, to_screen: &impl Fn(Vec2) -> Pos2, visible: Rect, zoom: f32) {

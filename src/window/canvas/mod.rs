@@ -41,7 +41,7 @@ use parts::PartMarks;
 use pointer::PointerState;
 use sheet::TileSheet;
 use std::time::Duration;
-use unwrapped::UnwrappedSheet;
+use unwrapped::{OnSheet, UnwrappedSheet};
 use wobble::Wobble;
 
 /// The state of the canvas.
@@ -186,14 +186,17 @@ impl Canvas {
         let under = pointer.map(|p| inverse.transform_point2(vec2(p.x, p.y)));
         self.under = under.filter(|p| canvas.contains(p.x.floor() as i32, p.y.floor() as i32));
         let tool = self.hand.tool(session);
+        let to_screen = |p: Vec2| {
+            let p = screen_from_canvas.transform_point2(p);
+            pos2(p.x, p.y)
+        };
         if let Some((layout, surface)) = layout.as_ref().zip(tab.document().surface.as_ref()) {
             self.under = self.under.and_then(|p| Some(layout.canvas_at(surface, p)?.at));
+            let on_sheet = OnSheet { layout, surface };
+            guides::draw_unwrapped(&painter, session, on_sheet, &to_screen);
+            self.ants.draw_unwrapped(&painter, session, on_sheet, screen_from_canvas);
             marks::draw_unwrapped(&painter, session, layout, screen_from_canvas, under, tool);
         } else {
-            let to_screen = |p: Vec2| {
-                let p = screen_from_canvas.transform_point2(p);
-                pos2(p.x, p.y)
-            };
             guides::draw(&painter, session, &to_screen, visible_rect(&view, rect), view.zoom);
             rulers::draw(ui, session, rect, screen_from_canvas, under);
             self.ants.draw(&painter, session, screen_from_canvas, visible_rect(&view, rect));

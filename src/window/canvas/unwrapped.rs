@@ -3,8 +3,9 @@
 
 use super::Canvas;
 use super::sheet::TileSheet;
-use crate::math::Vec2;
+use crate::math::{Vec2, vec2};
 use crate::raster::{TILE, Tile, TileAt, TileGrid};
+use crate::surface::Surface;
 use crate::surface::unwrap::PlaneLayout;
 use eframe::egui;
 use rayon::prelude::*;
@@ -60,6 +61,45 @@ impl UnwrappedSheet {
     }
 }
 
+/// What lies on the picture, as it lies on the sheet.
+#[derive(Clone, Copy)]
+pub struct OnSheet<'a> {
+    pub layout: &'a PlaneLayout,
+    pub surface: &'a Surface,
+}
+
+/// Lines are bent every so many px of the picture.
+const STEP_PX: f32 = 3.0;
+/// Two of these points farther apart on the sheet lie on two sides of an edge.
+const CUT_PX: f32 = 6.0 * STEP_PX;
+
+impl OnSheet<'_> {
+    /// Where a point of the picture lies; `None` off the surface. A corner of pixels lies where one of them does.
+    pub fn point(&self, p: Vec2) -> Option<Vec2> {
+        let sides = [(0.25, 0.25), (-0.25, 0.25), (0.25, -0.25), (-0.25, -0.25)];
+        let pixels = sides.map(|(x, y)| (p + vec2(x, y)).floor());
+        let is_covered =
+            |at: &Vec2| self.surface.coverage_plane().get(at.x as i32, at.y as i32).is_some_and(|covered| covered > 0);
+        let middle = pixels.into_iter().find(is_covered)? + 0.5;
+        let within = (p - middle).clamp(Vec2::splat(-0.499), Vec2::splat(0.499));
+        self.layout.sheet_at(self.surface, middle + within)
+    }
+    /// A straight line of the picture, in short pieces, without those that lie nowhere.
+    pub fn line(&self, from: Vec2, to: Vec2) -> impl Iterator<Item = [Vec2; 2]> {
+        /// A line across the largest canvas takes fewer.
+        const MOST_STEPS: f32 = 32_768.0;
+        let steps = (from.distance(to) / STEP_PX).ceil().max(1.0).min(MOST_STEPS);
+        let on_sheet = *self;
+        let at = move |i: usize| on_sheet.point(from.lerp(to, i as f32 / steps));
+        let mut last = at(0);
+        (1..=steps as usize).filter_map(move |i| {
+            let (before, next) = (last, at(i));
+            last = next;
+            before.zip(next).filter(|(a, b)| a.distance(*b) <= CUT_PX).map(|(a, b)| [a, b])
+        })
+    }
+}
+
 impl Canvas {
     /// Brings the sheet of the unwrapped surface up to the picture, if it is shown.
     pub(super) fn follow_unwrapped(&mut self, ctx: &egui::Context, layout: Option<&Arc<PlaneLayout>>) {
@@ -105,10 +145,10 @@ fn pulled(layout: &PlaneLayout, picture: &TileGrid, at: TileAt) -> Option<Arc<Ti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, Vec3, vec2, vec3};
+    use crate::math::{Size, Vec3, vec3};
     use crate::raster::Plane;
+    use crate::surface::Maps;
     use crate::surface::unwrap::UnwrapSettings;
-    use crate::surface::{Maps, Surface};
 
     /// A board that leans back to the right.
     fn board() -> Surface {
@@ -118,6 +158,18 @@ mod tests {
         Surface::new(Maps { normals, depth, coverage: Plane::filled(size, 255) }).unwrap()
     }
 
+    #[test]
+    fn lines_of_the_picture_lie_on_the_sheet_where_the_surface_does() {
+        let surface = board();
+        let layout = surface.plane_layout(UnwrapSettings { amount: 1.0, smooth_px: 0.0 }).unwrap();
+        let on_sheet = OnSheet { layout: &layout, surface: &surface };
+        let pieces: Vec<[Vec2; 2]> = on_sheet.line(vec2(20.0, 50.0), vec2(180.0, 50.0)).collect();
+        let length: f32 = pieces.iter().map(|[a, b]| a.distance(*b)).sum();
+        assert!((length / 200.0 - 1.0).abs() < 0.01, "as long as it is on the board: {length}");
+        assert!(pieces.windows(2).all(|two| two[0][1] == two[1][0]), "it goes on");
+        let beyond: Vec<[Vec2; 2]> = on_sheet.line(vec2(-400.0, 50.0), vec2(-10.0, 50.0)).collect();
+        assert!(beyond.is_empty() && on_sheet.point(vec2(199.9, 100.0)).is_some());
+    }
     #[test]
     fn the_sheet_shows_the_picture_and_follows_the_tiles_that_change() {
         let surface = board();

@@ -173,6 +173,7 @@ mod tests {
     use crate::paint::{Adjust, Brush, ImageFilter, PictureSource, Placement};
     use crate::raster::{Outside, Picture};
     use crate::surface::{Anchor, Operator};
+    use crate::tools::ToolKind;
     use std::sync::Arc;
 
     /// The cylinder and the board, with a picture on both, whose plane is turned on the cylinder by its anchors.
@@ -207,7 +208,8 @@ mod tests {
     fn dragged(document: &Document, keys: ModifierKeys, from: Vec2, to: Vec2) -> Document {
         let brush = Brush::default();
         let context = ToolContext { layer: Some(document.layers[0].id), ..ToolContext::new(document, &brush) };
-        let (gesture, _) = press(&context, PenSample { keys, ..PenSample::at(from) }, &laid(document));
+        let pen = PenSample { keys, ..PenSample::at(from) };
+        let (gesture, _) = super::super::point(&context, pen, laid(document), ToolKind::Image);
         let mut gesture = gesture.expect("a piece is held");
         gesture.drag(&[PenSample { keys, ..PenSample::at(to) }]);
         let Outcome::Commit { document, .. } = gesture.release() else { panic!("a step") };
