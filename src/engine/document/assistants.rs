@@ -12,33 +12,25 @@ pub struct Assistant {
     pub points: Vec<Vec2>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AssistantKind {
-    /// From one handle to the other.
-    Line,
-    /// All lines that run as the one through both handles.
-    Parallel,
-    /// Its first two handles are the ends of one axis, the third lies on it across that axis.
-    Ellipse,
-    /// All lines to one vanishing point, and the level and upright ones.
-    OnePoint,
-    /// All lines to two vanishing points, and those across the horizon between them.
-    TwoPoint,
-    /// All lines to three vanishing points.
-    ThreePoint,
+crate::named! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum AssistantKind {
+        /// From one handle to the other.
+        Line = "line",
+        /// All lines that run as the one through both handles.
+        Parallel = "parallel",
+        /// Its first two handles are the ends of one axis, the third lies on it across that axis.
+        Ellipse = "ellipse",
+        /// All lines to one vanishing point, and the level and upright ones.
+        OnePoint = "one-point",
+        /// All lines to two vanishing points, and those across the horizon between them.
+        TwoPoint = "two-point",
+        /// All lines to three vanishing points.
+        ThreePoint = "three-point",
+    }
 }
 
 impl AssistantKind {
-    /// Every kind with its name in documents.
-    pub const ALL: [(AssistantKind, &'static str); 6] = [
-        (AssistantKind::Line, "line"),
-        (AssistantKind::Parallel, "parallel"),
-        (AssistantKind::Ellipse, "ellipse"),
-        (AssistantKind::OnePoint, "one-point"),
-        (AssistantKind::TwoPoint, "two-point"),
-        (AssistantKind::ThreePoint, "three-point"),
-    ];
-
     /// How many handles it has.
     pub fn handles(self) -> usize {
         match self {
@@ -46,12 +38,6 @@ impl AssistantKind {
             AssistantKind::Line | AssistantKind::Parallel | AssistantKind::TwoPoint => 2,
             AssistantKind::Ellipse | AssistantKind::ThreePoint => 3,
         }
-    }
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("line", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| *known == name).map(|(kind, _)| *kind)
     }
 }
 

@@ -22,34 +22,24 @@ use crate::surface::{Surface, SurfaceError};
 use selections::CarriedSelections;
 use std::sync::Arc;
 
-/// Which part of the old picture stays in place when a canvas becomes larger or smaller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum CanvasAnchor {
-    TopLeft,
-    Top,
-    TopRight,
-    Left,
-    #[default]
-    Center,
-    Right,
-    BottomLeft,
-    Bottom,
-    BottomRight,
+crate::named! {
+    /// Which part of the old picture stays in place when a canvas becomes larger or smaller.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum CanvasAnchor {
+        TopLeft = "top-left",
+        Top = "top",
+        TopRight = "top-right",
+        Left = "left",
+        #[default]
+        Center = "center",
+        Right = "right",
+        BottomLeft = "bottom-left",
+        Bottom = "bottom",
+        BottomRight = "bottom-right",
+    }
 }
 
 impl CanvasAnchor {
-    /// Row by row, with their names in replays.
-    pub const ALL: [(CanvasAnchor, &'static str); 9] = [
-        (CanvasAnchor::TopLeft, "top-left"),
-        (CanvasAnchor::Top, "top"),
-        (CanvasAnchor::TopRight, "top-right"),
-        (CanvasAnchor::Left, "left"),
-        (CanvasAnchor::Center, "center"),
-        (CanvasAnchor::Right, "right"),
-        (CanvasAnchor::BottomLeft, "bottom-left"),
-        (CanvasAnchor::Bottom, "bottom"),
-        (CanvasAnchor::BottomRight, "bottom-right"),
-    ];
     /// Halves of what is added that come at the left, and at the top.
     fn halves(self) -> (i32, i32) {
         let place = Self::ALL.iter().position(|(anchor, _)| *anchor == self).unwrap_or(4) as i32;
@@ -57,19 +47,16 @@ impl CanvasAnchor {
     }
 }
 
-/// Which sides a mirror exchanges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum CanvasMirror {
-    /// Left and right.
-    #[default]
-    LeftRight,
-    /// Top and bottom.
-    UpDown,
-}
-
-impl CanvasMirror {
-    pub const ALL: [(CanvasMirror, &'static str); 2] =
-        [(CanvasMirror::LeftRight, "left-right"), (CanvasMirror::UpDown, "up-down")];
+crate::named! {
+    /// Which sides a mirror exchanges.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum CanvasMirror {
+        /// Left and right.
+        #[default]
+        LeftRight = "left-right",
+        /// Top and bottom.
+        UpDown = "up-down",
+    }
 }
 
 /// A rigid map of a canvas to another one.

@@ -89,41 +89,24 @@ pub enum LayerLock {
     All,
 }
 
-/// The colour of a layer's label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LayerLabel {
-    #[default]
-    None,
-    Blue,
-    Green,
-    Yellow,
-    Orange,
-    Brown,
-    Red,
-    Purple,
-    Grey,
+crate::named! {
+    /// The colour of a layer's label.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum LayerLabel {
+        #[default]
+        None = "none",
+        Blue = "blue",
+        Green = "green",
+        Yellow = "yellow",
+        Orange = "orange",
+        Brown = "brown",
+        Red = "red",
+        Purple = "purple",
+        Grey = "grey",
+    }
 }
 
 impl LayerLabel {
-    /// Every label with its name in documents.
-    pub const ALL: [(LayerLabel, &'static str); 9] = [
-        (LayerLabel::None, "none"),
-        (LayerLabel::Blue, "blue"),
-        (LayerLabel::Green, "green"),
-        (LayerLabel::Yellow, "yellow"),
-        (LayerLabel::Orange, "orange"),
-        (LayerLabel::Brown, "brown"),
-        (LayerLabel::Red, "red"),
-        (LayerLabel::Purple, "purple"),
-        (LayerLabel::Grey, "grey"),
-    ];
-
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(label, _)| *label == self).map_or("none", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| *known == name).map(|(label, _)| *label)
-    }
     /// What it is shown as.
     pub fn color(self) -> Option<Color> {
         let rgb = match self {

@@ -50,28 +50,10 @@ pub enum MaskSource {
     Flat,
 }
 
-/// Declares an enum together with its names in JSON.
-macro_rules! named {
-    ($(#[$meta:meta])* $name:ident { $($(#[$row_meta:meta])* $variant:ident = $text:literal),+ $(,)? }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum $name { $($(#[$row_meta])* $variant),+ }
-        impl $name {
-            /// Every choice with its name in documents.
-            pub const ALL: &'static [($name, &'static str)] = &[$(($name::$variant, $text)),+];
-            pub fn name(self) -> &'static str {
-                match self { $($name::$variant => $text),+ }
-            }
-            pub fn from_name(name: &str) -> Option<Self> {
-                Self::ALL.iter().find(|(_, n)| *n == name).map(|(choice, _)| *choice)
-            }
-        }
-    };
-}
-
-named! {
+crate::named! {
     /// `"encoding"` of normals: how numbers become components.
-    NormalEncoding {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum NormalEncoding {
         /// n = 2 v − 1.
         Unsigned = "unsigned",
         /// The numbers themselves, in `[−1, 1]`.
@@ -85,23 +67,26 @@ named! {
     }
 }
 
-named! {
+crate::named! {
     /// `"space"` of normals.
-    NormalSpace {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum NormalSpace {
         Camera = "camera",
         /// Turned by `world_to_camera`, or by a rotation found from the depth map.
         World = "world",
     }
 }
 
-named! {
+crate::named! {
     /// `"near"` of depth: which stored numbers are nearer to the viewer.
-    Near { Auto = "auto", Low = "low", High = "high" }
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Near { Auto = "auto", Low = "low", High = "high" }
 }
 
-named! {
+crate::named! {
     /// `"encoding"` of depth.
-    DepthEncoding {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum DepthEncoding {
         /// Distance along the view axis, in any unit.
         Planar = "planar",
         /// Distance along the ray; turned into planar depth where `fov` is known.

@@ -3,6 +3,7 @@
 
 pub mod fast;
 pub mod hash;
+mod named;
 pub mod noise;
 pub mod plane_map;
 pub mod range;

@@ -9,142 +9,100 @@ pub use inputs::{DabInputs, FAR_DIAMETERS, FAST_LENGTHS_PER_SEC, PACES_PX_PER_SE
 
 use std::sync::Arc;
 
-/// What can be driven. Curves multiply, except where [`Property::adds`]; a [`Curve::Added`] adds in the unit given
-/// here, else in the property's own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Property {
-    /// An added 1 doubles it.
-    Size,
-    /// The greatest coverage of a dab's pixels, in addition to the stroke's own opacity.
-    Opacity,
-    Flow,
-    Hardness,
-    Spacing,
-    /// A curve's 1 is a full turn counter-clockwise.
-    Rotation,
-    Scatter,
-    Softness,
-    /// A curve's 1 is once round the colour wheel.
-    Hue,
-    Saturation,
-    Value,
-    /// α of D_n and D_r.
-    Alpha,
-    /// γ of D_p.
-    Gamma,
-    /// μ, the detail of D_n and D_r.
-    Detail,
-    /// Of a round or elliptic tip and a square: the longer side over the shorter one.
-    Elongation,
-    /// HSL lightness of the colour.
-    Lightness,
-    /// How far sizes stray, see [`super::Brush::size_jitter`].
-    SizeJitter,
-    /// How far dabs stand beside the stroke, and to where; see [`super::Offset`].
-    Offset,
-    /// A curve's 1 is a full turn counter-clockwise.
-    OffsetTurn,
-    /// See [`super::Hand`]; added seconds.
-    Lead,
-    /// See [`super::Pickup`].
-    Pickup,
-    PickupLength,
-    /// What [`Input::Custom`] reads at the next dab. It is 0 unless something is added to it.
-    Custom,
+crate::named! {
+    /// What can be driven. Curves multiply, except where [`Property::adds`]; a [`Curve::Added`] adds in the unit given
+    /// here, else in the property's own.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Property {
+        /// An added 1 doubles it.
+        Size = "size",
+        /// The greatest coverage of a dab's pixels, in addition to the stroke's own opacity.
+        Opacity = "opacity",
+        Flow = "flow",
+        Hardness = "hardness",
+        Spacing = "spacing",
+        /// A curve's 1 is a full turn counter-clockwise.
+        Rotation = "rotation",
+        Scatter = "scatter",
+        Softness = "softness",
+        /// A curve's 1 is once round the colour wheel.
+        Hue = "hue",
+        Saturation = "saturation",
+        Value = "value",
+        /// α of D_n and D_r.
+        Alpha = "alpha",
+        /// γ of D_p.
+        Gamma = "gamma",
+        /// μ, the detail of D_n and D_r.
+        Detail = "detail",
+        /// Of a round or elliptic tip and a square: the longer side over the shorter one.
+        Elongation = "elongation",
+        /// HSL lightness of the colour.
+        Lightness = "lightness",
+        /// How far sizes stray, see [`super::Brush::size_jitter`].
+        SizeJitter = "size-jitter",
+        /// How far dabs stand beside the stroke, and to where; see [`super::Offset`].
+        Offset = "offset",
+        /// A curve's 1 is a full turn counter-clockwise.
+        OffsetTurn = "offset-turn",
+        /// See [`super::Hand`]; added seconds.
+        Lead = "lead",
+        /// See [`super::Pickup`].
+        Pickup = "pickup",
+        PickupLength = "pickup-length",
+        /// What [`Input::Custom`] reads at the next dab. It is 0 unless something is added to it.
+        Custom = "custom",
+    }
 }
 
 impl Property {
-    /// Every property with its name in documents.
-    pub const ALL: [(Property, &str); 23] = [
-        (Property::Size, "size"),
-        (Property::Opacity, "opacity"),
-        (Property::Flow, "flow"),
-        (Property::Hardness, "hardness"),
-        (Property::Spacing, "spacing"),
-        (Property::Rotation, "rotation"),
-        (Property::Scatter, "scatter"),
-        (Property::Softness, "softness"),
-        (Property::Hue, "hue"),
-        (Property::Saturation, "saturation"),
-        (Property::Value, "value"),
-        (Property::Alpha, "alpha"),
-        (Property::Gamma, "gamma"),
-        (Property::Detail, "detail"),
-        (Property::Elongation, "elongation"),
-        (Property::Lightness, "lightness"),
-        (Property::SizeJitter, "size-jitter"),
-        (Property::Offset, "offset"),
-        (Property::OffsetTurn, "offset-turn"),
-        (Property::Lead, "lead"),
-        (Property::Pickup, "pickup"),
-        (Property::PickupLength, "pickup-length"),
-        (Property::Custom, "custom"),
-    ];
     /// Whether its curves are turns that add up instead of factors that multiply.
     pub fn adds(self) -> bool {
         matches!(self, Property::Rotation | Property::Hue | Property::OffsetTurn)
     }
 }
 
-/// An input that can drive properties, in `[0, 1]`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Input {
-    /// The pressure of the pen, unchanged.
-    Pressure,
-    /// From upright, 0, to lying, 1: the length of (tilt x, tilt y) over 90°.
-    Tilt,
-    /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright pen.
-    TiltDirection,
-    /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of a stroke of one sample.
-    Direction,
-    /// Over [`FAST_LENGTHS_PER_SEC`].
-    Speed,
-    /// Along the stroke, over [`FAR_DIAMETERS`] of the brush.
-    Distance,
-    /// Random for every dab and property, uniformly distributed.
-    Random,
-    /// 1 − n·v: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
-    Slope,
-    /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the surface.
-    Curvature,
-    /// Of the map: 0 near, 1 far. 1 off the surface.
-    Depth,
-    /// The speed in canvas px a second over a logarithm's scale, see [`pace_of`], averaged over
-    /// [`super::Hand::pace_secs`].
-    Pace,
-    /// The same, averaged over [`super::Hand::slow_pace_secs`].
-    SlowPace,
-    /// Anew for every dab, the same for all its properties, even.
-    Chance,
-    /// Along the stroke, again and again; see [`super::Cycle`].
-    Cycle,
-    /// Where the pen leans to, in turns counter-clockwise from where the stroke goes. An upright pen leans down.
-    Attack,
-    /// What drives [`Property::Custom`] came to at the dabs before.
-    Custom,
+crate::named! {
+    /// An input that can drive properties, in `[0, 1]`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Input {
+        /// The pressure of the pen, unchanged.
+        Pressure = "pressure",
+        /// From upright, 0, to lying, 1: the length of (tilt x, tilt y) over 90°.
+        Tilt = "tilt",
+        /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright pen.
+        TiltDirection = "tilt-direction",
+        /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of a stroke of one sample.
+        Direction = "direction",
+        /// Over [`FAST_LENGTHS_PER_SEC`].
+        Speed = "speed",
+        /// Along the stroke, over [`FAR_DIAMETERS`] of the brush.
+        Distance = "distance",
+        /// Random for every dab and property, uniformly distributed.
+        Random = "random",
+        /// 1 − n·v: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
+        Slope = "slope",
+        /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the surface.
+        Curvature = "curvature",
+        /// Of the map: 0 near, 1 far. 1 off the surface.
+        Depth = "depth",
+        /// The speed in canvas px a second over a logarithm's scale, see [`pace_of`], averaged over
+        /// [`super::Hand::pace_secs`].
+        Pace = "pace",
+        /// The same, averaged over [`super::Hand::slow_pace_secs`].
+        SlowPace = "slow-pace",
+        /// Anew for every dab, the same for all its properties, even.
+        Chance = "chance",
+        /// Along the stroke, again and again; see [`super::Cycle`].
+        Cycle = "cycle",
+        /// Where the pen leans to, in turns counter-clockwise from where the stroke goes. An upright pen leans down.
+        Attack = "attack",
+        /// What drives [`Property::Custom`] came to at the dabs before.
+        Custom = "custom",
+    }
 }
 
-impl Input {
-    /// Every input with its name in documents.
-    pub const ALL: [(Input, &str); 16] = [
-        (Input::Pressure, "pressure"),
-        (Input::Tilt, "tilt"),
-        (Input::TiltDirection, "tilt-direction"),
-        (Input::Direction, "direction"),
-        (Input::Speed, "speed"),
-        (Input::Distance, "distance"),
-        (Input::Random, "random"),
-        (Input::Slope, "slope"),
-        (Input::Curvature, "curvature"),
-        (Input::Depth, "depth"),
-        (Input::Pace, "pace"),
-        (Input::SlowPace, "slow-pace"),
-        (Input::Chance, "chance"),
-        (Input::Cycle, "cycle"),
-        (Input::Attack, "attack"),
-        (Input::Custom, "custom"),
-    ];
-}
+impl Input {}
 
 /// One row: a property follows an input.
 #[derive(Clone, Debug, PartialEq)]

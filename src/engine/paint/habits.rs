@@ -5,47 +5,41 @@
 use super::brush::Brush;
 use crate::math::{Range, range::held};
 
-/// How coverage falls off from the middle of a dab to its rim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Falloff {
-    /// Whole up to the hardness h of the radius, then a smoothstep.
-    #[default]
-    Smooth,
-    /// Two straight lines over the squared radius that meet at (h, h): a peak with a faint, wide foot. It covers the
-    /// share h of its disc.
-    Peaked,
+crate::named! {
+    /// How coverage falls off from the middle of a dab to its rim.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Falloff {
+        /// Whole up to the hardness h of the radius, then a smoothstep.
+        #[default]
+        Smooth = "smooth",
+        /// Two straight lines over the squared radius that meet at (h, h): a peak with a faint, wide foot. It covers the
+        /// share h of its disc.
+        Peaked = "peaked",
+    }
 }
 
-impl Falloff {
-    pub const ALL: [(Falloff, &str); 2] = [(Falloff::Smooth, "smooth"), (Falloff::Peaked, "peaked")];
+crate::named! {
+    /// How scattered dabs lie.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Spread {
+        /// Evenly over a disc whose radius is the scatter times the dab's diameter.
+        #[default]
+        Disc = "disc",
+        /// Most of them near, some far: the standard deviation along each axis is the scatter times the brush's diameter.
+        Cloud = "cloud",
+    }
 }
 
-/// How scattered dabs lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Spread {
-    /// Evenly over a disc whose radius is the scatter times the dab's diameter.
-    #[default]
-    Disc,
-    /// Most of them near, some far: the standard deviation along each axis is the scatter times the brush's diameter.
-    Cloud,
-}
-
-impl Spread {
-    pub const ALL: [(Spread, &str); 2] = [(Spread::Disc, "disc"), (Spread::Cloud, "cloud")];
-}
-
-/// What the way between a stroke's dabs is measured on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Measure {
-    /// As it is seen.
-    #[default]
-    Canvas,
-    /// As long as it is on the surface: dabs stand equally far apart all over the form.
-    Surface,
-}
-
-impl Measure {
-    pub const ALL: [(Measure, &str); 2] = [(Measure::Canvas, "canvas"), (Measure::Surface, "surface")];
+crate::named! {
+    /// What the way between a stroke's dabs is measured on.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Measure {
+        /// As it is seen.
+        #[default]
+        Canvas = "canvas",
+        /// As long as it is on the surface: dabs stand equally far apart all over the form.
+        Surface = "surface",
+    }
 }
 
 /// Dabs beside those of the spacing.
@@ -69,21 +63,18 @@ pub struct Offset {
     pub alternates: bool,
 }
 
-/// Where a direction is measured from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Bearing {
-    /// The right side of the canvas.
-    #[default]
-    Canvas,
-    /// Where the stroke goes.
-    Stroke,
-    /// Where the pen leans to; an upright one leans down.
-    Pen,
-}
-
-impl Bearing {
-    pub const ALL: [(Bearing, &str); 3] =
-        [(Bearing::Canvas, "canvas"), (Bearing::Stroke, "stroke"), (Bearing::Pen, "pen")];
+crate::named! {
+    /// Where a direction is measured from.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Bearing {
+        /// The right side of the canvas.
+        #[default]
+        Canvas = "canvas",
+        /// Where the stroke goes.
+        Stroke = "stroke",
+        /// Where the pen leans to; an upright one leans down.
+        Pen = "pen",
+    }
 }
 
 /// How the hand's ways become readings and dabs.

@@ -5,31 +5,25 @@ use crate::math::{Size, Vec2, hash, noise, vec2};
 use crate::raster::Plane;
 use std::f32::consts::{PI, TAU};
 
-/// A pattern that repeats, for grain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Pattern {
-    /// The tooth of a rough paper: noise of several octaves.
-    #[default]
-    Paper,
-    /// Threads over and under each other.
-    Weave,
-    /// Rows of overlapping scales, each lighter toward its rim.
-    Scales,
-    /// Parallel lines, soft across: levels choose how wide.
-    Lines,
-    /// Dots in a square grid: levels choose how large.
-    Dots,
+crate::named! {
+    /// A pattern that repeats, for grain.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum Pattern {
+        /// The tooth of a rough paper: noise of several octaves.
+        #[default]
+        Paper = "paper",
+        /// Threads over and under each other.
+        Weave = "weave",
+        /// Rows of overlapping scales, each lighter toward its rim.
+        Scales = "scales",
+        /// Parallel lines, soft across: levels choose how wide.
+        Lines = "lines",
+        /// Dots in a square grid: levels choose how large.
+        Dots = "dots",
+    }
 }
 
 impl Pattern {
-    /// Every pattern with its name in files.
-    pub const ALL: [(Pattern, &'static str); 5] = [
-        (Pattern::Paper, "paper"),
-        (Pattern::Weave, "weave"),
-        (Pattern::Scales, "scales"),
-        (Pattern::Lines, "lines"),
-        (Pattern::Dots, "dots"),
-    ];
     /// Features along the side of the square that repeats.
     pub const CELLS: u32 = 16;
     /// Side of that square, texels, the least and the most.

@@ -66,30 +66,19 @@ pub fn blank(value: u8) -> Box<[u8; TILE_AREA]> {
     vec![value; TILE_AREA].into_boxed_slice().try_into().expect("a vector of TILE_AREA bytes")
 }
 
-/// How a new selection meets the one there is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Combine {
-    #[default]
-    Replace,
-    Add,
-    TakeAway,
-    Intersect,
+crate::named! {
+    /// How a new selection meets the one there is.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum Combine {
+        #[default]
+        Replace = "replace",
+        Add = "add",
+        TakeAway = "take away",
+        Intersect = "intersect",
+    }
 }
 
 impl Combine {
-    /// Every way with its name in documents and replays.
-    pub const ALL: [(Combine, &'static str); 4] = [
-        (Combine::Replace, "replace"),
-        (Combine::Add, "add"),
-        (Combine::TakeAway, "take away"),
-        (Combine::Intersect, "intersect"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(how, _)| *how == self).map_or("replace", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, n)| *n == name).map(|(how, _)| *how)
-    }
     /// Of one pixel: the larger, what is left, the smaller. Adding or intersecting the same again changes nothing, and
     /// taking the same away leaves nothing, soft edges too.
     #[inline(always)]

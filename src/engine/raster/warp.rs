@@ -19,21 +19,18 @@ use crate::math::{Mat2, Rect, Size, Vec2, vec2};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// How magnified or turned pixels are interpolated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Resampling {
-    /// Mitchell and Netravali's cubic, B = C = ⅓: no rings, a little soft.
-    #[default]
-    Smooth,
-    /// Catmull and Rom's cubic: sharp, with faint rings.
-    Sharp,
-    /// The nearest pixel, for pixel art.
-    Nearest,
-}
-
-impl Resampling {
-    pub const ALL: [(Resampling, &'static str); 3] =
-        [(Resampling::Smooth, "smooth"), (Resampling::Sharp, "sharp"), (Resampling::Nearest, "nearest")];
+crate::named! {
+    /// How magnified or turned pixels are interpolated.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum Resampling {
+        /// Mitchell and Netravali's cubic, B = C = ⅓: no rings, a little soft.
+        #[default]
+        Smooth = "smooth",
+        /// Catmull and Rom's cubic: sharp, with faint rings.
+        Sharp = "sharp",
+        /// The nearest pixel, for pixel art.
+        Nearest = "nearest",
+    }
 }
 
 /// The map that pixels are seen through.

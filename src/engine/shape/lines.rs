@@ -8,29 +8,23 @@ use super::{Form, Outline, Rim};
 use crate::math::{Range, Vec2, vec2};
 use crate::raster::Plane;
 
-/// What a line stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LineForm {
-    /// The form falls away on both sides.
-    #[default]
-    Ridge,
-    /// The form rises on both sides.
-    Valley,
-    /// A silhouette: the form on the inner side of the line's bend turns away at it, before what lies on the outer one.
-    Over,
-    /// The same of the form on the outer side.
-    Under,
+crate::named! {
+    /// What a line stands for.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum LineForm {
+        /// The form falls away on both sides.
+        #[default]
+        Ridge = "ridge",
+        /// The form rises on both sides.
+        Valley = "valley",
+        /// A silhouette: the form on the inner side of the line's bend turns away at it, before what lies on the outer one.
+        Over = "over",
+        /// The same of the form on the outer side.
+        Under = "under",
+    }
 }
 
-impl LineForm {
-    /// Each with its name in documents.
-    pub const ALL: [(LineForm, &'static str); 4] = [
-        (LineForm::Ridge, "ridge"),
-        (LineForm::Valley, "valley"),
-        (LineForm::Over, "over"),
-        (LineForm::Under, "under"),
-    ];
-}
+impl LineForm {}
 
 /// How ink shapes a form.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,37 +5,28 @@ use super::Form;
 use crate::math::{Mat3, Range, Size, TURNS, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 
-/// Which body. What each takes of a [`Primitive`]'s numbers stands beside it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
-    /// `radius`.
-    Sphere,
-    /// `half`: its half axes.
-    Ellipsoid,
-    /// `radius`, `length` along its axis (y before it is turned).
-    Cylinder,
-    /// As a cylinder; the point is up.
-    Cone,
-    /// `length` is that between the middles of its ends.
-    Capsule,
-    /// `radius` of its ring, which faces the viewer before it is turned, and `tube` around it.
-    Torus,
-    /// `half`: half of each side; `round`: the radius of its edges.
-    Box,
+crate::named! {
+    /// Which body. What each takes of a [`Primitive`]'s numbers stands beside it.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Body {
+        /// `radius`.
+        Sphere = "sphere",
+        /// `half`: its half axes.
+        Ellipsoid = "ellipsoid",
+        /// `radius`, `length` along its axis (y before it is turned).
+        Cylinder = "cylinder",
+        /// As a cylinder; the point is up.
+        Cone = "cone",
+        /// `length` is that between the middles of its ends.
+        Capsule = "capsule",
+        /// `radius` of its ring, which faces the viewer before it is turned, and `tube` around it.
+        Torus = "torus",
+        /// `half`: half of each side; `round`: the radius of its edges.
+        Box = "box",
+    }
 }
 
-impl Body {
-    /// Every body with its name in documents.
-    pub const ALL: [(Body, &'static str); 7] = [
-        (Body::Sphere, "sphere"),
-        (Body::Ellipsoid, "ellipsoid"),
-        (Body::Cylinder, "cylinder"),
-        (Body::Cone, "cone"),
-        (Body::Capsule, "capsule"),
-        (Body::Torus, "torus"),
-        (Body::Box, "box"),
-    ];
-}
+impl Body {}
 
 /// A body on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]

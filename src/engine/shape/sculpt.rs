@@ -5,42 +5,27 @@ use super::Form;
 use crate::math::{Range, UNIT, Vec2, vec2};
 use crate::raster::Plane;
 
-/// What a dab does to the heights beneath it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum SculptTool {
-    #[default]
-    Raise,
-    Lower,
-    /// Toward the mean of what is around.
-    Smooth,
-    /// Toward the plane under the first dab.
-    Flatten,
-    /// Lowers along a sharp line.
-    Crease,
-    /// Draws heights together toward the middle of the dab.
-    Pinch,
-    /// As flatten, but only what stands out.
-    Scrape,
+crate::named! {
+    /// What a dab does to the heights beneath it.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum SculptTool {
+        #[default]
+        Raise = "raise",
+        Lower = "lower",
+        /// Toward the mean of what is around.
+        Smooth = "smooth",
+        /// Toward the plane under the first dab.
+        Flatten = "flatten",
+        /// Lowers along a sharp line.
+        Crease = "crease",
+        /// Draws heights together toward the middle of the dab.
+        Pinch = "pinch",
+        /// As flatten, but only what stands out.
+        Scrape = "scrape",
+    }
 }
 
 impl SculptTool {
-    /// Every tool with its name in documents.
-    pub const ALL: [(SculptTool, &'static str); 7] = [
-        (SculptTool::Raise, "raise"),
-        (SculptTool::Lower, "lower"),
-        (SculptTool::Smooth, "smooth"),
-        (SculptTool::Flatten, "flatten"),
-        (SculptTool::Crease, "crease"),
-        (SculptTool::Pinch, "pinch"),
-        (SculptTool::Scrape, "scrape"),
-    ];
-    /// Its name in documents.
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(tool, _)| *tool == self).map_or("raise", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| *known == name).map(|(tool, _)| *tool)
-    }
     /// Whether a dab's strength is a height in px; of the others it is a share of the way.
     pub fn is_by_height(self) -> bool {
         matches!(self, SculptTool::Raise | SculptTool::Lower | SculptTool::Crease)

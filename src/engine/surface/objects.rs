@@ -172,28 +172,21 @@ impl Surface {
     }
 }
 
-/// Where a mark may paint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum PaintLimit {
-    /// Everywhere.
-    #[default]
-    Free,
-    /// Where the surface is.
-    Surface,
-    /// Only on the object on which the mark begins; a mark that begins off the surface stays off it.
-    Object,
+crate::named! {
+    /// Where a mark may paint.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum PaintLimit {
+        /// Everywhere.
+        #[default]
+        Free = "free",
+        /// Where the surface is.
+        Surface = "surface",
+        /// Only on the object on which the mark begins; a mark that begins off the surface stays off it.
+        Object = "object",
+    }
 }
 
 impl PaintLimit {
-    /// Every choice with its name in documents.
-    pub const ALL: [(PaintLimit, &'static str); 3] =
-        [(PaintLimit::Free, "free"), (PaintLimit::Surface, "surface"), (PaintLimit::Object, "object")];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(bounded, _)| *bounded == self).map_or("free", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, n)| *n == name).map(|(bounded, _)| *bounded)
-    }
     /// The part of the canvas that a mark beginning at `start` (canvas px) may touch: all of it without a surface.
     pub fn from(self, surface: Option<&Arc<Surface>>, start: Vec2) -> CanvasPart {
         let Some(surface) = surface else { return CanvasPart::Whole };

@@ -15,40 +15,27 @@ use crate::raster::{Plane, TILE, TileAt};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// What pixels of a region have in common with its point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum RegionKind {
-    /// The way the surface faces, degrees.
-    #[default]
-    Direction,
-    /// z, `[0, 1]`.
-    Depth,
-    /// κ, `[−1, 1]`.
-    Curvature,
-    /// The object, whatever the tolerance.
-    Object,
-    /// The way a mirror would send the view, degrees.
-    Shine,
-    /// The line along which the normals turn the most, degrees.
-    Flow,
+crate::named! {
+    /// What pixels of a region have in common with its point.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum RegionKind {
+        /// The way the surface faces, degrees.
+        #[default]
+        Direction = "direction",
+        /// z, `[0, 1]`.
+        Depth = "depth",
+        /// κ, `[−1, 1]`.
+        Curvature = "curvature",
+        /// The object, whatever the tolerance.
+        Object = "object",
+        /// The way a mirror would send the view, degrees.
+        Shine = "shine",
+        /// The line along which the normals turn the most, degrees.
+        Flow = "flow",
+    }
 }
 
 impl RegionKind {
-    /// Every kind with its name in documents.
-    pub const ALL: [(RegionKind, &'static str); 6] = [
-        (RegionKind::Direction, "direction"),
-        (RegionKind::Depth, "depth"),
-        (RegionKind::Curvature, "curvature"),
-        (RegionKind::Object, "object"),
-        (RegionKind::Shine, "shine"),
-        (RegionKind::Flow, "flow"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(kind, _)| *kind == self).map_or("direction", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, n)| *n == name).map(|(kind, _)| *kind)
-    }
     /// Of the tolerance: of angles, depths or curvatures.
     pub fn tolerances(self) -> Range {
         match self {

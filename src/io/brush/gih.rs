@@ -48,7 +48,7 @@ fn ranks<'a>(words: impl Iterator<Item = &'a str>, count: usize, notes: &mut Vec
         if let Some(i) = place(key, "rank") {
             ranks[i].count = value.parse().unwrap_or(0);
         } else if let Some(i) = place(key, "sel") {
-            ranks[i].select = RankSelect::named(value).unwrap_or_else(|| {
+            ranks[i].select = RankSelect::from_name(value).unwrap_or_else(|| {
                 notes.push(format!("Pictures chosen by “{value}” are chosen one after the other"));
                 RankSelect::Incremental
             });

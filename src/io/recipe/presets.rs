@@ -32,35 +32,20 @@ pub struct Preset {
     pub operator: Operator,
 }
 
-/// The group of a preset in the list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
-pub enum PresetGroup {
-    Drawing,
-    Inking,
-    Painting,
-    WetAndDry,
-    Light,
-    Surface,
-    Retouch,
-    /// The user's own.
-    #[default]
-    Imported,
-}
-
-impl PresetGroup {
-    /// Every group with its name, in the order of the list.
-    pub const ALL: [(PresetGroup, &'static str); 8] = [
-        (PresetGroup::Drawing, "Drawing"),
-        (PresetGroup::Inking, "Inking"),
-        (PresetGroup::Painting, "Painting"),
-        (PresetGroup::WetAndDry, "Wet and dry"),
-        (PresetGroup::Light, "Light"),
-        (PresetGroup::Surface, "Surface"),
-        (PresetGroup::Retouch, "Retouch"),
-        (PresetGroup::Imported, "Your own"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, name)| name)
+rilievo_engine::named! {
+    /// The group of a preset in the list.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
+    pub enum PresetGroup {
+        Drawing = "Drawing",
+        Inking = "Inking",
+        Painting = "Painting",
+        WetAndDry = "Wet and dry",
+        Light = "Light",
+        Surface = "Surface",
+        Retouch = "Retouch",
+        /// The user's own.
+        #[default]
+        Imported = "Your own",
     }
 }
 

@@ -72,9 +72,9 @@ pub fn normal_convention(node: &JsonNode) -> Result<NormalConvention> {
         flip_z: flag("flip_z")?,
         snap_flat: flag("snap_flat")?,
         smooth_steps: flag("smooth_steps")?,
-        encoding: fields.get("encoding").map(|node| node.one_of(NormalEncoding::ALL)).transpose()?,
+        encoding: fields.get("encoding").map(|node| node.one_of(&NormalEncoding::ALL)).transpose()?,
         channels: fields.get("channels").map(|node| channels(&node)).transpose()?,
-        space: fields.get("space").map(|node| node.one_of(NormalSpace::ALL)).transpose()?,
+        space: fields.get("space").map(|node| node.one_of(&NormalSpace::ALL)).transpose()?,
         world_to_camera: fields.get("world_to_camera").map(|node| rotation(&node)).transpose()?,
     };
     fields.finish()?;
@@ -106,8 +106,8 @@ fn depth(node: &JsonNode) -> Result<MapSource<DepthConvention>> {
     let channel = channel(&mut fields)?;
     let plain = DepthConvention::default();
     let convention = DepthConvention {
-        near: fields.one_of("near", Near::ALL, plain.near)?,
-        encoding: fields.get("encoding").map(|node| node.one_of(DepthEncoding::ALL)).transpose()?,
+        near: fields.one_of("near", &Near::ALL, plain.near)?,
+        encoding: fields.get("encoding").map(|node| node.one_of(&DepthEncoding::ALL)).transpose()?,
         fov_degrees: fields.get("fov").map(|node| node.number(1.0..=179.0)).transpose()?,
         background: match fields.get("background") {
             Some(node) => node.numbers(0, MOST_BACKGROUNDS, f32::MIN..=f32::MAX)?,
@@ -200,7 +200,7 @@ pub fn write_normal_convention(into: &mut JsonObject, c: &NormalConvention) {
 }
 
 fn write_depth_convention(out: &mut JsonObject, convention: &DepthConvention) {
-    out.word("near", Near::ALL, convention.near, Near::Auto);
+    out.word("near", &Near::ALL, convention.near, Near::Auto);
     out.said("encoding", convention.encoding, |e| e.name().into());
     out.said("fov", convention.fov_degrees, object::number);
     if !convention.background.is_empty() {

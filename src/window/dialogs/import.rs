@@ -220,7 +220,7 @@ impl ImportDialog {
             }
         }
         if let Some(map) = &mut self.source.depth
-            && let Some(near) = choice_row(ui, "Near is", map.convention.near, Near::ALL)
+            && let Some(near) = choice_row(ui, "Near is", map.convention.near, &Near::ALL)
         {
             map.convention.near = near;
         }

@@ -29,40 +29,25 @@ pub mod surface;
 pub mod tools;
 mod transform;
 
-/// A panel that can stand beside the canvas or in a window of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PanelKind {
-    Color,
-    Brushes,
-    Properties,
-    Surface,
-    History,
-    Navigator,
-    /// Below the others, as the parts of the shape.
-    Layers,
-    Shape,
+rilievo_engine::named! {
+    /// A panel that can stand beside the canvas or in a window of its own.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum PanelKind {
+        Color = "Colour",
+        Brushes = "Brushes",
+        Properties = "Properties",
+        Surface = "Surface",
+        History = "History",
+        Navigator = "Navigator",
+        /// Below the others, as the parts of the shape.
+        Layers = "Layers",
+        Shape = "Shape",
+    }
 }
 
 impl PanelKind {
-    /// Every panel with its name.
-    pub const ALL: [(PanelKind, &'static str); 8] = [
-        (PanelKind::Color, "Colour"),
-        (PanelKind::Brushes, "Brushes"),
-        (PanelKind::Properties, "Properties"),
-        (PanelKind::Surface, "Surface"),
-        (PanelKind::History, "History"),
-        (PanelKind::Navigator, "Navigator"),
-        (PanelKind::Layers, "Layers"),
-        (PanelKind::Shape, "Shape"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(front, _)| *front == self).map_or("", |(_, name)| name)
-    }
     /// Whether it stands below, where the layers are.
     pub fn is_below(self) -> bool {
         matches!(self, PanelKind::Layers | PanelKind::Shape)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| *known == name).map(|(front, _)| *front)
     }
 }

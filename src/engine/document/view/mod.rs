@@ -18,69 +18,46 @@ use crate::math::{Size, srgb::quantise};
 use crate::raster::{Picture, Plane};
 use crate::surface::{Bend, Surface};
 
-/// What a view shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SurfaceView {
-    /// R = x right, G = y up, B = z to the viewer; ½ is 0.
-    Normals,
-    /// Black near, white far.
-    Depth,
-    /// White where the surface is.
-    Mask,
-    /// The objects into which depth jumps split the surface: a colour for each.
-    Objects,
-    /// Convex blue, concave red, flat yellow.
-    Curvature,
-    /// Convex light, concave dark.
-    CurvatureGrey,
-    /// Lines along the direction that curves most.
-    Directions,
-    /// A layer's anchors and how they share the surface (SF fig. 9).
-    Weights,
-    /// T_p: how a texture on the surface is squeezed (SF fig. 2).
-    FlowDepth,
-    /// T_n: how a reflection is squeezed (SF fig. 2).
-    FlowNormals,
-    /// ∂D/∂q: how a layer's operator squeezes its image (SF fig. 3c).
-    FlowOperator,
-    /// σ over δ for several κ, at α = 0.2 and 0.8 (RS fig. 2): needs no document.
-    Scaling,
-    /// The painting, or one layer, as it lies in the plane of the surface unwrapped: what D_s prints from.
-    Unwrapped,
-    /// The surface and a ball beside it under one light: if they agree, the maps are read the right way round.
-    Lit,
-    /// Unpainted, in even light from above left.
-    Clay,
-    /// Lines of equal depth, every fourth a strong one.
-    Contours,
+crate::named! {
+    /// What a view shows.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum SurfaceView {
+        /// R = x right, G = y up, B = z to the viewer; ½ is 0.
+        Normals = "normals",
+        /// Black near, white far.
+        Depth = "depth",
+        /// White where the surface is.
+        Mask = "mask",
+        /// The objects into which depth jumps split the surface: a colour for each.
+        Objects = "objects",
+        /// Convex blue, concave red, flat yellow.
+        Curvature = "curvature",
+        /// Convex light, concave dark.
+        CurvatureGrey = "curvature-grey",
+        /// Lines along the direction that curves most.
+        Directions = "directions",
+        /// A layer's anchors and how they share the surface (SF fig. 9).
+        Weights = "weights",
+        /// T_p: how a texture on the surface is squeezed (SF fig. 2).
+        FlowDepth = "flow-depth",
+        /// T_n: how a reflection is squeezed (SF fig. 2).
+        FlowNormals = "flow-normals",
+        /// ∂D/∂q: how a layer's operator squeezes its image (SF fig. 3c).
+        FlowOperator = "flow-operator",
+        /// σ over δ for several κ, at α = 0.2 and 0.8 (RS fig. 2): needs no document.
+        Scaling = "scaling",
+        /// The painting, or one layer, as it lies in the plane of the surface unwrapped: what D_s prints from.
+        Unwrapped = "unwrapped",
+        /// The surface and a ball beside it under one light: if they agree, the maps are read the right way round.
+        Lit = "lit",
+        /// Unpainted, in even light from above left.
+        Clay = "clay",
+        /// Lines of equal depth, every fourth a strong one.
+        Contours = "contours",
+    }
 }
 
 impl SurfaceView {
-    /// Every view with its name.
-    pub const ALL: &'static [(SurfaceView, &'static str)] = &[
-        (SurfaceView::Normals, "normals"),
-        (SurfaceView::Depth, "depth"),
-        (SurfaceView::Mask, "mask"),
-        (SurfaceView::Objects, "objects"),
-        (SurfaceView::Curvature, "curvature"),
-        (SurfaceView::CurvatureGrey, "curvature-grey"),
-        (SurfaceView::Directions, "directions"),
-        (SurfaceView::Weights, "weights"),
-        (SurfaceView::FlowDepth, "flow-depth"),
-        (SurfaceView::FlowNormals, "flow-normals"),
-        (SurfaceView::FlowOperator, "flow-operator"),
-        (SurfaceView::Scaling, "scaling"),
-        (SurfaceView::Unwrapped, "unwrapped"),
-        (SurfaceView::Lit, "lit"),
-        (SurfaceView::Clay, "clay"),
-        (SurfaceView::Contours, "contours"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(view, _)| *view == self).map_or("", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, n)| *n == name).map(|(view, _)| *view)
-    }
     /// Whether it shows no document.
     pub fn is_of_nothing(self) -> bool {
         self == SurfaceView::Scaling

@@ -42,10 +42,10 @@ fn drawn(view: SurfaceView) -> Picture {
 #[test]
 fn every_view_has_a_name_of_its_own_and_a_picture_of_the_canvas() {
     for (view, name) in SurfaceView::ALL {
-        assert_eq!(SurfaceView::from_name(name), Some(*view));
-        assert_eq!(view.name(), *name);
-        if !view.is_of_nothing() && *view != SurfaceView::Unwrapped {
-            assert_eq!(drawn(*view).size, Size::new(160, 160), "{name}");
+        assert_eq!(SurfaceView::from_name(name), Some(view));
+        assert_eq!(view.name(), name);
+        if !view.is_of_nothing() && view != SurfaceView::Unwrapped {
+            assert_eq!(drawn(view).size, Size::new(160, 160), "{name}");
         }
     }
     assert_eq!(available(&ball(), None).len(), SurfaceView::ALL.len() - 2, "all but those that stand alone");

@@ -23,34 +23,20 @@ pub struct HoseRank {
     pub select: RankSelect,
 }
 
-/// What chooses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum RankSelect {
-    /// One after the other.
-    #[default]
-    Incremental,
-    Random,
-    /// Where the stroke is heading: the first is up, the others follow clockwise.
-    Angular,
-    Pressure,
-    Speed,
-    TiltX,
-    TiltY,
-}
-
-impl RankSelect {
-    /// Every rule with its name in files, GIMP's own.
-    pub const ALL: [(RankSelect, &'static str); 7] = [
-        (RankSelect::Incremental, "incremental"),
-        (RankSelect::Random, "random"),
-        (RankSelect::Angular, "angular"),
-        (RankSelect::Pressure, "pressure"),
-        (RankSelect::Speed, "velocity"),
-        (RankSelect::TiltX, "xtilt"),
-        (RankSelect::TiltY, "ytilt"),
-    ];
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| *known == name).map(|(select, _)| *select)
+crate::named! {
+    /// What chooses.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum RankSelect {
+        /// One after the other.
+        #[default]
+        Incremental = "incremental",
+        Random = "random",
+        /// Where the stroke is heading: the first is up, the others follow clockwise.
+        Angular = "angular",
+        Pressure = "pressure",
+        Speed = "velocity",
+        TiltX = "xtilt",
+        TiltY = "ytilt",
     }
 }
 

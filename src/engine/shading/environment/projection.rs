@@ -4,25 +4,21 @@
 use crate::math::{Vec2, Vec3, vec2, vec3};
 use std::f32::consts::{PI, TAU};
 
-/// How directions lie in the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Projection {
-    /// u = atan2(e_x, −e_z) / 2π, v = acos(e_y) / π from the top.
-    #[default]
-    LatLong,
-    /// The centre is toward the viewer, the radius proportional to the angle from it, the rim straight away.
-    Angular,
-    /// A photographed mirror ball: the picture is the ball, seen orthographically.
-    MirrorBall,
+crate::named! {
+    /// How directions lie in the picture.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum Projection {
+        /// u = atan2(e_x, −e_z) / 2π, v = acos(e_y) / π from the top.
+        #[default]
+        LatLong = "lat-long",
+        /// The centre is toward the viewer, the radius proportional to the angle from it, the rim straight away.
+        Angular = "angular",
+        /// A photographed mirror ball: the picture is the ball, seen orthographically.
+        MirrorBall = "mirror-ball",
+    }
 }
 
 impl Projection {
-    /// Every projection with its name in documents.
-    pub const ALL: [(Projection, &'static str); 3] =
-        [(Projection::LatLong, "lat-long"), (Projection::Angular, "angular"), (Projection::MirrorBall, "mirror-ball")];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(p, _)| *p == self).map_or("lat-long", |(_, name)| name)
-    }
     /// Where in the picture a unit direction of its own space (y up) lies: `[0, 1]²`, from the left and the top.
     pub fn place(self, e: Vec3) -> Vec2 {
         match self {

@@ -20,42 +20,29 @@ use super::{
 };
 use crate::math::{Range, UNIT, srgb::Color};
 
-/// How a material answers light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Model {
-    #[default]
-    Phong,
-    /// Phong in flat bands.
-    Toon,
-    /// (n·ℓ)^ζ: flatter than matt, like the moon.
-    SubLambertian,
-    /// Anisotropic Phong of Ashikhmin and Shirley (2000), under lights or an environment.
-    Ashikhmin,
-    /// Matt under an environment, with ambient occlusion.
-    DiffuseEnvironment,
-    AmbientOcclusion,
-    /// A painted sphere, or a convex and a concave one.
-    LitSphere,
-    Mirror,
-    Refraction,
+crate::named! {
+    /// How a material answers light.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum Model {
+        #[default]
+        Phong = "phong",
+        /// Phong in flat bands.
+        Toon = "toon",
+        /// (n·ℓ)^ζ: flatter than matt, like the moon.
+        SubLambertian = "sub-lambertian",
+        /// Anisotropic Phong of Ashikhmin and Shirley (2000), under lights or an environment.
+        Ashikhmin = "ashikhmin",
+        /// Matt under an environment, with ambient occlusion.
+        DiffuseEnvironment = "diffuse-environment",
+        AmbientOcclusion = "ambient-occlusion",
+        /// A painted sphere, or a convex and a concave one.
+        LitSphere = "lit-sphere",
+        Mirror = "mirror",
+        Refraction = "refraction",
+    }
 }
 
 impl Model {
-    /// Every model with its name in documents.
-    pub const ALL: [(Model, &'static str); 9] = [
-        (Model::Phong, "phong"),
-        (Model::Toon, "toon"),
-        (Model::SubLambertian, "sub-lambertian"),
-        (Model::Ashikhmin, "ashikhmin"),
-        (Model::DiffuseEnvironment, "diffuse-environment"),
-        (Model::AmbientOcclusion, "ambient-occlusion"),
-        (Model::LitSphere, "lit-sphere"),
-        (Model::Mirror, "mirror"),
-        (Model::Refraction, "refraction"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(m, _)| *m == self).map_or("phong", |(_, name)| name)
-    }
     /// Whether it is lit by an environment alone: lights have no effect.
     pub fn needs_environment(self) -> bool {
         matches!(self, Model::DiffuseEnvironment | Model::Mirror | Model::Refraction)

@@ -200,7 +200,8 @@ impl Surface {
                         let Some(continued) = Continued::from(&window, pixel.others) else { continue };
                         let (x, y) = place_of(i);
                         for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                            let (at, step) = ((y + dy) * SHEET_SIDE + x + dx, pixel.other_at + vec2(dx as f32, dy as f32));
+                            let (at, step) =
+                                ((y + dy) * SHEET_SIDE + x + dx, pixel.other_at + vec2(dx as f32, dy as f32));
                             let n = continued.nbar(step);
                             (nx[at], ny[at], nz[at]) = (n.x, n.y, nz_of(n));
                             if let Some(normals) = detailed {

@@ -10,17 +10,19 @@ use crate::shading::{Model, RadianceScaling, Shading};
 use crate::surface::NoiseRelief;
 use crate::tools::brush::free_name;
 
-/// Kinds of new layers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NewLayer {
-    Paint,
-    Strokes,
-    Fill,
-    Gradient,
-    Shading,
-    RadianceScaling,
-    Normals,
-    Group,
+rilievo_engine::named! {
+    /// Kinds of new layers.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum NewLayer {
+        Paint = "Paint layer",
+        Strokes = "Stroke layer",
+        Fill = "Fill layer",
+        Gradient = "Gradient layer",
+        Shading = "Shading layer",
+        RadianceScaling = "Radiance scaling",
+        Normals = "Detail normals",
+        Group = "Group",
+    }
 }
 
 names!(NewLayer, [
@@ -29,19 +31,7 @@ names!(NewLayer, [
     NewLayer::RadianceScaling => "radiance scaling", NewLayer::Normals => "normals", NewLayer::Group => "group",
 ]);
 
-impl NewLayer {
-    /// Every kind with its name in replays.
-    pub const ALL: [(NewLayer, &'static str); 8] = [
-        (NewLayer::Paint, "Paint layer"),
-        (NewLayer::Strokes, "Stroke layer"),
-        (NewLayer::Fill, "Fill layer"),
-        (NewLayer::Gradient, "Gradient layer"),
-        (NewLayer::Shading, "Shading layer"),
-        (NewLayer::RadianceScaling, "Radiance scaling"),
-        (NewLayer::Normals, "Detail normals"),
-        (NewLayer::Group, "Group"),
-    ];
-}
+impl NewLayer {}
 
 /// A new layer that covers the canvas covers what is selected, by a mask.
 pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {
