@@ -70,7 +70,8 @@ crate::named! {
         Pressure = "pressure",
         /// From upright, 0, to lying, 1: the length of (tilt x, tilt y) over 90°.
         Tilt = "tilt",
-        /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright pen.
+        /// The direction in which the pen leans, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of an upright
+        /// pen.
         TiltDirection = "tilt-direction",
         /// The direction of the stroke, in turns counter-clockwise as seen: 0 right, ¼ up. 0 of a stroke of one sample.
         Direction = "direction",
@@ -82,7 +83,8 @@ crate::named! {
         Random = "random",
         /// 1 − n·v: 0 faces the viewer, 1 is seen edge-on. 0 off the surface.
         Slope = "slope",
-        /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the surface.
+        /// ½ + ½ κ of MATH 4, *s* a 32nd of *L*, normals blurred by 1 px: hollow 0, flat ½, raised 1. ½ off the
+        /// surface.
         Curvature = "curvature",
         /// Of the map: 0 near, 1 far. 1 off the surface.
         Depth = "depth",

@@ -12,8 +12,8 @@ crate::named! {
         /// Whole up to the hardness h of the radius, then a smoothstep.
         #[default]
         Smooth = "smooth",
-        /// Two straight lines over the squared radius that meet at (h, h): a peak with a faint, wide foot. It covers the
-        /// share h of its disc.
+        /// Two straight lines over the squared radius that meet at (h, h): a peak with a faint, wide foot. It covers
+        /// the share h of its disc.
         Peaked = "peaked",
     }
 }
@@ -25,7 +25,8 @@ crate::named! {
         /// Evenly over a disc whose radius is the scatter times the dab's diameter.
         #[default]
         Disc = "disc",
-        /// Most of them near, some far: the standard deviation along each axis is the scatter times the brush's diameter.
+        /// Most of them near, some far: the standard deviation along each axis is the scatter times the brush's
+        /// diameter.
         Cloud = "cloud",
     }
 }

@@ -17,7 +17,8 @@ crate::named! {
         Ridge = "ridge",
         /// The form rises on both sides.
         Valley = "valley",
-        /// A silhouette: the form on the inner side of the line's bend turns away at it, before what lies on the outer one.
+        /// A silhouette: the form on the inner side of the line's bend turns away at it, before what lies on the outer
+        /// one.
         Over = "over",
         /// The same of the form on the outer side.
         Under = "under",

@@ -113,8 +113,8 @@ impl ToolKind {
             name: "image",
             label: "Image",
             key: 'J',
-            hint: "Drag to move the selected image before it is bent; Shift scales it, Ctrl turns it. Unwrapped: on one \
-                   piece alone",
+            hint: "Drag to move the selected image before it is bent; Shift scales it, Ctrl turns it. Unwrapped: on \
+                   one piece alone",
         },
         ToolRow {
             kind: ToolKind::Anchors,

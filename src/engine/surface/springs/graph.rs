@@ -177,7 +177,8 @@ impl SpringGraph {
         let (labels, roots) = numbered(&mut first);
         (labels, roots.len())
     }
-    /// Takes the mean of every piece away of which nothing is held: what rounding leaves there no spring answers, and it would grow.
+    /// Takes away the mean of every piece of which nothing is held: no spring answers what rounding leaves there, and
+    /// it would grow.
     fn centre(&self, values: &mut [f32], held: &[(u32, f32)]) {
         let (labels, count) = &self.pieces;
         let mut sums = vec![(0.0f32, 0.0f32); *count];

@@ -20,7 +20,8 @@ pub fn stretch(nbar: Vec2, nz: f32, amount: f32) -> Mat2 {
     Mat2::IDENTITY + outer(along, along) * (nz.max(STEEPEST_NZ).min(1.0).powf(-amount) - 1.0)
 }
 
-/// S(q) of MATH 8 of a surface that is seen from near: the symmetric root of its first fundamental form, to the power a.
+/// S(q) of MATH 8 of a surface that is seen from near: the symmetric root of its first fundamental form, to the power
+/// a.
 ///
 /// The point seen at q lies at Z (b, 1), b = (q − c)/f. Its normal tells how Z grows, ∇Z/Z = g/f with g = n̄/ν and
 /// ν = n_z − n̄·b, so that ∂P/∂q has the metric `(Z/Z̄)² (1 + b gᵀ + g bᵀ + (1 + |b|²) g gᵀ)`, where a px is as long

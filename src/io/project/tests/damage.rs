@@ -152,7 +152,8 @@ mod generated {
             let (ours, theirs) = (picture(&document), picture(&seen));
             // A contour pixel's two populations are mixed in the whole picture, not layer by layer.
             let surface = document.surface.as_deref();
-            let mixed: HashSet<_> = surface.into_iter().flat_map(|s| s.contours().pixels()).map(|p| (p.x, p.y)).collect();
+            let contours = surface.into_iter().flat_map(|surface| surface.contours().pixels());
+            let mixed: HashSet<_> = contours.map(|pixel| (pixel.x, pixel.y)).collect();
             let shown = |[r, g, b, a]: [u8; 4]| [r, g, b, 255].map(|v| f32::from(v) * f32::from(a) / 255.0);
             for (x, y) in (0..32).flat_map(|y| (0..32).map(move |x| (x, y))).filter(|at| !mixed.contains(at)) {
                 let (a, b) = (ours.pixel(x, y), theirs.pixel(x, y));
