@@ -69,6 +69,10 @@ fn every_command_is_done_by_its_name() {
     assert!(names.len() > 60);
     for name in names {
         command(&mut harness, name);
+        if name == "Give it a shape…" {
+            // The layers are looked at before the dialog opens.
+            until(&mut harness, |harness| harness.query_by_label("Close").is_some());
+        }
         // Whatever dialog it opened goes again.
         (0..2).for_each(|_| key(&mut harness, Modifiers::NONE, Key::Escape));
         assert!(session(&harness).active().is_some(), "{name}");
@@ -97,18 +101,6 @@ fn the_keys_of_krita_do_what_they_do_there_and_say_so_where_they_cannot() {
     assert_eq!(layers(&harness).len(), 0);
     key(&mut harness, ctrl, Key::J);
     harness.get_by_label("Layer via copy: no layer is chosen.");
-    key(&mut harness, ctrl, Key::W);
-    press(&mut harness, "Do not save");
-    for (modifiers, letter, name) in [
-        (ctrl, Key::J, "Layer via copy"),
-        (shift, Key::Delete, "Delete layer"),
-        (ctrl, Key::G, "Group layer"),
-        (ctrl, Key::E, "Merge down"),
-        (ctrl | Modifiers::ALT, Key::C, "Canvas size…"),
-    ] {
-        key(&mut harness, modifiers, letter);
-        harness.get_by_label(&format!("{name}: there is no document."));
-    }
 }
 #[test]
 fn the_interface_is_made_larger_and_the_picture_stays_as_it_is() {

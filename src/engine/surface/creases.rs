@@ -8,10 +8,12 @@ use crate::raster::Plane;
 use std::collections::HashSet;
 
 /// A step of n̄ of at least this length turns at a crease where it is so many times as long as the steps before and
-/// after it; one that touches such a step does from the second pair on. n̄ changes steadily up to a smooth silhouette,
-/// where n_z falls ever faster.
+/// after it, and these are short: detail of a pixel or two is no crease. One that touches such a step is one from the
+/// second row on. n̄ changes steadily up to a smooth silhouette, where n_z falls ever faster.
 const CERTAIN: Sharpness = Sharpness { least: 0.3, times: 4.0 };
 const LIKELY: Sharpness = Sharpness { least: 0.12, times: 2.5 };
+/// The longest that the steps before and after may be.
+const MOST_BESIDE: f32 = 0.1;
 /// A renderer may have mixed both sides in a pixel: the way over it is at most this much longer than past it.
 const DETOUR: f32 = 1.15;
 /// Fewer steps side by side are noise.
@@ -25,7 +27,7 @@ struct Sharpness {
 
 impl Sharpness {
     fn is_met(self, step: f32, beside: f32) -> bool {
-        step >= self.least && step >= self.times * beside
+        step >= self.least && beside <= MOST_BESIDE && step >= self.times * beside
     }
 }
 

@@ -13,6 +13,7 @@ use crate::project::ProjectContents;
 use crate::project::sample::{assert_same, everything, files, png, read as read_recipe};
 use crate::raster::{BlendMode, CoverageGrid, TileGrid};
 use serde_json::json;
+use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -31,10 +32,14 @@ fn without_ours(bytes: &[u8]) -> Vec<u8> {
     other
 }
 fn worst(a: &Document, b: &Document) -> u8 {
+    worst_of(a, b, &|_| true)
+}
+fn worst_of(a: &Document, b: &Document, is_counted: &dyn Fn((i32, i32)) -> bool) -> u8 {
     let picture = |d: &Document| flatten(d, &Progress::default()).unwrap();
     let (x, y) = (picture(a), picture(b));
     let pixels = (0..a.size.height as i32).flat_map(|row| (0..a.size.width as i32).map(move |col| (col, row)));
     pixels
+        .filter(|&at| is_counted(at))
         .flat_map(|(col, row)| (0..4).map(move |c| (col, row, c)))
         .map(|(col, row, c)| x.pixel(col, row)[c].abs_diff(y.pixel(col, row)[c]))
         .max()
@@ -68,7 +73,12 @@ fn the_same_document_gives_the_same_bytes() {
 fn other_programs_see_the_same_picture() {
     let document = everything(64);
     let seen = read_back(&without_ours(&written(&document)));
-    assert!(worst(&document, &seen.document) <= 3, "{}", worst(&document, &seen.document));
+    // Contour pixels are mixed layer by layer there, and once in ours (docs/PROJECTS.md).
+    let surface = document.surface.as_deref().unwrap();
+    let mixed: HashSet<_> = surface.contours().pixels().iter().map(|pixel| (pixel.x, pixel.y)).collect();
+    let worst = |is_counted: &dyn Fn((i32, i32)) -> bool| worst_of(&document, &seen.document, is_counted);
+    assert!(worst(&|at| !mixed.contains(&at)) <= 3, "{}", worst(&|at| !mixed.contains(&at)));
+    assert!(worst(&|_| true) <= 8, "{}", worst(&|_| true));
 }
 #[test]
 fn the_surface_s_edge_cuts_layers_that_keep_to_it_once_for_other_programs_as_well() {

@@ -32,7 +32,9 @@ pub fn show(
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(80));
         }
         let Some(tab) = session.active() else {
-            ui.weak("Open a document, or drop a picture or a normal map on the window");
+            if !say(ui, jobs) {
+                ui.weak("Open a document, or drop a picture or a normal map on the window");
+            }
             return;
         };
         let document = tab.shown();
@@ -55,9 +57,7 @@ pub fn show(
             ui.label(about).on_hover_text("The rectangle around all that is selected");
             ui.separator();
         }
-        if let Some(said) = jobs.said() {
-            ui.label(said);
-            ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
+        if say(ui, jobs) {
             ui.separator();
         }
         // The canvas is drawn later: its state may still belong to the previous document.
@@ -86,4 +86,14 @@ pub fn show(
             }
         });
     });
+}
+
+/// What was said last, for as long as it stands; whether there is any.
+fn say(ui: &mut Ui, jobs: &Jobs) -> bool {
+    let said = jobs.said();
+    if let Some(said) = said {
+        ui.label(said);
+        ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
+    }
+    said.is_some()
 }

@@ -57,7 +57,7 @@ fn points_of(curve: &BevelCurve) -> Vec<Vec2> {
             let at = |i: usize| {
                 // Where such a curve is steep its points stand closer.
                 let t = i as f32 / (SHOWN_POINTS - 1) as f32;
-                let t = if *round == BevelCurve::Round { t * t } else { 1.0 - (1.0 - t) * (1.0 - t) };
+                let t = if *round == BevelCurve::Round { t.powi(3) } else { 1.0 - (1.0 - t).powi(3) };
                 held(vec2(t, if t >= 1.0 { 1.0 } else { round.at(t).0 }))
             };
             (0..SHOWN_POINTS).map(at).collect()
