@@ -127,6 +127,15 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     until(&mut harness, |harness| shows(harness, "Flip green"));
     // The flat border was taken for background, and that can be taken back.
     until(&mut harness, |harness| shows(harness, "Flat border"));
+    // The dialog grows to its new size and stays in the middle while it does: a click must not fall beside.
+    let place = |harness: &super::Story| harness.get_all_by_label("Flip green").next().unwrap().rect();
+    let mut still = 0;
+    while still < 10 {
+        let before = place(&harness);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        harness.step();
+        still = if place(&harness) == before { still + 1 } else { 0 };
+    }
     harness.get_all_by_label("Flip green").next().unwrap().click();
     steps(&mut harness);
     until(&mut harness, |harness| shows(harness, "Flip green"));
