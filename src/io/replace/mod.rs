@@ -11,6 +11,7 @@ use crate::fs::{FileHandle, Fs};
 use crate::{Error, Result};
 use part::PartFile;
 pub use part::sweep;
+use previous::Previous;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -172,10 +173,17 @@ impl ReplaceJob<'_> {
         if self.terms.over == Overwrite::Nothing && self.link_new(part, target)? {
             return Ok(());
         }
-        if self.terms.keeps_previous && self.fs.found(target).map_err(|e| self.failed("", e))?.is_some() {
-            let kept = previous::keep(self.fs, part, target);
-            kept.map_err(|e| self.failed("the previous version could not be kept beside it", e))?;
+        let is_kept = self.terms.keeps_previous && self.fs.found(target).map_err(|e| self.failed("", e))?.is_some();
+        let previous = is_kept.then(|| Previous::keep(self.fs, part, target)).transpose();
+        let previous = previous.map_err(|e| self.failed("the previous version could not be kept beside it", e))?;
+        let renamed = self.rename(part, target);
+        if let Some(previous) = previous {
+            if renamed.is_ok() { previous.forget(self.fs) } else { previous.undo(self.fs) }
         }
+        renamed
+    }
+    /// Puts the new file in the old one's place.
+    fn rename(&self, part: &PartFile, target: &Path) -> Result<()> {
         let mut pause = FIRST_PAUSE;
         for last in (0..RENAME_TRIES).rev() {
             match self.fs.rename(&part.path, target) {

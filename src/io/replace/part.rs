@@ -9,6 +9,8 @@ const PREFIX: &str = ".rilievo-";
 const PART: &str = "part";
 /// What the old file is called for a moment, before it becomes `name~`.
 pub const SPARE: &str = "old";
+/// What stood there as `name~` is called, until the new file is in place.
+pub const OLDER: &str = "older";
 /// Digits of a token.
 const DIGITS: usize = 16;
 /// Names tried before a disk is given up where every one of them is taken.
@@ -67,14 +69,14 @@ pub fn sweep(fs: &dyn Fs, folder: &Path) {
     }
 }
 
-/// `.rilievo-TOKEN.part` or `.old`, and nothing else. A token was a process's number and a count before 1.0.
+/// `.rilievo-TOKEN.part`, `.old` or `.older`, and nothing else. A token was a process's number and a count before 1.0.
 fn is_ours(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_prefix(PREFIX));
     let Some((token, extension)) = name.and_then(|name| name.split_once('.')) else { return false };
     let is_token = token.len() == DIGITS && token.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b));
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let is_pair = token.split_once('-').is_some_and(|(process, number)| is_number(process) && is_number(number));
-    (is_token || is_pair) && (extension == PART || extension == SPARE)
+    (is_token || is_pair) && [PART, SPARE, OLDER].contains(&extension)
 }
 
 #[cfg(test)]
@@ -87,6 +89,7 @@ mod tests {
         let fs = MemoryFs::with(&[
             ("/d/.rilievo-0123456789abcdef.part", b"killed"),
             ("/d/.rilievo-0123456789abcdef.old", b"the same"),
+            ("/d/.rilievo-0123456789abcdef.older", b"the same"),
             ("/d/.rilievo-1-8.part", b"killed long ago"),
             ("/d/.rilievo-1-9.old", b"killed long ago"),
             ("/d/.rilievo-notes.part", b"somebody's"),

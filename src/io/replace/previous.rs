@@ -1,40 +1,85 @@
 //! The previous version of a file, kept beside it as `name~`.
 //! Floor 5.
 
-use super::part::{PartFile, SPARE};
-use crate::fs::Fs;
+use super::part::{OLDER, PartFile, SPARE};
+use crate::fs::{EntryKind, Fs};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Keeps what stands at `target`. Never for a moment without a file of that name, and nothing half written as `name~`.
-pub fn keep(fs: &dyn Fs, part: &PartFile, target: &Path) -> io::Result<()> {
-    let spare = part.path.with_extension(SPARE);
-    let kept = take(fs, part, target, &spare).and_then(|()| rename(fs, &spare, target));
-    // After a failure it is still there; and where both names were one file's already, for then nothing is renamed.
-    let _ = fs.remove(&spare);
-    kept
+/// The previous version as it stands beside the file, and what stood there before it, until the new file is in place.
+pub struct Previous {
+    name: PathBuf,
+    /// The version before, under a passing name.
+    older: Option<PathBuf>,
 }
 
-/// The old file under a passing name: a second name where the disk knows such, else a copy.
-fn take(fs: &dyn Fs, part: &PartFile, target: &Path, spare: &Path) -> io::Result<()> {
+impl Previous {
+    /// Keeps what stands at `target` as `name~`, or where that name is too long for the disk under one that is not.
+    /// Never for a moment without a file of that name, and nothing half written under it.
+    pub fn keep(fs: &dyn Fs, part: &PartFile, target: &Path) -> io::Result<Self> {
+        let mut name = target.as_os_str().to_owned();
+        name.push("~");
+        match Self::keep_as(fs, part, target, name.into()) {
+            Err(e) if e.kind() == ErrorKind::InvalidFilename => Self::keep_as(fs, part, target, shortened(target)),
+            kept => kept,
+        }
+    }
+    fn keep_as(fs: &dyn Fs, part: &PartFile, target: &Path, name: PathBuf) -> io::Result<Self> {
+        let spare = part.path.with_extension(SPARE);
+        let previous = Self { older: set_aside(fs, part, &name)?, name };
+        let kept = take(fs, part, target, &spare).and_then(|()| fs.rename(&spare, &previous.name));
+        // After a failure it is still there; and where both names were one file's already, for then nothing is renamed.
+        let _ = fs.remove(&spare);
+        match kept {
+            Ok(()) => Ok(previous),
+            Err(e) => {
+                previous.forget(fs);
+                Err(e)
+            }
+        }
+    }
+    /// The new file did not get its place: beside the old one stands again what stood there.
+    pub fn undo(self, fs: &dyn Fs) {
+        // What cannot be put back stays as it is: the old file itself is not touched by any of this.
+        let _ = match &self.older {
+            Some(older) => fs.rename(older, &self.name),
+            None => fs.remove(&self.name),
+        };
+        self.forget(fs);
+    }
+    /// The new file is in place, and the version before the previous one no longer needed.
+    pub fn forget(self, fs: &dyn Fs) {
+        self.older.iter().for_each(|older| drop(fs.remove(older)));
+    }
+}
+
+/// What stands there already as a previous version, under a passing name as well; `None` where nothing does.
+fn set_aside(fs: &dyn Fs, part: &PartFile, name: &Path) -> io::Result<Option<PathBuf>> {
+    let older = part.path.with_extension(OLDER);
+    match fs.found(name)? {
+        // What is no file is no version of one.
+        Some(EntryKind::File) => take(fs, part, name, &older).map(|()| Some(older)),
+        _ => Ok(None),
+    }
+}
+
+/// A file under a passing name: a second name where the disk knows such, else a copy.
+fn take(fs: &dyn Fs, part: &PartFile, file: &Path, spare: &Path) -> io::Result<()> {
     // In a folder where everybody keeps their own, a second name of another's file could not be taken away again.
-    let is_ours = fs.is_same_owner(target, &part.path).unwrap_or(false);
-    if is_ours && fs.link(target, spare).is_ok() {
+    let is_ours = fs.is_same_owner(file, &part.path).unwrap_or(false);
+    if is_ours && fs.link(file, spare).is_ok() {
         return Ok(());
     }
-    let (mut source, mut copy) = (fs.open(target)?, fs.create_new(spare)?);
-    let _ = fs.copy_ownership(target, spare);
-    io::copy(&mut source, &mut copy)?;
-    copy.sync()
-}
-
-fn rename(fs: &dyn Fs, spare: &Path, target: &Path) -> io::Result<()> {
-    let mut name = target.as_os_str().to_owned();
-    name.push("~");
-    match fs.rename(spare, Path::new(&name)) {
-        Err(e) if e.kind() == ErrorKind::InvalidFilename => fs.rename(spare, &shortened(target)),
-        renamed => renamed,
+    let copied = (|| {
+        let (mut source, mut copy) = (fs.open(file)?, fs.create_new(spare)?);
+        let _ = fs.copy_ownership(file, spare);
+        io::copy(&mut source, &mut copy)?;
+        copy.sync()
+    })();
+    if copied.is_err() {
+        let _ = fs.remove(spare);
     }
+    copied
 }
 
 /// A name for the previous version that is no longer than the file's own, for where `name~` does not fit. Its checksum

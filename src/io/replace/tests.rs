@@ -104,6 +104,9 @@ fn a_failing_disk_costs_neither_the_old_file_nor_a_panic() {
                     Err(said) => {
                         let is_late = now.as_deref() == Some(NEW) && said.to_string().contains("power cut");
                         assert!(now == old || is_late, "{what}");
+                        // What failed once was put right.
+                        let is_as_before = fs.file(KEPT) == made().file(KEPT);
+                        assert!(sticky || is_late || is_as_before, "{what}: {:?}", fs.file(KEPT));
                         assert!(said.to_string().contains(FILE), "{what}");
                         // Where only one operation fails, what was begun is taken away.
                         assert!(sticky || left_over(&fs).is_empty(), "{what}: {:?}", left_over(&fs));
@@ -243,6 +246,25 @@ fn a_failed_save_among_other_peoples_files_leaves_nothing_behind() {
     let said = save_on(&fs, Overwrite::Forced).unwrap_err().to_string();
     assert!(said.contains("could not be replaced"), "{said}");
     assert_eq!((fs.file(FILE).unwrap(), fs.names()), (OLD.to_vec(), vec![FILE.to_owned(), KEPT.to_owned()]));
+}
+#[test]
+fn a_failed_save_leaves_the_version_before_as_it_was() {
+    for links in [true, false] {
+        for before in [Some(b"older still".as_slice()), None] {
+            let fs = disk();
+            if before.is_none() {
+                fs.remove(Path::new(KEPT)).unwrap();
+            }
+            if !links {
+                fs.refuse_links();
+            }
+            fs.give_away(FILE);
+            let names = fs.names();
+            assert!(save_on(&fs, Overwrite::Forced).is_err());
+            assert_eq!(fs.file(KEPT).as_deref(), before, "links: {links}");
+            assert_eq!((fs.file(FILE).unwrap(), fs.names()), (OLD.to_vec(), names));
+        }
+    }
 }
 #[test]
 fn a_save_after_one_that_failed_late_leaves_nothing_behind() {
