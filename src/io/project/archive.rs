@@ -96,6 +96,21 @@ impl<'a> Archive<'a> {
             Ok(None) | Err(_) => Err(Error::decode(self.path(name), "the entry is damaged")),
         }
     }
+    /// The first bytes of an entry, unpacked no further; its checksum is not looked at. `None` where there are none.
+    pub fn beginning(&self, name: &str, most: usize) -> Option<Vec<u8>> {
+        let first = |entry: &mut dyn Read| {
+            let mut bytes = Vec::new();
+            // What is cut off or damaged farther on has begun all the same.
+            let _ = entry.take(most as u64).read_to_end(&mut bytes);
+            (!bytes.is_empty()).then_some(bytes)
+        };
+        let by_table = || first(&mut self.zip.clone()?.by_index(*self.listed.get(name)?).ok()?);
+        let by_header = || {
+            let mut from = self.bytes.get(*self.found.get(name)?..)?;
+            first(&mut read_zipfile_from_stream(&mut from).ok()??)
+        };
+        catch_unwind(AssertUnwindSafe(|| by_table().or_else(by_header))).ok().flatten()
+    }
     /// All of an entry; `None` where it has more than `most` bytes, or more than the whole file may still have.
     fn all(&self, entry: impl Read, most: u64) -> std::io::Result<Option<Vec<u8>>> {
         let most = most.min(self.left.load(Ordering::Relaxed));
@@ -209,6 +224,8 @@ mod tests {
         assert!(!archive.is_damaged());
         assert!(archive.bytes("a/text", 4999).unwrap_err().to_string().contains("more than 4999 bytes"));
         assert!(archive.bytes("b", 100).unwrap_err().to_string().contains("no such entry"));
+        assert_eq!(archive.beginning("a/text", 3), Some(vec![7; 3]));
+        assert_eq!(archive.beginning("b", 3), None);
     }
     #[test]
     fn entries_are_found_without_the_table_of_contents() {
@@ -218,6 +235,7 @@ mod tests {
         let archive = open(&bytes).unwrap();
         assert!(archive.is_damaged());
         assert_eq!(archive.bytes("a/text", 5000).unwrap(), [7; 5000]);
+        assert_eq!(archive.beginning("a/text", 3), Some(vec![7; 3]));
     }
     #[test]
     fn all_entries_together_stay_within_the_budget() {

@@ -4,21 +4,24 @@
 use super::MERGED;
 use super::manifest::Manifest;
 use super::open::ProjectReader;
-use super::repair::{layer_mut, name_of, png_size};
+use super::repair::{PNG_HEADER, layer_mut, name_of, png_size};
 use super::stack::{self, ElementContent, StackElement, StackXml};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};
 use crate::math::Size;
 use crate::picture;
 use crate::raster::TileGrid;
+use crate::recipe::TileGrids;
 use crate::{Error, Result};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
 /// A document from the plain OpenRaster entries.
 pub fn document(reading: &mut ProjectReader, stack: StackXml) -> Result<Document> {
     let size = size(reading, &stack)?;
-    let mut reader = ForeignReader { reading, used_px: 0, used_bytes: 0, live: None };
+    fit_together(reading, &stack.layers, None)?;
+    let mut reader = ForeignReader { reading, used_px: 0, used_bytes: 0, known: HashMap::new(), live: None };
     let layers = reader.layers(stack.layers)?;
     Ok(Document { layers, ..Document::empty(size) })
 }
@@ -33,11 +36,45 @@ fn size(reading: &ProjectReader, stack: &StackXml) -> Result<Size> {
     reading.budget.size(reading.file, merged.width.into(), merged.height.into())
 }
 
+/// Counts the pixels of the pictures by their headers, before the first is decoded: a picture of nothing packs a
+/// thousandfold, and many of them take long to be found too many.
+///
+/// * `ours`: pictures that may show layers as we saved them are not decoded, and not counted.
+fn fit_together(reading: &ProjectReader, elements: &[StackElement], ours: Option<&Manifest>) -> Result<()> {
+    let is_ours = |src: &str| ours.is_some_and(|manifest| manifest.pictures.iter().any(|shown| shown.name == src));
+    let (mut sizes, mut used_px) = (HashMap::new(), 0u64);
+    let mut left: Vec<&StackElement> = elements.iter().collect();
+    while let Some(element) = left.pop() {
+        match &element.shows {
+            ElementContent::Stack { layers, .. } => left.extend(layers),
+            ElementContent::Picture { src, .. } if is_ours(src) => {}
+            ElementContent::Picture { src, .. } => {
+                // What is no PNG is counted as it is decoded.
+                let begun = || reading.archive.beginning(src, PNG_HEADER).and_then(|bytes| png_size(&bytes));
+                let area = |size: Size| u64::from(size.width) * u64::from(size.height);
+                used_px = used_px.saturating_add(*sizes.entry(src).or_insert_with(|| begun().map_or(0, area)));
+                within(reading, used_px)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses more pixels than the pictures of a document may have together.
+fn within(reading: &ProjectReader, used_px: u64) -> Result<()> {
+    if used_px > reading.budget.document_px {
+        let reason = format!("its layers hold more than {} pixels together", reading.budget.document_px);
+        return Err(Error::too_large(reading.file, reason));
+    }
+    Ok(())
+}
+
 /// A document that another program saved but left our entries in: its layers are those of `stack.xml`, and those whose
 /// pictures are unchanged are as we saved them.
 pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifest: &Manifest) -> Result<Document> {
     let stack = stack::read(reading.file, text, reading.budget)?;
     let size = size(reading, &stack)?;
+    fit_together(reading, &stack.layers, Some(manifest))?;
     reading.note("the layers were changed by another program");
     // The surface alone: the layers are taken one by one.
     let mut base = value.clone();
@@ -52,6 +89,7 @@ pub fn restored(reading: &mut ProjectReader, text: &[u8], value: &Value, manifes
         reading,
         used_px: 0,
         used_bytes: 0,
+        known: HashMap::new(),
         live: Some(SavedState { value: value.clone(), canvas, manifest }),
     };
     let layers = reader.layers(stack.layers)?;
@@ -100,6 +138,8 @@ struct ForeignReader<'a, 'b> {
     reading: &'a mut ProjectReader<'b>,
     used_px: u64,
     used_bytes: u64,
+    /// What was decoded, by file and corner: layers that show the same share its tiles.
+    known: TileGrids,
     live: Option<SavedState<'a>>,
 }
 
@@ -157,8 +197,12 @@ impl ForeignReader<'_, '_> {
         }
     }
     fn picture(&mut self, name: &str, src: String, x: i32, y: i32) -> Result<PixelLayer> {
-        let path = self.reading.archive_path(&src);
-        let read = self.reading.archive.bytes(&src, self.reading.budget.file_bytes);
+        let key = (src, x, y);
+        if let Some(tiles) = self.known.get(&key).cloned() {
+            return Ok(PixelLayer { file: key.0, x, y, tiles });
+        }
+        let path = self.reading.archive_path(&key.0);
+        let read = self.reading.archive.bytes(&key.0, self.reading.budget.file_bytes);
         let decoded = read.and_then(|bytes| picture::painted(&path, &bytes, x, y, self.reading.budget));
         let decoded = match decoded {
             Ok(decoded) => decoded,
@@ -169,13 +213,11 @@ impl ForeignReader<'_, '_> {
             }
         };
         self.used_px += decoded.size.area() as u64;
-        if self.used_px > self.reading.budget.document_px {
-            let reason = format!("its layers hold more than {} pixels together", self.reading.budget.document_px);
-            return Err(Error::too_large(self.reading.file, reason));
-        }
+        within(self.reading, self.used_px)?;
         self.used_bytes += decoded.tiles.bytes() as u64;
         self.reading.budget.room(self.reading.file, "what its layers hold", self.used_bytes)?;
-        Ok(PixelLayer { tiles: decoded.tiles, file: src, x, y })
+        self.known.insert(key.clone(), decoded.tiles.clone());
+        Ok(PixelLayer { file: key.0, x, y, tiles: decoded.tiles })
     }
 }
 

@@ -149,6 +149,9 @@ pub fn name_of(layer: &Value) -> String {
     layer["name"].as_str().unwrap_or_default().to_owned()
 }
 
+/// Bytes at the beginning of a PNG that tell its size.
+pub const PNG_HEADER: usize = 24;
+
 /// The size in a PNG's header.
 pub fn png_size(bytes: &[u8]) -> Option<Size> {
     let side = |at: usize| Some(u32::from_be_bytes(bytes.get(at..at + 4)?.try_into().ok()?));

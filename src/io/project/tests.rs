@@ -1,4 +1,5 @@
 mod damage;
+mod foreign;
 mod held;
 
 use super::sample::{assert_same, everything, png};
