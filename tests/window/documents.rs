@@ -140,6 +140,10 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     steps(&mut harness);
     until(&mut harness, |harness| shows(harness, "Flip green"));
     press(&mut harness, "What was found");
+    until(&mut harness, |harness| shows(harness, "plain numbers"));
+    for jargon in ["normal.srgb", "normal.encoding", "depth.near", "false", "full-z"] {
+        assert!(!shows(&harness, jargon), "{jargon}");
+    }
     create(&mut harness);
     let tab = session(&harness).active().unwrap();
     let surface = tab.document().surface.clone().unwrap();

@@ -1,12 +1,12 @@
 //! The import dialog: choose the maps, check their detected conventions and their look under a light, and correct them
 //! before the first stroke. Floor 7. `io::maps` reads the maps, on another thread.
 
-use super::{DialogAnswer, buttons};
+use super::{DialogAnswer, buttons, findings};
 use crate::Result;
 use crate::advice::with_advice;
 use crate::canvas::loaded;
 use crate::document::SurfaceSource;
-use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
+use crate::document::source::{MapSource, MaskSource, NormalEncoding};
 use crate::files::FilePurpose;
 use crate::io::maps;
 use crate::jobs::MapsRead;
@@ -213,14 +213,14 @@ impl ImportDialog {
         self.pictures(ui);
         if let Some(map) = &mut self.source.normal {
             let encodings: Vec<(Option<NormalEncoding>, &str)> = std::iter::once((None, "found"))
-                .chain(NormalEncoding::ALL.iter().map(|&(e, name)| (Some(e), name)))
+                .chain(findings::ENCODINGS.iter().map(|&(e, words)| (Some(e), words)))
                 .collect();
-            if let Some(encoding) = choice_row(ui, "Encoding", map.convention.encoding, &encodings) {
+            if let Some(encoding) = choice_row(ui, "Numbers", map.convention.encoding, &encodings) {
                 map.convention.encoding = encoding;
             }
         }
         if let Some(map) = &mut self.source.depth
-            && let Some(near) = choice_row(ui, "Near is", map.convention.near, &Near::ALL)
+            && let Some(near) = choice_row(ui, "Near is", map.convention.near, &findings::NEAR)
         {
             map.convention.near = near;
         }
@@ -231,19 +231,20 @@ impl ImportDialog {
         {
             self.source.mask = out.then_some(MaskSource::Flat);
         }
-        let Some(Ok(maps::ImportedSurface { surface, findings, .. })) = &self.found else { return };
+        let Some(Ok(maps::ImportedSurface { surface, findings: found, .. })) = &self.found else { return };
         ui.weak(format!("{} pixels, about {:.0} px deep", surface.size(), surface.depth_range_px()));
         ui.collapsing("What was found", |ui| {
             ScrollArea::vertical().max_height(150.0).show(ui, |ui| {
                 egui::Grid::new("findings").num_columns(3).striped(true).show(ui, |ui| {
-                    for choice in &findings.choices {
-                        ui.label(choice.field);
-                        ui.label(&choice.value);
+                    for choice in &found.choices {
+                        let (name, words) = findings::told(choice);
+                        ui.label(name);
+                        ui.label(words);
                         ui.weak(format!("{}, {:.0} %", choice.how.name(), choice.confidence * 100.0));
                         ui.end_row();
                     }
                 });
-                for note in &findings.notes {
+                for note in &found.notes {
                     ui.label(note);
                 }
             });

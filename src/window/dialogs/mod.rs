@@ -4,6 +4,7 @@
 pub mod canvas;
 pub mod edge;
 pub mod export;
+mod findings;
 pub mod grid;
 pub mod help;
 pub mod import;
