@@ -6,7 +6,7 @@
 
 use divan::{Bencher, counter::ItemsCount};
 use rilievo_engine::document::{
-    Content, Document, Layer, LayerMask, Live, MaskKind, PixelLayer, PreparedDocument, Progress,
+    Content, DerivedMask, Document, Layer, LayerMask, Live, PixelLayer, PreparedDocument, Progress,
 };
 use rilievo_engine::math::{Size, Vec3, hash, srgb::Color, vec2, vec3};
 use rilievo_engine::paint::{Gradient, GradientStop, ImageFilter};
@@ -165,7 +165,7 @@ fn painted(surface: &Arc<Surface>) -> Document {
         Content::Fill(Color { r: 220, g: 210, b: 140, a: 128 }),
     ];
     let layer = |(i, content): (usize, Content)| {
-        let mask = (i > 3).then(|| LayerMask::new(MaskKind::Fresnel { f0: 0.1, power: 3.0 }));
+        let mask = (i > 3).then(|| LayerMask::new(DerivedMask::Fresnel { f0: 0.1, power: 3.0 }));
         Arc::new(Layer { mask, ..Layer::new(format!("{i}"), content) })
     };
     let layers = contents.into_iter().enumerate().map(layer).collect();

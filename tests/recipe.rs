@@ -1,6 +1,6 @@
 //! Recipes: every kind of layer read with its defaults, refused with the path of what is wrong, and written back.
 
-use rilievo_engine::document::{Content, Document, MaskKind};
+use rilievo_engine::document::{Content, DerivedMask, Document, MaskKind};
 use rilievo_engine::math::{Size, srgb::Color, vec2};
 use rilievo_engine::paint::{ImageFilter, Tip};
 use rilievo_engine::raster::{BlendMode, Outside};
@@ -142,12 +142,12 @@ fn masks_read_with_their_defaults() {
     let mask = |mask: Value| only_layer(json!({ "kind": "fill", "mask": mask })).mask.unwrap();
     assert!(matches!(mask(json!({ "file": "m.png" })).kind, MaskKind::File { .. }));
     let fresnel = mask(json!({ "kind": "fresnel", "invert": true }));
-    assert!(fresnel.invert && matches!(fresnel.kind, MaskKind::Fresnel { f0: 0.04, power: 5.0 }));
+    assert!(fresnel.invert && matches!(fresnel.kind, MaskKind::Derived(DerivedMask::Fresnel { f0: 0.04, power: 5.0 })));
     let curvature = mask(json!({ "kind": "curvature" })).kind;
-    assert!(matches!(curvature, MaskKind::Curvature { scale: 4.0, blur: 0.0, from: -1.0, to: 1.0 }));
+    assert!(matches!(curvature, MaskKind::Derived(DerivedMask::CURVATURE)));
     assert!(matches!(
         mask(json!({ "kind": "depth", "from": 1, "to": 0.5 })).kind,
-        MaskKind::Depth { from: 1.0, to: 0.5 }
+        MaskKind::Derived(DerivedMask::Depth { from: 1.0, to: 0.5 })
     ));
 }
 

@@ -9,7 +9,8 @@ mod selections;
 use super::TransformShape;
 use super::warp;
 use super::{
-    Assistant, Content, DetailSource, Document, HomeFrame, Layer, LayerMask, LayerTransform, MaskKind, PixelLayer,
+    Assistant, Content, DerivedMask, DetailSource, Document, HomeFrame, Layer, LayerMask, LayerTransform, MaskKind,
+    PixelLayer,
 };
 use crate::math::range::{at_most, within};
 use crate::math::{COORDINATE, Size};
@@ -200,17 +201,17 @@ fn mask_fits(mask: &LayerMask, canvas: Size) -> Fit {
             Err(format!("the mask has {} pixels, the canvas {canvas}", coverage.size()))
         }
         MaskKind::File { .. } => Ok(()),
-        MaskKind::Fresnel { f0, power } => {
-            within("the mask's least", *f0, &LayerMask::F0)?;
-            within("the mask's power", *power, &LayerMask::POWER)
+        MaskKind::Derived(DerivedMask::Fresnel { f0, power }) => {
+            within("the mask's least", *f0, &DerivedMask::F0)?;
+            within("the mask's power", *power, &DerivedMask::POWER)
         }
-        MaskKind::Curvature { scale, blur, from, to } => {
+        MaskKind::Derived(DerivedMask::Curvature { scale, blur, from, to }) => {
             within("the mask's width", *scale, &FeatureScale::CURVATURE_PX)?;
             within("the mask's blur", *blur, &FeatureScale::BLUR_PX)?;
-            ramp(*from, *to, &LayerMask::KAPPA)
+            ramp(*from, *to, &DerivedMask::KAPPA)
         }
-        MaskKind::Depth { from, to } => ramp(*from, *to, &LayerMask::DEPTH),
-        MaskKind::Region(region) => selections::region(region),
+        MaskKind::Derived(DerivedMask::Depth { from, to }) => ramp(*from, *to, &DerivedMask::DEPTH),
+        MaskKind::Derived(DerivedMask::Region(region)) => selections::region(region),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A layer: how it meets what lies beneath, and what it holds.
 //! Floor 4.
 
-use super::{Content, LayerTransform, cache::LayerCache, mask::LayerMask};
+use super::{Content, LayerTransform, cache::LayerCache, layer_mask::LayerMask};
 use crate::math::srgb::Color;
 use crate::math::{Range, UNIT};
 use crate::paint::HomeFrame;
@@ -80,13 +80,15 @@ impl Layer {
     }
 }
 
-/// What is protected from painting.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LayerLock {
-    #[default]
-    None,
-    Alpha,
-    All,
+crate::named! {
+    /// What is protected from painting.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum LayerLock {
+        #[default]
+        None = "none",
+        Alpha = "alpha",
+        All = "all",
+    }
 }
 
 crate::named! {

@@ -1,38 +1,13 @@
-//! A layer's mask: a picture of coverage, or one derived from the surface.
-//! Floor 4.
+//! What a layer's mask covers, tile by tile.
+//! Floor 4. Not here: what masks there are (`layer_mask`).
 
 use super::behind::Behind;
+use super::layer_mask::{DerivedMask, LayerMask, MaskKind};
 use super::{Layer, Role, prepare, prepare::PreparedLayer};
-use crate::math::{Range, UNIT};
 use crate::paint::Scene;
 use crate::raster::{Plane, TileAt, TileCoverage};
-use crate::surface::region::SurfaceRegion;
 use crate::surface::{ContourPixel, Curvature, Surface};
 use std::sync::Arc;
-
-/// What a layer's coverage is multiplied by.
-#[derive(Clone)]
-pub struct LayerMask {
-    pub kind: MaskKind,
-    /// 1 − the mask.
-    pub invert: bool,
-    /// The layer is shown as if it had no mask.
-    pub disabled: bool,
-}
-
-#[derive(Clone)]
-pub enum MaskKind {
-    /// A picture of the canvas's size: encoded luminance × alpha.
-    File { file: String, coverage: Arc<Plane<u8>> },
-    /// Schlick's approximation: f0 + (1 − f0)(1 − n_z)^power (SF fig. 12c).
-    Fresnel { f0: f32, power: f32 },
-    /// κ of MATH 4, 0 at `from`, 1 at `to`.
-    Curvature { scale: f32, blur: f32, from: f32, to: f32 },
-    /// z, 0 at `from`, 1 at `to`.
-    Depth { from: f32, to: f32 },
-    /// All that has something in common with a point of the surface.
-    Region(SurfaceRegion),
-}
 
 /// The coverage of a layer in each pixel of a tile: its opacity, its mask, and the surface if it is clipped to it. A
 /// pixel that the surface covers in part counts as covered: what is clipped to the surface is absent from the rest of
@@ -68,7 +43,7 @@ pub(super) fn coverage_behind(node: &PreparedLayer, behind: &Behind) -> TileCove
         coverage = coverage.times_values(behind.values(|_, pixel| if pixel.sees_surface() { 1.0 } else { 0.0 }));
     }
     let Some(mask) = node.layer.mask.as_ref().filter(|mask| mask.acts_on(&node.scene)) else { return coverage };
-    if let (MaskKind::Region(region), Some(surface)) = (&mask.kind, &node.scene.surface) {
+    if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) = (&mask.kind, &node.scene.surface) {
         // Of the other population's piece, nearby.
         let grid = surface.region(region);
         let way = |c: u8| f32::from(if mask.invert { 255 - c } else { c }) / 255.0;
@@ -128,17 +103,6 @@ fn pixels(at: TileAt, value: impl Fn(i32, i32) -> f32) -> impl Fn(usize, usize) 
 }
 
 impl LayerMask {
-    pub const F0: Range = UNIT;
-    pub const POWER: Range = 0.0..=64.0;
-    /// Curvatures at which the mask is 0 or 1.
-    pub const KAPPA: Range = -1.0..=1.0;
-    /// Depths at which the mask is 0 or 1.
-    pub const DEPTH: Range = UNIT;
-
-    /// An enabled mask that is not inverted.
-    pub fn new(kind: MaskKind) -> Self {
-        Self { kind, invert: false, disabled: false }
-    }
     /// The same mask as a picture that can be painted on; it looks the same. A derived mask covers everything where
     /// there is no surface.
     pub fn as_picture(&self, layer: &Layer, scene: &Scene) -> LayerMask {
@@ -162,7 +126,7 @@ impl LayerMask {
         if !self.acts_on(scene) {
             return coverage;
         }
-        if let (MaskKind::Region(region), Some(surface)) = (&self.kind, &scene.surface) {
+        if let (MaskKind::Derived(DerivedMask::Region(region)), Some(surface)) = (&self.kind, &scene.surface) {
             let grid = surface.region(region);
             let way = |c: u8| f32::from(if self.invert { 255 - c } else { c }) / 255.0;
             return coverage.times(pixels(at, |x, y| way(grid.at(x, y))));
@@ -180,38 +144,24 @@ impl LayerMask {
             return 1.0;
         }
         let way = |v: f32| if self.invert { 1.0 - v } else { v };
-        if let MaskKind::File { coverage, .. } = &self.kind {
-            return way(coverage.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0));
-        }
+        let derived = match &self.kind {
+            MaskKind::File { coverage, .. } => return way(coverage.get(x, y).map_or(0.0, |c| f32::from(c) / 255.0)),
+            MaskKind::Derived(derived) => *derived,
+        };
         let Some(surface) = &scene.surface else { return 1.0 };
         if !surface.size().rect().contains(x, y) {
             return 0.0;
         }
         let (x, y) = (x as usize, y as usize);
-        match (&self.kind, curvature) {
-            (MaskKind::Region(region), _) => way(f32::from(surface.region(region).at(x as i32, y as i32)) / 255.0),
-            (&MaskKind::Fresnel { f0, power }, _) => way(fresnel(surface.facing(x, y), f0, power)),
-            (&MaskKind::Depth { from, to }, _) => way(ramp(surface.depth(x, y), from, to)),
-            (&MaskKind::Curvature { scale, from, to, .. }, Some(curvature)) => {
+        match (derived, curvature) {
+            (DerivedMask::Region(region), _) => way(f32::from(surface.region(&region).at(x as i32, y as i32)) / 255.0),
+            (DerivedMask::Fresnel { f0, power }, _) => way(fresnel(surface.facing(x, y), f0, power)),
+            (DerivedMask::Depth { from, to }, _) => way(ramp(surface.depth(x, y), from, to)),
+            (DerivedMask::Curvature { scale, from, to, .. }, Some(curvature)) => {
                 way(ramp(curvature.kappa(x, y, scale), from, to))
             }
-            _ => 1.0,
+            (DerivedMask::Curvature { .. }, None) => 1.0,
         }
-    }
-    /// Whether both have the same coverage: the same picture by pointer, or the same numbers.
-    pub(super) fn is_same(&self, other: &LayerMask) -> bool {
-        use MaskKind::{Curvature, Depth, File, Fresnel, Region};
-        let same_kind = match (&self.kind, &other.kind) {
-            (File { coverage: a, .. }, File { coverage: b, .. }) => Arc::ptr_eq(a, b),
-            (Fresnel { f0, power }, Fresnel { f0: f, power: p }) => (f0, power) == (f, p),
-            (Curvature { scale, blur, from, to }, Curvature { scale: s, blur: b, from: f, to: t }) => {
-                (scale, blur, from, to) == (s, b, f, t)
-            }
-            (Depth { from, to }, Depth { from: f, to: t }) => (from, to) == (f, t),
-            (Region(a), Region(b)) => a == b,
-            _ => false,
-        };
-        same_kind && self.invert == other.invert && self.disabled == other.disabled
     }
 }
 

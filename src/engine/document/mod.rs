@@ -16,6 +16,7 @@ pub mod flatten;
 pub mod guides;
 pub mod history;
 pub mod layer;
+mod layer_mask;
 pub mod live;
 pub mod mask;
 mod measure;
@@ -46,8 +47,8 @@ pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers, flatten_
 pub use guides::Guides;
 pub use history::History;
 pub use layer::{Layer, LayerId, LayerLabel, LayerLock};
+pub use layer_mask::{DerivedMask, LayerMask, MaskKind};
 pub use live::Live;
-pub use mask::{LayerMask, MaskKind};
 pub use normals::{DetailSource, NormalLayer};
 pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};
 pub use prepare::PreparedDocument;

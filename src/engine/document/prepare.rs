@@ -3,7 +3,7 @@
 
 use super::transform::{LayerMap, on_canvas};
 use super::warp::{LayerWarp, WarpTiles, can_be_warped};
-use super::{Content, Document, Group, Layer, MaskKind, Progress, Role, normals};
+use super::{Content, DerivedMask, Document, Group, Layer, LayerMask, Progress, Role, normals};
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -185,10 +185,10 @@ impl StackBuilder<'_> {
             let (layer, scaling, beneath) = (layer.clone(), scaling.clone(), scope.beneath.gathered());
             self.adjustments.push(Adjustment { layer, scaling, scene: visible_scene.clone(), beneath });
         }
-        if let (Some(MaskKind::Region(region)), Some(surface)) =
-            (layer.mask.as_ref().map(|mask| &mask.kind), &visible_scene.surface)
+        if let (Some(DerivedMask::Region(region)), Some(surface)) =
+            (layer.mask.as_ref().and_then(LayerMask::derived), &visible_scene.surface)
         {
-            surface.region(region);
+            surface.region(&region);
         }
         PreparedLayer {
             curvature: curvature_of_mask(layer, &visible_scene),
@@ -218,8 +218,8 @@ fn is_composed_first(layer: &Layer) -> bool {
 }
 
 pub(super) fn curvature_of_mask(layer: &Layer, scene: &Scene) -> Option<Arc<Curvature>> {
-    match layer.mask.as_ref()?.kind {
-        MaskKind::Curvature { blur, .. } => Some(scene.surface.as_ref()?.curvature(blur)),
+    match layer.mask.as_ref()?.derived()? {
+        DerivedMask::Curvature { blur, .. } => Some(scene.surface.as_ref()?.curvature(blur)),
         _ => None,
     }
 }

@@ -10,8 +10,8 @@ pub use reducer::{DocumentReducer, ReducedSurface, SurfaceReduction};
 use super::cache::LayerCache;
 use super::warp::carried_liquify;
 use super::{
-    Content, DetailSource, Document, Layer, LayerMap, LayerTransform, Live, MaskKind, NormalLayer, Part, PixelLayer,
-    canvas_change, transform,
+    Content, DerivedMask, DetailSource, Document, Layer, LayerMap, LayerTransform, Live, MaskKind, NormalLayer, Part,
+    PixelLayer, canvas_change, transform,
 };
 use crate::math::{PlaneMap, Rect, Size, Vec2, srgb::quantise, vec2};
 use crate::paint::{Sample, Selection, Stroke, StrokeHome};
@@ -187,11 +187,11 @@ impl CanvasScale {
         next.liquify = carried_liquify(layer, &self.map(), self.to);
         match next.mask.as_mut().map(|mask| &mut mask.kind) {
             Some(MaskKind::File { coverage, .. }) => *coverage = Arc::new(self.plane(coverage)),
-            Some(MaskKind::Curvature { scale, blur, .. }) => {
+            Some(MaskKind::Derived(DerivedMask::Curvature { scale, blur, .. })) => {
                 (*scale, *blur) = (*scale * self.length, *blur * self.length)
             }
-            Some(MaskKind::Region(region)) => region.at *= self.per_axis,
-            Some(MaskKind::Fresnel { .. } | MaskKind::Depth { .. }) | None => {}
+            Some(MaskKind::Derived(DerivedMask::Region(region))) => region.at *= self.per_axis,
+            Some(MaskKind::Derived(DerivedMask::Fresnel { .. } | DerivedMask::Depth { .. })) | None => {}
         }
         next
     }

@@ -1,7 +1,7 @@
 //! The selections of a document: the active one, those kept by name, and those that strokes were painted in.
 //! Floor 4. What a selection is stands in `paint::selection`; cutting and copying by one in `cut`.
 
-use super::{Content, Document, Layer, LayerMask, Live, MaskKind, StrokeList};
+use super::{Content, DerivedMask, Document, Layer, LayerMask, Live, MaskKind, StrokeList};
 use crate::paint::{Selection, Stroke, StrokeSelection};
 use crate::raster::coverage::Combine;
 use crate::raster::{CoverageGrid, Plane};
@@ -106,7 +106,7 @@ impl Document {
     pub fn selection_as_mask(&self) -> Option<LayerMask> {
         let selection = self.active_selection.as_deref()?;
         let kind = match selection.made {
-            Some(region) if self.surface.is_some() => MaskKind::Region(region),
+            Some(region) if self.surface.is_some() => DerivedMask::Region(region).into(),
             _ => picture(&selection.coverage.to_plane(self.size.rect())),
         };
         Some(LayerMask::new(kind))

@@ -1,7 +1,7 @@
 //! How much memory flattening a document takes beside the document itself, told before it begins.
 //! Floor 4. An estimate from above; what there is, floors above know.
 
-use super::{Content, Document, Layer, MaskKind, StrokeList};
+use super::{Content, DerivedMask, Document, Layer, LayerMask, StrokeList};
 use crate::math::Rect;
 use crate::surface::Contours;
 use crate::surface::region::RegionKind;
@@ -50,9 +50,9 @@ fn of_layers(layers: &[Arc<Layer>], canvas: Rect, area: u64) -> u64 {
 }
 
 fn of_layer(layer: &Layer, canvas: Rect, area: u64) -> u64 {
-    let mask = match layer.mask.as_ref().map(|mask| &mask.kind) {
-        Some(MaskKind::Curvature { .. }) => area * CURVATURE_BYTES,
-        Some(MaskKind::Region(region)) => area * region_bytes(region.kind),
+    let mask = match layer.mask.as_ref().and_then(LayerMask::derived) {
+        Some(DerivedMask::Curvature { .. }) => area * CURVATURE_BYTES,
+        Some(DerivedMask::Region(region)) => area * region_bytes(region.kind),
         _ => 0,
     };
     // What it is sampled from, and what it shows.

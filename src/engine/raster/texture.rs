@@ -6,18 +6,20 @@ use crate::math::{Size, srgb};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// What a lookup beyond the picture's border finds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Outside {
-    /// Nothing: transparent.
-    None,
-    /// The nearest border texel.
-    Clamp,
-    /// The picture again.
-    Repeat,
-    /// The picture mirrored at its border (… b a | a b …).
-    #[default]
-    Mirror,
+crate::named! {
+    /// What a lookup beyond the picture's border finds.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum Outside {
+        /// The picture mirrored at its border (… b a | a b …).
+        #[default]
+        Mirror = "mirror",
+        /// The picture again.
+        Repeat = "repeat",
+        /// The nearest border texel.
+        Clamp = "clamp",
+        /// Nothing: transparent.
+        None = "none",
+    }
 }
 
 impl Outside {

@@ -46,7 +46,7 @@ impl RegionKind {
         }
     }
     /// The tolerance where none is said.
-    pub fn tolerance(self) -> f32 {
+    pub const fn tolerance(self) -> f32 {
         match self {
             RegionKind::Direction | RegionKind::Shine | RegionKind::Flow => 15.0,
             RegionKind::Depth | RegionKind::Object => 0.1,
@@ -73,7 +73,7 @@ impl SurfaceRegion {
     pub const SOFTNESS: Range = UNIT;
 
     /// A sharp and contiguous one with the kind's own tolerance.
-    pub fn new(kind: RegionKind, at: Vec2) -> Self {
+    pub const fn new(kind: RegionKind, at: Vec2) -> Self {
         Self { kind, at, tolerance: kind.tolerance(), softness: 0.0, contiguous: true }
     }
     /// What it covers of a surface; nothing where its point is off the surface.

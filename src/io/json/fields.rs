@@ -17,11 +17,24 @@ pub struct JsonNode<'a> {
     file: &'a Path,
     path: String,
     value: &'a Value,
+    /// Whether numbers must lie in their ranges.
+    ranged: bool,
 }
 
 impl<'a> JsonNode<'a> {
     pub fn root(file: &'a Path, value: &'a Value) -> Self {
-        Self { file, path: String::new(), value }
+        Self { file, path: String::new(), value, ranged: true }
+    }
+    /// A value of no file, whose numbers need only be finite: for what is refused later where it does not fit
+    /// (`Document::fits`).
+    pub fn unranged(value: &'a Value) -> Self {
+        Self { file: Path::new(""), path: String::new(), value, ranged: false }
+    }
+    pub fn is_ranged(&self) -> bool {
+        self.ranged
+    }
+    fn holds(&self, range: &RangeInclusive<f32>, number: f32) -> bool {
+        if self.ranged { range.contains(&number) } else { number.is_finite() }
     }
     /// Where the value stands, such as `layers[2].operator.gamma`.
     pub fn path(&self) -> &str {
@@ -32,8 +45,14 @@ impl<'a> JsonNode<'a> {
     }
     /// A refusal of this value.
     pub fn refused(&self, reason: impl ToString) -> Error {
-        let field = if self.path.is_empty() { "the document" } else { &self.path };
-        Error::invalid(self.file, field, reason)
+        Error::invalid(self.file, self.field(), reason)
+    }
+    /// Whether a refusal with this field is of the value itself, not of one within it.
+    pub fn is_at(&self, field: &str) -> bool {
+        field == self.field()
+    }
+    fn field(&self) -> &str {
+        if self.path.is_empty() { "the document" } else { &self.path }
     }
     /// A refusal of more than there may be.
     pub fn too_large(&self, reason: impl ToString) -> Error {
@@ -41,7 +60,7 @@ impl<'a> JsonNode<'a> {
     }
     /// Where an item of this list would stand that is told otherwise than as a value.
     pub fn item(&self, i: usize) -> JsonNode<'a> {
-        JsonNode { file: self.file, path: format!("{}[{i}]", self.path), value: &Value::Null }
+        JsonNode { path: format!("{}[{i}]", self.path), value: &Value::Null, ..*self }
     }
     /// Names this value in a failure that it led to.
     pub fn led_to(&self, error: Error) -> Error {
@@ -70,7 +89,7 @@ impl<'a> JsonNode<'a> {
             let reason = format!("{} has {} items; it may have {most}", self.path, items.len());
             return Err(Error::too_large(self.file, reason));
         }
-        let item = |(i, value)| JsonNode { file: self.file, path: format!("{}[{i}]", self.path), value };
+        let item = |(i, value)| JsonNode { path: format!("{}[{i}]", self.path), value, ..*self };
         Ok(items.iter().enumerate().map(item).collect())
     }
     /// A list of `least` to `most` numbers, as one point, vector or reading.
@@ -80,7 +99,7 @@ impl<'a> JsonNode<'a> {
             let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
             return Err(self.refused(format!("has {} items; it must have {wanted}", items.len())));
         }
-        let quick = items.iter().map(|item| item.as_f64().map(|v| v as f32).filter(|v| range.contains(v)));
+        let quick = items.iter().map(|item| item.as_f64().map(|v| v as f32).filter(|v| self.holds(&range, *v)));
         if let Some(values) = quick.collect() {
             return Ok(values);
         }
@@ -91,7 +110,7 @@ impl<'a> JsonNode<'a> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a number"))?;
         let (low, high) = (*range.start(), *range.end());
         // As f32 first: a number just beyond the range in f64 may be its end in f32.
-        if !range.contains(&(number as f32)) {
+        if !self.holds(&range, number as f32) {
             return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
         }
         Ok(number as f32)
@@ -105,7 +124,7 @@ impl<'a> JsonNode<'a> {
         // 12.0 is a whole number too: other programs write it so.
         let whole = (number.fract() == 0.0).then_some(number as i64);
         let whole = whole.ok_or_else(|| self.refused(format!("is {number}; it must be a whole number")))?;
-        if !range.contains(&whole) {
+        if self.ranged && !range.contains(&whole) {
             let (low, high) = (range.start(), range.end());
             return Err(self.refused(format!("is {number}; it must be between {low} and {high}")));
         }
@@ -113,7 +132,8 @@ impl<'a> JsonNode<'a> {
     }
     /// A whole number from 0.
     pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32> {
-        self.integer(i64::from(*range.start())..=i64::from(*range.end())).map(|n| n as u32)
+        let number = self.integer(i64::from(*range.start())..=i64::from(*range.end()))?;
+        u32::try_from(number).map_err(|_| self.refused(format!("is {number}; it must be between 0 and {}", u32::MAX)))
     }
     pub fn boolean(&self) -> Result<bool> {
         self.value.as_bool().ok_or_else(|| self.wrong_kind("true or false"))
@@ -166,7 +186,7 @@ impl<'a> Fields<'a> {
         found.ok_or_else(|| self.below(name, &Value::Null).refused("is missing"))
     }
     fn below(&self, name: &str, value: &'a Value) -> JsonNode<'a> {
-        JsonNode { file: self.node.file, path: below(&self.node.path, name), value }
+        JsonNode { path: below(&self.node.path, name), value, ..self.node }
     }
     pub fn number(&mut self, name: &'static str, default: f32, range: RangeInclusive<f32>) -> Result<f32> {
         self.get(name).map_or(Ok(default), |node| node.number(range))

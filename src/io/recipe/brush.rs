@@ -3,6 +3,7 @@
 
 use super::habits;
 use super::tips;
+use super::value::RecipeValue;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::{TURNS, UNIT, Vec2, vec2};
@@ -30,7 +31,7 @@ pub fn settings(fields: &mut Fields, base: Brush) -> Result<Brush> {
         keeps_alpha: fields.boolean("keeps_alpha", base.keeps_alpha)?,
         bounded: fields.one_of("bounded", &PaintLimit::ALL, base.bounded)?,
         reach: fields.number("reach", base.reach, Brush::REACHES)?,
-        mode: fields.get("mark").map_or(Ok(base.mode), |node| mode(&node))?,
+        mode: fields.get("mark").map_or(Ok(base.mode), |node| BrushMode::from_json(&node))?,
         stabilizer: fields.get("stabilizer").map_or(Ok(base.stabilizer), |node| stabilizer(&node))?,
         dynamics: fields
             .get("dynamics")
@@ -64,17 +65,29 @@ fn jitter(node: &JsonNode, base: ColorJitter) -> Result<ColorJitter> {
 
 /// `{ "kind": "smudge", "length": 0.8 }`, `{ "kind": "blur", "width": 0.3 }` or
 /// `{ "kind": "clone", "aligned": true, "picture": false }`; `{ "kind": "paint" }` is the default.
-fn mode(node: &JsonNode) -> Result<BrushMode> {
-    const KINDS: [(usize, &str); 4] = [(0, "paint"), (1, "smudge"), (2, "blur"), (3, "clone")];
-    let mut fields = node.fields()?;
-    let mode = match fields.one_of("kind", &KINDS, 0)? {
-        0 => BrushMode::Paint,
-        1 => BrushMode::Smudge { length: fields.number("length", BrushMode::SMUDGE_LENGTH, BrushMode::SHARE)? },
-        2 => BrushMode::Blur { width: fields.number("width", BrushMode::BLUR_WIDTH, BrushMode::SHARE)? },
-        _ => BrushMode::Clone { aligned: fields.boolean("aligned", true)?, picture: fields.boolean("picture", false)? },
-    };
-    fields.finish()?;
-    Ok(mode)
+impl RecipeValue for BrushMode {
+    fn to_json(&self) -> Value {
+        let mut out = write_mode(*self);
+        if *self == BrushMode::Paint {
+            out.set("kind", "paint".into());
+        }
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        const KINDS: [(usize, &str); 4] = [(0, "paint"), (1, "smudge"), (2, "blur"), (3, "clone")];
+        let mut fields = node.fields()?;
+        let mode = match fields.one_of("kind", &KINDS, 0)? {
+            0 => BrushMode::Paint,
+            1 => BrushMode::Smudge { length: fields.number("length", BrushMode::SMUDGE_LENGTH, BrushMode::SHARE)? },
+            2 => BrushMode::Blur { width: fields.number("width", BrushMode::BLUR_WIDTH, BrushMode::SHARE)? },
+            _ => BrushMode::Clone {
+                aligned: fields.boolean("aligned", true)?,
+                picture: fields.boolean("picture", false)?,
+            },
+        };
+        fields.finish()?;
+        Ok(mode)
+    }
 }
 
 fn write_mode(mode: BrushMode) -> JsonObject {

@@ -2,7 +2,7 @@
 //! source. Floor 5.
 
 use super::LayerReader;
-use super::names::{FILTERS, OUTSIDES};
+use super::value::RecipeValue;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
 use crate::math::range::STOPS;
@@ -20,9 +20,9 @@ impl LayerReader<'_> {
         Ok(PlacedImage {
             source,
             placement,
-            outside: fields.one_of("outside", &OUTSIDES, Outside::Mirror)?,
+            outside: fields.one_of("outside", &Outside::ALL, Outside::Mirror)?,
             bend: self.bend(fields, placement.center)?,
-            filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
+            filter: fields.one_of("filter", &ImageFilter::ALL, ImageFilter::Antialias)?,
             frame: Default::default(),
         })
     }
@@ -36,7 +36,7 @@ impl LayerReader<'_> {
             to: fields.point("to", vec2(w, h / 2.0))?,
             stops: fields.get("stops").map_or_else(|| Ok(black_to_white()), |node| stops(&node))?,
             operator: operator(fields)?.unwrap_or_default(),
-            filter: fields.one_of("filter", &FILTERS, ImageFilter::Antialias)?,
+            filter: fields.one_of("filter", &ImageFilter::ALL, ImageFilter::Antialias)?,
             frame: Default::default(),
         })
     }
@@ -45,39 +45,25 @@ impl LayerReader<'_> {
     fn bend(&self, fields: &mut Fields, center: Vec2) -> Result<Bend> {
         let operator = operator(fields)?.unwrap_or_default();
         let anchors = match fields.get("anchors") {
-            Some(node) => node.list(self.source.budget.anchors)?.iter().map(anchor).collect::<Result<_>>()?,
+            Some(node) => {
+                node.list(self.source.budget.anchors)?.iter().map(Anchor::from_json).collect::<Result<_>>()?
+            }
             None => default_anchors(operator, center),
         };
         let weights = fields.get("weights").map_or(Ok(Weights::default()), |node| weights(&node))?;
-        let pieces = fields
-            .get("pieces")
-            .map_or(Ok(Vec::new()), |node| node.list(PlanePiece::MOST)?.iter().map(piece).collect::<Result<_>>())?;
+        let pieces = fields.get("pieces").map_or(Ok(Vec::new()), |node| {
+            node.list(PlanePiece::MOST)?.iter().map(RecipeValue::from_json).collect::<Result<_>>()
+        })?;
         Ok(Bend { operator, anchors, weights, pieces })
     }
     pub fn placement(&self, fields: &mut Fields) -> Result<Placement> {
         let covering = Placement::covering(self.size);
-        let Some(node) = fields.get("placement") else { return Ok(covering) };
-        let mut fields = node.fields()?;
-        let placement = Placement {
-            center: fields.point("center", covering.center)?,
-            scale: fields.number("scale", covering.scale, Placement::SCALE)?,
-            rotation: fields.number("rotation", covering.rotation, TURNS)?,
-        };
-        fields.finish()?;
-        Ok(placement)
+        fields.get("placement").map_or(Ok(covering), |node| placement(&node, covering))
     }
     pub fn picture_source(&mut self, node: &JsonNode) -> Result<PictureSource> {
         let mut fields = node.fields()?;
         let file = fields.required("file")?;
-        let plain = Adjust::default();
-        let adjust = Adjust {
-            blur: fields.number("blur", plain.blur, Adjust::BLUR)?,
-            exposure: fields.number("exposure", plain.exposure, STOPS)?,
-            hue: fields.number("hue", plain.hue, TURNS)?,
-            saturation: fields.number("saturation", plain.saturation, Adjust::FACTOR)?,
-            brightness: fields.number("brightness", plain.brightness, Adjust::FACTOR)?,
-            contrast: fields.number("contrast", plain.contrast, Adjust::FACTOR)?,
-        };
+        let adjust = adjust(&mut fields)?;
         fields.finish()?;
         self.pictures.source(self.source, &file, adjust)
     }
@@ -93,33 +79,136 @@ pub fn default_anchors(operator: Operator, center: Vec2) -> Vec<Anchor> {
 
 /// The field `operator`, if present.
 pub fn operator(fields: &mut Fields) -> Result<Option<Operator>> {
-    let Some(node) = fields.get("operator") else { return Ok(None) };
-    let mut fields = node.fields()?;
-    let operator = fields.one_of("kind", &Operator::KINDS, Operator::None)?;
-    let operator = operator.try_map(|number, default| fields.number(number.key, default, number.range.clone()))?;
-    fields.finish()?;
-    Ok(Some(operator))
+    fields.get("operator").map(|node| Operator::from_json(&node)).transpose()
 }
 
-fn anchor(node: &JsonNode) -> Result<Anchor> {
-    let mut fields = node.fields()?;
-    let at = fields.required("at")?.point()?;
-    let source = fields.point("source", at)?;
-    fields.finish()?;
-    Ok(Anchor { at, source })
+/// A kind with its numbers.
+impl RecipeValue for Operator {
+    fn to_json(&self) -> Value {
+        let mut out = write_operator(*self);
+        if *self == Operator::None {
+            out.set("kind", self.row().1.into());
+        }
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let operator = fields.one_of("kind", &Operator::KINDS, Operator::None)?;
+        let operator = operator.try_map(|number, default| fields.number(number.key, default, number.range.clone()))?;
+        fields.finish()?;
+        Ok(operator)
+    }
 }
 
-fn piece(node: &JsonNode) -> Result<PlanePiece> {
+/// `{ "at": [x, y], "source": [x, y] }`.
+impl RecipeValue for Anchor {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        out.set("at", object::point(self.at));
+        if self.source != self.at {
+            out.set("source", object::point(self.source));
+        }
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let at = fields.required("at")?.point()?;
+        let source = fields.point("source", at)?;
+        fields.finish()?;
+        Ok(Anchor { at, source })
+    }
+}
+
+/// `{ "at": [x, y], "move": [x, y], "scale": 1, "rotation": 0 }`.
+impl RecipeValue for PlanePiece {
+    fn to_json(&self) -> Value {
+        let (mut out, still) = (JsonObject::default(), PlanePiece::at(self.at));
+        out.set("at", object::point(self.at));
+        if self.moved != still.moved {
+            out.set("move", object::point(self.moved));
+        }
+        out.number("scale", self.scale, still.scale);
+        out.number("rotation", self.rotation, still.rotation);
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let still = PlanePiece::at(fields.required("at")?.point()?);
+        let piece = PlanePiece {
+            moved: fields.point("move", still.moved)?,
+            scale: fields.number("scale", still.scale, PlanePiece::SCALE)?,
+            rotation: fields.number("rotation", still.rotation, PlanePiece::ROTATION)?,
+            ..still
+        };
+        fields.finish()?;
+        Ok(piece)
+    }
+}
+
+/// `[t, "#rrggbb"]`.
+impl RecipeValue for GradientStop {
+    fn to_json(&self) -> Value {
+        Value::Array(vec![object::number(self.t), object::color(self.color)])
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let [t, color] = &node.list(2)?[..] else { return Err(node.refused("must be [t, colour]")) };
+        Ok(GradientStop { t: t.number(UNIT)?, color: color.color()? })
+    }
+}
+
+/// Where it lies by itself; in a document what covers the canvas is left unsaid.
+impl RecipeValue for Placement {
+    fn to_json(&self) -> Value {
+        let mut out = write_placement_beside(self, &unscaled(self.center));
+        out.set("center", object::point(self.center));
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let center = node.fields()?.required("center")?.point()?;
+        placement(node, unscaled(center))
+    }
+}
+
+impl RecipeValue for Adjust {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        write_adjust(&mut out, self);
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let adjust = adjust(&mut fields)?;
+        fields.finish()?;
+        Ok(adjust)
+    }
+}
+
+fn adjust(fields: &mut Fields) -> Result<Adjust> {
+    let plain = Adjust::default();
+    Ok(Adjust {
+        blur: fields.number("blur", plain.blur, Adjust::BLUR)?,
+        exposure: fields.number("exposure", plain.exposure, STOPS)?,
+        hue: fields.number("hue", plain.hue, TURNS)?,
+        saturation: fields.number("saturation", plain.saturation, Adjust::FACTOR)?,
+        brightness: fields.number("brightness", plain.brightness, Adjust::FACTOR)?,
+        contrast: fields.number("contrast", plain.contrast, Adjust::FACTOR)?,
+    })
+}
+
+/// * `base`: what it leaves unsaid.
+fn placement(node: &JsonNode, base: Placement) -> Result<Placement> {
     let mut fields = node.fields()?;
-    let still = PlanePiece::at(fields.required("at")?.point()?);
-    let piece = PlanePiece {
-        moved: fields.point("move", still.moved)?,
-        scale: fields.number("scale", still.scale, PlanePiece::SCALE)?,
-        rotation: fields.number("rotation", still.rotation, PlanePiece::ROTATION)?,
-        ..still
+    let placement = Placement {
+        center: fields.point("center", base.center)?,
+        scale: fields.number("scale", base.scale, Placement::SCALE)?,
+        rotation: fields.number("rotation", base.rotation, TURNS)?,
     };
     fields.finish()?;
-    Ok(piece)
+    Ok(placement)
+}
+
+fn unscaled(center: Vec2) -> Placement {
+    Placement { center, scale: 1.0, rotation: 0.0 }
 }
 
 fn weights(node: &JsonNode) -> Result<Weights> {
@@ -136,10 +225,9 @@ fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
     }
     let mut stops: Vec<GradientStop> = Vec::with_capacity(items.len());
     for item in &items {
-        let [t, color] = &item.list(2)?[..] else { return Err(item.refused("must be [t, colour]")) };
-        let stop = GradientStop { t: t.number(UNIT)?, color: color.color()? };
+        let stop = GradientStop::from_json(item)?;
         if stops.last().is_some_and(|before| before.t > stop.t) {
-            return Err(t.refused("is less than the stop before it; stops go from 0 to 1"));
+            return Err(item.list(2)?[0].refused("is less than the stop before it; stops go from 0 to 1"));
         }
         stops.push(stop);
     }
@@ -149,53 +237,32 @@ fn stops(node: &JsonNode) -> Result<Vec<GradientStop>> {
 pub fn write_image(out: &mut JsonObject, image: &PlacedImage, canvas: Size) {
     out.set("source", write_source(&image.source));
     out.object("placement", write_placement(&image.placement, canvas));
-    out.word("outside", &OUTSIDES, image.outside, Outside::Mirror);
+    out.word("outside", &Outside::ALL, image.outside, Outside::Mirror);
     write_bend(out, &image.bend, image.placement.center);
-    out.word("filter", &FILTERS, image.filter, ImageFilter::Antialias);
+    out.word("filter", &ImageFilter::ALL, image.filter, ImageFilter::Antialias);
 }
 
 pub fn write_gradient(out: &mut JsonObject, gradient: &Gradient) {
     out.set("from", object::point(gradient.from));
     out.set("to", object::point(gradient.to));
-    let stop = |s: &GradientStop| Value::Array(vec![object::number(s.t), object::color(s.color)]);
-    out.set("stops", gradient.stops.iter().map(stop).collect());
+    out.set("stops", gradient.stops.iter().map(GradientStop::to_json).collect());
     out.object("operator", write_operator(gradient.operator));
-    out.word("filter", &FILTERS, gradient.filter, ImageFilter::Antialias);
+    out.word("filter", &ImageFilter::ALL, gradient.filter, ImageFilter::Antialias);
 }
 
 fn write_bend(out: &mut JsonObject, bend: &Bend, center: Vec2) {
     out.object("operator", write_operator(bend.operator));
     if bend.anchors != default_anchors(bend.operator, center) {
-        out.set("anchors", bend.anchors.iter().map(write_anchor).collect());
+        out.set("anchors", bend.anchors.iter().map(Anchor::to_json).collect());
     }
     if !bend.pieces.is_empty() {
-        out.set("pieces", bend.pieces.iter().map(write_piece).collect());
+        out.set("pieces", bend.pieces.iter().map(PlanePiece::to_json).collect());
     }
     if let Weights::Shepard { power } = bend.weights {
         let mut weights = JsonObject::default();
         weights.number("power", power, 2.0);
         out.object("weights", weights);
     }
-}
-
-fn write_piece(piece: &PlanePiece) -> Value {
-    let (mut out, still) = (JsonObject::default(), PlanePiece::at(piece.at));
-    out.set("at", object::point(piece.at));
-    if piece.moved != still.moved {
-        out.set("move", object::point(piece.moved));
-    }
-    out.number("scale", piece.scale, still.scale);
-    out.number("rotation", piece.rotation, still.rotation);
-    out.done()
-}
-
-fn write_anchor(anchor: &Anchor) -> Value {
-    let mut out = JsonObject::default();
-    out.set("at", object::point(anchor.at));
-    if anchor.source != anchor.at {
-        out.set("source", object::point(anchor.source));
-    }
-    out.done()
 }
 
 /// Empty for the operator that does nothing.
@@ -214,26 +281,33 @@ pub fn write_operator(operator: Operator) -> JsonObject {
 
 /// Empty for the placement that covers the canvas.
 pub fn write_placement(placement: &Placement, canvas: Size) -> JsonObject {
-    let covering = Placement::covering(canvas);
+    write_placement_beside(placement, &Placement::covering(canvas))
+}
+
+fn write_placement_beside(placement: &Placement, base: &Placement) -> JsonObject {
     let mut out = JsonObject::default();
-    if placement.center != covering.center {
+    if placement.center != base.center {
         out.set("center", object::point(placement.center));
     }
-    out.number("scale", placement.scale, covering.scale);
-    out.number("rotation", placement.rotation, covering.rotation);
+    out.number("scale", placement.scale, base.scale);
+    out.number("rotation", placement.rotation, base.rotation);
     out
 }
 
 pub fn write_source(source: &PictureSource) -> Value {
-    let plain = Adjust::default();
-    let Adjust { blur, exposure, hue, saturation, brightness, contrast } = source.adjust;
     let mut out = JsonObject::default();
     out.set("file", source.file.as_str().into());
+    write_adjust(&mut out, &source.adjust);
+    out.done()
+}
+
+fn write_adjust(out: &mut JsonObject, adjust: &Adjust) {
+    let plain = Adjust::default();
+    let Adjust { blur, exposure, hue, saturation, brightness, contrast } = *adjust;
     out.number("blur", blur, plain.blur);
     out.number("exposure", exposure, plain.exposure);
     out.number("hue", hue, plain.hue);
     out.number("saturation", saturation, plain.saturation);
     out.number("brightness", brightness, plain.brightness);
     out.number("contrast", contrast, plain.contrast);
-    out.done()
 }

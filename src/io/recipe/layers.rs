@@ -2,7 +2,6 @@
 //! Floor 5.
 
 use super::LayerReader;
-use super::names::{BLEND_SPACES, LOCKS};
 use super::{images, liquify, masks, normals, shading, strokes, transforms};
 use crate::document::warp::can_be_warped;
 use crate::document::{Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList};
@@ -13,6 +12,9 @@ use crate::raster::{BlendMode, TileGrid};
 use crate::{Error, Result};
 use serde_json::Value;
 use std::sync::Arc;
+
+/// Whether a layer blends linear light.
+const BLEND_SPACES: [(bool, &str); 2] = [(false, "srgb"), (true, "linear")];
 
 /// Reads what a kind of layer has beside what every layer has; the number says how many groups stand around it.
 type ReadContent = fn(&mut LayerReader<'_>, &mut Fields<'_>, usize) -> Result<Content>;
@@ -46,7 +48,7 @@ impl LayerReader<'_> {
         let blend = fields.one_of("blend", &BlendMode::ALL, BlendMode::Normal)?;
         let blend_linear = fields.one_of("blend_space", &BLEND_SPACES, false)?;
         let clip_below = fields.boolean("clip_below", false)?;
-        let lock = fields.one_of("lock", &LOCKS, LayerLock::None)?;
+        let lock = fields.one_of("lock", &LayerLock::ALL, LayerLock::None)?;
         let label = fields.one_of("label", &LayerLabel::ALL, LayerLabel::None)?;
         let clip_to_surface = fields.boolean("clip_to_surface", true)?;
         let mask = fields.get("mask").map(|mask| self.mask(&mask)).transpose()?;
@@ -140,7 +142,7 @@ fn bare(layer: &Layer, canvas: Size) -> JsonObject {
     out.word("blend", &BlendMode::ALL, layer.blend, BlendMode::Normal);
     out.word("blend_space", &BLEND_SPACES, layer.blend_linear, false);
     out.flag("clip_below", layer.clip_below, false);
-    out.word("lock", &LOCKS, layer.lock, LayerLock::None);
+    out.word("lock", &LayerLock::ALL, layer.lock, LayerLock::None);
     out.word("label", &LayerLabel::ALL, layer.label, LayerLabel::None);
     out.flag("clip_to_surface", layer.clip_to_surface, true);
     if let Some(mask) = &layer.mask {

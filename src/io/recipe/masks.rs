@@ -3,45 +3,51 @@
 
 use super::LayerReader;
 use super::selections::{region, write_region};
+use super::value::RecipeValue;
 use crate::Result;
-use crate::document::{LayerMask, MaskKind};
+use crate::document::{DerivedMask, LayerMask, MaskKind};
 use crate::json::{Fields, JsonNode, JsonObject};
-use crate::math::Range;
+use crate::math::{Range, Vec2};
 use crate::shading::FeatureScale;
-use crate::surface::region::RegionKind;
+use crate::surface::region::{RegionKind, SurfaceRegion};
 use serde_json::Value;
 
-#[derive(Clone, Copy)]
-enum DerivedMaskKind {
-    Fresnel,
-    Curvature,
-    Depth,
-    Region(RegionKind),
+/// The kinds, each with what it leaves unsaid. Regions by depth and curvature are known by their point.
+const DERIVED: [(DerivedMask, &str); 7] = [
+    (DerivedMask::FRESNEL, "fresnel"),
+    (DerivedMask::CURVATURE, "curvature"),
+    (DerivedMask::RAMP_OF_DEPTH, "depth"),
+    (of_region(RegionKind::Direction), "direction"),
+    (of_region(RegionKind::Object), "object"),
+    (of_region(RegionKind::Shine), "shine"),
+    (of_region(RegionKind::Flow), "flow"),
+];
+
+const fn of_region(kind: RegionKind) -> DerivedMask {
+    DerivedMask::Region(SurfaceRegion::new(kind, Vec2::ZERO))
 }
 
-const DERIVED: [(DerivedMaskKind, &str); 7] = [
-    (DerivedMaskKind::Fresnel, "fresnel"),
-    (DerivedMaskKind::Curvature, "curvature"),
-    (DerivedMaskKind::Depth, "depth"),
-    (DerivedMaskKind::Region(RegionKind::Direction), "direction"),
-    (DerivedMaskKind::Region(RegionKind::Object), "object"),
-    (DerivedMaskKind::Region(RegionKind::Shine), "shine"),
-    (DerivedMaskKind::Region(RegionKind::Flow), "flow"),
-];
+/// Without the fields that every mask has.
+impl RecipeValue for DerivedMask {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        write_derived(&mut out, *self);
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let mask = derived(&mut fields)?.ok_or_else(|| node.refused("has no “kind”"))?;
+        fields.finish()?;
+        Ok(mask)
+    }
+}
 
 impl LayerReader<'_> {
     pub fn mask(&mut self, node: &JsonNode) -> Result<LayerMask> {
         let mut fields = node.fields()?;
         let (invert, disabled) = (fields.boolean("invert", false)?, fields.boolean("disabled", false)?);
-        let kind = match fields.get("kind") {
-            // What has a point is a region about it.
-            Some(kind) => match (kind.one_of(&DERIVED)?, fields.get("at").is_some()) {
-                (DerivedMaskKind::Curvature, true) => {
-                    derived(DerivedMaskKind::Region(RegionKind::Curvature), &mut fields)?
-                }
-                (DerivedMaskKind::Depth, true) => derived(DerivedMaskKind::Region(RegionKind::Depth), &mut fields)?,
-                (kind, _) => derived(kind, &mut fields)?,
-            },
+        let kind = match derived(&mut fields)? {
+            Some(derived) => derived.into(),
             None => {
                 let (file, coverage) =
                     self.pictures.coverage(self.source, &fields.required("file")?, Some(self.size))?;
@@ -53,26 +59,30 @@ impl LayerReader<'_> {
     }
 }
 
-fn derived(kind: DerivedMaskKind, fields: &mut Fields) -> Result<MaskKind> {
-    Ok(match kind {
-        DerivedMaskKind::Fresnel => MaskKind::Fresnel {
-            f0: fields.number("f0", 0.04, LayerMask::F0)?,
-            power: fields.number("power", 5.0, LayerMask::POWER)?,
+/// The mask that the field `kind` names; none without one.
+fn derived(fields: &mut Fields) -> Result<Option<DerivedMask>> {
+    let Some(kind) = fields.get("kind") else { return Ok(None) };
+    let has_point = fields.get("at").is_some();
+    Ok(Some(match kind.one_of(&DERIVED)? {
+        // What has a point is a region about it.
+        DerivedMask::Curvature { .. } if has_point => DerivedMask::Region(region(RegionKind::Curvature, fields)?),
+        DerivedMask::Depth { .. } if has_point => DerivedMask::Region(region(RegionKind::Depth, fields)?),
+        DerivedMask::Region(plain) => DerivedMask::Region(region(plain.kind, fields)?),
+        DerivedMask::Fresnel { f0, power } => DerivedMask::Fresnel {
+            f0: fields.number("f0", f0, DerivedMask::F0)?,
+            power: fields.number("power", power, DerivedMask::POWER)?,
         },
-        DerivedMaskKind::Curvature => {
-            let (scale, blur) = (
-                fields.number("scale", 4.0, FeatureScale::CURVATURE_PX)?,
-                fields.number("blur", 0.0, FeatureScale::BLUR_PX)?,
-            );
-            let (from, to) = ramp(fields, LayerMask::KAPPA)?;
-            MaskKind::Curvature { scale, blur, from, to }
+        DerivedMask::Curvature { scale, blur, .. } => {
+            let scale = fields.number("scale", scale, FeatureScale::CURVATURE_PX)?;
+            let blur = fields.number("blur", blur, FeatureScale::BLUR_PX)?;
+            let (from, to) = ramp(fields, DerivedMask::KAPPA)?;
+            DerivedMask::Curvature { scale, blur, from, to }
         }
-        DerivedMaskKind::Region(kind) => MaskKind::Region(region(kind, fields)?),
-        DerivedMaskKind::Depth => {
-            let (from, to) = ramp(fields, LayerMask::DEPTH)?;
-            MaskKind::Depth { from, to }
+        DerivedMask::Depth { .. } => {
+            let (from, to) = ramp(fields, DerivedMask::DEPTH)?;
+            DerivedMask::Depth { from, to }
         }
-    })
+    }))
 }
 
 /// Where the mask is 0 and where it is 1, either way round; a step where the two are the same.
@@ -85,26 +95,35 @@ pub fn write(mask: &LayerMask) -> Value {
     let mut out = JsonObject::default();
     match &mask.kind {
         MaskKind::File { file, .. } => out.set("file", file.as_str().into()),
-        MaskKind::Region(region) => write_region(&mut out, region),
-        MaskKind::Fresnel { f0, power } => {
-            out.set("kind", "fresnel".into());
-            out.number("f0", *f0, 0.04);
-            out.number("power", *power, 5.0);
-        }
-        MaskKind::Curvature { scale, blur, from, to } => {
-            out.set("kind", "curvature".into());
-            out.number("scale", *scale, 4.0);
-            out.number("blur", *blur, 0.0);
-            out.number("from", *from, -1.0);
-            out.number("to", *to, 1.0);
-        }
-        MaskKind::Depth { from, to } => {
-            out.set("kind", "depth".into());
-            out.number("from", *from, 0.0);
-            out.number("to", *to, 1.0);
-        }
+        MaskKind::Derived(derived) => write_derived(&mut out, *derived),
     }
     out.flag("invert", mask.invert, false);
     out.flag("disabled", mask.disabled, false);
     out.done()
+}
+
+fn write_derived(out: &mut JsonObject, mask: DerivedMask) {
+    match mask {
+        DerivedMask::Region(region) => write_region(out, &region),
+        DerivedMask::Fresnel { f0, power } => {
+            out.set("kind", "fresnel".into());
+            out.number("f0", f0, DerivedMask::PLAIN_F0);
+            out.number("power", power, DerivedMask::PLAIN_POWER);
+        }
+        DerivedMask::Curvature { scale, blur, from, to } => {
+            out.set("kind", "curvature".into());
+            out.number("scale", scale, DerivedMask::PLAIN_SCALE_PX);
+            out.number("blur", blur, 0.0);
+            write_ramp(out, from, to, DerivedMask::KAPPA);
+        }
+        DerivedMask::Depth { from, to } => {
+            out.set("kind", "depth".into());
+            write_ramp(out, from, to, DerivedMask::DEPTH);
+        }
+    }
+}
+
+fn write_ramp(out: &mut JsonObject, from: f32, to: f32, range: Range) {
+    out.number("from", from, *range.start());
+    out.number("to", to, *range.end());
 }

@@ -14,20 +14,22 @@
 //! | `tips` | a brush's tip and its grain |
 //! | `presets` | the brushes that come with the program, and those in files of their own |
 //! | `shading` | shading layers, radiance scaling |
+//! | `light` | lights, terms, scalings and features |
 //! | `masks` | layer masks |
 //! | `transforms` | where the frames of layers lie |
 //! | `selections` | selections |
 //! | `guides` | guides and assistants |
 //! | `pictures` | the files that layers name, each decoded once |
+//! | `value` | what all values are that replays write as recipes do |
 
 mod brush;
 mod guides;
 mod habits;
 mod images;
 mod layers;
+mod light;
 mod liquify;
 mod masks;
-mod names;
 mod normals;
 pub mod parts;
 mod pictures;
@@ -39,6 +41,7 @@ mod strokes;
 pub mod surface;
 mod tips;
 pub mod transforms;
+pub mod value;
 
 pub use presets::{
     Preset, PresetGroup, load_preset, preset, preset_brush, preset_names, presets, read_brush, write_preset,

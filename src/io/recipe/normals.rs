@@ -3,14 +3,15 @@
 
 use super::LayerReader;
 use super::images::{write_placement, write_source};
-use super::names::OUTSIDES;
 use super::surface::{normal_convention, write_normal_convention};
+use super::value::RecipeValue;
 use crate::Result;
 use crate::document::{DetailSource, NormalLayer, source::NormalConvention};
 use crate::json::{Fields, JsonNode, JsonObject};
 use crate::math::Size;
 use crate::raster::Outside;
 use crate::surface::NoiseRelief;
+use serde_json::Value;
 
 impl LayerReader<'_> {
     pub fn normals(&mut self, fields: &mut Fields) -> Result<NormalLayer> {
@@ -20,7 +21,7 @@ impl LayerReader<'_> {
         let source = match inner.get("noise") {
             Some(noise) => {
                 inner.finish()?;
-                DetailSource::Grain(grain(&noise)?)
+                DetailSource::Grain(NoiseRelief::from_json(&noise)?)
             }
             None => self.detail_map(&source, convention.unwrap_or_default())?,
         };
@@ -28,7 +29,7 @@ impl LayerReader<'_> {
             frame: Default::default(),
             source,
             placement: self.placement(fields)?,
-            outside: fields.one_of("outside", &OUTSIDES, Outside::Repeat)?,
+            outside: fields.one_of("outside", &Outside::ALL, Outside::Repeat)?,
             strength: fields.number("strength", 1.0, NormalLayer::STRENGTH)?,
         })
     }
@@ -40,17 +41,31 @@ impl LayerReader<'_> {
     }
 }
 
-fn grain(node: &JsonNode) -> Result<NoiseRelief> {
-    let (mut fields, base) = (node.fields()?, NoiseRelief::default());
-    let grain = NoiseRelief {
-        size_px: fields.number("size", base.size_px, NoiseRelief::SIZE_PX)?,
-        octaves: fields.get("octaves").map_or(Ok(base.octaves), |node| node.whole(NoiseRelief::OCTAVES))?,
-        roughness: fields.number("roughness", base.roughness, NoiseRelief::ROUGHNESS)?,
-        stretch: fields.number("stretch", base.stretch, NoiseRelief::STRETCH)?,
-        seed: fields.get("seed").map_or(Ok(0), |node| node.integer(0..=i64::from(u32::MAX)))? as u32,
-    };
-    fields.finish()?;
-    Ok(grain)
+impl RecipeValue for NoiseRelief {
+    fn to_json(&self) -> Value {
+        let base = NoiseRelief::default();
+        let mut out = JsonObject::default();
+        out.number("size", self.size_px, base.size_px);
+        out.number("octaves", self.octaves as f32, base.octaves as f32);
+        out.number("roughness", self.roughness, base.roughness);
+        out.number("stretch", self.stretch, base.stretch);
+        if self.seed != base.seed {
+            out.set("seed", self.seed.into());
+        }
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let (mut fields, base) = (node.fields()?, NoiseRelief::default());
+        let grain = NoiseRelief {
+            size_px: fields.number("size", base.size_px, NoiseRelief::SIZE_PX)?,
+            octaves: fields.get("octaves").map_or(Ok(base.octaves), |node| node.whole(NoiseRelief::OCTAVES))?,
+            roughness: fields.number("roughness", base.roughness, NoiseRelief::ROUGHNESS)?,
+            stretch: fields.number("stretch", base.stretch, NoiseRelief::STRETCH)?,
+            seed: fields.get("seed").map_or(Ok(0), |node| node.whole(0..=u32::MAX))?,
+        };
+        fields.finish()?;
+        Ok(grain)
+    }
 }
 
 pub fn write(out: &mut JsonObject, normals: &NormalLayer, canvas: Size) {
@@ -61,24 +76,11 @@ pub fn write(out: &mut JsonObject, normals: &NormalLayer, canvas: Size) {
         }
         DetailSource::Grain(grain) => {
             let mut source = JsonObject::default();
-            source.set("noise", write_grain(grain).done());
+            source.set("noise", grain.to_json());
             out.set("source", source.done());
         }
     }
     out.object("placement", write_placement(&normals.placement, canvas));
-    out.word("outside", &OUTSIDES, normals.outside, Outside::Repeat);
+    out.word("outside", &Outside::ALL, normals.outside, Outside::Repeat);
     out.number("strength", normals.strength, 1.0);
-}
-
-fn write_grain(grain: &NoiseRelief) -> JsonObject {
-    let base = NoiseRelief::default();
-    let mut out = JsonObject::default();
-    out.number("size", grain.size_px, base.size_px);
-    out.number("octaves", grain.octaves as f32, base.octaves as f32);
-    out.number("roughness", grain.roughness, base.roughness);
-    out.number("stretch", grain.stretch, base.stretch);
-    if grain.seed != base.seed {
-        out.set("seed", grain.seed.into());
-    }
-    out
 }

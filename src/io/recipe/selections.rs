@@ -2,6 +2,7 @@
 //! written. Floor 5. Each stands once, under an id; strokes name it. Not here: masks of layers (`masks`).
 
 use super::LayerReader;
+use super::value::RecipeValue;
 use crate::Result;
 use crate::document::{Document, NamedSelection, OutlineSource, Part, SelectionList};
 use crate::json::{Fields, JsonNode, JsonObject, object};
@@ -105,6 +106,21 @@ impl LayerReader<'_> {
     }
 }
 
+impl RecipeValue for SurfaceRegion {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        write_region(&mut out, self);
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let kind = fields.required("kind")?.one_of(&RegionKind::ALL)?;
+        let region = region(kind, &mut fields)?;
+        fields.finish()?;
+        Ok(region)
+    }
+}
+
 /// A region of the surface, its kind known already.
 pub fn region(kind: RegionKind, fields: &mut Fields) -> Result<SurfaceRegion> {
     Ok(SurfaceRegion {
@@ -179,15 +195,15 @@ pub fn with_selection(mut stroke: Value, fields: &JsonObject) -> Value {
 
 /// Nothing of version 1 says these.
 pub fn is_needed(document: &Document, list: &SelectionList) -> bool {
-    use crate::document::MaskKind;
-    let follows = |mask: &crate::document::LayerMask| matches!(mask.kind, MaskKind::Region(_));
+    use crate::document::{DerivedMask, MaskKind};
+    let follows = |mask: &crate::document::LayerMask| matches!(mask.kind, MaskKind::Derived(DerivedMask::Region(_)));
     !list.is_empty() || document.walk().iter().any(|(_, layer)| layer.mask.as_ref().is_some_and(follows))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Content, Layer, LayerMask, Live, MaskKind, StrokeList};
+    use crate::document::{Content, DerivedMask, Layer, LayerMask, Live, StrokeList};
     use crate::math::{Rect, Size, srgb::Color};
     use crate::paint::{Brush, Sample};
     use crate::surface::Operator;
@@ -209,7 +225,7 @@ mod tests {
         let strokes = [Some(other.clone()), moved, None, Some(other)].map(|own| Arc::new(plain.selecting(own)));
         let content = Content::Strokes(Live::new(StrokeList { strokes: strokes.to_vec() }));
         let region = SurfaceRegion { softness: 0.25, ..SurfaceRegion::new(RegionKind::Shine, vec2(3.0, 4.5)) };
-        let mask = Some(LayerMask::new(MaskKind::Region(region)));
+        let mask = Some(LayerMask::new(DerivedMask::Region(region)));
         let layers = vec![
             Arc::new(Layer { mask, ..Layer::new("fill", Content::Fill(Color::WHITE)) }),
             Arc::new(Layer::new("strokes", content)),

@@ -1,15 +1,16 @@
-//! Reads and writes light: shading layers and radiance scaling.
-//! Floor 5.
+//! Reads and writes shading layers and radiance scaling.
+//! Floor 5. Not here: lights, terms and scalings (`light`).
 
 use super::LayerReader;
+use super::light::{
+    self, direction, features, reference, scaling, write_features, write_reference, write_scaling, write_term,
+};
+use super::value::RecipeValue;
 use crate::Result;
 use crate::json::{Fields, JsonNode, JsonObject, object};
+use crate::math::TURNS;
 use crate::math::range::STOPS;
-use crate::math::{COORDINATE, TURNS, Vec3};
-use crate::shading::{
-    Environment, FeatureScale, Features, Light, LightKind, LitSphere, Model, Projection, RadianceScaling, Reference,
-    Scaling, Shading, Term,
-};
+use crate::shading::{Environment, Light, LitSphere, Model, Projection, RadianceScaling, Shading, Term};
 use serde_json::{Value, json};
 
 impl LayerReader<'_> {
@@ -18,7 +19,7 @@ impl LayerReader<'_> {
         let base = Shading::new(fields.one_of("model", &Model::ALL, Model::Phong)?);
         let environment = fields.get("environment").map(|node| self.environment(&node)).transpose()?;
         let lights = match fields.get("lights") {
-            Some(node) => node.list(Shading::MOST_LIGHTS)?.iter().map(light).collect::<Result<_>>()?,
+            Some(node) => node.list(Shading::MOST_LIGHTS)?.iter().map(Light::from_json).collect::<Result<_>>()?,
             None => lights_unsaid(&base, environment.as_ref()),
         };
         let (specular, shininess) = specular(fields, &base)?;
@@ -79,55 +80,6 @@ pub fn radiance_scaling(fields: &mut Fields) -> Result<RadianceScaling> {
     })
 }
 
-/// `alpha` and `gamma`, or `gamma_convex` and `gamma_concave` where the two differ.
-fn scaling(fields: &mut Fields, base: Scaling) -> Result<Scaling> {
-    let alpha = fields.number("alpha", base.alpha, Scaling::INVARIANT)?;
-    let gamma = fields.get("gamma").map(|node| node.number(Scaling::GAMMA)).transpose()?;
-    Ok(Scaling {
-        alpha,
-        gamma_convex: fields.number("gamma_convex", gamma.unwrap_or(base.gamma_convex), Scaling::GAMMA)?,
-        gamma_concave: fields.number("gamma_concave", gamma.unwrap_or(base.gamma_concave), Scaling::GAMMA)?,
-    })
-}
-
-/// `curvature_scale`, `blur` and `lambda`; or `lambda` and a list of `scales`, each with its `weight`.
-fn features(fields: &mut Fields) -> Result<Features> {
-    let lambda = fields.number("lambda", 0.0, Features::LAMBDA)?;
-    let Some(node) = fields.get("scales") else {
-        return Ok(Features { scales: vec![feature_scale(fields)?], lambda });
-    };
-    let items = node.list(Features::MOST_SCALES)?;
-    if items.is_empty() {
-        return Err(node.refused("is empty; at least one scale is needed"));
-    }
-    let one = |item: &JsonNode| {
-        let mut fields = item.fields()?;
-        let scale = feature_scale(&mut fields)?;
-        let weight = fields.number("weight", scale.weight, FeatureScale::WEIGHT)?;
-        fields.finish()?;
-        Ok(FeatureScale { weight, ..scale })
-    };
-    Ok(Features { scales: items.iter().map(one).collect::<Result<_>>()?, lambda })
-}
-
-fn feature_scale(fields: &mut Fields) -> Result<FeatureScale> {
-    let base = FeatureScale::default();
-    Ok(FeatureScale {
-        curvature_scale_px: fields.number("curvature_scale", base.curvature_scale_px, FeatureScale::CURVATURE_PX)?,
-        blur_px: fields.number("blur", base.blur_px, FeatureScale::BLUR_PX)?,
-        weight: base.weight,
-    })
-}
-
-/// `"auto"` or a luminance.
-fn reference(fields: &mut Fields) -> Result<Reference> {
-    let Some(node) = fields.get("reference") else { return Ok(Reference::Auto) };
-    if node.value().is_string() {
-        return node.one_of(&[(Reference::Auto, "auto")]);
-    }
-    Ok(Reference::Value(node.number(Reference::VALUE)?))
-}
-
 /// The object of one term, if present; `more` reads its own fields.
 fn term_and<T>(
     fields: &mut Fields,
@@ -137,20 +89,9 @@ fn term_and<T>(
 ) -> Result<Option<(Term, T)>> {
     let Some(node) = fields.get(name) else { return Ok(None) };
     let mut fields = node.fields()?;
-    let color = fields.color("color", base.color)?;
-    let weight = fields.number("weight", base.weight, Term::WEIGHT)?;
-    let scaling = match fields.get("scaling") {
-        Some(node) => {
-            let mut fields = node.fields()?;
-            let read = scaling(&mut fields, base.scaling)?;
-            fields.finish()?;
-            read
-        }
-        None => base.scaling,
-    };
-    let more = more(&mut fields)?;
+    let read = (light::term(&mut fields, base)?, more(&mut fields)?);
     fields.finish()?;
-    Ok(Some((Term { color, weight, scaling }, more)))
+    Ok(Some(read))
 }
 
 fn term(fields: &mut Fields, name: &'static str, base: Term) -> Result<Term> {
@@ -168,43 +109,11 @@ fn lights_unsaid(base: &Shading, environment: Option<&Environment>) -> Vec<Light
     if base.model == Model::Ashikhmin && environment.is_some() { Vec::new() } else { base.lights.clone() }
 }
 
-#[derive(Clone, Copy)]
-enum RecipeLightKind {
-    FarAway,
-    Here,
-}
-
-fn light(node: &JsonNode) -> Result<Light> {
-    let mut fields = node.fields()?;
-    let base = Light::default();
-    let kinds = [(RecipeLightKind::FarAway, "directional"), (RecipeLightKind::Here, "point")];
-    let kind = match fields.one_of("kind", &kinds, RecipeLightKind::FarAway)? {
-        RecipeLightKind::FarAway => match fields.get("direction") {
-            Some(node) => LightKind::Directional { direction: direction(&node)? },
-            None => base.kind,
-        },
-        RecipeLightKind::Here => LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? },
-    };
-    let color = fields.color("color", base.color)?;
-    let intensity = fields.number("intensity", base.intensity, Light::INTENSITY)?;
-    fields.finish()?;
-    Ok(Light { kind, color, intensity })
-}
-
-/// A direction of any length but 0.
-fn direction(node: &JsonNode) -> Result<Vec3> {
-    let v = node.vector(-1e6..=1e6)?;
-    if !Light::points(v) {
-        return Err(node.refused("has no length, so it points nowhere"));
-    }
-    Ok(v)
-}
-
 pub fn write(out: &mut JsonObject, shading: &Shading) {
     let base = Shading::new(shading.model);
     out.set("model", shading.model.name().into());
     if shading.lights != lights_unsaid(&base, shading.environment.as_ref()) {
-        out.set("lights", shading.lights.iter().map(write_light).collect());
+        out.set("lights", shading.lights.iter().map(Light::to_json).collect());
     }
     out.object("ambient", write_term(&shading.ambient, &base.ambient));
     out.object("diffuse", write_term(&shading.diffuse, &base.diffuse));
@@ -238,72 +147,6 @@ pub fn write_radiance_scaling(out: &mut JsonObject, scaling: &RadianceScaling) {
     }
     write_reference(out, scaling.reference);
     out.flag("keep_mean", scaling.keep_mean, base.keep_mean);
-}
-
-fn write_scaling(out: &mut JsonObject, scaling: &Scaling, base: &Scaling) {
-    out.number("alpha", scaling.alpha, base.alpha);
-    if scaling.gamma_convex == scaling.gamma_concave && base.gamma_convex == base.gamma_concave {
-        out.number("gamma", scaling.gamma_convex, base.gamma_convex);
-    } else {
-        out.set("gamma_convex", object::number(scaling.gamma_convex));
-        out.set("gamma_concave", object::number(scaling.gamma_concave));
-    }
-}
-
-fn write_features(out: &mut JsonObject, features: &Features) {
-    out.number("lambda", features.lambda, 0.0);
-    let base = FeatureScale::default();
-    let write_scale = |out: &mut JsonObject, scale: &FeatureScale| {
-        out.number("curvature_scale", scale.curvature_scale_px, base.curvature_scale_px);
-        out.number("blur", scale.blur_px, base.blur_px);
-    };
-    match &features.scales[..] {
-        // The weight of a single scale has no effect; it is written only if it is unusual.
-        [scale] if scale.weight == base.weight => write_scale(out, scale),
-        scales => {
-            let one = |scale: &FeatureScale| {
-                let mut out = JsonObject::default();
-                write_scale(&mut out, scale);
-                out.number("weight", scale.weight, base.weight);
-                out.done()
-            };
-            out.set("scales", scales.iter().map(one).collect());
-        }
-    }
-}
-
-fn write_reference(out: &mut JsonObject, reference: Reference) {
-    if let Reference::Value(value) = reference {
-        out.set("reference", object::number(value));
-    }
-}
-
-fn write_term(term: &Term, base: &Term) -> JsonObject {
-    let mut out = JsonObject::default();
-    out.color("color", term.color, base.color);
-    out.number("weight", term.weight, base.weight);
-    let mut scaling = JsonObject::default();
-    write_scaling(&mut scaling, &term.scaling, &base.scaling);
-    out.object("scaling", scaling);
-    out
-}
-
-fn write_light(light: &Light) -> Value {
-    let base = Light::default();
-    let mut out = JsonObject::default();
-    match light.kind {
-        LightKind::Directional { direction } => {
-            out.set("kind", "directional".into());
-            out.set("direction", object::vector(direction));
-        }
-        LightKind::Point { position } => {
-            out.set("kind", "point".into());
-            out.set("position", object::vector(position));
-        }
-    }
-    out.color("color", light.color, base.color);
-    out.number("intensity", light.intensity, base.intensity);
-    out.done()
 }
 
 fn write_environment(environment: &Environment) -> Value {

@@ -1,5 +1,6 @@
 //! Actions as text: one JSON object per line, so that recorded actions can be replayed without the window. Floor 6.
-//! [`ReplayValue`] writes and reads a value; `actions!`, `record!` and `names!` derive it.
+//! [`ReplayValue`] writes and reads a value; `actions!`, `record!`, `names!` and
+//! `as_in_recipes!` derive it: what documents hold reads as there.
 
 use crate::math::{Vec2, Vec3, srgb::Color, vec2, vec3};
 use crate::{Error, Result};
@@ -197,6 +198,19 @@ macro_rules! record {
     };
 }
 pub(crate) use record;
+
+/// Replays values as recipes write them.
+macro_rules! as_in_recipes {
+    ($($name:ty),+) => { $(impl $crate::session::replay::ReplayValue for $name {
+        fn written(&self) -> serde_json::Value {
+            $crate::io::recipe::value::RecipeValue::to_json(self)
+        }
+        fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
+            $crate::io::recipe::value::RecipeValue::from_value(value)
+        }
+    })+ };
+}
+pub(crate) use as_in_recipes;
 
 /// Replays an enum of plain choices by their names: `names!(Lock, [Lock::None => "none", …])`, or by its own
 /// `name` and `from_name`: `names!(BlendMode)`.

@@ -1,6 +1,7 @@
 //! Stories: what a user does, told as the lines of a replay.
 
 mod canvas;
+mod dialect;
 mod held;
 mod selecting;
 mod several;

@@ -135,9 +135,6 @@ pub struct ImageSizeDialog {
     filter: Resampling,
 }
 
-const FILTERS: [(Resampling, &str); 3] =
-    [(Resampling::Smooth, "smooth"), (Resampling::Sharp, "sharp"), (Resampling::Nearest, "pixels")];
-
 impl ImageSizeDialog {
     pub fn of(size: Size) -> Self {
         Self { sides: Sides::of(size, true), filter: Resampling::Sharp }
@@ -149,7 +146,7 @@ impl ImageSizeDialog {
         self.sides.show(ui);
         ui.horizontal(|ui| {
             ui.label("Paint is sampled");
-            self.filter = choice(ui, "How paint is sampled", self.filter, &FILTERS).unwrap_or(self.filter);
+            self.filter = choice(ui, "How paint is sampled", self.filter, &Resampling::ALL).unwrap_or(self.filter);
         });
         let Size { width, height } = self.sides.size();
         answer(ui, requests, "Resize", CanvasAction::Scale { width, height, filter: self.filter })

@@ -3,11 +3,10 @@
 
 use super::select::{softness, tolerance};
 use super::setter::LayerSetter;
-use crate::document::{Layer, MaskKind};
+use crate::document::{DerivedMask, Layer, MaskKind};
 use crate::session::Property;
 use crate::session::actions::LayerAction;
 use crate::session::actions::pictures::PicturePart;
-use crate::session::property::{DerivedMask, DerivedMaskNumbers};
 use crate::surface::region::SurfaceRegion;
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::Ui;
@@ -29,10 +28,10 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
     let current = match layer.mask.as_ref().map(|mask| &mask.kind) {
         None => MaskChoice::None,
         Some(MaskKind::File { .. }) => MaskChoice::File,
-        Some(MaskKind::Fresnel { .. }) => MaskChoice::Fresnel,
-        Some(MaskKind::Curvature { .. }) => MaskChoice::Curvature,
-        Some(MaskKind::Depth { .. }) => MaskChoice::Depth,
-        Some(MaskKind::Region(_)) => MaskChoice::Region,
+        Some(MaskKind::Derived(DerivedMask::Fresnel { .. })) => MaskChoice::Fresnel,
+        Some(MaskKind::Derived(DerivedMask::Curvature { .. })) => MaskChoice::Curvature,
+        Some(MaskKind::Derived(DerivedMask::Depth { .. })) => MaskChoice::Depth,
+        Some(MaskKind::Derived(DerivedMask::Region(_))) => MaskChoice::Region,
     };
     let all = [
         (MaskChoice::None, "none"),
@@ -45,13 +44,13 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
     let own = all.iter().copied().filter(|(choice, _)| *choice == current);
     let offered: Vec<_> = all[..4].iter().copied().chain(own.filter(|(choice, _)| is_made(*choice))).collect();
     if let Some(to) = choice_row(ui, "Made of", current, &offered) {
-        let numbers = match to {
-            MaskChoice::Fresnel => Some(DerivedMaskNumbers::Fresnel { f0: 0.04, power: 5.0 }),
-            MaskChoice::Curvature => Some(DerivedMaskNumbers::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 }),
-            MaskChoice::Depth => Some(DerivedMaskNumbers::Depth { from: 0.0, to: 1.0 }),
+        let mask = match to {
+            MaskChoice::Fresnel => Some(DerivedMask::FRESNEL),
+            MaskChoice::Curvature => Some(DerivedMask::Curvature { scale: 4.0, blur: 1.0, from: 0.0, to: 1.0 }),
+            MaskChoice::Depth => Some(DerivedMask::RAMP_OF_DEPTH),
             MaskChoice::None | MaskChoice::File | MaskChoice::Region => None,
         };
-        setter.set(Property::Mask { mask: numbers.map(DerivedMask) }, true);
+        setter.set(Property::Mask { mask }, true);
     }
     ui.horizontal_wrapped(|ui| {
         match &layer.mask {
@@ -84,8 +83,8 @@ pub fn show(ui: &mut Ui, layer: &Layer, on_mask: bool, setter: &mut LayerSetter)
         }
     });
     let Some(mask) = &layer.mask else { return };
-    if let Some(numbers) = mask_numbers(ui, &mask.kind) {
-        setter.take(Some(numbers.map(|numbers| Property::Mask { mask: Some(DerivedMask(numbers)) })));
+    if let Some(numbers) = mask.derived().and_then(|derived| mask_numbers(ui, derived)) {
+        setter.take(Some(numbers.map(|derived| Property::Mask { mask: Some(derived) })));
     }
     if let Some(on) = check(ui, "Invert mask", "Paint where the mask is dark", mask.invert) {
         setter.set(Property::MaskInverted { on }, true);
@@ -100,36 +99,35 @@ fn is_made(choice: MaskChoice) -> bool {
     matches!(choice, MaskChoice::File | MaskChoice::Region)
 }
 
-fn mask_numbers(ui: &mut Ui, kind: &MaskKind) -> Option<ValueChange<DerivedMaskNumbers>> {
-    match *kind {
-        MaskKind::File { .. } => None,
-        MaskKind::Region(region) => {
+fn mask_numbers(ui: &mut Ui, mask: DerivedMask) -> Option<ValueChange<DerivedMask>> {
+    match mask {
+        DerivedMask::Region(region) => {
             let a = tolerance(region).row(ui, region.tolerance);
             let b = softness().row(ui, region.softness);
-            a.map(|c| c.map(|tolerance| DerivedMaskNumbers::Region(SurfaceRegion { tolerance, ..region })))
-                .or(b.map(|c| c.map(|softness| DerivedMaskNumbers::Region(SurfaceRegion { softness, ..region }))))
+            a.map(|c| c.map(|tolerance| DerivedMask::Region(SurfaceRegion { tolerance, ..region })))
+                .or(b.map(|c| c.map(|softness| DerivedMask::Region(SurfaceRegion { softness, ..region }))))
         }
-        MaskKind::Fresnel { f0, power } => {
+        DerivedMask::Fresnel { f0, power } => {
             let a = NumberField::new("Facing", 0.0..=1.0, "Coverage where the surface faces you").row(ui, f0);
             let b = NumberField::new("Power", 0.2..=10.0, "How closely it follows the rim").row(ui, power);
-            a.map(|c| c.map(|f0| DerivedMaskNumbers::Fresnel { f0, power }))
-                .or(b.map(|c| c.map(|power| DerivedMaskNumbers::Fresnel { f0, power })))
+            a.map(|c| c.map(|f0| DerivedMask::Fresnel { f0, power }))
+                .or(b.map(|c| c.map(|power| DerivedMask::Fresnel { f0, power })))
         }
-        MaskKind::Curvature { scale, blur, from, to } => {
+        DerivedMask::Curvature { scale, blur, from, to } => {
             let a = NumberField::new("Scale", 0.0..=40.0, "Features this wide count in full, px").row(ui, scale);
             let b = NumberField::new("Blur", 0.0..=20.0, "Blur of the normals, px").row(ui, blur);
             let c = NumberField::new("From", -1.0..=1.0, "Curvature at which nothing is painted").row(ui, from);
             let d = NumberField::new("To", -1.0..=1.0, "Curvature at which everything is painted").row(ui, to);
-            a.map(|v| v.map(|scale| DerivedMaskNumbers::Curvature { scale, blur, from, to }))
-                .or(b.map(|v| v.map(|blur| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
-                .or(c.map(|v| v.map(|from| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
-                .or(d.map(|v| v.map(|to| DerivedMaskNumbers::Curvature { scale, blur, from, to })))
+            a.map(|v| v.map(|scale| DerivedMask::Curvature { scale, blur, from, to }))
+                .or(b.map(|v| v.map(|blur| DerivedMask::Curvature { scale, blur, from, to })))
+                .or(c.map(|v| v.map(|from| DerivedMask::Curvature { scale, blur, from, to })))
+                .or(d.map(|v| v.map(|to| DerivedMask::Curvature { scale, blur, from, to })))
         }
-        MaskKind::Depth { from, to } => {
+        DerivedMask::Depth { from, to } => {
             let a = NumberField::new("From", 0.0..=1.0, "Depth at which nothing is painted").row(ui, from);
             let b = NumberField::new("To", 0.0..=1.0, "Depth at which everything is painted").row(ui, to);
-            a.map(|c| c.map(|from| DerivedMaskNumbers::Depth { from, to }))
-                .or(b.map(|c| c.map(|to| DerivedMaskNumbers::Depth { from, to })))
+            a.map(|c| c.map(|from| DerivedMask::Depth { from, to }))
+                .or(b.map(|c| c.map(|to| DerivedMask::Depth { from, to })))
         }
     }
 }

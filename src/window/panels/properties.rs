@@ -80,8 +80,6 @@ fn common(ui: &mut Ui, layer: &Layer, has_surface: bool, on_mask: bool, setter: 
     mask::show(ui, layer, on_mask, setter);
 }
 
-const FILTERS: [(ImageFilter, &str); 2] = [(ImageFilter::Antialias, "antialias"), (ImageFilter::Bilinear, "bilinear")];
-
 fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
     ui.horizontal_wrapped(|ui| {
         ui.weak(format!("{} · {}", image.source.file, image.source.picture.size));
@@ -89,12 +87,10 @@ fn image(ui: &mut Ui, image: &PlacedImage, setter: &mut LayerSetter) {
     });
     operator(ui, image.bend.operator, setter);
     placement(ui, image.placement, setter);
-    const OUTSIDE: [(Outside, &str); 4] =
-        [(Outside::Mirror, "mirror"), (Outside::Repeat, "repeat"), (Outside::Clamp, "clamp"), (Outside::None, "none")];
-    if let Some(outside) = choice_row(ui, "Outside", image.outside, &OUTSIDE) {
+    if let Some(outside) = choice_row(ui, "Outside", image.outside, &Outside::ALL) {
         setter.set(Property::Beyond { outside }, true);
     }
-    if let Some(filter) = choice_row(ui, "Filter", image.filter, &FILTERS) {
+    if let Some(filter) = choice_row(ui, "Filter", image.filter, &ImageFilter::ALL) {
         setter.set(Property::Filtered { filter }, true);
     }
     title(ui, "Anchors");
@@ -230,7 +226,7 @@ fn gradient(ui: &mut Ui, gradient: &Gradient, setter: &mut LayerSetter) {
             setter.set(Property::Ends { from: gradient.to, to: gradient.from }, true);
         }
     });
-    if let Some(filter) = choice_row(ui, "Filter", gradient.filter, &FILTERS) {
+    if let Some(filter) = choice_row(ui, "Filter", gradient.filter, &ImageFilter::ALL) {
         setter.set(Property::Filtered { filter }, true);
     }
 }

@@ -44,7 +44,7 @@ pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let transforms = chosen.iter().filter_map(|id| tab.document().layer(*id)?.transform.as_ref());
     if let Some(transform) = transforms.last() {
         ui.label("Pixels");
-        if let Some(filter) = choice(ui, "How pixels are sampled", transform.filter, &FILTERS) {
+        if let Some(filter) = choice(ui, "How pixels are sampled", transform.filter, &Resampling::ALL) {
             let to = Property::Sampled { filter };
             requests.act(Action::Layer(LayerAction::Set { layer: session.layer_paths(), to, done: true }));
         }
@@ -149,6 +149,3 @@ fn numbers(ui: &mut Ui, was: FrameNumbers) -> Option<EditedNumbers> {
     changed |= number(ui, "Skew", &mut to.skew, FrameNumbers::SKEW, "°");
     (moved || changed).then_some(EditedNumbers { to, keeps_pivot: changed, done })
 }
-
-const FILTERS: [(Resampling, &str); 3] =
-    [(Resampling::Smooth, "smooth"), (Resampling::Sharp, "sharp"), (Resampling::Nearest, "nearest")];

@@ -9,14 +9,15 @@ use crate::document::transform::apply::{in_place, placed};
 use crate::document::transform::on_canvas;
 use crate::document::warp::carried_liquify;
 use crate::document::{
-    Content, DetailSource, Group, Layer, LayerId, LayerMap, LayerMask, LayerTransform, Live, MaskKind, NormalLayer,
-    PixelLayer, StrokeList, TransformShape,
+    Content, DerivedMask, DetailSource, Group, Layer, LayerId, LayerMap, LayerMask, LayerTransform, Live, MaskKind,
+    NormalLayer, PixelLayer, StrokeList, TransformShape,
 };
 use crate::math::{Mat2, PlaneMap, Size, Vec2, vec2, vec3};
 use crate::paint::{Gradient, PlacedImage, Stroke};
 use crate::raster::warp::{warped, warped_plane_onto};
 use crate::raster::{BlendMode, TileAt};
 use crate::shading::{LightKind, Shading};
+use crate::surface::region::SurfaceRegion;
 use std::sync::Arc;
 
 /// Carries layers.
@@ -111,10 +112,8 @@ impl Carrier<'_> {
                 MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) }
             }
             // Regions lie on the canvas.
-            MaskKind::Region(region) => {
-                let mut region = *region;
-                region.at = self.change.point(region.at);
-                MaskKind::Region(region)
+            MaskKind::Derived(DerivedMask::Region(region)) => {
+                DerivedMask::Region(SurfaceRegion { at: self.change.point(region.at), ..*region }).into()
             }
             same => same.clone(),
         };

@@ -9,7 +9,8 @@ use crate::document::selections::selecting;
 use crate::document::transform::{FrameBox, transform_of};
 use crate::document::warp::carried_liquify;
 use crate::document::{
-    Content, Document, Group, Layer, LayerMap, LayerTransform, MaskKind, NamedSelection, SurfaceSource, TransformShape,
+    Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerTransform, MaskKind, NamedSelection,
+    SurfaceSource, TransformShape,
 };
 use crate::math::{Affine2, PlaneMap, Vec2, vec2};
 use crate::paint::Selection;
@@ -163,9 +164,10 @@ fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<V
 /// A layer whose mask is a region of the surface about a point, with that point taken along.
 fn masked(layer: &Arc<Layer>, map: &PlaneMap) -> Arc<Layer> {
     let Some(mask) = &layer.mask else { return layer.clone() };
-    let MaskKind::Region(region) = mask.kind else { return layer.clone() };
+    let Some(DerivedMask::Region(region)) = mask.derived() else { return layer.clone() };
     let at = map.to_canvas(region.at).unwrap_or(region.at);
-    let mask = crate::document::LayerMask { kind: MaskKind::Region(SurfaceRegion { at, ..region }), ..mask.clone() };
+    let kind = DerivedMask::Region(SurfaceRegion { at, ..region }).into();
+    let mask = LayerMask { kind, ..mask.clone() };
     Arc::new(Layer { mask: Some(mask), ..Layer::clone(layer) })
 }
 

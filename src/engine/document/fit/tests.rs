@@ -53,7 +53,7 @@ fn what_leaves_a_range_is_refused_with_the_layers_name() {
     says(gradient(vec![]), "at least one");
     let mask = MaskKind::File { file: String::new(), coverage: Arc::new(Plane::filled(Size::new(2, 2), 1)) };
     says(Layer { mask: Some(LayerMask::new(mask)), ..fill() }, "the mask has 2 × 2 pixels, the canvas 64 × 64");
-    let step = LayerMask::new(MaskKind::Depth { from: 0.5, to: 0.5 });
+    let step = LayerMask::new(DerivedMask::Depth { from: 0.5, to: 0.5 });
     assert!(of(vec![Layer { mask: Some(step), ..fill() }]).fits(None).is_ok(), "a mask may be a step");
 }
 #[test]

@@ -1,7 +1,7 @@
 //! Layers' arithmetic on tiny documents, against values computed by hand.
 
 use super::*;
-use crate::document::{Content, Group, LayerMask, MaskKind, PixelLayer};
+use crate::document::{Content, DerivedMask, Group, LayerMask, MaskKind, PixelLayer};
 use crate::math::{Size, Vec3, srgb::Color, vec3};
 use crate::raster::{BlendMode, Plane};
 use crate::surface::{Maps, Surface};
@@ -43,7 +43,7 @@ fn half_a_surface() -> Arc<Surface> {
     let depth = Plane::from_fn(SIZE, |x, _| x as f32 / 100.0);
     Arc::new(Surface::new(Maps { normals, depth, coverage }).unwrap())
 }
-fn mask(kind: MaskKind) -> Option<LayerMask> {
+fn mask(kind: impl Into<MaskKind>) -> Option<LayerMask> {
     Some(LayerMask::new(kind))
 }
 fn left_mask() -> Option<LayerMask> {
@@ -97,13 +97,13 @@ fn masks_derived_from_the_surface_follow_its_values() {
     };
     let alpha = |kind, x| flatten(&masked(kind), &Progress::default()).unwrap().pixel(x, 0)[3];
     // f0 + (1 − f0) · 0.2⁵ = 0.1 + 0.9 · 0.00032, and with power 1: 0.1 + 0.9 · 0.2 = 0.28.
-    assert_eq!(alpha(MaskKind::Fresnel { f0: 0.1, power: 5.0 }, 10), 26);
-    assert_eq!(alpha(MaskKind::Fresnel { f0: 0.1, power: 1.0 }, 10), 71);
+    assert_eq!(alpha(DerivedMask::Fresnel { f0: 0.1, power: 5.0 }, 10), 26);
+    assert_eq!(alpha(DerivedMask::Fresnel { f0: 0.1, power: 1.0 }, 10), 71);
     // z = 0.25 is half way from 0 to 0.5, three quarters from 1 to 0.
-    assert_eq!(alpha(MaskKind::Depth { from: 0.0, to: 0.5 }, 25), 128);
-    assert_eq!(alpha(MaskKind::Depth { from: 1.0, to: 0.0 }, 25), 191);
+    assert_eq!(alpha(DerivedMask::Depth { from: 0.0, to: 0.5 }, 25), 128);
+    assert_eq!(alpha(DerivedMask::Depth { from: 1.0, to: 0.0 }, 25), 191);
     // A plane is flat: κ = 0.
-    assert_eq!(alpha(MaskKind::Curvature { scale: 4.0, blur: 0.0, from: -1.0, to: 1.0 }, 10), 128);
+    assert_eq!(alpha(DerivedMask::Curvature { scale: 4.0, blur: 0.0, from: -1.0, to: 1.0 }, 10), 128);
 }
 #[test]
 fn a_layer_clipped_to_the_surface_follows_its_coverage() {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::document::{LayerId, Progress, diff, flatten};
+use crate::document::{DerivedMask, LayerId, Progress, diff, flatten};
 use crate::math::{Rect, Size, Vec3, srgb::Color, vec2};
 use crate::paint::{Brush, Sample};
 use crate::surface::region::{RegionKind, SurfaceRegion};
@@ -96,7 +96,7 @@ fn a_mask_made_of_a_region_looks_like_the_selection() {
     let region = SurfaceRegion::new(RegionKind::Direction, vec2(20.5, 50.5));
     let document = document.with_selection(Some(Selection::of_region(region, &document.scene())));
     let mask = document.selection_as_mask().unwrap();
-    assert!(matches!(mask.kind, MaskKind::Region(_)));
+    assert!(matches!(mask.kind, MaskKind::Derived(DerivedMask::Region(_))));
     let fill = Layer { mask: Some(mask), ..Layer::new("fill", Content::Fill(Color::BLACK)) };
     assert!(document.mask_coverage(&fill).is_same(document.selected().unwrap()));
     let document = Document { layers: vec![Arc::new(fill)], ..document };

@@ -97,7 +97,7 @@ fn what_openraster_cannot_blend_is_composed() {
     let exclusion = Layer { blend: BlendMode::Exclusion, ..fill("e") };
     assert_eq!(planned(vec![fill("a"), exclusion.clone()]), "-e~[a e] e*2");
     assert_eq!(planned(vec![fill("a"), Layer { visible: false, ..exclusion }]), "a -e");
-    let mask = LayerMask::new(MaskKind::Fresnel { f0: 0.1, power: 1.0 });
+    let mask = LayerMask::new(crate::document::DerivedMask::Fresnel { f0: 0.1, power: 1.0 });
     let masked = Layer { mask: Some(mask), ..group("g", false, vec![fill("b")]) };
     assert_eq!(planned(vec![fill("a"), masked]), "a g[-g~[b] g*1]");
 }

@@ -1,7 +1,7 @@
 //! Whatever a document may hold comes back live: the figures that only the reader used to know.
 
 use super::*;
-use crate::document::{Content, Group, Layer, LayerMask, Live, StrokeList};
+use crate::document::{Content, DerivedMask, Group, Layer, LayerMask, Live, StrokeList};
 use crate::json;
 use crate::math::vec2;
 use crate::paint::{Brush, Sample, Stroke};
@@ -66,9 +66,9 @@ fn a_stroke_of_nine_hundred_thousand_readings_comes_back() {
 #[test]
 fn a_mask_that_is_a_step_comes_back() {
     let kinds = [
-        MaskKind::Depth { from: 0.5, to: 0.5 },
-        MaskKind::Curvature { scale: 4.0, blur: 0.0, from: -0.25, to: -0.25 },
-        MaskKind::Depth { from: 1.0, to: 0.0 },
+        DerivedMask::Depth { from: 0.5, to: 0.5 },
+        DerivedMask::Curvature { scale: 4.0, blur: 0.0, from: -0.25, to: -0.25 },
+        DerivedMask::Depth { from: 1.0, to: 0.0 },
     ];
     let masked = |kind| Layer { mask: Some(LayerMask::new(kind)), ..fill() };
     comes_back(&of(kinds.into_iter().map(masked).collect()));

@@ -7,28 +7,16 @@ use crate::io::Budget;
 use crate::math::{Rect, Size};
 use crate::raster::{CoverageGrid, Resampling};
 use crate::session::open_document::Edit;
-use crate::session::replay::{ReplayValue, actions, names, record};
+use crate::session::replay::{actions, names, record};
 use crate::session::{OpenDocument, Session};
 use crate::tools::crop::CropAspect;
-use serde_json::Value;
 use std::path::Path;
 
 names!(CropAspect);
 record!(Rect { x0, y0, x1, y1 });
-
-/// Choices by the names of their tables.
-macro_rules! of_table {
-    ($($name:ty),+) => { $(impl ReplayValue for $name {
-        fn written(&self) -> Value {
-            Self::ALL.iter().find(|row| row.0 == *self).map_or(Value::Null, |row| row.1.into())
-        }
-        fn read(value: &Value) -> Result<Self, String> {
-            let found = Self::ALL.iter().find(|row| value.as_str() == Some(row.1));
-            found.map(|row| row.0).ok_or_else(|| format!("is {value}, which is not known here"))
-        }
-    })+ };
-}
-of_table!(CanvasAnchor, CanvasMirror, Resampling);
+names!(CanvasAnchor);
+names!(CanvasMirror);
+names!(Resampling);
 
 actions! {
     /// All but the frame are steps that can be undone. Paint beyond the canvas is kept.

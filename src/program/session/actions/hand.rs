@@ -6,13 +6,13 @@ use crate::math::range::held;
 use crate::math::{TURNS, UNIT, Vec2, srgb::Color};
 use crate::paint::{Brush, BrushMode, Fill, LiquifySettings, LiquifyTool, Property};
 use crate::session::Session;
-use crate::session::replay::{ReplayValue, actions, field, names, record};
+use crate::session::replay::{ReplayValue, actions, as_in_recipes, names, record};
 use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
 use crate::tools::transform::Carried;
 use crate::tools::{Symmetry, ToolKind};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 names!(ToolKind);
 names!(PaintLimit);
@@ -21,26 +21,7 @@ record!(LiquifySettings { tool, size, strength, one_object, foreshortened });
 names!(Carried);
 record!(Fill { tolerance, gap_px, grow_px, antialias, layer_alone, bounded });
 
-/// A kind with its numbers, as in recipes.
-impl ReplayValue for BrushMode {
-    fn written(&self) -> Value {
-        match *self {
-            BrushMode::Paint => json!({ "kind": "paint" }),
-            BrushMode::Smudge { length } => json!({ "kind": "smudge", "length": length.written() }),
-            BrushMode::Blur { width } => json!({ "kind": "blur", "width": width.written() }),
-            BrushMode::Clone { aligned, picture } => json!({ "kind": "clone", "aligned": aligned, "picture": picture }),
-        }
-    }
-    fn read(value: &Value) -> Result<Self, String> {
-        Ok(match value.get("kind").and_then(Value::as_str) {
-            Some("paint") => BrushMode::Paint,
-            Some("smudge") => BrushMode::Smudge { length: field(value, "length")? },
-            Some("blur") => BrushMode::Blur { width: field(value, "width")? },
-            Some("clone") => BrushMode::Clone { aligned: field(value, "aligned")?, picture: field(value, "picture")? },
-            _ => return Err("must be a mark of a known kind".into()),
-        })
-    }
-}
+as_in_recipes!(BrushMode);
 
 /// A word, or how many times round.
 impl ReplayValue for Symmetry {

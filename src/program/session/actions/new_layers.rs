@@ -31,8 +31,6 @@ names!(NewLayer, [
     NewLayer::RadianceScaling => "radiance scaling", NewLayer::Normals => "normals", NewLayer::Group => "group",
 ]);
 
-impl NewLayer {}
-
 /// A new layer that covers the canvas covers what is selected, by a mask.
 pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {
     let covers =

@@ -7,14 +7,14 @@ use crate::math::{COORDINATE, Vec2, vec2};
 use crate::paint::Selection;
 use crate::raster::CoverageGrid;
 use crate::raster::coverage::{Combine, edges};
-use crate::session::replay::{actions, names, record};
+use crate::session::replay::{actions, as_in_recipes, names, record};
 use crate::session::{LayerPath, Session};
 use crate::surface::region::{RegionKind, SurfaceRegion};
 use crate::tools::select::{self, SelectSettings};
 
 names!(Combine);
 names!(RegionKind);
-record!(SurfaceRegion { kind, at, tolerance, softness, contiguous });
+as_in_recipes!(SurfaceRegion);
 record!(SelectSettings { combine, wand, joined, region });
 
 /// How the edge of a selection is changed.

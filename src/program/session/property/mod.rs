@@ -3,11 +3,11 @@
 
 mod values;
 
-pub use values::{DerivedMask, DerivedMaskNumbers};
-
 use super::actions::pictures::PicturePart;
 use super::replay::actions;
-use crate::document::{Content, DetailSource, Layer, LayerLabel, LayerLock, LayerTransform, Live, NormalLayer};
+use crate::document::{
+    Content, DerivedMask, DetailSource, Layer, LayerLabel, LayerLock, LayerTransform, Live, NormalLayer,
+};
 use crate::math::range::{STOPS, held};
 use crate::math::{TURNS, Vec2, Vec3, srgb::Color};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};

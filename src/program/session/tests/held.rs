@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 
 /// One layer of every kind on a dome, by their places.
-fn everything() -> Document {
+pub(super) fn everything() -> Document {
     let size = Size::new(48, 40);
     let normals =
         Plane::from_fn(size, |x, y| vec2(x as f32 / 48.0 - 0.5, 0.5 - y as f32 / 40.0).extend(0.8).normalize());
@@ -65,7 +65,7 @@ const NUMBERS: [f32; 22] = [
 ];
 /// Edits with `#` for a number and `%` for a whole one; the property of a layer, or an action.
 const PROPERTIES: [&str; 46] = [
-    r#"{"do":"mask","mask":{"region":{"kind":"shine","at":[5,#],"tolerance":#,"softness":#,"contiguous":false}}}"#,
+    r#"{"do":"mask","mask":{"kind":"shine","at":[5,#],"tolerance":#,"softness":#,"contiguous":false}}"#,
     r#"{"do":"opacity","to":#}"#,
     r#"{"do":"linear","on":true}"#,
     r#"{"do":"clip","on":true}"#,
@@ -81,7 +81,7 @@ const PROPERTIES: [&str; 46] = [
     r#"{"do":"operator","operator":{"kind":"reflection","alpha":0.5,"detail":#}}"#,
     r#"{"do":"anchors","anchors":[{"at":[#,2],"source":[3,#]},{"at":[5,6],"source":[7,8]}]}"#,
     r#"{"do":"anchors","anchors":[]}"#,
-    r#"{"do":"pieces","pieces":[{"at":[#,2],"moved":[3,#],"scale":2,"rotation":#}]}"#,
+    r#"{"do":"pieces","pieces":[{"at":[#,2],"move":[3,#],"scale":2,"rotation":#}]}"#,
     r#"{"do":"power","to":#}"#,
     r#"{"do":"transform","transform":{"matrix":[0.75,0.5,-0.25,0.5,12.5,-3],"filter":"sharp"}}"#,
     r#"{"do":"transform","transform":{"quad":[[0.25,1],[40,3],[38,29.5],[2,30.125]]}}"#,
@@ -92,23 +92,23 @@ const PROPERTIES: [&str; 46] = [
     r#"{"do":"filter","filter":"bilinear"}"#,
     r#"{"do":"adjust","adjust":{"blur":0,"exposure":#,"hue":#,"saturation":1,"brightness":#,"contrast":1}}"#,
     r#"{"do":"adjust","adjust":{"blur":#,"exposure":0,"hue":0,"saturation":#,"brightness":1,"contrast":#}}"#,
-    r##"{"do":"stops","stops":[{"t":#,"color":"#102030"},{"t":#,"color":"#ffffff80"}]}"##,
+    r##"{"do":"stops","stops":[[#,"#102030"],[#,"#ffffff80"]]}"##,
     r#"{"do":"ends","from":[#,1],"to":[2,#]}"#,
-    r#"{"do":"mask","mask":{"kind":"fresnel","numbers":[#,#]}}"#,
-    r#"{"do":"mask","mask":{"kind":"curvature","numbers":[4,#,0.25,#]}}"#,
-    r#"{"do":"mask","mask":{"kind":"curvature","numbers":[#,0,#,0.5]}}"#,
-    r#"{"do":"mask","mask":{"kind":"depth","numbers":[#,#]}}"#,
+    r#"{"do":"mask","mask":{"kind":"fresnel","f0":#,"power":#}}"#,
+    r#"{"do":"mask","mask":{"kind":"curvature","scale":4,"blur":#,"from":0.25,"to":#}}"#,
+    r#"{"do":"mask","mask":{"kind":"curvature","scale":#,"blur":0,"from":#,"to":0.5}}"#,
+    r#"{"do":"mask","mask":{"kind":"depth","from":#,"to":#}}"#,
     r#"{"do":"mask inverted","on":true}"#,
     r#"{"do":"environment","projection":"angular","rotation":#,"exposure":#}"#,
     r#"{"do":"occlusion","to":#}"#,
-    r#"{"do":"grain","grain":{"size_px":#,"octaves":%,"roughness":#,"stretch":#,"seed":%}}"#,
-    r##"{"do":"lights","lights":[{"kind":{"direction":[#,0,#]},"color":"#ffffff","intensity":1}]}"##,
-    r##"{"do":"lights","lights":[{"kind":{"position":[#,0,#]},"color":"#ffffff","intensity":#}]}"##,
+    r#"{"do":"grain","grain":{"size":#,"octaves":%,"roughness":#,"stretch":#,"seed":%}}"#,
+    r##"{"do":"lights","lights":[{"kind":"directional","direction":[#,0,#],"color":"#ffffff","intensity":1}]}"##,
+    r##"{"do":"lights","lights":[{"kind":"point","position":[#,0,#],"color":"#ffffff","intensity":#}]}"##,
     r##"{"do":"diffuse","term":{"color":"#c08060","weight":#,
         "scaling":{"alpha":#,"gamma_convex":#,"gamma_concave":1}}}"##,
     r#"{"do":"shininess","to":#}"#,
     r#"{"do":"anisotropy","nu":#,"nv":#}"#,
-    r#"{"do":"features","features":{"scales":[{"curvature_scale_px":#,"blur_px":#,"weight":#}],"lambda":#}}"#,
+    r#"{"do":"features","features":{"scales":[{"curvature_scale":#,"blur":#,"weight":#}],"lambda":#}}"#,
     r#"{"do":"scaling","scaling":{"alpha":#,"gamma_convex":#,"gamma_concave":#}}"#,
     r#"{"do":"reference","reference":#}"#,
     r#"{"do":"strength","to":#}"#,
@@ -272,7 +272,7 @@ fn an_edit_that_no_file_could_hold_is_refused_in_words() {
         "“image”: the scale is 0; it must be between 0.0001 and 10000. Nothing was changed."
     );
     assert!(
-        said(&set(0, r#"{"do":"mask","mask":{"kind":"depth","numbers":[0.5,2]}}"#)).contains("must be between 0 and 1")
+        said(&set(0, r#"{"do":"mask","mask":{"kind":"depth","from":0.5,"to":2}}"#)).contains("must be between 0 and 1")
     );
     let long = format!(r#"{{"do":"name","name":"{}"}}"#, "x".repeat(1_001));
     assert!(said(&set(0, &long)).contains("letters of the name would be 1001; there may be 1000"));

@@ -84,7 +84,7 @@ fn masks_and_normal_layers_leave_coverage_to_act_once() {
     let placement = Placement::covering(SIZE);
     let normals = NormalLayer { source, placement, outside: Outside::Repeat, strength: 1.0, frame: Default::default() };
     let normals = Layer::new("cloth", Content::Normals(normals));
-    let masked = with(fill("#ffffff"), |l| l.mask = mask(MaskKind::Depth { from: 0.0, to: 1.0 }));
+    let masked = with(fill("#ffffff"), |l| l.mask = mask(DerivedMask::Depth { from: 0.0, to: 1.0 }));
     let p = on_soft(vec![normals, masked.clone(), with(masked, |l| l.mask = left_mask())]);
     assert_shared(&p, [255; 4], [0; 4], "masked");
 }
@@ -134,8 +134,8 @@ fn live_layers_are_rendered_for_both_sides_alike() {
     let layers = [
         Layer::new("clay", Content::Shading(Live::new(Shading::new(Model::Phong)))),
         Layer::new("g", Content::Gradient(Live::new(gradient))),
-        with(fill("#ff0000"), |l| l.mask = mask(MaskKind::Fresnel { f0: 0.0, power: 1.0 })),
-        with(fill("#ff0000"), |l| l.mask = mask(MaskKind::Depth { from: 0.0, to: 1.0 })),
+        with(fill("#ff0000"), |l| l.mask = mask(DerivedMask::Fresnel { f0: 0.0, power: 1.0 })),
+        with(fill("#ff0000"), |l| l.mask = mask(DerivedMask::Depth { from: 0.0, to: 1.0 })),
         stroke(Operator::None),
         stroke(Operator::Normal { alpha: 0.2, beta: 1.0, detail: 0.0 }),
     ];

@@ -1,0 +1,220 @@
+//! Reads and writes what is lit and by what: lights, terms of materials, scalings and the features that they follow.
+//! Floor 5. Not here: the layers that have them (`shading`).
+
+use super::value::RecipeValue;
+use crate::Result;
+use crate::json::{Fields, JsonNode, JsonObject, object};
+use crate::math::{COORDINATE, Vec3, srgb::Color};
+use crate::shading::{FeatureScale, Features, Light, LightKind, Reference, Scaling, Term};
+use serde_json::Value;
+
+/// A term that tells nothing.
+const PLAIN: Term = Term::plain(Color::WHITE, 1.0);
+
+#[derive(Clone, Copy)]
+enum RecipeLightKind {
+    FarAway,
+    Here,
+}
+
+impl RecipeValue for Light {
+    fn to_json(&self) -> Value {
+        let base = Light::default();
+        let mut out = JsonObject::default();
+        match self.kind {
+            LightKind::Directional { direction } => {
+                out.set("kind", "directional".into());
+                out.set("direction", object::vector(direction));
+            }
+            LightKind::Point { position } => {
+                out.set("kind", "point".into());
+                out.set("position", object::vector(position));
+            }
+        }
+        out.color("color", self.color, base.color);
+        out.number("intensity", self.intensity, base.intensity);
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        let mut fields = node.fields()?;
+        let base = Light::default();
+        let kinds = [(RecipeLightKind::FarAway, "directional"), (RecipeLightKind::Here, "point")];
+        let kind = match fields.one_of("kind", &kinds, RecipeLightKind::FarAway)? {
+            RecipeLightKind::FarAway => match fields.get("direction") {
+                Some(node) => LightKind::Directional { direction: direction(&node)? },
+                None => base.kind,
+            },
+            RecipeLightKind::Here => LightKind::Point { position: fields.required("position")?.vector(COORDINATE)? },
+        };
+        let color = fields.color("color", base.color)?;
+        let intensity = fields.number("intensity", base.intensity, Light::INTENSITY)?;
+        fields.finish()?;
+        Ok(Light { kind, color, intensity })
+    }
+}
+
+impl RecipeValue for Scaling {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        write_scaling(&mut out, self, &Scaling::NONE);
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        of_object(node, |fields| scaling(fields, Scaling::NONE))
+    }
+}
+
+impl RecipeValue for Term {
+    fn to_json(&self) -> Value {
+        write_term(self, &PLAIN).done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        of_object(node, |fields| term(fields, PLAIN))
+    }
+}
+
+impl RecipeValue for Features {
+    fn to_json(&self) -> Value {
+        let mut out = JsonObject::default();
+        write_features(&mut out, self);
+        out.done()
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        of_object(node, features)
+    }
+}
+
+/// Y*: a luminance, or the largest there is.
+impl RecipeValue for Reference {
+    fn to_json(&self) -> Value {
+        match self {
+            Reference::Auto => "auto".into(),
+            Reference::Value(value) => object::number(*value),
+        }
+    }
+    fn from_json(node: &JsonNode) -> Result<Self> {
+        if node.value().is_string() {
+            return node.one_of(&[(Reference::Auto, "auto")]);
+        }
+        Ok(Reference::Value(node.number(Reference::VALUE)?))
+    }
+}
+
+/// What an object says, and nothing else.
+fn of_object<T>(node: &JsonNode, read: impl FnOnce(&mut Fields) -> Result<T>) -> Result<T> {
+    let mut fields = node.fields()?;
+    let value = read(&mut fields)?;
+    fields.finish()?;
+    Ok(value)
+}
+
+/// `alpha` and `gamma`, or `gamma_convex` and `gamma_concave` where the two differ.
+pub fn scaling(fields: &mut Fields, base: Scaling) -> Result<Scaling> {
+    let alpha = fields.number("alpha", base.alpha, Scaling::INVARIANT)?;
+    let gamma = fields.get("gamma").map(|node| node.number(Scaling::GAMMA)).transpose()?;
+    Ok(Scaling {
+        alpha,
+        gamma_convex: fields.number("gamma_convex", gamma.unwrap_or(base.gamma_convex), Scaling::GAMMA)?,
+        gamma_concave: fields.number("gamma_concave", gamma.unwrap_or(base.gamma_concave), Scaling::GAMMA)?,
+    })
+}
+
+/// `curvature_scale`, `blur` and `lambda`; or `lambda` and a list of `scales`, each with its `weight`.
+pub fn features(fields: &mut Fields) -> Result<Features> {
+    let lambda = fields.number("lambda", 0.0, Features::LAMBDA)?;
+    let Some(node) = fields.get("scales") else {
+        return Ok(Features { scales: vec![feature_scale(fields)?], lambda });
+    };
+    let items = node.list(Features::MOST_SCALES)?;
+    if items.is_empty() {
+        return Err(node.refused("is empty; at least one scale is needed"));
+    }
+    let one = |item: &JsonNode| {
+        let mut fields = item.fields()?;
+        let scale = feature_scale(&mut fields)?;
+        let weight = fields.number("weight", scale.weight, FeatureScale::WEIGHT)?;
+        fields.finish()?;
+        Ok(FeatureScale { weight, ..scale })
+    };
+    Ok(Features { scales: items.iter().map(one).collect::<Result<_>>()?, lambda })
+}
+
+fn feature_scale(fields: &mut Fields) -> Result<FeatureScale> {
+    let base = FeatureScale::default();
+    Ok(FeatureScale {
+        curvature_scale_px: fields.number("curvature_scale", base.curvature_scale_px, FeatureScale::CURVATURE_PX)?,
+        blur_px: fields.number("blur", base.blur_px, FeatureScale::BLUR_PX)?,
+        weight: base.weight,
+    })
+}
+
+/// `"auto"` or a luminance.
+pub fn reference(fields: &mut Fields) -> Result<Reference> {
+    fields.get("reference").map_or(Ok(Reference::Auto), |node| Reference::from_json(&node))
+}
+
+/// The fields that every term has.
+pub fn term(fields: &mut Fields, base: Term) -> Result<Term> {
+    let color = fields.color("color", base.color)?;
+    let weight = fields.number("weight", base.weight, Term::WEIGHT)?;
+    let scaling =
+        fields.get("scaling").map_or(Ok(base.scaling), |node| of_object(&node, |f| scaling(f, base.scaling)))?;
+    Ok(Term { color, weight, scaling })
+}
+
+/// A direction of any length but 0.
+pub fn direction(node: &JsonNode) -> Result<Vec3> {
+    let v = node.vector(-1e6..=1e6)?;
+    if node.is_ranged() && !Light::points(v) {
+        return Err(node.refused("has no length, so it points nowhere"));
+    }
+    Ok(v)
+}
+
+pub fn write_scaling(out: &mut JsonObject, scaling: &Scaling, base: &Scaling) {
+    out.number("alpha", scaling.alpha, base.alpha);
+    if scaling.gamma_convex == scaling.gamma_concave && base.gamma_convex == base.gamma_concave {
+        out.number("gamma", scaling.gamma_convex, base.gamma_convex);
+    } else {
+        out.set("gamma_convex", object::number(scaling.gamma_convex));
+        out.set("gamma_concave", object::number(scaling.gamma_concave));
+    }
+}
+
+pub fn write_features(out: &mut JsonObject, features: &Features) {
+    out.number("lambda", features.lambda, 0.0);
+    let base = FeatureScale::default();
+    let write_scale = |out: &mut JsonObject, scale: &FeatureScale| {
+        out.number("curvature_scale", scale.curvature_scale_px, base.curvature_scale_px);
+        out.number("blur", scale.blur_px, base.blur_px);
+    };
+    match &features.scales[..] {
+        // The weight of a single scale has no effect; it is written only if it is unusual.
+        [scale] if scale.weight == base.weight => write_scale(out, scale),
+        scales => {
+            let one = |scale: &FeatureScale| {
+                let mut out = JsonObject::default();
+                write_scale(&mut out, scale);
+                out.number("weight", scale.weight, base.weight);
+                out.done()
+            };
+            out.set("scales", scales.iter().map(one).collect());
+        }
+    }
+}
+
+pub fn write_reference(out: &mut JsonObject, reference: Reference) {
+    if reference != Reference::Auto {
+        out.set("reference", reference.to_json());
+    }
+}
+
+pub fn write_term(term: &Term, base: &Term) -> JsonObject {
+    let mut out = JsonObject::default();
+    out.color("color", term.color, base.color);
+    out.number("weight", term.weight, base.weight);
+    let mut scaling = JsonObject::default();
+    write_scaling(&mut scaling, &term.scaling, &base.scaling);
+    out.object("scaling", scaling);
+    out
+}
