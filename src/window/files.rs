@@ -43,7 +43,7 @@ impl FilePurpose {
             FilePurpose::NormalMap => "Normal map",
             FilePurpose::DepthMap => "Depth map",
             FilePurpose::MaskMap => "Mask",
-            FilePurpose::Part(part) => part.title(),
+            FilePurpose::Part(part) => part.label(),
             FilePurpose::Save => "Save as",
             FilePurpose::Export => "Export the picture",
             FilePurpose::ExportMaps => "Export maps of the shape",

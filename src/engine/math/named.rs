@@ -1,14 +1,52 @@
 //! Enums whose choices have names in documents: the choices and their names stand once.
 //! Floor 0.
 
-/// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`.
-#[doc(hidden)]
+/// Declares an enum of plain choices together with their names: `ALL`, `name` and `from_name`. Where the window calls
+/// them otherwise, `label` (and `LABELS`), and where it explains them, `hint`:
+///
+/// ```
+/// rilievo_engine::named! {
+///     /// The aspect of a frame.
+///     #[derive(Clone, Copy, Debug, PartialEq)]
+///     pub enum Aspect {
+///         Free = "free" => ("Free", "As it is dragged"),
+///         Square = "1:1" => ("1 : 1", "As wide as it is high"),
+///     }
+/// }
+/// assert_eq!(Aspect::from_name("1:1"), Some(Aspect::Square));
+/// assert_eq!((Aspect::Square.label(), Aspect::Free.hint()), ("1 : 1", "As it is dragged"));
+/// ```
 #[macro_export]
 macro_rules! named {
+    ($(#[$meta:meta])* $vis:vis enum $type:ident {
+        $($(#[$row:meta])* $choice:ident = $name:literal => ($label:literal, $hint:literal)),+ $(,)?
+    }) => {
+        $crate::named! {
+            $(#[$meta])* $vis enum $type { $($(#[$row])* $choice = $name => $label),+ }
+        }
+        impl $type {
+            /// What it is or does, for tooltips.
+            pub const fn hint(self) -> &'static str {
+                match self { $($type::$choice => $hint),+ }
+            }
+        }
+    };
+    ($(#[$meta:meta])* $vis:vis enum $type:ident {
+        $($(#[$row:meta])* $choice:ident = $name:literal => $label:literal),+ $(,)?
+    }) => {
+        $crate::named! { $(#[$meta])* $vis enum $type { $($(#[$row])* $choice = $name),+ } }
+        impl $type {
+            /// Every choice with what the window calls it.
+            pub const LABELS: [($type, &'static str); [$($name),+].len()] = [$(($type::$choice, $label)),+];
+            /// What the window calls it.
+            pub const fn label(self) -> &'static str {
+                match self { $($type::$choice => $label),+ }
+            }
+        }
+    };
     ($(#[$meta:meta])* $vis:vis enum $type:ident { $($(#[$row:meta])* $choice:ident = $name:literal),+ $(,)? }) => {
         $(#[$meta])*
         $vis enum $type { $($(#[$row])* $choice),+ }
-        #[allow(dead_code)]
         impl $type {
             /// Every choice with its name.
             pub const ALL: [($type, &'static str); [$($name),+].len()] = [$(($type::$choice, $name)),+];

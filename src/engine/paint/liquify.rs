@@ -7,39 +7,20 @@ use crate::raster::{CoverageGrid, Lattice};
 use crate::surface::Surface;
 use std::sync::Arc;
 
-/// What a dab does to what lies under it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LiquifyTool {
-    /// Takes it along with the pen.
-    #[default]
-    Push,
-    Grow,
-    Shrink,
-    /// Turns it counter-clockwise as seen.
-    TwirlLeft,
-    TwirlRight,
-    /// Evens out how it is displaced.
-    Smooth,
-    /// Takes it back to where it was.
-    Restore,
-}
-
-impl LiquifyTool {
-    /// With their names in replays.
-    pub const ALL: [(LiquifyTool, &'static str); 7] = [
-        (LiquifyTool::Push, "push"),
-        (LiquifyTool::Grow, "grow"),
-        (LiquifyTool::Shrink, "shrink"),
-        (LiquifyTool::TwirlLeft, "twirl left"),
-        (LiquifyTool::TwirlRight, "twirl right"),
-        (LiquifyTool::Smooth, "smooth"),
-        (LiquifyTool::Restore, "restore"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(tool, _)| *tool == self).map_or("push", |(_, name)| name)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| *known == name).map(|(tool, _)| *tool)
+crate::named! {
+    /// What a dab does to what lies under it.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum LiquifyTool {
+        /// Takes it along with the pen.
+        #[default]
+        Push = "push" => ("push", "Takes what lies under the pen along (Ctrl restores)"),
+        Grow = "grow" => ("grow", "Makes it larger about the middle of the dab (Ctrl shrinks)"),
+        Shrink = "shrink" => ("shrink", "Makes it smaller (Ctrl grows)"),
+        TwirlLeft = "twirl left" => ("twirl left", "Turns it counter-clockwise (Ctrl: clockwise)"),
+        TwirlRight = "twirl right" => ("twirl right", "Turns it clockwise (Ctrl: counter-clockwise)"),
+        /// Evens out how it is displaced.
+        Smooth = "smooth" => ("smooth", "Evens out how it is displaced (Shift with any tool)"),
+        Restore = "restore" => ("restore", "Takes it back to where it was"),
     }
 }
 

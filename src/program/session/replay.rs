@@ -212,8 +212,7 @@ macro_rules! as_in_recipes {
 }
 pub(crate) use as_in_recipes;
 
-/// Replays an enum of plain choices by their names: `names!(Lock, [Lock::None => "none", …])`, or by its own
-/// `name` and `from_name`: `names!(BlendMode)`.
+/// Replays an enum of plain choices by their names (`name` and `from_name`).
 macro_rules! names {
     ($name:ty) => {
         impl $crate::session::replay::ReplayValue for $name {
@@ -223,19 +222,6 @@ macro_rules! names {
             fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
                 let found = value.as_str().and_then(<$name>::from_name);
                 found.ok_or_else(|| format!("is {value}, which is not known here"))
-            }
-        }
-    };
-    ($name:ty, [$($choice:path => $word:literal),+ $(,)?]) => {
-        impl $crate::session::replay::ReplayValue for $name {
-            fn written(&self) -> serde_json::Value {
-                match self { $($choice => $word,)+ }.into()
-            }
-            fn read(value: &serde_json::Value) -> std::result::Result<Self, String> {
-                match value.as_str() {
-                    $(Some($word) => Ok($choice),)+
-                    _ => Err(format!("is {value}, which is not known here")),
-                }
             }
         }
     };

@@ -7,35 +7,22 @@ use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::math::range::held;
 use crate::math::{COORDINATE, Rect, Size, Vec2, vec2};
 
-/// The aspect that a frame keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum CropAspect {
-    #[default]
-    Free,
-    /// The canvas's own.
-    Canvas,
-    Square,
-    FourToThree,
-    SixteenToNine,
-    ThreeToTwo,
+rilievo_engine::named! {
+    /// The aspect that a frame keeps.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum CropAspect {
+        #[default]
+        Free = "free" => "Free",
+        /// The canvas's own.
+        Canvas = "canvas" => "As it is",
+        Square = "1:1" => "1 : 1",
+        FourToThree = "4:3" => "4 : 3",
+        SixteenToNine = "16:9" => "16 : 9",
+        ThreeToTwo = "3:2" => "3 : 2",
+    }
 }
 
 impl CropAspect {
-    /// With names in replays, and what the window calls them.
-    pub const ALL: [(CropAspect, &'static str, &'static str); 6] = [
-        (CropAspect::Free, "free", "Free"),
-        (CropAspect::Canvas, "canvas", "As it is"),
-        (CropAspect::Square, "1:1", "1 : 1"),
-        (CropAspect::FourToThree, "4:3", "4 : 3"),
-        (CropAspect::SixteenToNine, "16:9", "16 : 9"),
-        (CropAspect::ThreeToTwo, "3:2", "3 : 2"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|row| row.0 == self).map_or("free", |row| row.1)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
     /// Width by height.
     pub fn ratio(self, canvas: Size) -> Option<f32> {
         match self {

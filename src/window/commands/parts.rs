@@ -9,9 +9,9 @@ use crate::session::actions::{NewPart, PartAction};
 /// A command for each kind, in the order of its table.
 macro_rules! commands {
     ($($index:literal),+; $other:expr) => { &[$({
-        let (_, _, label, hint) = NewPart::ALL[$index];
-        row(label, &[], hint, has_document, |_, requests| {
-            requests.act(Action::Part(PartAction::Add { kind: NewPart::ALL[$index].0 }));
+        const KIND: NewPart = NewPart::ALL[$index].0;
+        row(KIND.label(), &[], KIND.hint(), has_document, |_, requests| {
+            requests.act(Action::Part(PartAction::Add { kind: KIND }));
         })
     }),+, $other] };
 }
@@ -29,7 +29,7 @@ mod tests {
 
     #[test]
     fn every_kind_of_part_has_a_command() {
-        let named = |(_, _, label, _): &(NewPart, &str, &str, &str)| COMMANDS.iter().any(|row| row.name == *label);
-        assert!(NewPart::ALL.iter().all(named) && COMMANDS.len() == NewPart::ALL.len() + 1);
+        let named = |(_, label): &(NewPart, &str)| COMMANDS.iter().any(|row| row.name == *label);
+        assert!(NewPart::LABELS.iter().all(named) && COMMANDS.len() == NewPart::ALL.len() + 1);
     }
 }

@@ -40,8 +40,7 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         requests.act(Action::Canvas(CanvasAction::Frame { frame }));
     }
     ui.add_space(6.0);
-    let choices = CropAspect::ALL.map(|(aspect, _, label)| (aspect, label));
-    if let Some(aspect) = choice(ui, "Aspect of the frame", session.crop_aspect, &choices) {
+    if let Some(aspect) = choice(ui, "Aspect of the frame", session.crop_aspect, &CropAspect::LABELS) {
         requests.act(Action::Canvas(CanvasAction::Aspect { aspect }));
     }
     ui.add_space(6.0);

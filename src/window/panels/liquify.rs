@@ -11,9 +11,9 @@ use eframe::egui::{Button, Ui};
 
 pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     let (now, mut to) = (session.liquify, None);
-    for (tool, word) in LiquifyTool::ALL {
-        let button = Button::selectable(now.tool == tool, sentence(word));
-        if ui.add(button).on_hover_text(about(tool)).clicked() {
+    for (tool, label) in LiquifyTool::LABELS {
+        let button = Button::selectable(now.tool == tool, sentence(label));
+        if ui.add(button).on_hover_text(tool.hint()).clicked() {
             to = Some(LiquifySettings { tool, ..now });
         }
     }
@@ -39,16 +39,4 @@ pub fn options(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
         }
     }
     requests.actions.extend(to.map(|liquify| Action::Hand(HandAction::Liquify { liquify })));
-}
-
-fn about(tool: LiquifyTool) -> &'static str {
-    match tool {
-        LiquifyTool::Push => "Takes what lies under the pen along (Ctrl restores)",
-        LiquifyTool::Grow => "Makes it larger about the middle of the dab (Ctrl shrinks)",
-        LiquifyTool::Shrink => "Makes it smaller (Ctrl grows)",
-        LiquifyTool::TwirlLeft => "Turns it counter-clockwise (Ctrl: clockwise)",
-        LiquifyTool::TwirlRight => "Turns it clockwise (Ctrl: counter-clockwise)",
-        LiquifyTool::Smooth => "Evens out how it is displaced (Shift with any tool)",
-        LiquifyTool::Restore => "Takes it back to where it was",
-    }
 }

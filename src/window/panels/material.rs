@@ -61,7 +61,7 @@ pub fn shading(ui: &mut Ui, shading: &Shading, canvas: Vec2, setter: &mut LayerS
 /// The environment or the lit spheres, if the model uses them.
 fn pictures(ui: &mut Ui, shading: &Shading, setter: &mut LayerSetter) {
     let mut picture = |ui: &mut Ui, part: PicturePart, file: Option<&str>, none: &str| {
-        title(ui, part.title());
+        title(ui, part.label());
         ui.horizontal_wrapped(|ui| {
             setter.choose(ui, part, "Choose…");
             match file {

@@ -26,7 +26,7 @@ impl LayerSetter<'_> {
     /// A button that asks for a picture of the layer's.
     pub fn choose(&mut self, ui: &mut Ui, part: PicturePart, text: &str) {
         let response = ui.button(text);
-        named(&response, &format!("Choose {}", part.title().to_lowercase()));
+        named(&response, &format!("Choose {}", part.label().to_lowercase()));
         if response.clicked() {
             self.requests.request(WindowRequest::Choose(FilePurpose::Part(part)));
         }

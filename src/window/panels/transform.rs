@@ -16,8 +16,7 @@ use std::ops::RangeInclusive;
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     if session.shown().is_some_and(|document| document.surface.is_some()) {
-        let ways = Carried::ALL.map(|(carried, _, label)| (carried, label));
-        if let Some(carried) = choice(ui, "What is transformed", session.carried, &ways) {
+        if let Some(carried) = choice(ui, "What is transformed", session.carried, &Carried::LABELS) {
             requests.act(Action::Hand(HandAction::Carried { carried }));
         }
     }

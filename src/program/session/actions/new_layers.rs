@@ -14,22 +14,18 @@ rilievo_engine::named! {
     /// Kinds of new layers.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum NewLayer {
-        Paint = "Paint layer",
-        Strokes = "Stroke layer",
-        Fill = "Fill layer",
-        Gradient = "Gradient layer",
-        Shading = "Shading layer",
-        RadianceScaling = "Radiance scaling",
-        Normals = "Detail normals",
-        Group = "Group",
+        Paint = "paint" => "Paint layer",
+        Strokes = "strokes" => "Stroke layer",
+        Fill = "fill" => "Fill layer",
+        Gradient = "gradient" => "Gradient layer",
+        Shading = "shading" => "Shading layer",
+        RadianceScaling = "radiance scaling" => "Radiance scaling",
+        Normals = "normals" => "Detail normals",
+        Group = "group" => "Group",
     }
 }
 
-names!(NewLayer, [
-    NewLayer::Paint => "paint", NewLayer::Strokes => "strokes", NewLayer::Fill => "fill",
-    NewLayer::Gradient => "gradient", NewLayer::Shading => "shading",
-    NewLayer::RadianceScaling => "radiance scaling", NewLayer::Normals => "normals", NewLayer::Group => "group",
-]);
+names!(NewLayer);
 
 /// A new layer that covers the canvas covers what is selected, by a mask.
 pub(super) fn selecting(document: &Document, layer: Layer) -> Layer {

@@ -16,38 +16,25 @@ use crate::surface::DetailMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The part of a layer that is a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PicturePart {
-    /// What a placed image shows.
-    Image,
-    Mask,
-    Environment,
-    /// The lit sphere; for convex features if there is a concave one.
-    Sphere,
-    ConcaveSphere,
-    /// The normals of a normal layer.
-    Detail,
+rilievo_engine::named! {
+    /// The part of a layer that is a picture. The label is the title of a file dialog for it.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum PicturePart {
+        /// What a placed image shows.
+        Image = "image" => "Picture of the layer",
+        Mask = "mask" => "Mask of the layer",
+        Environment = "environment" => "Environment",
+        /// The lit sphere; for convex features if there is a concave one.
+        Sphere = "sphere" => "Lit sphere",
+        ConcaveSphere = "concave sphere" => "Lit sphere of hollows",
+        /// The normals of a normal layer.
+        Detail = "detail" => "Detail normals",
+    }
 }
 
-names!(PicturePart, [
-    PicturePart::Image => "image", PicturePart::Mask => "mask", PicturePart::Environment => "environment",
-    PicturePart::Sphere => "sphere",
-    PicturePart::ConcaveSphere => "concave sphere", PicturePart::Detail => "detail",
-]);
+names!(PicturePart);
 
 impl PicturePart {
-    /// The title of a file dialog for it.
-    pub fn title(self) -> &'static str {
-        match self {
-            PicturePart::Image => "Picture of the layer",
-            PicturePart::Mask => "Mask of the layer",
-            PicturePart::Environment => "Environment",
-            PicturePart::Sphere => "Lit sphere",
-            PicturePart::ConcaveSphere => "Lit sphere of hollows",
-            PicturePart::Detail => "Detail normals",
-        }
-    }
     fn step(self) -> &'static str {
         match self {
             PicturePart::Image => "Replace picture",

@@ -17,52 +17,19 @@ names!(RegionKind);
 as_in_recipes!(SurfaceRegion);
 record!(SelectSettings { combine, wand, joined, region });
 
-/// How the edge of a selection is changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum EdgeChange {
-    Grow,
-    Shrink,
-    Border,
-    Feather,
-    Smooth,
+rilievo_engine::named! {
+    /// How the edge of a selection is changed. The hint says what its number means.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum EdgeChange {
+        Grow = "grow" => ("Grow selection", "How far the edge moves outward"),
+        Shrink = "shrink" => ("Shrink selection", "How far the edge moves inward"),
+        Border = "border" => ("Border of selection", "Width of the band about the edge"),
+        Feather = "feather" => ("Feather selection", "How soft the edge becomes: the blur's standard deviation"),
+        Smooth = "smooth" => ("Smooth selection", "How far corners are rounded: the blur's standard deviation"),
+    }
 }
 
 impl EdgeChange {
-    /// Every change with its name in replays, what the window calls it, and what its number means.
-    pub const ALL: [(EdgeChange, &'static str, &'static str, &'static str); 5] = [
-        (EdgeChange::Grow, "grow", "Grow selection", "How far the edge moves outward"),
-        (EdgeChange::Shrink, "shrink", "Shrink selection", "How far the edge moves inward"),
-        (EdgeChange::Border, "border", "Border of selection", "Width of the band about the edge"),
-        (
-            EdgeChange::Feather,
-            "feather",
-            "Feather selection",
-            "How soft the edge becomes: the blur's standard deviation",
-        ),
-        (
-            EdgeChange::Smooth,
-            "smooth",
-            "Smooth selection",
-            "How far corners are rounded: the blur's standard deviation",
-        ),
-    ];
-    fn row(self) -> (EdgeChange, &'static str, &'static str, &'static str) {
-        Self::ALL.into_iter().find(|row| row.0 == self).unwrap_or(Self::ALL[0])
-    }
-    pub fn name(self) -> &'static str {
-        self.row().1
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
-    /// What the window calls it.
-    pub fn label(self) -> &'static str {
-        self.row().2
-    }
-    /// What its number means.
-    pub fn hint(self) -> &'static str {
-        self.row().3
-    }
     /// Of its number, px.
     pub fn range(self) -> crate::math::Range {
         match self {

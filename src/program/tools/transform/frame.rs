@@ -24,27 +24,15 @@ pub struct TransformFrame {
     pub pivot_share: Vec2,
 }
 
-/// What the transform tool takes along, where there is a shape.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Carried {
-    /// The chosen layers alone: they slide over the shape, which stays.
-    #[default]
-    Paint,
-    /// The whole shape, and what is painted on it.
-    Shape,
-}
-
-impl Carried {
-    /// With their names in replays, and what the window calls them.
-    pub const ALL: [(Carried, &'static str, &'static str); 2] = [
-        (Carried::Paint, "paint", "slide paint over the shape"),
-        (Carried::Shape, "shape", "move paint with the shape"),
-    ];
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|row| row.0 == self).map_or("paint", |row| row.1)
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+rilievo_engine::named! {
+    /// What the transform tool takes along, where there is a shape.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+    pub enum Carried {
+        /// The chosen layers alone: they slide over the shape, which stays.
+        #[default]
+        Paint = "paint" => "slide paint over the shape",
+        /// The whole shape, and what is painted on it.
+        Shape = "shape" => "move paint with the shape",
     }
 }
 

@@ -108,7 +108,7 @@ fn head(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 fn foot(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.menu_button("+ Add", |ui| {
-            for (kind, name) in NewLayer::ALL {
+            for (kind, name) in NewLayer::LABELS {
                 if ui.button(name).clicked() {
                     requests.act(Action::Layer(LayerAction::Add { kind }));
                     ui.close();

@@ -10,81 +10,40 @@ use crate::session::replay::names;
 use crate::shape::{Ball, Bevel, Body, Detail, Lines, Primitive};
 use std::sync::Arc;
 
-/// What a new part is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NewPart {
-    InflateLayer,
-    InflateSelection,
-    Bevel,
-    Body(Body),
-    Lathe,
-    Sweep,
-    Touches,
-    Sculpt,
-    Lines,
-    Relief,
-    Profiles,
+rilievo_engine::named! {
+    /// What a new part is.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum NewPart {
+        InflateLayer = "inflate" => ("Inflate this layer", "What the selected layer covers, filled with air"),
+        InflateSelection = "inflate selection" => ("Inflate selection", "What is selected, filled with air"),
+        Bevel = "bevel" => ("Bevel", "The selection, or the selected layer, with a slope along its rim"),
+        Sphere = "sphere" => ("Sphere", "A ball in the middle of the canvas"),
+        Ellipsoid = "ellipsoid" => ("Ellipsoid", "An egg with three axes"),
+        Cylinder = "cylinder" => ("Cylinder", "A drum, which can be turned"),
+        Cone = "cone" => ("Cone", "A cone, which can be turned"),
+        Capsule = "capsule" => ("Capsule", "A cylinder with round ends: a limb"),
+        Torus = "torus" => ("Torus", "A ring"),
+        Box = "box" => ("Box", "A block with round edges"),
+        Lathe = "lathe" => ("Lathe", "What the selected layer covers, turned about its axis: vases, bottles"),
+        Sweep = "sweep" => ("Sweep", "Balls along the chosen stroke, as wide as the pen pressed: tails, tentacles"),
+        Touches = "touches" => ("Touches", "Normals put down by hand on the chosen part"),
+        Sculpt = "sculpt" => ("Sculpt", "Heights sculpted by hand on the chosen part"),
+        Lines = "lines" => (
+            "Lines as form",
+            "Ink of the selected layer turns the chosen part: folds, creases, chins"
+        ),
+        Relief = "relief" => (
+            "Relief of this layer",
+            "Light and dark of the selected layer as detail on the chosen part: scales, bark, cloth"
+        ),
+        Profiles = "profiles" => (
+            "Lighting profiles",
+            "Of two to five chosen layers: greys of one drawing shaded by hand, each with the light elsewhere"
+        ),
+    }
 }
 
-/// A new part with its name in replays, what the window calls it, and a hint.
-pub type NewPartRow = (NewPart, &'static str, &'static str, &'static str);
-
 impl NewPart {
-    pub const ALL: [NewPartRow; 17] = [
-        (NewPart::InflateLayer, "inflate", "Inflate this layer", "What the selected layer covers, filled with air"),
-        (NewPart::InflateSelection, "inflate selection", "Inflate selection", "What is selected, filled with air"),
-        (NewPart::Bevel, "bevel", "Bevel", "The selection, or the selected layer, with a slope along its rim"),
-        (NewPart::Body(Body::Sphere), "sphere", "Sphere", "A ball in the middle of the canvas"),
-        (NewPart::Body(Body::Ellipsoid), "ellipsoid", "Ellipsoid", "An egg with three axes"),
-        (NewPart::Body(Body::Cylinder), "cylinder", "Cylinder", "A drum, which can be turned"),
-        (NewPart::Body(Body::Cone), "cone", "Cone", "A cone, which can be turned"),
-        (NewPart::Body(Body::Capsule), "capsule", "Capsule", "A cylinder with round ends: a limb"),
-        (NewPart::Body(Body::Torus), "torus", "Torus", "A ring"),
-        (NewPart::Body(Body::Box), "box", "Box", "A block with round edges"),
-        (NewPart::Lathe, "lathe", "Lathe", "What the selected layer covers, turned about its axis: vases, bottles"),
-        (
-            NewPart::Sweep,
-            "sweep",
-            "Sweep",
-            "Balls along the chosen stroke, as wide as the pen pressed: tails, tentacles",
-        ),
-        (NewPart::Touches, "touches", "Touches", "Normals put down by hand on the chosen part"),
-        (NewPart::Sculpt, "sculpt", "Sculpt", "Heights sculpted by hand on the chosen part"),
-        (
-            NewPart::Lines,
-            "lines",
-            "Lines as form",
-            "Ink of the selected layer turns the chosen part: folds, creases, chins",
-        ),
-        (
-            NewPart::Relief,
-            "relief",
-            "Relief of this layer",
-            "Light and dark of the selected layer as detail on the chosen part: scales, bark, cloth",
-        ),
-        (
-            NewPart::Profiles,
-            "profiles",
-            "Lighting profiles",
-            "Of two to five chosen layers: greys of one drawing shaded by hand, each with the light elsewhere",
-        ),
-    ];
-    fn row(self) -> NewPartRow {
-        Self::ALL.into_iter().find(|row| row.0 == self).unwrap_or(Self::ALL[0])
-    }
-    pub fn name(self) -> &'static str {
-        self.row().1
-    }
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
-    /// What the window calls it.
-    pub fn label(self) -> &'static str {
-        self.row().2
-    }
-    pub fn hint(self) -> &'static str {
-        self.row().3
-    }
     /// Why nothing came of it.
     pub(super) fn why_empty(self) -> Refusal {
         match self {
@@ -104,6 +63,10 @@ names!(NewPart);
 pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, Refusal> {
     let document = tab.document();
     let shorter = document.size.width.min(document.size.height) as f32;
+    let body = |body| {
+        let radius = (0.25 * shorter).round().max(1.0);
+        PartKind::Primitive(Primitive::new(body, document.size.center(), radius))
+    };
     let made = match kind {
         NewPart::InflateLayer => PartKind::Inflate { outline: of_layer(tab)?, inflation: Inflation::default() },
         NewPart::InflateSelection => {
@@ -115,10 +78,13 @@ pub fn made(kind: NewPart, tab: &OpenDocument) -> Result<Part, Refusal> {
             let side = (0.04 * shorter).round().max(2.0);
             PartKind::Bevel { outline, bevel: Bevel { width: side, height: side, ..Bevel::default() } }
         }
-        NewPart::Body(body) => {
-            let radius = (0.25 * shorter).round().max(1.0);
-            PartKind::Primitive(Primitive::new(body, document.size.center(), radius))
-        }
+        NewPart::Sphere => body(Body::Sphere),
+        NewPart::Ellipsoid => body(Body::Ellipsoid),
+        NewPart::Cylinder => body(Body::Cylinder),
+        NewPart::Cone => body(Body::Cone),
+        NewPart::Capsule => body(Body::Capsule),
+        NewPart::Torus => body(Body::Torus),
+        NewPart::Box => body(Body::Box),
         NewPart::Lathe => PartKind::Lathe { outline: of_layer(tab)?, axis: None, puff: 1.0 },
         NewPart::Sweep => PartKind::Sweep { balls: of_stroke(tab).unwrap_or_else(|| tail(document)), puff: 1.0 },
         NewPart::Touches => PartKind::Touches { on: form_of_chosen(tab)?, touches: Vec::new() },
