@@ -124,6 +124,20 @@ impl Document {
         }
         find(&self.layers, name)
     }
+    /// A name that no layer has: “Strokes”, “Strokes 2”, …
+    pub fn free_layer_name(&self, base: &str) -> String {
+        // Looked up once: asked of the document for each number, names would cost the square of the layers.
+        let layers = self.walk();
+        let taken: std::collections::HashSet<&str> = layers.iter().map(|(_, layer)| layer.name.as_str()).collect();
+        let mut name = base.to_owned();
+        for i in 2.. {
+            if !taken.contains(name.as_str()) {
+                break;
+            }
+            name = format!("{base} {i}");
+        }
+        name
+    }
     /// Every layer, groups opened, bottom first, with its path such as `layers[2].layers[0]`.
     pub fn walk(&self) -> Vec<(String, &Arc<Layer>)> {
         fn visit<'a>(prefix: &str, layers: &'a [Arc<Layer>], out: &mut Vec<(String, &'a Arc<Layer>)>) {

@@ -4,7 +4,7 @@
 use super::OpenDocument;
 use crate::document::{Document, LayerId};
 use crate::math::Vec2;
-use crate::tools::transform::{Carried, Framed, KeptFrame, TransformFrame};
+use crate::tools::frame::{Carried, Framed, KeptFrame, TransformFrame};
 
 /// The chosen layers. They count as long as the primary one is among them: whatever selects another layer alone lets go
 /// of the others.

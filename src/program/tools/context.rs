@@ -1,11 +1,10 @@
 //! What tools are told when the pen comes down.
 //! Floor 5.
 
-use super::crop::CropAspect;
+use super::frame::{Carried, KeptFrame};
+use super::settings::{BrushTarget, CropAspect, SelectSettings, ShapeSettings};
 use super::snap::{SnapTargets, ViewAids};
-use super::symmetry::SymmetryAxes;
-use super::transform::{Carried, KeptFrame};
-use super::{SelectSettings, ShapeSettings, Symmetry};
+use super::symmetry::{Symmetry, SymmetryAxes};
 use crate::document::{Document, LayerId};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Brush, Fill, LiquifySettings};
@@ -19,6 +18,8 @@ pub struct ToolContext<'a> {
     /// All chosen layers, those in a chosen group left out, bottom first; what marks nothing works on all of them.
     pub layers: &'a [LayerId],
     pub brush: &'a Brush,
+    /// What brush and eraser change.
+    pub target: BrushTarget,
     /// The foreground and the background colour.
     pub color: Color,
     pub second_color: Color,
@@ -71,6 +72,7 @@ impl<'a> ToolContext<'a> {
             layer: None,
             layers: &[],
             brush,
+            target: BrushTarget::Layer,
             color: Color::BLACK,
             second_color: Color::WHITE,
             operator: Operator::None,
@@ -117,6 +119,7 @@ pub struct KeptContext {
 
 #[derive(Clone, Copy)]
 struct PlainContext {
+    target: BrushTarget,
     colors: [Color; 2],
     operator: Operator,
     px_per_pt: f32,
@@ -133,9 +136,10 @@ struct PlainContext {
 impl KeptContext {
     pub fn of(context: &ToolContext) -> Self {
         let ToolContext { color, second_color, operator, px_per_pt, last_end, symmetry, axes, .. } = *context;
-        let ToolContext { fill, select, shape, aids, clone_offset, .. } = *context;
+        let ToolContext { target, fill, select, shape, aids, clone_offset, .. } = *context;
         let colors = [color, second_color];
         let plain = PlainContext {
+            target,
             colors,
             operator,
             px_per_pt,
@@ -167,12 +171,13 @@ impl KeptContext {
     /// The context as it was.
     pub fn lend<T>(&self, to: impl FnOnce(&ToolContext) -> T) -> T {
         let PlainContext { colors, operator, px_per_pt, last_end, symmetry, axes, fill, .. } = self.plain;
-        let PlainContext { select, shape, aids, clone_offset, .. } = self.plain;
+        let PlainContext { target, select, shape, aids, clone_offset, .. } = self.plain;
         to(&ToolContext {
             document: &self.document,
             layer: self.layer,
             layers: &self.layers,
             brush: &self.brush,
+            target,
             color: colors[0],
             second_color: colors[1],
             operator,

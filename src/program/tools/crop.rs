@@ -1,47 +1,11 @@
 //! The crop tool: a frame that is dragged over the canvas, or beyond it, until it is applied or given up.
 //! Floor 5. What a document becomes within it is `document::canvas_change`'s.
 
+use super::frame::FrameHandle;
 use super::snap::{SnapLines, SnapTargets};
-use super::transform::FrameHandle;
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::math::range::held;
-use crate::math::{COORDINATE, Rect, Size, Vec2, vec2};
-
-rilievo_engine::named! {
-    /// The aspect that a frame keeps.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-    pub enum CropAspect {
-        #[default]
-        Free = "free" => "Free",
-        /// The canvas's own.
-        Canvas = "canvas" => "As it is",
-        Square = "1:1" => "1 : 1",
-        FourToThree = "4:3" => "4 : 3",
-        SixteenToNine = "16:9" => "16 : 9",
-        ThreeToTwo = "3:2" => "3 : 2",
-    }
-}
-
-impl CropAspect {
-    /// Width by height.
-    pub fn ratio(self, canvas: Size) -> Option<f32> {
-        match self {
-            CropAspect::Free => None,
-            CropAspect::Canvas => Some(canvas.width as f32 / canvas.height as f32),
-            CropAspect::Square => Some(1.0),
-            CropAspect::FourToThree => Some(4.0 / 3.0),
-            CropAspect::SixteenToNine => Some(16.0 / 9.0),
-            CropAspect::ThreeToTwo => Some(1.5),
-        }
-    }
-    /// A frame with this aspect about the middle of another one, as wide.
-    pub fn given(self, frame: Rect, canvas: Size) -> Rect {
-        let Some(ratio) = self.ratio(canvas) else { return frame };
-        let height = (frame.width() as f32 / ratio).round().max(1.0) as i32;
-        let top = frame.y0 + (frame.height() as i32 - height).div_euclid(2);
-        Rect::new(frame.x0, top, frame.x1, top + height)
-    }
-}
+use crate::math::{COORDINATE, Rect, Vec2, vec2};
 
 /// The corners of a frame: upper left, upper right, lower right, lower left.
 pub fn corners(frame: Rect) -> [Vec2; 4] {
@@ -186,7 +150,9 @@ impl Gesture for CropGesture {
 mod tests {
     use super::*;
     use crate::document::Document;
+    use crate::math::Size;
     use crate::paint::Brush;
+    use crate::tools::settings::CropAspect;
 
     /// The frame after a drag; `None` where it was left as it is.
     fn dragged(crop: Option<Rect>, aspect: CropAspect, from: Vec2, to: Vec2) -> Option<Rect> {

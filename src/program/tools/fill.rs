@@ -1,7 +1,6 @@
 //! The fill tool: a click fills the area connected to the pixel under the pen, on a paint layer. Floor 5. `paint::fill`
 //! finds the area.
 
-use super::brush::free_name;
 use super::{GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{
     Content, Document, Layer, LayerId, LayerLock, LayerSlot, PixelLayer, PreparedDocument, Progress,
@@ -48,7 +47,7 @@ fn fillable(context: &ToolContext) -> Option<(Document, LayerId)> {
         .and_then(|layer| document.place_of(layer.id))
         .map_or(LayerSlot::top_level(usize::MAX), |place| LayerSlot { index: place.index + 1, ..place });
     let pixels = PixelLayer { file: String::new(), x: 0, y: 0, tiles: TileGrid::default() };
-    let layer = Layer::new(free_name(document, "Paint"), Content::Pixels(pixels));
+    let layer = Layer::new(document.free_layer_name("Paint"), Content::Pixels(pixels));
     let id = layer.id;
     Some((document.with_inserted(layer, place)?, id))
 }

@@ -1,7 +1,6 @@
 //! The gradient tool: a drag creates a gradient; the ends of the selected one are handles.
 //! Floor 5.
 
-use super::brush::free_name;
 use super::snap::{SnapLines, SnapTargets};
 use super::{GRAB_PT, Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerSlot, Live};
@@ -62,7 +61,7 @@ struct NewGradientGesture {
 
 impl NewGradientGesture {
     fn with(&mut self) -> Option<Document> {
-        let name = free_name(&self.document, "Gradient");
+        let name = self.document.free_layer_name("Gradient");
         let content = Content::Gradient(Live::new(self.gradient.clone()));
         let mask = self.document.selection_as_mask();
         let layer = self.layer.get_or_insert_with(|| Layer { mask, ..Layer::new(name, content.clone()) });

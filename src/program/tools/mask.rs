@@ -2,7 +2,8 @@
 //! strokes are those of the brush, on a temporary paint layer with the mask's greys. Floor 5. The strokes are in
 //! `brush`.
 
-use super::brush::{self, StrokePurpose};
+use super::brush;
+use super::settings::StrokePurpose;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock, LayerMask, MaskKind, PixelLayer};
 use crate::math::srgb::{Color, luminance, quantise};

@@ -1,8 +1,9 @@
 //! The move tool: moves a layer, or one stroke of a stroke layer, on the canvas.
 //! Floor 5.
 
+use super::frame::TransformFrame;
 use super::snap::{SnapLines, SnapTargets};
-use super::transform::{self, TransformFrame};
+use super::transform;
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Content, Document, Layer, LayerId, LayerLock};
 use crate::math::{PlaneMap, Vec2};

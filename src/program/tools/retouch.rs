@@ -1,7 +1,7 @@
 //! The brush as smudge, blur, clone, and as one that picks paint up: what it needs before it begins, and what is in
 //! its hand. Floor 5. What it does to pixels is `paint::retouch`'s; the pen's readings become samples in `brush`.
 
-use super::brush::StrokePurpose;
+use super::settings::StrokePurpose;
 use super::symmetry::SymmetryImage;
 use super::{Outcome, PenSample, ToolContext};
 use crate::document::{Content, Layer, Progress, flatten};

@@ -2,7 +2,7 @@
 //! come near.
 //! Floor 5. Pure functions; which tools ask is theirs, what is drawn of it the window's.
 
-use super::transform::TransformFrame;
+use super::frame::TransformFrame;
 use crate::document::{AssistantKind, Content, Document, LayerId};
 use crate::math::range::{Range, held};
 use crate::math::{COORDINATE, Vec2, vec2};

@@ -66,7 +66,7 @@ impl SymmetryAxes {
     /// The handle at a point, where there are axes at all.
     pub fn handle_at(&self, symmetry: Symmetry, canvas: Size, at: Vec2, px_per_pt: f32) -> Option<AxisHandle> {
         let [middle, end] = self.handles(canvas, px_per_pt);
-        let near = |handle: Vec2| symmetry != Symmetry::None && handle.distance(at) <= super::GRAB_PT * px_per_pt;
+        let near = |handle: Vec2| symmetry != Symmetry::None && handle.distance(at) <= super::pen::GRAB_PT * px_per_pt;
         if near(end) { Some(AxisHandle::End) } else { near(middle).then_some(AxisHandle::Middle) }
     }
     /// The axes with a handle at a point; `steps`: only turns by whole steps.

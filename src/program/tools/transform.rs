@@ -2,17 +2,16 @@
 //! Floor 5. What a layer becomes under its transform is `document::transform`'s.
 
 mod corner;
-mod frame;
 mod gesture;
 pub mod mesh;
 mod numbers;
 mod pivot;
 mod placed;
 
-pub use frame::{Carried, FrameHandle, Framed, KeptFrame, TransformFrame};
 pub use numbers::FrameNumbers;
 pub use pivot::PIVOTS;
 
+use super::frame::{FrameHandle, Framed, TransformFrame};
 use super::snap::SnapLines;
 use super::{GestureStart, Outcome, PenSample, ToolContext};
 use crate::document::{Document, Layer, LayerId, LayerLock};

@@ -4,7 +4,8 @@
 use crate::document::Mesh;
 use crate::math::Vec2;
 use crate::session::Session;
-use crate::tools::transform::{Carried, mesh};
+use crate::tools::frame::Carried;
+use crate::tools::transform::mesh;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 
 /// Side of a handle, points.

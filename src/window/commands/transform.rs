@@ -7,7 +7,8 @@ use crate::requests::UiRequests;
 use crate::session::actions::{LayerAction, PartAction};
 use crate::session::{Action, LayerPaths, Property, Session};
 use crate::tools::ToolKind;
-use crate::tools::transform::{self, Carried};
+use crate::tools::frame::Carried;
+use crate::tools::transform;
 use eframe::egui::Key;
 
 pub const REMOVE_LIQUIFY: &str = "Remove liquify";

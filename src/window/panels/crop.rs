@@ -6,7 +6,7 @@ use crate::math::Rect;
 use crate::requests::UiRequests;
 use crate::session::actions::CanvasAction;
 use crate::session::{Action, Session};
-use crate::tools::crop::CropAspect;
+use crate::tools::settings::CropAspect;
 use crate::widgets::choice;
 use eframe::egui::{Button, DragValue, Ui};
 

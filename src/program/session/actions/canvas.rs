@@ -9,7 +9,7 @@ use crate::raster::{CoverageGrid, Resampling};
 use crate::session::open_document::Edit;
 use crate::session::replay::{actions, names, record};
 use crate::session::{OpenDocument, Session};
-use crate::tools::crop::CropAspect;
+use crate::tools::settings::CropAspect;
 use std::path::Path;
 
 names!(CropAspect);

@@ -10,7 +10,6 @@ use crate::math::{Rect, Size};
 use crate::raster::{CoverageGrid, TileGrid};
 use crate::session::replay::actions;
 use crate::session::{OpenDocument, Session};
-use crate::tools::brush::free_name;
 use std::sync::Arc;
 
 actions! {
@@ -137,7 +136,7 @@ fn paste(tab: &mut OpenDocument, copied: &Copied) {
     let slot = above(tab);
     let (mut next, mut ids) = (tab.document().clone(), Vec::new());
     for (i, layer) in pasted(copied, &next).into_iter().enumerate() {
-        let layer = Layer { name: free_name(&next, &layer.name), ..layer };
+        let layer = Layer { name: next.free_layer_name(&layer.name), ..layer };
         let slot = LayerSlot { index: slot.index.saturating_add(i), ..slot };
         ids.push(layer.id);
         let Some(with) = next.with_inserted(layer, slot) else { return };
@@ -194,7 +193,7 @@ fn layer_via(tab: &mut OpenDocument, cut: bool) -> Result<(), &'static str> {
         return Ok(());
     };
     let mut layer = document.copied_from(id, selected).ok_or(NOTHING_THERE)?;
-    layer.name = free_name(document, &format!("{} copy", old.name));
+    layer.name = document.free_layer_name(&format!("{} copy", old.name));
     let left = match cut {
         true => document.with_cleared(id, selected).ok_or(LOCKED)?,
         false => document.clone(),

@@ -17,7 +17,6 @@ use crate::session::replay::{ReplayValue, actions};
 use crate::session::{OpenDocument, Session, brushes, storage};
 use crate::surface::operator::reflection;
 use crate::surface::{Anchor, Bend, Operator};
-use crate::tools::brush::free_name;
 use crate::{Error, Result};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -254,7 +253,7 @@ pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, li
     let filter = ImageFilter::Antialias;
     let image = PlacedImage { source, placement, outside, bend, filter, frame: Default::default() };
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-    let layer = Layer::new(free_name(document, &stem), Content::Image(Live::new(image)));
+    let layer = Layer::new(document.free_layer_name(&stem), Content::Image(Live::new(image)));
     let id = layer.id;
     let next = document.with_inserted(layer, above(tab));
     let is_added = next.is_some_and(|next| tab.commit(label, next));

@@ -9,8 +9,8 @@ use crate::session::Session;
 use crate::session::replay::{ReplayValue, actions, as_in_recipes, names, record};
 use crate::shape::SculptStroke;
 use crate::surface::{Operator, PaintLimit};
+use crate::tools::frame::Carried;
 use crate::tools::symmetry::{MOST_ROUND, SymmetryAxes};
-use crate::tools::transform::Carried;
 use crate::tools::{Symmetry, ToolKind};
 use serde_json::Value;
 

@@ -3,7 +3,6 @@
 
 use crate::document::{Document, Layer, LayerId, LayerSlot};
 use crate::session::OpenDocument;
-use crate::tools::brush::free_name;
 use std::sync::Arc;
 
 /// A step: its name, the document, and what is chosen then.
@@ -25,7 +24,7 @@ pub(super) fn duplicated(document: &Document, ids: &[LayerId]) -> Option<Step> {
     let mut copies = Vec::new();
     for (i, id) in ids.iter().enumerate() {
         let layer = document.layer(*id)?;
-        let copy = copied(layer, &free_name(&next, &format!("{} copy", layer.name)));
+        let copy = copied(layer, &next.free_layer_name(&format!("{} copy", layer.name)));
         copies.push(copy.id);
         next = next.with_inserted(copy, LayerSlot { index: place.index + 1 + i, ..place })?;
     }

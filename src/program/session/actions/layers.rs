@@ -15,8 +15,8 @@ use crate::session::open_document::Edit;
 use crate::session::replay::actions;
 use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, Shading};
-use crate::tools::brush::free_name;
-use crate::tools::transform::{self, Carried, mapped};
+use crate::tools::frame::Carried;
+use crate::tools::transform::{self, mapped};
 use std::sync::Arc;
 
 actions! {
@@ -221,7 +221,7 @@ impl LayerAction {
             }
             LayerAction::AddShading { model } => {
                 let content = Content::Shading(Live::new(Shading::new(*model)));
-                let new = selecting(document, Layer::new(free_name(document, &model_name(*model)), content));
+                let new = selecting(document, Layer::new(document.free_layer_name(&model_name(*model)), content));
                 let id = new.id;
                 ("Add layer", document.with_inserted(new, above(tab))?, vec![id])
             }
@@ -280,7 +280,7 @@ impl LayerAction {
                 let ids = chosen(layer)?;
                 let layers = ids.iter().filter_map(|id| document.layer(*id).cloned()).collect();
                 let group = Content::Group(Group { layers, pass_through: false });
-                let group = Layer::new(free_name(document, "Group"), group);
+                let group = Layer::new(document.free_layer_name("Group"), group);
                 let id = group.id;
                 let label = if ids.len() > 1 { "Group layers" } else { "Group layer" };
                 (label, document.with_one_for(&ids, group)?, vec![id])

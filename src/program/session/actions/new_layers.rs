@@ -8,7 +8,6 @@ use crate::raster::Outside;
 use crate::session::replay::names;
 use crate::shading::{Model, RadianceScaling, Shading};
 use crate::surface::NoiseRelief;
-use crate::tools::brush::free_name;
 
 rilievo_engine::named! {
     /// Kinds of new layers.
@@ -70,5 +69,5 @@ pub(super) fn made(kind: NewLayer, document: &Document, gradient_settings: &Grad
         }
         NewLayer::Group => ("Group", Content::Group(Group::default())),
     };
-    Layer::new(free_name(document, name), content)
+    Layer::new(document.free_layer_name(name), content)
 }

@@ -18,7 +18,7 @@ use crate::math::PlaneMap;
 use crate::session::replay::{ReplayValue, actions, names, record};
 use crate::session::{LayerPath, OpenDocument, Session};
 use crate::shape::SculptTool;
-use crate::tools::shape::ShapeSettings;
+use crate::tools::ShapeSettings;
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;

@@ -7,11 +7,12 @@ use crate::paint::{BrushMode, Sample};
 use crate::session::replay::{ReplayValue, actions, record};
 use crate::session::{CloneSource, OpenDocument, Session};
 use crate::tools::assistants::StrokeStart;
-use crate::tools::brush::StrokePurpose;
 use crate::tools::guides::GuideAt;
 use crate::tools::snap::{SnapTargets, ViewAids};
 use crate::tools::unwrapped;
-use crate::tools::{self, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext, ToolKind};
+use crate::tools::{
+    self, BrushTarget, GestureStart, ModifierKeys, Outcome, PenSample, ShapeSettings, ToolContext, ToolKind,
+};
 use serde_json::Value;
 
 record!(ModifierKeys { shift, ctrl, alt });
@@ -116,6 +117,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         layer: tab.selected,
         layers: &layers,
         brush: &session.brush,
+        target: brush_target(tab),
         color: session.color,
         second_color: session.second_color,
         operator: session.operator,
@@ -139,7 +141,7 @@ fn press(session: &mut Session, tool: ToolKind, pen: PenSample, px_per_pt: f32) 
         aids: session.aids,
         clone_offset,
     };
-    let (gesture, outcome) = match (layout, stroke_start(tool, tab)) {
+    let (gesture, outcome) = match (layout, stroke_start(tool)) {
         (Some(layout), Some(start)) => unwrapped::paint(&context, pen, layout, start),
         (Some(layout), None) => unwrapped::point(&context, pen, layout, tool),
         // A line from the last stroke's end is straight already.
@@ -171,13 +173,18 @@ fn targets(
     }
 }
 
-/// How a stroke of the tool begins, if it makes strokes: on the layer, its mask or the selection.
-fn stroke_start(tool: ToolKind, tab: &OpenDocument) -> Option<StrokeStart> {
+/// What brush and eraser change.
+fn brush_target(tab: &OpenDocument) -> BrushTarget {
+    match (tab.quick_mask, tab.on_mask) {
+        (true, _) => BrushTarget::Selection,
+        (false, true) => BrushTarget::Mask,
+        (false, false) => BrushTarget::Layer,
+    }
+}
+
+/// How a stroke of the tool begins, if it makes strokes.
+fn stroke_start(tool: ToolKind) -> Option<StrokeStart> {
     Some(match tool {
-        ToolKind::Brush if tab.quick_mask => |c, pen| tools::mask::press_on_selection(c, pen, StrokePurpose::Paint),
-        ToolKind::Eraser if tab.quick_mask => |c, pen| tools::mask::press_on_selection(c, pen, StrokePurpose::Erase),
-        ToolKind::Brush if tab.on_mask => |c, pen| tools::mask::press(c, pen, StrokePurpose::Paint),
-        ToolKind::Eraser if tab.on_mask => |c, pen| tools::mask::press(c, pen, StrokePurpose::Erase),
         ToolKind::Brush => |c, pen| tools::press(ToolKind::Brush, c, pen),
         ToolKind::Eraser => |c, pen| tools::press(ToolKind::Eraser, c, pen),
         _ => return None,

@@ -10,7 +10,7 @@ use crate::raster::coverage::{Combine, edges};
 use crate::session::replay::{actions, as_in_recipes, names, record};
 use crate::session::{LayerPath, Session};
 use crate::surface::region::{RegionKind, SurfaceRegion};
-use crate::tools::select::{self, SelectSettings};
+use crate::tools::{SelectSettings, select};
 
 names!(Combine);
 names!(RegionKind);

@@ -37,7 +37,7 @@ pub fn drawn(preset: &Preset, surface: Arc<Surface>, scale: f32, background: Col
     };
     let pens: Vec<PenSample> =
         wave(size).into_iter().map(|sample| PenSample { sample, keys: ModifierKeys::default() }).collect();
-    let (gesture, _) = brush::press(&context, *pens.first()?, brush::StrokePurpose::Paint);
+    let (gesture, _) = brush::press(&context, *pens.first()?, crate::tools::settings::StrokePurpose::Paint);
     let mut gesture = gesture?;
     gesture.drag(&pens[1..]);
     match gesture.release() {

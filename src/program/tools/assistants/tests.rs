@@ -2,6 +2,7 @@ use super::*;
 use crate::document::{Content, Layer, Live, StrokeList};
 use crate::math::{Size, vec2};
 use crate::paint::Brush;
+use crate::tools::settings::StrokePurpose;
 use crate::tools::snap::ViewAids;
 use crate::tools::{ModifierKeys, Symmetry, brush};
 
@@ -18,7 +19,7 @@ fn stroke(document: &Document, points: &[Vec2], magnetism: f32) -> Vec<Vec2> {
     let aids = ViewAids { magnetism, ..ViewAids::default() };
     let layer = Some(document.layers[0].id);
     let context = ToolContext { layer, aids, ..ToolContext::new(document, &hard) };
-    let start = |context: &ToolContext, pen| brush::press(context, pen, brush::StrokePurpose::Paint);
+    let start = |context: &ToolContext, pen| brush::press(context, pen, StrokePurpose::Paint);
     let mut gesture = press_along(&context, PenSample::at(points[0]), start).0.unwrap();
     for point in &points[1..] {
         gesture.drag(&[PenSample::at(*point)]);

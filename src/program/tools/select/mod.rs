@@ -9,55 +9,11 @@ mod surface;
 mod tests;
 mod wand;
 
-use super::{Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
+use super::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, ToolContext, ToolKind};
 use crate::document::Document;
 use crate::math::{Range, Vec2};
-use crate::paint::{Fill, Selection};
+use crate::paint::Selection;
 use crate::raster::coverage::{Combine, CoverageGrid};
-use crate::surface::region::{RegionKind, SurfaceRegion};
-
-/// The settings of the selection tools.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SelectSettings {
-    /// How a new selection meets the one there is, where no key says otherwise.
-    pub combine: Combine,
-    /// The wand: its region is that of a fill.
-    pub wand: Fill,
-    /// The wand takes only what is joined to the pixel.
-    pub joined: bool,
-    /// The surface wand: its point is that of the pen.
-    pub region: SurfaceRegion,
-}
-
-impl Default for SelectSettings {
-    fn default() -> Self {
-        Self {
-            combine: Combine::Replace,
-            wand: Fill { grow_px: 0.0, ..Fill::default() },
-            joined: true,
-            region: SurfaceRegion::new(RegionKind::Direction, Vec2::ZERO),
-        }
-    }
-}
-
-impl SelectSettings {
-    /// Of the wand.
-    pub const TOLERANCE: Range = crate::math::UNIT;
-
-    /// With another kind of region, which begins with its own tolerance.
-    pub fn with_kind(self, kind: RegionKind) -> Self {
-        Self { region: SurfaceRegion { kind, tolerance: kind.tolerance(), ..self.region }, ..self }
-    }
-    /// How a selection meets the one there is: Shift adds, Alt takes away, both intersect.
-    pub fn how(&self, keys: ModifierKeys) -> Combine {
-        match (keys.shift, keys.alt) {
-            (true, true) => Combine::Intersect,
-            (true, false) => Combine::Add,
-            (false, true) => Combine::TakeAway,
-            (false, false) => self.combine,
-        }
-    }
-}
 
 /// Screen points that the pen moves for all of a tolerance's range.
 const TOLERANCE_PT: f32 = 500.0;

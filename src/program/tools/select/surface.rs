@@ -2,13 +2,13 @@
 //! its object, would shine with it, or flows along it; a drag to the right or the left changes the tolerance. Floor 5.
 //! `surface::region` finds it.
 
-use super::{SelectSettings, combined, dragged};
+use super::{combined, dragged};
 use crate::document::Document;
 use crate::math::Vec2;
 use crate::paint::Selection;
 use crate::raster::coverage::Combine;
 use crate::surface::region::{RegionField, SurfaceRegion};
-use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::tools::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, ToolContext};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let Some(surface) = &context.document.surface else {

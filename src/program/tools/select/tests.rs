@@ -4,6 +4,7 @@ use crate::math::{Rect, Size, Vec3, vec2};
 use crate::paint::Brush;
 use crate::raster::{CoverageGrid, Plane, TileGrid};
 use crate::surface::{Maps, Surface};
+use crate::tools::ModifierKeys;
 use std::sync::Arc;
 
 const SIZE: Size = Size::new(200, 130);

@@ -1,14 +1,14 @@
 //! The wand: all pixels of a colour like the one under the pen, joined to it or everywhere; a drag to the right or the
 //! left changes the tolerance. Floor 5. `paint::fill` finds the region.
 
-use super::{SelectSettings, combined, dragged};
+use super::{combined, dragged};
 use crate::document::{Content, Document, PreparedDocument, Progress};
 use crate::math::{Rect, Vec2};
 use crate::paint::{Fill, Selection};
 use crate::raster::coverage::Combine;
 use crate::raster::{Tile, TileAt, TileGrid};
 use crate::surface::objects::CanvasPart;
-use crate::tools::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
+use crate::tools::{Gesture, GestureStart, Outcome, PenSample, SelectSettings, ToolContext};
 use std::sync::{Arc, OnceLock};
 
 pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {

@@ -5,7 +5,8 @@ use super::*;
 use crate::document::parts::PartKind;
 use crate::math::Size;
 use crate::paint::Brush;
-use crate::shape::{Body, Primitive};
+use crate::shape::{Body, Primitive, SculptTool};
+use crate::tools::ShapeSettings;
 use crate::tools::{self, ModifierKeys, Outcome, PenSample, ToolContext, ToolKind};
 
 /// An inflated square and a ball in front of a corner of it.

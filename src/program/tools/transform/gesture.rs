@@ -2,11 +2,11 @@
 //! Floor 5.
 
 use super::corner::within_convex;
-use super::frame::{FrameHandle, TransformFrame};
 use super::placed::{FrameMap, Placed};
 use crate::document::transform::FrameBox;
 use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2, vec2};
+use crate::tools::frame::{FrameHandle, TransformFrame};
 use crate::tools::snap::{SnapLines, SnapTargets};
 use crate::tools::{Gesture, Outcome, PenSample};
 

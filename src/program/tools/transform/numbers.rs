@@ -1,9 +1,10 @@
 //! The frame of the transform tool in numbers, to be read and typed.
 //! Floor 5.
 
-use super::{TransformFrame, said};
+use super::said;
 use crate::document::{Document, LayerId, LayerTransform};
 use crate::math::{DVec2, PlaneMap, Vec2};
+use crate::tools::frame::TransformFrame;
 
 /// Where a frame stands that lies in no perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]

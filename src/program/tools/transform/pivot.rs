@@ -1,8 +1,8 @@
 //! The pivot of a frame between the pen coming down and lifting.
 //! Floor 5.
 
-use super::frame::{MIDDLE, TransformFrame};
 use crate::math::{Vec2, vec2};
+use crate::tools::frame::{MIDDLE, TransformFrame};
 use crate::tools::snap::{SNAP_PT, SnapLines, SnapTargets};
 use crate::tools::{Gesture, Outcome, PenSample};
 

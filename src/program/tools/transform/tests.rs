@@ -4,6 +4,7 @@ use crate::math::{Size, vec2};
 use crate::paint::Brush;
 use crate::raster::TileGrid;
 use crate::tools::ModifierKeys;
+use crate::tools::frame::KeptFrame;
 use std::sync::Arc;
 
 /// A square of paint from (40, 30) to (80, 50).

@@ -12,7 +12,6 @@ use crate::math::{srgb::Color, vec3};
 use crate::raster::{BlendMode, TileGrid};
 use crate::session::OpenDocument;
 use crate::shading::{Light, LightKind, Model, Shading, Term};
-use crate::tools::brush::free_name;
 use std::sync::Arc;
 
 /// A document whose drawing has a shape.
@@ -102,7 +101,7 @@ pub fn shaped(
 fn named_alone(document: &Document, layer: LayerId) -> Option<Document> {
     let name = &document.layer(layer)?.name;
     let is_alone = document.walk().iter().filter(|(_, other)| other.name == *name).count() == 1;
-    let named = if is_alone && !name.is_empty() { name.clone() } else { free_name(document, "Drawing") };
+    let named = if is_alone && !name.is_empty() { name.clone() } else { document.free_layer_name("Drawing") };
     document.with_layer(layer, |layer| layer.name = named)
 }
 
@@ -126,7 +125,7 @@ fn without_flat_ground(
         clip_to_surface: false,
         visible: drawing.visible,
         opacity: drawing.opacity,
-        ..Layer::new(free_name(document, "Ground"), Content::Fill(color))
+        ..Layer::new(document.free_layer_name("Ground"), Content::Fill(color))
     };
     let place = next.place_of(layer)?;
     Some((next.with_inserted(ground, place)?, bare))
@@ -143,5 +142,5 @@ fn base(document: &Document) -> Layer {
         ..Shading::new(Model::Phong)
     };
     let content = Content::Shading(Live::new(shading));
-    Layer { blend: BlendMode::Multiply, ..Layer::new(free_name(document, "Base"), content) }
+    Layer { blend: BlendMode::Multiply, ..Layer::new(document.free_layer_name("Base"), content) }
 }

@@ -1,12 +1,12 @@
-//! The frame of the transform tool: a box around the chosen layers, where it lies on the canvas, and the point that it
-//! is turned about.
+//! The frame of the transform tool and its handles: a box around the chosen layers, where it lies on the canvas, and
+//! the point that it is turned about.
 //! Floor 5.
 
+use super::pen::GRAB_PT;
 use crate::document::transform::FrameBox;
 use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2};
 use crate::raster::Resampling;
-use crate::tools::GRAB_PT;
 use std::sync::Arc;
 
 /// The frame of a layer, or of several, on the canvas.

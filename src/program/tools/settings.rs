@@ -1,0 +1,165 @@
+//! The settings of the tools.
+//! Floor 5. The brush's are `paint`'s, what snaps is in `snap`, what a frame takes along in `frame`.
+
+use super::pen::ModifierKeys;
+use crate::math::range::held;
+use crate::math::{Range, Rect, Size, Vec2, Vec3, vec3};
+use crate::paint::Fill;
+use crate::raster::coverage::Combine;
+use crate::shape::{SculptStroke, SculptTool, Touch};
+use crate::surface::region::{RegionKind, SurfaceRegion};
+
+/// What brush and eraser change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum BrushTarget {
+    /// The selected layer.
+    #[default]
+    Layer,
+    /// The mask of the selected layer.
+    Mask,
+    /// The selection itself, under a quick mask.
+    Selection,
+}
+
+/// What a stroke is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrokePurpose {
+    Paint,
+    Erase,
+}
+
+/// The settings of the selection tools.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelectSettings {
+    /// How a new selection meets the one there is, where no key says otherwise.
+    pub combine: Combine,
+    /// The wand: its region is that of a fill.
+    pub wand: Fill,
+    /// The wand takes only what is joined to the pixel.
+    pub joined: bool,
+    /// The surface wand: its point is that of the pen.
+    pub region: SurfaceRegion,
+}
+
+impl Default for SelectSettings {
+    fn default() -> Self {
+        Self {
+            combine: Combine::Replace,
+            wand: Fill { grow_px: 0.0, ..Fill::default() },
+            joined: true,
+            region: SurfaceRegion::new(RegionKind::Direction, Vec2::ZERO),
+        }
+    }
+}
+
+impl SelectSettings {
+    /// Of the wand.
+    pub const TOLERANCE: Range = crate::math::UNIT;
+
+    /// With another kind of region, which begins with its own tolerance.
+    pub fn with_kind(self, kind: RegionKind) -> Self {
+        Self { region: SurfaceRegion { kind, tolerance: kind.tolerance(), ..self.region }, ..self }
+    }
+    /// How a selection meets the one there is: Shift adds, Alt takes away, both intersect.
+    pub fn how(&self, keys: ModifierKeys) -> Combine {
+        match (keys.shift, keys.alt) {
+            (true, true) => Combine::Intersect,
+            (true, false) => Combine::Add,
+            (false, true) => Combine::TakeAway,
+            (false, false) => self.combine,
+        }
+    }
+}
+
+/// The settings of the tools that touch and sculpt.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeSettings {
+    /// What the sculpting tool does.
+    pub tool: SculptTool,
+    /// Diameter of a dab, px.
+    pub size: f32,
+    /// The part of the dab that is whole.
+    pub hardness: f32,
+    /// How far a dab raises or lowers, px.
+    pub height: f32,
+    /// How far a dab goes that smooths, flattens, pinches or scrapes: the share of the way.
+    pub share: f32,
+    /// The direction that a touch gives the surface; unit, camera space (y up).
+    pub normal: Vec3,
+    /// Of a touch, px.
+    pub radius: f32,
+    /// How far a touch is felt, px; 0: to the rim and the next touches.
+    pub reach: f32,
+}
+
+impl Default for ShapeSettings {
+    fn default() -> Self {
+        Self {
+            tool: SculptTool::Raise,
+            size: 60.0,
+            hardness: 0.3,
+            height: 1.0,
+            share: 0.3,
+            normal: vec3(-0.4, 0.5, 0.768),
+            radius: 8.0,
+            reach: 0.0,
+        }
+    }
+}
+
+impl ShapeSettings {
+    /// The same with numbers that a part may hold.
+    pub fn held(&self) -> Self {
+        let normal = vec3(self.normal.x, self.normal.y, self.normal.z.max(0.0)).normalize_or(Vec3::Z);
+        Self {
+            tool: self.tool,
+            size: held(self.size, &SculptStroke::SIZE),
+            hardness: held(self.hardness, &SculptStroke::HARDNESS),
+            height: held(self.height, &SculptStroke::STRENGTH),
+            share: held(self.share, &crate::math::UNIT),
+            normal,
+            radius: held(self.radius, &Touch::RADIUS),
+            reach: held(self.reach, &Touch::REACH),
+        }
+    }
+    /// The strength of a dab of the tool in hand.
+    pub fn strength(&self) -> f32 {
+        if self.tool.is_by_height() { self.height } else { self.share }
+    }
+}
+
+rilievo_engine::named! {
+    /// The aspect that a frame keeps.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+    pub enum CropAspect {
+        #[default]
+        Free = "free" => "Free",
+        /// The canvas's own.
+        Canvas = "canvas" => "As it is",
+        Square = "1:1" => "1 : 1",
+        FourToThree = "4:3" => "4 : 3",
+        SixteenToNine = "16:9" => "16 : 9",
+        ThreeToTwo = "3:2" => "3 : 2",
+    }
+}
+
+impl CropAspect {
+    /// Width by height.
+    pub fn ratio(self, canvas: Size) -> Option<f32> {
+        match self {
+            CropAspect::Free => None,
+            CropAspect::Canvas => Some(canvas.width as f32 / canvas.height as f32),
+            CropAspect::Square => Some(1.0),
+            CropAspect::FourToThree => Some(4.0 / 3.0),
+            CropAspect::SixteenToNine => Some(16.0 / 9.0),
+            CropAspect::ThreeToTwo => Some(1.5),
+        }
+    }
+    /// A frame with this aspect about the middle of another one, as wide.
+    pub fn given(self, frame: Rect, canvas: Size) -> Rect {
+        let Some(ratio) = self.ratio(canvas) else { return frame };
+        let height = (frame.width() as f32 / ratio).round().max(1.0) as i32;
+        let top = frame.y0 + (frame.height() as i32 - height).div_euclid(2);
+        Rect::new(frame.x0, top, frame.x1, top + height)
+    }
+}
