@@ -69,3 +69,15 @@ fn several_layers_are_turned_by_a_number_and_their_frame_turns_along() {
         assert_eq!(stay, is_back);
     }
 }
+#[test]
+fn a_press_on_the_canvas_beside_an_open_menu_closes_it_and_nothing_else() {
+    let mut harness = painted();
+    let before = numbers(&harness);
+    press(&mut harness, "Mesh");
+    assert!(harness.query_by_label("4 × 4 points").is_some());
+    drag(&mut harness, vec2(-10.0, 60.0), vec2(30.0, 90.0));
+    assert!(harness.query_by_label("4 × 4 points").is_none(), "the menu is still open");
+    assert_eq!(numbers(&harness), before, "the drag that closed it moved the layer as well");
+    drag(&mut harness, vec2(-10.0, 60.0), vec2(30.0, 90.0));
+    assert_ne!(numbers(&harness), before);
+}

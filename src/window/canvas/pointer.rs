@@ -9,7 +9,7 @@ use crate::pen::{FilteredReport, PenPhase, PenReport, PenSource, ReportFilter, S
 use crate::session::actions::{EditAction, GuideAction, HandAction, PointerAction, ViewAction};
 use crate::session::{Action, CanvasView, Session};
 use crate::tools::{ModifierKeys, PenSample, ToolKind};
-use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Pos2, Rect, Response, TouchPhase, Ui};
+use eframe::egui::{CursorIcon, Event, Key, Modifiers, PointerButton, Popup, Pos2, Rect, Response, TouchPhase, Ui};
 
 /// What the pointer is doing between press and release.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -141,6 +141,8 @@ impl PointerState {
             }
             while let Some(report) = self.pen.next() {
                 match report.phase {
+                    // A press beside an open menu closes it, and nothing else.
+                    PenPhase::Down(_) if ours(report.at) && Popup::is_any_open(ui.ctx()) => Popup::close_all(ui.ctx()),
                     PenPhase::Down(button) if ours(report.at) && self.pen.touches() < 2 => {
                         self.press(&report, button, &mut listening);
                     }
