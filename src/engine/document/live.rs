@@ -3,9 +3,10 @@
 
 use super::behind::{BehindPixels, BehindScene};
 use super::content::TileContent;
+use crate::math::Rect;
 use crate::paint::Scene;
 use crate::raster::{Tile, TileAt};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Parameters with their rendered tiles. A clone shares both, so undo renders nothing again.
 #[derive(Clone)]
@@ -14,6 +15,8 @@ pub struct Live<T> {
     rendered: Arc<RenderedTiles>,
     /// Whether marks of it have homes of their own, once it was asked.
     has_homes: Arc<OnceLock<bool>>,
+    /// The box around what is painted on the scene it was last asked for.
+    painted_box: Arc<Mutex<Option<(Scene, Rect)>>>,
 }
 
 /// The tiles of one scene; replaced when the layer is rendered on another canvas or surface.
@@ -59,7 +62,12 @@ impl TileCells {
 
 impl<T> Live<T> {
     pub fn new(params: T) -> Self {
-        Self { params: Arc::new(params), rendered: Arc::default(), has_homes: Arc::default() }
+        Self {
+            params: Arc::new(params),
+            rendered: Arc::default(),
+            has_homes: Arc::default(),
+            painted_box: Arc::default(),
+        }
     }
     pub fn params(&self) -> &T {
         &self.params
@@ -67,6 +75,14 @@ impl<T> Live<T> {
     /// What was found of the parameters once is not sought again.
     pub(super) fn has_homes(&self, sought: impl FnOnce(&T) -> bool) -> bool {
         *self.has_homes.get_or_init(|| sought(&self.params))
+    }
+    /// The box around what is painted on a scene, sought once.
+    pub(super) fn painted_box(&self, scene: &Scene, seek: impl FnOnce() -> Rect) -> Rect {
+        let mut known = self.painted_box.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*known {
+            Some((on, painted)) if on.is_same(scene) => *painted,
+            _ => known.insert((scene.clone(), seek())).1,
+        }
     }
     /// New parameters that change only some tiles: the rendered tiles for which `keeps` is true are taken over.
     pub fn with(&self, params: T, keeps: impl Fn(TileAt) -> bool) -> Self {
@@ -117,8 +133,8 @@ impl<T> Live<T> {
     }
     /// The same, to be rendered behind contours where it was only counted as the same there.
     pub fn settled(&self) -> Self {
-        let (params, has_homes) = (self.params.clone(), self.has_homes.clone());
-        let next = Self { params, rendered: Arc::default(), has_homes };
+        let (params, has_homes, painted_box) = (self.params.clone(), self.has_homes.clone(), self.painted_box.clone());
+        let next = Self { params, rendered: Arc::default(), has_homes, painted_box };
         if let Some((scene, old)) = self.lock().clone() {
             let mut cells = TileCells::for_scene(&scene);
             cells.cells.clone_from(&old.cells);

@@ -4,8 +4,8 @@
 use super::LayerMap;
 use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::{PlaneMap, Rect, Vec2, vec2};
-use crate::paint::{Scene, Stroke};
-use crate::raster::{TILE, TileGrid};
+use crate::paint::{Scene, Stroke, stroke};
+use crate::raster::{TILE, Tile, TileAt, TileGrid};
 use std::sync::Arc;
 
 /// A box with sides along the axes, px.
@@ -34,8 +34,8 @@ impl FrameBox {
 }
 
 impl Document {
-    /// The box around the content of a layer in its own frame: paint and strokes exactly or a little more, what has no
-    /// end the canvas. `None` of an empty layer.
+    /// The box around the content of a layer in its own frame: paint and strokes exactly, strokes on parts of the
+    /// shape in whole tiles, what has no end the canvas. `None` of an empty layer.
     pub fn frame_box(&self, id: LayerId) -> Option<FrameBox> {
         let scene = self.scene_of(id)?;
         let layer = self.layer(id)?;
@@ -59,6 +59,21 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
     };
     match &layer.content {
         Content::Pixels(pixels) => FrameBox::of(painted(&pixels.tiles)),
+        Content::Strokes(live) if !layer.content.has_homes() => FrameBox::of(live.painted_box(scene, || {
+            let strokes = &live.params().strokes;
+            let all = strokes.iter().map(|stroke| stroke.bounds(scene)).fold(Rect::EMPTY, Rect::union);
+            let mut tiles: Vec<TileAt> = TileAt::covering(all).collect();
+            // From the outside in: what lies within what is known is not rendered.
+            tiles.sort_by_key(|at| {
+                let (rect, sides) = (at.rect(), all);
+                (rect.x0 - sides.x0).min(rect.y0 - sides.y0).min(sides.x1 - rect.x1).min(sides.y1 - rect.y1)
+            });
+            tiles.into_iter().fold(Rect::EMPTY, |known, at| {
+                let render = || live.tile(scene, at, || stroke::render_tile(strokes, scene, at));
+                if is_within(known, at) { known } else { render().map_or(known, |tile| with_tile(known, at, &tile)) }
+            })
+        })),
+        // What lies elsewhere by itself takes whole tiles.
         Content::Strokes(live) => {
             let box_of = |stroke: &Arc<Stroke>| {
                 let inner = FrameBox::of(stroke.bounds(scene))?;
@@ -80,30 +95,41 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
 /// The pixels of a grid that are not wholly transparent. Asked for with every frame that shows handles: a tile that
 /// lies within what is known is not looked at.
 fn painted(tiles: &TileGrid) -> Rect {
-    let with_tile = |known: Rect, (at, tile): (crate::raster::TileAt, &std::sync::Arc<crate::raster::Tile>)| {
-        let origin = at.rect();
-        if known.union(origin) == known {
-            return known;
-        }
-        let rows = tile.bytes().chunks_exact(TILE * 4).zip(origin.y0..);
-        rows.fold(known, |all, (row, y)| {
-            let is_painted = |p: &[u8]| p[3] > 0;
-            let (first, last) = (row.chunks_exact(4).position(is_painted), row.chunks_exact(4).rposition(is_painted));
-            match first.zip(last) {
-                Some((first, last)) => {
-                    all.union(Rect::new(origin.x0 + first as i32, y, origin.x0 + last as i32 + 1, y + 1))
-                }
-                None => all,
-            }
-        })
+    let with = |known: Rect, (at, tile): (TileAt, &Arc<Tile>)| match is_within(known, at) {
+        true => known,
+        false => with_tile(known, at, tile),
     };
-    tiles.iter().fold(Rect::EMPTY, with_tile)
+    tiles.iter().fold(Rect::EMPTY, with)
+}
+
+fn is_within(known: Rect, at: TileAt) -> bool {
+    known.union(at.rect()) == known
+}
+
+/// What is known, and the pixels of one more tile that are not wholly transparent.
+fn with_tile(known: Rect, at: TileAt, tile: &Tile) -> Rect {
+    let origin = at.rect();
+    let rows = tile.bytes().chunks_exact(TILE * 4).zip(origin.y0..);
+    rows.fold(known, |all, (row, y)| {
+        let is_painted = |p: &[u8]| p[3] > 0;
+        let (first, last) = (row.chunks_exact(4).position(is_painted), row.chunks_exact(4).rposition(is_painted));
+        match first.zip(last) {
+            Some((first, last)) => {
+                all.union(Rect::new(origin.x0 + first as i32, y, origin.x0 + last as i32 + 1, y + 1))
+            }
+            None => all,
+        }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::hash;
+    use crate::document::content::StrokeList;
+    use crate::document::{Live, Progress, flatten};
+    use crate::math::{Size, hash, srgb::Color};
+    use crate::paint::{Brush, Sample};
+    use crate::surface::Operator;
 
     #[test]
     fn the_box_around_paint_holds_every_pixel_of_it_and_no_row_more() {
@@ -118,5 +144,24 @@ mod tests {
             }
             assert_eq!(painted(&TileGrid::from_straight_rgba(&rgba, 300, 200, 0, 0)), expected);
         }
+    }
+    #[test]
+    fn the_box_around_strokes_holds_every_pixel_of_them_and_no_row_more() {
+        let stroke = |from: Vec2, to: Vec2| {
+            let brush = Brush { size: 30.0, hardness: 1.0, ..Brush::default() };
+            let samples = [from, to].map(Sample::at).to_vec();
+            Arc::new(Stroke::new(brush, Operator::None, Color::BLACK, samples))
+        };
+        let strokes =
+            vec![stroke(vec2(210.0, 90.0), vec2(300.0, 130.0)), stroke(vec2(150.0, 310.0), vec2(220.0, 200.0))];
+        let layer = Layer::new("Strokes", Content::Strokes(Live::new(StrokeList { strokes })));
+        let document = Document::empty(Size::new(500, 400));
+        let document = Document { layers: vec![Arc::new(layer)], ..document };
+        let FrameBox { low, high } = document.frame_box(document.layers[0].id).unwrap();
+        let painted = flatten(&document, &Progress::default()).unwrap();
+        let Rect { x0, y0, x1, y1 } = super::painted(&painted);
+        assert_eq!((low, high), (vec2(x0 as f32, y0 as f32), vec2(x1 as f32, y1 as f32)));
+        assert!(x0.abs_diff(135) <= 3 && x1.abs_diff(315) <= 3, "{x0} {x1}");
+        assert!(y0.abs_diff(75) <= 3 && y1.abs_diff(325) <= 3, "{y0} {y1}");
     }
 }
