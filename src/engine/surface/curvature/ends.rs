@@ -6,6 +6,7 @@
 use super::tile_rect::TileRect;
 use super::{Rims, slope, tensor};
 use crate::surface::{Surface, links};
+use std::ops::Range;
 
 /// What flows to each neighbour in a step; up to a quarter is stable.
 const FLOW: f32 = 0.24;
@@ -14,6 +15,8 @@ const WIDEST_PX: f32 = 8.0;
 /// Standard deviations from an end up to which its normals flow, and beyond which they need not.
 const FROM: f32 = 2.0;
 const TO: f32 = 3.0;
+/// Standard deviations from an end beyond which nothing flows: what is still felt where the flow is wanted.
+const FLOWING: f32 = 5.2;
 
 /// The blur near the ends of a surface.
 pub(super) struct EndBlur<'s> {
@@ -26,8 +29,9 @@ pub(super) struct EndBlur<'s> {
     rims: &'s Rims,
 }
 
-/// A part of the canvas: the normals that flow in it, and over which sides.
-struct FlowRegion {
+/// A part of the canvas: the normals that flow in it, and over which sides. A thread uses one from tile to tile.
+#[derive(Default)]
+pub(super) struct FlowRegion {
     x0: usize,
     y0: usize,
     width: usize,
@@ -40,6 +44,8 @@ struct FlowRegion {
     links: Vec<u8>,
     /// Distance to the nearest end in thirds of a pixel, at most.
     distance: Vec<u16>,
+    /// What a step writes.
+    next: Vec<f32>,
 }
 
 impl<'s> EndBlur<'s> {
@@ -50,7 +56,7 @@ impl<'s> EndBlur<'s> {
         is_wanted.then(|| Self { surface, blur_px, steps, reach: (TO * blur_px).ceil() as usize + 1, rims })
     }
     /// Puts the tensor of a tile in place, in a band of rows that begins at the tile's first.
-    pub fn fill(&self, tile: TileRect, band: [&mut [f32]; 3]) {
+    pub fn fill(&self, tile: TileRect, region: &mut FlowRegion, band: [&mut [f32]; 3]) {
         let size = self.surface.size();
         let (x0, y0) = (tile.x0.saturating_sub(self.reach), tile.y0.saturating_sub(self.reach));
         let x1 = (tile.x0 + tile.cols + self.reach).min(size.width as usize);
@@ -58,8 +64,8 @@ impl<'s> EndBlur<'s> {
         if !self.rims.are_in(x0..x1, y0..y1) {
             return;
         }
-        let mut region = FlowRegion::of(self.surface, self.rims, [x0, y0, x1, y1]);
-        region.flow(self.steps);
+        region.read(self.surface, self.rims, [x0, y0, x1, y1]);
+        region.flow(self.steps, (3.0 * FLOWING * self.blur_px) as u16);
         let [hxx, hxy, hyy] = band;
         let (near, far) = (3.0 * FROM * self.blur_px, 3.0 * TO * self.blur_px);
         for y in tile.y0..tile.y0 + tile.rows {
@@ -80,47 +86,53 @@ impl<'s> EndBlur<'s> {
 }
 
 impl FlowRegion {
-    fn of(surface: &Surface, rims: &Rims, [x0, y0, x1, y1]: [usize; 4]) -> Self {
-        let (width, height) = (x1 - x0, y1 - y0);
-        let copied =
-            |plane: &crate::raster::Plane<f32>| (y0..y1).flat_map(|y| &plane.row(y)[x0..x1]).copied().collect();
-        let links: Vec<u8> = (y0..y1).flat_map(|y| &surface.links_plane().row(y)[x0..x1]).copied().collect();
-        let over = |bit: u8, is_inside: &dyn Fn(usize) -> bool| {
-            let flow = |(i, &l): (usize, &u8)| if l & bit != 0 && is_inside(i) { FLOW } else { 0.0 };
-            links.iter().enumerate().map(flow).collect()
-        };
-        Self {
-            x0,
-            y0,
-            width,
-            height,
-            normal: surface.normal_planes().map(copied),
-            right: over(links::RIGHT, &|i| i % width + 1 < width),
-            down: over(links::DOWN, &|i| i + width < width * height),
-            distance: rims.distances([x0, y0, x1, y1]),
-            links,
+    /// What lies in a rectangle, from column and row to column and row.
+    fn read(&mut self, surface: &Surface, rims: &Rims, [x0, y0, x1, y1]: [usize; 4]) {
+        (self.x0, self.y0, self.width, self.height) = (x0, y0, x1 - x0, y1 - y0);
+        for (to, plane) in self.normal.iter_mut().zip(surface.normal_planes()) {
+            to.clear();
+            (y0..y1).for_each(|y| to.extend_from_slice(&plane.row(y)[x0..x1]));
         }
+        [&mut self.right, &mut self.down].into_iter().for_each(Vec::clear);
+        self.links.clear();
+        let flow = |links: u8, bit: u8| if links & bit != 0 { FLOW } else { 0.0 };
+        for y in y0..y1 {
+            let links = &surface.links_plane().row(y)[x0..x1];
+            self.links.extend_from_slice(links);
+            self.right.extend(links[..links.len() - 1].iter().map(|&l| flow(l, links::RIGHT)));
+            self.right.push(0.0);
+            let is_last = y + 1 == y1;
+            self.down.extend(links.iter().map(|&l| if is_last { 0.0 } else { flow(l, links::DOWN) }));
+        }
+        rims.distances([x0, y0, x1, y1], &mut self.distance);
     }
     fn index(&self, x: usize, y: usize) -> usize {
         (y - self.y0) * self.width + x - self.x0
     }
-    fn flow(&mut self, steps: usize) {
-        let mut next = vec![0.0; self.width * self.height];
-        let nothing = vec![0.0; self.width];
-        for channel in &mut self.normal {
+    /// `within`: thirds of a pixel from an end up to which normals flow.
+    fn flow(&mut self, steps: usize, within: u16) {
+        let Self { width, height, normal, right, down, next, distance, .. } = self;
+        let (width, last) = (*width, *height - 1);
+        let row = |y: usize| y * width..(y + 1) * width;
+        // The columns of each row from the first to the last pixel that flows.
+        let spans: Vec<Range<usize>> = (0..=last)
+            .map(|y| {
+                let flows = |d: &u16| *d <= within;
+                let first = distance[row(y)].iter().position(flows).unwrap_or(width);
+                first..distance[row(y)].iter().rposition(flows).map_or(width, |x| x + 1)
+            })
+            .collect();
+        let nothing = vec![0.0; width];
+        for channel in normal {
+            next.clone_from(channel);
             for _ in 0..steps {
-                for y in 0..self.height {
-                    let row = y * self.width..(y + 1) * self.width;
-                    let beside = |y: Option<usize>| {
-                        let y = y.filter(|&y| y < self.height).unwrap_or(y_of(&row, self.width));
-                        &channel[y * self.width..(y + 1) * self.width]
-                    };
-                    let upward = if y > 0 { &self.down[row.start - self.width..row.start] } else { &nothing };
-                    let sides = Sides { right: &self.right[row.clone()], up: upward, down: &self.down[row.clone()] };
-                    let rows = [beside(y.checked_sub(1)), &channel[row.clone()], beside(Some(y + 1))];
-                    flow_row(rows, sides, &mut next[row]);
+                for (y, span) in spans.iter().enumerate().filter(|(_, span)| !span.is_empty()) {
+                    let up = if y > 0 { &down[row(y - 1)] } else { &nothing[..] };
+                    let sides = Sides { right: &right[row(y)], up, down: &down[row(y)] };
+                    let rows = [y.saturating_sub(1), y, (y + 1).min(last)].map(|y| &channel[row(y)]);
+                    flow_row(rows, sides, span.clone(), &mut next[row(y)]);
                 }
-                std::mem::swap(channel, &mut next);
+                std::mem::swap(channel, next);
             }
         }
     }
@@ -146,10 +158,6 @@ impl FlowRegion {
     }
 }
 
-fn y_of(row: &std::ops::Range<usize>, width: usize) -> usize {
-    row.start / width
-}
-
 /// What flows over the sides of a row's pixels.
 #[derive(Clone, Copy)]
 struct Sides<'r> {
@@ -158,20 +166,41 @@ struct Sides<'r> {
     down: &'r [f32],
 }
 
+/// One step of some columns of a row: each pixel moves toward its linked neighbours.
+fn flow_row(rows: [&[f32]; 3], sides: Sides, span: Range<usize>, out: &mut [f32]) {
+    let (n, [above, here, below]) = (out.len(), rows);
+    let mut at_border = |x: usize| {
+        let toward = |flow: f32, value: f32| flow * (value - here[x]);
+        let mut flown = here[x] + toward(sides.up[x], above[x]) + toward(sides.down[x], below[x]);
+        if x + 1 < n {
+            flown += toward(sides.right[x], here[x + 1]);
+        }
+        if x > 0 {
+            flown += toward(sides.right[x - 1], here[x - 1]);
+        }
+        out[x] = flown;
+    };
+    [0, n - 1].into_iter().filter(|x| span.contains(x)).for_each(&mut at_border);
+    let (from, to) = (span.start.max(1), span.end.min(n - 1));
+    if from < to {
+        let left = &sides.right[from - 1..to - 1];
+        let flows = [&sides.up[from..to], &sides.down[from..to], &sides.right[from..to], left];
+        let beside = [&above[from..to], &below[from..to], &here[from + 1..to + 1], &here[from - 1..to - 1]];
+        flow_inside(flows, beside, &here[from..to], &mut out[from..to]);
+    }
+}
+
 crate::widest! {
-    /// One step of a row: each pixel moves toward its linked neighbours.
-    fn flow_row(rows: [&[f32]; 3], sides: Sides, out: &mut [f32]) {
+    /// Pixels move toward their neighbours above, below, at the right and at the left.
+    fn flow_inside(flows: [&[f32]; 4], beside: [&[f32]; 4], here: &[f32], out: &mut [f32]) {
         let n = out.len();
-        let [above, here, below] = rows.map(|row| &row[..n]);
-        let (right, up, down) = (&sides.right[..n], &sides.up[..n], &sides.down[..n]);
+        let [up, down, right, left] = flows.map(|flow| &flow[..n]);
+        let [above, below, after, before] = beside.map(|value| &value[..n]);
+        let here = &here[..n];
         for i in 0..n {
-            out[i] = here[i] + up[i] * (above[i] - here[i]) + down[i] * (below[i] - here[i]);
-        }
-        for i in 0..n.saturating_sub(1) {
-            out[i] += right[i] * (here[i + 1] - here[i]);
-        }
-        for i in 1..n {
-            out[i] += right[i - 1] * (here[i - 1] - here[i]);
+            let h = here[i];
+            let upright = h + up[i] * (above[i] - h) + down[i] * (below[i] - h);
+            out[i] = upright + right[i] * (after[i] - h) + left[i] * (before[i] - h);
         }
     }
 }

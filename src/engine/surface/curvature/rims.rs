@@ -55,37 +55,23 @@ impl Rims {
     }
     /// The distance of each pixel of a rectangle (from column and row to column and row) to the nearest in it, in
     /// thirds of a pixel, steps counting 3 and diagonal ones 4.
-    pub fn distances(&self, [x0, y0, x1, y1]: [usize; 4]) -> Vec<u16> {
-        let width = x1 - x0;
-        let mut distance = vec![u16::MAX / 2; width * (y1 - y0)];
+    pub fn distances(&self, [x0, y0, x1, y1]: [usize; 4], distance: &mut Vec<u16>) {
+        let (width, height) = (x1 - x0, y1 - y0);
+        distance.clear();
+        distance.resize(width * height, u16::MAX / 2);
         for rim in self.rows(y0..y1).iter().filter(|rim| (x0..x1).contains(&(rim.x as usize))) {
             distance[(rim.y as usize - y0) * width + rim.x as usize - x0] = 0;
         }
-        let mut sweep = |i: usize, beside: [Option<usize>; 4]| {
-            let away = beside.into_iter().zip([3, 4, 3, 4]).filter_map(|(j, step)| Some(distance[j?] + step));
-            distance[i] = away.fold(distance[i], u16::min);
-        };
-        let is_left = |i: usize| !i.is_multiple_of(width);
-        let is_right = |i: usize| i % width + 1 < width;
-        for i in 0..width * (y1 - y0) {
-            let above = i.checked_sub(width);
-            let (left, right) = (is_left(i).then_some(1), is_right(i).then_some(1));
-            let beside =
-                [left.map(|_| i - 1), above.zip(left).map(|(j, _)| j - 1), above, above.zip(right).map(|(j, _)| j + 1)];
-            sweep(i, beside);
+        for y in 0..height {
+            let (above, row) = distance[..(y + 1) * width].split_at_mut(y * width);
+            step_from_row(&above[y.saturating_sub(1) * width..], row);
+            step_along(row.iter_mut());
         }
-        for i in (0..width * (y1 - y0)).rev() {
-            let below = Some(i + width).filter(|&j| j < width * (y1 - y0));
-            let (left, right) = (is_left(i).then_some(1), is_right(i).then_some(1));
-            let beside = [
-                right.map(|_| i + 1),
-                below.zip(right).map(|(j, _)| j + 1),
-                below,
-                below.zip(left).map(|(j, _)| j - 1),
-            ];
-            sweep(i, beside);
+        for y in (0..height).rev() {
+            let (row, below) = distance[y * width..].split_at_mut(width);
+            step_from_row(&below[..width.min(below.len())], row);
+            step_along(row.iter_mut().rev());
         }
-        distance
     }
     /// Puts the means of their members into a map.
     pub fn continue_in(&self, plane: &mut Plane<f32>) {
@@ -95,6 +81,34 @@ impl Rims {
         // Where a piece is too thin to have members, such as a wire, its own differences stay.
         for (rim, mean) in self.pixels.iter().zip(means).filter(|(rim, _)| rim.members != 0) {
             plane.set(rim.x as usize, rim.y as usize, mean);
+        }
+    }
+}
+
+/// Steps of 3 along a row.
+fn step_along<'d>(row: impl Iterator<Item = &'d mut u16>) {
+    row.fold(u16::MAX / 2, |before, distance| {
+        *distance = (*distance).min(before + 3);
+        *distance
+    });
+}
+
+crate::widest! {
+    /// Steps from the row above or below, straight ones of 3 and diagonal ones of 4; no row is empty.
+    fn step_from_row(beside: &[u16], row: &mut [u16]) {
+        if beside.is_empty() {
+            return;
+        }
+        let n = row.len();
+        let beside = &beside[..n];
+        for i in 0..n {
+            row[i] = row[i].min(beside[i] + 3);
+        }
+        for i in 1..n {
+            row[i] = row[i].min(beside[i - 1] + 4);
+        }
+        for i in 0..n - 1 {
+            row[i] = row[i].min(beside[i + 1] + 4);
         }
     }
 }

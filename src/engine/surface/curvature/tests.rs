@@ -116,7 +116,8 @@ fn the_fast_tensor_is_the_reference_everywhere() {
         // Nearer to an end blurred normals flow instead (`ends`).
         let size = surface.size();
         let (width, height) = (size.width as usize, size.height as usize);
-        let distances = surface.rims().distances([0, 0, width, height]);
+        let mut distances = Vec::new();
+        surface.rims().distances([0, 0, width, height], &mut distances);
         for y in 0..height {
             for x in (y % 3..width).step_by(3) {
                 if blur_px > 0.0 && f32::from(distances[y * width + x]) < 9.0 * blur_px {

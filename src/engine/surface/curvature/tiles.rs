@@ -1,7 +1,7 @@
 //! The curvature tensor of a whole map, tile by tile: blur, slopes and differences while the tile is in the cache.
 //! Floor 2. The plain version that reads like the paper is `reference`.
 
-use super::ends::EndBlur;
+use super::ends::{EndBlur, FlowRegion};
 use super::tile_rect::TileRect;
 use super::{Curvature, slope, tensor};
 use crate::math::simd::prefetch;
@@ -39,15 +39,15 @@ pub(super) fn compute(surface: &Surface, blur_px: f32, recycled: Option<Curvatur
     let band = BAND_ROWS * size.width as usize;
     let [hxx, hxy, hyy] = planes.each_mut().map(|p| p.par_chunks_mut(band));
     (hxx, hxy, hyy).into_par_iter().enumerate().for_each_init(
-        || TileScratch::new(taps.len() - 1),
-        |scratch, (i, (hxx, hxy, hyy))| {
+        || (TileScratch::new(taps.len() - 1), FlowRegion::default()),
+        |(scratch, region), (i, (hxx, hxy, hyy))| {
             for tile in TileRect::of_band(size, i * BAND_ROWS) {
                 if tile.is_empty(surface) {
                     [&mut *hxx, hxy, hyy].into_iter().for_each(|plane| tile.clear(plane, size, 0.0));
                 } else {
                     scratch.tensor_tile(surface, &taps, tile, [&mut *hxx, hxy, hyy]);
                     if let Some(ends) = &ends {
-                        ends.fill(tile, [&mut *hxx, hxy, hyy]);
+                        ends.fill(tile, region, [&mut *hxx, hxy, hyy]);
                     }
                 }
             }
