@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::jobs::{JobKind, JobResult, Jobs};
-use crate::session::actions::pictures::PicturePart;
+use crate::session::PicturePart;
 use crate::session::brushes::EXTENSIONS;
 use crate::session::storage::{DOCUMENTS, PICTURES, SAVED, exported, with_document_extension};
 use std::path::PathBuf;

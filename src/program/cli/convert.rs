@@ -2,7 +2,9 @@
 //! Floor 7. The formats themselves are in `io`; losses are reported.
 
 use super::force::Force;
-use super::{LimitArgs, progress, render};
+use super::painted::{refuse_incomplete, scaled};
+use super::told::tell;
+use super::{LimitArgs, progress, values};
 use crate::Result;
 use crate::document::Document;
 use crate::io::export::{ExportFormat, ExportOptions, Output, OutputFile, layers};
@@ -25,7 +27,7 @@ pub struct ConvertArgs {
     #[arg(value_name = "TO")]
     to: PathBuf,
     /// Size of the result relative to the canvas
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = render::scale)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::scale)]
     scale: f32,
     /// Only the part of a picture that the surface covers
     #[arg(long)]
@@ -35,13 +37,13 @@ pub struct ConvertArgs {
     #[arg(long)]
     layers: bool,
     /// Bits a channel: 8 or 16 of a .png or .tif (8 where absent), 16 or 32 of an .exr (16)
-    #[arg(long, value_name = "N", value_parser = depth)]
+    #[arg(long, value_name = "N", value_parser = values::depth)]
     bits: Option<u8>,
     /// Dots per inch that a .png says it is printed at
     #[arg(long, value_name = "N", value_parser = dots_per_inch)]
     dpi: Option<f32>,
     /// What shows where a picture is transparent, as #rrggbb
-    #[arg(long, value_name = "COLOUR", value_parser = render::color)]
+    #[arg(long, value_name = "COLOUR", value_parser = values::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
     #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,
@@ -51,17 +53,6 @@ pub struct ConvertArgs {
     force: Force,
     #[command(flatten)]
     limits: LimitArgs,
-}
-
-pub(super) fn bits(text: &str) -> std::result::Result<u8, String> {
-    let bits = text.parse().ok().filter(|bits| [8, 16].contains(bits));
-    bits.ok_or_else(|| "a channel has 8 or 16 bits".to_owned())
-}
-
-/// Of a picture; which of them it may have is its format's.
-pub(super) fn depth(text: &str) -> std::result::Result<u8, String> {
-    let bits = text.parse().ok().filter(|bits| [8, 16, 32].contains(bits));
-    bits.ok_or_else(|| "a channel has 8, 16 or 32 bits".to_owned())
 }
 
 fn dots_per_inch(text: &str) -> std::result::Result<f32, String> {
@@ -74,7 +65,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
         let output = Output::of(&args.to)?;
         let OpenedDocument { document, notes, reads, .. } = open(&args.from, &args.limits.budget())?;
         let terms = terms(args, output, reads);
-        let document = render::scaled(&args.from, args.scale, &args.limits, document)?;
+        let document = scaled(&args.from, args.scale, &args.limits, document)?;
         args.limits.room_to_paint(&args.from, &document)?;
         match output {
             Output::Project | Output::Psd => {
@@ -82,7 +73,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
                 whole(&args.to, &document, &terms)?;
             }
             Output::Picture(format) => {
-                render::refuse_incomplete(&args.from, &document)?;
+                refuse_incomplete(&args.from, &document)?;
                 picture(args, &document, format, terms)?;
             }
         }
@@ -168,19 +159,4 @@ fn covered(document: &Document) -> Option<Rect> {
         }
     }
     Some(rect)
-}
-
-/// What could not be converted goes to standard error: it is no failure, but the user must see it.
-pub fn tell(file: &Path, notes: &[String]) {
-    for note in notes {
-        // A note that repeats an error already names its file.
-        let named = format!("{}", file.display());
-        let sentence = if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
-        say(&format!("rilievo: {sentence}"));
-    }
-}
-
-/// A line on standard error, from which a name cannot steer the terminal.
-pub fn say(line: &str) {
-    eprintln!("{}", super::printable(line));
 }

@@ -11,10 +11,13 @@ mod force;
 mod info;
 pub mod limits;
 mod open;
+mod painted;
 mod progress;
 mod render;
 mod replay;
 mod shape;
+mod told;
+mod values;
 mod view;
 
 pub use limits::LimitArgs;

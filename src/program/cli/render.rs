@@ -2,7 +2,9 @@
 //! Floor 7.
 
 use super::force::Force;
-use super::{LimitArgs, convert, progress};
+use super::painted::{refuse_incomplete, scaled};
+use super::told::tell;
+use super::{LimitArgs, progress, values};
 use crate::document::source::{DepthConvention, MapSource, MaskSource, Near, NormalConvention};
 use crate::document::{Document, SurfaceSource};
 use crate::io::export::{ExportFormat, ExportOptions, OutputFile};
@@ -41,30 +43,25 @@ pub struct RenderArgs {
     #[arg(long, value_name = "FILE", requires = "maps")]
     mask: Option<PathBuf>,
     /// Size of the picture relative to the canvas
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = scale)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = values::scale)]
     scale: f32,
     /// Only the layer of this name
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
     /// What shows where the picture is transparent, as #rrggbb
-    #[arg(long, value_name = "COLOUR", value_parser = color)]
+    #[arg(long, value_name = "COLOUR", value_parser = values::color)]
     background: Option<Color>,
     /// Quality of a JPEG, 1 to 100
     #[arg(long, value_name = "N", default_value_t = ExportOptions::default().quality,
           value_parser = clap::value_parser!(u8).range(1..=100))]
     quality: u8,
     /// Bits a channel: 8 or 16 of a .png or .tif (8 where absent), 16 or 32 of an .exr (16)
-    #[arg(long, value_name = "N", value_parser = convert::depth)]
+    #[arg(long, value_name = "N", value_parser = values::depth)]
     bits: Option<u8>,
     #[command(flatten)]
     force: Force,
     #[command(flatten)]
     limits: LimitArgs,
-}
-
-pub(super) fn scale(text: &str) -> std::result::Result<f32, String> {
-    let factor = text.parse().ok().filter(|f| (0.001..=100.0).contains(f));
-    factor.ok_or_else(|| "a factor is a number between 0.001 and 100".to_owned())
 }
 
 fn convention(word: &str) -> std::result::Result<NormalConvention, String> {
@@ -74,10 +71,6 @@ fn convention(word: &str) -> std::result::Result<NormalConvention, String> {
 fn near(word: &str) -> std::result::Result<Near, String> {
     Near::from_name(word)
         .ok_or_else(|| format!("one of {}", Near::ALL.iter().map(|(_, name)| *name).collect::<Vec<_>>().join(", ")))
-}
-
-pub(super) fn color(text: &str) -> std::result::Result<Color, String> {
-    Color::parse(text).ok_or_else(|| "a colour reads #rrggbb or #rrggbbaa".to_owned())
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
@@ -99,7 +92,7 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         };
         progress::shown(|progress| target.write_document(&shown, &options, &args.limits.budget(), progress))?;
         // Beside an error, notes would only hide it.
-        convert::tell(&args.document, &notes);
+        tell(&args.document, &notes);
         Ok(())
     })
 }
@@ -138,16 +131,6 @@ fn load(args: &RenderArgs) -> Result<LoadedDocument> {
     Ok(LoadedDocument { document, notes, reads })
 }
 
-/// Refuses layers that would paint black because their picture is missing.
-pub(super) fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> {
-    for (path, layer) in document.walk() {
-        if let Some((field, reason)) = layer.content.lacks().filter(|_| layer.visible) {
-            return Err(Error::invalid(file, format!("{path}.{field}"), reason));
-        }
-    }
-    Ok(())
-}
-
 /// The object from the command line, if any.
 fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSource> {
     let mut name = |path: &Option<PathBuf>| path.as_deref().map(|path: &Path| given.add(path));
@@ -162,19 +145,6 @@ fn other_object(args: &RenderArgs, given: &mut UserFiles) -> Option<SurfaceSourc
         mask: mask.map(|file| MaskSource::File { file, channel: None, invert: false }),
         matrix: None,
     })
-}
-
-/// The document at another size, within the limits.
-pub(super) fn scaled(file: &Path, factor: f32, limits: &LimitArgs, document: Document) -> Result<Document> {
-    if factor == 1.0 {
-        return Ok(document);
-    }
-    let size = document.size.scaled(factor);
-    limits.budget().size(file, size.width.into(), size.height.into())?;
-    // A surface is made anew of normals, depth and coverage; layers are copied.
-    let a_pixel = if document.surface.is_some() { 40 } else { 8 };
-    limits.budget().room(file, &format!("a canvas of {size} pixels"), size.area() as u64 * a_pixel)?;
-    document.scaled(factor).map_err(|error| Error::invalid(file, "--scale", error))
 }
 
 fn named(args: &RenderArgs, document: &Document, name: &str) -> Result<crate::document::LayerId> {

@@ -45,6 +45,6 @@ pub fn run(args: &ReplayArgs) -> Result<()> {
     })?;
     session.close();
     // What was refused, and what was found out about files.
-    super::convert::tell(&args.file, &session.notes);
+    super::told::tell(&args.file, &session.notes);
     Ok(())
 }

@@ -2,7 +2,7 @@
 //! Floor 7. What a shape is made of is `document::parts`; the files are `io::export::shape`'s.
 
 use super::force::Force;
-use super::{LimitArgs, convert};
+use super::{LimitArgs, values};
 use crate::document::parts::{Inflation, Part, flats};
 use crate::document::{Content, Document, Layer, PixelLayer};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
@@ -47,7 +47,7 @@ pub struct ShapeArgs {
     #[arg(long, value_name = "WORD", default_value = "opengl", value_parser = ["opengl", "directx"])]
     convention: String,
     /// Bits a channel of a PNG: 8 or 16
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = convert::bits)]
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = values::bits)]
     bits: u8,
     /// The kind of file: png, or exr with 32 bits a channel
     #[arg(long, value_name = "FORMAT", default_value = "png", value_parser = ["png", "exr"])]

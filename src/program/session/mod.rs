@@ -4,10 +4,11 @@
 pub mod actions;
 pub mod autosave;
 pub mod brushes;
-pub mod chosen;
+pub mod drawing;
 pub mod first_look;
 mod open_document;
 mod path;
+mod picture_part;
 pub mod property;
 pub mod replay;
 pub mod storage;
@@ -17,8 +18,10 @@ pub mod view;
 pub use actions::Action;
 pub use actions::clipboard::Copied;
 pub use autosave::Autosave;
+pub use open_document::chosen;
 pub use open_document::{CloneSource, Edit, OpenDocument, is_same, looks_same};
 pub use path::{LayerPath, LayerPaths};
+pub use picture_part::PicturePart;
 pub use property::Property;
 pub use view::CanvasView;
 

@@ -1,7 +1,9 @@
 //! An open document: its history, selection, file and view.
 //! Floor 6.
 
-use super::chosen::ChosenLayers;
+pub mod chosen;
+mod drawn;
+
 use super::first_look::FirstLook;
 use super::view::CanvasView;
 use crate::document::{Document, History, LayerId, MaskKind, Part};
@@ -9,6 +11,7 @@ use crate::io::replace::FileStamp;
 use crate::math::{Size, Vec2};
 use crate::paint::Selection;
 use crate::surface::unwrap::{PlaneLayout, UnwrapSettings};
+use chosen::ChosenLayers;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -127,14 +130,6 @@ impl OpenDocument {
     /// The document as shown: with the preview.
     pub fn shown(&self) -> &Document {
         self.preview.as_ref().map_or(self.history.present(), |preview| &preview.document)
-    }
-    /// The document as drawn: a solo layer hides the others.
-    pub fn drawn(&self) -> Document {
-        let shown = self.shown();
-        if self.quick_mask {
-            return under_red(shown);
-        }
-        self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
     }
     /// What the surface is unwrapped with, while it is seen so.
     pub fn unwrapped(&self) -> Option<UnwrapSettings> {
@@ -314,44 +309,4 @@ pub fn looks_same(a: &Document, b: &Document) -> bool {
     let (old, new) = (&a.parts.list, &b.parts.list);
     let same_parts = old.len() == new.len() && old.iter().zip(new).all(|(a, b)| Arc::ptr_eq(a, b));
     same_layers && same_parts && a.scene().is_same(&b.scene())
-}
-
-/// The document with what is not selected under red.
-fn under_red(document: &Document) -> Document {
-    use crate::document::{Content, Layer, LayerMask};
-    let Some(selected) = document.selected() else { return document.clone() };
-    let coverage = Arc::new(selected.to_plane(document.size.rect()));
-    let kind = MaskKind::File { file: String::new(), coverage };
-    let mask = LayerMask { invert: true, ..LayerMask::new(kind) };
-    let red = Content::Fill(crate::math::srgb::Color { r: 230, g: 20, b: 20, a: 255 });
-    let sheet = Layer { mask: Some(mask), opacity: 0.5, clip_to_surface: false, ..Layer::new("Quick mask", red) };
-    let mut layers = document.layers.clone();
-    layers.push(Arc::new(sheet));
-    Document { layers, ..document.clone() }
-}
-
-/// The document with one layer shown alone; `None` if it has no such layer.
-fn alone(document: &Document, id: LayerId) -> Option<Document> {
-    use crate::document::Layer;
-    fn hide(layers: &[Arc<Layer>], id: LayerId) -> (Vec<Arc<Layer>>, bool) {
-        let mut found = false;
-        let layers = layers.iter().map(|layer| {
-            let mut next = Layer::clone(layer);
-            next.visible = layer.id == id || (layer.visible && layer.content.shapes());
-            if let Some(group) = next.content.group_mut()
-                && layer.id != id
-            {
-                let (inner, inside) = hide(&group.layers, id);
-                group.layers = inner;
-                next.visible = inside;
-            }
-            found |= next.visible;
-            next.clip_below &= layer.id != id;
-            Arc::new(next)
-        });
-        (layers.collect(), found)
-    }
-    document.layer(id)?;
-    let (layers, _) = hide(&document.layers, id);
-    Some(Document { layers, ..document.clone() })
 }

@@ -5,7 +5,7 @@ use super::row::{LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, ha
 use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
 use crate::files::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
-use crate::session::actions::pictures::PicturePart;
+use crate::session::PicturePart;
 use crate::session::actions::{ClipboardAction, LayerAction, NewLayer};
 use crate::session::chosen::{neighbour, range};
 use crate::session::{Action, LayerPath, LayerPaths, Property, Session};

@@ -6,8 +6,8 @@ use crate::document::parts::drawing::{DrawingLook, Ground};
 use crate::document::{Document, Inflation, LayerId};
 use crate::panels::shape::presets;
 use crate::requests::UiRequests;
-use crate::session::actions::parts::{PartAction, Preset, first};
-use crate::session::{Action, LayerPath, OpenDocument, Session};
+use crate::session::actions::parts::{PartAction, Preset};
+use crate::session::{Action, LayerPath, OpenDocument, Session, drawing};
 use eframe::egui::Ui;
 
 /// Layers that are looked at for a drawing.
@@ -31,7 +31,7 @@ pub fn looked(document: &Document, selected: Option<LayerId>) -> Option<(LayerId
     let others = others.filter(|layer| layer.visible && layer.content.paints()).map(|layer| layer.id);
     let mut first = None;
     for id in selected.into_iter().chain(others).take(MOST_LOOKS) {
-        let Some(look) = first::look(document, id) else { continue };
+        let Some(look) = drawing::look(document, id) else { continue };
         if look.has_outline() {
             return Some((id, look));
         }

@@ -4,9 +4,9 @@
 use super::select::{softness, tolerance};
 use super::setter::LayerSetter;
 use crate::document::{DerivedMask, Layer, MaskKind};
+use crate::session::PicturePart;
 use crate::session::Property;
 use crate::session::actions::LayerAction;
-use crate::session::actions::pictures::PicturePart;
 use crate::surface::region::SurfaceRegion;
 use crate::widgets::{NumberField, ValueChange, check, choice_row, title};
 use eframe::egui::Ui;

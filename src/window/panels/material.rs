@@ -4,8 +4,8 @@
 use super::colors;
 use super::setter::LayerSetter;
 use crate::math::{Vec2, Vec3, vec2, vec3};
+use crate::session::PicturePart;
 use crate::session::Property;
-use crate::session::actions::pictures::PicturePart;
 use crate::shading::{
     Environment, FeatureScale, Features, Light, LightKind, Model, Projection, RadianceScaling, Scaling, Shading, Term,
 };

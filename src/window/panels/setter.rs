@@ -3,8 +3,8 @@
 
 use crate::files::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
+use crate::session::PicturePart;
 use crate::session::actions::LayerAction;
-use crate::session::actions::pictures::PicturePart;
 use crate::session::{Action, LayerPath, Property};
 use crate::widgets::{ValueChange, named};
 use eframe::egui::Ui;

@@ -6,7 +6,7 @@ use crate::document::Progress;
 use crate::jobs::{JobKind, JobResult, short};
 use crate::session::Action;
 use crate::session::actions::ViewAction;
-use crate::session::actions::files::read_picture;
+use crate::session::actions::placing::read_picture;
 use crate::surface::Surface;
 use crate::surface::unwrap::{SOLVES, UnwrapSettings};
 use std::path::PathBuf;

@@ -1,22 +1,19 @@
 //! Opening and saving documents, and placing pictures in documents. Floor 6. The formats are in `io`.
 
-use crate::document::parts::PartMaps;
+mod maps;
+
+pub use maps::{add_maps, replace_maps};
+
 use crate::document::view::UnwrapOptions;
-use crate::document::{Content, Document, Highlights, Layer, Live, Progress, SurfaceSource};
+use crate::document::{Content, Document, Highlights, Layer, Progress};
 use crate::io::export::shape::{ShapeFiles, ShapeMap, ShapeOptions};
 use crate::io::export::{ExportOptions, Output, OutputFile};
-use crate::io::{Budget, Overwrite, Terms, files::read_file, maps, picture, save};
+use crate::io::{Budget, Overwrite, Terms, save};
 use crate::math::{Size, Vec2, srgb::Color};
-use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
-use crate::raster::{Outside, Picture};
-use crate::session::actions::layers::above;
-use crate::session::actions::parts;
-use crate::session::actions::pictures::{self, PicturePart};
-use crate::session::actions::unwrapped;
+use crate::session::actions::placing::{place, read_picture};
+use crate::session::actions::{pictures, unwrapped};
 use crate::session::replay::{ReplayValue, actions};
-use crate::session::{OpenDocument, Session, brushes, storage};
-use crate::surface::operator::reflection;
-use crate::surface::{Anchor, Bend, Operator};
+use crate::session::{OpenDocument, PicturePart, Session, brushes, storage};
 use crate::{Error, Result};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -207,143 +204,4 @@ pub fn export_maps(
     let no_shape = || Error::unsupported(file, "the document has no shape whose maps could be exported");
     let surface = document.surface.as_ref().ok_or_else(no_shape)?;
     ShapeFiles::new(file, maps, options, terms)?.write(surface)
-}
-
-/// A picture of the user's own, with the name it goes by.
-pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
-    let bytes = read_file(file, Budget::of_this_machine().file_bytes)?;
-    let picture = picture::decode(file, &bytes, &Budget::of_this_machine())?;
-    Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
-}
-
-/// A picture becomes an image layer, bent by the current operator (by normals, if that is flat), pinned at `at`.
-/// Without an open document it becomes a document of its own.
-pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
-    let operator = match session.operator {
-        Operator::None => DROPPED,
-        operator => operator,
-    };
-    let Some(tab) = session.active_mut() else {
-        let tab = OpenDocument::new(name, of_picture(name, picture), None);
-        return session.add_document(tab);
-    };
-    let document = tab.document();
-    let operator = if document.surface.is_some() { operator } else { Operator::None };
-    let at = at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
-    let lies = Lies {
-        placement: placement(document, operator, at),
-        outside: Outside::Mirror,
-        bend: Bend { operator, anchors: vec![Anchor::fixed(at)], ..Bend::default() },
-    };
-    add_image(tab, name, picture, lies, "Place image");
-}
-
-/// How a picture lies on the canvas.
-pub(super) struct Lies {
-    pub placement: Placement,
-    pub outside: Outside,
-    pub bend: Bend,
-}
-
-/// A picture becomes an image layer above the selected one, which is selected; whether it could.
-pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, lies: Lies, label: &str) -> bool {
-    let document = tab.document();
-    let Lies { placement, outside, bend } = lies;
-    let source = PictureSource::new(free_file(document, name), picture, Adjust::default());
-    let filter = ImageFilter::Antialias;
-    let image = PlacedImage { source, placement, outside, bend, filter, frame: Default::default() };
-    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-    let layer = Layer::new(document.free_layer_name(&stem), Content::Image(Live::new(image)));
-    let id = layer.id;
-    let next = document.with_inserted(layer, above(tab));
-    let is_added = next.is_some_and(|next| tab.commit(label, next));
-    if is_added {
-        tab.selected = Some(id);
-    }
-    is_added
-}
-
-/// Where a picture lies that is pinned at a point: over the canvas, or over all that a mirror looks up.
-fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
-    match (operator, &document.surface) {
-        (Operator::Reflection { alpha, .. }, Some(surface)) => {
-            let (x, y) = surface.pixel_of(at);
-            let turn = reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
-            Placement::covering_mirror(document.size, alpha, turn)
-        }
-        _ => Placement::covering(document.size),
-    }
-}
-
-/// Replaces the surface beneath the layers, as a step; it is stretched to the canvas, with a note. Fails if no surface
-/// of the canvas's size can be made of it.
-pub fn replace_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
-    let maps::ImportedSurface { surface, findings, files } = import;
-    let Some(tab) = session.active_mut() else { return Ok(()) };
-    let (canvas, found) = (tab.document().size, surface.size());
-    let mut notes = findings.notes;
-    let placed = source.map();
-    let surface = if found == canvas && placed.is_none() {
-        Arc::new(surface)
-    } else if let Some(map) = &placed {
-        Arc::new(surface).onto(canvas, Some(map)).map_err(|error| Error::unsupported("maps", error))?
-    } else {
-        notes.push(format!("The maps have {found} pixels and were stretched to the canvas, {canvas}."));
-        Arc::new(surface.stretched(canvas).map_err(|error| Error::unsupported("maps", error))?)
-    };
-    let is_whole = found == canvas || placed.is_some();
-    let next = Document {
-        surface: Some(surface),
-        surface_source: is_whole.then(|| Arc::new(source.clone())),
-        surface_files: Arc::new(if is_whole { files } else { Default::default() }),
-        ..tab.document().clone()
-    };
-    let maps = next.surface.clone();
-    if tab.commit("Replace maps", next.with_maps(maps).with_selections_found()) {
-        tab.reads.extend(storage::map_files(source));
-        session.notes.extend(notes);
-    }
-    Ok(())
-}
-
-/// A part of maps in front of all others, stretched to the canvas, as a step. Fails if no surface of the canvas's size
-/// can be made of them.
-pub fn add_maps(session: &mut Session, source: &SurfaceSource, import: maps::ImportedSurface) -> Result<()> {
-    let maps::ImportedSurface { surface, findings, files } = import;
-    let Some(tab) = session.active_mut() else { return Ok(()) };
-    let (canvas, found) = (tab.document().size, surface.size());
-    let mut notes = findings.notes;
-    if found != canvas {
-        notes.push(format!("The maps have {found} pixels and were stretched to the canvas, {canvas}."));
-    }
-    let surface = Arc::new(surface).onto(canvas, None).map_err(|error| Error::unsupported("maps", error))?;
-    parts::new::add_maps(tab, PartMaps { source: Arc::new(source.clone()), files: Arc::new(files), surface });
-    tab.reads.extend(storage::map_files(source));
-    session.notes.extend(notes);
-    Ok(())
-}
-
-/// The operator of a dropped picture if the current one is flat: like a reflection that is still recognisable.
-const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
-
-/// A picture as a document of its own size.
-pub fn of_picture(name: &str, picture: Picture) -> Document {
-    let size = picture.size;
-    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
-    Document { layers: vec![Arc::new(storage::flat_image(&stem, name, picture, size))], ..Document::empty(size) }
-}
-
-/// A file name that no other picture of the document has.
-pub(super) fn free_file(document: &Document, name: &str) -> String {
-    let taken = |name: &str| document.walk().iter().any(|(_, layer)| layer.content.files().contains(&name));
-    let path = Path::new(name);
-    let (stem, extension) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
-    let mut free = name.to_owned();
-    for i in 2.. {
-        if !taken(&free) {
-            break;
-        }
-        free = format!("{}-{i}.{}", stem.to_string_lossy(), extension.to_string_lossy());
-    }
-    free
 }

@@ -1,11 +1,13 @@
 //! Actions on the layer tree and its layers. Floor 6. The edits themselves are in `document::edit` and
-//! `document::several`, new layers in `new_layers`.
+//! `document::several`, new layers in `new`.
 
-use super::flattening::undisplaced;
-pub(super) use super::layer_steps::copied;
-use super::layer_steps::{cleared, duplicated, homed, kept, moves, ungrouped};
-pub use super::new_layers::NewLayer;
-use super::new_layers::{made, model_name, selecting};
+mod flattening;
+mod new;
+mod steps;
+
+pub use new::NewLayer;
+pub(super) use steps::copied;
+
 use crate::document::warp::can_be_warped;
 use crate::document::{Content, Document, Group, Layer, LayerId, LayerMask, LayerSlot, Live, MaskKind, Mesh, Progress};
 use crate::math::{PlaneMap, Vec2, vec2};
@@ -17,7 +19,10 @@ use crate::session::{LayerPath, LayerPaths, OpenDocument, Property, Session};
 use crate::shading::{Model, Shading};
 use crate::tools::frame::Carried;
 use crate::tools::transform::{self, mapped};
+use flattening::undisplaced;
+use new::{made, model_name, selecting};
 use std::sync::Arc;
+use steps::{cleared, duplicated, homed, kept, moves, ungrouped};
 
 actions! {
     /// `layer` is always the path before the action; where it may be several, what is in a group among them goes along.

@@ -1,7 +1,7 @@
 //! Pictures that layers use, chosen from the user's files: read on any thread, then put into the layer. Floor 6.
 //! Reading files is in `io`.
 
-use super::files::{free_file, read_picture};
+use super::placing::{free_file, read_picture};
 use crate::Result;
 use crate::document::source::NormalConvention;
 use crate::document::{Content, DetailSource, Document, LayerId, LayerMask, Live, MaskKind, NormalLayer};
@@ -9,42 +9,11 @@ use crate::io::{Budget, files::read_file, maps::detail, picture};
 use crate::math::{Size, Vec2};
 use crate::paint::{Adjust, PictureSource};
 use crate::raster::{Picture, Plane};
-use crate::session::OpenDocument;
-use crate::session::replay::names;
+use crate::session::{OpenDocument, PicturePart};
 use crate::shading::{Environment, LitSphere};
 use crate::surface::DetailMap;
 use std::path::Path;
 use std::sync::Arc;
-
-rilievo_engine::named! {
-    /// The part of a layer that is a picture. The label is the title of a file dialog for it.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum PicturePart {
-        /// What a placed image shows.
-        Image = "image" => "Picture of the layer",
-        Mask = "mask" => "Mask of the layer",
-        Environment = "environment" => "Environment",
-        /// The lit sphere; for convex features if there is a concave one.
-        Sphere = "sphere" => "Lit sphere",
-        ConcaveSphere = "concave sphere" => "Lit sphere of hollows",
-        /// The normals of a normal layer.
-        Detail = "detail" => "Detail normals",
-    }
-}
-
-names!(PicturePart);
-
-impl PicturePart {
-    fn step(self) -> &'static str {
-        match self {
-            PicturePart::Image => "Replace picture",
-            PicturePart::Mask => "Layer mask",
-            PicturePart::Environment => "Environment",
-            PicturePart::Sphere | PicturePart::ConcaveSphere => "Lit sphere",
-            PicturePart::Detail => "Detail normals",
-        }
-    }
-}
 
 /// A part as it was read.
 pub struct ReadPart {

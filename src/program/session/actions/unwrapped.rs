@@ -9,7 +9,7 @@ use crate::io::export::{ExportFormat, ExportOptions, OutputFile, encode};
 use crate::math::srgb::Color;
 use crate::raster::{Outside, Picture, TileGrid, picture::Texels};
 use crate::session::Session;
-use crate::session::actions::files::{Lies, add_image};
+use crate::session::actions::placing::{Lies, add_image};
 use crate::{Error, Result};
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 
 mod values;
 
-use super::actions::pictures::PicturePart;
+use super::PicturePart;
 use super::replay::actions;
 use crate::document::{
     Content, DerivedMask, DetailSource, Layer, LayerLabel, LayerLock, LayerTransform, Live, NormalLayer,

@@ -5,12 +5,11 @@ use super::{Refusal, free_id, new};
 use crate::document::parts::Part;
 use crate::document::parts::drawing::{DrawingLook, Ground, without_ground};
 use crate::document::parts::flats::parts_of_flats;
-use crate::document::{
-    Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress, flatten_layer,
-};
+use crate::document::{Content, Document, Inflation, Layer, LayerId, LayerSlot, Live, PixelLayer, Progress};
 use crate::math::{srgb::Color, vec3};
 use crate::raster::{BlendMode, TileGrid};
 use crate::session::OpenDocument;
+use crate::session::drawing::painted_telling;
 use crate::shading::{Light, LightKind, Model, Shading, Term};
 use std::sync::Arc;
 
@@ -30,23 +29,6 @@ impl FirstShape {
             (tab.part, tab.selected) = (Some(self.part), Some(self.base));
         }
     }
-}
-
-/// What a layer paints on the canvas, without any surface.
-pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
-    painted_telling(document, layer, &Progress::default())
-}
-
-/// The same; `None` if it was given up, too.
-fn painted_telling(document: &Document, layer: LayerId, progress: &Progress) -> Option<TileGrid> {
-    let flat = Document { surface: None, parts: Arc::default(), ..document.clone() };
-    let flat = flat.with_layer(layer, |layer| (layer.visible, layer.opacity) = (true, 1.0))?;
-    flatten_layer(&flat, layer, progress)
-}
-
-/// What a layer of a document looks like as a drawing.
-pub fn look(document: &Document, layer: LayerId) -> Option<DrawingLook> {
-    Some(DrawingLook::of(&painted(document, layer)?, document.size))
 }
 
 /// A layer of a document gets a shape. What is given up has no result that anyone asks for.

@@ -2,13 +2,13 @@
 //! Floor 6. What becomes of them is `shape::relief`'s and `shape::profiles`'.
 
 use super::Refusal;
-use super::first::painted;
 use crate::document::parts::{CoverageFile, Part, ProfilePicture};
 use crate::document::{Document, Layer, LayerId};
 use crate::math::srgb::{decode, encode, luminance, quantise};
 use crate::math::{Vec3, vec3};
 use crate::raster::{Plane, TileGrid};
 use crate::session::OpenDocument;
+use crate::session::drawing::painted;
 use crate::shape::profiles::MOST_PROFILES;
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@ use crate::document::{Content, Document, Progress, flatten};
 use crate::math::Size;
 use crate::math::vec2;
 use crate::raster::Picture;
-use crate::session::actions::files::of_picture;
+use crate::session::actions::placing::of_picture;
 use crate::session::{OpenDocument, Session};
 use std::path::Path;
 

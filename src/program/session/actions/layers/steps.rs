@@ -84,7 +84,7 @@ pub(super) fn cleared(document: &Document, ids: &[LayerId]) -> Option<Step> {
 }
 
 /// A copy under fresh ids.
-pub(super) fn copied(layer: &Layer, name: &str) -> Layer {
+pub(in crate::session::actions) fn copied(layer: &Layer, name: &str) -> Layer {
     let mut copy = Layer { id: LayerId::fresh(), name: name.into(), ..layer.clone() };
     if let Some(group) = copy.content.group_mut() {
         group.layers = group.layers.iter().map(|inner| Arc::new(copied(inner, &inner.name))).collect();

@@ -49,16 +49,16 @@ impl OpenDocument {
         self.chosen_layers.frame.around(document, Framed::new(carried, document, &chosen))
     }
     /// The frame around the chosen layers turns with them from now on.
-    pub(super) fn hold_frame(&mut self, carried: Carried) {
+    pub(in crate::session) fn hold_frame(&mut self, carried: Carried) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
         self.chosen_layers.frame.hold(&document, Framed::new(carried, &document, &layers));
     }
     /// The frame around the chosen layers is turned about this point from now on, by shares of its sides.
-    pub(super) fn set_pivot(&mut self, carried: Carried, share: Vec2) {
+    pub(in crate::session) fn set_pivot(&mut self, carried: Carried, share: Vec2) {
         let (document, layers) = (self.document().clone(), self.outermost_chosen());
         self.chosen_layers.frame.set_pivot(&document, Framed::new(carried, &document, &layers), share);
     }
-    pub(super) fn kept_frame(&self) -> &KeptFrame {
+    pub(in crate::session) fn kept_frame(&self) -> &KeptFrame {
         &self.chosen_layers.frame
     }
     /// Whether more than one layer is chosen.
@@ -83,7 +83,7 @@ impl OpenDocument {
         self.chosen_layers.anchor = anchor.or(self.chosen_layers.anchor);
     }
     /// Chooses the layer that came, or came back, since a document: of several the choice stays.
-    pub(super) fn choose_new_since(&mut self, before: &Document) {
+    pub(in crate::session) fn choose_new_since(&mut self, before: &Document) {
         let document = self.document();
         let came: Vec<LayerId> =
             document.walk().iter().map(|(_, layer)| layer.id).filter(|id| before.layer(*id).is_none()).collect();

@@ -1,8 +1,7 @@
 //! Edits that flatten layers: they can take long, so the window runs them on another thread. Floor 6. Flattening itself
 //! is in `document::flatten`.
 
-use super::LayerAction;
-use super::layers::sibling;
+use super::{LayerAction, sibling};
 use crate::document::{Content, Document, Layer, LayerId, LayerSlot, PixelLayer, Progress, flatten, flatten_layer};
 use crate::raster::TileGrid;
 use crate::session::open_document::Edit;

@@ -1,0 +1,30 @@
+//! What every command does that paints a document: it must be complete, and may be of another size.
+//! Floor 7.
+
+use super::LimitArgs;
+use crate::document::Document;
+use crate::{Error, Result};
+use std::path::Path;
+
+/// Refuses layers that would paint black because their picture is missing.
+pub fn refuse_incomplete(file: &Path, document: &Document) -> Result<()> {
+    for (path, layer) in document.walk() {
+        if let Some((field, reason)) = layer.content.lacks().filter(|_| layer.visible) {
+            return Err(Error::invalid(file, format!("{path}.{field}"), reason));
+        }
+    }
+    Ok(())
+}
+
+/// The document at another size, within the limits.
+pub fn scaled(file: &Path, factor: f32, limits: &LimitArgs, document: Document) -> Result<Document> {
+    if factor == 1.0 {
+        return Ok(document);
+    }
+    let size = document.size.scaled(factor);
+    limits.budget().size(file, size.width.into(), size.height.into())?;
+    // A surface is made anew of normals, depth and coverage; layers are copied.
+    let a_pixel = if document.surface.is_some() { 40 } else { 8 };
+    limits.budget().room(file, &format!("a canvas of {size} pixels"), size.area() as u64 * a_pixel)?;
+    document.scaled(factor).map_err(|error| Error::invalid(file, "--scale", error))
+}

@@ -1,0 +1,19 @@
+//! What commands say on standard error beside an error.
+//! Floor 7.
+
+use std::path::Path;
+
+/// What could not be converted goes to standard error: it is no failure, but the user must see it.
+pub fn tell(file: &Path, notes: &[String]) {
+    for note in notes {
+        // A note that repeats an error already names its file.
+        let named = format!("{}", file.display());
+        let sentence = if note.starts_with(&named) { note.clone() } else { format!("{named}: {note}") };
+        say(&format!("rilievo: {sentence}"));
+    }
+}
+
+/// A line on standard error, from which a name cannot steer the terminal.
+pub fn say(line: &str) {
+    eprintln!("{}", super::printable(line));
+}

@@ -1,0 +1,24 @@
+//! Values that several commands take: factors, bits and colours.
+//! Floor 7.
+
+use crate::math::srgb::Color;
+
+pub fn bits(text: &str) -> std::result::Result<u8, String> {
+    let bits = text.parse().ok().filter(|bits| [8, 16].contains(bits));
+    bits.ok_or_else(|| "a channel has 8 or 16 bits".to_owned())
+}
+
+/// Of a picture; which of them it may have is its format's.
+pub fn depth(text: &str) -> std::result::Result<u8, String> {
+    let bits = text.parse().ok().filter(|bits| [8, 16, 32].contains(bits));
+    bits.ok_or_else(|| "a channel has 8, 16 or 32 bits".to_owned())
+}
+
+pub fn scale(text: &str) -> std::result::Result<f32, String> {
+    let factor = text.parse().ok().filter(|f| (0.001..=100.0).contains(f));
+    factor.ok_or_else(|| "a factor is a number between 0.001 and 100".to_owned())
+}
+
+pub fn color(text: &str) -> std::result::Result<Color, String> {
+    Color::parse(text).ok_or_else(|| "a colour reads #rrggbb or #rrggbbaa".to_owned())
+}

@@ -1,0 +1,106 @@
+//! Pictures that become image layers: where they lie, and what the document calls them.
+//! Floor 6. Pictures that layers have already are `pictures`'.
+
+use crate::Result;
+use crate::document::{Content, Document, Layer, Live};
+use crate::io::{Budget, files::read_file, picture};
+use crate::math::Vec2;
+use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
+use crate::raster::{Outside, Picture};
+use crate::session::actions::layers::above;
+use crate::session::{OpenDocument, Session, storage};
+use crate::surface::operator::reflection;
+use crate::surface::{Anchor, Bend, Operator};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A picture of the user's own, with the name it goes by.
+pub fn read_picture(file: &Path) -> Result<(String, Picture)> {
+    let bytes = read_file(file, Budget::of_this_machine().file_bytes)?;
+    let picture = picture::decode(file, &bytes, &Budget::of_this_machine())?;
+    Ok((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), picture))
+}
+
+/// A picture becomes an image layer, bent by the current operator (by normals, if that is flat), pinned at `at`.
+/// Without an open document it becomes a document of its own.
+pub fn place(session: &mut Session, name: &str, picture: Picture, at: Vec2) {
+    let operator = match session.operator {
+        Operator::None => DROPPED,
+        operator => operator,
+    };
+    let Some(tab) = session.active_mut() else {
+        let tab = OpenDocument::new(name, of_picture(name, picture), None);
+        return session.add_document(tab);
+    };
+    let document = tab.document();
+    let operator = if document.surface.is_some() { operator } else { Operator::None };
+    let at = at.clamp(Vec2::ZERO, Vec2::new(document.size.width as f32, document.size.height as f32));
+    let lies = Lies {
+        placement: placement(document, operator, at),
+        outside: Outside::Mirror,
+        bend: Bend { operator, anchors: vec![Anchor::fixed(at)], ..Bend::default() },
+    };
+    add_image(tab, name, picture, lies, "Place image");
+}
+
+/// How a picture lies on the canvas.
+pub(super) struct Lies {
+    pub placement: Placement,
+    pub outside: Outside,
+    pub bend: Bend,
+}
+
+/// A picture becomes an image layer above the selected one, which is selected; whether it could.
+pub(super) fn add_image(tab: &mut OpenDocument, name: &str, picture: Picture, lies: Lies, label: &str) -> bool {
+    let document = tab.document();
+    let Lies { placement, outside, bend } = lies;
+    let source = PictureSource::new(free_file(document, name), picture, Adjust::default());
+    let filter = ImageFilter::Antialias;
+    let image = PlacedImage { source, placement, outside, bend, filter, frame: Default::default() };
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    let layer = Layer::new(document.free_layer_name(&stem), Content::Image(Live::new(image)));
+    let id = layer.id;
+    let next = document.with_inserted(layer, above(tab));
+    let is_added = next.is_some_and(|next| tab.commit(label, next));
+    if is_added {
+        tab.selected = Some(id);
+    }
+    is_added
+}
+
+/// Where a picture lies that is pinned at a point: over the canvas, or over all that a mirror looks up.
+fn placement(document: &Document, operator: Operator, at: Vec2) -> Placement {
+    match (operator, &document.surface) {
+        (Operator::Reflection { alpha, .. }, Some(surface)) => {
+            let (x, y) = surface.pixel_of(at);
+            let turn = reflection::mirrored(surface.nbar(x, y), surface.normal(x, y).z);
+            Placement::covering_mirror(document.size, alpha, turn)
+        }
+        _ => Placement::covering(document.size),
+    }
+}
+
+/// The operator of a dropped picture if the current one is flat: like a reflection that is still recognisable.
+const DROPPED: Operator = Operator::Normal { alpha: 0.5, beta: 1.5, detail: 0.0 };
+
+/// A picture as a document of its own size.
+pub fn of_picture(name: &str, picture: Picture) -> Document {
+    let size = picture.size;
+    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    Document { layers: vec![Arc::new(storage::flat_image(&stem, name, picture, size))], ..Document::empty(size) }
+}
+
+/// A file name that no other picture of the document has.
+pub(super) fn free_file(document: &Document, name: &str) -> String {
+    let taken = |name: &str| document.walk().iter().any(|(_, layer)| layer.content.files().contains(&name));
+    let path = Path::new(name);
+    let (stem, extension) = (path.file_stem().unwrap_or_default(), path.extension().unwrap_or_default());
+    let mut free = name.to_owned();
+    for i in 2.. {
+        if !taken(&free) {
+            break;
+        }
+        free = format!("{}-{i}.{}", stem.to_string_lossy(), extension.to_string_lossy());
+    }
+    free
+}

@@ -1,0 +1,24 @@
+//! A layer as a drawing: what it paints by itself, and what it looks like.
+//! Floor 6. What a drawing is `document::parts::drawing` tells.
+
+use crate::document::parts::drawing::DrawingLook;
+use crate::document::{Document, LayerId, Progress, flatten_layer};
+use crate::raster::TileGrid;
+use std::sync::Arc;
+
+/// What a layer paints on the canvas, without any surface.
+pub fn painted(document: &Document, layer: LayerId) -> Option<TileGrid> {
+    painted_telling(document, layer, &Progress::default())
+}
+
+/// The same; `None` if it was given up, too.
+pub fn painted_telling(document: &Document, layer: LayerId, progress: &Progress) -> Option<TileGrid> {
+    let flat = Document { surface: None, parts: Arc::default(), ..document.clone() };
+    let flat = flat.with_layer(layer, |layer| (layer.visible, layer.opacity) = (true, 1.0))?;
+    flatten_layer(&flat, layer, progress)
+}
+
+/// What a layer of a document looks like as a drawing.
+pub fn look(document: &Document, layer: LayerId) -> Option<DrawingLook> {
+    Some(DrawingLook::of(&painted(document, layer)?, document.size))
+}

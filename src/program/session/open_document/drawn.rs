@@ -1,0 +1,56 @@
+//! What the window draws of a document: a layer alone, or the selection under red.
+//! Floor 6.
+
+use super::OpenDocument;
+use crate::document::{Content, Document, Layer, LayerId, LayerMask, MaskKind};
+use crate::math::srgb::Color;
+use std::sync::Arc;
+
+impl OpenDocument {
+    /// The document as drawn: a solo layer hides the others.
+    pub fn drawn(&self) -> Document {
+        let shown = self.shown();
+        if self.quick_mask {
+            return under_red(shown);
+        }
+        self.solo.and_then(|id| alone(shown, id)).unwrap_or_else(|| shown.clone())
+    }
+}
+
+/// The document with what is not selected under red.
+fn under_red(document: &Document) -> Document {
+    let Some(selected) = document.selected() else { return document.clone() };
+    let coverage = Arc::new(selected.to_plane(document.size.rect()));
+    let kind = MaskKind::File { file: String::new(), coverage };
+    let mask = LayerMask { invert: true, ..LayerMask::new(kind) };
+    let red = Content::Fill(Color { r: 230, g: 20, b: 20, a: 255 });
+    let sheet = Layer { mask: Some(mask), opacity: 0.5, clip_to_surface: false, ..Layer::new("Quick mask", red) };
+    let mut layers = document.layers.clone();
+    layers.push(Arc::new(sheet));
+    Document { layers, ..document.clone() }
+}
+
+/// The document with one layer shown alone; `None` if it has no such layer.
+fn alone(document: &Document, id: LayerId) -> Option<Document> {
+    fn hide(layers: &[Arc<Layer>], id: LayerId) -> (Vec<Arc<Layer>>, bool) {
+        let mut found = false;
+        let layers = layers.iter().map(|layer| {
+            let mut next = Layer::clone(layer);
+            next.visible = layer.id == id || (layer.visible && layer.content.shapes());
+            if let Some(group) = next.content.group_mut()
+                && layer.id != id
+            {
+                let (inner, inside) = hide(&group.layers, id);
+                group.layers = inner;
+                next.visible = inside;
+            }
+            found |= next.visible;
+            next.clip_below &= layer.id != id;
+            Arc::new(next)
+        });
+        (layers.collect(), found)
+    }
+    document.layer(id)?;
+    let (layers, _) = hide(&document.layers, id);
+    Some(Document { layers, ..document.clone() })
+}

@@ -1,0 +1,35 @@
+//! The pictures that layers are made of.
+//! Floor 6. Reading them is `actions::pictures`'.
+
+use super::replay::names;
+
+rilievo_engine::named! {
+    /// The part of a layer that is a picture. The label is the title of a file dialog for it.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum PicturePart {
+        /// What a placed image shows.
+        Image = "image" => "Picture of the layer",
+        Mask = "mask" => "Mask of the layer",
+        Environment = "environment" => "Environment",
+        /// The lit sphere; for convex features if there is a concave one.
+        Sphere = "sphere" => "Lit sphere",
+        ConcaveSphere = "concave sphere" => "Lit sphere of hollows",
+        /// The normals of a normal layer.
+        Detail = "detail" => "Detail normals",
+    }
+}
+
+names!(PicturePart);
+
+impl PicturePart {
+    /// The step of putting one there.
+    pub fn step(self) -> &'static str {
+        match self {
+            PicturePart::Image => "Replace picture",
+            PicturePart::Mask => "Layer mask",
+            PicturePart::Environment => "Environment",
+            PicturePart::Sphere | PicturePart::ConcaveSphere => "Lit sphere",
+            PicturePart::Detail => "Detail normals",
+        }
+    }
+}
