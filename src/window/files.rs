@@ -1,93 +1,10 @@
 //! File dialogs: the system's own, or the window's if the system has none.
 //! Floor 7.
 
+use super::file_purpose::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs};
-use crate::session::PicturePart;
-use crate::session::brushes::EXTENSIONS;
-use crate::session::storage::{DOCUMENTS, PICTURES, SAVED, exported, with_document_extension};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-
-/// What the file is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FilePurpose {
-    Open,
-    Place,
-    ImportUnwrapped,
-    Brush,
-    NormalMap,
-    DepthMap,
-    MaskMap,
-    /// A picture of the selected layer.
-    Part(PicturePart),
-    Save,
-    Export,
-    /// Maps of the shape, whose names begin with this one.
-    ExportMaps,
-    ExportUnwrapped,
-}
-
-/// Endings of maps of the shape.
-const MAPS: [&str; 2] = ["png", "exr"];
-
-impl FilePurpose {
-    /// What pictures of the unwrapped surface are written to.
-    const FLAT: [&'static str; 4] = ["png", "tif", "tiff", "exr"];
-
-    pub fn title(self) -> &'static str {
-        match self {
-            FilePurpose::Open => "Open",
-            FilePurpose::Place => "Place an image",
-            FilePurpose::ImportUnwrapped => "Import a picture of the surface laid flat",
-            FilePurpose::Brush => "Import a brush",
-            FilePurpose::NormalMap => "Normal map",
-            FilePurpose::DepthMap => "Depth map",
-            FilePurpose::MaskMap => "Mask",
-            FilePurpose::Part(part) => part.label(),
-            FilePurpose::Save => "Save as",
-            FilePurpose::Export => "Export the picture",
-            FilePurpose::ExportMaps => "Export maps of the shape",
-            FilePurpose::ExportUnwrapped => "Export the surface laid flat",
-        }
-    }
-    pub fn is_saving(self) -> bool {
-        matches!(self, FilePurpose::Save | FilePurpose::Export | FilePurpose::ExportMaps | FilePurpose::ExportUnwrapped)
-    }
-    /// The extensions of files to choose from, with the name of each group.
-    pub fn filters(self) -> Vec<(&'static str, Vec<&'static str>)> {
-        let pictures = || PICTURES.to_vec();
-        match self {
-            FilePurpose::Open => vec![
-                ("Everything that opens", [DOCUMENTS.to_vec(), pictures()].concat()),
-                ("Documents", DOCUMENTS.to_vec()),
-                ("Pictures and maps", pictures()),
-            ],
-            FilePurpose::Brush => vec![("Brushes", EXTENSIONS.to_vec())],
-            FilePurpose::Place
-            | FilePurpose::ImportUnwrapped
-            | FilePurpose::NormalMap
-            | FilePurpose::DepthMap
-            | FilePurpose::MaskMap
-            | FilePurpose::Part(_) => {
-                vec![("Pictures", pictures())]
-            }
-            FilePurpose::Save => vec![("Documents", SAVED.to_vec())],
-            FilePurpose::Export => vec![("Pictures", exported().collect())],
-            FilePurpose::ExportMaps => vec![("Maps", MAPS.to_vec())],
-            FilePurpose::ExportUnwrapped => vec![("Pictures", Self::FLAT.to_vec())],
-        }
-    }
-    /// What a chosen file will be called. `extension`: of exports that have none.
-    pub fn named(self, file: PathBuf, extension: &str) -> PathBuf {
-        match self {
-            FilePurpose::Save => with_document_extension(file, SAVED[0], &SAVED),
-            FilePurpose::ExportMaps => with_document_extension(file, MAPS[0], &MAPS),
-            FilePurpose::Export => with_document_extension(file, extension, &exported().collect::<Vec<_>>()),
-            FilePurpose::ExportUnwrapped => with_document_extension(file, Self::FLAT[0], &Self::FLAT),
-            _ => file,
-        }
-    }
-}
 
 /// A dialog that returns this soon without an answer was never shown, because there is no portal. Nobody cancels that
 /// fast.

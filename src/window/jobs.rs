@@ -4,13 +4,13 @@
 use crate::clipboard::{Clipboard, PastedContent};
 use crate::document::parts::drawing::DrawingLook;
 use crate::document::{Document, LayerId, Progress, SurfaceSource};
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::io::recipe::Preset;
 use crate::io::replace::FileStamp;
 use crate::io::{maps, recovery};
 use crate::memory;
+use crate::pending::{Pending, Saving};
 use crate::raster::Picture;
-use crate::saving::{Pending, Saving};
 use crate::session::PicturePart;
 use crate::session::actions::PartAction;
 use crate::session::actions::parts::FirstShape;

@@ -1,7 +1,28 @@
 //! Where the panels stand: at which side, which in front, which in windows of their own.
 //! Floor 7. Keeping it from run to run is `settings`'.
 
-use crate::panels::PanelKind;
+rilievo_engine::named! {
+    /// A panel that can stand beside the canvas or in a window of its own.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum PanelKind {
+        Color = "Colour",
+        Brushes = "Brushes",
+        Properties = "Properties",
+        Surface = "Surface",
+        History = "History",
+        Navigator = "Navigator",
+        /// Below the others, as the parts of the shape.
+        Layers = "Layers",
+        Shape = "Shape",
+    }
+}
+
+impl PanelKind {
+    /// Whether it stands below, where the layers are.
+    pub fn is_below(self) -> bool {
+        matches!(self, PanelKind::Layers | PanelKind::Shape)
+    }
+}
 
 /// Where the panels stand.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! What panels ask for: actions that the session does, and things that only a window can do.
 //! Floor 7.
 
-use super::files::FilePurpose;
-use super::panels::PanelKind;
+use super::file_purpose::FilePurpose;
+use super::panel_layout::PanelKind;
 use crate::session::Action;
 use crate::session::actions::EdgeChange;
 use std::path::PathBuf;

@@ -4,8 +4,8 @@
 
 use super::jobs;
 use super::keymap::Keymap;
+use super::panel_layout::PanelKind;
 use super::panel_layout::{PanelLayout, SIDES};
-use super::panels::PanelKind;
 use crate::document::Progress;
 use crate::io::fs::Disk;
 use crate::io::replace::{Overwrite, replace};

@@ -10,6 +10,11 @@ pub const SURROUND: [Color32; 2] = [Color32::from_gray(0x1e), Color32::from_gray
 /// The squares behind what is transparent.
 pub const CHECKER: [Color32; 2] = [Color32::from_gray(0x9a), Color32::from_gray(0x7e)];
 
+/// A colour of the document as the window shows it.
+pub fn color32(color: crate::math::srgb::Color) -> Color32 {
+    Color32::from_rgba_unmultiplied(color.r, color.g, color.b, color.a)
+}
+
 /// Greys from the deepest to the text.
 struct Greys {
     deepest: u8,

@@ -4,7 +4,7 @@
 use super::jobs;
 use crate::Error;
 use crate::document::{Document, Layer, LayerId, LayerMask, MaskKind, Progress, flatten_layer};
-use crate::panels::shape::pictures::PartPictures;
+use crate::part_pictures::PartPictures;
 use crate::raster::{Plane, TileGrid};
 use crate::surface::Surface;
 use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions, Vec2, vec2};

@@ -1,7 +1,7 @@
 //! The window's own widgets: each has a name that a screen reader and a test can find, and distinguishes dragging from
 //! its end. Floor 7.
 
-use super::canvas::color32;
+use super::theme::color32;
 use crate::math::srgb::Color;
 use eframe::egui::{
     self, Align, DragValue, Layout, ProgressBar, Response, RichText, ScrollArea, Slider, SliderClamping, Ui, vec2,

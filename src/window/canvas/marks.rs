@@ -9,6 +9,7 @@ use crate::math::{Affine2, Vec2};
 use crate::paint::{BrushMode, Scene, Stroke as PaintStroke};
 use crate::session::Session;
 use crate::surface::unwrap::PlaneLayout;
+use crate::theme::color32;
 use crate::tools::{ToolKind, anchors, outline};
 use eframe::egui::{Color32, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use std::sync::Arc;
@@ -182,10 +183,6 @@ fn outlined(painter: &Painter, strokes: Vec<&Arc<PaintStroke>>, scene: &Scene, t
         painter.extend(lines.map(|line| Shape::line_segment(line.map(to_screen), look)));
     }
     painter.ctx().data_mut(|data| data.insert_temp(id, now));
-}
-
-pub fn color32(color: crate::math::srgb::Color) -> Color32 {
-    Color32::from_rgba_unmultiplied(color.r, color.g, color.b, color.a)
 }
 
 /// The handles of the selected layer, and a line from each anchor to the content pinned there.

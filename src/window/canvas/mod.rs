@@ -18,7 +18,6 @@ mod sheet;
 mod unwrapped;
 mod wobble;
 
-pub use marks::color32;
 pub use overlay::loaded;
 pub use parts::ball;
 

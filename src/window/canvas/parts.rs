@@ -4,7 +4,7 @@
 use crate::document::Part;
 use crate::document::parts::forms::nearest_at;
 use crate::math::{Affine2, Vec2, Vec3, vec2};
-use crate::panels::shape::pictures::PartPictures;
+use crate::part_pictures::PartPictures;
 use crate::raster::CoverageGrid;
 use crate::raster::coverage::contour::{self, Run};
 use crate::session::Session;

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, row};
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::requests::WindowRequest;
 use eframe::egui::Key;
 

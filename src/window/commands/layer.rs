@@ -3,7 +3,7 @@
 
 use super::row::{LINE, MenuCommand, ctrl, ctrl_alt, ctrl_shift, has_document, has_layer, key, row, shift};
 use crate::document::{Content, Layer, LayerLock, LayerMask, MaskKind};
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
 use crate::session::actions::{ClipboardAction, LayerAction, NewLayer};

@@ -3,8 +3,8 @@
 
 use super::row::{LINE, MenuCommand, always, ctrl, ctrl_alt, ctrl_shift, has_document, has_surface, key, row};
 use crate::math::Vec2;
+use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
-use crate::panels::PanelKind;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::ViewAction;
 use crate::session::{Action, Session};

@@ -7,7 +7,7 @@ use crate::advice::with_advice;
 use crate::canvas::loaded;
 use crate::document::SurfaceSource;
 use crate::document::source::{MapSource, MaskSource, NormalEncoding};
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::io::maps;
 use crate::jobs::MapsRead;
 use crate::math::{Size, srgb::quantise, vec3};

@@ -2,7 +2,7 @@
 //! Floor 7. What it is that gets lost, the format itself tells (`io::psd`).
 
 use super::{DialogAnswer, buttons};
-use crate::saving::Saving;
+use crate::pending::Saving;
 use crate::widgets::list;
 use eframe::egui::Ui;
 

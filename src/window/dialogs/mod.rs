@@ -20,10 +20,10 @@ pub mod shortcuts;
 pub mod unsaved;
 pub mod unwrapped;
 
-use super::files::FilePurpose;
+use super::file_purpose::FilePurpose;
 use super::keymap::Keymap;
+use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
-use super::saving::{Pending, Saving};
 use crate::document::SurfaceSource;
 use crate::io::maps::ImportedSurface;
 use crate::io::recovery::LostSession;
@@ -84,13 +84,6 @@ pub enum DialogAnswer {
     Recover(Vec<LostSession>),
     /// The user decided to delete this drawing.
     Delete(LostSession),
-}
-
-/// What follows a question about unsaved work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AfterUnsaved {
-    Close(usize),
-    Quit,
 }
 
 impl Dialog {

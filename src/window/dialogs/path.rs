@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::{DialogAnswer, buttons};
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::widgets::{list, named};
 use eframe::egui::{Button, TextEdit, Ui};
 use std::fs;

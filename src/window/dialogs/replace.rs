@@ -3,7 +3,7 @@
 
 use super::{DialogAnswer, buttons};
 use crate::jobs::short;
-use crate::saving::Pending;
+use crate::pending::Pending;
 use eframe::egui::Ui;
 
 pub struct Replace {

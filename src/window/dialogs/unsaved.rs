@@ -1,7 +1,8 @@
 //! “Save changes?”, before anything is lost.
 //! Floor 7.
 
-use super::{AfterUnsaved, DialogAnswer, buttons};
+use super::{DialogAnswer, buttons};
+use crate::pending::AfterUnsaved;
 use crate::session::Session;
 use eframe::egui::Ui;
 

@@ -2,7 +2,7 @@
 //! Floor 7.
 
 use super::{brush, colors};
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::io::recipe::{Preset, PresetGroup};
 use crate::paint::Property;
 use crate::requests::{UiRequests, WindowRequest};

@@ -1,11 +1,11 @@
 //! Colour: a square of saturation and value beside a bar of hues, numbers, and the last ones used.
 //! Floor 7.
 
-use crate::canvas::color32;
 use crate::math::srgb::Color;
 use crate::requests::UiRequests;
 use crate::session::actions::HandAction;
 use crate::session::{Action, Session};
+use crate::theme::color32;
 use crate::widgets::{NumberField, ValueChange, named, swatch};
 use eframe::egui::{self, Color32, Id, Mesh, Rect, Sense, Shape, Stroke, TextEdit, Ui, pos2, vec2};
 

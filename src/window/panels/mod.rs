@@ -28,26 +28,3 @@ pub mod strokes;
 pub mod surface;
 pub mod tools;
 mod transform;
-
-rilievo_engine::named! {
-    /// A panel that can stand beside the canvas or in a window of its own.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-    pub enum PanelKind {
-        Color = "Colour",
-        Brushes = "Brushes",
-        Properties = "Properties",
-        Surface = "Surface",
-        History = "History",
-        Navigator = "Navigator",
-        /// Below the others, as the parts of the shape.
-        Layers = "Layers",
-        Shape = "Shape",
-    }
-}
-
-impl PanelKind {
-    /// Whether it stands below, where the layers are.
-    pub fn is_below(self) -> bool {
-        matches!(self, PanelKind::Layers | PanelKind::Shape)
-    }
-}

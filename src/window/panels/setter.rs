@@ -1,7 +1,7 @@
 //! What panels of one layer change it by.
 //! Floor 7.
 
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::PicturePart;
 use crate::session::actions::LayerAction;

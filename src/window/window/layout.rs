@@ -2,8 +2,9 @@
 //! themselves are in `panels`.
 
 use super::MainWindow;
+use crate::panel_layout::PanelKind;
 use crate::panel_layout::PanelSide;
-use crate::panels::{self, PanelKind};
+use crate::panels;
 use crate::requests::UiRequests;
 use crate::theme::ACCENT;
 use eframe::egui::scroll_area::ScrollBarVisibility;

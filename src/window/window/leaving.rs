@@ -2,8 +2,9 @@
 //! Floor 7.
 
 use super::MainWindow;
-use crate::dialogs::{AfterUnsaved, Dialog, unsaved};
+use crate::dialogs::{Dialog, unsaved};
 use crate::jobs::PinPosition;
+use crate::pending::AfterUnsaved;
 use crate::session::Action;
 use crate::session::actions::FileAction;
 use eframe::egui::{self, ViewportCommand};

@@ -12,16 +12,14 @@ mod work;
 
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
-use super::dialogs::{
-    AfterUnsaved, Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shortcuts, unwrapped,
-};
-use super::files::FilePurpose;
+use super::dialogs::{Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shortcuts, unwrapped};
+use super::file_purpose::FilePurpose;
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
+use super::panel_layout::PanelKind;
 use super::panel_layout::PanelSide;
-use super::panels::PanelKind;
 use super::pen::SharedTablet;
+use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
-use super::saving::{Pending, Saving};
 use super::settings::{Settings, SettingsFile};
 use super::swatches::Swatches;
 use super::thumbnails::Thumbnails;

@@ -3,17 +3,17 @@
 
 use super::MainWindow;
 use crate::clipboard::{self, PastedContent};
-use crate::dialogs::{AfterUnsaved, shape};
+use crate::dialogs::shape;
 use crate::document::Progress;
-use crate::files::FilePurpose;
+use crate::file_purpose::FilePurpose;
 use crate::io::export::ExportOptions;
 use crate::io::replace::FileStamp;
 use crate::io::{Overwrite, Terms};
 use crate::jobs::{EditResult, JobKind, JobResult, ShapedResult, short};
 use crate::math::Size;
+use crate::pending::{AfterUnsaved, Exporting, ExportingMaps, Pending, Saving};
 use crate::raster::Picture;
 use crate::raster::picture::Texels;
-use crate::saving::{Exporting, ExportingMaps, Pending, Saving};
 use crate::session::actions::PartAction;
 use crate::session::actions::canvas::forget_places;
 use crate::session::{Action, storage};

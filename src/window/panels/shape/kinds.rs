@@ -1,7 +1,7 @@
 //! What can be set of bevels, lines, reliefs and lighting profiles.
 //! Floor 7. The rows of other kinds are `numbers`'.
 
-use super::numbers::{degrees, length, number};
+use super::fields::{degrees, length, number};
 use crate::canvas::ball;
 use crate::document::parts::ProfilePicture;
 use crate::math::{Vec2, Vec3, vec2, vec3};

@@ -1,22 +1,22 @@
 //! The shape: its parts, the nearest on top, with the numbers of the chosen one beneath. Floor 7. `row` shows one part,
-//! `numbers` and `kinds` what can be set of it, `pictures` paints the small lit pictures.
+//! `numbers` and `kinds` what can be set of it.
 
+mod fields;
 mod kinds;
 mod numbers;
-pub mod pictures;
 mod row;
 
 use crate::commands::PARTS;
 use crate::document::{Document, Part};
 use crate::icons::{Icon, icon_button};
 use crate::io::recipe::parts::write_part;
+use crate::part_pictures::PartPictures;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::actions::PartAction;
 use crate::session::{Action, Session};
 use crate::widgets::ValueChange;
 use eframe::egui::{ScrollArea, Ui};
-pub use numbers::presets;
-use pictures::PartPictures;
+pub use fields::presets;
 use std::sync::Arc;
 
 /// The most of the panel's height that the list takes; what is beneath it is the numbers'.

@@ -1,13 +1,14 @@
 //! What can be set of a part, with the ranges of its type.
 //! Floor 7.
 
+use super::fields::{NumberRow, degrees, length, number, presets};
 use super::kinds;
 use crate::document::parts::OutlineSource;
 use crate::document::{Inflation, Part, PartKind};
 use crate::math::{Vec2, Vec3};
 use crate::shape::{Body, Combine, Primitive};
-use crate::widgets::{NumberField, ValueChange, choice_row, name, sentence};
-use eframe::egui::{Button, Ui};
+use crate::widgets::{ValueChange, choice_row, name};
+use eframe::egui::Ui;
 use std::path::Path;
 
 /// The rows of a part; a part with other values, if one was changed.
@@ -27,33 +28,6 @@ pub fn show(ui: &mut Ui, part: &Part) -> Option<ValueChange<Part>> {
         ui.weak(source);
     }
     kind.or(stands)
-}
-
-/// A number in a row.
-pub(super) struct NumberRow<'a> {
-    field: NumberField<'a>,
-    value: f32,
-}
-
-impl NumberRow<'_> {
-    pub(super) fn show<T>(self, ui: &mut Ui, made: impl FnOnce(f32) -> T) -> Option<ValueChange<T>> {
-        self.field.row(ui, self.value).map(|changed| changed.map(made))
-    }
-}
-
-pub(super) fn number<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
-    NumberRow { field: NumberField::new(label, range.clone(), hint), value }
-}
-
-/// Lengths: near 0 they are set more finely.
-pub(super) fn length<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
-    let row = number(label, range, hint, value);
-    NumberRow { field: row.field.pixels().logarithmic(), ..row }
-}
-
-pub(super) fn degrees<'a>(label: &'a str, range: &crate::math::Range, hint: &'a str, value: f32) -> NumberRow<'a> {
-    let row = number(label, range, hint, value);
-    NumberRow { field: row.field.degrees(), ..row }
 }
 
 const PUFF_HINT: &str = "Factor of the height: at 1 a disc becomes a half ball";
@@ -126,29 +100,6 @@ fn inflated(ui: &mut Ui, now: Inflation) -> Option<ValueChange<Inflation>> {
     changed = profile.show(ui, |profile| Inflation { profile, ..now }).or(changed);
     let hint = "How far the rim turns away: at 90° it is a silhouette, less is a low relief";
     degrees("Rim", &Inflation::RIM, hint, now.rim_deg).show(ui, |rim_deg| Inflation { rim_deg, ..now }).or(changed)
-}
-
-/// The presets as chips.
-pub fn presets(ui: &mut Ui, now: Inflation) -> Option<Inflation> {
-    let mut chosen = None;
-    ui.horizontal_wrapped(|ui| {
-        for (preset, word) in Inflation::PRESETS {
-            let chip = Button::selectable(preset == now, sentence(word)).corner_radius(10);
-            if ui.add(chip).on_hover_text(about(word)).clicked() {
-                chosen = Some(preset);
-            }
-        }
-    });
-    chosen
-}
-
-fn about(preset: &str) -> &'static str {
-    match preset {
-        "pillow" => "Round, as a cloth filled with air",
-        "tube" => "Limbs as deep as they are wide",
-        "relief" => "Half as high, its rim not quite a silhouette",
-        _ => "Nearly flat, with a rim that can be seen",
-    }
 }
 
 /// One of three numbers: its name, how it is set, and what it is.

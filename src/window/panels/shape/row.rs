@@ -1,10 +1,10 @@
 //! A part's row: eye, picture, name and kind; drag it to another place to bring it forward or send it back.
 //! Floor 7.
 
-use super::pictures::PartPictures;
 use super::{act, forms, set};
 use crate::document::{Document, Part};
 use crate::icons::{Icon, sized_button};
+use crate::part_pictures::PartPictures;
 use crate::requests::UiRequests;
 use crate::session::Session;
 use crate::session::actions::PartAction;
