@@ -8,7 +8,7 @@ pub mod shape;
 use crate::document::{Document, Progress};
 use crate::fs::Disk;
 use crate::math::{Rect, Size, srgb, srgb::Color};
-use crate::project::pixels::strips;
+use crate::pixels::strips;
 use crate::raster::TileGrid;
 use crate::replace::{Terms, check, replace};
 use crate::{Budget, Error, Remedy, Result};

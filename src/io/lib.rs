@@ -15,6 +15,7 @@ pub mod machine;
 pub mod maps;
 pub mod open;
 pub mod picture;
+pub mod pixels;
 pub mod project;
 pub mod psd;
 pub mod recipe;

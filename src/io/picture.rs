@@ -3,9 +3,12 @@
 
 mod light;
 mod painted;
+mod passes;
 
-pub use light::{LightLayer, finished, layers};
-pub use painted::{Painted, painted};
+pub use crate::pixels::Painted;
+pub use light::finished;
+pub use painted::painted;
+pub use passes::{LightLayer, layers};
 
 use super::{Budget, bitmap, exr::ExrFile};
 use crate::math::{Size, srgb};

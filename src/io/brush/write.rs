@@ -4,7 +4,7 @@
 use crate::document::Progress;
 use crate::fs::Disk;
 use crate::paint::PictureSource;
-use crate::project::pixels;
+use crate::pixels;
 use crate::raster::Asset;
 use crate::raster::picture::Texels;
 use crate::recipe::{Preset, write_preset};

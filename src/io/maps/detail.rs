@@ -3,9 +3,10 @@
 
 use super::encoding;
 use super::findings::Findings;
+use super::layers::MapRole;
 use super::normals::order_of;
 use super::orientation::{self, FixedAxes};
-use super::stored::{self, MapRole};
+use super::stored;
 use crate::Budget;
 use crate::document::source::{NormalConvention, NormalSpace};
 use crate::math::Vec3;

@@ -3,7 +3,7 @@
 //! normals are those of a height field (no curl). Each in [−1, 1]; priors decide what they leave open.
 //! Floor 5. Which way is taken is `orientation`'s.
 
-use super::orientation::AxisMapping;
+use super::axes::AxisMapping;
 use super::samples;
 use crate::math::{Size, Vec2, Vec3, vec2};
 use crate::raster::Plane;

@@ -1,11 +1,18 @@
 //! Finds the layer of an EXR that holds the normals, the depth or the coverage, by the names that renderers use.
 //! Floor 5.
 
-use super::stored::MapRole;
 use crate::exr::{ExrFile, ExrPass};
 use crate::math::vec3;
 use crate::{Error, Result};
 use std::path::Path;
+
+/// Which map a file is read for: it decides which EXR layer is looked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum MapRole {
+    Normals,
+    Depth,
+    Mask,
+}
 
 /// The channels to read.
 pub struct ChannelChoice {

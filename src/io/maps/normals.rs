@@ -1,11 +1,12 @@
 //! Converts stored normals to camera space: decoding, axes, space, rim.
 //! Floor 5.
 
+use super::axes::AxisMapping;
 use super::background::{self, is_degenerate};
 use super::channel::Channel;
 use super::encoding::{self, TexelReading};
 use super::findings::Findings;
-use super::orientation::{self, AxisMapping, FixedAxes};
+use super::orientation::{self, FixedAxes};
 use super::{samples, steps, stored::StoredMap, world};
 use crate::Result;
 use crate::document::source::{NormalConvention, NormalEncoding, NormalSpace};

@@ -1,27 +1,11 @@
 //! Detects the orientation of the stored axes: flips of x, y and z, channel order and the polarity of depth, judged
 //! together. Floor 5. What speaks for each is gathered in `evidence`.
 
+use super::axes::AxisMapping;
 use super::evidence::{AxisEvidence, ReducedMap};
 use super::samples;
-use crate::math::{Vec3, vec3};
+use crate::math::Vec3;
 use crate::raster::Plane;
-
-/// A way to turn stored vectors into camera space: component k is `sign[k]` · stored\[`order[k]`\].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AxisMapping {
-    pub order: [usize; 3],
-    /// Whether each component is negated.
-    pub flip: [bool; 3],
-}
-
-impl AxisMapping {
-    pub const PLAIN: AxisMapping = AxisMapping { order: [0, 1, 2], flip: [false; 3] };
-
-    pub fn apply(&self, v: Vec3) -> Vec3 {
-        let sign = |k: usize| if self.flip[k] { -1.0 } else { 1.0 };
-        vec3(sign(0) * v[self.order[0]], sign(1) * v[self.order[1]], sign(2) * v[self.order[2]])
-    }
-}
 
 /// What is fixed in advance: by the user, or by the background of a depth map.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,7 +2,7 @@
 //! interpreted. Floor 5. Colour tags (sRGB, gAMA, iCCP) are ignored here: maps are data.
 
 use super::channel::{Channel, channels};
-use super::layers;
+use super::layers::{self, MapRole};
 use crate::math::Size;
 use crate::{Budget, bitmap, exr::ExrFile};
 use crate::{Error, Result};
@@ -26,14 +26,6 @@ pub struct StoredMap {
     pub fov_degrees: Option<f32>,
     /// A defect of the file that could be worked around.
     pub warning: Option<&'static str>,
-}
-
-/// Which map a file is read for: it decides which EXR layer is looked for.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum MapRole {
-    Normals,
-    Depth,
-    Mask,
 }
 
 /// Reads one map; `channel` names an EXR layer or channel, or one of `r g b a` of a picture.

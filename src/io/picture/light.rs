@@ -1,7 +1,6 @@
 //! Pictures in EXR files: which of a file's layers is the picture, and all of them as layers.
 //! Floor 5.
 
-use super::painted::{self, Painted};
 use crate::Budget;
 use crate::exr::{ExrFile, ExrPass};
 use crate::raster::Picture;
@@ -9,52 +8,12 @@ use crate::{Error, Result};
 use std::path::Path;
 
 /// Usual names of the layer that shows all the others, the likeliest first.
-const WHOLE: [&str; 7] = ["", "combined", "beauty", "rgba", "rgb", "color", "colour"];
+pub(super) const WHOLE: [&str; 7] = ["", "combined", "beauty", "rgba", "rgb", "color", "colour"];
 
 /// The picture of an EXR, straight alpha.
 pub fn decode(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Picture> {
     let exr = ExrFile::open(file, bytes, budget)?;
     picture(file, &exr, chosen(file, &exr)?, budget)
-}
-
-/// A layer of colours.
-pub struct LightLayer {
-    /// Empty for the channels without a layer.
-    pub name: String,
-    pub painted: Painted,
-    /// Whether it is the picture to show; usually it combines all the others.
-    pub is_whole: bool,
-}
-
-/// Every layer of colours of an EXR, in the file's order; none where there are not several.
-///
-/// Fails as [`decode`](super::decode) does, and where all of them together are beyond the budget.
-pub fn layers(file: &Path, bytes: &[u8], budget: &Budget) -> Result<Vec<LightLayer>> {
-    if !ExrFile::is_exr(bytes) {
-        return Ok(Vec::new());
-    }
-    let exr = ExrFile::open(file, bytes, budget)?;
-    // Cryptomatte stores object ids in colour channels.
-    let is_light = |pass: &&ExrPass| pass.letters("rgb").is_some() && !pass.key().starts_with("crypto");
-    let passes: Vec<&ExrPass> = exr.passes().iter().filter(is_light).collect();
-    if passes.len() < 2 {
-        return Ok(Vec::new());
-    }
-    if passes.len() as u64 * exr.size().area() as u64 > budget.document_px || passes.len() > budget.layers {
-        let reason = format!("its {} layers hold more than {} pixels together", passes.len(), budget.document_px);
-        return Err(Error::too_large(file, reason));
-    }
-    let whole = passes.iter().enumerate().filter(|(_, p)| rank(p) < WHOLE.len()).min_by_key(|(_, p)| rank(p));
-    // Of several parts, such as the views of two eyes, the first is the one to show.
-    let whole = whole.map(|(i, _)| i).or((exr.parts() > 1).then_some(0));
-    let mut used_bytes = 0;
-    let one = |(i, pass): (usize, &&ExrPass)| {
-        let painted = painted::of_light(file, &exr, pass, 0, 0, budget)?;
-        used_bytes += painted.tiles.bytes() as u64;
-        budget.room(file, "what its layers hold", used_bytes)?;
-        Ok(LightLayer { name: pass.name.clone(), painted, is_whole: whole == Some(i) })
-    };
-    passes.iter().enumerate().map(one).collect()
 }
 
 /// The finished picture that a renderer stored beside its maps, and its layer's name; `None` where there is none.
@@ -89,7 +48,7 @@ pub fn straight([r, g, b, a]: [f32; 4]) -> [f32; 4] {
 }
 
 /// The place of a layer's name among those of the whole picture; beyond them for others.
-fn rank(pass: &ExrPass) -> usize {
+pub(super) fn rank(pass: &ExrPass) -> usize {
     let last = pass.name.rsplit('.').next().unwrap_or("").to_lowercase();
     WHOLE.iter().position(|known| *known == last).unwrap_or(WHOLE.len())
 }

@@ -4,17 +4,10 @@
 use super::light;
 use crate::exr::{ExrFile, ExrPass};
 use crate::math::Size;
-use crate::project::pixels;
+use crate::pixels::{self, Painted};
 use crate::raster::{Picture, TileGrid};
 use crate::{Budget, Error, Result};
 use std::path::Path;
-
-/// The pixels of a paint layer that was a picture.
-pub struct Painted {
-    /// Of the whole picture, transparent parts included.
-    pub size: Size,
-    pub tiles: TileGrid,
-}
 
 /// Decodes a picture as [`decode`](super::decode) does, its corner at a canvas pixel.
 pub fn painted(file: &Path, bytes: &[u8], x: i32, y: i32, budget: &Budget) -> Result<Painted> {

@@ -1,7 +1,6 @@
 //! The files that a document is made from, under names within the project; each is stored once, as its own bytes.
 //! Floor 5. A picture that came from no file is encoded without loss.
 
-use super::pixels;
 use crate::Result;
 use crate::document::cache::EncodedPixels;
 use crate::document::source::{
@@ -11,6 +10,7 @@ use crate::document::{Content, Document, Layer, LayerId, MaskKind, Part, PartKin
 use crate::exr;
 use crate::math::Rect;
 use crate::paint::Selection;
+use crate::pixels;
 use crate::raster::picture::Texels;
 use crate::raster::{Asset, Picture, Plane};
 use crate::recipe;

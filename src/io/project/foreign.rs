@@ -3,7 +3,7 @@
 
 use super::MERGED;
 use super::manifest::Manifest;
-use super::open::ProjectReader;
+use super::reader::ProjectReader;
 use super::repair::{PNG_HEADER, layer_mut, name_of, png_size};
 use super::stack::{self, ElementContent, StackElement, StackXml};
 use crate::document::{Content, Document, Group, Layer, PixelLayer};

@@ -1,11 +1,11 @@
 //! Renders and encodes the pictures of a plan, each once: an unchanged layer is taken from the cache. Floor 5. Encoding
 //! is in `pixels`, composing in `document::flatten`.
 
-use super::pixels;
 use super::plan::{ItemContent, PlanItem};
 use crate::Result;
 use crate::document::cache::{EncodedPixels, LookKind};
 use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layers, flatten_whole};
+use crate::pixels;
 use crate::raster::{BlendMode, TileGrid};
 use rayon::prelude::*;
 use std::collections::BTreeMap;

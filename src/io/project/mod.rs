@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `archive`, `packer` | the zip: read within a budget, written the same every time |
 //! | `plan` | what other programs see of a document |
-//! | `look`, `pixels` | those pictures, rendered, encoded and checked |
+//! | `look` | those pictures, rendered, encoded and checked (by `pixels`) |
 //! | `stack` | `stack.xml`, written and read |
 //! | `assets` | maps, sources and tips under their names in the zip |
 //! | `manifest` | which picture belongs to which layer, so that another program's change is detected |
@@ -18,8 +18,8 @@ pub(super) mod look;
 pub(super) mod manifest;
 mod open;
 pub(super) mod packer;
-pub(super) mod pixels;
 pub(super) mod plan;
+mod reader;
 mod repair;
 #[cfg(test)]
 pub(super) mod sample;
@@ -35,6 +35,7 @@ use super::recipe;
 use crate::document::cache::EncodedPixels;
 use crate::document::{Document, LayerId, Progress, flatten};
 use crate::math::Size;
+use crate::pixels;
 use crate::raster::Asset;
 use crate::{Error, Result};
 use assets::{AssetList, StoredPixels};

@@ -3,12 +3,13 @@
 
 use super::look::{paint, remember};
 use super::manifest::{Manifest, ManifestPicture};
+use super::reader::ProjectReader;
 use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, repair, stack};
 use crate::document::cache::EncodedPixels;
 use crate::document::{Content, Document, LayerId};
 use crate::math::Size;
+use crate::raster::Asset;
 use crate::raster::tile::TILE_AREA;
-use crate::raster::{Asset, TileGrid};
 use crate::recipe::{self, RecipeSource, TileGrids};
 use crate::{Budget, picture};
 use crate::{Error, Result};
@@ -67,27 +68,7 @@ pub fn read_back(file: &Path, bytes: &[u8], document: &Document, budget: &Budget
     }
 }
 
-/// A project being read, and what there is to say of it.
-pub struct ProjectReader<'a> {
-    pub file: &'a Path,
-    pub archive: &'a Archive<'a>,
-    pub budget: &'a Budget,
-    pub notes: Vec<String>,
-    pub is_whole: bool,
-    /// Pixels that are known to be those of these files.
-    known: Vec<(EncodedPixels, TileGrid)>,
-}
-
 impl ProjectReader<'_> {
-    /// Notes a difference that loses nothing.
-    pub fn note(&mut self, sentence: impl Into<String>) {
-        self.notes.push(sentence.into());
-    }
-    /// Notes a loss.
-    pub fn lost(&mut self, sentence: impl Into<String>) {
-        self.is_whole = false;
-        self.notes.push(sentence.into());
-    }
     fn document(&mut self) -> Result<Document> {
         let manifest = self.manifest();
         let stack = self.archive.has(STACK).then(|| self.archive.bytes(STACK, self.budget.json_bytes));
@@ -117,10 +98,6 @@ impl ProjectReader<'_> {
     fn value(&self, name: &str) -> Result<Value> {
         let text = self.archive.bytes(name, self.budget.json_bytes)?;
         recipe::parse(&self.archive_path(name), &text, self.budget)
-    }
-    pub fn archive_path(&self, name: &str) -> std::path::PathBuf {
-        use crate::Files;
-        self.archive.path(name)
     }
     fn manifest(&mut self) -> Option<Manifest> {
         if !self.archive.has(MANIFEST) {
@@ -180,10 +157,6 @@ impl ProjectReader<'_> {
             Some((key.clone(), tiles))
         };
         wanted.into_par_iter().filter_map(one).collect()
-    }
-    pub fn read_value(&self, value: &Value) -> Result<Document> {
-        let path = self.archive_path(DOCUMENT);
-        recipe::read_value(value, RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None })
     }
     /// Without a document: what any program sees.
     fn pictures_only(&mut self, stack: Option<Result<Vec<u8>>>) -> Result<Document> {

@@ -2,7 +2,7 @@
 //! Floor 5. Works on the document's JSON, before it is read.
 
 use super::manifest::{Manifest, ManifestPicture};
-use super::open::ProjectReader;
+use super::reader::ProjectReader;
 use crate::math::Size;
 use crate::raster::Asset;
 use serde_json::{Map, Value, json};

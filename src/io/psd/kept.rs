@@ -2,7 +2,7 @@
 //! Floor 5. The channels themselves are `merged`'s and `emit`'s.
 
 use super::cursor::{ByteCursor, shown_text};
-use super::parse::resource;
+use super::header::resource;
 use crate::document::{Document, NamedSelection};
 use crate::paint::Selection;
 use crate::raster::CoverageGrid;

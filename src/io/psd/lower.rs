@@ -11,9 +11,9 @@ use crate::math::{Rect, Size};
 use crate::memory;
 use crate::project::look::{self, Cancellable};
 use crate::project::plan::{FormatSupport, ItemContent, PlanItem, plan};
-use crate::project::{self, pixels};
 use crate::raster::BlendMode;
 use crate::{Error, Result};
+use crate::{pixels, project};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 //! Floor 5.
 
 use super::cursor::ByteCursor;
-use super::parse::resource;
+use super::header::resource;
 use crate::document::{Document, Guides, LayerLabel};
 use crate::math::COORDINATE;
 

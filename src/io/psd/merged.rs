@@ -5,8 +5,8 @@ use super::VERSION_INFO;
 use super::channel;
 use super::colours::{Colours, Mode};
 use super::cursor::ByteCursor;
+use super::header::{PsdHeader, resource};
 use super::kept;
-use super::parse::{PsdHeader, resource};
 use crate::document::NamedSelection;
 use crate::raster::{CoverageGrid, Plane};
 

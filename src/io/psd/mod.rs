@@ -30,6 +30,7 @@ pub(super) mod descriptor;
 mod emit;
 mod fill;
 mod filled;
+mod header;
 mod judge;
 mod kept;
 mod layers;

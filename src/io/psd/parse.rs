@@ -2,15 +2,14 @@
 //! records, `tree` builds the document.
 
 use super::blocks::block;
-use super::channel::ChannelLayout;
-use super::colours::{Colours, Mode};
+use super::colours::Colours;
 use super::cursor::ByteCursor;
+use super::header::{PsdHeader, header, resource};
 use super::layers::RecordReader;
 use super::merged::{Merged, merged};
 use super::pattern::{self, Pattern};
-use super::{ICC_PROFILE, LayerRecord, MAGIC, OURS, marks};
+use super::{ICC_PROFILE, LayerRecord, OURS, marks};
 use crate::document::Guides;
-use crate::math::Size;
 use crate::{Budget, picture};
 use crate::{Error, Result};
 use std::path::Path;
@@ -34,41 +33,6 @@ pub struct ParsedPsd<'a> {
     pub damage: Vec<String>,
     /// What the layers and the picture take in memory.
     pub held_bytes: u64,
-}
-
-/// What the file says of itself.
-#[derive(Clone, Copy, Debug)]
-pub struct PsdHeader {
-    pub large: bool,
-    pub size: Size,
-    pub channels: u16,
-    pub bits: u16,
-    pub mode: Mode,
-}
-
-impl PsdHeader {
-    /// How channels of a size are laid out.
-    pub fn shape(&self, size: Size, is_colour: bool) -> ChannelLayout {
-        ChannelLayout {
-            width: size.width as usize,
-            height: size.height as usize,
-            bits: self.bits,
-            is_colour,
-            large: self.large,
-        }
-    }
-    /// What the picture of all layers takes while it is read: RGBA, a plane of bytes a channel, and as it is stored.
-    fn merged_bytes(&self) -> u64 {
-        let planes = self.colours() as u64 + 1;
-        self.size.area() as u64 * (4 + planes + planes * u64::from(self.bits.div_ceil(8)))
-    }
-    /// Channels of colour, at most four.
-    pub fn colours(&self) -> usize {
-        match self.mode {
-            Mode::Multichannel => usize::from(self.channels.min(4)),
-            mode => usize::from(mode.channels()),
-        }
-    }
 }
 
 /// Reads a file. Damaged layers are reported and left out; fails only if nothing can be recovered.
@@ -111,45 +75,6 @@ pub fn parse<'a>(file: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Parsed
     }
     let guides = marks::guides(resources);
     Ok(ParsedPsd { header, ours: resource(resources, OURS), records, merged, patterns, guides, damage, held_bytes })
-}
-
-fn header(file: &Path, rest: &mut ByteCursor, budget: &Budget) -> Result<PsdHeader> {
-    let mut read = || {
-        let magic = rest.key()?;
-        let version = rest.u16()?;
-        rest.take(6)?;
-        Some((magic, version, rest.u16()?, rest.u32()?, rest.u32()?, rest.u16()?, rest.u16()?))
-    };
-    let read = read().ok_or_else(|| Error::decode(file, "the file is cut short"))?;
-    let (magic, version, channels, height, width, bits, mode) = read;
-    if magic != MAGIC || !(1..=2).contains(&version) {
-        return Err(Error::decode(file, "it does not begin like a Photoshop file"));
-    }
-    let size = budget.size(file, width.into(), height.into())?;
-    let unknown = || Error::unsupported(file, format!("its colours are of the unknown kind {mode}"));
-    let mode = Mode::of(mode).ok_or_else(unknown)?;
-    if ![8, 16, 32].contains(&bits) && (bits, mode) != (1, Mode::Bitmap) {
-        return Err(Error::unsupported(file, format!("it has {bits} bits a channel; 1, 8, 16 and 32 can be read")));
-    }
-    if channels < mode.channels() || channels > 56 {
-        return Err(Error::decode(file, format!("it has {channels} channels")));
-    }
-    Ok(PsdHeader { large: version == 2, size, channels, bits, mode })
-}
-
-/// The data of a resource.
-pub fn resource(mut rest: ByteCursor<'_>, wanted: u16) -> Option<&[u8]> {
-    while rest.key().is_some() {
-        let id = rest.u16()?;
-        rest.pascal(2)?;
-        let length = rest.length(false)?;
-        let data = rest.take(length)?;
-        rest.take(length % 2);
-        if id == wanted {
-            return Some(data);
-        }
-    }
-    None
 }
 
 /// Where the layers stand: in their own section, or, of deep files, in a block behind it.

@@ -5,8 +5,8 @@ use super::channel;
 use super::colours::{Colours, Mode};
 use super::cursor::ByteCursor;
 use super::fill::PatternFill;
+use super::header::PsdHeader;
 use super::layers::RecordReader;
-use super::parse::PsdHeader;
 use crate::Result;
 use crate::math::Size;
 

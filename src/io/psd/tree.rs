@@ -10,10 +10,11 @@ use super::{LayerRecord, PASS_THROUGH, RecordMask, RecordSection, filled, marks,
 use crate::Budget;
 use crate::document::{Content, Document, Group, Guides, Layer, LayerLock, LayerMask, MaskKind};
 use crate::math::Size;
+use crate::pixels;
 use crate::project::archive::Archive;
 use crate::project::manifest::Manifest;
 use crate::project::packer::ZipPacker;
-use crate::project::{self, ProjectContents, pixels};
+use crate::project::{self, ProjectContents};
 use crate::raster::BlendMode;
 use crate::{Error, Result};
 use std::path::Path;

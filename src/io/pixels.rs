@@ -5,12 +5,18 @@ use crate::Budget;
 use crate::bitmap;
 use crate::document::cache::EncodedPixels;
 use crate::math::{Rect, Size};
-use crate::picture::Painted;
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};
 use std::borrow::Cow;
 use std::io::Write;
 use std::path::Path;
+
+/// The pixels of a paint layer that was a picture.
+pub struct Painted {
+    /// Of the whole picture, transparent parts included.
+    pub size: Size,
+    pub tiles: TileGrid,
+}
 
 /// The tight rectangle around what is not transparent, as a PNG; one transparent pixel where there is nothing.
 ///

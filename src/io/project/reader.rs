@@ -1,0 +1,42 @@
+//! A project while it is read, and what there is to say of it.
+//! Floor 5. `open` reads what was saved, `foreign` what another program made of it, `repair` leaves out what is damaged.
+
+use super::{Archive, DOCUMENT};
+use crate::document::Document;
+use crate::document::cache::EncodedPixels;
+use crate::raster::TileGrid;
+use crate::recipe::{self, RecipeSource};
+use crate::{Budget, Result};
+use serde_json::Value;
+use std::path::Path;
+
+/// A project being read, and what there is to say of it.
+pub struct ProjectReader<'a> {
+    pub file: &'a Path,
+    pub archive: &'a Archive<'a>,
+    pub budget: &'a Budget,
+    pub notes: Vec<String>,
+    pub is_whole: bool,
+    /// Pixels that are known to be those of these files.
+    pub known: Vec<(EncodedPixels, TileGrid)>,
+}
+
+impl ProjectReader<'_> {
+    /// Notes a difference that loses nothing.
+    pub fn note(&mut self, sentence: impl Into<String>) {
+        self.notes.push(sentence.into());
+    }
+    /// Notes a loss.
+    pub fn lost(&mut self, sentence: impl Into<String>) {
+        self.is_whole = false;
+        self.notes.push(sentence.into());
+    }
+    pub fn archive_path(&self, name: &str) -> std::path::PathBuf {
+        use crate::Files;
+        self.archive.path(name)
+    }
+    pub fn read_value(&self, value: &Value) -> Result<Document> {
+        let path = self.archive_path(DOCUMENT);
+        recipe::read_value(value, RecipeSource { file: &path, files: self.archive, budget: self.budget, onto: None })
+    }
+}
