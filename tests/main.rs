@@ -1,6 +1,7 @@
 //! Every test of the whole program in one binary, so that it is linked once. Tests of damaged files stand apart
 //! (`damage.rs`): they watch the allocator.
 
+mod circles;
 mod cli;
 mod contours;
 mod conventions;

@@ -8,10 +8,9 @@ mod modes;
 mod rows;
 pub mod spec;
 
-use super::planar::PlanarTile;
+use super::planar::{PlanarTile, sane};
 use super::tile::{TILE_AREA, TileAt};
-pub use modes::BlendMode;
-pub use spec::{blend_pixel, sane};
+pub use modes::{BlendMode, blend_pixel};
 
 /// How paint meets what it is painted on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -6,7 +6,7 @@ pub mod contour;
 pub mod edges;
 pub mod shapes;
 
-use super::flood::{TileBits, bytes_of};
+use super::bits::{TileBits, bytes_of};
 use super::grid::Grid;
 use super::tile::{TILE, TILE_AREA, TileAt};
 use super::{Plane, Tile};

@@ -2,13 +2,11 @@
 //! Floor 1. Which pixels may be reached, and which neighbours are joined, the caller says; only tiles that are reached
 //! are asked for. The result does not depend on the order in which pixels are found.
 
+use super::bits::{TileBits, bits_of, bytes_of};
 use super::tile::{TILE, TileAt};
 use super::{CoverageGrid, CoverageTile};
 use crate::math::{Rect, Size};
 use rayon::prelude::*;
-
-/// A pixel a bit: rows of a tile, the leftmost pixel the lowest bit.
-pub type TileBits = [u64; TILE];
 
 /// What a flood may do in a tile.
 pub struct OpenTile {
@@ -226,24 +224,6 @@ fn runs_of(from_left: u64, from_right: u64, seeds: u64) -> u64 {
         down_free &= down_free >> step;
     }
     up | down
-}
-
-/// A row of bits as bytes, 1 where a bit is set; eight at a time: a product puts each bit into a byte of its own.
-pub fn bytes_of(bits: u64) -> [u8; TILE] {
-    let mut bytes = [0; TILE];
-    for (eight, bits) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(bits.to_le_bytes()) {
-        let spread = (u64::from(bits) * 0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
-        // A bit anywhere in a byte carries into its highest one.
-        *eight = ((spread + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101).to_le_bytes();
-    }
-    bytes
-}
-
-/// The inverse of [`bytes_of`] of bytes that are 0 or 1.
-pub fn bits_of(bytes: &[u8; TILE]) -> u64 {
-    let eights = bytes.as_chunks::<8>().0.iter().map(|eight| u64::from_le_bytes(*eight));
-    // The product gathers the lowest bits of eight bytes in the highest byte.
-    eights.rev().fold(0, |bits, eight| bits << 8 | eight.wrapping_mul(0x0102_0408_1020_4080) >> 56)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! is sampled and never edited; blend modes and samplers work on both.
 
 pub mod asset;
+pub mod bits;
 pub mod blend;
 pub mod blur;
 pub mod coverage;

@@ -2,9 +2,15 @@
 //! that loops over a row need no shuffles.
 //! Floor 1. Stored pixels are `tile`; how they mix is `blend`.
 
-use super::blend::sane;
 use super::tile::{TILE, TILE_AREA, Tile, TileF32};
 use crate::math::srgb::quantise;
+
+/// A premultiplied pixel brought into range: alpha in `[0, 1]`, colours in `[0, alpha]`, NaN 0.
+#[inline(always)]
+pub fn sane(p: [f32; 4]) -> [f32; 4] {
+    let a = p[3].max(0.0).min(1.0);
+    [p[0].max(0.0).min(a), p[1].max(0.0).min(a), p[2].max(0.0).min(a), a]
+}
 
 /// One row of a tile, premultiplied, encoded. A KiB, so that a row and what meets it stay in the first-level cache.
 #[derive(Clone, Copy)]

@@ -9,8 +9,9 @@ mod tests;
 
 use super::{Surface, links};
 use crate::math::{Range, UNIT, Vec2};
+use crate::raster::bits::TileBits;
 use crate::raster::coverage::CoverageGrid;
-use crate::raster::flood::{Flooded, OpenTile, TileBits, TileLinks};
+use crate::raster::flood::{Flooded, OpenTile, TileLinks};
 use crate::raster::{Plane, TILE, TileAt};
 use rayon::prelude::*;
 use std::sync::Arc;

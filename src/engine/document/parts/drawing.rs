@@ -2,7 +2,7 @@
 //! flat colours. Floor 4. What parts are made of it is `flats`'.
 
 use super::flats::colors_of;
-use super::outlines::{is_near, share_on_the_way};
+use super::near::{is_near, share_on_the_way};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::grid::unpremultiply;

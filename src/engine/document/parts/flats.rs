@@ -1,7 +1,7 @@
 //! Parts of a layer of flat colours: one for each colour, ordered by who interrupts whose outline.
 //! Floor 4.
 
-use super::outlines::is_near;
+use super::near::is_near;
 use super::shares::Flats;
 use super::{Inflation, OutlineSource, Part, PartKind};
 use crate::math::Rect;

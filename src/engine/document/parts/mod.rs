@@ -12,6 +12,7 @@ mod edit;
 mod fit;
 pub mod flats;
 pub mod forms;
+mod near;
 mod outlines;
 mod part;
 mod scale;

@@ -3,7 +3,7 @@
 //! between them.
 //! Floor 4. Which colours are parts is `flats`'.
 
-use super::outlines::{NEAR, is_near, share_on_the_way};
+use super::near::{NEAR, is_near, share_on_the_way};
 use crate::math::srgb::Color;
 use crate::math::{Rect, Size};
 use crate::raster::{Plane, TileGrid};

@@ -3,7 +3,8 @@
 
 use super::PixelSet;
 use crate::math::Size;
-use crate::raster::flood::{Flooded, OpenTile, TileBits, bits_of, bytes_of};
+use crate::raster::bits::{TileBits, bits_of, bytes_of};
+use crate::raster::flood::{Flooded, OpenTile};
 use crate::raster::{CoverageGrid, CoverageTile, Plane, TILE, Tile, TileAt};
 use crate::surface::objects::CanvasPart;
 use std::sync::Arc;

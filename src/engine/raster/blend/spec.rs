@@ -2,8 +2,8 @@
 //! Floor 1. The reference that reads like W3C Compositing and Blending Level 1, sec. 9; `rows` is the fast twin. What
 //! W3C does not name is as Photoshop computes it, held against files that it saved.
 
-use super::BlendMode;
 use crate::math::hash;
+use crate::raster::planar::sane;
 
 /// One mode's B(cb, cs), backdrop first as in the specification: of a component, or of a whole colour.
 #[derive(Clone, Copy)]
@@ -14,6 +14,26 @@ pub enum BlendFunction {
     NonSeparable(fn([f32; 3], [f32; 3]) -> [f32; 3]),
     /// Not a mixing formula but a sum of premultiplied values, clamped at 1 (sec. 7, `lighter`).
     Sum(fn(f32, f32) -> f32),
+}
+
+impl BlendFunction {
+    /// Composites one premultiplied pixel over another (sec. 5.8): the backdrop's share, the source's share outside the
+    /// backdrop, and B where both are.
+    ///
+    /// Total: every component is brought into `[0, 1]` first, colours to at most their alpha, NaN to 0.
+    pub fn composited(self, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
+        let (backdrop, source) = (sane(backdrop), sane(source));
+        let (ab, as_) = (backdrop[3], source[3]);
+        let straight = |p: [f32; 4]| [0, 1, 2].map(|c| if p[3] > 0.0 { p[c] / p[3] } else { 0.0 });
+        let (cb, cs) = (straight(backdrop), straight(source));
+        let mixed = match self {
+            BlendFunction::Separable(b) => [0, 1, 2].map(|c| b(cb[c], cs[c])),
+            BlendFunction::NonSeparable(b) => b(cb, cs),
+            BlendFunction::Sum(sum) => return [0, 1, 2, 3].map(|c| sum(backdrop[c], source[c])),
+        };
+        let [r, g, b] = [0, 1, 2].map(|c| as_ * (1.0 - ab) * cs[c] + as_ * ab * mixed[c] + (1.0 - as_) * ab * cb[c]);
+        [r, g, b, as_ + ab - as_ * ab]
+    }
 }
 
 /// Any number: a layer dissolves the same way on every run.
@@ -27,31 +47,6 @@ pub const FULL: f32 = 1.0 - 0.5 / 255.0;
 pub fn dissolved(source: [f32; 4], [x, y]: [i32; 2]) -> [f32; 4] {
     let alpha = source[3];
     if hash::unit(DISSOLVE_SEED, x as u32, y as u32) < alpha { source.map(|v| (v / alpha).min(1.0)) } else { [0.0; 4] }
-}
-
-/// Composites one premultiplied pixel over another (sec. 5.8): the backdrop's share, the source's share outside the
-/// backdrop, and B where both are.
-///
-/// Total: every component is brought into `[0, 1]` first, colours to at most their alpha, NaN to 0.
-pub fn blend_pixel(mode: BlendMode, backdrop: [f32; 4], source: [f32; 4]) -> [f32; 4] {
-    let (backdrop, source) = (sane(backdrop), sane(source));
-    let (ab, as_) = (backdrop[3], source[3]);
-    let straight = |p: [f32; 4]| [0, 1, 2].map(|c| if p[3] > 0.0 { p[c] / p[3] } else { 0.0 });
-    let (cb, cs) = (straight(backdrop), straight(source));
-    let mixed = match mode.function() {
-        BlendFunction::Separable(b) => [0, 1, 2].map(|c| b(cb[c], cs[c])),
-        BlendFunction::NonSeparable(b) => b(cb, cs),
-        BlendFunction::Sum(sum) => return [0, 1, 2, 3].map(|c| sum(backdrop[c], source[c])),
-    };
-    let [r, g, b] = [0, 1, 2].map(|c| as_ * (1.0 - ab) * cs[c] + as_ * ab * mixed[c] + (1.0 - as_) * ab * cb[c]);
-    [r, g, b, as_ + ab - as_ * ab]
-}
-
-/// A premultiplied pixel brought into range: alpha in `[0, 1]`, colours in `[0, alpha]`, NaN 0.
-#[inline(always)]
-pub fn sane(p: [f32; 4]) -> [f32; 4] {
-    let a = p[3].max(0.0).min(1.0);
-    [p[0].max(0.0).min(a), p[1].max(0.0).min(a), p[2].max(0.0).min(a), a]
 }
 
 #[inline(always)]

@@ -2,7 +2,7 @@
 //! that it can be cached. Floor 1. Not here: how it is drawn (`window`).
 
 use super::CoverageGrid;
-use crate::raster::flood::{TileBits, bits_of};
+use crate::raster::bits::{TileBits, bits_of};
 use crate::raster::{TILE, TileAt};
 use std::sync::Arc;
 

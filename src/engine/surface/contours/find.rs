@@ -3,26 +3,12 @@
 
 use super::continued::{Continued, nz_of};
 use super::line::ContourLine;
+use super::maps::ContourMaps;
 use super::window::{ALL, BESIDE, Beside, CENTER, Window};
 use super::{ContourPixel, Contours};
-use crate::math::{Size, Vec2};
+use crate::math::Vec2;
 use crate::raster::{Plane, TILE};
 use rayon::prelude::*;
-
-/// The maps that contours are found in.
-pub struct ContourMaps<'m> {
-    pub size: Size,
-    /// n̄_x, n̄_y.
-    pub nbar: [&'m Plane<f32>; 2],
-    pub depth: &'m Plane<f32>,
-    pub coverage: &'m Plane<u8>,
-    /// Those across creases left out.
-    pub links: &'m Plane<u8>,
-    /// Those across creases, too.
-    pub all_links: &'m Plane<u8>,
-    /// Where the maps told something, if it is known: elsewhere the nearest values were repeated.
-    pub valid: Option<&'m Plane<bool>>,
-}
 
 /// What was found.
 pub struct Found {

@@ -7,6 +7,7 @@
 mod continued;
 mod find;
 mod line;
+mod maps;
 mod moved;
 mod sheet;
 mod window;
@@ -21,8 +22,9 @@ use crate::raster::TileAt;
 use std::ops::Range;
 
 pub(super) use continued::mean_of;
-pub(super) use find::{ContourMaps, Found, find};
+pub(super) use find::{Found, find};
 pub(super) use line::bits;
+pub(super) use maps::ContourMaps;
 pub(super) use window::{BESIDE, Window};
 
 /// A pixel that two populations see.

@@ -2,7 +2,7 @@
 //! same piece of surface.
 //! Floor 2.
 
-use super::find::ContourMaps;
+use super::maps::ContourMaps;
 use crate::math::{Vec2, vec2};
 use crate::surface::links;
 

@@ -1,9 +1,16 @@
 //! The tiles in which curvature is computed: wide and flat, so that their rows stay in the cache.
 //! Floor 2.
 
-use super::tiles::{BAND_ROWS, LANES, TILE_COLS};
 use crate::math::Size;
 use crate::surface::Surface;
+
+/// Columns of a tile's scratch: the tile and one pixel around it for the differences.
+pub(super) const STRIDE: usize = 256;
+const TILE_COLS: usize = STRIDE - 2;
+/// Rows of a band: enough that few rows are blurred twice, once for each of two bands.
+pub(super) const BAND_ROWS: usize = 64;
+/// Pixels summed side by side in registers.
+pub(super) const LANES: usize = 32;
 
 /// The pixels of one tile.
 #[derive(Clone, Copy)]

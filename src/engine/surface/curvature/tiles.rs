@@ -2,20 +2,12 @@
 //! Floor 2. The plain version that reads like the paper is `reference`.
 
 use super::ends::{EndBlur, FlowRegion};
-use super::tile_rect::TileRect;
+use super::tile_rect::{BAND_ROWS, LANES, STRIDE, TileRect};
 use super::{Curvature, slope, tensor};
 use crate::math::simd::prefetch;
 use crate::raster::{Plane, blur::half_kernel};
 use crate::surface::{Surface, links};
 use rayon::prelude::*;
-
-/// Columns of a tile's scratch: the tile and one pixel around it for the differences.
-const STRIDE: usize = 256;
-pub(super) const TILE_COLS: usize = STRIDE - 2;
-/// Rows of a band: enough that few rows are blurred twice, once for each of two bands.
-pub(super) const BAND_ROWS: usize = 64;
-/// Pixels summed side by side in registers.
-pub(super) const LANES: usize = 32;
 
 /// Chunks of a row of scratch.
 const CHUNKS: usize = STRIDE / LANES;

@@ -1,0 +1,23 @@
+//! When two colours are one flat, and how far a mixed one lies between two.
+//! Floor 4.
+
+/// Colours nearer than this, in any channel of 8 bits, are one flat.
+pub const NEAR: i32 = 8;
+
+pub fn is_near(pixel: [u8; 4], color: [u8; 4]) -> bool {
+    pixel.iter().zip(color).all(|(a, b)| (i32::from(*a) - i32::from(b)).abs() <= NEAR)
+}
+
+/// How far a pixel lies from one colour toward another, 255 at the other; 0 where it lies beside the way.
+pub fn share_on_the_way(pixel: [u8; 4], from: [u8; 4], to: [u8; 4]) -> u8 {
+    let way: [f32; 4] = std::array::from_fn(|c| f32::from(to[c]) - f32::from(from[c]));
+    let gone: [f32; 4] = std::array::from_fn(|c| f32::from(pixel[c]) - f32::from(from[c]));
+    let dot = |a: &[f32; 4], b: &[f32; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
+    let length = dot(&way, &way);
+    if length < 1.0 {
+        return 0;
+    }
+    let t = (dot(&gone, &way) / length).max(0.0).min(1.0);
+    let off: [f32; 4] = std::array::from_fn(|c| gone[c] - t * way[c]);
+    if dot(&off, &off) > (4 * NEAR * NEAR) as f32 { 0 } else { (t * 255.0).round() as u8 }
+}
