@@ -118,6 +118,17 @@ fn ball(folder: &Path) -> [PathBuf; 2] {
     image::GrayImage::from_fn(96, 96, |x, y| image::Luma([depth(x, y)])).save(&files[1]).unwrap();
     files
 }
+/// The dialog grows to its new size and stays in the middle while it does: a click must not fall beside.
+fn still(harness: &mut super::Story, name: &str) {
+    let place = |harness: &super::Story| harness.get_all_by_label(name).next().unwrap().rect();
+    let mut still = 0;
+    while still < 10 {
+        let before = place(harness);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        harness.step();
+        still = if place(harness) == before { still + 1 } else { 0 };
+    }
+}
 #[test]
 fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     let folder = tempfile::tempdir().unwrap();
@@ -127,18 +138,18 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     until(&mut harness, |harness| shows(harness, "Flip green"));
     // The flat border was taken for background, and that can be taken back.
     until(&mut harness, |harness| shows(harness, "Flat border"));
-    // The dialog grows to its new size and stays in the middle while it does: a click must not fall beside.
-    let place = |harness: &super::Story| harness.get_all_by_label("Flip green").next().unwrap().rect();
-    let mut still = 0;
-    while still < 10 {
-        let before = place(&harness);
-        std::thread::sleep(std::time::Duration::from_millis(20));
-        harness.step();
-        still = if place(&harness) == before { still + 1 } else { 0 };
-    }
+    still(&mut harness, "Flip green");
     harness.get_all_by_label("Flip green").next().unwrap().click();
     steps(&mut harness);
-    until(&mut harness, |harness| shows(harness, "Flip green"));
+    // What was chosen stays where it is, and alone.
+    let chosen = |harness: &super::Story, name: &str| {
+        use egui_kittest::kittest::NodeT;
+        let node = harness.get_all_by_label(name).next().unwrap();
+        format!("{:?}", node.accesskit_node().toggled()).contains("True")
+    };
+    until(&mut harness, |harness| shows(harness, "Flip green") && !shows(harness, "Reading the maps…"));
+    let all = ["As it is", "Flip red", "Flip green", "Flip both"];
+    assert_eq!(all.map(|name| chosen(&harness, name)), [false, false, true, false]);
     press(&mut harness, "What was found");
     until(&mut harness, |harness| shows(harness, "plain numbers"));
     for jargon in ["normal.srgb", "normal.encoding", "depth.near", "false", "full-z"] {
@@ -149,6 +160,30 @@ fn maps_are_seen_four_ways_and_corrected_before_they_become_a_document() {
     let surface = tab.document().surface.clone().unwrap();
     assert_eq!((surface.coverage(2, 2), surface.coverage(48, 48)), (0, 255));
     assert!(surface.normal(48, 20).y < 0.0, "the upper half looks down now");
+}
+#[test]
+fn bumps_of_a_depth_map_alone_become_dents_by_a_click() {
+    let folder = tempfile::tempdir().unwrap();
+    let [_, depth] = ball(folder.path());
+    let alone = folder.path().join("alone_depth.png");
+    std::fs::rename(depth, &alone).unwrap();
+    std::fs::remove_file(folder.path().join("shape.png")).unwrap();
+    let looks_up = |turned: bool| {
+        let mut harness = window();
+        drop_files(&mut harness, &[&alone]);
+        let read = |harness: &super::Story| shows(harness, "Inside out") && !shows(harness, "Reading the maps…");
+        until(&mut harness, read);
+        if turned {
+            still(&mut harness, "Inside out");
+            harness.get_all_by_label("Inside out").next().unwrap().click();
+            steps(&mut harness);
+            until(&mut harness, read);
+        }
+        create(&mut harness);
+        let surface = session(&harness).active().unwrap().document().surface.clone().unwrap();
+        surface.normal(48, 20).y > 0.0
+    };
+    assert_ne!(looks_up(false), looks_up(true));
 }
 #[test]
 fn maps_that_are_dropped_together_are_one_objects() {

@@ -1,22 +1,24 @@
 //! The import dialog: choose the maps, check their detected conventions and their look under a light, and correct them
 //! before the first stroke. Floor 7. `io::maps` reads the maps, on another thread.
 
-use super::{DialogAnswer, buttons, findings};
+mod findings;
+mod ways;
+
+use super::{DialogAnswer, buttons};
 use crate::Result;
 use crate::advice::with_advice;
 use crate::canvas::loaded;
 use crate::document::SurfaceSource;
-use crate::document::source::{MapSource, MaskSource, NormalEncoding};
+use crate::document::source::{MapSource, MaskSource, Near, NormalEncoding};
 use crate::file_purpose::FilePurpose;
 use crate::io::maps;
 use crate::jobs::MapsRead;
-use crate::math::{Size, srgb::quantise, vec3};
 use crate::raster::Picture;
 use crate::session::storage::{self, OpenedTab};
-use crate::surface::Surface;
 use crate::widgets::{choice_row, named, sentence};
 use eframe::egui::{self, Color32, Context, RichText, ScrollArea, Sense, StrokeKind, TextureHandle, Ui, pos2, vec2};
 use std::path::{Path, PathBuf};
+use ways::{FLIPS, ReadingWay, SIDES, lit, xor};
 
 /// The dialog's state.
 #[derive(Default)]
@@ -31,10 +33,13 @@ pub struct ImportDialog {
     takes_picture: bool,
     /// The user knows that a file which looks like no normal map is one.
     is_sure: bool,
-    /// Lit as found, with red, green, and both flipped.
+    /// The surface lit in each of the ways to choose from, in the order of [`ImportDialog::ways`].
     lit: Vec<TextureHandle>,
-    /// Which of them was clicked: it is the one chosen while the maps are read anew.
+    /// Which of them is chosen.
     clicked: usize,
+    /// The file that they show, and which of its axes were flipped as it was first found: the ways keep their places
+    /// while one after the other is chosen.
+    first: Option<(String, [bool; 2])>,
     becomes: MapsBecome,
 }
 
@@ -48,10 +53,6 @@ enum MapsBecome {
     /// A part of the shape of the document in front.
     ItsPart,
 }
-
-/// What each of the four pictures changes: x and y flipped.
-const FLIPS: [(&str, bool, bool); 4] =
-    [("As it is", false, false), ("Flip red", true, false), ("Flip green", false, true), ("Flip both", true, true)];
 
 impl ImportDialog {
     /// Opens the dialog with the known files.
@@ -103,10 +104,37 @@ impl ImportDialog {
         self.clicked = 0;
         self.lit.clear();
         if let Ok(import) = &found {
-            let pictures = FLIPS.iter().filter_map(|&(name, x, y)| loaded(ctx, name, &lit(&import.surface, x, y)?));
+            let now = self.flipped(&import.findings);
+            let file = self.shown_file().unwrap_or_default().to_owned();
+            let first = match self.first.take() {
+                Some(known) if known.0 == file => known.1,
+                _ => now,
+            };
+            self.first = Some((file, first));
+            let chosen = xor(now, first);
+            self.clicked = self.ways().iter().position(|(_, flips)| *flips == chosen).unwrap_or(0);
+            let shown = |flips: [bool; 2]| lit(&import.surface, xor(flips, chosen));
+            let pictures = self.ways().iter().filter_map(|&(name, flips)| loaded(ctx, name, &shown(flips)?));
             self.lit = pictures.collect();
         }
         self.found = Some(found);
+    }
+    /// The ways that these maps may be meant.
+    fn ways(&self) -> &'static [ReadingWay] {
+        if self.source.normal.is_some() { &FLIPS } else { &SIDES }
+    }
+    /// The file whose ways are shown.
+    fn shown_file(&self) -> Option<&str> {
+        let map = self.source.normal.as_ref().map(|map| &map.file);
+        map.or(self.source.depth.as_ref().map(|map| &map.file)).map(String::as_str)
+    }
+    /// Which axes were read flipped; of depth alone both where near is bright.
+    fn flipped(&self, findings: &maps::Findings) -> [bool; 2] {
+        if self.source.normal.is_some() {
+            let normal = findings.normal.clone().unwrap_or_default();
+            return [normal.flip_x.unwrap_or(false), normal.flip_y.unwrap_or(false)];
+        }
+        [findings.depth.as_ref().is_some_and(|depth| depth.near == Near::High); 2]
     }
     pub fn show(&mut self, ui: &mut Ui) -> DialogAnswer {
         ui.set_width(560.0);
@@ -250,23 +278,25 @@ impl ImportDialog {
             });
         });
     }
-    /// The surface lit from above left, four ways; a click corrects the map.
+    /// The surface lit from above left, each way; a click corrects the map.
     fn pictures(&mut self, ui: &mut Ui) {
         ui.label("Lit from above left. Choose the one whose bumps stand out:");
         let mut chosen = None;
         ui.horizontal(|ui| {
-            for (i, (texture, (name, _, _))) in self.lit.iter().zip(FLIPS).enumerate() {
+            for (i, (texture, (name, _))) in self.lit.iter().zip(self.ways()).enumerate() {
                 ui.vertical(|ui| {
                     let (rect, response) = ui.allocate_exact_size(vec2(124.0, 124.0), Sense::click());
                     let is_chosen = i == self.clicked;
-                    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, name));
+                    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_chosen, *name));
                     let side = texture.size_vec2();
                     let scale = (rect.width() / side.x).min(rect.height() / side.y);
                     let at = egui::Rect::from_center_size(rect.center(), side * scale);
                     ui.painter().rect_filled(rect, 4.0, Color32::from_gray(0x20));
                     let uv = egui::Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
                     ui.painter().image(texture.id(), at, uv, Color32::WHITE);
-                    let rim = if is_chosen { ui.visuals().selection.stroke } else { ui.visuals().window_stroke };
+                    // Of a colour that the pictures have not, whose border may be black or white.
+                    let chosen_rim = egui::Stroke::new(3.0, ui.visuals().selection.bg_fill);
+                    let rim = if is_chosen { chosen_rim } else { ui.visuals().window_stroke };
                     ui.painter().rect_stroke(rect, 4.0, rim, StrokeKind::Inside);
                     if response.hovered() && !is_chosen {
                         ui.painter().rect_stroke(rect, 4.0, ui.visuals().widgets.hovered.bg_stroke, StrokeKind::Inside);
@@ -279,13 +309,13 @@ impl ImportDialog {
                 });
             }
         });
-        let (Some(i), Some(Ok(found))) = (chosen, &self.found) else { return };
+        let (Some(i), Some((_, first))) = (chosen, &self.first) else { return };
+        let [x, y] = xor(*first, self.ways()[i].1);
         self.clicked = i;
-        let (_, x, y) = FLIPS[i];
         if let Some(map) = &mut self.source.normal {
-            let now = found.findings.normal.clone().unwrap_or_default();
-            map.convention.flip_x = Some(now.flip_x.unwrap_or(false) != x);
-            map.convention.flip_y = Some(now.flip_y.unwrap_or(false) != y);
+            (map.convention.flip_x, map.convention.flip_y) = (Some(x), Some(y));
+        } else if let Some(map) = &mut self.source.depth {
+            map.convention.near = if x { Near::High } else { Near::Low };
         }
     }
     fn create(&mut self) -> DialogAnswer {
@@ -310,21 +340,3 @@ impl ImportDialog {
 
 /// A document made of maps, boxed: it is large.
 pub type MadeDocument = Box<OpenedTab>;
-
-/// The surface under one light from above left, its normals flipped.
-fn lit(surface: &Surface, flip_x: bool, flip_y: bool) -> Option<Picture> {
-    const SIDE: u32 = 160;
-    let size = surface.size();
-    let step = size.width.max(size.height).div_ceil(SIDE).max(1);
-    let small = Size::new(size.width.div_ceil(step), size.height.div_ceil(step));
-    let light = vec3(-0.5, 0.6, 0.62).normalize();
-    let texel = |i: usize| {
-        let (x, y) = (i % small.width as usize * step as usize, i / small.width as usize * step as usize);
-        let mut n = surface.normal(x, y);
-        n.x = if flip_x { -n.x } else { n.x };
-        n.y = if flip_y { -n.y } else { n.y };
-        let shade = quantise(0.1 + 0.85 * n.dot(light).max(0.0).sqrt());
-        [shade, shade, shade, surface.coverage(x, y)]
-    };
-    Picture::srgb8(small, (0..small.area()).map(texel).collect())
-}

@@ -4,7 +4,6 @@
 pub mod canvas;
 pub mod edge;
 pub mod export;
-mod findings;
 pub mod grid;
 pub mod help;
 pub mod import;
