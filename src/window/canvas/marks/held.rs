@@ -2,10 +2,11 @@
 //! Floor 7. Which of them it is `tools::move_content` tells.
 
 use super::{LOOKS, line_through, outlined};
-use crate::document::{Content, Layer, LayerId};
-use crate::math::{Rect, Size, Vec2, vec2};
+use crate::document::{Document, LayerId};
+use crate::math::{Vec2, vec2};
 use crate::session::Session;
 use crate::tools::move_content::{Held, held};
+use crate::tools::transform::TransformFrame;
 use eframe::egui::{Id, Painter, Pos2, Shape};
 
 /// Of a layer with more strokes only the bounds are shown: to find the one under the pointer would take too long for
@@ -25,21 +26,19 @@ struct Last {
 pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen: &impl Fn(Vec2) -> Pos2) {
     let Some((tab, layer)) = session.active().zip(session.layer()) else { return };
     if tab.has_several() {
-        let all = tab.outermost_chosen().into_iter().filter_map(|id| tab.shown().layer(id));
-        return all.for_each(|layer| bounds(painter, layer, tab.shown().size, to_screen));
+        return tab.outermost_chosen().into_iter().for_each(|id| bounds(painter, tab.shown(), id, to_screen));
     }
     let id = Id::unique("held by the move tool");
     let last: Option<Last> = painter.ctx().data_mut(|data| data.get_temp(id));
     let last = last.filter(|last| last.layer == layer.id);
     if tab.is_previewing() {
-        let moved = tab.shown().layer(layer.id);
-        let Some((last, moved)) = last.zip(moved) else { return };
+        let Some(last) = last else { return };
         return match last.held {
             Held::Stroke(index) => {
                 let strokes = tab.shown().strokes_on_canvas(layer.id);
                 strokes.get(index).into_iter().for_each(|stroke| line_through(painter, stroke, to_screen));
             }
-            Held::Layer => bounds(painter, moved, tab.shown().size, to_screen),
+            Held::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
         };
     }
     let Some(at) = under.map(Vec2::floor) else { return };
@@ -54,24 +53,48 @@ pub fn draw(painter: &Painter, session: &Session, under: Option<Vec2>, to_screen
             let strokes = tab.shown().strokes_on_canvas(layer.id);
             outlined(painter, strokes.get(index).into_iter().collect(), &scene, to_screen);
         }
-        Held::Layer => bounds(painter, layer, tab.shown().size, to_screen),
+        Held::Layer => bounds(painter, tab.shown(), layer.id, to_screen),
     }
 }
 
-/// A dashed rectangle around what a layer holds.
-fn bounds(painter: &Painter, layer: &Layer, canvas: Size, to_screen: &impl Fn(Vec2) -> Pos2) {
-    let Rect { x0, y0, x1, y1 } = extent(layer, canvas);
-    let corner = |x: i32, y: i32| to_screen(vec2(x as f32, y as f32));
-    let corners = [corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1), corner(x0, y0)];
+/// A dashed frame around what a layer holds, where it stands; around the canvas where that has no end.
+fn bounds(painter: &Painter, document: &Document, layer: LayerId, to_screen: &impl Fn(Vec2) -> Pos2) {
+    let [a, b, c, d] = frame(document, layer).map(to_screen);
+    let outline = [a, b, c, d, a];
     let [beneath, light] = LOOKS;
-    painter.add(Shape::line(corners.to_vec(), beneath));
-    painter.extend(Shape::dashed_line(&corners, light, DASH_PT, DASH_PT));
+    painter.add(Shape::line(outline.to_vec(), beneath));
+    painter.extend(Shape::dashed_line(&outline, light, DASH_PT, DASH_PT));
 }
 
-/// The pixels of a paint layer; of all else the canvas.
-fn extent(layer: &Layer, canvas: Size) -> Rect {
-    match &layer.content {
-        Content::Pixels(pixels) if !pixels.tiles.bounds().is_empty() => pixels.tiles.bounds(),
-        _ => canvas.rect(),
+/// Upper left, upper right, lower right, lower left; of an empty layer the canvas.
+fn frame(document: &Document, layer: LayerId) -> [Vec2; 4] {
+    let (w, h) = (document.size.width as f32, document.size.height as f32);
+    let canvas = [Vec2::ZERO, vec2(w, 0.0), vec2(w, h), vec2(0.0, h)];
+    TransformFrame::of(document, layer).map_or(canvas, |frame| frame.corners)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Content, Layer, Live, StrokeList};
+    use crate::math::{Size, srgb::Color};
+    use crate::paint::{Brush, Sample, Stroke};
+    use crate::surface::Operator;
+    use std::sync::Arc;
+
+    #[test]
+    fn of_strokes_the_frame_is_around_them_and_not_around_the_canvas() {
+        let samples = vec![Sample::at(vec2(300.0, 200.0)), Sample::at(vec2(320.0, 210.0))];
+        let stroke = Stroke::new(Brush { size: 10.0, ..Brush::default() }, Operator::None, Color::BLACK, samples);
+        let of = |strokes: Vec<Arc<Stroke>>| {
+            let layer = Layer::new("Ink", Content::Strokes(Live::new(StrokeList { strokes })));
+            let layers = vec![Arc::new(layer)];
+            let document = Document { layers, ..Document::empty(Size::new(600, 500)) };
+            let [from, _, to, _] = frame(&document, document.layers[0].id);
+            (from, to)
+        };
+        let (from, to) = of(vec![Arc::new(stroke)]);
+        assert!(from.cmpge(vec2(192.0, 128.0)).all() && to.cmple(vec2(384.0, 256.0)).all(), "{from} {to}");
+        assert_eq!(of(Vec::new()), (Vec2::ZERO, vec2(600.0, 500.0)));
     }
 }
