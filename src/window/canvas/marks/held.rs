@@ -2,7 +2,7 @@
 //! Floor 7. Which of them it is `tools::move_content` tells.
 
 use super::{LOOKS, line_through, outlined};
-use crate::document::{Document, LayerId};
+use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::session::Session;
 use crate::tools::move_content::{Held, held};
@@ -66,17 +66,29 @@ fn bounds(painter: &Painter, document: &Document, layer: LayerId, to_screen: &im
     painter.extend(Shape::dashed_line(&outline, light, DASH_PT, DASH_PT));
 }
 
-/// Upper left, upper right, lower right, lower left; of an empty layer the canvas.
+/// Upper left, upper right, lower right, lower left; of an empty layer, and of more strokes than are looked through
+/// for every move, the canvas.
 fn frame(document: &Document, layer: LayerId) -> [Vec2; 4] {
     let (w, h) = (document.size.width as f32, document.size.height as f32);
     let canvas = [Vec2::ZERO, vec2(w, 0.0), vec2(w, h), vec2(0.0, h)];
-    TransformFrame::of(document, layer).map_or(canvas, |frame| frame.corners)
+    let is_quick = document.layer(layer).is_some_and(|layer| strokes_of(layer) <= MOST_STROKES);
+    let known = is_quick.then(|| TransformFrame::of(document, layer)).flatten();
+    known.map_or(canvas, |frame| frame.corners)
+}
+
+/// The strokes of a layer, and of all in it.
+fn strokes_of(layer: &Layer) -> usize {
+    match &layer.content {
+        Content::Strokes(live) => live.params().strokes.len(),
+        Content::Group(group) => group.layers.iter().map(|layer| strokes_of(layer)).sum(),
+        _ => 0,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Content, Layer, Live, StrokeList};
+    use crate::document::{Live, StrokeList};
     use crate::math::{Size, srgb::Color};
     use crate::paint::{Brush, Sample, Stroke};
     use crate::surface::Operator;
@@ -93,8 +105,11 @@ mod tests {
             let [from, _, to, _] = frame(&document, document.layers[0].id);
             (from, to)
         };
-        let (from, to) = of(vec![Arc::new(stroke)]);
+        let stroke = Arc::new(stroke);
+        let (from, to) = of(vec![stroke.clone()]);
         assert!(from.cmpge(vec2(192.0, 128.0)).all() && to.cmple(vec2(384.0, 256.0)).all(), "{from} {to}");
-        assert_eq!(of(Vec::new()), (Vec2::ZERO, vec2(600.0, 500.0)));
+        for strokes in [Vec::new(), vec![stroke; MOST_STROKES + 1]] {
+            assert_eq!(of(strokes), (Vec2::ZERO, vec2(600.0, 500.0)));
+        }
     }
 }
