@@ -1,7 +1,7 @@
 //! Every panel beside the canvas, in a window of its own, and hidden.
 
 use super::{Story, click, command, key, press, session, steps, window};
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 
 const PANELS: [&str; 6] = ["Colour", "Brushes", "Properties", "Surface", "History", "Navigator"];
@@ -87,4 +87,39 @@ fn colours_are_typed_in_hex_and_numbers_and_remembered_once_painted_with() {
     key(&mut harness, Modifiers::NONE, Key::D);
     press(&mut harness, "Recent colour 1");
     assert_eq!(session(&harness).color, color);
+}
+#[test]
+fn what_a_small_window_cuts_off_the_options_comes_by_the_wheel() {
+    let mut harness = window();
+    press(&mut harness, "Brush");
+    harness.set_size(vec2(1024.0, 700.0));
+    steps(&mut harness);
+    let ends = |harness: &Story| harness.get_by_label("Speed presses").rect().right();
+    assert!(ends(&harness) > 1016.0, "{}", ends(&harness));
+    harness.hover_at(pos2(600.0, 68.0));
+    steps(&mut harness);
+    let (unit, delta) = (MouseWheelUnit::Point, vec2(0.0, -400.0));
+    let (phase, source) = (TouchPhase::Move, MouseWheelSource::Wheel);
+    let wheel = Event::MouseWheel { unit, delta, phase, source, modifiers: Modifiers::NONE };
+    harness.input_mut().events.push(wheel);
+    // The wheel is followed smoothly.
+    (0..60).for_each(|_| harness.step());
+    assert!(ends(&harness) < 1020.0, "{}", ends(&harness));
+}
+#[test]
+fn a_canvas_that_was_seen_whole_is_so_in_a_window_that_grew_behind_another() {
+    let mut harness = window();
+    let zoom = |harness: &Story| session(harness).active().unwrap().view.unwrap().zoom;
+    let key_of = |harness: &Story| session(harness).active().unwrap().key;
+    let (first, before) = (key_of(&harness), zoom(&harness));
+    click(&mut harness, "File");
+    click(&mut harness, "New…");
+    click(&mut harness, "Create");
+    harness.set_size(vec2(1280.0, 1020.0));
+    steps(&mut harness);
+    let grown = zoom(&harness);
+    command(&mut harness, "Next document");
+    steps(&mut harness);
+    assert!(key_of(&harness) == first && grown > before + 0.1, "{before} {grown}");
+    assert_eq!(zoom(&harness), grown);
 }

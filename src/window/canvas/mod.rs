@@ -39,6 +39,7 @@ use overlay::{Insets, Overlay};
 use parts::PartMarks;
 use pointer::PointerState;
 use sheet::TileSheet;
+use std::collections::BTreeMap;
 use std::time::Duration;
 use unwrapped::{OnSheet, UnwrappedSheet};
 use wobble::Wobble;
@@ -70,6 +71,8 @@ pub struct Canvas {
     small_is_old: bool,
     /// Of the canvas's area, screen points.
     pub area_pt: Vec2,
+    /// The same when each tab was seen last, by its key.
+    areas_pt: BTreeMap<usize, Vec2>,
     /// The canvas pixel under the pointer.
     pub under: Option<Vec2>,
     /// How long the last redraw took.
@@ -105,6 +108,7 @@ impl Canvas {
             small: None,
             small_is_old: true,
             area_pt: vec2(800.0, 600.0),
+            areas_pt: BTreeMap::new(),
             under: None,
             took: Duration::ZERO,
             is_busy: false,
@@ -121,10 +125,11 @@ impl Canvas {
         let rect = egui::Rect::from_min_max(whole.min + egui::Vec2::splat(rulers::room_pt(session)), whole.max);
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Canvas"));
-        let area_before_pt = std::mem::replace(&mut self.area_pt, vec2(rect.width(), rect.height()));
+        self.area_pt = vec2(rect.width(), rect.height());
         let dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(rect, 0.0, theme::SURROUND[usize::from(!dark)]);
         let Some(tab) = session.active() else { return invite(ui, rect) };
+        let area_before_pt = self.areas_pt.insert(tab.key, self.area_pt).unwrap_or(self.area_pt);
         let Some(view) = tab.view else {
             // The first view shows the whole canvas.
             actions.push(Action::View(ViewAction::Fit { window_pt: self.area_pt }));

@@ -23,6 +23,8 @@ pub fn show(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
 
 /// One row, which a narrow window scrolls sideways.
 fn row(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
+    // A plain wheel is enough: nothing here goes up or down.
+    ui.style_mut().always_scroll_the_only_direction = true;
     let area = ScrollArea::horizontal().id_salt(name).scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
     area.show(ui, |ui| {
         ui.horizontal(|ui| {

@@ -16,10 +16,10 @@ use std::ops::RangeInclusive;
 
 /// The upper row: commands, sampling, pivot.
 pub fn ways(ui: &mut Ui, session: &Session, requests: &mut UiRequests) {
-    if session.shown().is_some_and(|document| document.surface.is_some()) {
-        if let Some(carried) = choice(ui, "What is transformed", session.carried, &Carried::LABELS) {
-            requests.act(Action::Hand(HandAction::Carried { carried }));
-        }
+    if session.shown().is_some_and(|document| document.surface.is_some())
+        && let Some(carried) = choice(ui, "What is transformed", session.carried, &Carried::LABELS)
+    {
+        requests.act(Action::Hand(HandAction::Carried { carried }));
     }
     let mut commands = TRANSFORMS.split(MenuCommand::is_line);
     for command in commands.next().unwrap_or_default() {

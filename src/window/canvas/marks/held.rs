@@ -5,8 +5,8 @@ use super::{LOOKS, line_through, outlined};
 use crate::document::{Content, Document, Layer, LayerId};
 use crate::math::{Vec2, vec2};
 use crate::session::Session;
+use crate::tools::frame::TransformFrame;
 use crate::tools::move_content::{Held, held};
-use crate::tools::transform::TransformFrame;
 use eframe::egui::{Id, Painter, Pos2, Shape};
 
 /// Of a layer with more strokes only the bounds are shown: to find the one under the pointer would take too long for
