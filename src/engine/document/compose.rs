@@ -39,6 +39,12 @@ impl Composer<'_> {
         let end = nodes.iter().position(|node| self.is_sought_in(node)).unwrap_or(nodes.len());
         nodes[..end].iter().rposition(|node| self.hides_all_beneath(node)).unwrap_or(0)
     }
+    /// The tile of the topmost node, if that is all there is to see: it hides what lies beneath, and nothing is clipped
+    /// to it.
+    pub fn only_tile(&self, nodes: &[PreparedLayer]) -> Option<Arc<Tile>> {
+        let node = nodes.last().filter(|node| node.clipped.is_empty() && self.hides_all_beneath(node))?;
+        if let TileContent::Tile(tile) = self.painted(node) { Some(tile) } else { None }
+    }
     /// Composes one layer, with those clipped to it, onto a tile. `atop`: it is itself clipped to what is there.
     fn node(&self, node: &PreparedLayer, onto: &mut PlanarTile, atop: bool) -> ComposeFlow {
         let coverage = match &self.behind {

@@ -104,7 +104,14 @@ fn alone(layers: &[Arc<Layer>], ids: &[LayerId]) -> Option<Vec<Arc<Layer>>> {
 impl PreparedDocument {
     /// Composes one tile; `None` where it is transparent.
     pub fn flatten_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
-        self.compose_tile(at, None).quantised().map(Arc::new)
+        self.alone_in_tile(at).or_else(|| self.compose_tile(at, None).quantised().map(Arc::new))
+    }
+    /// The tile of the topmost layer where nothing else is seen: what composing would give, to the byte.
+    fn alone_in_tile(&self, at: TileAt) -> Option<Arc<Tile>> {
+        if self.contours.as_ref().is_some_and(|contours| contours.on(at).is_some()) {
+            return None;
+        }
+        Composer { prepared: self, at, behind: None, sought: None, deep: None }.only_tile(&self.stack)
     }
     fn compose_tile(&self, at: TileAt, deep: Option<&DeepTiles>) -> PlanarTile {
         // No adjustment is sought, so composing runs to its end.

@@ -86,14 +86,17 @@ fn cover_of_tile(surface: &Surface, at: TileAt) -> TileCover {
     let plane = surface.coverage_plane();
     let inside = at.rect().intersect(surface.size().rect());
     let columns = inside.x0 as usize..inside.x1 as usize;
-    let rows = || (inside.y0..inside.y1).map(|y| &plane.row(y as usize)[columns.clone()]);
-    if rows().all(|row| row.iter().all(|&c| c == 0)) {
-        TileCover::None
-    } else if rows().all(|row| row.iter().all(|&c| c > 0)) {
-        TileCover::Whole
-    } else {
-        TileCover::Part
+    let (mut least, mut most) = (u8::MAX, 0);
+    for y in inside.y0..inside.y1 {
+        // A whole row at a time: its bytes are compared side by side.
+        for &c in &plane.row(y as usize)[columns.clone()] {
+            (least, most) = (least.min(c), most.max(c));
+        }
+        if least == 0 && most > 0 {
+            return TileCover::Part;
+        }
     }
+    if most == 0 { TileCover::None } else { TileCover::Whole }
 }
 
 /// A function of canvas pixels as one of a tile's.

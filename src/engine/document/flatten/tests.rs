@@ -54,6 +54,24 @@ fn left_mask() -> Option<LayerMask> {
 mod contours;
 
 #[test]
+fn a_tile_that_one_opaque_layer_fills_is_its_very_own_and_what_composing_gives() {
+    let noise = |i: usize| (i.wrapping_mul(0x9e37_79b9) >> 7) as u8;
+    let rgba: Vec<u8> = (0..128 * 70 * 4).map(|i| if i % 4 == 3 { 255 } else { noise(i) }).collect();
+    let tiles = TileGrid::from_straight_rgba(&rgba, 128, 70, 0, 0);
+    let opaque = Layer::new("opaque", Content::Pixels(PixelLayer { file: String::new(), x: 0, y: 0, tiles }));
+    let (first, second) = (TileAt::new(0, 0), TileAt::new(0, 1));
+    let prepared = |layers: Vec<Layer>| PreparedDocument::new(&document(layers), &Progress::default()).unwrap();
+    let alone = prepared(vec![fill("#203040"), opaque.clone()]);
+    let own = alone.alone_in_tile(first).unwrap();
+    assert!(alone.compose_tile(first, None).quantised().unwrap().bytes() == own.bytes());
+    assert!(alone.alone_in_tile(second).is_none(), "the canvas ends within the tile");
+    let faint = with(opaque.clone(), |layer| layer.opacity = 0.5);
+    let clipped = with(fill("#ffffff"), |layer| layer.clip_below = true);
+    for layers in [vec![faint], vec![opaque.clone(), left_of(30, "#ff0000")], vec![opaque, clipped]] {
+        assert!(prepared(layers).alone_in_tile(first).is_none());
+    }
+}
+#[test]
 fn an_empty_document_is_transparent() {
     assert_eq!(picture(Vec::new()).iter().count(), 0);
 }
