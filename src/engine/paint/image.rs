@@ -13,6 +13,7 @@ use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::sampler::{Antialias, Bilinear};
 use crate::raster::{DeepTexture, Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
 use crate::surface::{Bend, Deformation, deformation::DeformedRect};
+use std::cell::RefCell;
 use std::sync::{Arc, Mutex, OnceLock, Weak};
 
 /// P: where the picture lies on the canvas before it is bent.
@@ -106,6 +107,20 @@ impl PictureSource {
     }
 }
 
+/// Buffers of one tile, used again for the next.
+#[derive(Default)]
+struct ImageScratch {
+    positions: DeformedRect,
+    patches: Patches,
+    bilinear: Bilinear,
+    antialias: Antialias,
+}
+
+thread_local! {
+    /// Some 60 KiB a thread; made anew they would be filled with zeros for each tile.
+    static SCRATCH: RefCell<ImageScratch> = RefCell::default();
+}
+
 /// I(P⁻¹(D(q))).
 #[derive(Clone, PartialEq)]
 pub struct PlacedImage {
@@ -125,11 +140,14 @@ impl PlacedImage {
         if area.is_empty() {
             return None;
         }
+        let texture = self.source.texture();
+        SCRATCH.with_borrow_mut(|scratch| self.render_with(scratch, texture, scene, area))
+    }
+    fn render_with(&self, scratch: &mut ImageScratch, texture: &Texture, scene: &Scene, area: Rect) -> Option<Tile> {
         let mut pixels = vec![[0u8; 4]; TILE_AREA];
-        let Placed { positions, margin, texels_from_canvas } = self.placed(scene, area, self.source.texture().size());
-        let (width, texture) = (area.width(), self.source.texture());
-        let (mut patches, mut bilinear, mut antialias) =
-            (Patches::default(), Bilinear::default(), Antialias::default());
+        let ImageScratch { positions, patches, bilinear, antialias } = scratch;
+        let Placed { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), positions);
+        let width = area.width();
         // Tiles begin at the canvas's corner, so an area does at its tile's.
         let first = |y: i32| (y - area.y0) as usize * TILE;
         if margin == 0 && width == TILE {
@@ -145,14 +163,15 @@ impl PlacedImage {
                 let (x, y) = (&positions.x[from.clone()], &positions.y[from]);
                 bilinear.row(texture, x, y, self.outside, out);
             } else {
-                let row = patches.row(scene, area, y, &positions, texels_from_canvas);
+                let row = patches.row(scene, area, y, positions, texels_from_canvas);
                 antialias.row(texture, row, self.outside, out);
             }
         }
         Tile::from_pixels(pixels.into_flattened())
     }
-    /// Where each pixel of an area is read of a texture of this size.
-    fn placed(&self, scene: &Scene, area: Rect, texture: Size) -> Placed {
+    /// Where each pixel of an area is read of a texture of this size: `positions` in texels, of the area grown by the
+    /// margin.
+    fn placed(&self, scene: &Scene, area: Rect, texture: Size, positions: &mut DeformedRect) -> Placed {
         let texels_from_frame = self.placement.texels_from_canvas(scene.size, texture);
         let deformation = Deformation::new(scene.surface.as_deref(), scene.size, &self.bend);
         let deformation = deformation.about(BentFrame::origin(&self.frame));
@@ -161,21 +180,18 @@ impl PlacedImage {
         let is_exact = deformation.is_identity() && texels_from_canvas == Affine2::IDENTITY;
         // One more pixel on every side, where differences are taken.
         let margin = if self.filter == ImageFilter::Bilinear || is_exact { 0 } else { 1 };
-        let mut positions = DeformedRect::default();
-        deformation.fill(area.grown(margin), &mut positions);
+        deformation.fill(area.grown(margin), positions);
         if bent_frame.apply(&mut positions.x, &mut positions.y) {
             transform(texels_from_frame, &mut positions.x, &mut positions.y);
         } else if texels_from_canvas != Affine2::IDENTITY {
             transform(texels_from_canvas, &mut positions.x, &mut positions.y);
         }
-        Placed { positions, margin, texels_from_canvas }
+        Placed { margin, texels_from_canvas }
     }
 }
 
-/// P⁻¹(D(q)) of an area.
+/// How P⁻¹(D(q)) of an area is read.
 struct Placed {
-    /// Texels; of the area grown by `margin`.
-    positions: DeformedRect,
     /// 1 where each pixel is averaged over its patch, 0 where the picture is read at its centre.
     margin: i32,
     texels_from_canvas: Affine2,

@@ -7,6 +7,7 @@ use crate::paint::scene::Scene;
 use crate::raster::sampler::{Antialias, deep_bilinear_row};
 use crate::raster::tile::transparent_f32;
 use crate::raster::{DeepTexture, PlanarTile, TILE, TileAt};
+use crate::surface::deformation::DeformedRect;
 use std::sync::{Arc, PoisonError};
 
 impl PictureSource {
@@ -31,7 +32,8 @@ impl PlacedImage {
             return None;
         }
         let (texture, width) = (self.source.deep_texture(), area.width());
-        let Placed { positions, margin, texels_from_canvas } = self.placed(scene, area, texture.size());
+        let mut positions = DeformedRect::default();
+        let Placed { margin, texels_from_canvas } = self.placed(scene, area, texture.size(), &mut positions);
         let (mut pixels, mut patches, mut antialias) = (transparent_f32(), Patches::default(), Antialias::default());
         for y in scene.rows(area) {
             let row = (y - area.y0) as usize;

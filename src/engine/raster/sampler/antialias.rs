@@ -77,7 +77,15 @@ impl Antialias {
         }
     }
     fn span(&mut self, texture: &Texture, patches: PatchRow, outside: Outside, out: &mut [[u8; 4]]) {
-        self.choose_grids(patches, out.len(), texture.levels().len() as u32 - 1);
+        self.cells.count(patches, out.len());
+        if self.cells.are_single() {
+            let (x, y) = (&mut self.x[..out.len()], &mut self.y[..out.len()]);
+            place_singles(patches, x, y);
+            let at = TapPositions { level: &texture.levels()[0], x, y, outside };
+            self.taps.find(at);
+            return self.taps.singles(at, out);
+        }
+        self.choose_grids(out.len(), texture.levels().len() as u32 - 1);
         let levels = self.groups.iter().map(|(_, grid)| grid.level).chain(self.lone.iter().map(|(_, grid)| grid.level));
         let (first, last) = levels.fold((u32::MAX, 0), |(a, b), level| (a.min(level), b.max(level)));
         for index in first..=last {
@@ -113,7 +121,8 @@ impl Antialias {
         for from in (0..n).step_by(SPAN) {
             let len = (n - from).min(SPAN);
             let part = patches.part(from, len);
-            self.choose_grids(part, len, last_level);
+            self.cells.count(part, len);
+            self.choose_grids(len, last_level);
             let in_groups = self.groups.iter().flat_map(|(group, grid)| {
                 let first = usize::from(group.first);
                 (first..first + GROUP).map(|k| (k, *grid))
@@ -132,9 +141,8 @@ impl Antialias {
             }
         }
     }
-    /// Fills `groups` and `lone`: every pixel is in one of them.
-    fn choose_grids(&mut self, patches: PatchRow, n: usize, last_level: u32) {
-        self.cells.count(patches, n);
+    /// Fills `groups` and `lone` by the cells that were counted: every pixel is in one of them.
+    fn choose_grids(&mut self, n: usize, last_level: u32) {
         self.groups.clear();
         self.lone.clear();
         for first in (0..n).step_by(GROUP) {
@@ -149,6 +157,19 @@ impl Antialias {
 }
 
 crate::widest! {
+    /// Places the taps of patches of one tap each.
+    fn place_singles(patches: PatchRow, x: &mut [f32], y: &mut [f32]) {
+        let [left, right, up, down] = patches.edges;
+        let [a, b, c, d] = lattice::of(TapGrid::SINGLE).each_ref().map(|steps| steps[0]);
+        for (axis, (center, out)) in [(patches.x, x), (patches.y, y)].into_iter().enumerate() {
+            let n = out.len();
+            let (center, left, right) = (&center[..n], &left[axis][..n], &right[axis][..n]);
+            let (up, down) = (&up[axis][..n], &down[axis][..n]);
+            for k in 0..n {
+                out[k] = center[k] + (a * left[k] + b * right[k]) + (c * up[k] + d * down[k]);
+            }
+        }
+    }
     /// Places the taps of the groups that read level `index`, whose texels are `scale` of level 0's: group after group,
     /// tap after tap, the [`GROUP`] pixels side by side. How many they are.
     fn place_groups(

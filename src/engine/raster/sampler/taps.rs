@@ -2,12 +2,14 @@
 //! several taps an instruction; then the texels, one tap at a time with its texels' channels side by side, in AVX2
 //! where the processor has it (`wide`): LLVM does not vectorise that on its own. Both versions give the same bits.
 
+mod find;
 #[cfg(target_arch = "x86_64")]
 mod wide;
 
 use super::super::texture::{MipLevel, Outside};
 use super::bilinear_in;
 use crate::math::vec2;
+use find::find;
 
 /// Where taps read. Scratch, kept from row to row.
 #[derive(Default)]
@@ -181,112 +183,6 @@ const SHARES: [f32; 32] = {
 #[inline(always)]
 fn round(value: f32) -> u8 {
     (value + 8_388_608.0).to_bits() as u8
-}
-
-crate::widest! {
-    /// Fills index, weights and fractions; the least and the largest index.
-    fn find(at: TapPositions, index: &mut [i32], across: &mut [u32], down: &mut [f32]) -> [i32; 2] {
-        let (w, h) = (at.level.size.width as i32, at.level.size.height as i32);
-        if w < 2 || h < 2 || w > MAX_SIDE || h > MAX_SIDE {
-            index.fill(-1);
-            return [-1; 2];
-        }
-        if all_within(at.x, w as f32) && all_within(at.y, h as f32) {
-            return find_folded(at, |c, n| pair(c - 0.5, n), index, across, down);
-        }
-        match at.outside {
-            Outside::None => find_folded(at, pair_or_seam, index, across, down),
-            Outside::Clamp => find_folded(at, |c, n| pair_or_seam(within(c, n), n), index, across, down),
-            Outside::Repeat => find_folded(at, |c, n| pair_or_seam(repeated(c, n), n), index, across, down),
-            Outside::Mirror => find_folded(at, |c, n| pair_or_seam(within(mirrored(c, n), n), n), index, across, down),
-        }
-    }
-}
-
-/// No position needs a texel from beyond its picture.
-#[inline(always)]
-fn all_within(positions: &[f32], n: f32) -> bool {
-    let (low, high) = (0.5, n - 0.5);
-    positions.iter().fold(0, |beyond, &c| beyond | u32::from(!(c >= low && c <= high))) == 0
-}
-
-/// `pair` finds, for a position in a picture of a side, the first texel of the pair around it and how far beyond it
-/// lies.
-#[inline(always)]
-fn find_folded(
-    at: TapPositions,
-    pair: impl Fn(f32, f32) -> (i32, f32),
-    index: &mut [i32],
-    across: &mut [u32],
-    down: &mut [f32],
-) -> [i32; 2] {
-    let (w, h) = (at.level.size.width as i32, at.level.size.height as i32);
-    let n = at.x.len();
-    let (x, y, index, across, down) = (&at.x[..n], &at.y[..n], &mut index[..n], &mut across[..n], &mut down[..n]);
-    let (mut least, mut most) = (i32::MAX, i32::MIN);
-    for k in 0..n {
-        let (column, right) = pair(x[k], w as f32);
-        let (row, below) = pair(y[k], h as f32);
-        let first = if (row | column) < 0 { -1 } else { row.wrapping_mul(w).wrapping_add(column) };
-        (least, most) = (least.min(first), most.max(first));
-        let right = integer(right * ONE) as u32;
-        (index[k], across[k], down[k]) = (first, (ONE as u32).wrapping_sub(right) | right << 16, below);
-    }
-    [least, most]
-}
-
-/// The texel at or before a position `u` (in texel centres, `[0, n − 1]`) and how far beyond it `u` lies.
-#[inline(always)]
-fn pair(u: f32, n: f32) -> (i32, f32) {
-    let first = floor(u).min(n - 2.0);
-    (integer(first), u - first)
-}
-
-/// The same for any position `c`; −1 where the pair is not in the picture.
-#[inline(always)]
-fn pair_or_seam(c: f32, n: f32) -> (i32, f32) {
-    let u = c - 0.5;
-    let (first, beyond) = pair(u, n);
-    (if u >= 0.0 && u <= n - 1.0 { first } else { -1 }, beyond)
-}
-
-/// Clamped so that both texels of the pair are the border's own.
-#[inline(always)]
-fn within(c: f32, n: f32) -> f32 {
-    c.max(0.5).min(n - 0.5)
-}
-
-/// The position in `[0, n]` that a mirrored picture shows at `c`.
-#[inline(always)]
-fn mirrored(c: f32, n: f32) -> f32 {
-    let period = 2.0 * n;
-    let m = c - floor(c / period) * period;
-    if m > n { period - m } else { m }
-}
-
-/// The position in `[0, n]` that a repeated picture shows at `c`.
-#[inline(always)]
-fn repeated(c: f32, n: f32) -> f32 {
-    c - floor(c / n) * n
-}
-
-/// 1.5 · 2²³: added to a number below 2²² it leaves its nearest integer in the low bits. Rust's own casts saturate,
-/// which keeps LLVM from converting eight at a time.
-const TO_INTEGER: f32 = 12_582_912.0;
-/// Longest side of a level whose texels are found that way.
-const MAX_SIDE: i32 = 1 << 22;
-
-/// `f32::floor`, for values below 2²² in size.
-#[inline(always)]
-fn floor(v: f32) -> f32 {
-    let nearest = (v + TO_INTEGER) - TO_INTEGER;
-    if nearest > v { nearest - 1.0 } else { nearest }
-}
-
-/// The integer that a whole number below 2²² in size is.
-#[inline(always)]
-fn integer(v: f32) -> i32 {
-    (v + TO_INTEGER).to_bits() as i32 - TO_INTEGER.to_bits() as i32
 }
 
 #[cfg(test)]

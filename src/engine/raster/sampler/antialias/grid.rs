@@ -23,6 +23,9 @@ pub struct TapGrid {
 }
 
 impl TapGrid {
+    /// One tap in level 0.
+    pub const SINGLE: Self = Self { across: 1, along: 1, level: 0 };
+
     /// For a patch that takes so many fine or coarse cells across and along in level 0.
     #[inline(always)]
     pub fn of_cells(fine: [u32; 2], coarse: [u32; 2], last_level: u32) -> Self {
@@ -61,20 +64,25 @@ pub fn cells(side: f32, cell: f32) -> u32 {
 /// How many cells the sides of every patch of a span take in level 0.
 #[derive(Clone)]
 pub struct CellCounts {
-    /// Across and along, in cells of [`FINE_CELL`].
+    /// The sides of every patch across and along, in texels.
+    sides: [[f32; SPAN]; 2],
+    /// They in cells of [`FINE_CELL`].
     fine: [[u32; SPAN]; 2],
-    /// In cells of [`COARSE_CELL`].
+    /// In cells of [`COARSE_CELL`]; only where fine ones would be too many.
     coarse: [[u32; SPAN]; 2],
     /// The most cells of a group's patches: fine ones, coarse ones.
     most: [[[u32; SPAN / GROUP]; 2]; 2],
     /// How many fine cells the patches of a group take, one by one.
     in_all: [u32; SPAN / GROUP],
+    /// The most fine cells of any patch.
+    largest: [u32; 2],
 }
 
 impl Default for CellCounts {
     fn default() -> Self {
         let (ones, most) = ([[1; SPAN]; 2], [[[1; SPAN / GROUP]; 2]; 2]);
-        Self { fine: ones, coarse: ones, most, in_all: [0; SPAN / GROUP] }
+        let (sides, in_all) = ([[0.0; SPAN]; 2], [0; SPAN / GROUP]);
+        Self { sides, fine: ones, coarse: ones, most, in_all, largest: [1; 2] }
     }
 }
 
@@ -82,8 +90,25 @@ impl CellCounts {
     /// Of the first `n` patches of a row.
     pub fn count(&mut self, patches: PatchRow, n: usize) {
         let n = n.min(SPAN);
-        count_cells(patches, n, self);
-        look_at_groups(n / GROUP, self);
+        self.largest = [1; 2];
+        if are_within_a_cell(patches, n) {
+            return;
+        }
+        count_fine(patches, n, self);
+        if self.are_single() {
+            return;
+        }
+        let [across, along] = self.largest;
+        most_of_groups(&self.fine, n / GROUP, &mut self.most[0]);
+        add_up_groups(&self.fine, n / GROUP, &mut self.in_all);
+        if across.saturating_mul(along) > MAX_TAPS {
+            count_coarse(&self.sides, n, &mut self.coarse);
+            most_of_groups(&self.coarse, n / GROUP, &mut self.most[1]);
+        }
+    }
+    /// No patch takes more than one tap.
+    pub fn are_single(&self) -> bool {
+        self.largest == [1; 2]
     }
     /// The grid of one patch.
     pub fn grid(&self, k: usize, last_level: u32) -> TapGrid {
@@ -106,32 +131,56 @@ impl CellCounts {
     }
 }
 
+/// The square of half of [`FINE_CELL`]: a half-edge that is no longer belongs to a side of one cell.
+const HALF_CELL_SQUARED: f32 = 0.25 * FINE_CELL * FINE_CELL;
+
 crate::widest! {
+    /// Whether no patch's half-edge is longer than half a cell: level ground, which needs no roots. NaN is longer.
+    fn are_within_a_cell(patches: PatchRow, n: usize) -> bool {
+        let mut longer = 0;
+        for [x, y] in patches.edges {
+            let (x, y) = (&x[..n], &y[..n]);
+            for k in 0..n {
+                longer |= u32::from(!(x[k] * x[k] + y[k] * y[k] <= HALF_CELL_SQUARED));
+            }
+        }
+        longer == 0
+    }
     /// A side is twice the longer of its two half-edges.
-    fn count_cells(patches: PatchRow, n: usize, cells_of: &mut CellCounts) {
+    fn count_fine(patches: PatchRow, n: usize, cells_of: &mut CellCounts) {
         for side in 0..2 {
             let ([ax, ay], [bx, by]) = (patches.edges[2 * side], patches.edges[2 * side + 1]);
             let (ax, ay, bx, by) = (&ax[..n], &ay[..n], &bx[..n], &by[..n]);
-            let (fine, coarse) = (&mut cells_of.fine[side][..n], &mut cells_of.coarse[side][..n]);
+            let (sides, fine) = (&mut cells_of.sides[side][..n], &mut cells_of.fine[side][..n]);
+            let mut largest = 1;
             for k in 0..n {
                 let (a, b) = (ax[k] * ax[k] + ay[k] * ay[k], bx[k] * bx[k] + by[k] * by[k]);
-                let length = 2.0 * max(a, b).sqrt();
-                fine[k] = cells(length, FINE_CELL);
-                coarse[k] = cells(length, COARSE_CELL);
+                sides[k] = 2.0 * max(a, b).sqrt();
+                fine[k] = cells(sides[k], FINE_CELL);
+                largest = largest.max(fine[k]);
+            }
+            cells_of.largest[side] = largest;
+        }
+    }
+    fn count_coarse(sides: &[[f32; SPAN]; 2], n: usize, coarse: &mut [[u32; SPAN]; 2]) {
+        for (sides, coarse) in sides.iter().zip(coarse) {
+            for (length, cells_of) in sides[..n].iter().zip(&mut coarse[..n]) {
+                *cells_of = cells(*length, COARSE_CELL);
             }
         }
     }
-    fn look_at_groups(n: usize, cells: &mut CellCounts) {
-        let CellCounts { fine, coarse, most, in_all } = cells;
-        for group in 0..n {
-            let part = GROUP * group..GROUP * (group + 1);
-            for side in 0..2 {
-                let (fine, coarse) = (&fine[side][part.clone()], &coarse[side][part.clone()]);
-                most[0][side][group] = fine.iter().fold(1, |most, &n| most.max(n));
-                most[1][side][group] = coarse.iter().fold(1, |most, &n| most.max(n));
+    /// The most cells of each of the first `n` groups.
+    fn most_of_groups(counts: &[[u32; SPAN]; 2], n: usize, most: &mut [[u32; SPAN / GROUP]; 2]) {
+        for (counts, most) in counts.iter().zip(most) {
+            for (group, most) in counts.as_chunks::<GROUP>().0.iter().zip(&mut most[..n]) {
+                *most = group.iter().fold(1, |most, &n| most.max(n));
             }
-            let products = fine[0][part.clone()].iter().zip(&fine[1][part]).map(|(a, b)| (a * b).min(1 << 16));
-            in_all[group] = products.sum();
+        }
+    }
+    fn add_up_groups(fine: &[[u32; SPAN]; 2], n: usize, in_all: &mut [u32; SPAN / GROUP]) {
+        let groups = fine[0].as_chunks::<GROUP>().0.iter().zip(fine[1].as_chunks::<GROUP>().0);
+        for ((across, along), in_all) in groups.zip(&mut in_all[..n]) {
+            *in_all = across.iter().zip(along).map(|(a, b)| (a * b).min(1 << 16)).sum();
         }
     }
 }
