@@ -31,8 +31,8 @@ pub struct RenderRequest {
 /// Tiles that were painted.
 pub struct RenderedTileBatch {
     pub picture: u64,
-    /// Canvas pixels to a pixel of these tiles, a side: 1 are whole pixels.
-    pub step: u32,
+    /// They are of a picture that is seen for a moment only: of fewer pixels, or read more coarsely.
+    pub is_draft: bool,
     /// Of the picture that the tiles are cut from.
     pub size: Size,
     pub tiles: Vec<(TileAt, Option<Arc<Tile>>)>,
@@ -64,8 +64,12 @@ const FEW: usize = 12;
 /// A pass over the visible tiles may take this long before a newer request interrupts it, so that a drag shows complete
 /// pictures.
 const PASS: Duration = Duration::from_millis(150);
-/// A redraw during a drag that takes no longer than this is painted at full resolution.
+/// A redraw during a drag that takes no longer than this is painted as at rest.
+const FINE: Duration = Duration::from_millis(16);
+/// Of one that takes longer, pictures are read coarsely; where that takes longer than this, it has fewer pixels.
 const FRAME: Duration = Duration::from_millis(30);
+/// What a draft of all pixels takes of the time that the picture takes at rest.
+const DRAFT_SHARE: f32 = 0.7;
 /// The hand rests if no request came for this long: then the full picture is painted.
 const REST: Duration = Duration::from_millis(180);
 /// After this long without a request, the thread prepares for the next drag.
@@ -114,6 +118,8 @@ struct RenderWork {
     wanted: Option<RenderRequest>,
     whole: RenderPass,
     draft: Option<DraftRender>,
+    /// What was shown before the hand began to drag.
+    at_rest: Option<Document>,
     /// Whether the drag is shown by the draft.
     is_drafting: bool,
     /// Whether the hand rests: then the document is painted in full, however long that takes.
@@ -205,7 +211,7 @@ impl RenderWork {
     }
     /// A drag will want a smaller picture, and some of it is still to be made.
     fn is_slow(&self) -> bool {
-        !self.is_prepared && self.whole.slowest() > FRAME
+        !self.is_prepared && self.whole.slowest() > FINE
     }
     /// Makes some of the document small before a drag needs it: all of a large one would hold the first frame up.
     fn prepare(&mut self) -> Readiness {
@@ -219,7 +225,10 @@ impl RenderWork {
     }
     fn take_up(&mut self, next: RenderRequest) {
         if self.wanted.as_ref().is_none_or(|old| old.picture != next.picture) {
-            (self.whole, self.draft) = (RenderPass::default(), None);
+            (self.whole, self.draft, self.at_rest) = (RenderPass::default(), None, None);
+        } else if let Some(old) = self.wanted.take_if(|old| next.is_dragged && !old.is_dragged) {
+            self.draft.iter_mut().for_each(|draft| draft.reduced.keep(&old.document));
+            self.at_rest = Some(old.document);
         }
         self.whole.take_up(next.document.clone());
         self.is_behind = !next.document.is_shaped();
@@ -228,7 +237,8 @@ impl RenderWork {
         let shaping = if self.shaping.is_zero() { SHAPING.mul_f32(area as f32) } else { self.shaping };
         let is_slow = self.is_behind && shaping > FRAME;
         if is_slow && self.draft.is_none() {
-            self.draft = Some(DraftRender::new(step_for(self.whole.slowest().max(shaping))));
+            // The surface of parts is made small, too.
+            self.begin_draft(step_for(self.whole.slowest().max(shaping)).max(2));
         }
         let was_quick =
             self.draft.as_ref().is_none_or(|draft| draft.is_unused() || draft.would_be_quick_in_whole_pixels());
@@ -245,12 +255,18 @@ impl RenderWork {
         self.whole.take_up(wanted.document.reshaped());
         (self.shaping, self.is_behind) = (begun.elapsed(), false);
     }
+    fn begin_draft(&mut self, step: u32) {
+        let mut draft = DraftRender::new(step);
+        self.at_rest.iter().for_each(|document| draft.reduced.keep(document));
+        self.draft = Some(draft);
+    }
     /// Hands the wanted document to the draft.
     fn redraft(&mut self) {
-        let (Some(draft), Some(wanted)) = (&mut self.draft, &self.wanted) else { return };
-        if draft.is_slow() {
-            *draft = DraftRender::new(draft.step * 2);
+        if let Some(draft) = self.draft.as_ref().filter(|draft| draft.is_slow()) {
+            let step = draft.step * 2;
+            self.begin_draft(step);
         }
+        let (Some(draft), Some(wanted)) = (&mut self.draft, &self.wanted) else { return };
         draft.wait_for_surface(&wanted.document);
         match draft.reduced.of(&wanted.document) {
             Ok(small) => draft.pass.take_up(small),
@@ -266,12 +282,12 @@ impl RenderWork {
     }
     fn nothing(&self) -> RenderedTileBatch {
         let size = self.wanted.as_ref().map_or(Size::new(0, 0), |wanted| wanted.document.size);
-        let (step, size) = match &self.draft {
-            Some(draft) if self.is_drafting => (draft.step, draft.pass.size().unwrap_or(size)),
-            _ => (1, size),
+        let (is_draft, size) = match &self.draft {
+            Some(draft) if self.is_drafting => (true, draft.pass.size().unwrap_or(size)),
+            _ => (false, size),
         };
-        let tiles = Vec::new();
-        RenderedTileBatch { picture: 0, step, size, tiles, is_settled: true, took: Duration::ZERO, refused: None }
+        let (tiles, took) = (Vec::new(), Duration::ZERO);
+        RenderedTileBatch { picture: 0, is_draft, size, tiles, is_settled: true, took, refused: None }
     }
     /// Paints some of what is left, tiles in sight first.
     fn paint(&mut self) -> Option<RenderedTileBatch> {
@@ -279,23 +295,23 @@ impl RenderWork {
         let (picture, is_dragged, visible) = (wanted.picture, wanted.is_dragged, wanted.visible);
         if let Some(draft) = self.draft.as_mut().filter(|_| self.is_drafting) {
             let done = draft.pass.paint(draft.in_sight(visible), BATCH)?;
-            let (step, size) = (draft.step, draft.pass.size()?);
-            return Some(done.painted(picture, step, size));
+            let size = draft.pass.size()?;
+            return Some(RenderedTileBatch { is_draft: true, ..done.painted(picture, size) });
         }
         self.catch_up();
         let done = self.whole.paint(visible, if is_dragged { FEW } else { BATCH })?;
-        if is_dragged && !self.is_resting && !done.is_settled && done.took > FRAME {
+        if is_dragged && !self.is_resting && !done.is_settled && done.took > FINE {
             let step = step_for(done.took.mul_f32(done.share_left() + 1.0));
-            // One that was prepared will do where it is small enough.
-            let does = |draft: &DraftRender| draft.step == step || (draft.is_unused() && draft.step > step);
+            // One that was prepared will do where it is small enough, unless all pixels can be shown.
+            let does = |draft: &DraftRender| draft.step == step || (draft.is_unused() && draft.step > step && step > 1);
             if !self.draft.as_ref().is_some_and(does) {
-                self.draft = Some(DraftRender::new(step));
+                self.begin_draft(step);
             }
             self.is_drafting = true;
             self.redraft();
         }
         let size = wanted_size(self.wanted.as_ref());
-        Some(done.painted(picture, 1, size))
+        Some(done.painted(picture, size))
     }
 }
 
@@ -305,8 +321,8 @@ fn wanted_size(wanted: Option<&RenderRequest>) -> Size {
 
 /// How much smaller a picture must be that is to be painted within a frame, when whole pixels take so long.
 fn step_for(whole: Duration) -> u32 {
-    let fits = |step: u32| whole.as_secs_f32() <= FRAME.as_secs_f32() * (step * step) as f32;
-    [2, 4].into_iter().find(|&step| fits(step)).unwrap_or(COARSEST)
+    let fits = |step: u32| whole.as_secs_f32() * DRAFT_SHARE <= FRAME.as_secs_f32() * (step * step) as f32;
+    [1, 2, 4].into_iter().find(|&step| fits(step)).unwrap_or(COARSEST)
 }
 
 #[cfg(test)]

@@ -85,6 +85,10 @@ trait LayerKind {
     fn warm(&self, _scene: &Scene, _progress: &Progress) {}
     /// On a canvas of another size.
     fn scaled(&self, scale: &CanvasScale) -> Content;
+    /// The same for a moment while a hand moves, cheaper to render; `None` of what is the same then.
+    fn drafted(&self) -> Option<Content> {
+        None
+    }
     /// Elsewhere on the canvas; `None` of what has no place.
     fn moved(&self, _by: Vec2) -> Option<Content> {
         None
@@ -264,6 +268,9 @@ impl Content {
     }
     pub(super) fn scaled(&self, scale: &CanvasScale) -> Content {
         self.kind().scaled(scale)
+    }
+    pub(super) fn drafted(&self) -> Option<Content> {
+        self.kind().drafted()
     }
     pub(super) fn touched(&self, scene: Option<&Scene>) -> Touched {
         self.kind().touched(scene)

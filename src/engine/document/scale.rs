@@ -182,7 +182,9 @@ impl CanvasScale {
         if let Some(stretched) = self.stretched(layer) {
             return stretched;
         }
-        let mut next = Layer { content: layer.content.scaled(self), cache: LayerCache::default(), ..layer.clone() };
+        let scaled = layer.content.scaled(self);
+        let drafted = if self.is_draft { scaled.drafted() } else { None };
+        let mut next = Layer { content: drafted.unwrap_or(scaled), cache: LayerCache::default(), ..layer.clone() };
         next.transform = layer.transform.as_ref().map(|transform| transform.scaled(self.per_axis));
         next.liquify = carried_liquify(layer, &self.map(), self.to);
         match next.mask.as_mut().map(|mask| &mut mask.kind) {

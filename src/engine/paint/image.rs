@@ -10,7 +10,7 @@ use super::{
     stamp::StampCache,
 };
 use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
-use crate::raster::sampler::{Antialias, Bilinear};
+use crate::raster::sampler::{Antialias, Bilinear, TapRule};
 use crate::raster::{DeepTexture, Outside, Picture, TILE, Texture, Tile, TileAt, tile::TILE_AREA};
 use crate::surface::{Bend, Deformation, deformation::DeformedRect};
 use std::cell::RefCell;
@@ -75,6 +75,8 @@ pub struct PictureSource {
     texture: Arc<OnceLock<Texture>>,
     /// The same in floats, as long as somebody holds it.
     deep: Arc<Mutex<Weak<DeepTexture>>>,
+    /// How closely it is read where it is antialiased.
+    rule: TapRule,
     /// The stamps made of it when it is a brush's tip.
     stamps: Arc<StampCache>,
 }
@@ -88,7 +90,12 @@ impl PartialEq for PictureSource {
 
 impl PictureSource {
     pub fn new(file: String, picture: Picture, adjust: Adjust) -> Self {
-        Self { file, picture, adjust, texture: Arc::default(), deep: Arc::default(), stamps: Arc::default() }
+        let (texture, deep, stamps) = (Arc::default(), Arc::default(), Arc::default());
+        Self { file, picture, adjust, texture, deep, rule: TapRule::AT_REST, stamps }
+    }
+    /// The same picture, read as closely as a rule has it where it is antialiased.
+    pub fn read_by(&self, rule: TapRule) -> Self {
+        Self { rule, ..self.clone() }
     }
     /// The same picture without its finest `levels` of detail: what shows it as much smaller reads fewer texels.
     pub fn coarser(&self, levels: u32) -> Self {
@@ -164,7 +171,7 @@ impl PlacedImage {
                 bilinear.row(texture, x, y, self.outside, out);
             } else {
                 let row = patches.row(scene, area, y, positions, texels_from_canvas);
-                antialias.row(texture, row, self.outside, out);
+                antialias.row_by(self.source.rule, texture, row, self.outside, out);
             }
         }
         Tile::from_pixels(pixels.into_flattened())

@@ -7,7 +7,7 @@ mod deep;
 mod rows;
 mod taps;
 
-pub use antialias::{Antialias, PatchRow};
+pub use antialias::{Antialias, PatchRow, TapRule};
 pub use deep::bilinear_row as deep_bilinear_row;
 pub use rows::Bilinear;
 

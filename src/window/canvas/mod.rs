@@ -158,8 +158,9 @@ impl Canvas {
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
         let pixels_per_point = ui.ctx().pixels_per_point();
-        self.whole.set_sharp(view.zoom * pixels_per_point >= 2.0);
-        self.sheet.shown.set_sharp(view.zoom * pixels_per_point >= 2.0);
+        let is_sharp = view.zoom * pixels_per_point >= 2.0;
+        [&mut self.whole, &mut self.sheet.shown].into_iter().for_each(|sheet| sheet.set_sharp(is_sharp));
+        self.draft.set_sharp(is_sharp && self.draft.size() == Some(size));
 
         let painter = ui.painter_at(rect);
         let canvas = size.rect();
@@ -261,7 +262,7 @@ impl Canvas {
             if let Some(refused) = painted.refused {
                 self.trouble = Some(Error::out_of_memory(tab.title(), refused));
             }
-            let is_draft = painted.step > 1;
+            let is_draft = painted.is_draft;
             if painted.is_settled {
                 is_draft_next = is_draft;
             }

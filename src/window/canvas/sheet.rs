@@ -94,7 +94,7 @@ mod tests {
         let tiles = vec![(TileAt::of_pixel(0, 0), None)];
         let batch = RenderedTileBatch {
             picture: 1,
-            step: 1,
+            is_draft: false,
             size: Size::new(100, 80),
             tiles,
             is_settled: false,

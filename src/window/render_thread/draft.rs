@@ -1,14 +1,15 @@
-//! The smaller picture that shows a drag, and what is made ready for it.
+//! The coarser picture that shows a drag, and what is made ready for it.
 //! Floor 7.
 
 use super::pass::RenderPass;
 use super::ready::{JobState, SurfaceJob};
-use super::{COARSEST, FRAME};
+use super::{COARSEST, DRAFT_SHARE, FINE, FRAME};
 use crate::document::{Document, DocumentReducer};
 use crate::math::Rect;
 
-/// A smaller picture, for as long as a drag lasts and the next ones.
+/// A smaller picture, or one of all pixels that is read more coarsely, for as long as a drag lasts and the next ones.
 pub struct DraftRender {
+    /// Canvas pixels to one of its own, a side.
     pub step: u32,
     pub reduced: DocumentReducer,
     /// The surface that is being made small beside this thread.
@@ -83,6 +84,7 @@ impl DraftRender {
         self.pass.passes() == 0
     }
     pub fn would_be_quick_in_whole_pixels(&self) -> bool {
-        self.pass.passes() > 1 && self.pass.took() * self.step * self.step < FRAME
+        let whole = (self.step * self.step) as f32 / DRAFT_SHARE;
+        self.pass.passes() > 1 && self.pass.took().mul_f32(whole) < FINE
     }
 }

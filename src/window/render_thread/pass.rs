@@ -43,9 +43,9 @@ impl PassBatch {
     pub fn share_left(&self) -> f32 {
         self.left as f32 / self.painted.max(1) as f32
     }
-    pub fn painted(self, picture: u64, step: u32, size: Size) -> RenderedTileBatch {
+    pub fn painted(self, picture: u64, size: Size) -> RenderedTileBatch {
         let Self { tiles, is_settled, took, .. } = self;
-        RenderedTileBatch { picture, step, size, tiles, is_settled, took, refused: None }
+        RenderedTileBatch { picture, is_draft: false, size, tiles, is_settled, took, refused: None }
     }
 }
 

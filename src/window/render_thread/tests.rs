@@ -1,9 +1,10 @@
 //! What the thread paints, and what it does where there is no memory.
 
 use super::*;
-use crate::document::{Content, Layer, Progress, flatten};
+use crate::document::{Content, Layer, Live, Progress, flatten};
 use crate::math::{Size, srgb::Color};
-use crate::raster::TileGrid;
+use crate::paint::{Adjust, ImageFilter, PictureSource, PlacedImage, Placement};
+use crate::raster::{Outside, Picture, TileGrid};
 
 /// All that is painted until it is settled.
 fn settled(render_thread: &RenderThread, grid: &mut TileGrid) -> usize {
@@ -54,4 +55,64 @@ fn the_painter_shows_what_flattening_gives_and_repaints_only_what_changed() {
     assert_eq!(grid.pixel(100, 100), [255, 0, 0, 255]);
     render_thread.want(RenderRequest { picture: 1, document: next, visible, is_dragged: false });
     assert_eq!(settled(&render_thread, &mut grid), 0, "what is the same is settled at once");
+}
+
+/// A picture much finer than the canvas, moved by some px.
+fn photo(size: Size, by: f32) -> Content {
+    let texel = |i: usize| [(i * 37) as u8, (i * 101) as u8, (i * 11) as u8, 255];
+    let picture = Picture::srgb8(Size::new(900, 600), (0..900 * 600).map(texel).collect()).unwrap();
+    let mut placement = Placement::covering(size);
+    placement.center.x += by;
+    Content::Image(Live::new(PlacedImage {
+        source: PictureSource::new("photo".into(), picture, Adjust::default()),
+        placement,
+        outside: Outside::Mirror,
+        bend: Default::default(),
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+    }))
+}
+
+#[test]
+fn a_drag_is_shown_in_all_pixels_and_painted_anew_once_the_hand_rests() {
+    let size = Size::new(96, 64);
+    let layers = ["at rest", "dragged"].map(|name| Arc::new(Layer::new(name, photo(size, 0.0))));
+    let document = Document { layers: layers.to_vec(), ..Document::empty(size) };
+    let wanted = |document: &Document, is_dragged: bool| RenderRequest {
+        picture: 1,
+        document: document.clone(),
+        visible: size.rect(),
+        is_dragged,
+    };
+    let mut work = RenderWork::default();
+    let paint = |work: &mut RenderWork| {
+        let mut grid = TileGrid::default();
+        let mut is_draft = None;
+        while let Some(batch) = work.has_more().then(|| work.paint()).flatten() {
+            is_draft = Some(batch.is_draft);
+            assert_eq!(batch.size, size);
+            batch.tiles.into_iter().for_each(|(at, tile)| grid.set(at, tile));
+        }
+        (is_draft, grid.to_straight_rgba(size.rect()))
+    };
+    work.take_up(wanted(&document, false));
+    paint(&mut work);
+    work.take_up(wanted(&document, true));
+    let dragged = document.with_layer(layers[1].id, |layer| layer.content = photo(size, 3.3)).unwrap();
+    work.take_up(wanted(&dragged, true));
+    // As if whole pixels had been found to take longer than a frame.
+    work.begin_draft(1);
+    work.is_drafting = true;
+    work.redraft();
+    let (is_draft, coarse) = paint(&mut work);
+    let fine = flatten(&dragged, &Progress::default()).unwrap().to_straight_rgba(size.rect());
+    assert!(is_draft == Some(true) && coarse != fine);
+    work.take_up(wanted(&dragged, false));
+    let (is_draft, whole) = paint(&mut work);
+    assert!(is_draft == Some(false) && whole == fine);
+}
+#[test]
+fn pixels_grow_only_where_a_draft_of_all_of_them_would_take_longer_than_a_frame() {
+    let steps = [16, 42, 44, 170, 180, 900].map(|ms| step_for(Duration::from_millis(ms)));
+    assert_eq!(steps, [1, 1, 2, 2, 4, 8]);
 }

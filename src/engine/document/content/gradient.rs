@@ -5,7 +5,7 @@ use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
 use crate::document::deep::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
-use crate::paint::{Gradient, Scene};
+use crate::paint::{Gradient, ImageFilter, Scene};
 use crate::raster::{PlanarTile, TileAt};
 use crate::surface::{Bend, Deformation};
 
@@ -41,6 +41,13 @@ impl LayerKind for Live<Gradient> {
         gradient.to *= scale.per_axis;
         gradient.operator = gradient.operator.scaled(scale.length);
         Content::Gradient(Live::new(gradient))
+    }
+    fn drafted(&self) -> Option<Content> {
+        // Most ramps are smooth: only stops that lie close together show their pixels meanwhile.
+        let gradient = self.params();
+        let is_averaged = gradient.filter == ImageFilter::Antialias;
+        let at_points = || Gradient { filter: ImageFilter::Bilinear, ..gradient.clone() };
+        is_averaged.then(|| Content::Gradient(Live::new(at_points())))
     }
     fn moved(&self, by: Vec2) -> Option<Content> {
         let gradient = self.params();

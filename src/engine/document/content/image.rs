@@ -7,6 +7,7 @@ use crate::document::deep::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::{Mat2, Vec2};
 use crate::paint::{ImageFilter, PlacedImage, Placement, Scene};
+use crate::raster::sampler::TapRule;
 use crate::raster::{DeepTexture, PlanarTile, TileAt};
 use crate::surface::{Bend, Deformation};
 use std::sync::Arc;
@@ -58,6 +59,12 @@ impl LayerKind for Live<PlacedImage> {
             }
         }
         Content::Image(Live::new(image))
+    }
+    fn drafted(&self) -> Option<Content> {
+        let image = self.params();
+        let source = image.source.read_by(TapRule::MOVING);
+        let is_averaged = image.filter == ImageFilter::Antialias;
+        is_averaged.then(|| Content::Image(Live::new(PlacedImage { source, ..image.clone() })))
     }
     fn moved(&self, by: Vec2) -> Option<Content> {
         let image = self.params();

@@ -1,6 +1,7 @@
 //! Scales a changing document down again and again: parts that did not change are not scaled twice. Floor 4. The
 //! scaling of one layer is in `scale`.
 
+use super::super::cache::LayerCache;
 use super::super::{Content, Document, Group, Layer, LayerId, Part, Parts};
 use super::CanvasScale;
 use crate::math::Size;
@@ -8,7 +9,8 @@ use crate::surface::{Surface, SurfaceError};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
-/// Scales documents down by one factor, and remembers the parts of the last one.
+/// Scales documents down by one factor, and remembers the parts of the last one. Pictures and gradients are read more
+/// coarsely than those at rest; with the factor 1 that is all that is done to them.
 ///
 /// Parts that did not change come back as the same `Arc`, so that [`diff`](super::super::diff()) reports only what did.
 pub struct DocumentReducer {
@@ -52,14 +54,32 @@ impl DocumentReducer {
     /// The reduced document: as [`Document::scaled`], with the same errors; but pictures of image layers are read from
     /// levels as much coarser, and what was selected by the surface is resampled and not found anew.
     pub fn of(&mut self, document: &Document) -> Result<Document, SurfaceError> {
-        let Some(scale) = self.scale(document) else { return Ok(document.clone()) };
+        let Some(scale) = self.scale(document) else { return Ok(self.drafted(document)) };
         let of = if document.is_shaped() { document.surface.as_ref() } else { document.maps_surface() };
         let surface = of.map(|surface| self.surface(surface, &scale)).transpose()?;
         let mut layers = HashMap::new();
-        let small = self.stack(&document.layers, &scale, &mut layers);
+        let small = self.stack(&document.layers, &|layer| Arc::new(scale.layer(layer)), &mut layers);
         self.layers = layers;
         let small = Document { size: scale.to, surface, layers: small, ..scale.selected(document) };
         Ok(if document.is_shaped() { small } else { self.shaped(document, small, &scale) })
+    }
+    /// The document in its own size, its layers read as for a moment: all but those that are [kept](Self::keep).
+    fn drafted(&mut self, document: &Document) -> Document {
+        let mut layers = HashMap::new();
+        let drafted = |layer: &Arc<Layer>| match layer.content.drafted() {
+            Some(content) => Arc::new(Layer { content, cache: LayerCache::default(), ..Layer::clone(layer) }),
+            None => layer.clone(),
+        };
+        let stack = self.stack(&document.layers, &drafted, &mut layers);
+        self.layers = layers;
+        Document { layers: stack, ..if document.is_shaped() { document.clone() } else { document.reshaped() } }
+    }
+    /// Layers of a document at rest are rendered already: in their own size they are shown as they are.
+    pub fn keep(&mut self, document: &Document) {
+        if self.scale(document).is_none() {
+            let own = |(_, layer): (_, &Arc<Layer>)| (layer.id, (Arc::downgrade(layer), layer.clone()));
+            self.layers = document.walk().into_iter().map(own).collect();
+        }
     }
     /// A small document with the surface of its parts, which are made small themselves: a hand drags them.
     fn shaped(&mut self, document: &Document, small: Document, scale: &CanvasScale) -> Document {
@@ -117,34 +137,42 @@ impl DocumentReducer {
         self.surface = Some((Arc::downgrade(surface), small.clone()));
         Ok(small)
     }
-    /// Scales a list of layers, taking known ones from last time; `next` collects what is known from now on.
+    /// Makes a list of layers anew, taking known ones from last time; `next` collects what is known from now on.
     fn stack(
         &self,
         layers: &[Arc<Layer>],
-        scale: &CanvasScale,
+        make: &dyn Fn(&Arc<Layer>) -> Arc<Layer>,
         next: &mut HashMap<LayerId, (Weak<Layer>, Arc<Layer>)>,
     ) -> Vec<Arc<Layer>> {
         let mut small = Vec::with_capacity(layers.len());
         for layer in layers {
             let known = self.layers.get(&layer.id).filter(|(known, _)| known.as_ptr() == Arc::as_ptr(layer));
             // Also if the group itself is known: its layers must stay known.
-            let inner = layer.content.group().map(|group| Group {
-                layers: self.stack(&group.layers, scale, next),
-                pass_through: group.pass_through,
-            });
+            let inner = layer
+                .content
+                .group()
+                .map(|group| Group { layers: self.stack(&group.layers, make, next), pass_through: group.pass_through });
             let made = match (known, inner) {
                 (Some((_, made)), _) => made.clone(),
+                (None, Some(group)) if is_made_of(layer, &group) => layer.clone(),
                 (None, Some(group)) => {
                     let hollow = Layer { content: Content::Group(Group::default()), ..Layer::clone(layer) };
-                    Arc::new(Layer { content: Content::Group(group), ..scale.layer(&hollow) })
+                    let made = Layer::clone(&make(&Arc::new(hollow)));
+                    Arc::new(Layer { content: Content::Group(group), cache: LayerCache::default(), ..made })
                 }
-                (None, None) => Arc::new(scale.layer(layer)),
+                (None, None) => make(layer),
             };
             next.insert(layer.id, (Arc::downgrade(layer), made.clone()));
             small.push(made);
         }
         small
     }
+}
+
+/// A layer is a group of the very same layers.
+fn is_made_of(layer: &Layer, group: &Group) -> bool {
+    let same = |own: &Group| own.layers.iter().zip(&group.layers).all(|(a, b)| Arc::ptr_eq(a, b));
+    layer.content.group().is_some_and(same)
 }
 
 #[cfg(test)]
@@ -209,6 +237,42 @@ mod tests {
         assert_eq!(levels(2.0, ImageFilter::Antialias), (128, 256), "magnified twice");
         assert_eq!(levels(9.0, ImageFilter::Antialias), (256, 256));
         assert_eq!(levels(1.0, ImageFilter::Bilinear), (256, 256));
+    }
+    #[test]
+    fn what_a_hand_drags_is_read_coarsely_in_its_own_size_and_the_rest_stays_as_it_is() {
+        let size = Size::new(96, 64);
+        let texel = |i: usize| [(i * 37) as u8, (i * 101) as u8, (i * 11) as u8, 255];
+        let picture = Picture::srgb8(Size::new(900, 600), (0..900 * 600).map(texel).collect()).unwrap();
+        let image = |name: &str| {
+            let image = PlacedImage {
+                source: PictureSource::new("noise".into(), picture.clone(), Adjust::default()),
+                placement: Placement::covering(size),
+                outside: Outside::Mirror,
+                bend: Default::default(),
+                filter: ImageFilter::Antialias,
+                frame: Default::default(),
+            };
+            Arc::new(Layer::new(name, Content::Image(Live::new(image))))
+        };
+        let group = |layers| Arc::new(Layer::new("group", Content::Group(Group { layers, pass_through: false })));
+        let layers = vec![Arc::new(fill("ground", 9)), group(vec![image("at rest")]), group(vec![image("dragged")])];
+        let document = Document { layers, ..Document::empty(size) };
+        let mut reduced = DocumentReducer::new(1.0);
+        reduced.keep(&document);
+        let kept = reduced.of(&document).unwrap();
+        assert!(kept.layers.iter().zip(&document.layers).all(|(a, b)| Arc::ptr_eq(a, b)));
+        let id = document.layer_named("dragged").unwrap().id;
+        let next = document.with_layer(id, |layer| layer.content = image("").content.clone()).unwrap();
+        let draft = reduced.of(&next).unwrap();
+        let same: Vec<bool> = draft.layers.iter().zip(&next.layers).map(|(a, b)| Arc::ptr_eq(a, b)).collect();
+        assert_eq!(same, [true, true, false]);
+        let bytes =
+            |document: &Document| flatten(document, &Progress::default()).unwrap().to_straight_rgba(size.rect());
+        let (coarse, fine) = (bytes(&draft), bytes(&next));
+        let apart = coarse.iter().zip(&fine).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / fine.len() as f64;
+        assert!(apart > 0.1 && apart < 12.0, "{apart}");
+        assert!(bytes(&document) == fine, "at rest nothing is coarser");
+        assert!(Arc::ptr_eq(&reduced.of(&next).unwrap().layers[2], &draft.layers[2]), "it is made once");
     }
     #[test]
     fn a_surface_made_small_elsewhere_is_taken_in_and_not_made_again() {

@@ -14,6 +14,7 @@ mod lattice;
 
 use super::taps::{GROUP, TapGroup, TapPositions, TapRun, Taps};
 use crate::raster::{Outside, Texture};
+pub use grid::TapRule;
 use grid::{CellCounts, TapGrid};
 use lattice::{LANES, TapLattice};
 
@@ -71,13 +72,25 @@ impl Default for Antialias {
 impl Antialias {
     /// The picture's premultiplied bytes, averaged over each patch and rounded: one pixel of `out` each.
     pub fn row(&mut self, texture: &Texture, patches: PatchRow, outside: Outside, out: &mut [[u8; 4]]) {
+        self.row_by(TapRule::AT_REST, texture, patches, outside, out);
+    }
+    /// The same, covered as closely as a rule has it.
+    pub fn row_by(
+        &mut self,
+        rule: TapRule,
+        texture: &Texture,
+        patches: PatchRow,
+        outside: Outside,
+        out: &mut [[u8; 4]],
+    ) {
         for from in (0..out.len()).step_by(SPAN) {
             let n = (out.len() - from).min(SPAN);
+            self.cells.count(patches.part(from, n), n, rule);
             self.span(texture, patches.part(from, n), outside, &mut out[from..from + n]);
         }
     }
+    /// A span whose cells are counted.
     fn span(&mut self, texture: &Texture, patches: PatchRow, outside: Outside, out: &mut [[u8; 4]]) {
-        self.cells.count(patches, out.len());
         if self.cells.are_single() {
             let (x, y) = (&mut self.x[..out.len()], &mut self.y[..out.len()]);
             place_singles(patches, x, y);
@@ -121,7 +134,7 @@ impl Antialias {
         for from in (0..n).step_by(SPAN) {
             let len = (n - from).min(SPAN);
             let part = patches.part(from, len);
-            self.cells.count(part, len);
+            self.cells.count(part, len, TapRule::AT_REST);
             self.choose_grids(len, last_level);
             let in_groups = self.groups.iter().flat_map(|(group, grid)| {
                 let first = usize::from(group.first);
@@ -257,7 +270,7 @@ fn spread(
 
 #[cfg(test)]
 mod tests {
-    use super::grid::{COARSE_CELL, FINE_CELL, MAX_TAPS, cells};
+    use super::grid::{COARSE_CELL, MAX_TAPS, cells};
     use super::*;
     use crate::math::{Size, vec2};
     use crate::raster::{Picture, sampler};
@@ -306,9 +319,10 @@ mod tests {
     fn grids_spend_no_more_taps_than_allowed_and_hold_every_side() {
         let grid = |across: f32, along: f32| {
             TapGrid::of_cells(
-                [across, along].map(|side| cells(side, FINE_CELL)),
+                [across, along].map(|side| cells(side, 1.5)),
                 [across, along].map(|side| cells(side, COARSE_CELL)),
                 9,
+                MAX_TAPS,
             )
         };
         for across in [0.0, 0.9, 2.0, 7.0, 33.0, 1e9, f32::INFINITY, f32::NAN] {

@@ -5,13 +5,38 @@ use super::{PatchRow, SPAN};
 use crate::math::fast::max;
 use crate::raster::sampler::taps::GROUP;
 
-/// Side of the cell that one tap stands for, in texels of level 0. A picture drawn pixel for pixel (1 texel) stays as
-/// it is.
-pub const FINE_CELL: f32 = 1.5;
+/// How closely patches are covered: handed down from what a picture is drawn for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TapRule {
+    /// Side of the cell that one tap stands for, in texels of level 0. A picture drawn pixel for pixel (1 texel) stays
+    /// as it is.
+    fine_cell: f32,
+    /// Most taps a pixel may take, in all.
+    most_taps: u32,
+}
+
+impl TapRule {
+    /// Of pictures that stay.
+    pub const AT_REST: Self = Self { fine_cell: 1.5, most_taps: MAX_TAPS };
+    /// Of pictures that are seen for a moment only, while a hand moves.
+    pub const MOVING: Self = Self { fine_cell: 2.0, most_taps: 8 };
+
+    /// The square of half a cell: a half-edge that is no longer belongs to a side of one cell.
+    fn half_cell_squared(self) -> f32 {
+        0.25 * self.fine_cell * self.fine_cell
+    }
+}
+
+impl Default for TapRule {
+    fn default() -> Self {
+        Self::AT_REST
+    }
+}
+
 /// The same in the other levels, whose texels are means already: there a bilinear tap's variance s²/4 − 1/12 is that of
 /// a box of 1.7 texels.
 pub const COARSE_CELL: f32 = 2.0;
-/// Most taps a pixel may take, in all.
+/// Most taps a pixel may take by any rule.
 pub const MAX_TAPS: u32 = 16;
 
 /// How a patch is covered: so many taps across and along, in a mip level.
@@ -28,25 +53,25 @@ impl TapGrid {
 
     /// For a patch that takes so many fine or coarse cells across and along in level 0.
     #[inline(always)]
-    pub fn of_cells(fine: [u32; 2], coarse: [u32; 2], last_level: u32) -> Self {
+    pub fn of_cells(fine: [u32; 2], coarse: [u32; 2], last_level: u32, most_taps: u32) -> Self {
         let [across, along] = fine;
-        if across * along <= MAX_TAPS || last_level == 0 {
-            return Self { across, along, level: 0 }.capped();
+        if across * along <= most_taps || last_level == 0 {
+            return Self { across, along, level: 0 }.capped(most_taps);
         }
         let mut grid = Self { across: coarse[0], along: coarse[1], level: 0 };
-        while grid.across * grid.along > MAX_TAPS && grid.level < last_level {
+        while grid.across * grid.along > most_taps && grid.level < last_level {
             grid = Self { across: grid.across.div_ceil(2), along: grid.along.div_ceil(2), level: grid.level + 1 };
         }
-        grid.capped()
+        grid.capped(most_taps)
     }
     #[inline(always)]
     pub fn taps(self) -> usize {
         (self.across * self.along) as usize
     }
     #[inline(always)]
-    fn capped(self) -> Self {
-        let across = self.across.min(MAX_TAPS);
-        Self { across, along: self.along.min(MAX_TAPS / across), ..self }
+    fn capped(self, most_taps: u32) -> Self {
+        let across = self.across.min(most_taps);
+        Self { across, along: self.along.min(most_taps / across), ..self }
     }
 }
 
@@ -64,9 +89,10 @@ pub fn cells(side: f32, cell: f32) -> u32 {
 /// How many cells the sides of every patch of a span take in level 0.
 #[derive(Clone)]
 pub struct CellCounts {
+    rule: TapRule,
     /// The sides of every patch across and along, in texels.
     sides: [[f32; SPAN]; 2],
-    /// They in cells of [`FINE_CELL`].
+    /// They in fine cells of the rule.
     fine: [[u32; SPAN]; 2],
     /// In cells of [`COARSE_CELL`]; only where fine ones would be too many.
     coarse: [[u32; SPAN]; 2],
@@ -81,17 +107,17 @@ pub struct CellCounts {
 impl Default for CellCounts {
     fn default() -> Self {
         let (ones, most) = ([[1; SPAN]; 2], [[[1; SPAN / GROUP]; 2]; 2]);
-        let (sides, in_all) = ([[0.0; SPAN]; 2], [0; SPAN / GROUP]);
-        Self { sides, fine: ones, coarse: ones, most, in_all, largest: [1; 2] }
+        let (rule, sides, in_all) = (TapRule::default(), [[0.0; SPAN]; 2], [0; SPAN / GROUP]);
+        Self { rule, sides, fine: ones, coarse: ones, most, in_all, largest: [1; 2] }
     }
 }
 
 impl CellCounts {
     /// Of the first `n` patches of a row.
-    pub fn count(&mut self, patches: PatchRow, n: usize) {
+    pub fn count(&mut self, patches: PatchRow, n: usize, rule: TapRule) {
         let n = n.min(SPAN);
-        self.largest = [1; 2];
-        if are_within_a_cell(patches, n) {
+        (self.rule, self.largest) = (rule, [1; 2]);
+        if are_within(patches, n, rule.half_cell_squared()) {
             return;
         }
         count_fine(patches, n, self);
@@ -101,7 +127,7 @@ impl CellCounts {
         let [across, along] = self.largest;
         most_of_groups(&self.fine, n / GROUP, &mut self.most[0]);
         add_up_groups(&self.fine, n / GROUP, &mut self.in_all);
-        if across.saturating_mul(along) > MAX_TAPS {
+        if across.saturating_mul(along) > self.rule.most_taps {
             count_coarse(&self.sides, n, &mut self.coarse);
             most_of_groups(&self.coarse, n / GROUP, &mut self.most[1]);
         }
@@ -112,14 +138,15 @@ impl CellCounts {
     }
     /// The grid of one patch.
     pub fn grid(&self, k: usize, last_level: u32) -> TapGrid {
-        TapGrid::of_cells([self.fine[0][k], self.fine[1][k]], [self.coarse[0][k], self.coarse[1][k]], last_level)
+        let [fine, coarse] = [&self.fine, &self.coarse].map(|cells| [cells[0][k], cells[1][k]]);
+        TapGrid::of_cells(fine, coarse, last_level, self.rule.most_taps)
     }
     /// The grid that holds the largest sides of a group's patches; `None` where it does not suit them all.
     #[inline(always)]
     pub fn shared_grid(&self, group: usize, last_level: u32) -> Option<TapGrid> {
         let [fine, coarse] = [0, 1].map(|kind| [self.most[kind][0][group], self.most[kind][1][group]]);
-        let shared = TapGrid::of_cells(fine, coarse, last_level);
-        let alone = if fine[0] * fine[1] <= MAX_TAPS {
+        let shared = TapGrid::of_cells(fine, coarse, last_level, self.rule.most_taps);
+        let alone = if fine[0] * fine[1] <= self.rule.most_taps {
             // All read level 0.
             self.in_all[group] as usize
         } else {
@@ -131,23 +158,21 @@ impl CellCounts {
     }
 }
 
-/// The square of half of [`FINE_CELL`]: a half-edge that is no longer belongs to a side of one cell.
-const HALF_CELL_SQUARED: f32 = 0.25 * FINE_CELL * FINE_CELL;
-
 crate::widest! {
-    /// Whether no patch's half-edge is longer than half a cell: level ground, which needs no roots. NaN is longer.
-    fn are_within_a_cell(patches: PatchRow, n: usize) -> bool {
-        let mut longer = 0;
+    /// Whether no square of a patch's half-edge is above a limit: level ground, which needs no roots. NaN is above it.
+    fn are_within(patches: PatchRow, n: usize, limit: f32) -> bool {
+        let mut within = 1;
         for [x, y] in patches.edges {
             let (x, y) = (&x[..n], &y[..n]);
             for k in 0..n {
-                longer |= u32::from(!(x[k] * x[k] + y[k] * y[k] <= HALF_CELL_SQUARED));
+                within &= u32::from(x[k] * x[k] + y[k] * y[k] <= limit);
             }
         }
-        longer == 0
+        within == 1
     }
     /// A side is twice the longer of its two half-edges.
     fn count_fine(patches: PatchRow, n: usize, cells_of: &mut CellCounts) {
+        let fine_cell = cells_of.rule.fine_cell;
         for side in 0..2 {
             let ([ax, ay], [bx, by]) = (patches.edges[2 * side], patches.edges[2 * side + 1]);
             let (ax, ay, bx, by) = (&ax[..n], &ay[..n], &bx[..n], &by[..n]);
@@ -156,7 +181,7 @@ crate::widest! {
             for k in 0..n {
                 let (a, b) = (ax[k] * ax[k] + ay[k] * ay[k], bx[k] * bx[k] + by[k] * by[k]);
                 sides[k] = 2.0 * max(a, b).sqrt();
-                fine[k] = cells(sides[k], FINE_CELL);
+                fine[k] = cells(sides[k], fine_cell);
                 largest = largest.max(fine[k]);
             }
             cells_of.largest[side] = largest;
