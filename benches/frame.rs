@@ -1,7 +1,7 @@
-//! What a frame of the window costs while the hand moves: α and an anchor of an image layer dragged, at every size that
-//! the window may show them in; a brush's events until their tiles are flattened; getting a large document ready for a
-//! drag. `cargo bench --bench frame`. Peers: the frame rates asked for, 16 ms a drag and 8 ms a brush; and a copy of
-//! the picture.
+//! What a frame of the window costs while the hand moves: α and an anchor of an image layer, and a gradient's end
+//! dragged, at every size that the window may show them in; a brush's events until their tiles are flattened; getting
+//! a large document ready for a drag. `cargo bench --bench frame`. Peers: the frame rates asked for, 16 ms a drag and
+//! 8 ms a brush; and a copy of the picture.
 
 use rilievo_engine::document::{
     Content, Document, DocumentReducer, Layer, LayerTransform, Live, Mesh, MeshFrame, PixelLayer, PreparedDocument,
@@ -10,7 +10,7 @@ use rilievo_engine::document::{
 use rilievo_engine::math::srgb::Color;
 use rilievo_engine::math::{PlaneMap, Size, Vec2, hash, vec2, vec3};
 use rilievo_engine::paint::{
-    Adjust, Brush, ImageFilter, LiquifySettings, PictureSource, PlacedImage, Placement, Sample,
+    Adjust, Brush, Gradient, GradientStop, ImageFilter, LiquifySettings, PictureSource, PlacedImage, Placement, Sample,
 };
 use rilievo_engine::raster::{Outside, Picture, Plane, Resampling, Tile, TileAt, TileGrid};
 use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface};
@@ -58,7 +58,20 @@ fn image(source: &PictureSource, size: Size, alpha: f32, anchors: &[Vec2]) -> Co
     }))
 }
 
-/// ms of each frame of a drag, a pixel to `step` × `step` of the canvas.
+/// A ramp of three colours to a point.
+fn ramp(to: Vec2) -> Content {
+    let stop = |t: f32, r: u8| GradientStop { t, color: Color { r, g: 90, b: 30, a: 255 } };
+    Content::Gradient(Live::new(Gradient {
+        from: vec2(400.0, 300.0),
+        to,
+        stops: vec![stop(0.0, 10), stop(0.4, 200), stop(1.0, 90)],
+        operator: D_N,
+        filter: ImageFilter::Antialias,
+        frame: Default::default(),
+    }))
+}
+
+/// ms of each frame of a drag, as the window shows it, a pixel to `step` × `step` of the canvas.
 fn drag(size: Size, step: u32, content: impl Fn(f32) -> Content) -> Vec<f64> {
     let ground = Layer::new("ground", Content::Fill(Color { r: 90, g: 90, b: 90, a: 255 }));
     let layers = vec![Arc::new(ground), Arc::new(Layer::new("photo", content(0.0)))];
@@ -225,6 +238,8 @@ fn main() {
             if size == HD {
                 let anchor = |t: f32| image(&source, size, 0.5, &[middle, middle + vec2(300.0 + 900.0 * t, 120.0)]);
                 row(&format!("an anchor of two, {size}, one pixel in {step} × {step}"), drag(size, step, anchor));
+                let end = |t: f32| ramp(vec2(1500.0 + 300.0 * t, 800.0));
+                row(&format!("a gradient's end, {size}, one pixel in {step} × {step}"), drag(size, step, end));
             }
         }
     }
