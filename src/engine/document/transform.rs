@@ -25,7 +25,7 @@ use crate::math::plane_map::{PixelMove, orthogonal};
 use crate::math::{COORDINATE, DVec2, Mat2, PlaneMap, Rect, Size, Vec2, range};
 use crate::paint::{HomeFrame, StrokeHome};
 use crate::raster::Resampling;
-use crate::raster::warp::PixelMap;
+use crate::raster::warp::{PixelMap, PointRow};
 use std::sync::Arc;
 
 /// Where a layer's frame lies, and how its pixels are sampled.
@@ -190,6 +190,9 @@ impl LayerMap {
 impl PixelMap for LayerMap {
     fn source_of(&self, q: Vec2) -> Option<(Vec2, Mat2)> {
         self.plane.from_canvas(q)
+    }
+    fn source_row(&self, x: i32, y: i32, count: usize, row: &mut PointRow) {
+        row.fill_by_plane(&self.plane, x, y, count);
     }
     fn pixel_move(&self) -> Option<PixelMove> {
         self.plane.pixel_move_on(self.canvas)

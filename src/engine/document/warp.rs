@@ -12,7 +12,7 @@ pub(super) use cache::{WarpCache, WarpTiles};
 use super::transform::LayerMap;
 use super::{Content, Document, Layer, LayerMask, MaskKind, PixelLayer, Role, TransformShape};
 use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2, vec2};
-use crate::raster::warp::{PixelMap, TileMap, warped_block, warped_tile};
+use crate::raster::warp::{PixelMap, TileMap, TilePoints, warped_block, warped_tile};
 use crate::raster::{Lattice, Plane, Resampling, TileAt, TileGrid};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -84,8 +84,8 @@ impl LayerWarp {
             vec2((rect.x0 + x as i32) as f32 + 0.5, (rect.y0 + y as i32) as f32 + 0.5)
         };
         let nowhere = (Vec2::splat(-1e6), Mat2::IDENTITY);
-        let mut points: Vec<(Vec2, Mat2)> = if self.outside == PlaneMap::IDENTITY {
-            self.on_list(at, middle)?
+        let mut points = if self.outside == PlaneMap::IDENTITY {
+            self.on_list(at)?
         } else {
             let shown = self.outside.source_rect(rect);
             let is_still = |of: &Option<Arc<Lattice>>| {
@@ -104,39 +104,31 @@ impl LayerWarp {
                 let last = self.outside.stretch_at(p)?;
                 Some((self.outside.to_canvas(p)?, last * inner * first))
             };
-            (0..rect.width() * rect.height()).map(|k| point(k).unwrap_or(nowhere)).collect()
+            let mut points = TilePoints::new(rect.width() * rect.height());
+            (0..points.len()).for_each(|k| points.set(k, point(k).unwrap_or(nowhere)));
+            points
         };
         if *own != PlaneMap::IDENTITY {
-            for (p, jacobian) in &mut points {
-                (*p, *jacobian) = match own.from_canvas(*p) {
-                    Some((at, inner)) => (at, inner * *jacobian),
-                    None => nowhere,
-                };
+            for k in 0..points.len() {
+                let (p, jacobian) = points.at(k);
+                let through = own.from_canvas(p).map(|(at, inner)| (at, inner * jacobian));
+                points.set(k, through.unwrap_or(nowhere));
             }
         }
         Some(TileMap::new(rect, points))
     }
     /// The same of a list that is the canvas, along rows.
-    fn on_list(&self, at: TileAt, middle: impl Fn(usize) -> Vec2) -> Option<Vec<(Vec2, Mat2)>> {
+    fn on_list(&self, at: TileAt) -> Option<TilePoints> {
         let on_tile = |of: &Option<Arc<Lattice>>| of.as_ref().and_then(|lattice| lattice.on_tile(at));
-        match (on_tile(&self.liquify), &self.mesh) {
-            (None, _) => {
-                let moved = on_tile(&self.mesh)?.into_iter().enumerate();
-                Some(moved.map(|(k, u)| (middle(k) + u.by, Mat2::IDENTITY + u.jacobian)).collect())
-            }
-            (Some(moved), None) => {
-                let moved = moved.into_iter().enumerate();
-                Some(moved.map(|(k, u)| (middle(k) + u.by, Mat2::IDENTITY + u.jacobian)).collect())
-            }
-            (Some(moved), Some(mesh)) => {
-                let both = moved.into_iter().enumerate().map(|(k, u)| {
-                    let q = middle(k) + u.by;
-                    let v = mesh.at(q);
-                    (q + v.by, (Mat2::IDENTITY + v.jacobian) * (Mat2::IDENTITY + u.jacobian))
-                });
-                Some(both.collect())
+        let Some(mut points) = on_tile(&self.liquify) else { return on_tile(&self.mesh) };
+        if let Some(mesh) = &self.mesh {
+            for k in 0..points.len() {
+                let (q, jacobian) = points.at(k);
+                let v = mesh.at(q);
+                points.set(k, (q + v.by, (Mat2::IDENTITY + v.jacobian) * jacobian));
             }
         }
+        Some(points)
     }
     /// What shows at a point of the list, and how it moves with the point.
     fn aside(&self, q: Vec2) -> (Vec2, Mat2) {

@@ -115,6 +115,21 @@ impl PlaneMap {
     pub fn from_canvas(&self, q: Vec2) -> Option<(Vec2, Mat2)> {
         project(&self.backward, q)
     }
+    /// The points that a row of canvas points shows, 1 px apart from `first` on, to the bit as
+    /// [`PlaneMap::from_canvas`] finds them; what lies too far is no number. Nothing is done and `false` returned of a
+    /// perspective, whose points are not evenly apart.
+    ///
+    /// * `xs`, `ys`: as many as are asked for.
+    pub fn affine_row_from_canvas(&self, first: Vec2, xs: &mut [f32], ys: &mut [f32]) -> bool {
+        let [along, down, origin] = [self.backward.x_axis, self.backward.y_axis, self.backward.z_axis];
+        if along.z != 0.0 || down.z != 0.0 || origin.z <= 1e-9 {
+            return false;
+        }
+        let from = down * f64::from(first.y);
+        even_row([along.x, from.x, origin.x, origin.z], first.x, xs);
+        even_row([along.y, from.y, origin.y, origin.z], first.x, ys);
+        true
+    }
     /// ∂q/∂p at a point of the frame; `None` beyond the horizon.
     pub fn stretch_at(&self, p: Vec2) -> Option<Mat2> {
         project(&self.forward, p).map(|(_, jacobian)| jacobian)
@@ -211,6 +226,17 @@ pub fn told(v: f64) -> f64 {
     let text = if v.abs() < 1.0 { format!("{v:.15}") } else { format!("{v:.14e}") };
     // −0 is none.
     text.parse().unwrap_or(v) + 0.0
+}
+
+crate::widest! {
+    /// One coordinate of a row of points under an affine map, in the order in which a matrix is multiplied.
+    fn even_row(map: [f64; 4], first: f32, out: &mut [f32]) {
+        let [along, from, origin, scale] = map;
+        for (k, v) in out.iter_mut().enumerate() {
+            let x = f64::from(first + k as u32 as f32);
+            *v = ((along * x + from + origin) / scale) as f32;
+        }
+    }
 }
 
 /// A point under a projective map, and the map's Jacobian there.

@@ -6,6 +6,7 @@
 
 use super::grid::Grid;
 use super::tile::{TILE, TILE_AREA, TileAt};
+use super::warp::TilePoints;
 use crate::math::{Mat2, PlaneMap, Rect, Vec2, vec2};
 use std::sync::Arc;
 
@@ -131,24 +132,33 @@ impl Lattice {
     pub fn is_none_on(&self, at: TileAt) -> bool {
         self.around(at).is_none()
     }
-    /// At the middle of every pixel of a tile, row by row; `None` where the tile shows itself. The same as
-    /// [`Lattice::at`], along rows.
-    pub fn on_tile(&self, at: TileAt) -> Option<Vec<Displaced>> {
+    /// At the middle of every pixel of a tile: which point it shows, and how that moves with the pixel; `None` where the
+    /// tile shows itself. The same as [`Lattice::at`], along rows.
+    pub fn on_tile(&self, at: TileAt) -> Option<TilePoints> {
         let nodes = self.around(at)?;
         let phases: [Cubic; CELL] = std::array::from_fn(|k| Cubic::at((k as f32 + 0.5) / CELL as f32));
-        let mut out = Vec::with_capacity(TILE_AREA);
+        // Turned about: of each weight those of all phases side by side.
+        let value: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].value[i]));
+        let slope: [[f32; CELL]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| phases[k].slope[i]));
+        let mut out = TilePoints::new(TILE_AREA);
+        let corner = at.rect();
         for y in 0..TILE {
             let (first, phase) = (y / CELL, &phases[y % CELL]);
             let column = |weights: &[f32; 4], i: usize| (0..4).map(|k| nodes[first + k][i] * weights[k]).sum::<Vec2>();
             let row: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.value, i));
-            let slope: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.slope, i));
-            for x in 0..TILE {
-                let (first, phase) = (x / CELL, &phases[x % CELL]);
-                let sum =
-                    |of: &[Vec2; AROUND], weights: &[f32; 4]| (0..4).map(|k| of[first + k] * weights[k]).sum::<Vec2>();
-                let jacobian = Mat2::from_cols(sum(&row, &phase.slope), sum(&slope, &phase.value));
-                out.push(Displaced { by: sum(&row, &phase.value), jacobian });
-            }
+            let steep: [Vec2; AROUND] = std::array::from_fn(|i| column(&phase.slope, i));
+            let place = y * TILE..(y + 1) * TILE;
+            let TilePoints { x: xs, y: ys, jacobian: [a, b, c, d] } = &mut out;
+            between(&row.map(|v| v.x), &value, &mut xs[place.clone()]);
+            between(&row.map(|v| v.y), &value, &mut ys[place.clone()]);
+            between(&row.map(|v| v.x), &slope, &mut a[place.clone()]);
+            between(&row.map(|v| v.y), &slope, &mut b[place.clone()]);
+            between(&steep.map(|v| v.x), &value, &mut c[place.clone()]);
+            between(&steep.map(|v| v.y), &value, &mut d[place.clone()]);
+            let (x0, y0) = (corner.x0 as f32 + 0.5, (corner.y0 + y as i32) as f32 + 0.5);
+            xs[place.clone()].iter_mut().enumerate().for_each(|(k, x)| *x += x0 + k as f32);
+            ys[place.clone()].iter_mut().for_each(|y| *y += y0);
+            a[place.clone()].iter_mut().chain(&mut d[place]).for_each(|v| *v += 1.0);
         }
         Some(out)
     }
@@ -183,6 +193,21 @@ impl Lattice {
             if by == Vec2::ZERO { by } else { map.to_canvas(p + by).map_or(Vec2::ZERO, |to| to - q) }
         });
         out
+    }
+}
+
+crate::widest! {
+    /// A row between its nodes: eight pixels a cell, with the weights of four nodes around.
+    fn between(nodes: &[f32; AROUND], weights: &[[f32; CELL]; 4], out: &mut [f32]) {
+        for (first, cell) in out.as_chunks_mut::<CELL>().0.iter_mut().enumerate() {
+            let around = &nodes[first..first + 4];
+            for k in 0..CELL {
+                cell[k] = around[0] * weights[0][k]
+                    + around[1] * weights[1][k]
+                    + around[2] * weights[2][k]
+                    + around[3] * weights[3][k];
+            }
+        }
     }
 }
 

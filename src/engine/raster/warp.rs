@@ -5,17 +5,24 @@
 //! it shows. Where the source is magnified along an axis of the pixel, the weights are a cubic's; where it is reduced,
 //! they are the share of each source pixel's tent in the pixel's own piece of the source.
 
+mod points;
+mod rows;
 mod source;
 mod tile_map;
+mod weights;
+mod window;
 
+pub use points::PointRow;
 use source::{GridSource, PixelSource, PlaneSource};
-pub use tile_map::TileMap;
+pub use tile_map::{TileMap, TilePoints};
+use window::Window;
 
 use super::tile::{TILE, Tile, TileAt, transparent_f32};
 use super::{Plane, TileGrid};
+use crate::math::fast::{max, min};
 use crate::math::plane_map::PixelMove;
 use crate::math::srgb::quantise;
-use crate::math::{Mat2, Rect, Size, Vec2, vec2};
+use crate::math::{Mat2, Rect, Size, Vec2};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -38,6 +45,10 @@ pub trait PixelMap: Sync {
     /// The point of the source that shows at a point of the canvas, and how it moves with that point; `None` where
     /// none shows.
     fn source_of(&self, q: Vec2) -> Option<(Vec2, Mat2)>;
+    /// The same for the middles of `count` pixels from `(x, y)` on, at most a tile's side.
+    fn source_row(&self, x: i32, y: i32, count: usize, row: &mut PointRow) {
+        row.fill_by_points(self, x, y, count);
+    }
     /// The move of whole pixels that it is, if it is one.
     fn pixel_move(&self) -> Option<PixelMove>;
     /// A rectangle that holds all that a rectangle of the canvas shows of the source; it may be larger.
@@ -73,13 +84,23 @@ pub fn warped_tile_within(
     }
     let mut pixels = transparent_f32();
     let source = GridSource { grid, bounds: border.unwrap_or_else(|| grid.bounds()), continues: border.is_some() };
-    Warp { source: &source, map, filter }.block(at.rect(), &mut |x, y, value| {
+    Warp { source: &source, map, filter }.block(at.rect(), &mut |x, y, row| {
         let (x, y) = ((x - at.rect().x0) as usize, (y - at.rect().y0) as usize);
-        // Rings of a cubic may leave what a pixel can be.
-        let alpha = value[3].max(0.0).min(1.0);
-        pixels[y * TILE + x] = value.map(|v| v.max(0.0).min(alpha));
+        within_range(row, &mut pixels[y * TILE + x..][..row.len()]);
     });
     Tile::quantised(&pixels).map(Arc::new)
+}
+
+crate::widest! {
+    /// Premultiplied colours within their alpha, which rings of a cubic may leave.
+    fn within_range(row: &[[f32; 4]], out: &mut [[f32; 4]]) {
+        for (out, value) in out.iter_mut().zip(row) {
+            let alpha = min(max(value[3], 0.0), 1.0);
+            for c in 0..4 {
+                out[c] = min(max(value[c], 0.0), alpha);
+            }
+        }
+    }
 }
 
 fn moved_tile(grid: &TileGrid, by: PixelMove, at: TileAt) -> Option<Arc<Tile>> {
@@ -142,20 +163,18 @@ struct Warp<'a, S> {
 
 /// Source pixels that are read at once for a part of a tile; parts that would need more are cut.
 const MOST_READ: usize = 1 << 20;
-/// Source pixels read along each axis to either side of a point.
-const MOST_READ_ALONG: f32 = 24.0;
-/// A pixel that would show more of the source than this along an axis shows so much, px: beyond lies the horizon.
-const WIDEST_PX: f32 = 512.0;
 
 impl<S: PixelSource> Warp<'_, S> {
     /// The alpha of every pixel of a block, as bytes.
     fn values(&self, block: Rect) -> Vec<(i32, i32, u8)> {
         let mut out = Vec::with_capacity(block.width() * block.height());
-        self.block(block, &mut |x, y, value| out.push((x, y, quantise(value[3]))));
+        self.block(block, &mut |x, y, row| {
+            out.extend((x..).zip(row).map(|(x, value)| (x, y, quantise(value[3]))));
+        });
         out
     }
-    /// Every pixel of a block that shows anything of the source.
-    fn block(&self, block: Rect, put: &mut impl FnMut(i32, i32, [f32; 4])) {
+    /// The pixels of a block no wider than a tile, in rows from a place on, where it shows anything of the source.
+    fn block(&self, block: Rect, put: &mut impl FnMut(i32, i32, &[[f32; 4]])) {
         if block.is_empty() {
             return;
         }
@@ -174,135 +193,14 @@ impl<S: PixelSource> Warp<'_, S> {
             return;
         }
         let window = Window { rect: wanted, pixels: self.source.read(wanted), continues: self.source.continues() };
+        let (mut points, mut scratch) = (Box::<PointRow>::default(), Box::<rows::Scratch>::default());
+        let mut out = [[0.0; 4]; TILE];
         for y in block.y0..block.y1 {
-            for x in block.x0..block.x1 {
-                let q = vec2(x as f32 + 0.5, y as f32 + 0.5);
-                if let Some((p, jacobian)) = self.map.source_of(q) {
-                    put(x, y, window.sample(p, jacobian, self.filter));
-                }
-            }
+            self.map.source_row(block.x0, y, block.width(), &mut points);
+            let row = &mut out[..block.width()];
+            window.row(&points, self.filter, &mut scratch, row);
+            put(block.x0, y, row);
         }
-    }
-}
-
-/// A part of the source.
-struct Window {
-    rect: Rect,
-    pixels: Vec<[f32; 4]>,
-    continues: bool,
-}
-
-impl Window {
-    /// The mean of the source about a point.
-    fn sample(&self, p: Vec2, jacobian: Mat2, filter: Resampling) -> [f32; 4] {
-        let (right, down) = (Axis::of(jacobian.x_axis, filter), Axis::of(jacobian.y_axis, filter));
-        match filter {
-            Resampling::Nearest => self.pixel(p.x.floor() as i32, p.y.floor() as i32),
-            _ if !right.reduces && !down.reduces => self.cubic(p, filter),
-            _ => self.reduced(p, [right, down]),
-        }
-    }
-    fn pixel(&self, x: i32, y: i32) -> [f32; 4] {
-        let Rect { x0, y0, x1, y1 } = self.rect;
-        let (x, y) = if self.continues { (x.clamp(x0, x1 - 1), y.clamp(y0, y1 - 1)) } else { (x, y) };
-        if !self.rect.contains(x, y) {
-            return [0.0; 4];
-        }
-        self.pixels[(y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize]
-    }
-    /// 4 × 4 pixels under a cubic along the source's axes.
-    fn cubic(&self, p: Vec2, filter: Resampling) -> [f32; 4] {
-        let (x, y) = (p.x - 0.5, p.y - 0.5);
-        let (x0, y0) = (x.floor(), y.floor());
-        let weights = |t: f32| [t + 1.0, t, 1.0 - t, 2.0 - t].map(|d| cubic_weight(d, filter));
-        let (wx, wy) = (weights(x - x0), weights(y - y0));
-        let mut sum = [0.0; 4];
-        for (j, wy) in wy.into_iter().enumerate() {
-            for (i, wx) in wx.into_iter().enumerate() {
-                let texel = self.pixel(x0 as i32 + i as i32 - 1, y0 as i32 + j as i32 - 1);
-                (0..4).for_each(|c| sum[c] += wx * wy * texel[c]);
-            }
-        }
-        sum
-    }
-    /// The pixels under a parallelogram, weighed along its two sides.
-    fn reduced(&self, p: Vec2, axes: [Axis; 2]) -> [f32; 4] {
-        let sides = Mat2::from_cols(axes[0].side, axes[1].side);
-        let determinant = sides.determinant();
-        // Two sides along one line: as a square of the longer one's length.
-        let to_sides = if determinant.abs() > 1e-3 {
-            sides.inverse()
-        } else {
-            Mat2::from_diagonal(Vec2::splat(1.0 / axes[0].side.length().max(axes[1].side.length())))
-        };
-        let reach = axes[0].side.abs() * axes[0].reach + axes[1].side.abs() * axes[1].reach;
-        let (low, high) = ((p - reach - 0.5).ceil(), (p + reach - 0.5).floor());
-        // Of a thousand pixels and more some are enough.
-        let step = ((reach.max_element() / MOST_READ_ALONG) as usize).max(1);
-        let (mut sum, mut total) = ([0.0; 4], 0.0);
-        for y in (low.y as i32..=high.y as i32).step_by(step) {
-            for x in (low.x as i32..=high.x as i32).step_by(step) {
-                let t = to_sides * (vec2(x as f32 + 0.5, y as f32 + 0.5) - p);
-                let weight = axes[0].weight(t.x) * axes[1].weight(t.y);
-                if weight != 0.0 {
-                    total += weight;
-                    let texel = self.pixel(x, y);
-                    (0..4).for_each(|c| sum[c] += weight * texel[c]);
-                }
-            }
-        }
-        if total > 0.0 { sum.map(|v| v / total) } else { [0.0; 4] }
-    }
-}
-
-/// One side of the piece of the source that a pixel shows, and how it is weighed along it.
-#[derive(Clone, Copy)]
-struct Axis {
-    /// Source px; at least one long.
-    side: Vec2,
-    reduces: bool,
-    filter: Resampling,
-    /// How far weights reach, in sides.
-    reach: f32,
-    /// Half the tent of a source pixel, in sides.
-    tent: f32,
-}
-
-impl Axis {
-    fn of(side: Vec2, filter: Resampling) -> Self {
-        let length = side.length().min(WIDEST_PX);
-        let direction = side.normalize_or(Vec2::X);
-        // A side hardly longer than a pixel is one of a turned picture.
-        let reduces = length > 1.0 + 1e-3;
-        let (length, reach) = if reduces { (length, 0.5 + 1.0 / length) } else { (1.0, 2.0) };
-        Self { side: direction * length, reduces, filter, reach, tent: 1.0 / length }
-    }
-    fn weight(&self, t: f32) -> f32 {
-        if self.reduces { share(t, self.tent) } else { cubic_weight(t, self.filter) }
-    }
-}
-
-/// The share of a tent of half-width `tent` about `t` that lies in `[−½, ½]`.
-fn share(t: f32, tent: f32) -> f32 {
-    let below = |edge: f32| {
-        let x = ((edge - t) / tent).max(-1.0).min(1.0);
-        if x < 0.0 { 0.5 * (x + 1.0) * (x + 1.0) } else { 1.0 - 0.5 * (1.0 - x) * (1.0 - x) }
-    };
-    below(0.5) - below(-0.5)
-}
-
-/// The weight of a pixel `d` px away.
-fn cubic_weight(d: f32, filter: Resampling) -> f32 {
-    let d = d.abs();
-    // Mitchell and Netravali 1988: of B and C.
-    let (b, c) = if filter == Resampling::Sharp { (0.0, 0.5) } else { (1.0 / 3.0, 1.0 / 3.0) };
-    if d < 1.0 {
-        ((12.0 - 9.0 * b - 6.0 * c) * d * d * d + (-18.0 + 12.0 * b + 6.0 * c) * d * d + (6.0 - 2.0 * b)) / 6.0
-    } else if d < 2.0 {
-        ((-b - 6.0 * c) * d * d * d + (6.0 * b + 30.0 * c) * d * d + (-12.0 * b - 48.0 * c) * d + (8.0 * b + 24.0 * c))
-            / 6.0
-    } else {
-        0.0
     }
 }
 

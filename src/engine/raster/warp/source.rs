@@ -42,10 +42,18 @@ impl PixelSource for GridSource<'_> {
                 let start = ((y - from.y0) as usize * TILE + (area.x0 - from.x0) as usize) * 4;
                 let bytes = tile.bytes()[start..start + area.width() * 4].as_chunks::<4>().0;
                 let to = (y - rect.y0) as usize * rect.width() + (area.x0 - rect.x0) as usize;
-                out[to..].iter_mut().zip(bytes).for_each(|(v, b)| *v = b.map(|c| f32::from(c) / 255.0));
+                shares_of_bytes(bytes.as_flattened(), out[to..to + area.width()].as_flattened_mut());
             }
         }
         out
+    }
+}
+
+crate::widest! {
+    fn shares_of_bytes(bytes: &[u8], out: &mut [f32]) {
+        for (out, byte) in out.iter_mut().zip(bytes) {
+            *out = f32::from(*byte) / 255.0;
+        }
     }
 }
 

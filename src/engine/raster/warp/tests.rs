@@ -1,5 +1,5 @@
 use super::*;
-use crate::math::{PlaneMap, Size, hash};
+use crate::math::{PlaneMap, Size, hash, vec2};
 
 /// A map of the plane, as a layer's is seen from here.
 struct Through(PlaneMap, Size);
@@ -116,4 +116,52 @@ fn a_mask_moves_with_its_border_going_on() {
     let moved = warped_plane(&mask, &map, Resampling::Smooth);
     assert_eq!((moved.at(0, 9), moved.at(110, 9), moved.at(130, 9)), (255, 255, 0));
     assert!((100..155).contains(&moved.at(120, 9)), "half of both, not {}", moved.at(120, 9));
+}
+#[test]
+fn rows_of_pixels_are_to_the_bit_what_each_is_alone() {
+    use glam::dvec2;
+    let turn = |degrees: f64, scale: f64| {
+        let about = vec2(128.0, 128.0);
+        let scaled = affine([scale, 0.0, 0.0, 1.1 * scale, 20.0, 9.0]);
+        Through(PlaneMap::rotation(degrees, about).then(&scaled), CANVAS)
+    };
+    let corners = [dvec2(9.0, 3.0), dvec2(240.0, 40.0), dvec2(190.0, 250.0), dvec2(30.0, 180.0)];
+    let mut maps: Vec<Box<dyn PixelMap>> = vec![Box::new(Through(PlaneMap::quad(CANVAS, corners).unwrap(), CANVAS))];
+    for (degrees, scale) in [(0.0, 1.0), (17.0, 1.0), (3.0, 0.93), (45.0, 0.4), (80.0, 0.11), (10.0, 2.5)] {
+        maps.push(Box::new(turn(degrees, scale)));
+    }
+    // One that squeezes here, stretches there and is nowhere in between.
+    let rect = TileAt::new(1, 1).rect();
+    let mut points = TilePoints::new(TILE * TILE);
+    for k in 0..points.len() {
+        let q = vec2((k % TILE) as f32, (k / TILE) as f32) + 64.5;
+        let by = vec2(9.0 * (q.x * 0.13).sin(), 5.0 * (q.y * 0.31).cos());
+        let jacobian = Mat2::from_cols(vec2(1.0 + 1.17 * (q.x * 0.13).cos(), 0.1), vec2(0.0, 1.0 - (q.y * 0.31).sin()));
+        points.set(k, if k % 97 == 0 { (Vec2::splat(-1e6), jacobian) } else { (q + by, jacobian) });
+    }
+    points.x[70] = f32::NAN;
+    maps.push(Box::new(TileMap::new(rect, points)));
+    let grid = noise();
+    let mut seen = 0;
+    for (map, filter) in maps.iter().flat_map(|map| Resampling::ALL.map(|(filter, _)| (map.as_ref(), filter))) {
+        for continues in [false, true] {
+            let source = GridSource { grid: &grid, bounds: Rect::new(0, 0, 200, 256), continues };
+            let wanted = source.held(map.source_rect(rect));
+            let window = window::Window { rect: wanted, pixels: source.read(wanted), continues };
+            let (mut points, mut scratch) = (PointRow::default(), rows::Scratch::default());
+            for y in rect.y0..rect.y1 {
+                // Rows that do not fill a tile, too.
+                let mut row = [[9.0; 4]; 61];
+                map.source_row(rect.x0, y, row.len(), &mut points);
+                window.row(&points, filter, &mut scratch, &mut row);
+                for (x, found) in (rect.x0..).zip(row) {
+                    let point = map.source_of(vec2(x as f32 + 0.5, y as f32 + 0.5));
+                    let alone = point.map_or([0.0; 4], |(p, jacobian)| window.sample(p, jacobian, filter));
+                    assert!(found == alone, "{filter:?} {x} {y}: {found:?} {alone:?}");
+                    seen += usize::from(alone[3] > 0.0);
+                }
+            }
+        }
+    }
+    assert!(seen > 50_000, "{seen}");
 }

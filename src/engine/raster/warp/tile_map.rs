@@ -1,56 +1,147 @@
 //! A map of one tile, told pixel by pixel. Floor 1.
 
-use super::{PixelMap, WIDEST_PX};
+use super::window::WIDEST_PX;
+use super::{PixelMap, PointRow};
 use crate::math::plane_map::PixelMove;
-use crate::math::{Mat2, Rect, Vec2};
+use crate::math::{Mat2, Rect, Vec2, vec2};
 
-/// The points of the source that the pixels of a rectangle show.
+/// The points of the source that the pixels of a rectangle show, row by row, each coordinate in a row of its own.
+#[derive(Clone, Debug, Default)]
+pub struct TilePoints {
+    pub x: Vec<f32>,
+    pub y: Vec<f32>,
+    /// How the points move with the pixel: with a step to the right (x, y), and with one down (x, y).
+    pub jacobian: [Vec<f32>; 4],
+}
+
+/// The same with the rectangle.
 pub struct TileMap {
     rect: Rect,
-    /// Row by row, each with how it moves from pixel to pixel.
-    points: Vec<(Vec2, Mat2)>,
+    points: TilePoints,
 }
 
 /// Farther than any pixel lies.
 const FAR: f32 = 1e6;
 
+impl TilePoints {
+    /// Room for so many points, all at the corner.
+    pub fn new(count: usize) -> Self {
+        let row = || vec![0.0; count];
+        Self { x: row(), y: row(), jacobian: std::array::from_fn(|_| row()) }
+    }
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+    pub fn at(&self, k: usize) -> (Vec2, Mat2) {
+        let [a, b, c, d] = &self.jacobian;
+        (vec2(self.x[k], self.y[k]), Mat2::from_cols_array(&[a[k], b[k], c[k], d[k]]))
+    }
+    pub fn set(&mut self, k: usize, (p, jacobian): (Vec2, Mat2)) {
+        (self.x[k], self.y[k]) = (p.x, p.y);
+        self.jacobian.iter_mut().zip(jacobian.to_cols_array()).for_each(|(row, v)| row[k] = v);
+    }
+    fn is_known(&self, k: usize) -> bool {
+        self.x[k].is_finite() && self.y[k].is_finite() && self.jacobian.iter().all(|row| row[k].is_finite())
+    }
+}
+
 impl TileMap {
     /// * `points`: one for each pixel of `rect`; what is no number shows nothing.
-    pub fn new(rect: Rect, points: Vec<(Vec2, Mat2)>) -> Self {
+    pub fn new(rect: Rect, points: TilePoints) -> Self {
         Self { rect, points }
     }
-    fn at(&self, x: i32, y: i32) -> Option<(Vec2, Mat2)> {
-        let place = self
-            .rect
-            .contains(x, y)
-            .then(|| (y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize)?;
-        self.points.get(place).copied().filter(|(p, jacobian)| p.is_finite() && jacobian.is_finite())
+    /// The number of a pixel of the rectangle.
+    fn place(&self, x: i32, y: i32) -> usize {
+        (y - self.rect.y0) as usize * self.rect.width() + (x - self.rect.x0) as usize
     }
 }
 
 impl PixelMap for TileMap {
     fn source_of(&self, q: Vec2) -> Option<(Vec2, Mat2)> {
-        self.at(q.x.floor() as i32, q.y.floor() as i32)
+        let (x, y) = (q.x.floor() as i32, q.y.floor() as i32);
+        let place = self.rect.contains(x, y).then(|| self.place(x, y))?;
+        self.points.is_known(place).then(|| self.points.at(place))
+    }
+    fn source_row(&self, x: i32, y: i32, count: usize, row: &mut PointRow) {
+        let is_within = self.rect.contains(x, y) && self.rect.contains(x + count as i32 - 1, y);
+        if !is_within {
+            row.fill_by_points(self, x, y, count);
+            return;
+        }
+        let (from, points) = (self.place(x, y), &self.points);
+        row.x[..count].copy_from_slice(&points.x[from..from + count]);
+        row.y[..count].copy_from_slice(&points.y[from..from + count]);
+        for (to, of) in row.jacobian.iter_mut().zip(&points.jacobian) {
+            to[..count].copy_from_slice(&of[from..from + count]);
+        }
+        (0..count).for_each(|k| row.shows[k] = points.is_known(from + k));
     }
     fn pixel_move(&self) -> Option<PixelMove> {
         None
     }
     fn source_rect(&self, canvas: Rect) -> Rect {
-        let (mut low, mut high, mut reach) = (Vec2::INFINITY, Vec2::NEG_INFINITY, 1.0f32);
+        let mut extent = Extent { low: [f32::INFINITY; 2], high: [f32::NEG_INFINITY; 2], reach: 1.0 };
         let area = canvas.intersect(self.rect);
         for y in area.y0..area.y1 {
-            for x in area.x0..area.x1 {
-                let Some((p, jacobian)) = self.at(x, y) else { continue };
-                (low, high) = (low.min(p), high.max(p));
-                let side = |v: Vec2| v.length().min(WIDEST_PX);
-                reach = reach.max(side(jacobian.x_axis) + side(jacobian.y_axis));
-            }
+            let row = self.place(area.x0, y)..self.place(area.x0, y) + area.width();
+            let p = &self.points;
+            let [a, b, c, d] = &p.jacobian;
+            let jacobian = [&a[row.clone()], &b[row.clone()], &c[row.clone()], &d[row.clone()]];
+            widen(&mut extent, &p.x[row.clone()], &p.y[row], jacobian);
         }
-        if low.x > high.x {
+        let Extent { low, high, reach } = extent;
+        if low[0] > high[0] {
             return Rect::EMPTY;
         }
         let side = |v: f32| v.max(-FAR).min(FAR) as i32;
         let reach = 2.0 + reach;
-        Rect::new(side(low.x - reach), side(low.y - reach), side(high.x + reach) + 1, side(high.y + reach) + 1)
+        Rect::new(side(low[0] - reach), side(low[1] - reach), side(high[0] + reach) + 1, side(high[1] + reach) + 1)
+    }
+}
+
+/// What points reach, and how far their pieces of the source reach around them.
+struct Extent {
+    low: [f32; 2],
+    high: [f32; 2],
+    reach: f32,
+}
+
+/// Lanes that extents are kept in, so that rows are read side by side.
+const LANES: usize = 8;
+
+crate::widest! {
+    fn widen(extent: &mut Extent, x: &[f32], y: &[f32], jacobian: [&[f32]; 4]) {
+        let n = x.len();
+        let (y, [a, b, c, d]) = (&y[..n], jacobian.map(|row| &row[..n]));
+        let (mut low, mut high, mut reach) =
+            ([[f32::INFINITY; LANES]; 2], [[f32::NEG_INFINITY; LANES]; 2], [1.0f32; LANES]);
+        for from in (0..n).step_by(LANES) {
+            let count = LANES.min(n - from);
+            for l in 0..count {
+                let k = from + l;
+                let side = |x: f32, y: f32| {
+                    let length = (x * x + y * y).sqrt();
+                    if length < WIDEST_PX { length } else { WIDEST_PX }
+                };
+                let sum = x[k] + y[k] + a[k] + b[k] + c[k] + d[k];
+                let is_known = sum.abs() < f32::INFINITY;
+                let both = side(a[k], b[k]) + side(c[k], d[k]);
+                low[0][l] = if is_known && x[k] < low[0][l] { x[k] } else { low[0][l] };
+                low[1][l] = if is_known && y[k] < low[1][l] { y[k] } else { low[1][l] };
+                high[0][l] = if is_known && x[k] > high[0][l] { x[k] } else { high[0][l] };
+                high[1][l] = if is_known && y[k] > high[1][l] { y[k] } else { high[1][l] };
+                reach[l] = if is_known && both > reach[l] { both } else { reach[l] };
+            }
+        }
+        for l in 0..LANES {
+            for i in 0..2 {
+                extent.low[i] = extent.low[i].min(low[i][l]);
+                extent.high[i] = extent.high[i].max(high[i][l]);
+            }
+            extent.reach = extent.reach.max(reach[l]);
+        }
     }
 }
