@@ -4,7 +4,7 @@
 use super::Form;
 use crate::math::{Range, Size, Vec3, vec3};
 use crate::raster::Plane;
-use crate::surface::{Maps, Surface, SurfaceError};
+use crate::surface::{KnownNearest, Maps, Surface, SurfaceError};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -78,7 +78,10 @@ impl Relief {
     }
     /// With one more part in front; `id` from 1 on. What of it lies off the canvas is left out.
     pub fn add(&mut self, form: &Form, combine: Combine, id: u32) {
+        // Beneath the first part lies nothing.
+        let is_first = self.coverage.values().par_iter().all(|c| *c == 0);
         let piece = match combine {
+            _ if is_first => None,
             Combine::Union { .. } | Combine::Join => self.mostly_beneath(form).map(|other| self.piece(other)),
             Combine::Over | Combine::Add | Combine::Cut => None,
         };
@@ -86,6 +89,7 @@ impl Relief {
         self.piece_of.extend(known..=id.max(known));
         self.piece_of[id as usize] = piece.unwrap_or(id);
         let offset = match combine {
+            _ if is_first => 0.0,
             Combine::Over => self.offset(form),
             Combine::Join => self.level(form),
             Combine::Union { .. } | Combine::Add | Combine::Cut => 0.0,
@@ -126,16 +130,25 @@ impl Relief {
     /// The part that most of a form lies on.
     fn mostly_beneath(&self, form: &Form) -> Option<u32> {
         let mut counts = BTreeMap::new();
-        for (_, _, (x, y)) in self.pairs(form) {
+        for (_, _, (x, y)) in self.pairs(form, self.shared_rows(form)) {
             let at = (x as i32 + form.corner.0, y as i32 + form.corner.1);
             *counts.entry(self.ids.at(at.0 as usize, at.1 as usize)).or_insert(0u32) += 1;
         }
         counts.into_iter().filter(|(id, _)| *id > 0).max_by_key(|(_, count)| *count).map(|(id, _)| id)
     }
-    /// Pairs of a form's covered pixels and those beneath them: heights, and where in the form.
-    fn pairs<'a>(&'a self, form: &'a Form) -> impl Iterator<Item = (f32, f32, (usize, usize))> + 'a {
+    /// The rows of the canvas that a form has a part in.
+    fn shared_rows(&self, form: &Form) -> std::ops::Range<i32> {
         let rect = form.rect().intersect(self.height.size().rect());
-        (rect.y0..rect.y1).flat_map(move |y| {
+        rect.y0..rect.y1.max(rect.y0)
+    }
+    /// Pairs of a form's covered pixels in some rows and those beneath them: heights, and where in the form.
+    fn pairs<'a>(
+        &'a self,
+        form: &'a Form,
+        rows: std::ops::Range<i32>,
+    ) -> impl Iterator<Item = (f32, f32, (usize, usize))> + 'a {
+        let rect = form.rect().intersect(self.height.size().rect());
+        rows.flat_map(move |y| {
             (rect.x0..rect.x1).filter_map(move |x| {
                 let (fx, fy) = ((x - form.corner.0) as usize, (y - form.corner.1) as usize);
                 let (x, y) = (x as usize, y as usize);
@@ -147,18 +160,21 @@ impl Relief {
     }
     /// The most that anything beneath rises above a form where they overlap or touch, and a gap; 0 where they do not.
     fn offset(&self, form: &Form) -> f32 {
-        let overlaps = self.pairs(form).map(|(beneath, own, _)| beneath - own);
-        let rises = overlaps.chain(self.touching(form));
-        let rise = rises.fold(None, |most: Option<f32>, rise| Some(most.map_or(rise, |most| most.max(rise))));
+        let more = |a: Option<f32>, b: Option<f32>| a.zip(b).map(|(a, b)| a.max(b)).or(a).or(b);
+        let of_row = |y: i32| {
+            let overlaps = self.pairs(form, y..y + 1).map(|(beneath, own, _)| beneath - own);
+            overlaps.chain(self.touching(form, y)).fold(None, |most, rise| more(most, Some(rise)))
+        };
+        let rise = self.shared_rows(form).into_par_iter().map(of_row).reduce(|| None, more);
         rise.map_or(0.0, |rise| (rise + GAP * self.height.size().longer_side()).max(0.0))
     }
-    /// How far what lies beside a form's rim rises above that rim: flats of a drawing touch and do not overlap.
-    fn touching<'a>(&'a self, form: &'a Form) -> impl Iterator<Item = f32> + 'a {
+    /// How far what lies beside a form's rim in a row rises above that rim: flats of a drawing touch and do not overlap.
+    fn touching<'a>(&'a self, form: &'a Form, y: i32) -> impl Iterator<Item = f32> + 'a {
         const FAR: i32 = 2;
         let own = |x: i32, y: i32| form.coverage.get(x - form.corner.0, y - form.corner.1).unwrap_or(0) >= 128;
         let rect = form.rect().intersect(self.height.size().rect());
-        let rim = (rect.y0..rect.y1)
-            .flat_map(move |y| (rect.x0..rect.x1).map(move |x| (x, y)))
+        let rim = (rect.x0..rect.x1)
+            .map(move |x| (x, y))
             .filter(move |&(x, y)| own(x, y) && !(own(x - 1, y) && own(x + 1, y) && own(x, y - 1) && own(x, y + 1)));
         rim.flat_map(move |(x, y)| {
             let height = form.height.at((x - form.corner.0) as usize, (y - form.corner.1) as usize);
@@ -174,20 +190,22 @@ impl Relief {
             bare(1, 0) || bare(-1, 0) || bare(0, 1) || bare(0, -1)
         };
         let (sum, count) = self
-            .pairs(form)
+            .pairs(form, self.shared_rows(form))
             .filter(at_rim)
             .fold((0.0f64, 0u32), |(sum, n), (beneath, own, _)| (sum + f64::from(beneath - own), n + 1));
         if count == 0 { 0.0 } else { (sum / f64::from(count)) as f32 }
     }
     /// The surface, whose objects are the parts: heights become depths, 0 near … 1 far over all that is covered.
-    pub fn into_surface(self) -> Result<Surface, SurfaceError> {
+    ///
+    /// * `known`: of the surface made before, so that the same need not be found again.
+    pub fn into_surface(self, known: &mut KnownNearest) -> Result<Surface, SurfaceError> {
         let Self { height, normals, coverage, ids, piece_of } = self;
         let covered = height.values().par_iter().zip(coverage.values()).filter(|(_, c)| **c > 0);
         let wider = |(a, b): (f32, f32), (c, d): (f32, f32)| (a.min(c), b.max(d));
         let (low, high) = covered.map(|(z, _)| (*z, *z)).reduce(|| (f32::MAX, f32::MIN), wider);
         let range = if high > low { high - low } else { 1.0 };
         let depth = height.updated(|x, y, z| if coverage.at(x, y) == 0 { f32::NAN } else { (high - z) / range });
-        Surface::with_parts(Maps { normals, depth, coverage }, ids, &piece_of)
+        Surface::with_parts(Maps { normals, depth, coverage }, ids, &piece_of, known)
     }
 }
 
@@ -283,7 +301,7 @@ mod tests {
                 assert!(relief.height.at(x, y) > alone.height.at(x, y), "({x}, {y})");
             }
         }
-        let surface = relief.into_surface().unwrap();
+        let surface = relief.into_surface(&mut KnownNearest::default()).unwrap();
         assert_eq!(surface.objects().count(), 2);
         let object = |x, y| surface.objects().at(x, y);
         assert_ne!(object(60, 60), object(120, 60));

@@ -180,7 +180,8 @@ impl Form {
 }
 
 /// The slope of a plane at a pixel by differences that do not leave what is covered.
-pub fn slope_within(plane: &Plane<f32>, covered: &dyn Fn(i32, i32) -> bool, x: i32, y: i32) -> Vec2 {
+#[inline(always)]
+pub fn slope_within(plane: &Plane<f32>, covered: &impl Fn(i32, i32) -> bool, x: i32, y: i32) -> Vec2 {
     let here = plane.at(x as usize, y as usize);
     let along = |dx: i32, dy: i32| {
         let at = |s: i32| {

@@ -259,7 +259,9 @@ fn thousands_of_holes_combs_and_specks_make_a_form_without_nan() {
             assert!(form.normals.values().iter().all(|n| (n.length() - 1.0).abs() < 1e-5), "{name}, {profile}");
             let mut relief = Relief::empty(size);
             relief.add(&form, Combine::Over, 1);
-            let surface = relief.into_surface().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let surface = relief
+                .into_surface(&mut crate::surface::KnownNearest::default())
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
             assert!(surface.depth_plane().values().iter().all(|z| (0.0..=1.0).contains(z)), "{name}, {profile}");
         }
     }

@@ -5,6 +5,7 @@
 use super::links;
 use crate::math::{Vec2, vec2};
 use crate::raster::Plane;
+use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// A step of n̄ of at least this length turns at a crease where it is so many times as long as the steps before and
@@ -36,9 +37,9 @@ impl Sharpness {
 /// * `nbar`: n̄_x, n̄_y.
 pub fn smooth_links(links: &Plane<u8>, nbar: [&Plane<f32>; 2]) -> Option<Plane<u8>> {
     let maps = NormalSteps { links, nbar };
-    let mut steps = Plane::from_fn(links.size(), |x, y| {
-        maps.flags((x, y), Axis::Across) | maps.flags((x, y), Axis::Down) << Axis::Down.shift()
-    });
+    let mut steps = Plane::filled(links.size(), 0u8);
+    let width = links.width().max(1);
+    steps.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| maps.flags_of_row(y, row));
     keep_chains(&mut steps);
     if steps.values().iter().all(|&flags| flags & ANY_CREASE == 0) {
         return None;
@@ -108,7 +109,38 @@ struct NormalSteps<'m> {
     nbar: [&'m Plane<f32>; 2],
 }
 
+crate::widest! {
+    /// Which steps of n̄ from pixels to those after them may be as long as a likely crease's: the others are not for
+    /// certain.
+    fn may_turn(from: [&[f32]; 2], to: [&[f32]; 2], out: &mut [u8]) {
+        let n = out.len();
+        let ([ax, ay], [bx, by]) = (from.map(|row| &row[..n]), to.map(|row| &row[..n]));
+        for x in 0..n {
+            let (dx, dy) = (bx[x] - ax[x], by[x] - ay[x]);
+            // A little less, so that rounding hides none.
+            out[x] = u8::from(dx * dx + dy * dy > 0.99 * LIKELY.least * LIKELY.least);
+        }
+    }
+}
+
 impl NormalSteps<'_> {
+    /// The flags of the steps after the pixels of a row.
+    fn flags_of_row(&self, y: usize, row: &mut [u8]) {
+        let w = row.len();
+        let nbar = |y: usize| self.nbar.map(|plane| plane.row(y));
+        let mut may = vec![0; w];
+        let judge = |axis: Axis, may: &[u8], row: &mut [u8]| {
+            for x in (0..may.len()).filter(|&x| may[x] != 0) {
+                row[x] |= self.flags((x, y), axis) << axis.shift();
+            }
+        };
+        may_turn(nbar(y), nbar(y).map(|row| &row[1..]), &mut may[..w - 1]);
+        judge(Axis::Across, &may[..w - 1], row);
+        if y + 1 < self.links.height() {
+            may_turn(nbar(y), nbar(y + 1), &mut may);
+            judge(Axis::Down, &may, row);
+        }
+    }
     fn nbar(&self, (x, y): (usize, usize)) -> Vec2 {
         vec2(self.nbar[0].at(x, y), self.nbar[1].at(x, y))
     }
@@ -182,6 +214,35 @@ mod tests {
         at.filter(|&(x, y)| all.at(x, y) & links::RIGHT != smooth.at(x, y) & links::RIGHT).collect()
     }
 
+    #[test]
+    fn rows_are_judged_as_each_of_their_steps() {
+        let value = |seed: u32| {
+            Plane::from_fn(SIZE, move |x, y| {
+                let (x, y) = (x as u32 / 3, y as u32 / 4);
+                0.5 * crate::math::hash::unit(seed, x, y) + if (x + y) % 3 == 0 { 0.12 } else { 0.0 }
+            })
+        };
+        let (links, nx, ny) = (Plane::filled(SIZE, 15u8), value(1), value(2));
+        let links = links.updated(|x, y, all| {
+            let off = |bit: u8, is: bool| if is { bit } else { 0 };
+            all & !(off(links::LEFT, x == 0)
+                | off(links::RIGHT, x == 39)
+                | off(links::UP, y == 0)
+                | off(links::DOWN, y == 29))
+        });
+        let maps = NormalSteps { links: &links, nbar: [&nx, &ny] };
+        let mut seen = 0;
+        for y in 0..30 {
+            let mut row = [0; 40];
+            maps.flags_of_row(y, &mut row);
+            for (x, found) in row.into_iter().enumerate() {
+                let flags = maps.flags((x, y), Axis::Across) | maps.flags((x, y), Axis::Down) << Axis::Down.shift();
+                assert_eq!(found, flags, "{x} {y}");
+                seen += u32::from(flags != 0);
+            }
+        }
+        assert!(seen > 50, "{seen}");
+    }
     #[test]
     fn a_roof_is_cut_at_its_ridge_alone() {
         let roof = |x: usize, _| vec3(if x < 20 { -0.5 } else { 0.5 }, 0.0, 1.0);

@@ -64,6 +64,27 @@ pub fn nearest(valid: &Plane<bool>) -> Option<Plane<u32>> {
     near.values().iter().all(|&place| place != NONE).then(|| near.map(index))
 }
 
+/// The nearest valid pixels that were found last: maps made one after another are mostly valid in the same ones.
+#[derive(Default)]
+pub struct KnownNearest(Option<(Plane<bool>, Plane<u32>)>);
+
+impl KnownNearest {
+    /// Of larger maps nothing is kept: it takes 5 bytes a pixel.
+    const MOST_PX: usize = 1 << 22;
+
+    /// As [`nearest`], taken out where it is known.
+    pub fn take(&mut self, valid: &Plane<bool>) -> Option<Plane<u32>> {
+        match self.0.take() {
+            Some((known, nearest)) if known == *valid => Some(nearest),
+            _ => nearest(valid),
+        }
+    }
+    /// Keeps it for the next map.
+    pub fn keep(&mut self, valid: &Plane<bool>, nearest: Plane<u32>) {
+        self.0 = (valid.size().area() <= Self::MOST_PX).then(|| (valid.clone(), nearest));
+    }
+}
+
 /// Takes in what the row above knows, and what stands on the left.
 fn sweep_right(here: &mut [Place], above: &[Place], y: usize) {
     for x in 0..here.len() {
@@ -131,6 +152,21 @@ mod tests {
         assert_eq!(near.at(0, 0), 10);
         assert_eq!(near.at(8, 6), 5 * 9 + 7);
         assert!(nearest(&Plane::filled(size, false)).is_none());
+    }
+    #[test]
+    fn what_is_known_of_a_map_is_given_back_for_the_same_one_alone() {
+        let valid =
+            |seed: u32| Plane::from_fn(Size::new(30, 20), move |x, y| hash::unit(seed, x as u32, y as u32) < 0.1);
+        let mut known = KnownNearest::default();
+        for seed in [1, 1, 2, 1] {
+            let found = known.take(&valid(seed)).unwrap();
+            assert!(found == nearest(&valid(seed)).unwrap(), "{seed}");
+            known.keep(&valid(seed), found);
+        }
+        let marked = Plane::filled(Size::new(30, 20), 7);
+        known.keep(&valid(1), marked.clone());
+        assert!(known.take(&valid(1)) == Some(marked), "it is not sought again");
+        assert!(known.take(&Plane::filled(Size::new(3, 2), false)).is_none());
     }
     /// The same sweeps pixel by pixel.
     fn nearest_as_told(valid: &Plane<bool>) -> Option<Plane<u32>> {

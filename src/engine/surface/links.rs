@@ -2,7 +2,9 @@
 //! jump or the mask's edge.
 //! Floor 2.
 
+use crate::math::fast::{max, min};
 use crate::raster::Plane;
+use rayon::prelude::*;
 
 /// The neighbour at the left (x − 1) continues this pixel's surface.
 pub const LEFT: u8 = 1;
@@ -33,6 +35,7 @@ pub fn depth_range_px(
     // Every pixel of a small map, a spread sample of a large one: the median needs no more.
     let step = (size.area() / 250_000).max(1);
     let mut ratios: Vec<f32> = (0..size.area())
+        .into_par_iter()
         .step_by(step)
         .filter_map(|i| {
             let (x, y) = (i % size.width as usize, i / size.width as usize);
@@ -41,10 +44,10 @@ pub fn depth_range_px(
             }
             let inside =
                 [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)].iter().all(|&(x, y)| coverage.at(x, y) == 255);
-            let told = slope(nbar_x.at(x, y), nz.at(x, y)).hypot(slope(nbar_y.at(x, y), nz.at(x, y)));
+            let told = length(slope(nbar_x.at(x, y), nz.at(x, y)), slope(nbar_y.at(x, y), nz.at(x, y)));
             let dx = (depth.at(x + 1, y) - depth.at(x - 1, y)) * 0.5;
             let dy = (depth.at(x, y + 1) - depth.at(x, y - 1)) * 0.5;
-            let seen = dx.hypot(dy);
+            let seen = length(dx, dy);
             (inside && (0.2..2.0).contains(&told) && seen > 1e-6).then(|| told / seen)
         })
         .collect();
@@ -53,6 +56,12 @@ pub fn depth_range_px(
     }
     let mid = ratios.len() / 2;
     *ratios.select_nth_unstable_by(mid, f32::total_cmp).1
+}
+
+/// √(x² + y²), as the standard library's `hypot` rounds it, without a call.
+#[inline(always)]
+fn length(x: f32, y: f32) -> f32 {
+    (f64::from(x) * f64::from(x) + f64::from(y) * f64::from(y)).sqrt() as f32
 }
 
 /// Excess over the tolerance, as a ratio of it, from which a step is a jump on its own.
@@ -71,14 +80,9 @@ pub fn find(
     depth_range_px: f32,
 ) -> Plane<u8> {
     let maps = StepMaps { nbar: [nbar_x, nbar_y], nz, depth, coverage, depth_range_px };
-    let mut jumps = Plane::from_fn(depth.size(), |x, y| {
-        let ahead = |axis: usize| match maps.excess((x, y), axis) {
-            excess if excess > CERTAIN => JUMP,
-            excess if excess > LIKELY => LIKELY_JUMP,
-            _ => 0,
-        };
-        ahead(0) | ahead(1) << DOWNWARD
-    });
+    let mut jumps = Plane::filled(depth.size(), 0u8);
+    let width = depth.width().max(1);
+    jumps.values_mut().par_chunks_mut(width).enumerate().for_each(|(y, row)| maps.jumps_of_row(y, row));
     spread(&mut jumps);
     Plane::from_fn(depth.size(), |x, y| {
         // A step is stored at its left or upper pixel.
@@ -141,7 +145,48 @@ struct StepMaps<'a> {
     depth_range_px: f32,
 }
 
+crate::widest! {
+    /// Which steps from pixels to those after them may exceed what normals tell: the others do not for certain.
+    ///
+    /// * `ends`: of both pixels n̄ along the step, n_z and depth.
+    fn may_jump(ends: [[&[f32]; 3]; 2], range_px: f32, out: &mut [u8]) {
+        let n = out.len();
+        let [[a, az, from], [b, bz, to]] = ends.map(|end| end.map(|row| &row[..n]));
+        for x in 0..n {
+            let (here, there) = (a[x] / max(az[x], 0.05), b[x] / max(bz[x], 0.05));
+            let step = (to[x] - from[x]) * range_px;
+            let beyond = max(min(here, there) - step, step - max(here, there));
+            // A little less than the tolerance, so that rounding hides none.
+            let least = 0.99 * LIKELY * (1.5 + 0.5 * max(here.abs(), there.abs()));
+            out[x] = u8::from(beyond > least);
+        }
+    }
+}
+
 impl StepMaps<'_> {
+    /// The jumps and likely jumps of the steps after the pixels of a row.
+    fn jumps_of_row(&self, y: usize, row: &mut [u8]) {
+        let w = row.len();
+        let rows = |axis: usize, y: usize| [self.nbar[axis].row(y), self.nz.row(y), self.depth.row(y)];
+        let mut may = vec![0; w];
+        let judge = |axis: usize, may: &[u8], row: &mut [u8]| {
+            for x in (0..may.len()).filter(|&x| may[x] != 0) {
+                let flag = match self.excess((x, y), axis) {
+                    excess if excess > CERTAIN => JUMP,
+                    excess if excess > LIKELY => LIKELY_JUMP,
+                    _ => 0,
+                };
+                row[x] |= flag << (DOWNWARD * axis as u8);
+            }
+        };
+        let here = rows(0, y);
+        may_jump([here, here.map(|row| &row[1..])], self.depth_range_px, &mut may[..w - 1]);
+        judge(0, &may[..w - 1], row);
+        if y + 1 < self.depth.height() {
+            may_jump([rows(1, y), rows(1, y + 1)], self.depth_range_px, &mut may);
+            judge(1, &may, row);
+        }
+    }
     /// The pixel after one, to the right (axis 0) or below (1).
     fn after(&self, (x, y): (usize, usize), axis: usize) -> Option<(usize, usize)> {
         let next = if axis == 0 { (x + 1, y) } else { (x, y + 1) };
@@ -194,6 +239,30 @@ mod tests {
     use crate::math::{Size, Vec3, vec3};
     use crate::surface::{Maps, Surface};
 
+    #[test]
+    fn rows_are_judged_as_each_of_their_steps() {
+        let size = Size::new(37, 23);
+        let value =
+            |seed: u32| Plane::from_fn(size, move |x, y| crate::math::hash::unit(seed, x as u32 / 4, y as u32 / 3));
+        let [nx, ny, nz, depth] = [1, 2, 3, 4].map(value);
+        let coverage = value(5).map(|v| if v < 0.9 { 255 } else { 0 });
+        let maps = StepMaps { nbar: [&nx, &ny], nz: &nz, depth: &depth, coverage: &coverage, depth_range_px: 9.0 };
+        let mut seen = 0;
+        for y in 0..size.height as usize {
+            let mut row = [0; 37];
+            maps.jumps_of_row(y, &mut row);
+            for (x, found) in row.into_iter().enumerate() {
+                let flag = |axis: usize| match maps.excess((x, y), axis) {
+                    excess if excess > CERTAIN => JUMP,
+                    excess if excess > LIKELY => LIKELY_JUMP,
+                    _ => 0,
+                };
+                assert_eq!(found, flag(0) | flag(1) << DOWNWARD, "{x} {y}");
+                seen += u32::from(found != 0);
+            }
+        }
+        assert!(seen > 50, "{seen}");
+    }
     /// Maps of 60 × 40 pixels from a height in pixels and the normal that the map tells.
     fn surface(height: impl Fn(f32, f32) -> f32 + Sync, normal: impl Fn(f32, f32) -> Vec3 + Sync) -> Surface {
         let size = Size::new(60, 40);

@@ -7,7 +7,8 @@ use super::{
     contours::{self, ContourMaps, Contours, Found, SheetOf},
     creases,
     curvature::{Curvature, Kappa, Rims},
-    grow, links,
+    grow::{self, KnownNearest},
+    links,
     objects::Objects,
     pyramid::MapPyramids,
     through::Origin,
@@ -118,6 +119,9 @@ impl Surface {
     }
     /// The same of maps whose depth range is known, px.
     pub(super) fn with_depth_range(maps: Maps, range_px: Option<f32>) -> Result<Self, SurfaceError> {
+        Self::made(maps, range_px, &mut KnownNearest::default())
+    }
+    fn made(maps: Maps, range_px: Option<f32>, known: &mut KnownNearest) -> Result<Self, SurfaceError> {
         let Maps { mut normals, mut depth, mut coverage } = maps;
         let size = normals.size();
         for (other, s) in [("depth", depth.size()), ("mask", coverage.size())] {
@@ -132,9 +136,10 @@ impl Surface {
         // A partly covered pixel at the rim without a normal takes its neighbour's; further inside it is a hole.
         grow::punch_holes(&mut coverage, &valid);
         if valid.values().iter().any(|valid| !valid) {
-            let nearest = grow::nearest(&valid).ok_or(SurfaceError::Empty)?;
+            let nearest = known.take(&valid).ok_or(SurfaceError::Empty)?;
             grow::fill(&mut normals, &nearest);
             grow::fill(&mut depth, &nearest);
+            known.keep(&valid, nearest);
         }
         let depth = depth.updated(|_, _, z| z.clamp(0.0, 1.0));
         let [nbar_x, nbar_y, nz] = apart(normals);
@@ -185,8 +190,14 @@ impl Surface {
     /// * `parts`: for each pixel which part it shows, from 1 on; 0 where there is none.
     /// * `piece_of`: for each part the piece of surface that it belongs to: parts grown into one share it. One that is
     ///   not listed is a piece of its own.
-    pub fn with_parts(maps: Maps, parts: Plane<u32>, piece_of: &[u32]) -> Result<Self, SurfaceError> {
-        let mut surface = Self::new(maps)?;
+    /// * `known`: of the surface made before, so that the same need not be found again.
+    pub fn with_parts(
+        maps: Maps,
+        parts: Plane<u32>,
+        piece_of: &[u32],
+        known: &mut KnownNearest,
+    ) -> Result<Self, SurfaceError> {
+        let mut surface = Self::made(maps, None, known)?;
         if parts.size() != surface.size {
             return Err(SurfaceError::SizesDiffer { normals: surface.size, other: "parts", size: parts.size() });
         }

@@ -39,6 +39,7 @@ pub use curvature::Curvature;
 pub use deformation::Deformation;
 pub use flow::{FlowField, StructureTensor};
 pub use grain::NoiseRelief;
+pub use grow::KnownNearest;
 pub use maps::{Maps, Surface, SurfaceError};
 pub use objects::{Objects, PaintLimit};
 pub use operator::Operator;

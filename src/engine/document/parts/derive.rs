@@ -10,7 +10,7 @@ use crate::document::{Document, Progress};
 use crate::math::{Affine2, Size};
 use crate::raster::Plane;
 use crate::shape::{Form, Outline, Relief, Rim, Roundness, Sculpting, bevel, sweep};
-use crate::surface::Surface;
+use crate::surface::{KnownNearest, Surface};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What was made of parts, by their ids; shared by all versions of a document.
@@ -26,6 +26,7 @@ struct MadeSurface {
     maps: Option<Arc<Surface>>,
     size: Size,
     surface: Option<Arc<Surface>>,
+    nearest: KnownNearest,
 }
 
 /// A part as it was made last.
@@ -127,9 +128,10 @@ impl Document {
             id += 1;
             whole.add(form, *combine, id);
         }
-        let surface = whole.into_surface().ok().map(Arc::new);
+        let mut known = lock().take().map(|made| made.nearest).unwrap_or_default();
+        let surface = whole.into_surface(&mut known).ok().map(Arc::new);
         let maps = self.parts.maps.clone();
-        *lock() = Some(MadeSurface { forms, maps, size: self.size, surface: surface.clone() });
+        *lock() = Some(MadeSurface { forms, maps, size: self.size, surface: surface.clone(), nearest: known });
         surface
     }
     /// Forgets what was made of parts that are gone.

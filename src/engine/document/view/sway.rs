@@ -100,7 +100,7 @@ mod tests {
         let mut relief = Relief::empty(size);
         let form = Primitive::new(Body::Sphere, vec2(48.0, 40.0), 24.0).form(1 << 16).unwrap();
         relief.add(&form, Combine::Over, 1);
-        let surface = relief.into_surface().unwrap();
+        let surface = relief.into_surface(&mut crate::surface::KnownNearest::default()).unwrap();
         let pixel = |i: usize| {
             let (x, y) = ((i % 96) as f32 - 47.5, (i / 96) as f32 - 39.5);
             if x.hypot(y) < 24.0 { [255, if x.hypot(y) < 4.0 { 255 } else { 0 }, 0, 255] } else { [0, 0, 255, 255] }
