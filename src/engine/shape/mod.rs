@@ -33,7 +33,7 @@ pub use relief::Detail;
 pub use rim::Rim;
 pub use sculpt::{SculptStroke, SculptTool, Sculpting};
 pub use sweep::Ball;
-pub use touches::Touch;
+pub use touches::{Touch, Touching};
 
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@
 use super::{Form, Outline, Rim};
 use crate::math::{Range, Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
-use crate::surface::integrate::depth_from_normals;
+use crate::surface::integrate::{Following, depth_from_normals};
 
 /// How firmly a touch holds, against the springs between pixels, which are 1.
 const FIRM: f32 = 1e3;
@@ -33,12 +33,26 @@ impl Touch {
     pub const MOST: usize = 100_000;
 }
 
+/// The same for a draft: the search need only come near.
+const ROUGH_GOAL: f64 = 1e-11;
+
+/// How far touches came on a form while a hand works on them: the next search begins there. For drafts alone, since what
+/// is found depends on the way there.
+#[derive(Default)]
+pub struct Touching {
+    /// By reach, the farthest first.
+    steps: Vec<(f32, Plane<Vec2>)>,
+    heights: Option<Following>,
+}
+
 /// A form with touches: its normals nearest to what was asked for, and the heights that follow.
 ///
 /// Of touches that overlap the last one holds. Those with the same reach are spread at once, the farthest first; what
 /// is nearer then changes only what is left to change. Inside a touch the form keeps its own curvature: its mean normal
 /// there becomes the touch's.
-pub fn touched(form: &Form, outline: &Outline, touches: &[Touch]) -> Form {
+///
+/// * `last`: in a draft, how far it came, and then how far it comes.
+pub fn touched(form: &Form, outline: &Outline, touches: &[Touch], mut last: Option<&mut Touching>) -> Form {
     let inside = outline.inside();
     if form.normals.size() != inside.size() || touches.is_empty() {
         return form.clone();
@@ -51,14 +65,42 @@ pub fn touched(form: &Form, outline: &Outline, touches: &[Touch]) -> Form {
     for reach in reaches {
         let now = Plane::from_fn(inside.size(), |x, y| bar.at(x, y) + delta.at(x, y));
         let (held, wanted) = constraints(outline, &now, touches, reach);
-        let step = spread(outline, &held, &wanted, reach);
+        let step = match &mut last {
+            None => spread(outline, &held, &wanted, reach),
+            Some(last) => last.spread(outline, (&held, &wanted), reach),
+        };
         delta = delta.updated(|x, y, d| d + step.at(x, y));
     }
     let normals = Plane::from_fn(inside.size(), |x, y| {
         let n = form.normals.at(x, y);
         if inside.at(x, y) { lifted(bar.at(x, y) + delta.at(x, y)) } else { n }
     });
-    with_normals(form, outline, normals)
+    match last {
+        None => with_normals(form, outline, normals),
+        Some(last) => last.with_normals(form, outline, normals),
+    }
+}
+
+impl Touching {
+    /// As [`spread`], nearly, begun where the last one of this reach ended.
+    fn spread(&mut self, outline: &Outline, (held, wanted): (&Plane<bool>, &Plane<Vec2>), reach: f32) -> Plane<Vec2> {
+        let at = self.steps.iter().position(|(known, _)| *known == reach);
+        let known = at.map(|at| self.steps.swap_remove(at).1).filter(|known| known.size() == held.size());
+        let start = known.map(|known| known.updated(|x, y, d| if held.at(x, y) { wanted.at(x, y) } else { d }));
+        let step = spread_from(&Rim::silhouette(outline), (held, wanted), reach, start.as_ref(), ROUGH_GOAL);
+        self.steps.push((reach, step.clone()));
+        step
+    }
+    /// As [`with_normals`], nearly.
+    fn with_normals(&mut self, form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
+        let inside = outline.inside();
+        let known = self.heights.take().filter(|known| known.is_over(inside));
+        let mut following = known.unwrap_or_else(|| Following::of(&normals, inside));
+        let (far, width) = (following.go_on(&normals), inside.width());
+        let form = raised_to(form, inside, normals, |x, y| -far[y * width + x]);
+        self.heights = Some(following);
+        form
+    }
 }
 
 /// The unit normal (camera space, y up) over a projected one, which is held shorter than 1.
@@ -108,13 +150,25 @@ pub fn spread(outline: &Outline, held: &Plane<bool>, wanted: &Plane<Vec2>, reach
 
 /// The same within a rim that is free in part.
 pub fn spread_within(rim: &Rim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach: f32) -> Plane<Vec2> {
+    spread_from(rim, (held, wanted), reach, None, GOAL)
+}
+
+/// The same begun at a field that is nearly right.
+fn spread_from(
+    rim: &Rim,
+    (held, wanted): (&Plane<bool>, &Plane<Vec2>),
+    reach: f32,
+    start: Option<&Plane<Vec2>>,
+    goal: f64,
+) -> Plane<Vec2> {
     let screen = if reach.is_finite() { 1.0 / (reach * reach).max(0.25) } else { 0.0 };
     let equation = rim.equation(|x, y| if held.at(x, y) { FIRM } else { screen });
     let component = |c: usize| {
         let source = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { FIRM * wanted.at(x, y)[c] } else { 0.0 });
         // Where a touch holds, δ is known to a thousandth.
-        let start = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { wanted.at(x, y)[c] } else { 0.0 });
-        equation.solve(&source, Some(&start), GOAL)
+        let known = |x: usize, y: usize| start.map_or(0.0, |start| start.at(x, y)[c]);
+        let start = Plane::from_fn(held.size(), |x, y| if held.at(x, y) { wanted.at(x, y)[c] } else { known(x, y) });
+        equation.solve(&source, Some(&start), goal)
     };
     let (x, y) = (component(0), component(1));
     Plane::from_fn(held.size(), |i, j| vec2(x.at(i, j), y.at(i, j)))
@@ -123,15 +177,64 @@ pub fn spread_within(rim: &Rim, held: &Plane<bool>, wanted: &Plane<Vec2>, reach:
 /// A form with other normals, and heights whose slopes they are, as high in the mean as before.
 pub fn with_normals(form: &Form, outline: &Outline, normals: Plane<Vec3>) -> Form {
     let inside = outline.inside();
+    let Some(found) = depth_from_normals(&normals, inside) else { return form.clone() };
+    raised_to(form, inside, normals, |x, y| -found.depth.at(x, y) * found.range_px)
+}
+
+/// A form with other normals and heights, these moved so that they are as high in the mean as before.
+fn raised_to(
+    form: &Form,
+    inside: &Plane<bool>,
+    normals: Plane<Vec3>,
+    rise: impl Fn(usize, usize) -> f32 + Sync,
+) -> Form {
+    let width = inside.width();
     let mean = |plane: &dyn Fn(usize) -> f32| {
         let held = inside.values().iter().enumerate().filter(|(_, i)| **i);
         let (sum, count) = held.fold((0.0f64, 0u32), |(s, n), (i, _)| (s + f64::from(plane(i)), n + 1));
         (sum / f64::from(count.max(1))) as f32
     };
-    let Some(found) = depth_from_normals(&normals, inside) else { return form.clone() };
-    let rise = |i: usize| -found.depth.values()[i] * found.range_px;
-    let shift = mean(&|i| form.height.values()[i]) - mean(&rise);
-    let width = inside.width();
-    let height = form.height.clone().updated(|x, y, z| if inside.at(x, y) { rise(y * width + x) + shift } else { z });
-    Form { height, normals, ..form.clone() }
+    let shift = mean(&|i| form.height.values()[i]) - mean(&|i| rise(i % width, i / width));
+    let height = form.height.clone().updated(|x, y, z| if inside.at(x, y) { rise(x, y) + shift } else { z });
+    Form { height, normals, corner: form.corner, coverage: form.coverage.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Size;
+    use crate::shape::Roundness;
+    use crate::shape::inflate::inflate;
+
+    #[test]
+    fn a_draft_of_touches_that_grow_is_nearly_what_they_are_at_once() {
+        let disc = Plane::from_fn(Size::new(200, 180), |x, y| {
+            if vec2(x as f32 - 100.0, y as f32 - 90.0).length() < 80.0 { 255u8 } else { 0 }
+        });
+        let outline = Outline::new((0, 0), &disc).unwrap();
+        let round = Roundness { puff: 0.7, rim_deg: 90.0 };
+        let form = Form::of_squares(&outline, &inflate(&outline, None, None), &Rim::silhouette(&outline), round);
+        let touch = |i: usize| Touch {
+            at: vec2(60.0 + 9.0 * i as f32, 80.0 + 5.0 * (i % 3) as f32),
+            radius: 4.0,
+            normal: vec3(-0.3, 0.4 - 0.1 * i as f32, 1.0).normalize(),
+            reach: if i % 4 == 3 { 20.0 } else { 0.0 },
+        };
+        let touches: Vec<Touch> = (0..9).map(touch).collect();
+        let mut last = Touching::default();
+        for n in 3..=9 {
+            let (draft, whole) = (
+                touched(&form, &outline, &touches[..n], Some(&mut last)),
+                touched(&form, &outline, &touches[..n], None),
+            );
+            let inside = outline.inside().values().iter().enumerate().filter(|(_, is)| **is).map(|(i, _)| i);
+            let (mut turned, mut off) = (0.0f32, 0.0f32);
+            for i in inside {
+                turned = turned.max(draft.normals.values()[i].distance(whole.normals.values()[i]));
+                off = off.max((draft.height.values()[i] - whole.height.values()[i]).abs());
+            }
+            assert!(turned < 0.02, "{turned} after {n}");
+            assert!(off < 1.5, "{off} px after {n}");
+        }
+    }
 }

@@ -36,13 +36,65 @@ pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option
     Some(IntegratedDepth { depth, range_px })
 }
 
+/// Heights that follow normals while a hand changes these: begun where they were, with the springs of the normals that
+/// they began with. Good enough to be looked at for a moment; [`depth_from_normals`] is what stays.
+pub struct Following {
+    solver: SpringSolver,
+    scratch: SolveScratch,
+    inside: Plane<bool>,
+    /// Away from the viewer, px; each piece about some depth of its own.
+    heights: Vec<f32>,
+}
+
+impl Following {
+    /// A part of what is wanted, and steps: each changes little.
+    const EFFORT: Effort = Effort { goal: 1e-3, most_steps: 4 };
+
+    pub fn of(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Self {
+        let slopes = Slopes { normals, inside };
+        let solver = solver(&slopes);
+        let mut heights = heights(&solver, &slopes);
+        centre_pieces(&mut heights, inside);
+        Self { solver, scratch: SolveScratch::default(), inside: inside.clone(), heights }
+    }
+    /// Whether it follows normals over these pixels.
+    pub fn is_over(&self, inside: &Plane<bool>) -> bool {
+        self.inside == *inside
+    }
+    /// The heights nearest to other normals, px away from the viewer.
+    pub fn go_on(&mut self, normals: &Plane<Vec3>) -> &[f32] {
+        let slopes = Slopes { normals, inside: &self.inside };
+        let [right, down] = self.solver.grid().springs();
+        let width = self.inside.width();
+        // What flows along its own springs: the slopes are new.
+        let flow = |x: usize, y: usize, axis: usize| {
+            let spring = [right, down][axis][y * width + x];
+            if spring > 0.0 { spring * slopes.edge((x, y), axis).1 } else { 0.0 }
+        };
+        let source = Plane::from_fn(self.inside.size(), |x, y| {
+            let before = if x > 0 { flow(x - 1, y, 0) } else { 0.0 } + if y > 0 { flow(x, y - 1, 1) } else { 0.0 };
+            before - flow(x, y, 0) - flow(x, y, 1)
+        });
+        self.solver.solve(source.values(), &mut self.heights, Self::EFFORT, &mut self.scratch);
+        &self.heights
+    }
+}
+
 /// The heights of all pixels at once.
 fn whole(slopes: &Slopes) -> Vec<f32> {
+    heights(&solver(slopes), slopes)
+}
+
+fn solver(slopes: &Slopes) -> SpringSolver {
     let size = slopes.inside.size();
     let right = Plane::from_fn(size, |x, y| slopes.edge((x, y), 0).0).into_values();
     let down = Plane::from_fn(size, |x, y| slopes.edge((x, y), 1).0).into_values();
+    SpringSolver::new(SpringGrid::new(slopes.inside.width(), right, down))
+}
+
+fn heights(solver: &SpringSolver, slopes: &Slopes) -> Vec<f32> {
+    let size = slopes.inside.size();
     let source = Plane::from_fn(size, |x, y| slopes.source(x, y));
-    let solver = SpringSolver::new(SpringGrid::new(slopes.inside.width(), right, down));
     let mut heights = filled_or_unwind(size.area(), 0.0);
     solver.solve(source.values(), &mut heights, Effort::EXACT, &mut SolveScratch::default());
     heights

@@ -4,18 +4,20 @@
 use super::body::{self, Body, StandingOutline, formed, inflated, joined, of_surface};
 use super::outlines::OutlineKey;
 use super::unchanged::{apart, same_inks, same_kind, same_list, same_shape};
-use super::upon::{changed, lined};
+use super::upon::{Came, changed, lined};
 use super::{Part, PartKind, Parts};
 use crate::document::{Document, Progress};
 use crate::math::{Affine2, Size};
 use crate::raster::Plane;
-use crate::shape::{Form, Outline, Relief, Rim, Roundness, Sculpting, bevel, sweep};
+use crate::shape::{Form, Outline, Relief, Rim, Roundness, bevel, sweep};
 use crate::surface::{KnownNearest, Surface};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What was made of parts, by their ids; shared by all versions of a document.
 #[derive(Clone, Default)]
 pub struct PartCache {
+    /// What is made is shown for a moment alone, and may begin where the last ended.
+    pub is_draft: bool,
     made: Arc<Mutex<Vec<MadePart>>>,
     /// The last surface, and what it was made of.
     whole: Arc<Mutex<Option<MadeSurface>>>,
@@ -43,8 +45,8 @@ struct MadePart {
     body: Arc<Body>,
     /// What it was made through; not of one so large that copies would be too many.
     stages: Option<Stages>,
-    /// How far sculpting came, if that is the last that lies on it.
-    sculpting: Arc<Mutex<Option<Sculpting>>>,
+    /// How far the last that lies on it came.
+    came: Arc<Mutex<Came>>,
     form: Arc<Form>,
     /// How far the form was moved from where the body stands, whole px.
     moved: (i32, i32),
@@ -230,38 +232,34 @@ impl Document {
         let beneath = known.and_then(|made| {
             let as_many = made.upon.len() == upon.len() && same_list(&made.upon[..last], &upon[..last]);
             let stages = made.stages.filter(|stages| Arc::ptr_eq(&stages.plain, &plain))?;
-            let sculpting = made.sculpting.lock().unwrap_or_else(PoisonError::into_inner).take();
-            (as_many && same_inks(&made.inks, &inks)).then_some((stages.before_last, sculpting))
-        });
-        let (before_last, mut sculpting) = beneath.unwrap_or_else(|| {
-            let on =
-                |form: Arc<Form>, other: &Arc<Part>| Arc::new(self.with_upon(&form, &body, other, still, &mut None));
-            (upon[..last].iter().fold(plain.clone(), on), None)
+            let came = std::mem::take(&mut *made.came.lock().unwrap_or_else(PoisonError::into_inner));
+            (as_many && same_inks(&made.inks, &inks)).then_some((stages.before_last, came))
         });
         let is_small = plain.height.size().area() <= MOST_KEPT_PX;
+        let nowhere = || Came::nowhere(is_small && self.parts.cache.is_draft);
+        let (before_last, mut came) = beneath.unwrap_or_else(|| {
+            let on = |form: Arc<Form>, other: &Arc<Part>| {
+                Arc::new(self.with_upon(&form, &body, other, still, &mut Came::default()))
+            };
+            (upon[..last].iter().fold(plain.clone(), on), nowhere())
+        });
         let stages = is_small.then(|| Stages { plain: plain.clone(), before_last: before_last.clone() });
         drop(plain);
         let form = match upon.last() {
-            Some(other) => self.with_upon(&before_last, &body, other, still, &mut sculpting),
+            Some(other) => self.with_upon(&before_last, &body, other, still, &mut came),
             None => Arc::unwrap_or_clone(before_last),
         };
         let form = Arc::new(form.tilted(part.tilt_deg).raised(part.raise).shifted(moved));
-        let (part, sculpting) = (part.clone(), Arc::new(Mutex::new(sculpting.filter(|_| is_small))));
+        let came = if is_small { came } else { Came::default() };
+        let (part, came) = (part.clone(), Arc::new(Mutex::new(came)));
         let of_it = form.clone();
-        self.remember(MadePart { part, upon, inks, source, met, body, stages, sculpting, form, moved });
+        self.remember(MadePart { part, upon, inks, source, met, body, stages, came, form, moved });
         Some(of_it)
     }
     /// A form with what one more part that lies on it does to it.
-    fn with_upon(
-        &self,
-        form: &Form,
-        body: &Body,
-        other: &Part,
-        still: Affine2,
-        sculpting: &mut Option<Sculpting>,
-    ) -> Form {
+    fn with_upon(&self, form: &Form, body: &Body, other: &Part, still: Affine2, came: &mut Came) -> Form {
         let PartKind::Lines { lines, .. } = &other.kind else {
-            return changed(form, &body.outline, other, still, sculpting);
+            return changed(form, &body.outline, other, still, came);
         };
         let ink = OutlineKey::of_part(self, other).flatten().and_then(|ink| ink.outline(self, self.most_px()));
         let ink = ink.and_then(|ink| ink.through(still, self.most_px()));

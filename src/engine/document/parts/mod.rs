@@ -56,6 +56,12 @@ impl Parts {
     pub(in crate::document) fn emptied(&self) -> Self {
         Self { cache: self.cache.clone(), ..Self::default() }
     }
+    /// None, of documents that are shown for a moment while a hand drags: what is made of them may be a little off.
+    pub(in crate::document) fn for_drafts() -> Self {
+        let mut parts = Self::default();
+        parts.cache.is_draft = true;
+        parts
+    }
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }

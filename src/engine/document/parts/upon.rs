@@ -5,7 +5,7 @@ use super::body::cut_to;
 use super::{Part, PartKind, turned};
 use crate::math::Affine2;
 use crate::raster::Plane;
-use crate::shape::{Form, Lines, Outline, Sculpting, Touch, lines, relief, touches};
+use crate::shape::{Form, Lines, Outline, Sculpting, Touch, Touching, lines, relief, touches};
 
 /// A form with ink as lines on it.
 pub fn lined(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -> Form {
@@ -19,16 +19,31 @@ pub fn lined(form: &Form, outline: &Outline, ink: &Outline, lines: Lines) -> For
     lines::lined(form, outline, &inked, lines)
 }
 
+/// How far what lies on a form came.
+#[derive(Default)]
+pub struct Came {
+    pub sculpting: Option<Sculpting>,
+    /// In drafts alone.
+    pub touching: Option<Touching>,
+}
+
+impl Came {
+    /// Nowhere yet.
+    pub fn nowhere(is_draft: bool) -> Self {
+        Self { sculpting: None, touching: is_draft.then(Touching::default) }
+    }
+}
+
 /// A form with what another part does to it. Its marks lie in the frame of the part that they are on.
 ///
-/// * `sculpting`: how far sculpting came on this very form, and then on the new one.
-pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, sculpting: &mut Option<Sculpting>) -> Form {
-    let known = sculpting.take();
+/// * `came`: how far it came on this very form, and then on the new one.
+pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, came: &mut Came) -> Form {
+    let known = came.sculpting.take();
     if form.height.size() != outline.size() {
         // A primitive's planes reach beyond its outline; cut to it they fit.
         let cut = cut_to(form, outline);
         let fits = cut.height.size() == outline.size();
-        return if fits { changed(&cut, outline, part, still, &mut None) } else { form.clone() };
+        return if fits { changed(&cut, outline, part, still, &mut Came::default()) } else { form.clone() };
     }
     match &part.kind {
         PartKind::Touches { touches: list, .. } => {
@@ -39,7 +54,7 @@ pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, scul
                 reach: touch.reach * length,
                 normal: turned(touch.normal, still),
             });
-            touches::touched(form, outline, &through.collect::<Vec<_>>())
+            touches::touched(form, outline, &through.collect::<Vec<_>>(), came.touching.as_mut())
         }
         PartKind::Sculpt { strokes, .. } => {
             let length = still.matrix2.determinant().abs().sqrt();
@@ -54,7 +69,7 @@ pub fn changed(form: &Form, outline: &Outline, part: &Part, still: Affine2, scul
             let made = known.filter(|known| known.goes_on(&through)).unwrap_or_else(|| Sculpting::of(form));
             let made = made.go_on(form, &through);
             let form = form.clone().with_added(made.layer());
-            *sculpting = Some(made);
+            came.sculpting = Some(made);
             form
         }
         PartKind::Relief { picture, detail, .. } => {

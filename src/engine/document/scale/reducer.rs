@@ -49,7 +49,7 @@ impl DocumentReducer {
     /// `factor`: as of [`Document::scaled`].
     pub fn new(factor: f32) -> Self {
         let (layers, parts) = (HashMap::new(), HashMap::new());
-        Self { factor, surface: None, layers, parts, shaped: Arc::default() }
+        Self { factor, surface: None, layers, parts, shaped: Arc::new(Parts::for_drafts()) }
     }
     /// The reduced document: as [`Document::scaled`], with the same errors; but pictures of image layers are read from
     /// levels as much coarser, and what was selected by the surface is resampled and not found anew.
