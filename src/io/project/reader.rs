@@ -1,5 +1,6 @@
 //! A project while it is read, and what there is to say of it.
-//! Floor 5. `open` reads what was saved, `foreign` what another program made of it, `repair` leaves out what is damaged.
+//! Floor 5. `open` reads what was saved, `foreign` what another program made of it, `repair` leaves out what is
+//! damaged.
 
 use super::{Archive, DOCUMENT};
 use crate::document::Document;
