@@ -5,6 +5,7 @@
 //! Their last bit differs between C libraries, so that a value may be rounded to the next byte: 1. Nothing is granted
 //! for the width of SIMD or the number of threads.
 
+use super::compare::Place;
 use super::pictures::Pictures;
 use super::surfaces::{SIZE, Shape};
 use image::RgbaImage;
@@ -26,11 +27,44 @@ const ROUNDED: u8 = 1;
 
 /// The canvas of a blend mode.
 const SMALL: Size = Size::new(48, 48);
+/// The tiles of the sheet of blend modes. New ones go to the end, so that the others stay where they are.
+const BLEND_TILES: [&str; 28] = [
+    "normal",
+    "multiply",
+    "screen",
+    "overlay",
+    "darken",
+    "lighten",
+    "color-dodge",
+    "color-burn",
+    "hard-light",
+    "soft-light",
+    "difference",
+    "exclusion",
+    "hue",
+    "saturation",
+    "color",
+    "luminosity",
+    "plus",
+    "linear-dodge",
+    "linear-burn",
+    "linear-light",
+    "vivid-light",
+    "pin-light",
+    "hard-mix",
+    "darker-color",
+    "lighter-color",
+    "subtract",
+    "divide",
+    "dissolve",
+];
 
 /// One reference picture.
 pub struct Case {
-    /// `folder/name` of the picture.
+    /// What it is called: `folder/name`.
     pub name: String,
+    /// Its reference picture.
+    pub place: Place,
     pub tolerance: u8,
     subject: Subject,
 }
@@ -44,7 +78,8 @@ enum Subject {
 
 impl Case {
     fn layers(group: &str, name: &str, tolerance: u8, shape: Shape, layers: Value) -> Self {
-        Self { name: format!("{group}/{name}"), tolerance, subject: Subject::Layers(SIZE, Some(shape), layers) }
+        let name = format!("{group}/{name}");
+        Self { place: Place::alone(&name), name, tolerance, subject: Subject::Layers(SIZE, Some(shape), layers) }
     }
     pub fn rendered(&self) -> RgbaImage {
         match &self.subject {
@@ -93,7 +128,9 @@ fn blend(mode: &str) -> Case {
         { "kind": "gradient", "from": [28, 0], "to": [20, 48], "blend": mode,
           "stops": [[0, "#ffffff"], [0.25, "#e0c030"], [0.5, "#4030a0"], [0.7, "#000000"], [1, "#20a06000"]] }
     ]);
-    Case { name: format!("blend/{mode}"), tolerance: EXACT, subject: Subject::Layers(SMALL, None, layers) }
+    let tile = BLEND_TILES.iter().position(|name| *name == mode).unwrap_or(BLEND_TILES.len());
+    let place = Place::tile("blend/modes", tile as u32, SMALL.width);
+    Case { name: format!("blend/{mode}"), place, tolerance: EXACT, subject: Subject::Layers(SMALL, None, layers) }
 }
 
 /// Each operator with each filter, pinned at two places, the content dragged at one; and a bent ramp.
@@ -263,7 +300,8 @@ fn retouch() -> Case {
         (BrushMode::Blur { width: 0.6 }, [8.0, 36.0, 70.0, 36.0]),
         (BrushMode::Clone { aligned: true, picture: false }, [10.0, 60.0, 66.0, 58.0]),
     ];
-    Case { name: "tip/retouch".into(), tolerance: ROUNDED, subject: Subject::Retouched(strokes) }
+    let name = "tip/retouch";
+    Case { place: Place::alone(name), name: name.into(), tolerance: ROUNDED, subject: Subject::Retouched(strokes) }
 }
 
 fn retouched(strokes: &[(BrushMode, [f32; 4])]) -> TileGrid {

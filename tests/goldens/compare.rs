@@ -51,6 +51,47 @@ fn premultiplied(Rgba([r, g, b, a]): Rgba<u8>) -> [u8; 4] {
     [by_alpha(r), by_alpha(g), by_alpha(b), a]
 }
 
+/// Where a reference picture is stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// `folder/name` of the file.
+    pub file: String,
+    /// Of a sheet of squares, row by row: which of them, and how wide they are.
+    tile: Option<(u32, u32)>,
+}
+
+/// Squares in a row of a sheet.
+const COLUMNS: u32 = 7;
+
+impl Place {
+    /// In a file of its own.
+    pub fn alone(name: &str) -> Self {
+        Self { file: name.to_owned(), tile: None }
+    }
+    /// A square of a sheet, from 0.
+    pub fn tile(sheet: &str, index: u32, side: u32) -> Self {
+        Self { file: sheet.to_owned(), tile: Some((index, side)) }
+    }
+    fn path(&self, references: &Path) -> PathBuf {
+        references.join(format!("{}.png", self.file))
+    }
+    /// The upper left corner of a square.
+    fn corner(index: u32, side: u32) -> (u32, u32) {
+        (index % COLUMNS * side, index / COLUMNS * side)
+    }
+    /// Stores a picture here; of a sheet the other squares stay.
+    fn put(&self, references: &Path, picture: &RgbaImage) {
+        let path = self.path(references);
+        let Some((index, side)) = self.tile else { return save(&path, picture) };
+        let (x, y) = Self::corner(index, side);
+        let known = read(&path).unwrap_or_default();
+        let mut sheet = RgbaImage::new(COLUMNS * side, known.height().max(y + side));
+        image::imageops::replace(&mut sheet, &known, 0, 0);
+        image::imageops::replace(&mut sheet, picture, x.into(), y.into());
+        save(&path, &sheet);
+    }
+}
+
 /// Where references are, where faults are shown, and whether what differs is accepted.
 pub struct Found<'a> {
     pub references: &'a Path,
@@ -58,11 +99,11 @@ pub struct Found<'a> {
     pub accept: bool,
 }
 
-/// Compares a picture with the one that is stored under its name; `UPDATE_GOLDEN=1` stores it where they differ.
-pub fn check(references: &Path, name: &str, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
+/// Compares a picture with the one that is stored for it; `UPDATE_GOLDEN=1` stores it where they differ.
+pub fn check(references: &Path, name: &str, place: &Place, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
     let faults = faults();
     let accept = std::env::var_os("UPDATE_GOLDEN").is_some_and(|value| value == "1");
-    Found { references, faults: &faults, accept }.check(name, found, tolerance)
+    Found { references, faults: &faults, accept }.check(name, place, found, tolerance)
 }
 
 /// The folder that faults are shown in, below `target`.
@@ -71,10 +112,10 @@ pub fn faults() -> PathBuf {
 }
 
 impl Found<'_> {
-    pub fn check(&self, name: &str, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
-        let reference = self.references.join(format!("{name}.png"));
-        let fault = match stored(&reference) {
-            Err(missing) => missing,
+    /// * `name`: of the case, for messages and the picture of its fault.
+    pub fn check(&self, name: &str, place: &Place, found: &RgbaImage, tolerance: u8) -> Result<(), String> {
+        let fault = match stored(self.references, place) {
+            Err(missing) => format!("{name}: {missing}"),
             Ok(expected) if expected.dimensions() != found.dimensions() => {
                 format!("{name}: {:?} pixels, not {:?}", found.dimensions(), expected.dimensions())
             }
@@ -91,7 +132,7 @@ impl Found<'_> {
             }
         };
         if self.accept {
-            save(&reference, found);
+            place.put(self.references, found);
             println!("accepted: {fault}");
             return Ok(());
         }
@@ -100,7 +141,18 @@ impl Found<'_> {
 }
 
 /// A stored picture, or a sentence.
-pub fn stored(path: &Path) -> Result<RgbaImage, String> {
+pub fn stored(references: &Path, place: &Place) -> Result<RgbaImage, String> {
+    let path = place.path(references);
+    let picture = read(&path)?;
+    let Some((index, side)) = place.tile else { return Ok(picture) };
+    let (x, y) = Place::corner(index, side);
+    if x + side > picture.width() || y + side > picture.height() {
+        return Err(format!("{}: has no square {index}", path.display()));
+    }
+    Ok(image::imageops::crop_imm(&picture, x, y, side, side).to_image())
+}
+
+fn read(path: &Path) -> Result<RgbaImage, String> {
     image::open(path).map(|picture| picture.to_rgba8()).map_err(|e| format!("{}: {e}", path.display()))
 }
 

@@ -12,14 +12,15 @@ mod pictures;
 mod surfaces;
 
 use cases::Case;
-use compare::{Difference, Found};
+use compare::{Difference, Found, Place};
+use image::{Rgba, RgbaImage};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// What all reference pictures may weigh together, and how many there may be: they are read by people.
 const MOST_BYTES: u64 = 600 << 10;
-const MOST_PICTURES: usize = 72;
+const MOST_PICTURES: usize = 60;
 
 /// The reference pictures, beside this file.
 fn folder() -> PathBuf {
@@ -29,13 +30,14 @@ fn folder() -> PathBuf {
 /// What each case differs by from its picture. Looked at once, before any other test reads the pictures: they may be
 /// accepted.
 static FAULTS: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let check = |case: &Case| compare::check(&folder(), &case.name, &case.rendered(), case.tolerance).err();
+    let check =
+        |case: &Case| compare::check(&folder(), &case.name, &case.place, &case.rendered(), case.tolerance).err();
     cases::all().iter().filter_map(check).collect()
 });
 
-fn golden(case: &Case) -> image::RgbaImage {
+fn golden(case: &Case) -> RgbaImage {
     LazyLock::force(&FAULTS);
-    compare::stored(&folder().join(format!("{}.png", case.name))).unwrap_or_else(|e| panic!("{e}"))
+    compare::stored(&folder(), &case.place).unwrap_or_else(|e| panic!("{}: {e}", case.name))
 }
 
 #[test]
@@ -46,7 +48,7 @@ fn every_case_looks_as_its_reference_picture() {
 #[test]
 fn every_reference_picture_belongs_to_a_case_and_all_are_light() {
     LazyLock::force(&FAULTS);
-    let known: BTreeSet<String> = cases::all().into_iter().map(|case| case.name).collect();
+    let known: BTreeSet<String> = cases::all().into_iter().map(|case| case.place.file).collect();
     let (mut bytes, mut stored) = (0, BTreeSet::new());
     for group in std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
         for picture in std::fs::read_dir(&group).unwrap().map(|entry| entry.unwrap().path()) {
@@ -55,7 +57,7 @@ fn every_reference_picture_belongs_to_a_case_and_all_are_light() {
             stored.insert(name.to_string_lossy().replace('\\', "/"));
         }
     }
-    assert_eq!(stored, known, "one picture a case (UPDATE_GOLDEN=1 makes those that are missing)");
+    assert_eq!(stored, known, "one picture a case or a sheet (UPDATE_GOLDEN=1 makes those that are missing)");
     assert!(stored.len() <= MOST_PICTURES, "{} pictures", stored.len());
     assert!(bytes <= MOST_BYTES, "{bytes} bytes");
 }
@@ -82,7 +84,7 @@ fn no_two_cases_look_alike() {
         let picture = golden(&case);
         (case, picture)
     };
-    let goldens: Vec<(Case, image::RgbaImage)> = cases::all().into_iter().map(with_picture).collect();
+    let goldens: Vec<(Case, RgbaImage)> = cases::all().into_iter().map(with_picture).collect();
     for (i, (a, picture)) in goldens.iter().enumerate() {
         for (b, other) in goldens[..i].iter().filter(|(_, other)| other.dimensions() == picture.dimensions()) {
             let Difference { pixels, .. } = Difference::of(picture, other, a.tolerance.max(b.tolerance));
@@ -93,14 +95,14 @@ fn no_two_cases_look_alike() {
 
 #[test]
 fn a_fault_is_told_with_its_place_and_a_picture() {
-    let expected = image::RgbaImage::from_pixel(20, 10, image::Rgba([90, 100, 110, 255]));
+    let expected = RgbaImage::from_pixel(20, 10, Rgba([90, 100, 110, 255]));
     let mut found = expected.clone();
-    found.put_pixel(12, 7, image::Rgba([90, 140, 110, 255]));
-    found.put_pixel(3, 2, image::Rgba([90, 103, 110, 255]));
+    found.put_pixel(12, 7, Rgba([90, 140, 110, 255]));
+    found.put_pixel(3, 2, Rgba([90, 103, 110, 255]));
     let scratch = tempfile::tempdir().unwrap();
     let told = |tolerance| {
         let scratch = Found { references: scratch.path(), faults: &scratch.path().join("faults"), accept: false };
-        scratch.check("a/b", &found, tolerance)
+        scratch.check("a/b", &Place::alone("a/b"), &found, tolerance)
     };
     std::fs::create_dir(scratch.path().join("a")).unwrap();
     expected.save(scratch.path().join("a/b.png")).unwrap();
@@ -110,4 +112,25 @@ fn a_fault_is_told_with_its_place_and_a_picture() {
     assert_eq!(told(40), Ok(()));
     let shown = image::open(scratch.path().join("faults/a/b.png")).unwrap().to_rgba8();
     assert_eq!(shown.dimensions(), (3 * 20 + 2 * compare::GAP, 10), "found, expected, difference");
+}
+
+#[test]
+fn a_tile_of_a_sheet_is_accepted_alone_and_read_back() {
+    let scratch = tempfile::tempdir().unwrap();
+    let colors = [[200, 0, 0, 255], [0, 150, 0, 255], [0, 0, 90, 128]].map(|c| RgbaImage::from_pixel(6, 6, Rgba(c)));
+    let check = |tile: u32, found: &RgbaImage, accept: bool| {
+        let faults = scratch.path().join("faults");
+        let place = Place::tile("a/sheet", tile, 6);
+        Found { references: scratch.path(), faults: &faults, accept }.check(&format!("a/{tile}"), &place, found, 0)
+    };
+    // The last one first: the sheet grows by rows.
+    for (tile, color) in [(9, &colors[2]), (0, &colors[0]), (3, &colors[1])] {
+        assert!(check(tile, color, false).is_err(), "it is not stored yet");
+        assert_eq!(check(tile, color, true), Ok(()));
+    }
+    for (tile, color) in [(9, &colors[2]), (0, &colors[0]), (3, &colors[1])] {
+        assert_eq!(check(tile, color, false), Ok(()));
+    }
+    let said = check(3, &colors[0], false).unwrap_err();
+    assert!(said.starts_with("a/3: 36 pixels differ"), "{said}");
 }
