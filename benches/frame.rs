@@ -3,20 +3,23 @@
 //! a large document ready for a drag. `cargo bench --bench frame`. Peers: the frame rates asked for, 16 ms a drag and
 //! 8 ms a brush; and a copy of the picture.
 
+mod timing;
+
 use rilievo_engine::document::{
-    Content, Document, DocumentReducer, Layer, LayerTransform, Live, Mesh, MeshFrame, PixelLayer, PreparedDocument,
-    Progress, TransformShape, diff, flatten,
+    Content, Document, DocumentReducer, Layer, LayerTransform, Live, Mesh, MeshFrame, PixelLayer, Progress,
+    TransformShape, flatten,
 };
 use rilievo_engine::math::srgb::Color;
 use rilievo_engine::math::{PlaneMap, Size, Vec2, hash, vec2, vec3};
 use rilievo_engine::paint::{
-    Adjust, Brush, Gradient, GradientStop, ImageFilter, LiquifySettings, PictureSource, PlacedImage, Placement, Sample,
+    Adjust, Brush, Gradient, GradientStop, ImageFilter, LiquifySettings, PictureSource, PlacedImage, Placement,
 };
 use rilievo_engine::raster::{Outside, Picture, Plane, Resampling, Tile, TileAt, TileGrid};
 use rilievo_engine::surface::{Anchor, Bend, Maps, Operator, Scene, Surface};
-use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
+use rilievo_program::tools::{PenSample, ToolContext, ToolKind};
 use std::sync::Arc;
 use std::time::Instant;
+use timing::{frames, on_wave, row};
 
 const HD: Size = Size::new(1920, 1080);
 const SQUARE: Size = Size::new(2048, 2048);
@@ -104,23 +107,7 @@ fn liquified(document: &Document) -> Vec<f64> {
     let (brush, layer) = (Brush::default(), Some(document.layers[1].id));
     let liquify = LiquifySettings { size: 200.0, ..LiquifySettings::default() };
     let context = ToolContext { layer, liquify, ..ToolContext::new(document, &brush) };
-    let pen = |i: usize| PenSample::at(vec2(300.0 + 2.0 * i as f32, 500.0));
-    let (gesture, _) = tools::press(ToolKind::Liquify, &context, pen(0));
-    let mut gesture = gesture.expect("paint can be displaced");
-    let progress = Progress::default();
-    let all = PreparedDocument::new(document, &progress).expect("nobody cancels");
-    let mut picture = all.flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress).expect("nobody cancels");
-    let mut shown = document.clone();
-    let frame = |frame: usize| {
-        let pens: Vec<PenSample> = (1..=16).map(|i| pen(frame * 16 + i)).collect();
-        let start = Instant::now();
-        let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
-        let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
-        picture = PreparedDocument::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
-        shown = next;
-        Some(start.elapsed().as_secs_f64() * 1e3)
-    };
-    (0..30).map_while(frame).collect()
+    frames(ToolKind::Liquify, &context, |i| PenSample::at(vec2(300.0 + 2.0 * i as f32, 500.0)), 30)
 }
 
 /// ms of each frame of a drag of a layer's transform, a pixel to `step` × `step` of the canvas.
@@ -172,29 +159,8 @@ fn strokes() -> Vec<f64> {
     let document = Document { surface: ball(SQUARE).surface, layers: painted(SQUARE, 10), ..Document::empty(SQUARE) };
     let brush = Brush { size: 128.0, ..Brush::default() };
     let layer = Some(document.layers[5].id);
-    let pen = |i: usize| {
-        let x = 260.0 + 2.0 * i as f32;
-        let at = vec2(x, 1024.0 + 120.0 * (x / 150.0).sin());
-        let sample = Sample { time_secs: i as f32 / 1000.0, ..Sample::at(at) };
-        PenSample { sample, ..PenSample::at(Vec2::ZERO) }
-    };
     let context = ToolContext { layer, operator: D_N, ..ToolContext::new(&document, &brush) };
-    let (gesture, _) = tools::press(ToolKind::Brush, &context, pen(0));
-    let mut gesture = gesture.expect("the layer takes paint");
-    let progress = Progress::default();
-    let all = PreparedDocument::new(&document, &progress).expect("nobody cancels");
-    let mut picture = all.flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress).expect("nobody cancels");
-    let mut shown = document.clone();
-    let frame = |frame: usize| {
-        let pens: Vec<PenSample> = (1..=16).map(|i| pen(frame * 16 + i)).collect();
-        let start = Instant::now();
-        let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
-        let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
-        picture = PreparedDocument::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
-        shown = next;
-        Some(start.elapsed().as_secs_f64() * 1e3)
-    };
-    (0..44).map_while(frame).collect()
+    frames(ToolKind::Brush, &context, on_wave, 44)
 }
 
 /// ms to make 20 layers of 4096² small: all at once, and the longest of the parts that are made one by one.
@@ -216,13 +182,6 @@ fn first_small(step: u32) -> [f64; 2] {
             return [all, longest];
         }
     }
-}
-
-/// Least, middle, and what nine of ten stay within.
-fn row(name: &str, mut ms: Vec<f64>) {
-    ms.sort_by(f64::total_cmp);
-    let at = |share: f64| ms.get((ms.len() as f64 * share) as usize).copied().unwrap_or(f64::NAN);
-    println!("{name:56} {:8.2} {:8.2} {:8.2}", at(0.0), at(0.5), at(0.9));
 }
 
 fn main() {

@@ -1,8 +1,10 @@
 //! What other marks than the round brush cost: a frame of tips, grain and retouching brushes; fills; ten thousand short
 //! strokes; the hundredth layer. `cargo bench --bench marks`. Peers: a frame of 16 ms; the round brush in the same run.
 
+mod timing;
+
 use rilievo_engine::document::{
-    Content, Document, Layer, Live, PixelLayer, PreparedDocument, Progress, StrokeList, diff, flatten,
+    Content, Document, Layer, Live, PixelLayer, PreparedDocument, Progress, StrokeList, flatten,
 };
 use rilievo_engine::math::srgb::Color;
 use rilievo_engine::math::{Size, Vec2, hash, vec2, vec3};
@@ -14,9 +16,10 @@ use rilievo_engine::surface::objects::CanvasPart;
 use rilievo_engine::surface::{Maps, Operator, Scene, Surface};
 use rilievo_program::session::actions::{Action, LayerAction, NewLayer};
 use rilievo_program::session::{OpenDocument, Session};
-use rilievo_program::tools::{self, Outcome, PenSample, ToolContext, ToolKind};
+use rilievo_program::tools::{ToolContext, ToolKind};
 use std::sync::Arc;
 use std::time::Instant;
+use timing::{on_wave, row};
 
 const CANVAS: Size = Size::new(2048, 2048);
 const LARGE: Size = Size::new(4096, 4096);
@@ -76,42 +79,12 @@ fn brushes() -> Vec<(&'static str, Brush)> {
     ]
 }
 
-/// The `i`th sample of a wavy line, 2 px further.
-fn on_wave(i: usize) -> PenSample {
-    let x = 260.0 + 2.0 * i as f32;
-    let at = vec2(x, 1024.0 + 120.0 * (x / 150.0).sin());
-    let sample = Sample { time_secs: i as f32 / 1000.0, ..Sample::at(at) };
-    PenSample { sample, ..PenSample::at(Vec2::ZERO) }
-}
-
 /// ms from a frame's events (16 samples) to its flattened tiles.
 fn frames(document: &Document, brush: &Brush, operator: Operator) -> Vec<f64> {
     let layer = Some(document.layers[5].id);
     let clone_offset = Some(vec2(-300.0, 40.0));
     let context = ToolContext { layer, operator, clone_offset, ..ToolContext::new(document, brush) };
-    let (gesture, _) = tools::press(ToolKind::Brush, &context, on_wave(0));
-    let mut gesture = gesture.expect("the layer takes paint");
-    let progress = Progress::default();
-    let all = PreparedDocument::new(document, &progress).expect("nobody cancels");
-    let mut picture = all.flatten_tiles(&TileGrid::default(), &all.all_tiles(), &progress).expect("nobody cancels");
-    let mut shown = document.clone();
-    let frame = |frame: usize| {
-        let pens: Vec<PenSample> = (1..=16).map(|i| on_wave(frame * 16 + i)).collect();
-        let start = Instant::now();
-        let Outcome::Preview(next) = gesture.drag(&pens) else { return None };
-        let tiles: Vec<TileAt> = diff(&shown, &next).into_iter().collect();
-        picture = PreparedDocument::new(&next, &progress)?.flatten_tiles(&picture, &tiles, &progress)?;
-        shown = next;
-        Some(start.elapsed().as_secs_f64() * 1e3)
-    };
-    (0..40).map_while(frame).collect()
-}
-
-/// Least, middle, and what nine of ten stay within.
-fn row(name: &str, mut ms: Vec<f64>) {
-    ms.sort_by(f64::total_cmp);
-    let at = |share: f64| ms.get((ms.len() as f64 * share) as usize).copied().unwrap_or(f64::NAN);
-    println!("{name:56} {:8.2} {:8.2} {:8.2}", at(0.0), at(0.5), at(0.9));
+    timing::frames(ToolKind::Brush, &context, on_wave, 40)
 }
 
 /// ms of some runs.

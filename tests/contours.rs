@@ -1,39 +1,22 @@
 //! Contours of every kind of layer: nine spheres before each other and before nothing, beside the mean of the same
 //! picture five times as large (MATH 10).
 
+/// The same that the engine's own tests are made of.
+#[path = "../src/engine/surface/contours/tests/spheres.rs"]
+mod spheres;
+
 use rilievo::{Budget, Color, Content, Document, Layer, Progress, RecipeFolder, Size, Surface, flatten, recipe};
-use rilievo_engine::math::{Vec3, srgb, vec2, vec3};
+use rilievo_engine::math::{Vec3, srgb};
 use rilievo_engine::raster::Plane;
 use rilievo_engine::surface::Maps;
 use serde_json::{Value, json};
+use spheres::seen;
 use std::path::Path;
 use std::sync::Arc;
 
-const SIZE: Size = Size::new(260, 200);
+const SIZE: Size = Size::new(spheres::CANVAS[0], spheres::CANVAS[1]);
 /// How much larger the picture is that the reference is the mean of; odd, so that a sample lies in each middle.
 const TIMES: usize = 5;
-/// Centre, height and radius, px.
-const SPHERES: [(f32, f32, f32, f32); 9] = [
-    (61.3, 58.7, 180.0, 34.2),
-    (97.9, 71.2, 150.0, 40.6),
-    (140.1, 50.4, 120.0, 30.9),
-    (168.6, 83.3, 90.0, 44.4),
-    (110.4, 121.8, 60.0, 47.7),
-    (60.2, 130.9, 40.0, 39.1),
-    (187.7, 130.6, 20.0, 36.3),
-    (215.4, 76.9, 0.0, 33.8),
-    (150.3, 150.2, -20.0, 38.5),
-];
-
-/// Which sphere a point shows, its normal (y up) and its height.
-fn seen(x: f32, y: f32) -> Option<(usize, Vec3, f32)> {
-    let hits = SPHERES.iter().enumerate().filter_map(|(i, &(cx, cy, z, r))| {
-        let p = vec2(x - cx, y - cy) / r;
-        let up = 1.0 - p.length_squared();
-        (up > 0.0).then(|| (i, vec3(p.x, -p.y, up.sqrt()), z + r * up.sqrt()))
-    });
-    hits.max_by(|a, b| a.2.total_cmp(&b.2))
-}
 /// The spheres, so many times as large.
 fn surface(times: usize) -> Arc<Surface> {
     let size = Size::new(SIZE.width * times as u32, SIZE.height * times as u32);

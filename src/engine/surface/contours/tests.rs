@@ -1,35 +1,16 @@
 //! Contours of analytic bodies, against means of 144 samples of each pixel.
 
+mod spheres;
+
 use super::*;
-use crate::math::{Vec3, vec2, vec3};
+use crate::math::{Vec3, vec3};
 use crate::raster::Plane;
 use crate::surface::{Maps, Surface};
+use spheres::seen;
 use std::sync::Arc;
 
-const SIZE: Size = Size::new(260, 200);
+const SIZE: Size = Size::new(spheres::CANVAS[0], spheres::CANVAS[1]);
 
-/// Centre and radius, px; the first is in front.
-pub const SPHERES: [(f32, f32, f32, f32); 9] = [
-    (61.3, 58.7, 180.0, 34.2),
-    (97.9, 71.2, 150.0, 40.6),
-    (140.1, 50.4, 120.0, 30.9),
-    (168.6, 83.3, 90.0, 44.4),
-    (110.4, 121.8, 60.0, 47.7),
-    (60.2, 130.9, 40.0, 39.1),
-    (187.7, 130.6, 20.0, 36.3),
-    (215.4, 76.9, 0.0, 33.8),
-    (150.3, 150.2, -20.0, 38.5),
-];
-
-/// Which sphere a point shows, its normal (y up) and its height.
-fn seen(x: f32, y: f32) -> Option<(usize, Vec3, f32)> {
-    let hits = SPHERES.iter().enumerate().filter_map(|(i, &(cx, cy, z, r))| {
-        let p = vec2(x - cx, y - cy) / r;
-        let up = 1.0 - p.length_squared();
-        (up > 0.0).then(|| (i, vec3(p.x, -p.y, up.sqrt()), z + r * up.sqrt()))
-    });
-    hits.max_by(|a, b| a.2.total_cmp(&b.2))
-}
 /// `bits`: of the stored normals; 0 is exact.
 fn surface(bits: u32) -> Arc<Surface> {
     let at = |x: usize, y: usize| seen(x as f32 + 0.5, y as f32 + 0.5);
