@@ -2,7 +2,7 @@
 //! Floor 1. Which pixels may be reached, and which neighbours are joined, the caller says; only tiles that are reached
 //! are asked for. The result does not depend on the order in which pixels are found.
 
-use super::bits::{TileBits, bits_of, bytes_of};
+use super::bits::TileBits;
 use super::tile::{TILE, TileAt};
 use super::{CoverageGrid, CoverageTile};
 use crate::math::{Rect, Size};
@@ -230,6 +230,7 @@ fn runs_of(from_left: u64, from_right: u64, seeds: u64) -> u64 {
 mod tests {
     use super::*;
     use crate::math::hash;
+    use crate::raster::bits::{bits_of, bytes_of};
     use std::collections::BTreeSet;
 
     const CANVAS: Size = Size::new(150, 140);

@@ -6,17 +6,16 @@ mod files;
 mod interface;
 mod layout;
 mod leaving;
+mod requested;
 mod steps;
 mod unwrap;
 mod work;
 
 use super::canvas::Canvas;
 use super::clipboard::{self, Clipboard};
-use super::dialogs::{Dialog, DialogAnswer, canvas, edge, export, import, maps, new, palette, shortcuts, unwrapped};
-use super::file_purpose::FilePurpose;
+use super::dialogs::{Dialog, DialogAnswer, export, maps, unwrapped};
 use super::jobs::{JobKind, JobResult, Jobs, MapsRead};
 use super::panel_layout::PanelKind;
-use super::panel_layout::PanelSide;
 use super::pen::SharedTablet;
 use super::pending::{AfterUnsaved, Pending, Saving};
 use super::requests::{UiRequests, WindowRequest};
@@ -247,72 +246,6 @@ impl MainWindow {
         self.hand_out();
         for ask in requests.window {
             self.do_request(ctx, ask);
-        }
-    }
-    fn do_request(&mut self, ctx: &egui::Context, ask: WindowRequest) {
-        match ask {
-            WindowRequest::NewDialog => self.dialogs.push(Dialog::New(new::NewDialog::default())),
-            WindowRequest::OpenDialog => self.ask_for(FilePurpose::Open, ""),
-            WindowRequest::OpenMapsDialog => self.dialogs.push(Dialog::Import(Box::default())),
-            WindowRequest::ReplaceMapsDialog => {
-                let source = self.session.active().and_then(|tab| tab.document().surface_source.clone());
-                let import = import::ImportDialog::replacing(source.as_deref());
-                self.dialogs.push(Dialog::Import(Box::new(import)));
-            }
-            WindowRequest::PartMapsDialog => self.dialogs.push(Dialog::Import(import::ImportDialog::for_part().into())),
-            WindowRequest::ShapeDialog => self.look_for_drawing(),
-            WindowRequest::Choose(purpose) => self.ask_for(purpose, ""),
-            WindowRequest::PlaceDialog => self.ask_for(FilePurpose::Place, ""),
-            WindowRequest::Open(file) => self.jobs.open(vec![file], None),
-            WindowRequest::OpenSample => self.open_sample(),
-            WindowRequest::Save => self.save(None),
-            WindowRequest::SaveAs => self.save_as(None),
-            WindowRequest::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
-            WindowRequest::ExportMapsDialog => self.dialogs.push(Dialog::Maps(self.maps.clone())),
-            WindowRequest::ExportMaps => self.ask_where(FilePurpose::ExportMaps),
-            WindowRequest::Say(sentence) => self.jobs.say(sentence),
-            WindowRequest::Wobble => self.canvas.wobble(ctx, &self.session),
-            WindowRequest::Export(extension) => {
-                self.export.extension = extension;
-                self.ask_where(FilePurpose::Export);
-            }
-            WindowRequest::ExportUnwrappedDialog => self.dialogs.push(Dialog::Unwrapped(self.unwrapped.clone())),
-            WindowRequest::ExportUnwrapped => self.ask_where(FilePurpose::ExportUnwrapped),
-            WindowRequest::Unwrap => self.unwrap_surface(),
-            WindowRequest::Close(tab) => self.close(ctx, tab),
-            WindowRequest::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
-            WindowRequest::CanvasSizeDialog | WindowRequest::ImageSizeDialog | WindowRequest::TurnDialog => {
-                let size = self.session.active().map(|tab| tab.document().size);
-                self.dialogs.extend(size.map(|size| canvas::asked(&ask, size)));
-            }
-            WindowRequest::EdgeDialog(change) => self.dialogs.push(Dialog::Edge(edge::EdgeDialog::new(change))),
-            WindowRequest::KeepDialog => self.dialogs.push(Dialog::Keep(edge::KeepDialog::default())),
-            WindowRequest::GridDialog => self.dialogs.push(Dialog::Grid),
-            WindowRequest::Paste => self.paste(),
-            WindowRequest::Palette => self.dialogs.push(Dialog::Palette(palette::CommandPalette::default())),
-            WindowRequest::Shortcuts => self.dialogs.push(Dialog::Shortcuts(shortcuts::ShortcutsDialog::default())),
-            WindowRequest::About => self.dialogs.push(Dialog::About),
-            WindowRequest::TogglePanels => {
-                self.settings.layout.is_hidden = !self.settings.layout.is_hidden;
-                // The tab key that asked for it went on to the next button as well.
-                ctx.memory_mut(|memory| memory.stop_text_input());
-            }
-            WindowRequest::OtherSide => self.settings.layout.side = self.settings.layout.side.other(),
-            WindowRequest::PanelsApart => {
-                let side = &mut self.settings.layout.side;
-                *side = if *side == PanelSide::Apart { PanelSide::Right } else { PanelSide::Apart };
-            }
-            WindowRequest::Float(front) => {
-                let apart = &mut self.settings.layout.apart;
-                if apart.contains(&front) { apart.retain(|other| *other != front) } else { apart.push(front) }
-            }
-            WindowRequest::ToggleTheme => self.toggle_theme(ctx),
-            WindowRequest::ResizeInterface { is_larger } => self.resize_interface(ctx, is_larger),
-            WindowRequest::Scale(scale) => self.scale(ctx, scale),
-            WindowRequest::FullScreen => {
-                let is_full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
-                ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!is_full));
-            }
         }
     }
     fn apply(&mut self, action: &Action) {

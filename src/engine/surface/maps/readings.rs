@@ -1,0 +1,136 @@
+//! What a surface tells of a pixel, its planes, and what is kept of it.
+//! Floor 2.
+
+use super::*;
+
+impl Surface {
+    /// The pixels that two populations see.
+    pub fn contours(&self) -> &Arc<Contours> {
+        &self.contours
+    }
+    /// How much of each pixel the surface covers: as the maps say, and on a rim that they left hard as its contour
+    /// says.
+    pub fn shares(&self) -> Plane<u8> {
+        let mut shares = self.coverage.clone();
+        for pixel in self.contours.pixels() {
+            let (x, y) = (pixel.x as usize, pixel.y as usize);
+            match (self.coverage.at(x, y) > 0, pixel.sees_surface()) {
+                (true, false) => shares.set(x, y, quantise(pixel.share)),
+                (false, true) => shares.set(x, y, quantise(1.0 - pixel.share)),
+                _ => (),
+            }
+        }
+        shares
+    }
+    /// What this is the sheet of: its pixels are readings of other populations, not pixels of the canvas.
+    pub fn sheet_of(&self) -> Option<&SheetOf> {
+        self.sheet_of.as_ref()
+    }
+    pub(in crate::surface) fn sheets(&self) -> &RecentCache<(), Surface> {
+        &self.sheets
+    }
+    pub(in crate::surface) fn sheet_normals(&self) -> Option<&Plane<Vec3>> {
+        self.sheet_normals.as_ref()
+    }
+    pub fn size(&self) -> Size {
+        self.size
+    }
+    /// n̄ at a pixel, image axes (y down), length ≤ 1.
+    #[inline(always)]
+    pub fn nbar(&self, x: usize, y: usize) -> Vec2 {
+        vec2(self.nbar_x.at(x, y), self.nbar_y.at(x, y))
+    }
+    /// The unit normal, camera space (y up).
+    #[inline(always)]
+    pub fn normal(&self, x: usize, y: usize) -> Vec3 {
+        vec3(self.nbar_x.at(x, y), -self.nbar_y.at(x, y), self.nz.at(x, y))
+    }
+    /// z at a pixel, 0 near … 1 far.
+    #[inline(always)]
+    pub fn depth(&self, x: usize, y: usize) -> f32 {
+        self.depth.at(x, y)
+    }
+    /// Coverage at a pixel, 0 … 255.
+    #[inline(always)]
+    pub fn coverage(&self, x: usize, y: usize) -> u8 {
+        self.coverage.at(x, y)
+    }
+    /// n̄_x, n̄_y (image axes) and n_z as planes, for loops over rows.
+    pub fn normal_planes(&self) -> [&Plane<f32>; 3] {
+        [&self.nbar_x, &self.nbar_y, &self.nz]
+    }
+    pub fn depth_plane(&self) -> &Plane<f32> {
+        &self.depth
+    }
+    pub fn coverage_plane(&self) -> &Plane<u8> {
+        &self.coverage
+    }
+    /// For each pixel, which of its four neighbours continue the same surface: bits of [`links`].
+    pub fn links_plane(&self) -> &Plane<u8> {
+        &self.links
+    }
+    /// The same without links across creases: for what is differenced to tell how it changes within a pixel.
+    pub fn smooth_links_plane(&self) -> &Plane<u8> {
+        self.smooth_links.as_deref().unwrap_or(&self.links)
+    }
+    /// Z: how many pixels deep the range 0 … 1 of depth is, estimated from how depth and normals agree.
+    pub fn depth_range_px(&self) -> f32 {
+        self.depth_range_px
+    }
+    /// Which part each pixel shows, from 1 on, where the surface was made of parts.
+    pub fn parts_plane(&self) -> Option<&Plane<u32>> {
+        self.parts.as_deref()
+    }
+    /// Min–max pyramids of the maps, for `support`.
+    pub(in crate::surface) fn bounds(&self) -> &MapPyramids {
+        &self.bounds
+    }
+    pub(in crate::surface) fn curvatures(&self) -> &RecentCache<u32, Curvature> {
+        &self.curvatures
+    }
+    pub(in crate::surface) fn rims_cell(&self) -> &RecentCache<(), Rims> {
+        &self.rims
+    }
+    pub(in crate::surface) fn kappas(&self) -> &RecentCache<Vec<[u32; 3]>, Kappa> {
+        &self.kappas
+    }
+    /// The surface without the detail that was combined onto it.
+    pub(in crate::surface) fn base(&self) -> &Surface {
+        self.base.as_deref().unwrap_or(self)
+    }
+    /// Computed by the calling thread alone: see `pyramid`.
+    pub(in crate::surface) fn objects_cell(&self) -> &OnceLock<Objects> {
+        &self.objects
+    }
+    pub(in crate::surface) fn regions(&self) -> &RecentCache<SurfaceRegion, CoverageGrid> {
+        &self.regions
+    }
+    pub(in crate::surface) fn unwrappings(&self) -> &RecentCache<[u32; 2], Unwrapping> {
+        &self.unwrappings
+    }
+    pub(in crate::surface) fn plane_layouts(&self) -> &RecentCache<[u32; 2], Option<Arc<PlaneLayout>>> {
+        &self.plane_layouts
+    }
+    pub(in crate::surface) fn occlusions(&self) -> &RecentCache<u32, Plane<f32>> {
+        &self.occlusions
+    }
+    /// The covered pixels whose centres lie around a point of the map, and their bilinear shares, which add up to 1;
+    /// none where none is covered.
+    pub fn around(&self, q: Vec2) -> impl Iterator<Item = (usize, usize, f32)> + use<> {
+        let corner = (q - 0.5).floor();
+        let part = q - 0.5 - corner;
+        let pixel = |dx: f32, dy: f32| {
+            let (x, y) = self.pixel_of(corner + vec2(dx, dy));
+            let share = (if dx > 0.0 { part.x } else { 1.0 - part.x }) * if dy > 0.0 { part.y } else { 1.0 - part.y };
+            (x, y, if self.coverage(x, y) > 0 { share } else { 0.0 })
+        };
+        let pixels = [pixel(0.0, 0.0), pixel(1.0, 0.0), pixel(0.0, 1.0), pixel(1.0, 1.0)];
+        let sum: f32 = pixels.iter().map(|(.., share)| share).sum();
+        pixels.into_iter().filter(|(.., share)| *share > 0.0).map(move |(x, y, share)| (x, y, share / sum))
+    }
+    /// The pixel that holds a canvas point, clamped into the map.
+    pub fn pixel_of(&self, q: Vec2) -> (usize, usize) {
+        let clamp = |v: f32, n: u32| (v.max(0.0) as usize).min(n as usize - 1);
+        (clamp(q.x, self.size.width), clamp(q.y, self.size.height))
+    }
+}
