@@ -168,7 +168,8 @@ impl Relief {
         let rise = self.shared_rows(form).into_par_iter().map(of_row).reduce(|| None, more);
         rise.map_or(0.0, |rise| (rise + GAP * self.height.size().longer_side()).max(0.0))
     }
-    /// How far what lies beside a form's rim in a row rises above that rim: flats of a drawing touch and do not overlap.
+    /// How far what lies beside a form's rim in a row rises above that rim: flats of a drawing touch and do not
+    /// overlap.
     fn touching<'a>(&'a self, form: &'a Form, y: i32) -> impl Iterator<Item = f32> + 'a {
         const FAR: i32 = 2;
         let own = |x: i32, y: i32| form.coverage.get(x - form.corner.0, y - form.corner.1).unwrap_or(0) >= 128;

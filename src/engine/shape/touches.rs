@@ -36,7 +36,8 @@ impl Touch {
 /// The same for a draft: the search need only come near.
 const ROUGH_GOAL: f64 = 1e-11;
 
-/// How far touches came on a form while a hand works on them: the next search begins there. For drafts alone, since what
+/// How far touches came on a form while a hand works on them: the next search begins there. For drafts alone, since
+/// what
 /// is found depends on the way there.
 #[derive(Default)]
 pub struct Touching {
