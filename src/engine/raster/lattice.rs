@@ -132,8 +132,8 @@ impl Lattice {
     pub fn is_none_on(&self, at: TileAt) -> bool {
         self.around(at).is_none()
     }
-    /// At the middle of every pixel of a tile: which point it shows, and how that moves with the pixel; `None` where the
-    /// tile shows itself. The same as [`Lattice::at`], along rows.
+    /// At the middle of every pixel of a tile: which point it shows, and how that moves with the pixel; `None` where
+    /// the tile shows itself. The same as [`Lattice::at`], along rows.
     pub fn on_tile(&self, at: TileAt) -> Option<TilePoints> {
         let nodes = self.around(at)?;
         let phases: [Cubic; CELL] = std::array::from_fn(|k| Cubic::at((k as f32 + 0.5) / CELL as f32));

@@ -37,8 +37,7 @@ impl Touch {
 const ROUGH_GOAL: f64 = 1e-11;
 
 /// How far touches came on a form while a hand works on them: the next search begins there. For drafts alone, since
-/// what
-/// is found depends on the way there.
+/// what is found depends on the way there.
 #[derive(Default)]
 pub struct Touching {
     /// By reach, the farthest first.
