@@ -55,7 +55,9 @@ pub fn run(files: Vec<PathBuf>) -> Result<()> {
         .with_min_inner_size([720.0, 480.0])
         .with_drag_and_drop(true);
     // Clipboard shortcuts arrive as keys: see `clipboard`.
-    let options = eframe::NativeOptions { viewport, clipboard_shortcuts: false, ..Default::default() };
+    // Nothing is drawn in more than eight bits: there is nothing to dither, and it costs every pixel of every frame.
+    let options =
+        eframe::NativeOptions { viewport, clipboard_shortcuts: false, dithering: false, ..Default::default() };
     let (tablet, is_open) = (pen::SharedTablet::default(), Rc::new(Cell::new(false)));
     let (pen, opened) = (tablet.clone(), is_open.clone());
     let start = move |cc: &eframe::CreationContext<'_>| -> std::result::Result<Box<dyn eframe::App>, _> {

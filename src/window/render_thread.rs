@@ -95,9 +95,18 @@ impl RenderThread {
         *lock(&self.shared.wanted) = Some(wanted);
         self.shared.wake.notify_one();
     }
-    /// What was painted since the last call.
-    pub fn painted(&self) -> impl Iterator<Item = RenderedTileBatch> + '_ {
-        self.painted.try_iter()
+    /// What was painted since the last call, and what of the picture is still painted within some time.
+    pub fn painted(&self, wait: Duration) -> impl Iterator<Item = RenderedTileBatch> + '_ {
+        let (until, mut is_settled) = (Instant::now() + wait, false);
+        std::iter::from_fn(move || {
+            let left = if is_settled { Duration::ZERO } else { until.saturating_duration_since(Instant::now()) };
+            let batch = match left.is_zero() {
+                true => self.painted.try_recv().ok(),
+                false => self.painted.recv_timeout(left).ok(),
+            }?;
+            is_settled = batch.is_settled;
+            Some(batch)
+        })
     }
 }
 

@@ -12,12 +12,35 @@ use std::collections::BTreeMap;
 /// Side of a block, px: eight tiles. A driver's limit is 2048 at the least; a smaller block is cheaper to shrink again.
 pub const BLOCK: i32 = 512;
 
+/// How pixels of the picture become pixels of the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Magnification {
+    /// Fewer than they are: from smaller pictures of the picture, made anew with every change.
+    Reduced,
+    #[default]
+    Smooth,
+    /// As squares.
+    Squares,
+}
+
+impl Magnification {
+    /// * `scale`: pixels of the screen to one of the picture.
+    pub fn of(scale: f32) -> Self {
+        match scale {
+            _ if scale >= 2.0 => Self::Squares,
+            // A hair below 1 is 1, rounded.
+            _ if scale > 0.999 => Self::Smooth,
+            _ => Self::Reduced,
+        }
+    }
+}
+
 /// The blocks of one picture.
 #[derive(Default)]
 pub struct TextureBlocks {
     size: Option<Size>,
     textures: BTreeMap<(i32, i32), TextureHandle>,
-    sharp: bool,
+    magnification: Magnification,
 }
 
 impl TextureBlocks {
@@ -56,10 +79,10 @@ impl TextureBlocks {
             }
         }
     }
-    /// Pixels as squares, or smooth. The filter belongs to the texture, so one pixel of each is sent again.
-    pub fn set_sharp(&mut self, sharp: bool, grid: &TileGrid) {
-        let Some(size) = self.size.filter(|_| self.sharp != sharp) else { return };
-        self.sharp = sharp;
+    /// The filter belongs to the texture, so one pixel of each is sent again.
+    pub fn magnify(&mut self, magnification: Magnification, grid: &TileGrid) {
+        let Some(size) = self.size.filter(|_| self.magnification != magnification) else { return };
+        self.magnification = magnification;
         let options = self.options();
         for (&block, texture) in &mut self.textures {
             let whole = block_rect(block);
@@ -68,12 +91,12 @@ impl TextureBlocks {
         }
     }
     fn options(&self) -> TextureOptions {
-        let magnification = if self.sharp { TextureFilter::Nearest } else { TextureFilter::Linear };
+        let is_in_squares = self.magnification == Magnification::Squares;
         TextureOptions {
-            magnification,
+            magnification: if is_in_squares { TextureFilter::Nearest } else { TextureFilter::Linear },
             minification: TextureFilter::Linear,
             wrap_mode: TextureWrapMode::ClampToEdge,
-            mipmap_mode: Some(TextureFilter::Linear),
+            mipmap_mode: (self.magnification == Magnification::Reduced).then_some(TextureFilter::Linear),
         }
     }
     /// Draws the blocks; `screen_from_canvas` in the window's points.

@@ -44,6 +44,9 @@ use std::time::Duration;
 use unwrapped::{OnSheet, UnwrappedSheet};
 use wobble::Wobble;
 
+/// What is painted as quickly as this is waited for, before a frame is drawn without it.
+const SOON: Duration = Duration::from_millis(12);
+
 /// The state of the canvas.
 pub struct Canvas {
     /// Absent if the system cannot start a thread.
@@ -157,10 +160,10 @@ impl Canvas {
         let screen_from_canvas = to_window * view.screen_from_canvas();
         self.follow(ui.ctx(), session, &view, rect);
         self.follow_unwrapped(ui.ctx(), layout.as_ref());
-        let pixels_per_point = ui.ctx().pixels_per_point();
-        let is_sharp = view.zoom * pixels_per_point >= 2.0;
-        [&mut self.whole, &mut self.sheet.shown].into_iter().for_each(|sheet| sheet.set_sharp(is_sharp));
-        self.draft.set_sharp(is_sharp && self.draft.size() == Some(size));
+        let scale = view.zoom * ui.ctx().pixels_per_point();
+        self.whole.magnify(scale, tab.document().size);
+        self.draft.magnify(scale, tab.document().size);
+        self.sheet.shown.magnify(scale, size);
 
         let painter = ui.painter_at(rect);
         let canvas = size.rect();
@@ -254,8 +257,11 @@ impl Canvas {
             }
             self.wanted = Some((drawn, is_dragged));
         }
-        let painted =
-            self.render_thread.iter().flat_map(RenderThread::painted).filter(|painted| painted.picture == self.picture);
+        // What the hand did is shown in the same frame, if it is painted soon.
+        let is_soon = self.is_busy && session.is_drawing() && ctx.current_pass_index() > 0 && self.took < SOON;
+        let wait = if is_soon { SOON } else { Duration::ZERO };
+        let painted = self.render_thread.iter().flat_map(|thread| thread.painted(wait));
+        let painted = painted.filter(|painted| painted.picture == self.picture);
         let mut is_draft_next = self.is_draft_in_front;
         for painted in painted {
             (self.took, self.is_busy) = (painted.took, !painted.is_settled);

@@ -1,7 +1,7 @@
 //! A picture as far as it is painted, and its copy on the graphics card. The canvas has two: the full one, and a
 //! smaller one during drags. Floor 7.
 
-use super::blocks::TextureBlocks;
+use super::blocks::{Magnification, TextureBlocks};
 use crate::math::{Affine2, Size, vec2};
 use crate::raster::{Tile, TileAt, TileGrid};
 use crate::render_thread::RenderedTileBatch;
@@ -69,8 +69,16 @@ impl TileSheet {
         self.blocks.update(ctx, &self.grid, self.unsent.drain(..));
         true
     }
-    pub fn set_sharp(&mut self, sharp: bool) {
-        self.blocks.set_sharp(sharp, &self.grid);
+    /// * `scale`: pixels of the screen to one of the canvas.
+    /// * `canvas`: that the picture is drawn as large as.
+    pub fn magnify(&mut self, scale: f32, canvas: Size) {
+        let Some(size) = self.size else { return };
+        // A smaller picture stands for the canvas: its own pixels are not to be seen.
+        let magnification = match Magnification::of(scale * canvas.width as f32 / size.width.max(1) as f32) {
+            Magnification::Squares if size != canvas => Magnification::Smooth,
+            own => own,
+        };
+        self.blocks.magnify(magnification, &self.grid);
     }
     /// Draws it where the canvas lies, as large as the canvas.
     pub fn draw(&self, painter: &egui::Painter, screen_from_canvas: Affine2, canvas: Size) {

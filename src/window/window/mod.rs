@@ -234,6 +234,10 @@ impl MainWindow {
     /// Performs a request.
     fn do_requests(&mut self, ctx: &egui::Context, requests: UiRequests) {
         let is_editing = self.jobs.editing().is_some();
+        if !requests.actions.is_empty() {
+            // The frame is laid out again, so that it shows what was done in it.
+            ctx.request_discard("an action");
+        }
         for action in requests.actions {
             // While an edit is running, the document can be viewed but not changed.
             if (is_editing && !matches!(action, Action::View(_))) || self.begin_edit(&action) {
