@@ -6,6 +6,7 @@ mod ants;
 mod assistants;
 mod blocks;
 pub mod crop;
+mod follow;
 mod frame;
 mod frame_input;
 mod guides;
@@ -22,13 +23,13 @@ pub use overlay::loaded;
 pub use parts::ball;
 
 use super::pen::SharedTablet;
-use super::render_thread::{RenderRequest, RenderThread};
+use super::render_thread::RenderThread;
 use super::theme;
 use crate::Error;
-use crate::math::{Affine2, Rect, Size, Vec2, vec2};
+use crate::math::{Affine2, Rect, Vec2, vec2};
 use crate::session::actions::SelectionAction;
 use crate::session::actions::ViewAction;
-use crate::session::{Action, CanvasView, Session, looks_same};
+use crate::session::{Action, CanvasView, Session};
 use crate::tools::ToolKind;
 use ants::Ants;
 use blocks::{corners, on_screen, quad};
@@ -43,9 +44,6 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 use unwrapped::{OnSheet, UnwrappedSheet};
 use wobble::Wobble;
-
-/// What is painted as quickly as this is waited for, before a frame is drawn without it.
-const SOON: Duration = Duration::from_millis(12);
 
 /// The state of the canvas.
 pub struct Canvas {
@@ -232,79 +230,6 @@ impl Canvas {
     pub fn selected(&self) -> Option<Rect> {
         self.ants.covered()
     }
-    /// Requests the picture to show, and takes the tiles that were painted.
-    fn follow(&mut self, ctx: &egui::Context, session: &Session, view: &CanvasView, area: egui::Rect) {
-        let Some(tab) = session.active() else { return };
-        let drawn = tab.drawn();
-        if self.tab != Some(tab.key) || self.wanted.as_ref().is_some_and(|(old, _)| old.size != drawn.size) {
-            self.tab = Some(tab.key);
-            self.picture += 1;
-            self.whole.begin(drawn.size);
-            self.sheet.begin();
-            if let Some(picture) = tab.first_look.take() {
-                self.whole.show(picture);
-            }
-            (self.wanted, self.is_draft_in_front, self.draft) = (None, false, TileSheet::default());
-        }
-        let is_dragged = is_dragged(session);
-        if !self.wanted.as_ref().is_some_and(|(old, dragged)| *dragged == is_dragged && looks_same(old, &drawn)) {
-            // Any part of the picture may be in sight on the sheet.
-            let visible = if tab.unwrapped().is_some() { drawn.size.rect() } else { visible_rect(view, area) };
-            let (picture, document) = (self.picture, drawn.clone());
-            if let Some(thread) = &self.render_thread {
-                thread.want(RenderRequest { picture, document, visible, is_dragged });
-                self.is_busy = true;
-            }
-            self.wanted = Some((drawn, is_dragged));
-        }
-        // What the hand did is shown in the same frame, if it is painted soon.
-        let is_soon = self.is_busy && session.is_drawing() && ctx.current_pass_index() > 0 && self.took < SOON;
-        let wait = if is_soon { SOON } else { Duration::ZERO };
-        let painted = self.render_thread.iter().flat_map(|thread| thread.painted(wait));
-        let painted = painted.filter(|painted| painted.picture == self.picture);
-        let mut is_draft_next = self.is_draft_in_front;
-        for painted in painted {
-            (self.took, self.is_busy) = (painted.took, !painted.is_settled);
-            if let Some(refused) = painted.refused {
-                self.trouble = Some(Error::out_of_memory(tab.title(), refused));
-            }
-            let is_draft = painted.is_draft;
-            if painted.is_settled {
-                is_draft_next = is_draft;
-            }
-            if is_draft && self.draft.size() != Some(painted.size) {
-                self.draft.begin(painted.size);
-            }
-            if is_draft {
-                self.draft.take(painted);
-            } else {
-                self.sheet.changed(painted.tiles.iter().map(|(at, _)| *at));
-                self.whole.take(painted);
-            }
-        }
-        let is_sent = self.whole.send(ctx, self.is_busy) | self.draft.send(ctx, self.is_busy);
-        self.is_draft_in_front = is_draft_next;
-        self.small_is_old |= is_sent;
-    }
-    /// The small picture for the navigator, of the sheet while that is shown; updated when the render thread is idle.
-    pub fn small(&mut self, ctx: &egui::Context, canvas: Size) -> Option<egui::TextureId> {
-        const SIDE: u32 = 200;
-        if self.small.is_none() || (self.small_is_old && !self.is_busy) {
-            self.small_is_old = false;
-            let step = canvas.width.max(canvas.height).div_ceil(SIDE).max(1);
-            let (width, height) = (canvas.width.div_ceil(step), canvas.height.div_ceil(step));
-            let shown = if self.sheet.shown.size() == Some(canvas) { &self.sheet.shown } else { &self.whole };
-            let pixel = |i: u32| {
-                let (x, y) = (i % width * step + step / 2, i / width * step + step / 2);
-                let at = |v: u32, n: u32| v.min(n - 1) as i32;
-                let [r, g, b, a] = shown.grid.pixel(at(x, canvas.width), at(y, canvas.height));
-                Color32::from_rgba_premultiplied(r, g, b, a)
-            };
-            let image = ColorImage::new([width as usize, height as usize], (0..width * height).map(pixel).collect());
-            self.small = Some(ctx.load_texture("navigator", image, TextureOptions::LINEAR));
-        }
-        self.small.as_ref().map(TextureHandle::id)
-    }
     fn draw_checker(&mut self, ui: &Ui, painter: &egui::Painter, canvas: [egui::Pos2; 4]) {
         let [light, dark] = theme::CHECKER;
         let texture = self.checker.get_or_insert_with(|| {
@@ -346,14 +271,6 @@ fn lasso_keys(ui: &Ui, session: &Session, actions: &mut Vec<Action>) {
     } else if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
         actions.push(Action::Selection(SelectionAction::DropLasso {}));
     }
-}
-
-/// Whether a slider, a handle or a layer is being dragged. A brush does not count: its strokes change few tiles, and
-/// are looked at closely. Nor does selecting, which changes nothing of the picture.
-fn is_dragged(session: &Session) -> bool {
-    let paints = matches!(session.tool, ToolKind::Brush | ToolKind::Eraser) || session.tool.selects();
-    let paints = session.is_drawing() && paints;
-    !paints && session.active().is_some_and(|tab| tab.is_previewing())
 }
 
 /// The visible canvas pixels.
