@@ -102,6 +102,7 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
             span_across(outline, middle, across, shift - far, shift + far)
         })
         .collect();
+    let sides = calmed(&sides);
     let inside = outline.inside();
     Plane::from_fn(size, |x, y| {
         if !inside.at(x, y) {
@@ -122,6 +123,44 @@ pub fn turned(outline: &Outline, axis: Option<[Vec2; 2]>) -> Plane<f32> {
         let (radius, middle) = (0.5 * (high - low), 0.5 * (high + low));
         (radius * radius - (d - middle) * (d - middle)).max(0.0)
     })
+}
+
+/// How far along the axis sides are compared, px either way, and by how much a side that is only read from coverage may
+/// be off: what differs more is drawn so.
+const CALM_PX: usize = 5;
+const READ_WITHIN_PX: f32 = 0.4;
+
+/// Sides without the jitter of a tenth of a pixel with which they are read, which would be ripples in the light: each
+/// is that of the parabola nearest to those around it. Steps that are drawn stay.
+fn calmed(sides: &[Option<(f32, f32)>]) -> Vec<Option<(f32, f32)>> {
+    let calm = |i: usize| {
+        let own = sides[i]?;
+        let is_there = |i: &usize| sides.get(*i).is_some_and(Option::is_some);
+        // As many either way, and fewer where the ends are near: there sides turn inward.
+        let reach =
+            (1..=2 * CALM_PX).take_while(|k| i.checked_sub(*k).is_some_and(|i| is_there(&i)) && is_there(&(i + k)));
+        let reach = reach.count() / 2;
+        let side = |of: fn((f32, f32)) -> f32| {
+            let at = |i: usize| sides[i].map_or(0.0, of);
+            let to = parabola(reach, |k| at(i.saturating_add_signed(k)));
+            if (to - of(own)).abs() <= READ_WITHIN_PX { to } else { of(own) }
+        };
+        Some((side(|s| s.0), side(|s| s.1)))
+    };
+    (0..sides.len()).map(calm).collect()
+}
+
+/// The middle value of the parabola that is nearest to the values from `-reach` to `reach`, by least squares
+/// (Savitzky and Golay 1964).
+fn parabola(reach: usize, value: impl Fn(isize) -> f32) -> f32 {
+    if reach < 2 {
+        return value(0);
+    }
+    let m = reach as f32;
+    let whole = (2.0 * m + 3.0) * (2.0 * m + 1.0) * (2.0 * m - 1.0);
+    let weight = |k: f32| 3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * k * k) / whole;
+    let reach = reach as isize;
+    (-reach..=reach).map(|k| weight(k as f32) * value(k)).sum()
 }
 
 /// The first and the last place along a line that are inside, to a part of a pixel.
@@ -164,6 +203,36 @@ mod tests {
         assert!(swept(&[], 10).is_none());
         assert!(swept(&[Ball { at: vec2(f32::NAN, 0.0), radius: 3.0 }], 1000).is_none());
         assert!(swept(&[Ball { at: Vec2::ZERO, radius: 3000.0 }], 1000).is_none());
+    }
+    #[test]
+    fn a_turned_vase_has_no_ripples() {
+        let radius = |s: f32| 60.0 + 22.0 * (s / 37.0).sin();
+        let side = |sign: f32| (0..=2400).map(move |i| (sign, 20.0 + 0.1 * i as f32));
+        let at = |(sign, s): (f32, f32)| vec2(120.3 + sign * radius(s), s);
+        let way: Vec<Vec2> =
+            side(1.0).map(at).chain(side(-1.0).collect::<Vec<_>>().into_iter().rev().map(at)).collect();
+        let outline = Outline::of_path(&way, 1 << 20).unwrap();
+        let square = turned(&outline, Some([vec2(120.3, 0.0), vec2(120.3, 1.0)]));
+        let (left, top) = outline.corner();
+        let height = |s: usize| square.at((120 - left) as usize, (s as i32 - top) as usize).sqrt();
+        let (mut sum, mut most) = (0.0f32, 0.0f32);
+        for s in 30..250 {
+            let slope = 0.5 * (height(s + 1) - height(s - 1));
+            let wanted = 22.0 / 37.0 * ((s as f32 + 0.5) / 37.0).cos();
+            assert!((height(s) - radius(s as f32 + 0.5)).abs() < 0.15, "{} at {s}", height(s));
+            (sum, most) = (sum + (slope - wanted).abs(), most.max((slope - wanted).abs()));
+        }
+        assert!(sum / 220.0 < 0.01 && most < 0.05, "slopes are off by {} in the mean, {most} at most", sum / 220.0);
+    }
+    #[test]
+    fn a_step_that_is_drawn_stays() {
+        let sides: Vec<Option<(f32, f32)>> =
+            (0..60).map(|i| Some(if i < 30 { (-40.0, 40.0) } else { (-30.0, 30.0) })).collect();
+        let calm = calmed(&sides);
+        for (i, (was, now)) in sides.iter().zip(&calm).enumerate() {
+            let (was, now) = (was.unwrap(), now.unwrap());
+            assert!((was.0 - now.0).abs() <= READ_WITHIN_PX && (was.1 - now.1).abs() <= READ_WITHIN_PX, "{i}: {now:?}");
+        }
     }
     #[test]
     fn an_ellipse_turned_about_its_long_axis_is_an_ellipsoid() {
