@@ -1,10 +1,10 @@
-//! From the event to the pixel, in the real window on a display of its own: an anchor of a photo on a map of 3840 × 2160
-//! dragged; a brush and a pan on it and on a project of ten layers of 4096 × 4096. Milliseconds from
-//! the pointer's motion until the screen differs there, and of the brush until it is dark beneath the pen.
+//! From the event to the pixel, in the real window on a display of its own: an anchor of a photo on a map of 3840 ×
+//! 2160 dragged; a brush and a pan on it and on a project of ten layers of 4096 × 4096. Milliseconds from the pointer's
+//! motion until the screen differs there, and of the brush until it is dark beneath the pen.
 //!
 //! `cargo bench --bench window`. Needs Xvfb and xdotool, and says so where they are missing. A program that draws by a
-//! graphics card is quicker: Xvfb draws by the processor, with which the painting has to share it. The aim: 33 ms in the
-//! middle and 100 at the slowest.
+//! graphics card is quicker: Xvfb draws by the processor, with which the painting has to share it. The aim: 33 ms in
+//! the middle and 100 at the slowest.
 
 #[cfg(any(not(unix), target_os = "macos"))]
 fn main() {
