@@ -125,6 +125,8 @@ mod x11 {
 
     impl Stage {
         fn new(file: &Path, folder: &Path) -> Result<Self> {
+            // Of its own: what the last window left behind when it was killed is not offered to this one.
+            let folder = folder.join(file.file_stem().unwrap_or_default());
             let number =
                 (90..).find(|n| !Path::new(&format!("/tmp/.X{n}-lock")).exists()).ok_or("no display is free")?;
             let display = format!(":{number}");
