@@ -40,12 +40,14 @@ impl Previous {
     }
     /// The new file did not get its place: beside the old one stands again what stood there.
     pub fn undo(self, fs: &dyn Fs) {
-        // What cannot be put back stays as it is: the old file itself is not touched by any of this.
-        let _ = match &self.older {
+        let put_back = match &self.older {
             Some(older) => fs.rename(older, &self.name),
             None => fs.remove(&self.name),
         };
-        self.forget(fs);
+        // What cannot be put back stays under its passing name: the old file itself is not touched by any of this.
+        if put_back.is_ok() {
+            self.forget(fs);
+        }
     }
     /// The new file is in place, and the version before the previous one no longer needed.
     pub fn forget(self, fs: &dyn Fs) {

@@ -2,7 +2,8 @@
 //! Floor 4.
 
 use super::LayerMap;
-use crate::document::{Content, Document, Layer, LayerId};
+use crate::document::content::StrokeList;
+use crate::document::{Content, Document, Layer, LayerId, Live};
 use crate::math::{PlaneMap, Rect, Vec2, vec2};
 use crate::paint::{Scene, Stroke, stroke};
 use crate::raster::{TILE, Tile, TileAt, TileGrid};
@@ -59,20 +60,9 @@ fn box_of(layer: &Layer, scene: &Scene, map: &LayerMap) -> Option<FrameBox> {
     };
     match &layer.content {
         Content::Pixels(pixels) => FrameBox::of(painted(&pixels.tiles)),
-        Content::Strokes(live) if !layer.content.has_homes() => FrameBox::of(live.painted_box(scene, || {
-            let strokes = &live.params().strokes;
-            let all = strokes.iter().map(|stroke| stroke.bounds(scene)).fold(Rect::EMPTY, Rect::union);
-            let mut tiles: Vec<TileAt> = TileAt::covering(all).collect();
-            // From the outside in: what lies within what is known is not rendered.
-            tiles.sort_by_key(|at| {
-                let (rect, sides) = (at.rect(), all);
-                (rect.x0 - sides.x0).min(rect.y0 - sides.y0).min(sides.x1 - rect.x1).min(sides.y1 - rect.y1)
-            });
-            tiles.into_iter().fold(Rect::EMPTY, |known, at| {
-                let render = || live.tile(scene, at, || stroke::render_tile(strokes, scene, at));
-                if is_within(known, at) { known } else { render().map_or(known, |tile| with_tile(known, at, &tile)) }
-            })
-        })),
+        Content::Strokes(live) if !layer.content.has_homes() => {
+            FrameBox::of(live.painted_box(scene, || painted_by_strokes(live, scene)))
+        }
         // What lies elsewhere by itself takes whole tiles.
         Content::Strokes(live) => {
             let box_of = |stroke: &Arc<Stroke>| {
@@ -102,6 +92,19 @@ fn painted(tiles: &TileGrid) -> Rect {
     tiles.iter().fold(Rect::EMPTY, with)
 }
 
+/// The pixels of strokes that are not wholly transparent.
+fn painted_by_strokes(live: &Live<StrokeList>, scene: &Scene) -> Rect {
+    let strokes = &live.params().strokes;
+    let all = strokes.iter().map(|stroke| stroke.bounds(scene)).fold(Rect::EMPTY, Rect::union);
+    let mut tiles: Vec<(TileAt, Rect)> = TileAt::covering(all).map(|at| (at, at.rect())).collect();
+    // From the outside in: what lies within what is known is not rendered.
+    tiles.sort_by_key(|(_, tile)| (tile.x0 - all.x0).min(tile.y0 - all.y0).min(all.x1 - tile.x1).min(all.y1 - tile.y1));
+    tiles.into_iter().fold(Rect::EMPTY, |known, (at, _)| {
+        let render = || live.tile(scene, at, || stroke::render_tile(strokes, scene, at));
+        if is_within(known, at) { known } else { render().map_or(known, |tile| with_tile(known, at, &tile)) }
+    })
+}
+
 fn is_within(known: Rect, at: TileAt) -> bool {
     known.union(at.rect()) == known
 }
@@ -125,8 +128,7 @@ fn with_tile(known: Rect, at: TileAt, tile: &Tile) -> Rect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::content::StrokeList;
-    use crate::document::{Live, Progress, flatten};
+    use crate::document::{Progress, flatten};
     use crate::math::{Size, hash, srgb::Color};
     use crate::paint::{Brush, Sample};
     use crate::surface::Operator;
