@@ -4,7 +4,7 @@
 
 mod slopes;
 
-use super::springs::{Effort, SolveScratch, SpringGrid, SpringSolver};
+use super::springs::{Effort, GoOn, SolveScratch, SpringGrid, SpringSolver};
 use crate::math::Vec3;
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
@@ -24,8 +24,16 @@ pub struct IntegratedDepth {
 /// and w = ((n_z,i + n_z,j)/2)² gives more weight to what faces the viewer. Separate pieces are each centred on the
 /// same depth.
 pub fn depth_from_normals(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Option<IntegratedDepth> {
+    depth_from_normals_while(normals, inside, &|| true)
+}
+
+/// The same while `go_on` says so; `None` from then on, too.
+pub fn depth_from_normals_while(normals: &Plane<Vec3>, inside: &Plane<bool>, go_on: GoOn) -> Option<IntegratedDepth> {
     let slopes = Slopes { normals, inside };
-    let mut heights = whole(&slopes);
+    let mut heights = heights(&solver(&slopes), &slopes, go_on);
+    if !go_on() {
+        return None;
+    }
     centre_pieces(&mut heights, inside);
     let held = || heights.iter().zip(inside.values()).filter(|(_, i)| **i).map(|(z, _)| *z);
     let (near, far) =
@@ -53,7 +61,7 @@ impl Following {
     pub fn of(normals: &Plane<Vec3>, inside: &Plane<bool>) -> Self {
         let slopes = Slopes { normals, inside };
         let solver = solver(&slopes);
-        let mut heights = heights(&solver, &slopes);
+        let mut heights = heights(&solver, &slopes, &|| true);
         centre_pieces(&mut heights, inside);
         Self { solver, scratch: SolveScratch::default(), inside: inside.clone(), heights }
     }
@@ -80,11 +88,6 @@ impl Following {
     }
 }
 
-/// The heights of all pixels at once.
-fn whole(slopes: &Slopes) -> Vec<f32> {
-    heights(&solver(slopes), slopes)
-}
-
 fn solver(slopes: &Slopes) -> SpringSolver {
     let size = slopes.inside.size();
     let right = Plane::from_fn(size, |x, y| slopes.edge((x, y), 0).0).into_values();
@@ -92,11 +95,11 @@ fn solver(slopes: &Slopes) -> SpringSolver {
     SpringSolver::new(SpringGrid::new(slopes.inside.width(), right, down))
 }
 
-fn heights(solver: &SpringSolver, slopes: &Slopes) -> Vec<f32> {
+fn heights(solver: &SpringSolver, slopes: &Slopes, go_on: GoOn) -> Vec<f32> {
     let size = slopes.inside.size();
     let source = Plane::from_fn(size, |x, y| slopes.source(x, y));
     let mut heights = filled_or_unwind(size.area(), 0.0);
-    solver.solve(source.values(), &mut heights, Effort::EXACT, &mut SolveScratch::default());
+    solver.solve_while(source.values(), &mut heights, Effort::EXACT, go_on);
     heights
 }
 
@@ -137,6 +140,15 @@ mod tests {
     use super::*;
     use crate::math::{Size, vec3};
 
+    #[test]
+    fn nothing_is_made_of_what_is_given_up() {
+        let size = Size::new(64, 48);
+        let normals = Plane::from_fn(size, |x, y| vec3(x as f32 - 31.5, 23.5 - y as f32, 40.0).normalize());
+        let asked = std::cell::Cell::new(0);
+        let go_on = || asked.replace(asked.get() + 1) < 2;
+        assert!(depth_from_normals_while(&normals, &Plane::filled(size, true), &go_on).is_none());
+        assert_eq!(asked.get(), 4, "it ends at the first no, and asks once more whether it was told to");
+    }
     #[test]
     fn a_sphere_gets_its_depth_back() {
         let (size, r) = (Size::new(201, 181), 80.0f32);

@@ -89,6 +89,9 @@ pub struct SolveScratch {
     levels: Vec<graph::GraphScratch>,
 }
 
+/// Asked between the steps of long work: whether to go on.
+pub type GoOn<'g> = &'g dyn Fn() -> bool;
+
 /// How far a solve goes.
 #[derive(Clone, Copy)]
 pub struct Effort {
@@ -131,6 +134,11 @@ impl SpringSolver {
     pub fn solve(&self, b: &[f32], v: &mut [f32], effort: Effort, scratch: &mut SolveScratch) -> usize {
         self.solve_held(&Held::default(), b, v, effort, scratch)
     }
+    /// The same while there is a reason to: `go_on` is asked before each step, and the answer is of no use once it says
+    /// no.
+    pub fn solve_while(&self, b: &[f32], v: &mut [f32], effort: Effort, go_on: GoOn) -> usize {
+        self.steps(&Held::default(), b, v, effort, &mut SolveScratch::default(), go_on)
+    }
     /// The same with some unknowns held: (A + K) v = b, K the stiffness of what holds them.
     ///
     /// * `b`: adds up to 0 over every piece of which nothing is held.
@@ -141,6 +149,17 @@ impl SpringSolver {
         v: &mut [f32],
         effort: Effort,
         scratch: &mut SolveScratch,
+    ) -> usize {
+        self.steps(held, b, v, effort, scratch, &|| true)
+    }
+    fn steps(
+        &self,
+        held: &Held,
+        b: &[f32],
+        v: &mut [f32],
+        effort: Effort,
+        scratch: &mut SolveScratch,
+        go_on: GoOn,
     ) -> usize {
         let n = b.len();
         let SolveScratch { residual, direction, pulled, z, levels } = scratch;
@@ -157,7 +176,7 @@ impl SpringSolver {
             if left < least {
                 (least, least_at) = (left, step);
             }
-            if left.is_nan() || left <= goal || step > least_at + PATIENCE {
+            if left.is_nan() || left <= goal || step > least_at + PATIENCE || !go_on() {
                 return step;
             }
             self.cycle(held, residual, z, levels);

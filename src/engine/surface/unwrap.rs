@@ -23,7 +23,7 @@ pub use yields::{PlaneHold, PlaneSprings, PlaneYield};
 
 use super::contours::SheetOf;
 use super::pyramid::{Pyramid, TurnSpan};
-use super::springs::{Effort, SolveScratch, SpringGrid, SpringSolver};
+use super::springs::{Effort, GoOn, SolveScratch, SpringGrid, SpringSolver};
 use super::{Surface, links};
 use crate::math::{Rect, Size, Vec2, vec2};
 use crate::memory::filled_or_unwind;
@@ -67,11 +67,8 @@ const TURNS: usize = 3;
 const ROUGH: Effort = Effort { goal: 3e-2, most_steps: 30 };
 const FINE: Effort = Effort { goal: 1e-3, most_steps: 60 };
 
-/// How many systems are solved for one unwrapping: what is told of as it comes.
+/// How many systems are solved for one unwrapping: it is asked after each whether to go on.
 pub const SOLVES: u64 = (TURNS as u64 + 1) * 2;
-
-/// Called after each of [`SOLVES`]; whether to go on.
-pub type GoOn<'g> = &'g dyn Fn() -> bool;
 
 impl Unwrapping {
     pub fn new(surface: &Surface, settings: UnwrapSettings) -> Self {

@@ -27,6 +27,7 @@ pub use layers::{MapRole, fitting};
 
 use super::files::CachedFiles;
 use super::{Budget, Files};
+use crate::document::Progress;
 use crate::document::source::{MapSource, SurfaceSource};
 use crate::math::Size;
 use crate::memory;
@@ -56,15 +57,45 @@ const DERIVED_DEPTH_BYTES_PER_PX: u64 = 100;
 /// Fails with a sentence where a file is missing, damaged or too large, where the maps' sizes differ, and where there
 /// is no surface at all. Where one of normals and depth is missing it is derived from the other, with a note.
 pub fn import(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<ImportedSurface> {
-    let read = memory::caught(|| read(source, files, budget));
+    let whole = import_watched(source, files, budget, &Progress::default())?;
+    Ok(whole.expect("nobody cancels it"))
+}
+
+/// The same with somebody watching; `None` if cancelled.
+pub fn import_watched(
+    source: &SurfaceSource,
+    files: &dyn Files,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Option<ImportedSurface>> {
+    progress.add_total(STEPS);
+    let read = memory::caught(|| read(source, files, budget, progress));
     read.map_err(|refused| Error::out_of_memory(files.path(""), refused))?
 }
 
-fn read(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<ImportedSurface> {
+/// The steps that reading tells of: the normals, the depth, what their numbers mean, what is missing, the surface.
+const STEPS: u64 = 5;
+
+fn read(
+    source: &SurfaceSource,
+    files: &dyn Files,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Option<ImportedSurface>> {
+    let is_over = || {
+        progress.step();
+        progress.is_cancelled()
+    };
     let files = &CachedFiles::new(files);
     let mut findings = Findings::default();
     let normal = source.normal.as_ref().map(|m| load(m, MapRole::Normals, files, budget)).transpose()?;
+    if is_over() {
+        return Ok(None);
+    }
     let depth = source.depth.as_ref().map(|m| load(m, MapRole::Depth, files, budget)).transpose()?;
+    if is_over() {
+        return Ok(None);
+    }
     let maps: Vec<&StoredMap> = normal.iter().chain(&depth).collect();
     if let (Some(normal), None) = (&normal, &depth) {
         let what = format!("the depth of {} pixels, derived from their normals,", normal.size);
@@ -88,10 +119,17 @@ fn read(source: &SurfaceSource, files: &dyn Files, budget: &Budget) -> Result<Im
     let understood = loaded.understood(coverage)?;
     // What is left to do takes the most memory; what the files store is not asked any more.
     drop((normal, depth));
+    if is_over() {
+        return Ok(None);
+    }
     let eye = Eye::of_fov(understood.fov_degrees, understood.inside.size());
-    let surface = Surface::new(understood.completed(&overrides, &mut findings)).map_err(|e| Error::decode(file, e))?;
-    let surface = surface.seen_by(eye);
-    Ok(ImportedSurface { surface, findings, files: files.assets() })
+    let maps = understood.completed(&overrides, &mut findings, progress);
+    if is_over() {
+        return Ok(None);
+    }
+    let surface = Surface::new(maps).map_err(|e| Error::decode(file, e))?.seen_by(eye);
+    progress.step();
+    Ok(Some(ImportedSurface { surface, findings, files: files.assets() }))
 }
 
 fn load<C>(map: &MapSource<C>, role: MapRole, files: &dyn Files, budget: &Budget) -> Result<StoredMap> {
@@ -109,5 +147,45 @@ fn same_size(file: &std::path::Path, sizes: impl Iterator<Item = (String, Size)>
             "surface",
             format!("the maps differ in size: {name} has {size} pixels, {other} has {s}"),
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::refusal;
+    use image::{ImageFormat, Rgb, RgbImage};
+    use std::io::Cursor;
+    use std::path::PathBuf;
+
+    /// One flat map by every name; whoever reads the first cancels.
+    struct GivenUp<'p>(&'p Progress);
+
+    impl Files for GivenUp<'_> {
+        fn read(&self, name: &str, _: &Budget) -> Result<Vec<u8>> {
+            assert_eq!(refusal(name), None);
+            self.0.cancel();
+            let mut bytes = Cursor::new(Vec::new());
+            let flat = RgbImage::from_pixel(16, 16, Rgb([128, 128, 255]));
+            flat.write_to(&mut bytes, ImageFormat::Png).expect("memory holds it");
+            Ok(bytes.into_inner())
+        }
+        fn path(&self, name: &str) -> PathBuf {
+            name.into()
+        }
+    }
+
+    #[test]
+    fn what_is_cancelled_is_not_read_to_its_end() {
+        let map = |file: &str| MapSource { file: file.into(), ..MapSource::default() };
+        let source = SurfaceSource { normal: Some(map("n.png")), ..SurfaceSource::default() };
+        let progress = Progress::default();
+        let read = import_watched(&source, &GivenUp(&progress), &Budget::default(), &progress);
+        assert!(matches!(read, Ok(None)), "it went on");
+        assert_eq!(progress.read(), (1, STEPS));
+        let watched = Progress::default();
+        let read = import_watched(&source, &GivenUp(&Progress::default()), &Budget::default(), &watched);
+        assert!(matches!(read, Ok(Some(_))));
+        assert_eq!(watched.read(), (STEPS, STEPS));
     }
 }

@@ -7,6 +7,7 @@ use super::overrides::ConventionOverrides;
 use super::stored::StoredMap;
 use super::{background, depth, normals, orientation, steps};
 use crate::Result;
+use crate::document::Progress;
 use crate::document::source::{DepthConvention, DepthEncoding, Near};
 use crate::math::{Size, Vec3};
 use crate::raster::Plane;
@@ -162,8 +163,8 @@ fn depth_alone(overrides: Option<bool>, leaning: f32, findings: &mut Findings) -
 }
 
 impl UnderstoodMaps {
-    /// Normalises depth and derives the map that is missing.
-    pub fn completed(self, overrides: &ConventionOverrides, findings: &mut Findings) -> Maps {
+    /// Normalises depth and derives the map that is missing. What is cancelled meanwhile is of no use.
+    pub fn completed(self, overrides: &ConventionOverrides, findings: &mut Findings, progress: &Progress) -> Maps {
         let UnderstoodMaps { normals, planar, inside, mut coverage, is_masked, fov_degrees } = self;
         let size = inside.size();
         let nothing = || Plane::filled(size, f32::NAN);
@@ -173,7 +174,8 @@ impl UnderstoodMaps {
             (Some(normals), Some(n)) => (normals, n.depth),
             (Some(normals), None) => {
                 findings.note("depth was made from the normals; a true depth map is better at occluding contours");
-                let depth = integrate::depth_from_normals(&normals, &inside).map(|i| i.depth);
+                let go_on = || !progress.is_cancelled();
+                let depth = integrate::depth_from_normals_while(&normals, &inside, &go_on).map(|i| i.depth);
                 (normals, depth.unwrap_or_else(nothing))
             }
             (None, Some(n)) => {

@@ -8,7 +8,7 @@ pub use endings::{
     DOCUMENTS, PICTURES, SAVED, exported, holds_everything, is_document, is_openable, is_saved_to,
     with_document_extension, without_ending,
 };
-pub use maps::{SortedFiles, finished_picture, import, map_files, maps_beside, maps_of, sorted};
+pub use maps::{SortedFiles, finished_picture, import, import_watched, map_files, maps_beside, maps_of, sorted};
 
 use super::first_look::FirstLook;
 use super::{OpenDocument, drawing};

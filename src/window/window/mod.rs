@@ -201,8 +201,13 @@ impl MainWindow {
             // The dialog stays while a file is chosen for it.
             DialogAnswer::Ask(ask @ WindowRequest::Choose(_)) => return requests.request(ask),
             DialogAnswer::Import(source) => {
-                let read = move |_: &Progress| {
-                    let (found, picture) = (storage::import(&source), storage::finished_picture(&source));
+                let read = move |progress: &Progress| {
+                    let found = match storage::import_watched(&source, progress) {
+                        Ok(Some(found)) => Ok(found),
+                        Ok(None) => return JobResult::Nothing,
+                        Err(error) => Err(error),
+                    };
+                    let picture = storage::finished_picture(&source);
                     JobResult::Read(Box::new(MapsRead { source: *source, found, picture }))
                 };
                 return self.jobs.start("Reading maps".into(), JobKind::Working, read);

@@ -4,6 +4,7 @@
 use super::FileUse;
 use super::endings::{PICTURES, ends_in};
 use crate::Result;
+use crate::document::Progress;
 use crate::document::source::{MapSource, MaskSource, SurfaceSource};
 use crate::io::maps::pairs::{self, MapPart};
 use crate::io::{Budget, UserFiles, files::read_file, inspect, maps, picture};
@@ -28,6 +29,11 @@ pub fn maps_of(normal: Option<&Path>, depth: Option<&Path>) -> SurfaceSource {
 /// Reads a surface from the user's own files.
 pub fn import(source: &SurfaceSource) -> Result<maps::ImportedSurface> {
     maps::import(source, &UserFiles::default(), &Budget::of_this_machine())
+}
+
+/// The same with somebody watching; `None` if cancelled.
+pub fn import_watched(source: &SurfaceSource, progress: &Progress) -> Result<Option<maps::ImportedSurface>> {
+    maps::import_watched(source, &UserFiles::default(), &Budget::of_this_machine(), progress)
 }
 
 /// Whether an EXR of normals holds depth too, as renderers write them.
