@@ -3,7 +3,7 @@
 
 use crate::Budget;
 use crate::bitmap;
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::math::{Rect, Size};
 use crate::raster::{Asset, Plane, TILE, Tile, TileAt, TileGrid};
 use crate::{Error, Result};

@@ -3,8 +3,8 @@
 //! `raster::blend` mixes the pixels.
 
 use super::behind::{Behind, BehindScene};
-use super::content::TileContent;
 use super::deep::DeepTiles;
+use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
 use super::{Role, mask};
 use crate::raster::{BlendMode, Mix, PlanarTile, TILE, Tile, TileAt, TileCoverage, TilePaint};

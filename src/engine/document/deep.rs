@@ -2,7 +2,8 @@
 //! Floor 4. The rendering of marks is in `paint` and `shading`; how layers meet is `compose`'s.
 
 use super::behind::Behind;
-use super::content::TileContent;
+use super::layer::marks::Marks;
+use super::layer::tile_content::TileContent;
 use super::prepare::{PreparedDocument, PreparedLayer};
 use super::{Document, Layer, LayerId, Progress};
 use crate::paint::Scene;
@@ -29,29 +30,6 @@ pub enum Highlights {
     /// clip what they mix.
     Kept,
 }
-
-/// What a live layer is rendered from.
-pub(super) trait Marks {
-    /// One tile, not rounded to bytes; `None` where there is nothing. Colours may be brighter than white.
-    fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile>;
-    /// Where another population of a contour pixel sees no surface the tile's own pixels stay.
-    fn stay(&self) -> bool {
-        true
-    }
-    /// The texture that tiles are read from, to be held while they are.
-    fn texture(&self) -> Option<Arc<DeepTexture>> {
-        None
-    }
-    /// What that takes.
-    fn texture_bytes(&self) -> u64 {
-        0
-    }
-    /// Renders tiles that cost less together than one by one, if they do.
-    fn together(&self, _scene: &Scene, _tiles: &[TileAt], _progress: &Progress, _done: &Done) {}
-}
-
-/// Takes a rendered tile.
-pub(super) type Done<'d> = dyn Fn(TileAt, Option<PlanarTile>) + Sync + 'd;
 
 /// What is ready of live layers while tiles are composed.
 pub(super) struct DeepTiles {

@@ -2,9 +2,9 @@
 //! pointers and parameters, never pixels. Floor 4. It is conservative: a tile that is not reported is the same; a
 //! reported one may be.
 
-use super::content::{Changed, Touched};
-use super::transform::on_canvas;
-use super::{Content, Document, Layer, LayerId, LayerMap, LayerTransform, LayerWarp, mask};
+use super::layer::content::{Changed, Touched};
+use super::layer::on_canvas::on_canvas;
+use super::{Content, Document, Layer, LayerId, LayerMap, LayerTransform, LayerWarp};
 use crate::math::Rect;
 use crate::paint::Scene;
 use crate::raster::TileAt;
@@ -147,7 +147,7 @@ impl Diff<'_> {
                 return self.both(old, new);
             }
             // If a mask was painted on, only some of its tiles differ.
-            let Some(tiles) = mask::changed_tiles(a, b) else { return self.both(old, new) };
+            let Some(tiles) = a.changed_tiles(b) else { return self.both(old, new) };
             let unmasked = Arc::new(Layer { mask: old.mask.clone(), ..Layer::clone(new) });
             return self.tiles(tiles) | self.layer(old, &unmasked, beneath);
         }

@@ -7,7 +7,6 @@ mod marks;
 mod selections;
 
 use super::TransformShape;
-use super::warp;
 use super::{
     Assistant, Content, DerivedMask, DetailSource, Document, HomeFrame, Layer, LayerMask, LayerTransform, MaskKind,
     PixelLayer,
@@ -167,7 +166,7 @@ fn layer_fits(layer: &Layer, was: Option<&Layer>, canvas: Size) -> Fit {
     within("opacity", layer.opacity, &Layer::OPACITY)?;
     layer.mask.as_ref().map_or(Ok(()), |mask| mask_fits(mask, canvas))?;
     layer.transform.as_ref().map_or(Ok(()), |transform| transform.fits())?;
-    if layer.is_warped() && !warp::can_be_warped(&layer.content) {
+    if layer.is_warped() && !layer.content.can_be_warped() {
         return Err("shows nothing of its own, so that no mesh and no liquify can displace it".into());
     }
     match &layer.content {

@@ -4,7 +4,7 @@
 use super::behind::Behind;
 use super::compose::Composer;
 use super::deep::{DeepTiles, Highlights};
-use super::prepare::in_parallel;
+use super::progress::in_parallel;
 use super::{Document, Layer, LayerId, PreparedDocument, Progress};
 use crate::memory::filled_or_unwind;
 use crate::raster::{PlanarTile, Tile, TileAt, TileGrid};

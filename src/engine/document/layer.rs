@@ -1,9 +1,32 @@
 //! A layer: how it meets what lies beneath, and what it holds.
-//! Floor 4.
+//! Floor 4. A layer holds content, and the content of a group holds layers; so all that a layer consists of is in rooms of
+//! this module.
 
-use super::{Content, LayerTransform, cache::LayerCache, layer_mask::LayerMask};
+pub(super) mod cache;
+pub(super) mod content;
+mod live;
+pub(super) mod map;
+pub(super) mod marks;
+pub(super) mod mask;
+pub(super) mod normals;
+pub(super) mod on_canvas;
+pub(super) mod scale;
+pub(super) mod tile_content;
+pub(super) mod transform;
+pub(super) mod warp;
+
+pub use cache::{EncodedPixels, LayerCache, LookKind};
+pub use content::{Content, Group, PixelLayer, Role, StrokeList};
+pub use live::Live;
+pub use map::LayerMap;
+pub use mask::{DerivedMask, LayerMask, MaskKind};
+pub use normals::{DetailSource, NormalLayer};
+pub use transform::mesh::{Mesh, MeshFrame};
+pub use transform::{LayerTransform, TransformShape};
+pub use warp::LayerWarp;
+
 use crate::math::srgb::Color;
-use crate::math::{Range, UNIT};
+use crate::math::{PlaneMap, Range, Size, UNIT};
 use crate::paint::HomeFrame;
 use crate::raster::{BlendMode, Lattice};
 use std::sync::Arc;
@@ -77,6 +100,12 @@ impl Layer {
             content,
             cache: LayerCache::default(),
         }
+    }
+    /// Its liquify on a plane that a map took elsewhere; what lies far beyond the canvas is forgotten.
+    pub(super) fn carried_liquify(&self, map: &PlaneMap, canvas: Size) -> Option<Arc<Lattice>> {
+        let within = canvas.rect().grown(canvas.longer_side() as i32);
+        let carried = self.liquify.as_ref()?.carried(map, within);
+        (!carried.is_empty()).then(|| Arc::new(carried))
     }
 }
 

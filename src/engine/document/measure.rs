@@ -3,7 +3,8 @@
 
 use super::Progress;
 use super::compose::{ComposeFlow, Composer};
-use super::prepare::{Adjustment, PreparedDocument, in_parallel};
+use super::prepare::{Adjustment, PreparedDocument};
+use super::progress::in_parallel;
 use crate::math::fast;
 use crate::math::srgb::{decode, decode_fast, luminance};
 use crate::raster::{PlanarTile, TILE, TileAt, planar::PixelRow};

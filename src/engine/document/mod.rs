@@ -1,23 +1,23 @@
 //! Floor 4: the document is a value. Cheap to clone, never changed while shared: an edit is a new document, undo a list
 //! of them, and what must be redrawn is what differs by pointer.
 
+mod apply_transform;
 pub mod assistants;
 mod behind;
-pub mod cache;
 pub mod canvas_change;
 mod compose;
-pub mod content;
+pub mod conventions;
 pub mod cut;
 mod deep;
 pub mod diff;
 pub mod edit;
 mod fit;
 pub mod flatten;
+mod frame_box;
 pub mod guides;
 pub mod history;
-pub mod layer;
-mod layer_mask;
-pub mod live;
+mod homes;
+mod layer;
 pub mod mask;
 mod measure;
 pub mod normals;
@@ -31,33 +31,30 @@ pub mod selections;
 mod several;
 pub mod source;
 mod strokes;
-pub mod transform;
 pub mod view;
-pub mod warp;
 mod weight;
 
 pub use crate::paint::{HomeFrame, StrokeHome};
 pub use assistants::{Assistant, AssistantKind};
 pub use canvas_change::CanvasChange;
-pub use content::{Content, Group, PixelLayer, Role, StrokeList};
 pub use deep::Highlights;
 pub use diff::diff;
 pub use edit::LayerSlot;
 pub use flatten::{flatten, flatten_deep, flatten_layer, flatten_layers, flatten_whole};
+pub use frame_box::FrameBox;
 pub use guides::Guides;
 pub use history::History;
-pub use layer::{Layer, LayerId, LayerLabel, LayerLock};
-pub use layer_mask::{DerivedMask, LayerMask, MaskKind};
-pub use live::Live;
-pub use normals::{DetailSource, NormalLayer};
+pub use layer::{
+    Content, DerivedMask, DetailSource, EncodedPixels, Group, Layer, LayerCache, LayerId, LayerLabel, LayerLock,
+    LayerMap, LayerMask, LayerTransform, LayerWarp, Live, LookKind, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer,
+    Role, StrokeList, TransformShape,
+};
 pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};
 pub use prepare::PreparedDocument;
 pub use progress::Progress;
 pub use scale::{DocumentReducer, ReducedSurface, SurfaceReduction};
 pub use selections::{NamedSelection, SelectionList};
 pub use source::SurfaceSource;
-pub use transform::{LayerMap, LayerTransform, Mesh, MeshFrame, TransformShape};
-pub use warp::LayerWarp;
 
 use crate::paint::{Scene, Selection};
 use crate::{math::Size, raster::Asset, surface::Surface};
@@ -108,7 +105,7 @@ impl Document {
     /// layer.
     pub fn map_of(&self, id: LayerId) -> Option<LayerMap> {
         let mut found = None;
-        transform::each_with_map(&self.layers, &LayerMap::none(self.size), &mut |layer, map| {
+        layer::on_canvas::each_with_map(&self.layers, &LayerMap::none(self.size), &mut |layer, map| {
             found = found.or((layer.id == id).then_some(map));
         });
         found

@@ -1,80 +1,13 @@
 //! Normal layers: detail combined with the surface, for everything above in the group (SF fig. 12b–c). Floor 4. The
 //! equation is in `surface::combine`.
 
-use super::transform::{LayerMap, on_canvas};
-use super::{Layer, LayerMask, Role, prepare, source::NormalConvention};
-use crate::math::{Affine2, Mat2, PlaneMap, Range, Vec2, Vec3, vec2, vec3};
-use crate::paint::{PictureSource, Placement, Scene};
-use crate::raster::Outside;
-use crate::surface::{Curvature, DetailMap, NoiseRelief, Surface};
+use super::layer::normals::Combination;
+use super::layer::on_canvas::on_canvas;
+use super::{DetailSource, Layer, LayerMap, NormalLayer, Role};
+use crate::math::{Affine2, Mat2, Vec2, Vec3, vec2, vec3};
+use crate::paint::Scene;
+use crate::surface::{Curvature, Surface};
 use std::sync::Arc;
-
-/// Detail combined with the surface: layers above it in its group see the combined normals. The layer's opacity and
-/// mask weight its strength; its blend mode has no effect.
-#[derive(Clone)]
-pub struct NormalLayer {
-    pub source: DetailSource,
-    pub placement: Placement,
-    pub outside: Outside,
-    /// Multiplies the detail's slopes, `≥ 0`; 1 is the map as it is.
-    pub strength: f32,
-    /// Where the frame of `placement` lies on the canvas.
-    pub frame: PlaneMap,
-}
-
-impl NormalLayer {
-    pub const STRENGTH: Range = 0.0..=100.0;
-}
-
-/// Where detail comes from.
-#[derive(Clone)]
-pub enum DetailSource {
-    /// A tangent-space normal map.
-    Map {
-        picture: PictureSource,
-        /// What its numbers mean; detected where it is not given.
-        convention: NormalConvention,
-        /// As it was read.
-        map: Arc<DetailMap>,
-    },
-    /// A noisy relief. The placement turns and scales it about its centre.
-    Grain(NoiseRelief),
-}
-
-impl PartialEq for NormalLayer {
-    /// Whether both have the same detail, by pointer.
-    fn eq(&self, other: &Self) -> bool {
-        let same_source = match (&self.source, &other.source) {
-            (DetailSource::Map { map: a, .. }, DetailSource::Map { map: b, .. }) => Arc::ptr_eq(a, b),
-            (DetailSource::Grain(a), DetailSource::Grain(b)) => a == b,
-            _ => false,
-        };
-        same_source
-            && self.placement == other.placement
-            && self.outside == other.outside
-            && self.strength == other.strength
-            && self.frame == other.frame
-    }
-}
-
-/// Everything that a combined surface depends on besides the surface beneath.
-#[derive(Clone)]
-pub struct Combination {
-    normals: NormalLayer,
-    opacity: f32,
-    mask: Option<LayerMask>,
-}
-
-impl PartialEq for Combination {
-    fn eq(&self, other: &Self) -> bool {
-        let same_mask = match (&self.mask, &other.mask) {
-            (None, None) => true,
-            (Some(a), Some(b)) => a.is_same(b),
-            _ => false,
-        };
-        self.normals == other.normals && self.opacity == other.opacity && same_mask
-    }
-}
 
 /// The scene of the layers above a normal layer. The layer caches it: the surface stays identical until an input
 /// changes.
@@ -88,7 +21,7 @@ pub(super) fn scene_above(layer: &Arc<Layer>, map: &LayerMap, beneath: &Scene) -
     };
     let combination = Combination { normals: normals.clone(), opacity: layer.opacity, mask: layer.mask.clone() };
     let combine = || {
-        let curvature = prepare::curvature_of_mask(&layer, beneath);
+        let curvature = layer.mask.as_ref().and_then(|mask| mask.curvature_on(beneath));
         Some(Arc::new(combination.on(surface, beneath, curvature.as_deref())))
     };
     let combined = layer.cache.combined.get(beneath, &[], &combination, combine);
@@ -156,11 +89,13 @@ fn taken_along(normal: Vec3, jacobian: Mat2) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Content, Document, Group, Live, MaskKind, PreparedDocument, Progress, flatten};
-    use crate::math::{Size, srgb::Color};
-    use crate::raster::Plane;
+    use crate::document::conventions::NormalConvention;
+    use crate::document::{Content, Document, Group, LayerMask, Live, MaskKind, PreparedDocument, Progress, flatten};
+    use crate::math::{PlaneMap, Size, srgb::Color};
+    use crate::paint::{PictureSource, Placement};
+    use crate::raster::{Outside, Plane};
     use crate::shading::{Model, Shading};
-    use crate::surface::Maps;
+    use crate::surface::{DetailMap, Maps, NoiseRelief};
 
     const SIZE: Size = Size::new(80, 40);
 

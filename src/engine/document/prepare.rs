@@ -1,15 +1,14 @@
 //! Prepares a document for flattening: finds the visible layers, what each is clipped to, and the surface that each
 //! sees. Floor 4. Done once before the tiles; composing one tile is `compose`.
 
-use super::transform::{LayerMap, on_canvas};
-use super::warp::{LayerWarp, WarpTiles, can_be_warped};
-use super::{Content, DerivedMask, Document, Group, Layer, LayerMask, Progress, Role, normals};
+use super::layer::on_canvas::on_canvas;
+use super::layer::warp::WarpTiles;
+use super::{Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerWarp, Progress, Role, normals};
 use crate::math::Size;
 use crate::paint::Scene;
 use crate::raster::TileAt;
 use crate::shading::{RadianceScaling, radiance::BackdropStats};
 use crate::surface::{Contours, Curvature, Surface};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -75,21 +74,6 @@ impl PreparedDocument {
     pub fn all_tiles(&self) -> Vec<TileAt> {
         TileAt::covering(self.size.rect()).collect()
     }
-}
-
-/// One result a tile, in the order of the tiles; `None` if cancelled.
-pub(super) fn in_parallel<T: Send>(
-    tiles: &[TileAt],
-    progress: &Progress,
-    work: impl Fn(TileAt) -> T + Sync,
-) -> Option<Vec<T>> {
-    progress.add_total(tiles.len() as u64);
-    let each = |&at: &TileAt| {
-        let result = (!progress.is_cancelled()).then(|| work(at))?;
-        progress.step();
-        Some(result)
-    };
-    tiles.par_iter().map(each).collect()
 }
 
 /// Where a list of layers stands.
@@ -190,9 +174,10 @@ impl StackBuilder<'_> {
         {
             surface.region(&region);
         }
+        let curvature_on = |scene: &Scene| layer.mask.as_ref()?.curvature_on(scene);
         PreparedLayer {
-            curvature: curvature_of_mask(layer, &visible_scene),
-            behind_curvature: behind.as_ref().and_then(|behind| curvature_of_mask(layer, behind)),
+            curvature: curvature_on(&visible_scene),
+            behind_curvature: behind.as_ref().and_then(curvature_on),
             behind,
             warp: warp.map(|warp| layer.cache.warped.tiles(&visible_scene, &layer.content, &within.map, warp)),
             layer: layer.clone(),
@@ -214,12 +199,5 @@ impl StackBuilder<'_> {
 /// Whether a displaced layer is composed where it stands and then sampled: paint is sampled at once, and one colour is
 /// the same everywhere.
 fn is_composed_first(layer: &Layer) -> bool {
-    can_be_warped(&layer.content) && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_))
-}
-
-pub(super) fn curvature_of_mask(layer: &Layer, scene: &Scene) -> Option<Arc<Curvature>> {
-    match layer.mask.as_ref()?.derived()? {
-        DerivedMask::Curvature { blur, .. } => Some(scene.surface.as_ref()?.curvature(blur)),
-        _ => None,
-    }
+    layer.content.can_be_warped() && !matches!(layer.content, Content::Pixels(_) | Content::Fill(_))
 }

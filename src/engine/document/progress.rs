@@ -1,6 +1,8 @@
 //! The progress of long work, and whether it was cancelled. Floor 4. Higher floors display it; nothing here draws or
 //! waits.
 
+use crate::raster::TileAt;
+use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Counters shared between those who work and those who watch. Steps have no unit; mostly they are tiles.
@@ -31,4 +33,19 @@ impl Progress {
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
+}
+
+/// One result a tile, in the order of the tiles; `None` if cancelled.
+pub(super) fn in_parallel<T: Send>(
+    tiles: &[TileAt],
+    progress: &Progress,
+    work: impl Fn(TileAt) -> T + Sync,
+) -> Option<Vec<T>> {
+    progress.add_total(tiles.len() as u64);
+    let each = |&at: &TileAt| {
+        let result = (!progress.is_cancelled()).then(|| work(at))?;
+        progress.step();
+        Some(result)
+    };
+    tiles.par_iter().map(each).collect()
 }

@@ -94,7 +94,7 @@ impl Document {
     pub fn mask_coverage(&self, layer: &Layer) -> CoverageGrid {
         let Some(mask) = &layer.mask else { return CoverageGrid::filled(self.size.rect()) };
         let scene = self.scene_of(layer.id).unwrap_or_else(|| self.scene());
-        match mask.as_picture(layer, &scene) {
+        match mask.as_picture(&scene) {
             LayerMask { kind: MaskKind::File { coverage, .. }, invert, .. } => {
                 let way = coverage.map(|c| if invert { 255 - c } else { c });
                 CoverageGrid::from_plane(&way, 0, 0)

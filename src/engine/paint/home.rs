@@ -1,6 +1,6 @@
 //! Home frames: marks have their coordinates on the canvas or on a part of the document's shape, which carries them
 //! where it goes. Floor 3. Parts themselves are `document::parts`; how homes meet the transforms of layers stands in
-//! `document::transform`.
+//! `document::layer`.
 
 use crate::math::{Affine2, PlaneMap};
 use std::sync::Arc;

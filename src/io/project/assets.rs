@@ -2,7 +2,7 @@
 //! Floor 5. A picture that came from no file is encoded without loss.
 
 use crate::Result;
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::document::source::{
     DepthConvention, DepthEncoding, MapSource, MaskSource, Near, NormalConvention, NormalEncoding, SurfaceSource,
 };

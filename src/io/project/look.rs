@@ -3,8 +3,8 @@
 
 use super::plan::{ItemContent, PlanItem};
 use crate::Result;
-use crate::document::cache::{EncodedPixels, LookKind};
 use crate::document::{Content, Document, Layer, LayerId, Progress, flatten_layers, flatten_whole};
+use crate::document::{EncodedPixels, LookKind};
 use crate::pixels;
 use crate::raster::{BlendMode, TileGrid};
 use rayon::prelude::*;

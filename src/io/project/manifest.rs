@@ -1,7 +1,7 @@
 //! Records which picture of `data/` shows which layer, with checksums, so that changes by other programs are detected.
 //! Floor 5.
 
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::document::{Document, LayerId};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};

@@ -32,7 +32,7 @@ pub use look::Cancellable;
 pub use open::{ProjectContents, read, read_back};
 
 use super::recipe;
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::document::{Document, LayerId, Progress, flatten};
 use crate::math::Size;
 use crate::pixels;

@@ -5,7 +5,7 @@ use super::look::{paint, remember};
 use super::manifest::{Manifest, ManifestPicture};
 use super::reader::ProjectReader;
 use super::{Archive, DOCUMENT, MANIFEST, MERGED, STACK, foreign, repair, stack};
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::document::{Content, Document, LayerId};
 use crate::math::Size;
 use crate::raster::Asset;

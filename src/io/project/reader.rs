@@ -4,7 +4,7 @@
 
 use super::{Archive, DOCUMENT};
 use crate::document::Document;
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::raster::TileGrid;
 use crate::recipe::{self, RecipeSource};
 use crate::{Budget, Result};

@@ -6,7 +6,7 @@ mod read;
 pub use read::{ElementContent, StackElement, StackXml, read};
 
 use super::plan::{ItemContent, PlanItem};
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::document::{Content, LayerLock};
 use crate::math::Size;
 

@@ -5,7 +5,7 @@ use super::alone::stands_alone;
 use super::{
     LayerRecord, MOST_RECORDS, PASS_THROUGH, RecordMask, RecordSection, cursor, emit, kept, marks, signature, verify,
 };
-use crate::document::cache::EncodedPixels;
+use crate::document::EncodedPixels;
 use crate::document::{Content, Document, LayerId, LayerLock, LayerMask, MaskKind, Progress, flatten};
 use crate::math::{Rect, Size};
 use crate::memory;

@@ -3,7 +3,6 @@
 
 use super::LayerReader;
 use super::{images, liquify, masks, normals, shading, strokes, transforms};
-use crate::document::warp::can_be_warped;
 use crate::document::{Content, Group, HomeFrame, Layer, LayerLabel, LayerLock, Live, PixelLayer, SelectionList};
 use crate::json::{Fields, JsonNode, JsonObject, Printer, object};
 use crate::math::Size;
@@ -62,7 +61,7 @@ impl LayerReader<'_> {
         fields.finish()?;
         let layer = Layer::new(name, content);
         let is_warped = liquify.is_some() || transform.as_ref().is_some_and(|own| own.mesh().is_some());
-        if is_warped && !can_be_warped(&layer.content) {
+        if is_warped && !layer.content.can_be_warped() {
             let why = "shows nothing of its own, so that no mesh and no liquify can displace it";
             return Err(warped.as_ref().unwrap_or(node).refused(why));
         }

@@ -3,7 +3,7 @@
 //! Floor 5.
 
 use super::pen::GRAB_PT;
-use crate::document::transform::FrameBox;
+use crate::document::FrameBox;
 use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2};
 use crate::raster::Resampling;

@@ -2,7 +2,6 @@
 //! Floor 5. What a dab does is `paint::liquify`'s.
 
 use super::{Gesture, GestureStart, Outcome, PenSample, ToolContext};
-use crate::document::warp::can_be_warped;
 use crate::document::{Content, Document, LayerId, LayerLock};
 use crate::paint::{LiquifyStroke, LiquifyTool};
 use crate::raster::Lattice;
@@ -16,7 +15,7 @@ pub fn press(context: &ToolContext, pen: PenSample) -> GestureStart {
     let why = match &layer.content {
         _ if layer.lock == LayerLock::All => Some("The layer is locked."),
         Content::Fill(_) => Some("A layer of one colour looks the same however it is displaced."),
-        content if !can_be_warped(content) => Some("This layer shows nothing of its own that could be displaced."),
+        content if !content.can_be_warped() => Some("This layer shows nothing of its own that could be displaced."),
         _ => None,
     };
     let map = document.map_of(layer.id);

@@ -4,10 +4,8 @@
 
 use super::selections::{CarriedSelections, moved_rect, turned_rect};
 use super::{CanvasChange, TURNED};
-use crate::document::cache::LayerCache;
-use crate::document::transform::apply::{in_place, placed};
-use crate::document::transform::on_canvas;
-use crate::document::warp::carried_liquify;
+use crate::document::apply_transform::{in_place, placed};
+use crate::document::layer::on_canvas::on_canvas;
 use crate::document::{
     Content, DerivedMask, DetailSource, Group, Layer, LayerId, LayerMap, LayerMask, LayerTransform, Live, MaskKind,
     NormalLayer, PixelLayer, StrokeList, TransformShape,
@@ -97,8 +95,8 @@ impl Carrier<'_> {
             content: self.content(&layer.content, frame)?,
             mask: layer.mask.as_ref().map(|mask| self.mask(mask, frame)),
             transform,
-            liquify: carried_liquify(layer, map, *to),
-            cache: LayerCache::default(),
+            liquify: layer.carried_liquify(map, *to),
+            cache: Default::default(),
             ..layer.clone()
         })
     }
@@ -217,8 +215,8 @@ fn is_mesh(layer: &Layer) -> bool {
 /// A layer without its mask, in a group that has it as it lies on the canvas.
 fn under_its_mask(layer: &Arc<Layer>, canvas: Size) -> Layer {
     let bare = Layer { mask: None, opacity: 1.0, blend: BlendMode::Normal, clip_below: false, ..Layer::clone(layer) };
-    let inner = Layer { id: LayerId::fresh(), visible: true, cache: LayerCache::default(), ..bare };
+    let inner = Layer { id: LayerId::fresh(), visible: true, cache: Default::default(), ..bare };
     let content = Content::Group(Group { layers: vec![Arc::new(inner)], pass_through: false });
     let mask = on_canvas(layer, &LayerMap::none(canvas)).mask.clone();
-    Layer { content, mask, transform: None, liquify: None, cache: LayerCache::default(), ..Layer::clone(layer) }
+    Layer { content, mask, transform: None, liquify: None, cache: Default::default(), ..Layer::clone(layer) }
 }

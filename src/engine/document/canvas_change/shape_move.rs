@@ -4,10 +4,10 @@
 
 use super::parts::{carry, outline_mut, same_object};
 use super::placed;
+use crate::document::FrameBox;
+use crate::document::homes::transform_of;
 use crate::document::parts::{OutlineSource, Part};
 use crate::document::selections::selecting;
-use crate::document::transform::{FrameBox, transform_of};
-use crate::document::warp::carried_liquify;
 use crate::document::{
     Content, DerivedMask, Document, Group, Layer, LayerMap, LayerMask, LayerTransform, MaskKind, NamedSelection,
     SurfaceSource, TransformShape,
@@ -155,7 +155,7 @@ fn carried(layers: &[Arc<Layer>], around: &LayerMap, map: &PlaneMap) -> Option<V
             }
             None => transform_of(&own.plane.then(&around.plane.inverse()).then(&outer), &own)?,
         };
-        let liquify = carried_liquify(layer, &outer, own.canvas());
+        let liquify = layer.carried_liquify(&outer, own.canvas());
         Some(Arc::new(Layer { transform, liquify, ..Layer::clone(&next) }))
     };
     layers.iter().map(one).collect()

@@ -1,7 +1,6 @@
 //! Scales a changing document down again and again: parts that did not change are not scaled twice. Floor 4. The
 //! scaling of one layer is in `scale`.
 
-use super::super::cache::LayerCache;
 use super::super::{Content, Document, Group, Layer, LayerId, Part, Parts};
 use super::CanvasScale;
 use crate::math::Size;
@@ -67,7 +66,7 @@ impl DocumentReducer {
     fn drafted(&mut self, document: &Document) -> Document {
         let mut layers = HashMap::new();
         let drafted = |layer: &Arc<Layer>| match layer.content.drafted() {
-            Some(content) => Arc::new(Layer { content, cache: LayerCache::default(), ..Layer::clone(layer) }),
+            Some(content) => Arc::new(Layer { content, cache: Default::default(), ..Layer::clone(layer) }),
             None => layer.clone(),
         };
         let stack = self.stack(&document.layers, &drafted, &mut layers);
@@ -158,7 +157,7 @@ impl DocumentReducer {
                 (None, Some(group)) => {
                     let hollow = Layer { content: Content::Group(Group::default()), ..Layer::clone(layer) };
                     let made = Layer::clone(&make(&Arc::new(hollow)));
-                    Arc::new(Layer { content: Content::Group(group), cache: LayerCache::default(), ..made })
+                    Arc::new(Layer { content: Content::Group(group), cache: Default::default(), ..made })
                 }
                 (None, None) => make(layer),
             };

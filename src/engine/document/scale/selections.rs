@@ -1,6 +1,7 @@
 //! Selections on a canvas of another size. Floor 4.
 
-use super::{CanvasScale, covered};
+use super::CanvasScale;
+use crate::document::layer::scale::covered;
 use crate::document::{Document, NamedSelection};
 use crate::math::{Rect, srgb::quantise};
 use crate::paint::Selection;
@@ -21,7 +22,7 @@ impl CanvasScale {
         }
     }
     /// A selection scaled, resampled once however many strokes share it.
-    pub(super) fn selection(&self, selection: &Arc<Selection>) -> Arc<Selection> {
+    pub(in crate::document) fn selection(&self, selection: &Arc<Selection>) -> Arc<Selection> {
         let key = Arc::as_ptr(selection) as usize;
         let mut known = self.selections.lock().unwrap_or_else(PoisonError::into_inner);
         let (_, scaled) = known.entry(key).or_insert_with(|| {

@@ -1,10 +1,13 @@
 //! A document at another size must look like its picture at that size.
 
 use super::*;
-use crate::document::{Content, Group, LayerMask, Live, Progress, StrokeList, flatten};
-use crate::math::{srgb::Color, vec3};
-use crate::paint::{Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
-use crate::raster::{BlendMode, Outside, Picture};
+use crate::document::layer::scale::covered;
+use crate::document::{Content, Group, Layer, LayerMask, Live, MaskKind, PixelLayer, Progress, StrokeList, flatten};
+use crate::math::{srgb::Color, vec2, vec3};
+use crate::paint::{
+    Adjust, Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, Sample, Stroke,
+};
+use crate::raster::{BlendMode, Outside, Picture, Plane, TileGrid};
 use crate::shading::RadianceScaling;
 use crate::surface::{Anchor, Bend, Maps, Operator, Surface};
 
@@ -79,17 +82,7 @@ fn picture(document: &Document) -> TileGrid {
     flatten(document, &Progress::default()).unwrap()
 }
 fn reduced(grid: &TileGrid, factor: f32) -> TileGrid {
-    let to = SIZE.scaled(factor);
-    CanvasScale {
-        per_axis: Vec2::splat(factor),
-        length: factor,
-        from: SIZE,
-        to,
-        is_draft: false,
-        filter: None,
-        selections: Default::default(),
-    }
-    .grid(grid)
+    CanvasScale::of(SIZE, factor).unwrap().grid(grid)
 }
 
 #[test]

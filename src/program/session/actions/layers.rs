@@ -185,7 +185,7 @@ impl LayerAction {
             LayerAction::PaintMask { layer: path, hides } => {
                 let layer = layer(path)?;
                 let mask = match &layer.mask {
-                    Some(mask) => mask.as_picture(&layer, &document.scene()),
+                    Some(mask) => mask.as_picture(&document.scene()),
                     None => {
                         let coverage = Plane::filled(document.size, if *hides { 0 } else { 255 });
                         LayerMask::new(MaskKind::File { file: String::new(), coverage: Arc::new(coverage) })

@@ -3,7 +3,7 @@
 
 use super::corner::within_convex;
 use super::placed::{FrameMap, Placed};
-use crate::document::transform::FrameBox;
+use crate::document::FrameBox;
 use crate::document::{Document, LayerId, LayerMap};
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::tools::frame::{FrameHandle, TransformFrame};

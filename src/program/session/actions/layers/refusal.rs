@@ -3,7 +3,6 @@
 
 use super::LayerAction;
 use super::steps::homed;
-use crate::document::warp::can_be_warped;
 use crate::document::{Document, LayerId, Mesh};
 use crate::session::LayerPaths;
 
@@ -13,7 +12,7 @@ impl LayerAction {
         let is_group = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.content.group().is_some());
         let is_warped = |id: &LayerId| document.layer(*id).is_some_and(|layer| layer.is_warped());
         let shows = |id: &LayerId| {
-            let can = document.layer(*id).is_some_and(|layer| can_be_warped(&layer.content));
+            let can = document.layer(*id).is_some_and(|layer| layer.content.can_be_warped());
             can && document.frame_box(*id).is_some_and(|frame| (frame.high - frame.low).min_element() >= 1.0)
         };
         let lies_lowest = |id: &LayerId| document.place_of(*id).is_none_or(|place| place.index == 0);

@@ -24,6 +24,11 @@ impl LayerKind for NormalLayer {
         }
         Content::Normals(normals)
     }
+    fn stretched(&self, scale: &CanvasScale) -> Option<Content> {
+        let DetailSource::Map { map, .. } = &self.source else { return None };
+        let placement = scale.on_new_canvas(&self.placement, map.size());
+        Some(Content::Normals(NormalLayer { placement, ..self.clone() }))
+    }
     fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
         Some(Content::Normals(NormalLayer { frame: map.plane, ..self.clone() }))
     }

@@ -1,8 +1,9 @@
 use super::*;
-use crate::document::{Document, LayerMask, Live, MaskKind, PixelLayer, Progress, StrokeList, diff, flatten};
-use crate::math::{hash, srgb::Color, vec2, vec3};
+use crate::document::layer::{LayerTransform, Live, PixelLayer, StrokeList, TransformShape};
+use crate::document::{Document, Progress, diff, flatten};
+use crate::math::{PlaneMap, Size, Vec2, hash, srgb::Color, vec2, vec3};
 use crate::paint::{Brush, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement, Sample, Stroke};
-use crate::raster::{Outside, Picture, Plane, TileAt, TileGrid};
+use crate::raster::{Outside, Picture, Plane, Resampling, TileAt, TileGrid};
 use crate::surface::{Anchor, Bend, Maps, Operator, Surface};
 
 const SIZE: Size = Size::new(192, 128);

@@ -1,7 +1,7 @@
 //! The cache of a layer: values that stay valid until their inputs change. Floor 4. Rendered tiles are cached in
 //! `live`.
 
-use super::{Layer, normals::Combination, transform::CanvasCache, warp::WarpCache};
+use super::{Layer, normals::Combination, on_canvas::CanvasCache, warp::WarpCache};
 use crate::math::Size;
 use crate::raster::Asset;
 use crate::shading::RadianceScaling;
@@ -16,15 +16,15 @@ pub struct LayerCache {
     /// The pixels of a paint layer, as a project stores them.
     pub pixels: Memo<(), EncodedPixels>,
     /// The layer seen through its transforms.
-    pub(super) on_canvas: CanvasCache,
+    pub(in crate::document) on_canvas: CanvasCache,
     /// What was composed of it to be displaced.
-    pub(super) warped: WarpCache,
+    pub(in crate::document) warped: WarpCache,
     /// Of a normal layer: the surface with its detail.
-    pub(super) combined: Memo<Combination, Arc<Surface>>,
+    pub(in crate::document) combined: Memo<Combination, Arc<Surface>>,
     /// The greatest luminance.
-    pub(super) brightest: Memo<()>,
+    pub(in crate::document) brightest: Memo<()>,
     /// The factor that restores the mean luminance, for given parameters.
-    pub(super) gain: Memo<RadianceScaling>,
+    pub(in crate::document) gain: Memo<RadianceScaling>,
 }
 
 /// What of a layer is in its look.

@@ -3,7 +3,7 @@
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
-use crate::document::deep::Marks;
+use crate::document::layer::marks::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::{Mat2, Vec2};
 use crate::paint::{ImageFilter, PlacedImage, Placement, Scene};
@@ -52,13 +52,20 @@ impl LayerKind for Live<PlacedImage> {
         image.bend.go_along(|p| p * scale.per_axis, |_| Mat2::from_diagonal(scale.per_axis));
         if image.filter == ImageFilter::Antialias {
             let texture = image.source.texture().size();
-            let texels_per_px = image.placement.texels_from_canvas(scale.to(), texture).matrix2.x_axis.length();
+            let texels_per_px = image.placement.texels_from_canvas(scale.to, texture).matrix2.x_axis.length();
             match scale.levels_to_skip(texels_per_px) {
                 0 => {}
                 levels => image.source = image.source.coarser(levels),
             }
         }
         Content::Image(Live::new(image))
+    }
+    fn stretched(&self, scale: &CanvasScale) -> Option<Content> {
+        let mut image = self.params().clone();
+        image.placement = scale.on_new_canvas(&image.placement, image.source.picture.size);
+        let longer = scale.length * scale.from.longer_side() / scale.to.longer_side();
+        image.bend.operator = image.bend.operator.scaled(scale.length).on_canvas_of(longer);
+        Some(Content::Image(Live::new(image)))
     }
     fn drafted(&self) -> Option<Content> {
         let image = self.params();

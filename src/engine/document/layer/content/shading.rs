@@ -3,7 +3,7 @@
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
-use crate::document::deep::Marks;
+use crate::document::layer::marks::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::paint::Scene;
 use crate::raster::{PlanarTile, TileAt};

@@ -1,5 +1,6 @@
 use super::*;
-use crate::document::{Document, Group, LayerTransform, Live, Mesh, MeshFrame, Progress, diff, flatten, flatten_layer};
+use crate::document::layer::{Content, Group, LayerTransform, Live, MeshFrame};
+use crate::document::{Progress, diff, flatten, flatten_layer};
 use crate::math::srgb::Color;
 use crate::paint::{Gradient, GradientStop, ImageFilter};
 

@@ -1,10 +1,10 @@
 //! Edits of homes: what lies on which part of the shape. Whatever else changes, what lies there shows where it showed.
 //! Floor 4. How homes and transforms meet is `LayerMap`'s.
 
-use super::{LayerMap, LayerTransform, TransformShape};
-use crate::document::content::strokes::{SeenSelections, taken_along};
-use crate::document::warp::carried_liquify;
-use crate::document::{Content, Document, Group, Layer, LayerId, Live, Parts, StrokeList};
+use super::layer::content::strokes::{SeenSelections, taken_along};
+use super::{
+    Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, Parts, StrokeList, TransformShape,
+};
 use crate::math::{Affine2, PlaneMap};
 use crate::paint::{HomeFrame, Stroke, StrokeHome};
 use std::sync::Arc;
@@ -85,7 +85,7 @@ impl Document {
         next
     }
     /// The map of what is around a layer.
-    pub(super) fn map_around(&self, id: LayerId) -> Option<LayerMap> {
+    pub(in crate::document) fn map_around(&self, id: LayerId) -> Option<LayerMap> {
         let none = LayerMap::none(self.size);
         match self.place_of(id)?.group {
             Some(group) => self.map_of(group),
@@ -189,7 +189,11 @@ fn placed(layers: &[Arc<Layer>], parts: &Parts) -> Option<Vec<Arc<Layer>>> {
 
 /// A layer that shows what it showed though what is around it was `old` and is `new`; the very same where nothing of it
 /// has to change. `None` where that cannot be said.
-pub(super) fn kept(layer: &Arc<Layer>, (old, new): (&LayerMap, &LayerMap), rehome: &Rehome) -> Option<Arc<Layer>> {
+pub(in crate::document) fn kept(
+    layer: &Arc<Layer>,
+    (old, new): (&LayerMap, &LayerMap),
+    rehome: &Rehome,
+) -> Option<Arc<Layer>> {
     kept_on(layer, layer.on.as_ref().and_then(rehome), (old, new), rehome)
 }
 
@@ -205,7 +209,7 @@ fn kept_on(
     if stood != outside {
         // From the list that it stood in to the one that it stands in.
         let outer = stood.then(&outside.inverse());
-        next.liquify = carried_liquify(layer, &outer, old.canvas);
+        next.liquify = layer.carried_liquify(&outer, old.canvas);
         next.transform = match layer.transform.as_ref().and_then(|own| own.mesh()) {
             Some(mesh) => {
                 let shape = TransformShape::Mesh(Arc::new(mesh.then(&outer)?));
@@ -250,7 +254,7 @@ fn stroke_on(
 ) -> Option<Arc<Stroke>> {
     let plane = stroke.home().map_or(was.plane, |home| was.of_stroke(home).plane);
     let Some(frame) = frame else {
-        let map = LayerMap { plane: plane.then(&now.plane.inverse()), ..*now };
+        let map = now.with_plane(plane.then(&now.plane.inverse()));
         return Some(Arc::new(Stroke::clone(&taken_along(stroke, &map, selections)).on(None)));
     };
     let mut home = StrokeHome::new(frame);

@@ -1,12 +1,52 @@
 //! Layers as they lie on the canvas, kept as long as nothing of them changes.
 //! Floor 4.
 
-use super::LayerMap;
-use crate::document::warp::{LastWarp, LayerWarp, displaced_mask};
-use crate::document::{Content, Layer, LayerMask, MaskKind};
+use super::Layer;
+use super::content::{Content, Group};
+use super::map::LayerMap;
+use super::mask::{LayerMask, MaskKind};
+use super::warp::{LastWarp, LayerWarp, displaced_mask};
 use crate::raster::Plane;
 use crate::raster::warp::warped_plane;
 use std::sync::{Arc, Mutex, PoisonError};
+
+impl LayerMap {
+    /// A layer of which this is the map, as it lies on the canvas: content and mask taken there, no transform, no home.
+    pub fn layer_on_canvas(&self, layer: &Arc<Layer>) -> Arc<Layer> {
+        let seen = seen(layer, self);
+        Arc::new(Layer { transform: None, liquify: None, on: None, ..Layer::clone(&seen) })
+    }
+}
+
+/// A layer as it lies on the canvas: content and mask taken there. The layers of a group are taken one by one.
+pub(in crate::document) fn on_canvas(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
+    seen(layer, &map.within(layer))
+}
+
+/// The same with the layer's own transform and home in the map.
+pub(in crate::document) fn seen(layer: &Arc<Layer>, map: &LayerMap) -> Arc<Layer> {
+    let warp = LayerWarp::of(layer, map);
+    if map.is_none() && warp.is_none() && !layer.content.has_homes() {
+        return layer.clone();
+    }
+    let (content, mask) = layer.cache.on_canvas.get(layer, map, warp.as_ref());
+    Arc::new(Layer { content, mask, transform: None, liquify: None, on: None, ..Layer::clone(layer) })
+}
+
+/// Visits the layers of a list with the map of each, groups opened, bottom first.
+pub(in crate::document) fn each_with_map<'d>(
+    layers: &'d [Arc<Layer>],
+    around: &LayerMap,
+    visit: &mut dyn FnMut(&'d Arc<Layer>, LayerMap),
+) {
+    for layer in layers {
+        let map = around.within(layer);
+        visit(layer, map);
+        if let Content::Group(Group { layers, .. }) = &layer.content {
+            each_with_map(layers, &map, visit);
+        }
+    }
+}
 
 /// What layers were last seen as; shared by the versions of a layer.
 #[derive(Clone, Default)]
@@ -29,7 +69,12 @@ impl CanvasCache {
     /// Of the picture before an edit and the one after it.
     const KEPT: usize = 2;
 
-    pub(super) fn get(&self, layer: &Layer, map: &LayerMap, warp: Option<&LayerWarp>) -> (Content, Option<LayerMask>) {
+    pub(in crate::document) fn get(
+        &self,
+        layer: &Layer,
+        map: &LayerMap,
+        warp: Option<&LayerWarp>,
+    ) -> (Content, Option<LayerMask>) {
         let entries = self.lock().clone();
         if let Some(warp) = warp {
             return self.warped(layer, map, warp, &entries);
@@ -128,3 +173,6 @@ fn mask_on_canvas(mask: &LayerMask, map: &LayerMap) -> LayerMask {
     let coverage: Plane<u8> = warped_plane(coverage, map, map.filter);
     LayerMask { kind: MaskKind::File { file: file.clone(), coverage: Arc::new(coverage) }, ..mask.clone() }
 }
+
+#[cfg(test)]
+mod tests;

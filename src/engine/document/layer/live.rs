@@ -1,8 +1,8 @@
 //! Live content: parameters together with the tiles rendered from them, valid until a parameter changes. Floor 4. The
 //! rendering of marks is in `paint` and `shading`.
 
-use super::behind::{BehindPixels, BehindScene};
-use super::content::TileContent;
+use super::tile_content::TileContent;
+use crate::document::behind::{BehindPixels, BehindScene};
 use crate::math::Rect;
 use crate::paint::Scene;
 use crate::raster::{Tile, TileAt};
@@ -73,11 +73,11 @@ impl<T> Live<T> {
         &self.params
     }
     /// What was found of the parameters once is not sought again.
-    pub(super) fn has_homes(&self, sought: impl FnOnce(&T) -> bool) -> bool {
+    pub(in crate::document) fn has_homes(&self, sought: impl FnOnce(&T) -> bool) -> bool {
         *self.has_homes.get_or_init(|| sought(&self.params))
     }
     /// The box around what is painted on a scene, sought once.
-    pub(super) fn painted_box(&self, scene: &Scene, seek: impl FnOnce() -> Rect) -> Rect {
+    pub(in crate::document) fn painted_box(&self, scene: &Scene, seek: impl FnOnce() -> Rect) -> Rect {
         let mut known = self.painted_box.lock().unwrap_or_else(PoisonError::into_inner);
         match &*known {
             Some((on, painted)) if on.is_same(scene) => *painted,
@@ -176,7 +176,7 @@ impl<T> Live<T> {
     /// The layer as the other populations of a tile's contour pixels see it, rendered by `render` if it is not cached.
     ///
     /// * `stays`: where they see no surface the tile's own pixels stay; else there are none.
-    pub(super) fn behind(
+    pub(in crate::document) fn behind(
         &self,
         scene: &BehindScene,
         stays: bool,
@@ -198,7 +198,7 @@ impl<T> Live<T> {
         }
     }
     /// Takes in what was rendered behind the contours of a tile.
-    pub(super) fn set_behind(&self, scene: &BehindScene, on_sheet: Option<Tile>) {
+    pub(in crate::document) fn set_behind(&self, scene: &BehindScene, on_sheet: Option<Tile>) {
         let bare = if scene.behind.has_bare() { self.known(scene.front, scene.behind.at) } else { None };
         let packed = BehindPixels::Packed(Arc::new(scene.behind.packed(on_sheet.as_ref(), bare.as_deref())));
         self.cells(scene.front).behind_cell(scene.behind.at).map(|cell| cell.set(packed));

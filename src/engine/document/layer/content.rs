@@ -10,23 +10,26 @@ mod normals;
 mod pixels;
 mod radiance_scaling;
 mod shading;
-pub(super) mod strokes;
+pub(in crate::document) mod strokes;
 
 pub use group::Group;
 pub use pixels::PixelLayer;
 pub use strokes::StrokeList;
 
-use super::behind::{Behind, BehindScene, PackedTile};
-use super::deep::Marks;
+use super::live::Live;
+use super::map::LayerMap;
+use super::marks::Marks;
+use super::normals::NormalLayer;
 use super::scale::CanvasScale;
-use super::{LayerMap, Live, NormalLayer, Progress};
+use super::tile_content::TileContent;
 use crate::Result;
+use crate::document::Progress;
+use crate::document::behind::{Behind, BehindScene};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Gradient, PlacedImage, Scene};
-use crate::raster::{Picture, PlanarTile, Tile, TileAt, TilePaint};
+use crate::raster::{Picture, TileAt};
 use crate::shading::{RadianceScaling, Shading};
 use crate::surface::Bend;
-use std::sync::Arc;
 
 /// What a layer holds. Live content keeps its parameters and, beside them, the tiles rendered from them.
 #[derive(Clone)]
@@ -85,6 +88,11 @@ trait LayerKind {
     fn warm(&self, _scene: &Scene, _progress: &Progress) {}
     /// On a canvas of another size.
     fn scaled(&self, scale: &CanvasScale) -> Content;
+    /// The same on a canvas of another aspect, where that stretches it by more than its numbers can say; `None` of what
+    /// they can, and of what is resampled. Its transform is to say the rest.
+    fn stretched(&self, _scale: &CanvasScale) -> Option<Content> {
+        None
+    }
     /// The same for a moment while a hand moves, cheaper to render; `None` of what is the same then.
     fn drafted(&self) -> Option<Content> {
         None
@@ -139,7 +147,7 @@ trait LayerKind {
 }
 
 /// Where a layer can be seen.
-pub(super) enum Touched {
+pub(in crate::document) enum Touched {
     Nowhere,
     Canvas,
     Rects(Vec<Rect>),
@@ -147,7 +155,7 @@ pub(super) enum Touched {
 }
 
 /// Where two versions of a layer may differ.
-pub(super) enum Changed {
+pub(in crate::document) enum Changed {
     Nowhere,
     /// Wherever either can be seen.
     Wholly,
@@ -197,8 +205,13 @@ impl Content {
     pub fn shapes(&self) -> bool {
         matches!(self.role(), Role::Shapes(_))
     }
+    /// Whether a layer of it can be displaced: what shapes the surface or adjusts what lies beneath shows nothing of its
+    /// own.
+    pub fn can_be_warped(&self) -> bool {
+        matches!(self.role(), Role::Paints | Role::Groups(_))
+    }
     /// It goes along where the shape that it lies on goes.
-    pub(super) fn goes_with_shape(&self) -> bool {
+    pub(in crate::document) fn goes_with_shape(&self) -> bool {
         self.kind().goes_with_shape()
     }
     /// The group that it is, if it is one.
@@ -253,30 +266,33 @@ impl Content {
     pub fn lacks(&self) -> Option<(&'static str, String)> {
         self.kind().lacks()
     }
-    pub(super) fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
+    pub(in crate::document) fn painted(&self, scene: &Scene, at: TileAt) -> TileContent {
         self.kind().painted(scene, at)
     }
-    pub(super) fn painted_behind(&self, scene: &BehindScene) -> TileContent {
+    pub(in crate::document) fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.kind().painted_behind(scene)
     }
     /// What it is rendered from without rounding to bytes; `None` of what is not live.
-    pub(super) fn marks(&self) -> Option<&dyn Marks> {
+    pub(in crate::document) fn marks(&self) -> Option<&dyn Marks> {
         self.kind().marks()
     }
-    pub(super) fn warm(&self, scene: &Scene, progress: &Progress) {
+    pub(in crate::document) fn warm(&self, scene: &Scene, progress: &Progress) {
         self.kind().warm(scene, progress);
     }
-    pub(super) fn scaled(&self, scale: &CanvasScale) -> Content {
+    pub(in crate::document) fn scaled(&self, scale: &CanvasScale) -> Content {
         self.kind().scaled(scale)
     }
-    pub(super) fn drafted(&self) -> Option<Content> {
+    pub(in crate::document) fn stretched(&self, scale: &CanvasScale) -> Option<Content> {
+        self.kind().stretched(scale)
+    }
+    pub(in crate::document) fn drafted(&self) -> Option<Content> {
         self.kind().drafted()
     }
-    pub(super) fn touched(&self, scene: Option<&Scene>) -> Touched {
+    pub(in crate::document) fn touched(&self, scene: Option<&Scene>) -> Touched {
         self.kind().touched(scene)
     }
     /// Whether it is the very same value in memory, or the same number.
-    pub(super) fn is_identical(&self, other: &Content) -> bool {
+    pub(in crate::document) fn is_identical(&self, other: &Content) -> bool {
         match (self, other) {
             (Content::Image(a), Content::Image(b)) => a.ptr_eq(b),
             (Content::Gradient(a), Content::Gradient(b)) => a.ptr_eq(b),
@@ -289,44 +305,10 @@ impl Content {
             _ => false,
         }
     }
-    pub(super) fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
+    pub(in crate::document) fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
         self.kind().changed_from(old, scene)
     }
-    pub(super) fn measures_beneath(&self) -> bool {
+    pub(in crate::document) fn measures_beneath(&self) -> bool {
         self.kind().measures_beneath()
-    }
-}
-
-/// The pixels of a layer in one tile.
-pub(super) enum TileContent {
-    Nothing,
-    /// One premultiplied colour everywhere.
-    Solid([f32; 4]),
-    Tile(Arc<Tile>),
-    Packed(Arc<PackedTile>),
-    Group(PlanarTile),
-}
-
-impl TileContent {
-    fn of_tile(tile: Option<Arc<Tile>>) -> Self {
-        tile.map_or(TileContent::Nothing, TileContent::Tile)
-    }
-    pub fn as_paint(&self) -> Option<TilePaint<'_>> {
-        match self {
-            TileContent::Nothing => None,
-            TileContent::Solid(color) => Some(TilePaint::Solid(*color)),
-            TileContent::Tile(tile) => Some(TilePaint::Bytes(tile.bytes())),
-            TileContent::Packed(packed) => Some(TilePaint::Bytes(packed.bytes())),
-            TileContent::Group(pixels) => Some(TilePaint::Planar(pixels)),
-        }
-    }
-    /// Whether it is known to cover every pixel fully.
-    pub fn is_opaque(&self) -> bool {
-        match self {
-            TileContent::Solid(color) => color[3] >= 1.0,
-            TileContent::Tile(tile) => tile.is_opaque(),
-            TileContent::Packed(packed) => packed.is_opaque(),
-            TileContent::Nothing | TileContent::Group(_) => false,
-        }
     }
 }

@@ -7,10 +7,15 @@
 
 mod cache;
 
-pub(super) use cache::{WarpCache, WarpTiles};
+pub(in crate::document) use cache::{WarpCache, WarpTiles};
 
-use super::transform::LayerMap;
-use super::{Content, Document, Layer, LayerMask, MaskKind, PixelLayer, Role, TransformShape};
+use super::content::PixelLayer;
+use super::map::LayerMap;
+use super::mask::{LayerMask, MaskKind};
+use super::transform::TransformShape;
+use super::transform::mesh::Mesh;
+use super::{Layer, LayerId};
+use crate::document::Document;
 use crate::math::{Mat2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::warp::{PixelMap, TileMap, TilePoints, warped_block, warped_tile};
 use crate::raster::{Lattice, Plane, Resampling, TileAt, TileGrid};
@@ -48,7 +53,7 @@ impl Layer {
         self.liquify.is_some() || self.mesh_warp().is_some()
     }
     /// The mesh of it that no matrix says.
-    fn mesh_warp(&self) -> Option<&Arc<super::Mesh>> {
+    fn mesh_warp(&self) -> Option<&Arc<Mesh>> {
         match self.transform.as_ref().map(|transform| &transform.shape) {
             Some(TransformShape::Mesh(mesh)) if mesh.as_affine().is_none() => Some(mesh),
             _ => None,
@@ -58,7 +63,7 @@ impl Layer {
 
 impl LayerWarp {
     /// Of a layer with its map; `None` where nothing displaces it.
-    pub(super) fn of(layer: &Layer, map: &LayerMap) -> Option<Self> {
+    pub(in crate::document) fn of(layer: &Layer, map: &LayerMap) -> Option<Self> {
         let (mesh, liquify) = (layer.mesh_warp(), layer.liquify.clone().filter(|lattice| !lattice.is_empty()));
         if mesh.is_none() && liquify.is_none() {
             return None;
@@ -70,14 +75,14 @@ impl LayerWarp {
         Some(Self { canvas: map.canvas(), outside: map.outside_own(), mesh, liquify, filter })
     }
     /// What a mesh takes from beyond the canvas is nothing; liquify lets the picture's border go on.
-    pub(super) fn continues(&self) -> bool {
+    pub(in crate::document) fn continues(&self) -> bool {
         self.mesh.is_none()
     }
     /// Which point of the unwarped layer shows at each pixel of a tile, seen through one more map of its own; `None`
     /// where the tile shows itself.
     ///
     /// * `own`: what takes the layer's frame to the canvas; the identity of what is composed on the canvas.
-    pub(super) fn tile_map(&self, at: TileAt, own: &PlaneMap) -> Option<TileMap> {
+    pub(in crate::document) fn tile_map(&self, at: TileAt, own: &PlaneMap) -> Option<TileMap> {
         let rect = at.rect();
         let middle = |k: usize| {
             let (x, y) = (k % rect.width(), k / rect.width());
@@ -145,7 +150,7 @@ impl LayerWarp {
         source.unwrap_or(q)
     }
     /// The tiles that show some of the unwarped layer's tiles.
-    pub(super) fn showing(&self, source: &[TileAt]) -> Vec<TileAt> {
+    pub(in crate::document) fn showing(&self, source: &[TileAt]) -> Vec<TileAt> {
         if source.is_empty() {
             return Vec::new();
         }
@@ -171,7 +176,7 @@ impl LayerWarp {
         Rect::new(x0, y0, rect.x1.clamp(x0 + 1, w), rect.y1.clamp(y0 + 1, h))
     }
     /// The tiles in which two displacements of one layer may differ; `None`: anywhere.
-    pub(super) fn changed_tiles(old: Option<&Self>, new: Option<&Self>) -> Option<Vec<TileAt>> {
+    pub(in crate::document) fn changed_tiles(old: Option<&Self>, new: Option<&Self>) -> Option<Vec<TileAt>> {
         let any = old.or(new)?;
         let alike = |a: &Self| a.mesh.is_none() && a.outside == PlaneMap::IDENTITY && a.canvas == any.canvas;
         if ![old, new].into_iter().flatten().all(alike) {
@@ -185,7 +190,7 @@ impl LayerWarp {
 }
 
 /// What was known of a layer's paint or mask under another displacement.
-pub(super) struct LastWarp<'l, T> {
+pub(in crate::document) struct LastWarp<'l, T> {
     pub own: &'l T,
     pub seen: &'l T,
     pub warp: Option<&'l LayerWarp>,
@@ -193,7 +198,12 @@ pub(super) struct LastWarp<'l, T> {
 
 impl PixelLayer {
     /// Its pixels on the canvas, sampled once through its map and its displacement.
-    pub(super) fn displaced(&self, map: &LayerMap, warp: &LayerWarp, last: Option<LastWarp<Self>>) -> Self {
+    pub(in crate::document) fn displaced(
+        &self,
+        map: &LayerMap,
+        warp: &LayerWarp,
+        last: Option<LastWarp<Self>>,
+    ) -> Self {
         let mut tiles = TileGrid::default();
         let canvas = map.canvas().rect();
         let mut wanted: Vec<TileAt> = TileAt::covering(canvas).collect();
@@ -218,7 +228,7 @@ impl PixelLayer {
 }
 
 /// A mask's picture on the canvas, sampled once through the layer's map and displacement.
-pub(super) fn displaced_mask(
+pub(in crate::document) fn displaced_mask(
     mask: &LayerMask,
     map: &LayerMap,
     warp: &LayerWarp,
@@ -247,22 +257,9 @@ pub(super) fn displaced_mask(
     LayerMask { kind: MaskKind::File { file: file.clone(), coverage: Arc::new(out) }, ..mask.clone() }
 }
 
-/// The liquify of a layer on a plane that a map took elsewhere; what lies far beyond the canvas is forgotten.
-pub fn carried_liquify(layer: &Layer, map: &PlaneMap, canvas: Size) -> Option<Arc<Lattice>> {
-    let within = canvas.rect().grown(canvas.longer_side() as i32);
-    let carried = layer.liquify.as_ref()?.carried(map, within);
-    (!carried.is_empty()).then(|| Arc::new(carried))
-}
-
-/// Whether a kind of layer can be displaced: what shapes the surface or adjusts what lies beneath shows nothing of its
-/// own.
-pub fn can_be_warped(content: &Content) -> bool {
-    matches!(content.role(), Role::Paints | Role::Groups(_))
-}
-
 impl Document {
     /// The displacement of a layer; `None` where nothing displaces it, or there is no such layer.
-    pub fn warp_of(&self, id: super::LayerId) -> Option<LayerWarp> {
+    pub fn warp_of(&self, id: LayerId) -> Option<LayerWarp> {
         LayerWarp::of(self.layer(id)?, &self.map_of(id)?)
     }
 }

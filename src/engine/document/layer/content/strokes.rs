@@ -3,7 +3,7 @@
 
 use super::{Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
 use crate::Result;
-use crate::document::deep::{Done, Marks};
+use crate::document::layer::marks::{Done, Marks};
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Scene, Selection, Stroke, StrokeSelection, stroke};

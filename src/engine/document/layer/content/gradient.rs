@@ -2,7 +2,7 @@
 //! Floor 4. Its rendering is `paint::gradient`'s.
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
-use crate::document::deep::Marks;
+use crate::document::layer::marks::Marks;
 use crate::document::{LayerMap, Live, Progress};
 use crate::math::Vec2;
 use crate::paint::{Gradient, ImageFilter, Scene};

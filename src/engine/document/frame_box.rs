@@ -1,9 +1,7 @@
 //! The box around what a layer holds, in its own frame: what a transform's handles stand around.
 //! Floor 4.
 
-use super::LayerMap;
-use crate::document::content::StrokeList;
-use crate::document::{Content, Document, Layer, LayerId, Live};
+use super::{Content, Document, Layer, LayerId, LayerMap, Live, StrokeList};
 use crate::math::{PlaneMap, Rect, Vec2, vec2};
 use crate::paint::{Scene, Stroke, stroke};
 use crate::raster::{TILE, Tile, TileAt, TileGrid};

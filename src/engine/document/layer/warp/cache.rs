@@ -1,7 +1,8 @@
 //! What was composed of a warped layer: the tiles that it is sampled from, and those that it shows. Floor 4.
 
 use super::LayerWarp;
-use crate::document::{Content, LayerMap};
+use crate::document::layer::content::Content;
+use crate::document::layer::map::LayerMap;
 use crate::math::Rect;
 use crate::paint::Scene;
 use crate::raster::warp::{PixelMap, warped_tile_within};

@@ -2,12 +2,10 @@
 //! Floor 4.
 
 use super::homes::{kept, transform_of};
-use super::{LayerMap, LayerTransform, TransformShape, seen};
-use crate::document::{Content, Document, Group, Layer, LayerId, Live, StrokeList};
-use crate::math::plane_map::told;
-use crate::math::{Affine2, DVec2, PlaneMap, Size, Vec2, vec2};
+use super::layer::on_canvas::seen;
+use super::{Content, Document, Group, Layer, LayerId, LayerMap, LayerTransform, Live, NormalLayer, StrokeList};
+use crate::math::{Affine2, PlaneMap, Vec2};
 use crate::paint::{PlacedImage, Placement, StrokeHome};
-use crate::raster::Resampling;
 use std::sync::Arc;
 
 impl Document {
@@ -88,26 +86,6 @@ fn handed_down(group: &Arc<Layer>, around: &LayerMap) -> Option<Layer> {
     Some(Layer { content, mask, ..bare })
 }
 
-impl LayerTransform {
-    /// A map of the plane as a transform; `None` of a perspective whose horizon crosses the canvas.
-    pub fn of_map(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<Self> {
-        said(map, filter, canvas)
-    }
-}
-
-fn said(map: &PlaneMap, filter: Resampling, canvas: Size) -> Option<LayerTransform> {
-    if let Some(coefficients) = map.told_coefficients() {
-        return Some(LayerTransform { shape: TransformShape::Matrix(coefficients), filter });
-    }
-    let (w, h) = (canvas.width as f32, canvas.height as f32);
-    let corners = [vec2(0.0, 0.0), vec2(w, 0.0), vec2(w, h), vec2(0.0, h)].map(|corner| map.to_canvas(corner));
-    let [Some(a), Some(b), Some(c), Some(d)] = corners else { return None };
-    let shape =
-        TransformShape::Quad([a, b, c, d].map(|corner| DVec2::new(told(corner.x.into()), told(corner.y.into()))));
-    let transform = LayerTransform { shape, filter };
-    transform.map(canvas).map(|_| transform)
-}
-
 /// A layer on the canvas without its transform, where its kind can say so.
 pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Arc<Layer> {
     if layer.content.group().is_some() {
@@ -122,9 +100,8 @@ pub(in crate::document) fn in_place(layer: &Arc<Layer>, around: &LayerMap) -> Ar
     let content = match &seen.content {
         Content::Image(live) => live.params().unframed().map(|image| Content::Image(Live::new(image))),
         Content::Gradient(live) => live.params().unframed().map(|ramp| Content::Gradient(Live::new(ramp))),
-        Content::Normals(normals) => placed(&normals.placement, &normals.frame).map(|placement| {
-            Content::Normals(crate::document::NormalLayer { placement, frame: PlaneMap::IDENTITY, ..normals.clone() })
-        }),
+        Content::Normals(normals) => placed(&normals.placement, &normals.frame)
+            .map(|placement| Content::Normals(NormalLayer { placement, frame: PlaneMap::IDENTITY, ..normals.clone() })),
         content => Some(content.clone()),
     };
     let transform = transform_of(&around.outside(layer.on.as_ref()).inverse(), &map);

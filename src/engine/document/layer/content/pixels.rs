@@ -58,7 +58,9 @@ impl LayerKind for PixelLayer {
         tile.map_or(TileContent::Nothing, |tile| TileContent::Packed(Arc::new(scene.behind.same(tile))))
     }
     fn scaled(&self, scale: &CanvasScale) -> Content {
-        Content::Pixels(scale.pixels(self))
+        let corner = vec2(self.x as f32, self.y as f32) * scale.per_axis;
+        let (x, y) = (corner.x.round() as i32, corner.y.round() as i32);
+        Content::Pixels(PixelLayer { file: self.file.clone(), x, y, tiles: scale.grid(&self.tiles) })
     }
     fn moved(&self, by: Vec2) -> Option<Content> {
         Some(Content::Pixels(PixelLayer {

@@ -1,0 +1,30 @@
+//! What live layers answer that are rendered without rounding to bytes.
+//! Floor 4. Composing what they answer is `deep`'s, the rendering of marks in `paint` and `shading`.
+
+use crate::document::Progress;
+use crate::paint::Scene;
+use crate::raster::{DeepTexture, PlanarTile, TileAt};
+use std::sync::Arc;
+
+/// What a live layer is rendered from.
+pub(in crate::document) trait Marks {
+    /// One tile, not rounded to bytes; `None` where there is nothing. Colours may be brighter than white.
+    fn pixels(&self, scene: &Scene, at: TileAt) -> Option<PlanarTile>;
+    /// Where another population of a contour pixel sees no surface the tile's own pixels stay.
+    fn stay(&self) -> bool {
+        true
+    }
+    /// The texture that tiles are read from, to be held while they are.
+    fn texture(&self) -> Option<Arc<DeepTexture>> {
+        None
+    }
+    /// What that takes.
+    fn texture_bytes(&self) -> u64 {
+        0
+    }
+    /// Renders tiles that cost less together than one by one, if they do.
+    fn together(&self, _scene: &Scene, _tiles: &[TileAt], _progress: &Progress, _done: &Done) {}
+}
+
+/// Takes a rendered tile.
+pub(in crate::document) type Done<'d> = dyn Fn(TileAt, Option<PlanarTile>) + Sync + 'd;

@@ -1,0 +1,40 @@
+//! The pixels of a layer in one tile, in the form that its kind has them.
+//! Floor 4. How layers meet is `compose`'s.
+
+use crate::document::behind::PackedTile;
+use crate::raster::{PlanarTile, Tile, TilePaint};
+use std::sync::Arc;
+
+/// The pixels of a layer in one tile.
+pub(in crate::document) enum TileContent {
+    Nothing,
+    /// One premultiplied colour everywhere.
+    Solid([f32; 4]),
+    Tile(Arc<Tile>),
+    Packed(Arc<PackedTile>),
+    Group(PlanarTile),
+}
+
+impl TileContent {
+    pub fn of_tile(tile: Option<Arc<Tile>>) -> Self {
+        tile.map_or(TileContent::Nothing, TileContent::Tile)
+    }
+    pub fn as_paint(&self) -> Option<TilePaint<'_>> {
+        match self {
+            TileContent::Nothing => None,
+            TileContent::Solid(color) => Some(TilePaint::Solid(*color)),
+            TileContent::Tile(tile) => Some(TilePaint::Bytes(tile.bytes())),
+            TileContent::Packed(packed) => Some(TilePaint::Bytes(packed.bytes())),
+            TileContent::Group(pixels) => Some(TilePaint::Planar(pixels)),
+        }
+    }
+    /// Whether it is known to cover every pixel fully.
+    pub fn is_opaque(&self) -> bool {
+        match self {
+            TileContent::Solid(color) => color[3] >= 1.0,
+            TileContent::Tile(tile) => tile.is_opaque(),
+            TileContent::Packed(packed) => packed.is_opaque(),
+            TileContent::Nothing | TileContent::Group(_) => false,
+        }
+    }
+}
