@@ -256,6 +256,10 @@ impl Jobs {
         }
         finished
     }
+    /// Cancels the jobs of a name: what they would find is not wanted any more.
+    pub fn give_up(&self, name: &str) {
+        self.under_way.iter().filter(|job| job.name == name).for_each(|job| job.progress.cancel());
+    }
     /// The job that blocks other edits.
     pub fn editing(&self) -> Option<&RunningJob> {
         self.under_way.iter().find(|job| job.kind == JobKind::Editing)

@@ -77,6 +77,9 @@ pub struct MainWindow {
     recorded: Option<Vec<Action>>,
 }
 
+/// What the job is called that reads maps for their dialog.
+const READING_MAPS: &str = "Reading maps";
+
 impl MainWindow {
     /// A window without stored settings.
     pub fn new(ctx: &egui::Context) -> Self {
@@ -210,12 +213,17 @@ impl MainWindow {
                     let picture = storage::finished_picture(&source);
                     JobResult::Read(Box::new(MapsRead { source: *source, found, picture }))
                 };
-                return self.jobs.start("Reading maps".into(), JobKind::Working, read);
+                self.jobs.give_up(READING_MAPS);
+                return self.jobs.start(READING_MAPS.into(), JobKind::Working, read);
             }
             // The dialog stays while there are drawings in it.
             DialogAnswer::Recover(lost) => return self.recover(lost),
             DialogAnswer::Delete(lost) => return self.delete(lost),
-            _ => drop(self.dialogs.pop()),
+            _ => {
+                if let Some(Dialog::Import(_)) = self.dialogs.pop() {
+                    self.jobs.give_up(READING_MAPS);
+                }
+            }
         }
         match answer {
             DialogAnswer::Chosen(purpose, file) => self.chosen(purpose, file),
