@@ -2,7 +2,7 @@
 //! groups around the process, its address space. Floor 5. The only place that asks; floors beneath are passed figures.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What is taken to be free where the system tells nothing.
 pub const UNKNOWN_BYTES: u64 = 4 << 30;
@@ -17,6 +17,19 @@ pub fn free_bytes() -> u64 {
 pub fn kept_bytes() -> u64 {
     const MOST: u64 = 64 << 20;
     MOST.min(told(Path::new("/")).unwrap_or(UNKNOWN_BYTES) / 32)
+}
+
+/// Bytes that the machine has for the program at most: its memory, or the lowest ceiling around the process.
+pub fn whole_bytes() -> u64 {
+    whole(Path::new("/")).unwrap_or(UNKNOWN_BYTES)
+}
+
+fn whole(root: &Path) -> Option<u64> {
+    let read = |name: &str| fs::read_to_string(root.join(name)).ok();
+    let memory = field(&read("proc/meminfo")?, "MemTotal:")? * 1024;
+    let groups = read("proc/self/cgroup").unwrap_or_default();
+    let ceiling = |group: &Group| fs::read_to_string(group.folder.join(group.names[0])).ok()?.trim().parse().ok();
+    Some(groups_around(root, &groups).iter().filter_map(ceiling).fold(memory, u64::min))
 }
 
 /// The least of what each of Linux's accounts leaves; `None` on other systems. `root`: where its folders hang.
@@ -34,8 +47,22 @@ fn field(text: &str, name: &str) -> Option<u64> {
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// What is left under the ceilings of the process's groups, of version 2 and 1, and of all groups around them.
+/// A control group that tells of memory.
+struct Group {
+    folder: PathBuf,
+    /// The files of its ceiling and of what is used.
+    names: [&'static str; 2],
+    /// The line of `memory.stat` that tells of files held in memory.
+    cache: &'static str,
+}
+
+/// What is left under the ceilings of the process's groups, and of all groups around them.
 fn left_in_groups(root: &Path, groups: &str) -> Option<u64> {
+    groups_around(root, groups).iter().filter_map(left_in_group).min()
+}
+
+/// The process's groups, of version 2 and 1, and all groups around them.
+fn groups_around(root: &Path, groups: &str) -> Vec<Group> {
     let line = |is: &dyn Fn(&str) -> bool| {
         groups.lines().find_map(|line| {
             let (controllers, path) = line.split_once(':')?.1.split_once(':')?;
@@ -53,13 +80,14 @@ fn left_in_groups(root: &Path, groups: &str) -> Option<u64> {
         let inner = top.join(path);
         // Within a container the path may be one of the world outside; its own group is then the top.
         let around = inner.ancestors().take_while(|folder| folder.starts_with(&top)).map(Path::to_owned);
-        around.filter_map(|folder| left_in_group(&folder, names, cache)).collect::<Vec<_>>()
+        around.map(|folder| Group { folder, names, cache }).collect::<Vec<_>>()
     });
-    all.min()
+    all.collect()
 }
 
 /// What is left in one group; the files it holds in memory are given back when they are in the way.
-fn left_in_group(folder: &Path, [ceiling, used]: [&str; 2], cache: &str) -> Option<u64> {
+fn left_in_group(group: &Group) -> Option<u64> {
+    let Group { folder, names: [ceiling, used], cache } = group;
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
     let cache = read("memory.stat").and_then(|stat| field(&stat, &format!("{cache} "))).unwrap_or(0);
@@ -110,6 +138,21 @@ mod tests {
             ("sys/fs/cgroup/memory/memory.usage_in_bytes", "400000000"),
         ];
         assert_eq!(machine(&old), Some(500_000_000));
+    }
+    #[test]
+    fn the_machine_is_as_large_as_its_lowest_ceiling() {
+        let root = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let file = root.path().join(name);
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, text).unwrap();
+        };
+        write("proc/meminfo", "MemTotal:  8000000 kB\nMemAvailable:  6000000 kB\n");
+        assert_eq!(whole(root.path()), Some(8_192_000_000));
+        write("proc/self/cgroup", "0::/user/app\n");
+        write("sys/fs/cgroup/user/app/memory.max", "max\n");
+        write("sys/fs/cgroup/user/memory.max", "1000000000\n");
+        assert_eq!(whole(root.path()), Some(1_000_000_000));
     }
     #[test]
     fn a_system_that_tells_nothing_is_taken_for_a_small_one() {

@@ -48,6 +48,8 @@ pub enum WindowRequest {
     ExportMaps,
     /// Sways the picture by its depth, until a key or a click.
     Wobble,
+    /// The share of the machine's memory that may be kept for speed.
+    KeptShare(f32),
     /// A sentence in the status bar.
     Say(String),
     /// Asks where to, for a file of this ending.

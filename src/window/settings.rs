@@ -6,6 +6,7 @@ use super::jobs;
 use super::keymap::Keymap;
 use super::panel_layout::PanelKind;
 use super::panel_layout::{PanelLayout, SIDES};
+use super::usage::{KEPT_SHARE, USUAL_KEPT_SHARE};
 use crate::document::Progress;
 use crate::io::fs::Disk;
 use crate::io::replace::{Overwrite, replace};
@@ -24,7 +25,7 @@ const LARGEST_BYTES: u64 = 1 << 20;
 const PAUSE: Duration = Duration::from_secs(2);
 
 /// All settings.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Newest first.
     pub recent: Vec<PathBuf>,
@@ -37,6 +38,23 @@ pub struct Settings {
     pub is_hint_done: bool,
     /// What is shown over the canvas, and what the pen snaps to.
     pub aids: ViewAids,
+    /// The share of the machine's memory that documents may keep for speed.
+    pub kept_share: f32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            recent: Vec::new(),
+            is_light: false,
+            scale: None,
+            layout: PanelLayout::default(),
+            keymap: Keymap::default(),
+            is_hint_done: false,
+            aids: ViewAids::default(),
+            kept_share: USUAL_KEPT_SHARE,
+        }
+    }
 }
 
 impl Settings {
@@ -61,6 +79,7 @@ impl Settings {
             },
             "keys": self.keymap.to_json(),
             "aids": self.aids.written(),
+            "kept share": self.kept_share,
         })
     }
     /// Unknown values keep their defaults.
@@ -89,7 +108,9 @@ impl Settings {
         let scale = value.get("scale").and_then(Value::as_f64).map(|scale| (scale as f32).max(0.5).min(4.0));
         let aids = value.get("aids").and_then(|aids| ViewAids::read(aids).ok()).unwrap_or_default();
         let (is_light, is_hint_done) = (flag(value, "light"), flag(value, "hint done"));
-        Self { recent, is_light, scale, layout, keymap, is_hint_done, aids }
+        let share = value.get("kept share").and_then(Value::as_f64).map_or(USUAL_KEPT_SHARE, |share| share as f32);
+        let kept_share = share.max(*KEPT_SHARE.start()).min(*KEPT_SHARE.end());
+        Self { recent, is_light, scale, layout, keymap, is_hint_done, aids, kept_share }
     }
     /// Reads a settings file; none is an empty one. Fails where it is not JSON, or not to be read.
     pub fn read(file: &Path) -> Result<Self> {

@@ -35,6 +35,14 @@ impl History {
         let excess = self.past.len().saturating_sub(self.limit);
         self.past.drain(..excess);
     }
+    /// The other documents that it holds, those the fewest steps away first.
+    pub fn others(&self) -> impl Iterator<Item = &Document> {
+        let back = |steps: &'_ [HistoryStep], i: usize| steps.len().checked_sub(i + 1);
+        (0..self.past.len().max(self.future.len())).flat_map(move |i| {
+            let past = back(&self.past, i).map(|at| &self.past[at].document);
+            past.into_iter().chain(back(&self.future, i).map(|at| &self.future[at].document))
+        })
+    }
     /// Goes back by one edit and returns its label; `None` at the beginning.
     pub fn undo(&mut self) -> Option<&str> {
         let HistoryStep { label, document } = self.past.pop()?;

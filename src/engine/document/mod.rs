@@ -7,6 +7,7 @@ mod behind;
 pub mod canvas_change;
 mod compose;
 pub mod conventions;
+mod count_memory;
 pub mod cut;
 mod deep;
 pub mod diff;
@@ -20,6 +21,7 @@ mod homes;
 mod layer;
 pub mod mask;
 mod measure;
+mod memory_use;
 pub mod normals;
 pub mod parts;
 mod prepare;
@@ -49,6 +51,7 @@ pub use layer::{
     LayerMap, LayerMask, LayerTransform, LayerWarp, Live, LookKind, MaskKind, Mesh, MeshFrame, NormalLayer, PixelLayer,
     Role, StrokeList, TransformShape,
 };
+pub use memory_use::{MemoryCount, MemoryUse};
 pub use parts::{Inflation, OutlineSource, Part, PartKind, Parts};
 pub use prepare::PreparedDocument;
 pub use progress::Progress;

@@ -102,6 +102,10 @@ impl PictureSource {
         let texture = OnceLock::from(self.texture().coarser(levels));
         Self { texture: Arc::new(texture), ..self.clone() }
     }
+    /// Bytes of the texture, if it was made.
+    pub fn texture_bytes(&self) -> u64 {
+        self.texture.get().map_or(0, Texture::bytes)
+    }
     pub(super) fn stamps(&self) -> &StampCache {
         &self.stamps
     }

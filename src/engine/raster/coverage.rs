@@ -52,6 +52,10 @@ impl CoverageTile {
         }
         Self::new(bytes)
     }
+    /// Bytes that it takes: none of its own where it is the one that is wholly covered.
+    pub fn held_bytes(&self) -> u64 {
+        if self.is_whole { 0 } else { TILE_AREA as u64 }
+    }
     pub fn bytes(&self) -> &[u8; TILE_AREA] {
         &self.bytes
     }

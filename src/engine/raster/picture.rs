@@ -76,6 +76,13 @@ impl Picture {
         let fits = matches!(self.texels, Texels::Srgb8(_)) && deep.len() == self.size.area();
         Self { deep: fits.then(|| deep.into()), ..self }
     }
+    /// Where its texels lie in memory: pictures that share them have the same.
+    pub fn place(&self) -> usize {
+        match &self.texels {
+            Texels::Srgb8(texels) => texels.as_ptr() as usize,
+            Texels::Linear(texels) => texels.as_ptr() as usize,
+        }
+    }
     /// Bytes that its texels take.
     pub fn bytes(&self) -> usize {
         let texel = match &self.texels {

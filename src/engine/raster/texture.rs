@@ -120,6 +120,10 @@ impl<T: Texel> Texture<T> {
         }
         Self { levels: levels.into(), first: 0 }
     }
+    /// Bytes that its levels take.
+    pub fn bytes(&self) -> u64 {
+        self.levels.iter().map(|level| size_of_val(&level.texels[..]) as u64).sum()
+    }
     /// The same texture without its finest levels, as if the picture were so much smaller; one is always left.
     pub fn coarser(&self, levels: u32) -> Self {
         let first = self.first.saturating_add(levels as usize).min(self.levels.len() - 1);

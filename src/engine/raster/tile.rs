@@ -74,6 +74,10 @@ impl Tile {
         let is_transparent = rgba.chunks_exact(4).all(|p| p[3] == 0);
         if is_transparent { None } else { Tile::from_bytes(rgba) }
     }
+    /// Bytes that its pixels take.
+    pub fn held_bytes(&self) -> u64 {
+        self.bytes().len() as u64
+    }
     /// Every alpha is 255.
     pub fn is_opaque(&self) -> bool {
         self.opaque

@@ -22,6 +22,14 @@ impl<K: PartialEq, V> RecentCache<K, V> {
     pub fn known(&self, key: &K) -> Option<Arc<V>> {
         self.lock().iter().find(|(known, _)| known == key).map(|(_, value)| value.clone())
     }
+    /// The sum of a figure over all values that are held.
+    pub fn sum(&self, figure: impl Fn(&V) -> u64) -> u64 {
+        self.lock().iter().map(|(_, value)| figure(value)).sum()
+    }
+    /// Holds none any more.
+    pub fn clear(&self) {
+        self.lock().clear();
+    }
     /// The value of a key. It never computes while holding the lock: a thread that waits for work of its own pool would
     /// deadlock. Threads that ask at the same time may each compute the value; the results are equal.
     ///

@@ -17,6 +17,7 @@ pub mod flow;
 pub mod grain;
 pub mod grow;
 pub mod integrate;
+mod kept;
 pub mod links;
 pub mod maps;
 pub mod objects;

@@ -26,6 +26,22 @@ pub struct MapPyramids {
     mirrored: OnceLock<Pyramid<TurnSpan>>,
 }
 
+impl MapPyramids {
+    /// Bytes of those that were made.
+    pub(super) fn bytes(&self) -> u64 {
+        let turns = [&self.nbar, &self.mirrored].map(|cell| cell.get().map_or(0, Pyramid::bytes));
+        let cover = self.cover.get().map_or(0, Pyramid::bytes);
+        cover + self.depth.get().map_or(0, Pyramid::bytes) + turns.iter().sum::<u64>()
+    }
+}
+
+impl<T: Copy> Pyramid<T> {
+    /// Bytes that it holds.
+    pub fn bytes(&self) -> u64 {
+        self.levels.iter().map(|level| (level.size().area() * size_of::<T>()) as u64).sum()
+    }
+}
+
 /// Levels of blocks: 8 px, 16 px, … one block for all. At least up to tiles.
 pub(super) struct Pyramid<T> {
     levels: Vec<Plane<T>>,

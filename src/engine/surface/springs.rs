@@ -113,6 +113,12 @@ impl SpringSolver {
         }
         Self { grid, parent, graphs }
     }
+    /// Bytes that it holds.
+    pub fn bytes(&self) -> u64 {
+        let [right, down] = self.grid.springs();
+        let levels: usize = self.graphs.iter().map(SpringGraph::bytes).sum();
+        (size_of_val(right) + size_of_val(down) + size_of_val(&self.parent[..]) + levels) as u64
+    }
     pub fn grid(&self) -> &SpringGrid {
         &self.grid
     }

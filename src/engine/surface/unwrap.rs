@@ -22,6 +22,7 @@ pub(super) use yields::YieldKey;
 pub use yields::{PlaneHold, PlaneSprings, PlaneYield};
 
 use super::contours::SheetOf;
+use super::kept::KeptBytes;
 use super::pyramid::{Pyramid, TurnSpan};
 use super::springs::{Effort, GoOn, SolveScratch, SpringGrid, SpringSolver};
 use super::{Surface, links};
@@ -40,6 +41,12 @@ pub struct Unwrapping {
     y: Plane<f32>,
     /// The ranges of both over blocks, for `support`.
     bounds: OnceLock<Pyramid<TurnSpan>>,
+}
+
+impl KeptBytes for Unwrapping {
+    fn kept_bytes(&self) -> u64 {
+        self.x.kept_bytes() + self.y.kept_bytes() + self.bounds.get().map_or(0, Pyramid::bytes)
+    }
 }
 
 /// What an unwrapping depends on beside the surface.

@@ -6,6 +6,7 @@ pub mod autosave;
 pub mod brushes;
 pub mod drawing;
 pub mod first_look;
+pub mod memory;
 mod open_document;
 mod path;
 mod picture_part;

@@ -2,13 +2,15 @@
 //! and a hint for the current tool. Floor 7.
 
 use crate::canvas::Canvas;
+use crate::document::MemoryUse;
 use crate::jobs::{JobKind, Jobs};
 use crate::math::Vec2;
 use crate::memory::spoken;
 use crate::requests::{UiRequests, WindowRequest};
 use crate::session::Session;
-use crate::usage::MemoryMeter;
-use crate::widgets::bar;
+use crate::session::memory::DocumentMemory;
+use crate::usage::{KEPT_SHARE, MemoryMeter};
+use crate::widgets::{NumberField, bar, named};
 use eframe::egui::{self, Button, RichText, Ui};
 
 pub fn show(
@@ -16,7 +18,7 @@ pub fn show(
     session: &Session,
     canvas: &Canvas,
     jobs: &Jobs,
-    memory: &mut MemoryMeter,
+    (memory, kept_share): (&mut MemoryMeter, f32),
     requests: &mut UiRequests,
 ) {
     ui.horizontal(|ui| {
@@ -78,14 +80,64 @@ pub fn show(
             let took = format!("{:.0} ms", canvas.took.as_secs_f32() * 1000.0);
             let text = if canvas.is_busy { RichText::new("Painting…").weak() } else { RichText::new(took).weak() };
             ui.label(text).on_hover_text("Time of the last redraw");
-            if let Some(bytes) = memory.bytes() {
-                ui.weak(spoken(bytes)).on_hover_text("Memory used by the program");
-            }
+            let is_idle = !canvas.is_busy && !ui.input(|input| input.pointer.any_down());
+            let used = memory.documents(session, kept_share, is_idle);
+            memory_menu(ui, memory, kept_share, used, requests);
             if document.surface.is_none() {
                 ui.weak("No surface: marks lie flat");
             }
         });
     });
+}
+
+/// What the document in front takes; the menu tells of what, and sets how much may be kept for speed.
+fn memory_menu(
+    ui: &mut Ui,
+    memory: &mut MemoryMeter,
+    kept_share: f32,
+    used: DocumentMemory,
+    requests: &mut UiRequests,
+) {
+    let MemoryUse { painted, pictures, maps, kept } = used.front;
+    let text = RichText::new(spoken(used.front.total())).weak();
+    let button = ui.menu_button(text, |ui| {
+        ui.set_min_width(300.0);
+        let rows = [
+            ("Painted, with its history", painted),
+            ("Pictures placed", pictures),
+            ("Maps of the shape", maps),
+            ("Kept for speed", kept),
+        ];
+        egui::Grid::new("memory").num_columns(2).show(ui, |ui| {
+            let others = used.all.total() - used.front.total();
+            let program = memory.bytes().map(|bytes| ("The program in all", bytes));
+            let rows = rows.into_iter().chain((others > 0).then_some(("Other documents", others))).chain(program);
+            for (name, bytes) in rows {
+                ui.label(name);
+                ui.label(spoken(bytes));
+                ui.end_row();
+            }
+        });
+        ui.separator();
+        let percent = *KEPT_SHARE.start() * 100.0..=*KEPT_SHARE.end() * 100.0;
+        let hint = "Beyond this share of the machine's memory old steps of the history let go of what they were \
+                    rendered to; undone, they are rendered again";
+        let field = NumberField::new("Keep at most", percent, hint).percent();
+        if let Some(change) = field.row(ui, (kept_share * 100.0).round()) {
+            requests.request(WindowRequest::KeptShare(change.map(|percent| percent / 100.0).to));
+        }
+        let (ceiling, machine) = (spoken(memory.ceiling(kept_share)), spoken(memory.machine_bytes()));
+        ui.weak(format!("{ceiling} of {machine} for speed alone, in all documents"));
+    });
+    let about = format!(
+        "Memory of this document: {} painted, {} of pictures, {} of maps, {} kept for speed. Click for more",
+        spoken(painted),
+        spoken(pictures),
+        spoken(maps),
+        spoken(kept)
+    );
+    named(&button.response, "Memory of this document");
+    button.response.on_hover_text(about);
 }
 
 /// What was said last, for as long as it stands; whether there is any.

@@ -26,9 +26,10 @@ impl MainWindow {
                 .exact_size(rows_pt + 6.0)
                 .frame(bar(ui))
                 .show(ui, |ui| panels::options::show(ui, &self.session, requests));
-            Panel::bottom("status").frame(bar(ui)).show(ui, |ui| {
-                panels::status::show(ui, &self.session, &self.canvas, &self.jobs, &mut self.memory, requests)
-            });
+            let memory = (&mut self.memory, self.settings.kept_share);
+            Panel::bottom("status")
+                .frame(bar(ui))
+                .show(ui, |ui| panels::status::show(ui, &self.session, &self.canvas, &self.jobs, memory, requests));
             let keymap = &self.settings.keymap;
             Panel::left("tools").exact_size(44.0).resizable(false).frame(bar(ui)).show(ui, |ui| {
                 // A low window scrolls them.

@@ -30,6 +30,7 @@ impl MainWindow {
             WindowRequest::ExportDialog => self.dialogs.push(Dialog::Export(self.export.clone())),
             WindowRequest::ExportMapsDialog => self.dialogs.push(Dialog::Maps(self.maps.clone())),
             WindowRequest::ExportMaps => self.ask_where(FilePurpose::ExportMaps),
+            WindowRequest::KeptShare(share) => self.settings.kept_share = share,
             WindowRequest::Say(sentence) => self.jobs.say(sentence),
             WindowRequest::Wobble => self.canvas.wobble(ctx, &self.session),
             WindowRequest::Export(extension) => {

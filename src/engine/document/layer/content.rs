@@ -25,6 +25,7 @@ use super::tile_content::TileContent;
 use crate::Result;
 use crate::document::Progress;
 use crate::document::behind::{Behind, BehindScene};
+use crate::document::memory_use::MemoryCount;
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Gradient, PlacedImage, Scene};
 use crate::raster::{Picture, TileAt};
@@ -140,6 +141,8 @@ trait LayerKind {
     }
     /// Where it may look different from `old`, a kind of the same name; `scene`: what both see.
     fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed;
+    /// Counts what it holds, as [`MemoryCount::add`] has it.
+    fn count(&self, _count: &mut MemoryCount, _keeps: bool) {}
     /// Its looks depend on the whole picture beneath it.
     fn measures_beneath(&self) -> bool {
         false
@@ -307,6 +310,9 @@ impl Content {
     }
     pub(in crate::document) fn changed_from(&self, old: &Content, scene: &dyn Fn() -> Scene) -> Changed {
         self.kind().changed_from(old, scene)
+    }
+    pub(in crate::document) fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        self.kind().count(count, keeps);
     }
     pub(in crate::document) fn measures_beneath(&self) -> bool {
         self.kind().measures_beneath()

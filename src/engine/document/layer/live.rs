@@ -3,6 +3,7 @@
 
 use super::tile_content::TileContent;
 use crate::document::behind::{BehindPixels, BehindScene};
+use crate::document::memory_use::MemoryCount;
 use crate::math::Rect;
 use crate::paint::Scene;
 use crate::raster::{Tile, TileAt};
@@ -217,6 +218,29 @@ impl<T> Live<T> {
         let cells = self.cells(scene);
         let is_missing = |at: &TileAt| cells.cell(*at).is_some_and(|cell| cell.get().is_none());
         TileAt::covering(scene.size.rect()).filter(is_missing).collect()
+    }
+    /// Counts the rendered tiles, unless they were; `keeps`: otherwise they are let go of.
+    pub(in crate::document) fn count_rendered(&self, count: &mut MemoryCount, keeps: bool) {
+        if !count.is_new(&self.rendered) {
+            return;
+        }
+        let mut current = self.lock();
+        if !keeps {
+            *current = None;
+        }
+        let Some((_, cells)) = &*current else { return };
+        for tile in cells.cells.iter().filter_map(OnceLock::get).flatten() {
+            if count.is_new(tile) {
+                count.add_kept(tile.held_bytes());
+            }
+        }
+        for behind in cells.behind.iter().filter_map(OnceLock::get) {
+            if let BehindPixels::Packed(packed) = behind
+                && count.is_new(packed)
+            {
+                count.add_kept(packed.bytes().len() as u64);
+            }
+        }
     }
     /// Both are the same value with the same rendered tiles.
     pub fn ptr_eq(&self, other: &Self) -> bool {

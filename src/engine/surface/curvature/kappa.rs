@@ -4,6 +4,7 @@
 use super::{Curvature, Surface};
 use crate::math::{Size, fast};
 use crate::raster::Plane;
+use crate::surface::kept::KeptBytes;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -28,6 +29,12 @@ const STEPS: f32 = i16::MAX as f32;
 const CHUNK: usize = 4096;
 /// Pixels of all maps of κ kept, 2 bytes each.
 const KEPT_PX: usize = 64 << 20;
+
+impl KeptBytes for Kappa {
+    fn kept_bytes(&self) -> u64 {
+        self.steps.kept_bytes()
+    }
+}
 
 impl Kappa {
     /// κ of one pixel, in `[−1, 1]`.

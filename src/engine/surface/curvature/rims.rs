@@ -4,6 +4,7 @@
 use crate::raster::Plane;
 use crate::surface::Surface;
 use crate::surface::contours::{BESIDE, Window, bits, mean_of};
+use crate::surface::kept::KeptBytes;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,6 +13,12 @@ use std::sync::Arc;
 /// from. Differences there are one-sided: noisy, and of a normal that is seen edge-on.
 pub struct Rims {
     pixels: Vec<RimPixel>,
+}
+
+impl KeptBytes for Rims {
+    fn kept_bytes(&self) -> u64 {
+        size_of_val(&self.pixels[..]) as u64
+    }
 }
 
 #[derive(Clone, Copy)]

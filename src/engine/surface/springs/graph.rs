@@ -123,6 +123,12 @@ impl SpringGraph {
     pub fn len(&self) -> usize {
         self.blocks.len()
     }
+    /// Bytes that it holds.
+    pub fn bytes(&self) -> usize {
+        let springs = size_of_val(&self.starts[..]) + size_of_val(&self.ends[..]) + size_of_val(&self.stiffness[..]);
+        let unknowns = size_of_val(&self.inverse[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.parent[..]);
+        springs + unknowns + size_of_val(&self.pieces.0[..])
+    }
     pub fn parents(&self) -> &[u32] {
         &self.parent
     }

@@ -5,6 +5,7 @@ use super::{UnwrapSettings, covered, place::nearest_covered, smooth, springs};
 use crate::math::{Rect, Vec2};
 use crate::memory::filled_or_unwind;
 use crate::raster::Plane;
+use crate::surface::kept::KeptBytes;
 use crate::surface::springs::{Effort, SolveScratch, SpringSolver};
 use crate::surface::{Surface, links};
 use std::sync::Arc;
@@ -21,6 +22,18 @@ pub struct PlaneHold {
 /// How far each pixel of a surface moves in its plane, px; 0 off it.
 pub struct PlaneYield {
     planes: [Plane<f32>; 2],
+}
+
+impl KeptBytes for PlaneYield {
+    fn kept_bytes(&self) -> u64 {
+        self.planes.iter().map(Plane::kept_bytes).sum()
+    }
+}
+
+impl KeptBytes for PlaneSprings {
+    fn kept_bytes(&self) -> u64 {
+        self.solver.bytes()
+    }
 }
 
 /// The springs of an unwrapped surface, kept for the next solve.

@@ -3,7 +3,7 @@
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent};
 use crate::document::layer::marks::Marks;
-use crate::document::{LayerMap, Live, Progress};
+use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::math::Vec2;
 use crate::paint::{Gradient, ImageFilter, Scene};
 use crate::raster::{PlanarTile, TileAt};
@@ -27,6 +27,9 @@ impl LayerKind for Live<Gradient> {
     }
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
+    }
+    fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        self.count_rendered(count, keeps);
     }
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())

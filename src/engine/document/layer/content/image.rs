@@ -4,7 +4,7 @@
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
 use crate::document::layer::marks::Marks;
-use crate::document::{LayerMap, Live, Progress};
+use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::math::{Mat2, Vec2};
 use crate::paint::{ImageFilter, PlacedImage, Placement, Scene};
 use crate::raster::sampler::TapRule;
@@ -37,6 +37,10 @@ impl LayerKind for Live<PlacedImage> {
     }
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| self.params().render_tile(scene, at))
+    }
+    fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        self.count_rendered(count, keeps);
+        count.add_picture(&self.params().source);
     }
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())

@@ -3,7 +3,7 @@
 
 use super::{CanvasScale, Changed, Content, LayerKind, NameFile, Role, Touched};
 use crate::Result;
-use crate::document::{DetailSource, LayerMap, NormalLayer};
+use crate::document::{DetailSource, LayerMap, MemoryCount, NormalLayer};
 use crate::paint::Scene;
 
 impl LayerKind for NormalLayer {
@@ -31,6 +31,11 @@ impl LayerKind for NormalLayer {
     }
     fn on_canvas(&self, map: &LayerMap, _: Option<(&Content, &Content)>) -> Option<Content> {
         Some(Content::Normals(NormalLayer { frame: map.plane, ..self.clone() }))
+    }
+    fn count(&self, count: &mut MemoryCount, _keeps: bool) {
+        if let DetailSource::Map { picture, .. } = &self.source {
+            count.add_picture(picture);
+        }
     }
     fn files(&self) -> Vec<&str> {
         match &self.source {

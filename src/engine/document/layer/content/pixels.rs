@@ -2,7 +2,7 @@
 //! Floor 4.
 
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, TileContent, Touched};
-use crate::document::LayerMap;
+use crate::document::{LayerMap, MemoryCount};
 use crate::math::{Rect, Vec2, vec2};
 use crate::paint::Scene;
 use crate::raster::warp::{PixelMap, warped};
@@ -49,6 +49,9 @@ impl LayerKind for PixelLayer {
     }
     fn label(&self) -> &'static str {
         "Paint"
+    }
+    fn count(&self, count: &mut MemoryCount, _keeps: bool) {
+        count.add_tiles(&self.tiles);
     }
     fn painted(&self, _scene: &Scene, at: TileAt) -> TileContent {
         TileContent::of_tile(self.tiles.tile(at).cloned())

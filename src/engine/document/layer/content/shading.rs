@@ -4,7 +4,7 @@
 use super::{BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent};
 use crate::Result;
 use crate::document::layer::marks::Marks;
-use crate::document::{LayerMap, Live, Progress};
+use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::paint::Scene;
 use crate::raster::{PlanarTile, TileAt};
 use crate::shading::{LightKind, LitSphere, Shading};
@@ -37,6 +37,9 @@ impl LayerKind for Live<Shading> {
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         // Off the surface it shows nothing.
         self.behind(scene, false, |scene, at| self.params().render_tile(scene, at))
+    }
+    fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        self.count_rendered(count, keeps);
     }
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())

@@ -4,7 +4,7 @@
 use super::{Behind, BehindScene, CanvasScale, Changed, Content, LayerKind, NameFile, TileContent, Touched};
 use crate::Result;
 use crate::document::layer::marks::{Done, Marks};
-use crate::document::{LayerMap, Live, Progress};
+use crate::document::{LayerMap, Live, MemoryCount, Progress};
 use crate::math::{PlaneMap, Vec2, vec2};
 use crate::paint::{Scene, Selection, Stroke, StrokeSelection, stroke};
 use crate::raster::warp::warped_plane_onto;
@@ -48,6 +48,10 @@ impl LayerKind for Live<StrokeList> {
     /// and again.
     fn painted_behind(&self, scene: &BehindScene) -> TileContent {
         self.behind(scene, true, |scene, at| stroke::render_tile(&self.params().strokes, scene, at))
+    }
+    fn count(&self, count: &mut MemoryCount, keeps: bool) {
+        self.count_rendered(count, keeps);
+        self.params().strokes.iter().for_each(|stroke| count.add_stroke(stroke));
     }
     fn marks(&self) -> Option<&dyn Marks> {
         Some(self.params())

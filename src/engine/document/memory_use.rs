@@ -1,0 +1,110 @@
+//! What documents take of memory, counted value by value. Floor 4. Whose values these are is told by their owners, and by
+//! `count_memory`.
+
+use crate::paint::{PictureSource, Selection, Stroke};
+use crate::raster::{CoverageGrid, TileGrid};
+use crate::surface::Surface;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Bytes, by what they are for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MemoryUse {
+    /// Painted pixels, readings of the pen, masks and selections.
+    pub painted: u64,
+    /// Placed pictures.
+    pub pictures: u64,
+    /// Maps of the shape.
+    pub maps: u64,
+    /// Kept for speed: rendered layers, and what was computed from the maps and the pictures.
+    pub kept: u64,
+}
+
+impl MemoryUse {
+    pub fn total(self) -> u64 {
+        self.painted + self.pictures + self.maps + self.kept
+    }
+    /// What came after another count, which it goes on from.
+    pub fn minus(self, before: Self) -> Self {
+        Self {
+            painted: self.painted - before.painted,
+            pictures: self.pictures - before.pictures,
+            maps: self.maps - before.maps,
+            kept: self.kept - before.kept,
+        }
+    }
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            painted: self.painted + other.painted,
+            pictures: self.pictures + other.pictures,
+            maps: self.maps + other.maps,
+            kept: self.kept + other.kept,
+        }
+    }
+}
+
+/// A count over documents that share what they hold: each value is counted once, with the first that holds it.
+#[derive(Default)]
+pub struct MemoryCount {
+    /// Where what was counted lies. Nothing of it may be dropped while the count goes on.
+    seen: HashSet<usize>,
+    used: MemoryUse,
+}
+
+impl MemoryCount {
+    /// All that was counted.
+    pub fn used(&self) -> MemoryUse {
+        self.used
+    }
+    /// Whether a shared value was not counted yet; from now on it is.
+    pub(in crate::document) fn is_new<T: ?Sized>(&mut self, shared: &Arc<T>) -> bool {
+        self.seen.insert(Arc::as_ptr(shared).cast::<()>() as usize)
+    }
+    pub(in crate::document) fn add_tiles(&mut self, tiles: &TileGrid) {
+        for (_, tile) in tiles.iter() {
+            if self.is_new(tile) {
+                self.used.painted += tile.held_bytes();
+            }
+        }
+    }
+    pub(in crate::document) fn add_painted(&mut self, bytes: u64) {
+        self.used.painted += bytes;
+    }
+    /// Tiles that a layer was rendered to.
+    pub(in crate::document) fn add_kept(&mut self, bytes: u64) {
+        self.used.kept += bytes;
+    }
+    pub(in crate::document) fn add_stroke(&mut self, stroke: &Arc<Stroke>) {
+        if self.is_new(stroke) {
+            self.used.painted += size_of_val(stroke.samples()) as u64;
+            stroke.selection().into_iter().for_each(|selection| self.add_selection(&selection.selection));
+        }
+    }
+    pub(in crate::document) fn add_picture(&mut self, source: &PictureSource) {
+        if self.seen.insert(source.picture.place()) {
+            self.used.pictures += source.picture.bytes() as u64;
+            self.used.kept += source.texture_bytes();
+        }
+    }
+    pub(in crate::document) fn add_selection(&mut self, selection: &Arc<Selection>) {
+        if self.is_new(selection) {
+            self.add_coverage(&selection.coverage);
+        }
+    }
+    pub(in crate::document) fn add_coverage(&mut self, coverage: &CoverageGrid) {
+        for (_, tile) in coverage.iter() {
+            if self.is_new(tile) {
+                self.used.painted += tile.held_bytes();
+            }
+        }
+    }
+    pub(in crate::document) fn add_surface(&mut self, surface: &Arc<Surface>, keeps: bool) {
+        if self.is_new(surface) {
+            if !keeps {
+                surface.let_go();
+            }
+            self.used.maps += surface.map_bytes();
+            self.used.kept += surface.computed_bytes();
+        }
+    }
+}

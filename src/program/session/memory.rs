@@ -1,0 +1,136 @@
+//! What the open documents take of memory, and its ceiling. Floor 6. The counting is `document::memory_use`'s.
+
+use super::Session;
+use crate::document::{Document, MemoryCount, MemoryUse};
+
+/// The open documents with their histories, to be counted on a thread of their own.
+pub struct HeldDocuments {
+    /// The one in front, its history, those fewest steps away first, and then the others in the same way.
+    presents: Vec<Document>,
+    pasts: Vec<Vec<Document>>,
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DocumentMemory {
+    /// The document in front with its history.
+    pub front: MemoryUse,
+    /// All that are open.
+    pub all: MemoryUse,
+}
+
+impl Session {
+    /// What there is to count; nothing where no document is open.
+    pub fn held_documents(&self) -> Option<HeldDocuments> {
+        let front = self.active()?;
+        let others = self.open_documents.iter().filter(|tab| tab.key != front.key);
+        let tabs: Vec<_> = std::iter::once(front).chain(others).collect();
+        Some(HeldDocuments {
+            presents: tabs.iter().map(|tab| tab.shown().clone()).collect(),
+            pasts: tabs
+                .iter()
+                .map(|tab| std::iter::once(tab.document()).chain(tab.history.others()).cloned().collect())
+                .collect(),
+        })
+    }
+}
+
+impl HeldDocuments {
+    /// Counts them. Once they keep more than `ceiling` bytes for speed, steps of the history let go of what they keep:
+    /// those farthest away first, and those of documents that are not in front before those of the one that is.
+    pub fn count(&self, ceiling: u64) -> DocumentMemory {
+        let mut count = MemoryCount::default();
+        let Some((front, others)) = self.presents.split_first() else { return DocumentMemory::default() };
+        let mut add = |document: &Document, is_shown: bool| {
+            let before = count.used();
+            let keeps = is_shown || before.kept < ceiling;
+            count.add(document, keeps);
+            count.used().minus(before)
+        };
+        let mut of_front = add(front, true);
+        for document in others {
+            add(document, true);
+        }
+        for (i, past) in self.pasts.iter().enumerate() {
+            for document in past {
+                let more = add(document, false);
+                if i == 0 {
+                    of_front = of_front.plus(more);
+                }
+            }
+        }
+        DocumentMemory { front: of_front, all: count.used() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Content, Layer, Live, Progress, flatten};
+    use crate::math::{Size, srgb::Color, vec2};
+    use crate::paint::{Gradient, GradientStop, ImageFilter};
+    use crate::session::OpenDocument;
+    use crate::surface::Operator;
+    use std::sync::Arc;
+
+    /// A gradient over the canvas that begins here.
+    fn gradient(x: f32) -> Content {
+        let stop = |t: f32, color| GradientStop { t, color };
+        Content::Gradient(Live::new(Gradient {
+            from: vec2(x, 0.0),
+            to: vec2(200.0, 100.0),
+            stops: vec![stop(0.0, Color::BLACK), stop(1.0, Color::WHITE)],
+            operator: Operator::None,
+            filter: ImageFilter::Antialias,
+            frame: Default::default(),
+        }))
+    }
+    /// A session whose gradient was dragged so often, each time seen whole.
+    fn dragged(times: usize) -> Session {
+        let mut session = Session::default();
+        let size = Size::new(256, 128);
+        let layer = Layer::new("ramp", gradient(0.0));
+        let id = layer.id;
+        let document = Document { layers: vec![Arc::new(layer)], ..Document::empty(size) };
+        flatten(&document, &Progress::default()).unwrap();
+        let mut tab = OpenDocument::new("ramp", document, None);
+        for i in 1..=times {
+            let next = tab.document().with_layer(id, |layer| layer.content = gradient(i as f32)).unwrap();
+            flatten(&next, &Progress::default()).unwrap();
+            tab.history.commit("Drag", next);
+        }
+        session.open_documents.push(tab);
+        session.current = session.open_documents.len() - 1;
+        session
+    }
+    /// Eight tiles of 64 × 64 pixels of four bytes.
+    const RENDERED: u64 = 8 * 64 * 64 * 4;
+
+    #[test]
+    fn every_step_is_counted_once_with_what_it_was_rendered_to() {
+        let session = dragged(5);
+        let held = session.held_documents().unwrap();
+        let used = held.count(u64::MAX);
+        assert_eq!(used.front.kept, 6 * RENDERED, "the present, and five before it");
+        assert_eq!(used.front, used.all);
+        assert_eq!(held.count(u64::MAX), used);
+    }
+    #[test]
+    fn beyond_the_ceiling_the_farthest_steps_let_go_and_the_picture_stays() {
+        let mut session = dragged(5);
+        let before = flatten(session.active().unwrap().document(), &Progress::default()).unwrap();
+        let used = session.held_documents().unwrap().count(3 * RENDERED);
+        assert_eq!(used.all.kept, 3 * RENDERED);
+        assert_eq!(session.held_documents().unwrap().count(u64::MAX), used, "what was let go of is gone");
+        assert_eq!(session.held_documents().unwrap().count(0).all.kept, RENDERED, "what is shown is kept");
+        // It is rendered again as it was.
+        let tab = &mut session.open_documents[session.current];
+        tab.history.undo();
+        tab.history.redo();
+        let again = flatten(tab.document(), &Progress::default()).unwrap();
+        assert!(before.changed_tiles(&again).iter().all(|at| {
+            let bytes = |grid: &crate::raster::TileGrid| grid.tile(*at).map(|tile| tile.bytes().to_vec());
+            bytes(&before) == bytes(&again)
+        }));
+    }
+}
