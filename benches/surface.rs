@@ -8,7 +8,8 @@ use divan::{Bencher, black_box, counter::ItemsCount};
 use rilievo_engine::math::{Size, vec2, vec3};
 use rilievo_engine::raster::Plane;
 use rilievo_engine::surface::deformation::DeformedRect;
-use rilievo_engine::surface::unwrap::{UnwrapSettings, Unwrapping};
+use rilievo_engine::surface::operator::UnwrapSettings;
+use rilievo_engine::surface::unwrap::Unwrapping;
 use rilievo_engine::surface::{Anchor, Bend, Deformation, Maps, Operator, Surface};
 
 fn main() {

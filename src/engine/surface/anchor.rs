@@ -2,7 +2,7 @@
 //! Floor 2.
 
 use super::operator::Operator;
-use super::unwrap::PlanePiece;
+use super::plane_piece::PlanePiece;
 use crate::math::{Mat2, Vec2};
 
 /// Pins the point `source` of the undeformed image at the canvas point `at`: D(at) = source.

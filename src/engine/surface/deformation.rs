@@ -6,9 +6,10 @@ mod fill;
 mod plane;
 
 use super::contours::SheetOf;
-use super::operator::{MapSlopes, MapValues, Operator, outer};
-use super::unwrap::UnwrapSettings;
-use super::{Anchor, Bend, Curvature, DabReach, Surface, Weights, links};
+pub use super::deformed_rect::DeformedRect;
+use super::differentiate::DifferencePairs;
+use super::operator::{MapSlopes, MapValues, Operator, UnwrapSettings, outer};
+use super::{Anchor, Bend, Curvature, DabReach, Surface, Weights};
 use crate::math::{Mat2, Rect, Size, Vec2, vec2};
 use plane::LaidPlanes;
 use std::ops::Range;
@@ -40,14 +41,6 @@ pub struct Deformation<'a> {
 struct Pin {
     anchor: Anchor,
     map_values: MapValues,
-}
-
-/// D at every pixel centre of a rectangle, row by row.
-#[derive(Default)]
-pub struct DeformedRect {
-    pub rect: Option<Rect>,
-    pub x: Vec<f32>,
-    pub y: Vec<f32>,
 }
 
 /// Positions beyond this are pulled in, so that no product of distances leaves f32.
@@ -295,31 +288,6 @@ fn nearest_map_values(surface: &Surface, at: Vec2) -> MapValues {
 
 fn map_values(surface: &Surface, x: usize, y: usize) -> MapValues {
     MapValues { depth: surface.depth(x, y), nbar: surface.nbar(x, y), nz: surface.normal(x, y).z }
-}
-
-/// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel
-/// itself in place of one that does not.
-pub(super) struct DifferencePairs {
-    /// Left and right, up and down.
-    pairs: [[(usize, usize); 2]; 2],
-    /// One over the distance of each pair; 1 where both are the pixel itself.
-    per_px: [f32; 2],
-}
-
-impl DifferencePairs {
-    pub(super) fn linked(surface: &Surface, x: usize, y: usize) -> Self {
-        let bits = surface.smooth_links_plane().at(x, y);
-        let side = |bit: u8| usize::from(bits & bit != 0);
-        let (left, right) = (x - side(links::LEFT), x + side(links::RIGHT));
-        let (up, down) = (y - side(links::UP), y + side(links::DOWN));
-        let per_px = [(right - left).max(1), (down - up).max(1)].map(|d| 1.0 / d as f32);
-        Self { pairs: [[(left, y), (right, y)], [(x, up), (x, down)]], per_px }
-    }
-    /// ∇ of a map, per px.
-    pub(super) fn slope(&self, map: impl Fn(usize, usize) -> f32) -> Vec2 {
-        let along = |[a, b]: [(usize, usize); 2], per_px: f32| (map(b.0, b.1) - map(a.0, a.1)) * per_px;
-        vec2(along(self.pairs[0], self.per_px[0]), along(self.pairs[1], self.per_px[1]))
-    }
 }
 
 /// How the maps change at a pixel, within its piece of surface.

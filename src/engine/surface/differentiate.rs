@@ -1,7 +1,8 @@
-//! Normals from depth, by differences that do not cross depth jumps.
+//! Derivatives of maps and normals from depth, by differences that do not cross depth jumps.
 //! Floor 2. The reverse is `integrate`.
 
-use crate::math::{Vec3, vec3};
+use super::{Surface, links};
+use crate::math::{Vec2, Vec3, vec2, vec3};
 use crate::raster::Plane;
 
 /// Unit normals (camera space, y up) of a depth map.
@@ -66,6 +67,31 @@ fn edge_aware(before: SideSteps, after: SideSteps) -> f32 {
         (Some(a), None) => a,
         (None, Some(b)) => b,
         (None, None) => 0.0,
+    }
+}
+
+/// The pixels that a derivative at a pixel differences: both neighbours where they continue the surface, the pixel
+/// itself in place of one that does not.
+pub(super) struct DifferencePairs {
+    /// Left and right, up and down.
+    pairs: [[(usize, usize); 2]; 2],
+    /// One over the distance of each pair; 1 where both are the pixel itself.
+    per_px: [f32; 2],
+}
+
+impl DifferencePairs {
+    pub fn linked(surface: &Surface, x: usize, y: usize) -> Self {
+        let bits = surface.smooth_links_plane().at(x, y);
+        let side = |bit: u8| usize::from(bits & bit != 0);
+        let (left, right) = (x - side(links::LEFT), x + side(links::RIGHT));
+        let (up, down) = (y - side(links::UP), y + side(links::DOWN));
+        let per_px = [(right - left).max(1), (down - up).max(1)].map(|d| 1.0 / d as f32);
+        Self { pairs: [[(left, y), (right, y)], [(x, up), (x, down)]], per_px }
+    }
+    /// ∇ of a map, per px.
+    pub fn slope(&self, map: impl Fn(usize, usize) -> f32) -> Vec2 {
+        let along = |[a, b]: [(usize, usize); 2], per_px: f32| (map(b.0, b.1) - map(a.0, a.1)) * per_px;
+        vec2(along(self.pairs[0], self.per_px[0]), along(self.pairs[1], self.per_px[1]))
     }
 }
 

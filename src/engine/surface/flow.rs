@@ -1,7 +1,7 @@
 //! Surface flows: the direction and the amount by which a picture on the surface is compressed (SF sec. 4.3; MATH 3).
 //! Floor 2. For viewing: no operator reads them. Not here: their colours on screen (`document::view`).
 
-use super::deformation::DifferencePairs;
+use super::differentiate::DifferencePairs;
 use super::{Bend, Deformation, Surface};
 use crate::math::{Mat2, Size, Vec2, Vec3, vec2};
 use crate::raster::{Plane, blur};

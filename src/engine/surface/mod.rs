@@ -11,6 +11,7 @@ pub mod contours;
 mod creases;
 pub mod curvature;
 pub mod deformation;
+mod deformed_rect;
 pub mod differentiate;
 pub mod fit;
 pub mod flow;
@@ -19,12 +20,13 @@ pub mod grow;
 pub mod integrate;
 mod kept;
 pub mod links;
-pub mod maps;
 pub mod objects;
 mod occlusion;
 pub mod operator;
+pub mod plane_piece;
 mod pyramid;
 pub mod reach;
+mod readings;
 pub mod region;
 pub mod scene;
 mod springs;
@@ -41,9 +43,260 @@ pub use deformation::Deformation;
 pub use flow::{FlowField, StructureTensor};
 pub use grain::NoiseRelief;
 pub use grow::KnownNearest;
-pub use maps::{Maps, Surface, SurfaceError};
 pub use objects::{Objects, PaintLimit};
 pub use operator::Operator;
 pub use reach::DabReach;
 pub use scene::Scene;
 pub use support::SupportBounds;
+
+use crate::math::{Size, Vec2, Vec3, srgb::quantise, vec2, vec3};
+use crate::raster::{CoverageGrid, Plane};
+use cache::RecentCache;
+use contours::{ContourMaps, Found, SheetOf};
+use curvature::{Kappa, Rims};
+use pyramid::MapPyramids;
+use rayon::prelude::*;
+use region::SurfaceRegion;
+use std::sync::{Arc, OnceLock};
+use through::Origin;
+use unwrap::{NearView, PlaneLayout, PlaneSprings, PlaneYield, Unwrapping, YieldKey};
+use view::Eye;
+
+/// What a surface is made from. At least one of normals and depth must be there; the importer derives the other.
+pub struct Maps {
+    /// Camera space: +x right, +y **up**, +z to the viewer. Zero, NaN or infinite where there is no surface; any
+    /// length.
+    pub normals: Plane<Vec3>,
+    /// 0 near … 1 far over the surface; not finite where there is none.
+    pub depth: Plane<f32>,
+    /// Coverage by the surface, 255 wholly covered.
+    pub coverage: Plane<u8>,
+}
+
+/// Why maps do not make a surface.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SurfaceError {
+    #[error("the maps differ in size: normals {normals}, {other} {size}")]
+    SizesDiffer { normals: Size, other: &'static str, size: Size },
+    #[error("there is no surface at all: every pixel is background")]
+    Empty,
+    #[error("a surface cannot be seen in a perspective")]
+    Perspective,
+}
+
+/// A picture of an object's shape. Every value is finite; where coverage is 0, the nearest surface values are repeated,
+/// so that filters may read across the silhouette.
+pub struct Surface {
+    size: Size,
+    /// n̄ = (n_x, −n_y): image axes, y down.
+    nbar_x: Plane<f32>,
+    nbar_y: Plane<f32>,
+    nz: Plane<f32>,
+    depth: Plane<f32>,
+    coverage: Plane<u8>,
+    /// From where it was seen.
+    eye: Eye,
+    /// Which neighbours belong to the same piece of surface (`links`).
+    links: Plane<u8>,
+    /// The same without those across creases; absent where there are none.
+    smooth_links: Option<Arc<Plane<u8>>>,
+    depth_range_px: f32,
+    /// By blur.
+    curvatures: RecentCache<u32, Curvature>,
+    /// Where curvature is continued.
+    rims: RecentCache<(), Rims>,
+    /// By the scales that are weighed.
+    kappas: RecentCache<Vec<[u32; 3]>, Kappa>,
+    /// The surface that detail was combined onto, if any; what depends on depth alone is computed there.
+    base: Option<Arc<Surface>>,
+    /// By radius.
+    occlusions: RecentCache<u32, Plane<f32>>,
+    regions: RecentCache<SurfaceRegion, CoverageGrid>,
+    /// By amount and blur.
+    unwrappings: RecentCache<[u32; 2], Unwrapping>,
+    plane_layouts: RecentCache<[u32; 2], Option<Arc<PlaneLayout>>>,
+    plane_yields: RecentCache<YieldKey, PlaneYield>,
+    plane_springs: RecentCache<[u32; 2], PlaneSprings>,
+    near_view: OnceLock<Option<NearView>>,
+    bounds: MapPyramids,
+    objects: OnceLock<Objects>,
+    /// Which part each pixel shows, where the surface was made of parts; their objects are these.
+    parts: Option<Arc<Plane<u32>>>,
+    /// The pixels that two populations see.
+    contours: Arc<Contours>,
+    /// What the other populations read.
+    sheets: RecentCache<(), Surface>,
+    /// Their normals, where detail was combined onto them.
+    sheet_normals: Option<Plane<Vec3>>,
+    /// The surface that this one is the sheet of, if it is one.
+    sheet_of: Option<SheetOf>,
+    /// What this one was seen through a map of, if it was.
+    origin: Option<Origin>,
+}
+
+/// n̄_x, n̄_y and n_z of normals. These are given back from their end on as they are taken apart, so that both never
+/// stand whole beside each other.
+fn apart(normals: Plane<Vec3>) -> [Plane<f32>; 3] {
+    const AT_A_TIME: usize = 1 << 22;
+    let size = normals.size();
+    let mut planes = [(); 3].map(|()| Plane::filled(size, 0.0));
+    let mut left = normals.into_values();
+    while !left.is_empty() {
+        let start = (left.len() - 1) / AT_A_TIME * AT_A_TIME;
+        let [x, y, z] = planes.each_mut().map(|plane| plane.values_mut()[start..].par_iter_mut());
+        left[start..].par_iter().zip(x).zip(y).zip(z).for_each(|(((n, x), y), z)| {
+            let n = n.normalize_or(Vec3::Z);
+            (*x, *y, *z) = (n.x, -n.y, n.z);
+        });
+        left.truncate(start);
+        left.shrink_to_fit();
+    }
+    planes
+}
+
+impl Surface {
+    /// Normalises the normals, drops what is not finite, grows the valid values outward and finds the depth jumps.
+    pub fn new(maps: Maps) -> Result<Self, SurfaceError> {
+        Self::with_depth_range(maps, None)
+    }
+    /// The same of maps whose depth range is known, px.
+    fn with_depth_range(maps: Maps, range_px: Option<f32>) -> Result<Self, SurfaceError> {
+        Self::made(maps, range_px, &mut KnownNearest::default())
+    }
+    fn made(maps: Maps, range_px: Option<f32>, known: &mut KnownNearest) -> Result<Self, SurfaceError> {
+        let Maps { mut normals, mut depth, mut coverage } = maps;
+        let size = normals.size();
+        for (other, s) in [("depth", depth.size()), ("mask", coverage.size())] {
+            if s != size {
+                return Err(SurfaceError::SizesDiffer { normals: size, other, size: s });
+            }
+        }
+        let valid = Plane::from_fn(size, |x, y| {
+            let n = normals.at(x, y);
+            coverage.at(x, y) > 0 && depth.at(x, y).is_finite() && n.is_finite() && n.length() > 1e-6
+        });
+        // A partly covered pixel at the rim without a normal takes its neighbour's; further inside it is a hole.
+        grow::punch_holes(&mut coverage, &valid);
+        if valid.values().iter().any(|valid| !valid) {
+            let nearest = known.take(&valid).ok_or(SurfaceError::Empty)?;
+            grow::fill(&mut normals, &nearest);
+            grow::fill(&mut depth, &nearest);
+            known.keep(&valid, nearest);
+        }
+        let depth = depth.updated(|_, _, z| z.clamp(0.0, 1.0));
+        let [nbar_x, nbar_y, nz] = apart(normals);
+        let estimated = || links::depth_range_px(&nbar_x, &nbar_y, &nz, &depth, &coverage);
+        let depth_range_px = range_px.unwrap_or_else(estimated);
+        let links = links::find(&nbar_x, &nbar_y, &nz, &depth, &coverage, depth_range_px);
+        let mut surface = Self::of_planes([nbar_x, nbar_y, nz, depth], [coverage, links], depth_range_px);
+        surface.find_contours(&valid);
+        Ok(surface)
+    }
+    /// n̄_x, n̄_y, n_z and depth; coverage and links.
+    fn of_planes(reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], depth_range_px: f32) -> Self {
+        let ([nbar_x, nbar_y, nz, depth], [coverage, links]) = (reading, bytes);
+        Self {
+            size: nz.size(),
+            nbar_x,
+            nbar_y,
+            nz,
+            depth,
+            coverage,
+            eye: Eye::Afar,
+            links,
+            smooth_links: None,
+            depth_range_px,
+            curvatures: RecentCache::default(),
+            rims: RecentCache::default(),
+            kappas: RecentCache::default(),
+            base: None,
+            occlusions: RecentCache::default(),
+            regions: RecentCache::default(),
+            unwrappings: RecentCache::default(),
+            plane_layouts: RecentCache::default(),
+            plane_yields: RecentCache::default(),
+            plane_springs: RecentCache::default(),
+            near_view: OnceLock::new(),
+            bounds: MapPyramids::default(),
+            objects: OnceLock::new(),
+            parts: None,
+            contours: Arc::default(),
+            sheets: RecentCache::default(),
+            sheet_normals: None,
+            sheet_of: None,
+            origin: None,
+        }
+    }
+    /// A surface made of parts, whose objects are known: no depth jump is needed to tell them apart.
+    ///
+    /// * `parts`: for each pixel which part it shows, from 1 on; 0 where there is none.
+    /// * `piece_of`: for each part the piece of surface that it belongs to: parts grown into one share it. One that is
+    ///   not listed is a piece of its own.
+    /// * `known`: of the surface made before, so that the same need not be found again.
+    pub fn with_parts(
+        maps: Maps,
+        parts: Plane<u32>,
+        piece_of: &[u32],
+        known: &mut KnownNearest,
+    ) -> Result<Self, SurfaceError> {
+        let mut surface = Self::made(maps, None, known)?;
+        if parts.size() != surface.size {
+            return Err(SurfaceError::SizesDiffer { normals: surface.size, other: "parts", size: parts.size() });
+        }
+        links::cut(&mut surface.links, |x, y| {
+            let part = parts.at(x, y);
+            piece_of.get(part as usize).copied().unwrap_or(part)
+        });
+        surface.parts = Some(Arc::new(parts));
+        surface.find_creases();
+        // Where parts touch without a jump there are contours, too.
+        surface.contours = Arc::new(surface.with_contour_maps(None, contours::find).contours);
+        Ok(surface)
+    }
+    /// Finds the contours, and puts readings of one side where the maps hold some of neither.
+    fn find_contours(&mut self, valid: &Plane<bool>) {
+        self.find_creases();
+        let Found { contours, amended } = self.with_contour_maps(Some(valid), contours::find);
+        self.contours = Arc::new(contours);
+        let mut moved = false;
+        for (i, reading) in amended {
+            let z = &mut self.depth.values_mut()[i];
+            moved |= (*z - reading.depth).abs() * self.depth_range_px > 1.0;
+            *z = reading.depth;
+            let normal = [&mut self.nbar_x, &mut self.nbar_y, &mut self.nz].map(|plane| &mut plane.values_mut()[i]);
+            normal.into_iter().zip([reading.nbar.x, reading.nbar.y, reading.nz]).for_each(|(to, from)| *to = from);
+        }
+        if moved {
+            let [nx, ny, nz] = [&self.nbar_x, &self.nbar_y, &self.nz];
+            self.links = links::find(nx, ny, nz, &self.depth, &self.coverage, self.depth_range_px);
+            self.find_creases();
+        }
+    }
+    fn find_creases(&mut self) {
+        self.smooth_links = creases::smooth_links(&self.links, [&self.nbar_x, &self.nbar_y]).map(Arc::new);
+    }
+    /// Calls with the maps that contours are found in. `valid`: where the maps told something, if it is known.
+    fn with_contour_maps<T>(&self, valid: Option<&Plane<bool>>, with: impl FnOnce(&ContourMaps) -> T) -> T {
+        let Self { size, nbar_x, nbar_y, depth, coverage, links: all_links, .. } = self;
+        let links = self.smooth_links_plane();
+        with(&ContourMaps { size: *size, nbar: [nbar_x, nbar_y], depth, coverage, links, all_links, valid })
+    }
+    /// The sheet of a surface from its planes.
+    fn sheet_of_planes(&self, reading: [Plane<f32>; 4], bytes: [Plane<u8>; 2], of: SheetOf) -> Self {
+        Self { eye: self.eye, sheet_of: Some(of), ..Self::of_planes(reading, bytes, self.depth_range_px) }
+    }
+    /// The same surface with other unit normals (y up), one for each pixel, and for each of its sheet; what depends on
+    /// depth alone is shared.
+    fn with_normals(self: &Arc<Self>, normals: &Plane<Vec3>, of_sheet: Option<Plane<Vec3>>) -> Self {
+        let reading = [normals.map(|n| n.x), normals.map(|n| -n.y), normals.map(|n| n.z), self.depth.clone()];
+        Self {
+            base: Some(self.base.as_ref().unwrap_or(self).clone()),
+            eye: self.eye,
+            contours: self.contours.clone(),
+            smooth_links: self.smooth_links.clone(),
+            parts: self.parts.clone(),
+            sheet_normals: of_sheet,
+            ..Self::of_planes(reading, [self.coverage.clone(), self.links.clone()], self.depth_range_px)
+        }
+    }
+}

@@ -11,6 +11,8 @@ use std::sync::OnceLock;
 pub const BLOCK: usize = 8;
 /// Blocks along the side of a tile.
 pub const TILE_BLOCKS: usize = TILE / BLOCK;
+/// The part of a tile that may be touched: bit `c` of row `r` stands for the block of 8 × 8 px in column `c`.
+pub type TileBlocks = [u8; TILE_BLOCKS];
 /// The level of the pyramid whose blocks are tiles.
 pub(super) const TILE_LEVEL: usize = TILE_BLOCKS.ilog2() as usize;
 

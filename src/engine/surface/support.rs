@@ -5,7 +5,7 @@
 mod blocks;
 
 use super::operator::{Operator, first_order, reflection, second_order};
-pub use super::pyramid::{BLOCK, TILE_BLOCKS};
+pub use super::pyramid::{BLOCK, TILE_BLOCKS, TileBlocks};
 use super::pyramid::{BlockCover, DepthSpan, Pyramid, PyramidBlock, TILE_LEVEL, TurnSpan, block_rect, level_size};
 use super::unwrap::Unwrapping;
 use super::{DabReach, Surface};
@@ -15,9 +15,6 @@ use std::sync::Arc;
 
 /// Tolerance added to every distance, px, because D is computed in f32.
 const ROUNDING_PX: f32 = 0.05;
-
-/// The part of a tile that may be touched: bit `c` of row `r` stands for the block of 8 × 8 px in column `c`.
-pub type TileBlocks = [u8; TILE_BLOCKS];
 
 /// How far around its anchor a footprint reaches, in the image plane.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,6 @@
 mod layout;
 pub mod metric;
 mod near;
-mod pieces;
 mod place;
 mod seen;
 mod settle;
@@ -15,7 +14,6 @@ mod yields;
 
 pub use layout::{CanvasPlace, LaidPiece, PlaneLayout};
 pub use near::NearView;
-pub use pieces::PlanePiece;
 pub use place::PlanePlace;
 pub use seen::PlaneView;
 pub(super) use yields::YieldKey;
@@ -23,6 +21,7 @@ pub use yields::{PlaneHold, PlaneSprings, PlaneYield};
 
 use super::contours::SheetOf;
 use super::kept::KeptBytes;
+use super::operator::UnwrapSettings;
 use super::pyramid::{Pyramid, TurnSpan};
 use super::springs::{Effort, GoOn, SolveScratch, SpringGrid, SpringSolver};
 use super::{Surface, links};
@@ -46,25 +45,6 @@ pub struct Unwrapping {
 impl KeptBytes for Unwrapping {
     fn kept_bytes(&self) -> u64 {
         self.x.kept_bytes() + self.y.kept_bytes() + self.bounds.get().map_or(0, Pyramid::bytes)
-    }
-}
-
-/// What an unwrapping depends on beside the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnwrapSettings {
-    /// a of MATH 8, `[0, 2]`.
-    pub amount: f32,
-    /// Standard deviation of the blur of the normals beforehand, px.
-    pub smooth_px: f32,
-}
-
-impl UnwrapSettings {
-    /// Within what a surface can be unwrapped with; what is no number counts as 0.
-    fn held(self, size: Size) -> Self {
-        Self { amount: self.amount.max(0.0).min(2.0), smooth_px: self.smooth_px.max(0.0).min(size.longer_side()) }
-    }
-    fn key(self) -> [u32; 2] {
-        [self.amount.to_bits(), self.smooth_px.to_bits()]
     }
 }
 

@@ -9,7 +9,7 @@ use crate::math::range::STOPS;
 use crate::math::{Size, TURNS, UNIT, Vec2, srgb::Color, vec2};
 use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, PlacedImage, Placement};
 use crate::raster::Outside;
-use crate::surface::unwrap::PlanePiece;
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, Bend, Operator, Weights};
 use serde_json::Value;
 

@@ -35,7 +35,7 @@ use crate::io::{Overwrite, Terms};
 use crate::math::{Rect, Vec2, srgb::Color};
 use crate::paint::{Brush, Fill, LiquifySettings};
 use crate::surface::Operator;
-use crate::surface::unwrap::UnwrapSettings;
+use crate::surface::operator::UnwrapSettings;
 use crate::tools::SelectSettings;
 use crate::tools::frame::Carried;
 use crate::tools::settings::CropAspect;

@@ -148,7 +148,7 @@ mod tests {
     use crate::math::{Size, Vec3, vec3};
     use crate::raster::Plane;
     use crate::surface::Maps;
-    use crate::surface::unwrap::UnwrapSettings;
+    use crate::surface::operator::UnwrapSettings;
 
     /// A board that leans back to the right.
     fn board() -> Surface {

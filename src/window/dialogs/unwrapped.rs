@@ -6,7 +6,7 @@ use crate::document::Highlights;
 use crate::document::view::UnwrapOptions;
 use crate::requests::WindowRequest;
 use crate::session::Session;
-use crate::surface::unwrap::UnwrapSettings;
+use crate::surface::operator::UnwrapSettings;
 use eframe::egui::Ui;
 
 /// The choices, kept for the next time.

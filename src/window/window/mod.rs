@@ -29,7 +29,7 @@ use crate::session::actions::{self, GuideAction};
 use crate::session::replay::ReplayValue;
 use crate::session::{Action, Session, storage};
 use crate::surface::Surface;
-use crate::surface::unwrap::UnwrapSettings;
+use crate::surface::operator::UnwrapSettings;
 use crate::tools::snap::ViewAids;
 use crate::usage::MemoryMeter;
 use eframe::egui::{self, Ui, ViewportCommand};

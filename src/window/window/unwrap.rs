@@ -8,7 +8,8 @@ use crate::session::Action;
 use crate::session::actions::ViewAction;
 use crate::session::actions::placing::read_picture;
 use crate::surface::Surface;
-use crate::surface::unwrap::{SOLVES, UnwrapSettings};
+use crate::surface::operator::UnwrapSettings;
+use crate::surface::unwrap::SOLVES;
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -11,7 +11,7 @@ use crate::paint::{
     Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke,
     StrokeSelection, Tip,
 };
-use crate::surface::unwrap::PlanePiece;
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Bend, Operator, Weights};
 use std::sync::Arc;
 

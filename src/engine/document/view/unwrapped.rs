@@ -8,7 +8,8 @@ use crate::memory::filled_or_unwind;
 use crate::paint::Placement;
 use crate::raster::{Picture, TileGrid};
 use crate::surface::deformation::DeformedRect;
-use crate::surface::unwrap::{PlaneView, UnwrapSettings};
+use crate::surface::operator::UnwrapSettings;
+use crate::surface::unwrap::PlaneView;
 use crate::surface::{Bend, Deformation};
 use rayon::prelude::*;
 

@@ -12,7 +12,7 @@ use super::window::{Window, steps_of};
 use super::{ContourPixel, Contours};
 use crate::math::{Rect, Size, vec2};
 use crate::raster::{Plane, TILE, TileAt};
-use crate::surface::support::TileBlocks;
+use crate::surface::pyramid::TileBlocks;
 use crate::surface::{Surface, links, pyramid};
 use rayon::prelude::*;
 use std::ops::Range;

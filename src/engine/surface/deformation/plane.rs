@@ -7,7 +7,9 @@
 
 use crate::math::{Affine2, Mat2, Vec2, vec2};
 use crate::raster::Plane;
-use crate::surface::unwrap::{PlaneHold, PlanePiece, PlanePlace, PlaneYield, UnwrapSettings, Unwrapping};
+use crate::surface::operator::UnwrapSettings;
+use crate::surface::plane_piece::PlanePiece;
+use crate::surface::unwrap::{PlaneHold, PlanePlace, PlaneYield, Unwrapping};
 use crate::surface::{Bend, Surface, Weights};
 use std::sync::Arc;
 

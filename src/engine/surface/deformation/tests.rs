@@ -4,7 +4,7 @@ use super::*;
 use crate::math::{Vec3, vec3};
 use crate::raster::Plane;
 use crate::surface::Maps;
-use crate::surface::unwrap::PlanePiece;
+use crate::surface::plane_piece::PlanePiece;
 use proptest::prelude::*;
 
 const SIZE: Size = Size::new(160, 120);

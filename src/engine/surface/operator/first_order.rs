@@ -1,6 +1,6 @@
 //! First-order operator: an image grows where the surface is nearer and shrinks where it is farther.
 //! Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md).
-//! Not here: reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
+//! Not here: reading maps (`Surface`), anchors and weights (`anchor`), pixels (`raster`).
 
 use super::outer;
 use crate::math::{Mat2, Vec2};

@@ -1,16 +1,17 @@
 //! The operators: how far a point of the image moves where the surface is nearer (D_p), turns (D_n) or mirrors (D_r)
 //! relative to an anchor, or where the surface unwrapped has it (D_s). Floor 2. Pure functions; each is an equation
-//! (docs/EQUATIONS.md). `kinds` is the table of their names and numbers. Not here: reading maps (`maps`), anchors and
+//! (docs/EQUATIONS.md). `kinds` is the table of their names and numbers. Not here: reading maps (`Surface`), anchors and
 //! weights (`anchor`), the unwrapping itself (`unwrap`), pixels (`raster`).
 
 pub mod first_order;
 pub mod kinds;
 pub mod reflection;
 pub mod second_order;
+mod unwrapping;
 
-use super::unwrap::UnwrapSettings;
 use crate::math::{Mat2, Vec2};
 pub use kinds::OperatorNumber;
+pub use unwrapping::UnwrapSettings;
 
 /// Which surface flow an image follows, and how strongly.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -1,6 +1,6 @@
 //! Reflection operator: how an image bends when it is a mirror's angular map (beyond the paper).
 //! Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md).
-//! Not here: reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
+//! Not here: reading maps (`Surface`), anchors and weights (`anchor`), pixels (`raster`).
 
 use super::outer;
 use crate::math::{Mat2, Vec2};

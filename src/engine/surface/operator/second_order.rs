@@ -1,6 +1,6 @@
 //! Second-order operator: how an image bends where the surface turns.
 //! Floor 2. Pure functions; each is an equation of the papers (docs/EQUATIONS.md).
-//! Not here: reading maps (`maps`), anchors and weights (`anchor`), pixels (`raster`).
+//! Not here: reading maps (`Surface`), anchors and weights (`anchor`), pixels (`raster`).
 
 use super::outer;
 use crate::math::{Mat2, Vec2};

@@ -4,7 +4,7 @@
 use super::Unwrapping;
 use crate::math::{Mat2, Vec2, vec2};
 use crate::surface::Surface;
-use crate::surface::deformation::DifferencePairs;
+use crate::surface::differentiate::DifferencePairs;
 
 /// Where a canvas point lies in the plane of the piece of surface under it.
 #[derive(Clone, Copy, Debug, PartialEq)]

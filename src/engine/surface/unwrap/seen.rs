@@ -3,7 +3,7 @@
 
 use crate::math::{Rect, Vec2, vec2};
 use crate::memory::filled_or_unwind;
-use crate::surface::deformation::DeformedRect;
+use crate::surface::deformed_rect::DeformedRect;
 use crate::surface::{Surface, links};
 
 /// The canvas point at each pixel of a part of the plane, row by row; NaN where no surface lies.

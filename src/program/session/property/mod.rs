@@ -14,7 +14,7 @@ use crate::paint::{Adjust, Gradient, GradientStop, ImageFilter, PictureSource, P
 use crate::raster::{BlendMode, Outside, Resampling};
 use crate::shading::scaling::Reference;
 use crate::shading::{Features, Light, Model, Projection, RadianceScaling, Scaling, Shading, Term};
-use crate::surface::unwrap::PlanePiece;
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator, Weights};
 use values::set_mask;
 

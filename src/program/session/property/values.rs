@@ -9,7 +9,7 @@ use crate::raster::{BlendMode, Outside};
 use crate::session::replay::{as_in_recipes, names};
 use crate::shading::scaling::Reference;
 use crate::shading::{Features, Light, Model, Projection, Scaling, Term};
-use crate::surface::unwrap::PlanePiece;
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::{Anchor, NoiseRelief, Operator};
 
 names!(BlendMode);

@@ -4,8 +4,9 @@
 use crate::document::{Content, Document, LayerId, LayerLock, Live};
 use crate::math::{Mat2, Rect, Vec2, vec2};
 use crate::paint::PlacedImage;
+use crate::surface::plane_piece::PlanePiece;
 use crate::surface::unwrap::metric::turn;
-use crate::surface::unwrap::{LaidPiece, PlaneLayout, PlanePiece};
+use crate::surface::unwrap::{LaidPiece, PlaneLayout};
 use crate::surface::{Bend, Deformation, Surface};
 use crate::tools::{GRAB_PT, Gesture, GestureStart, ModifierKeys, Outcome, PenSample, ToolContext};
 

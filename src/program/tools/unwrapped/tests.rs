@@ -3,7 +3,7 @@ use crate::math::{Mat2, Size, Vec3, srgb::Color, vec2, vec3};
 use crate::paint::Stroke;
 use crate::raster::Plane;
 use crate::surface::Maps;
-use crate::surface::unwrap::UnwrapSettings;
+use crate::surface::operator::UnwrapSettings;
 use crate::tools::ModifierKeys;
 
 const RADIUS: f32 = 80.0;
