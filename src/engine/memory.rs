@@ -2,6 +2,7 @@
 //! Floor 0. Not here: how much the machine has, which floors above read and pass in.
 
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The allocator has no room for a buffer of so many bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -80,6 +81,33 @@ impl Drop for Kept {
     fn drop(&mut self) {
         KEPT.fetch_sub(self.bytes, Ordering::Relaxed);
     }
+}
+
+/// The value of a key that was made before, or a new one.
+///
+/// * `made`: the last values and their keys; `most`: how many are kept.
+pub fn made_once<K: PartialEq, V>(
+    made: &Mutex<Vec<(K, Arc<V>)>>,
+    most: usize,
+    key: K,
+    make: impl FnOnce() -> V,
+) -> Arc<V> {
+    let lock = || made.lock().unwrap_or_else(PoisonError::into_inner);
+    let find = |made: &[(K, Arc<V>)]| made.iter().find(|(known, _)| *known == key).map(|(_, value)| value.clone());
+    if let Some(value) = find(&lock()) {
+        return value;
+    }
+    // Without the lock: two threads may both compute it; the results are equal.
+    let value = Arc::new(make());
+    let mut made = lock();
+    if let Some(value) = find(&made) {
+        return value;
+    }
+    if made.len() >= most {
+        made.remove(0);
+    }
+    made.push((key, value.clone()));
+    value
 }
 
 #[cfg(test)]

@@ -4,9 +4,12 @@
 
 mod coverage;
 mod round;
+pub mod shape;
+mod softened;
 
 pub use coverage::Footprint;
-pub use round::slope;
+pub use shape::TipShape;
+pub use softened::SoftenedStamps;
 
 use super::dab_walker::Dab;
 use super::image::transform;

@@ -2,21 +2,14 @@
 //! Floor 3. Not here: the ramp itself (`ramp`), D (`surface::deformation`).
 
 use super::image::{BentFrame, transform};
+pub use super::ramp::GradientStop;
 use super::ramp::Ramp;
 use super::scene::{ImageFilter, Scene};
-use crate::math::{Affine2, PlaneMap, Rect, Vec2, srgb::Color};
+use crate::math::{Affine2, PlaneMap, Rect, Vec2};
 use crate::raster::tile::{TILE, transparent_f32};
 use crate::raster::{PlanarTile, Tile, TileAt};
 use crate::surface::deformation::{Deformation, DeformedRect};
 use crate::surface::{Anchor, Bend, Operator, Weights, links};
-
-/// A colour at a position of the ramp.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GradientStop {
-    /// In `[0, 1]`, not decreasing from stop to stop.
-    pub t: f32,
-    pub color: Color,
-}
 
 /// ramp(t(D(q))), t the projection on the segment [from, to], clamped. Its two ends are its anchors.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,7 +117,7 @@ impl RampPositions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Size, vec2};
+    use crate::math::{Size, srgb::Color, vec2};
 
     fn black_to_white(from: Vec2, to: Vec2) -> Gradient {
         let stops = vec![GradientStop { t: 0.0, color: Color::BLACK }, GradientStop { t: 1.0, color: Color::WHITE }];

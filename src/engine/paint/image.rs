@@ -7,7 +7,7 @@ use super::{
     adjust::Adjust,
     patches::Patches,
     scene::{ImageFilter, Scene},
-    stamp::StampCache,
+    stamp::{StampCache, TipStamp},
 };
 use crate::math::{Affine2, PlaneMap, Rect, Size, Vec2, vec2};
 use crate::raster::sampler::{Antialias, Bilinear, TapRule};
@@ -105,6 +105,10 @@ impl PictureSource {
     /// Bytes of the texture, if it was made.
     pub fn texture_bytes(&self) -> u64 {
         self.texture.get().map_or(0, Texture::bytes)
+    }
+    /// It as a tip, with a softness in `[0, 1]`.
+    pub(super) fn stamp(&self, softness: f32) -> Arc<TipStamp> {
+        self.stamps.stamp(self.texture(), softness)
     }
     pub(super) fn stamps(&self) -> &StampCache {
         &self.stamps

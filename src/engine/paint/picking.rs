@@ -2,9 +2,10 @@
 //! Floor 3.
 
 use super::brush::{Brush, StrokeFrame};
+use super::sample::Sample;
 use super::scene::Scene;
 use super::selection::StrokeSelection;
-use super::stroke::{Sample, Stroke, render_tile};
+use super::stroke::{Stroke, render_tile};
 use crate::math::{Mat2, Vec2};
 use crate::raster::{BlendMode, CoverageGrid, TILE, Tile, TileAt, TileGrid};
 use std::sync::Arc;

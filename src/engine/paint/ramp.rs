@@ -1,7 +1,15 @@
 //! A colour ramp, read at a point or averaged over an interval in closed form.
 //! Floor 3. Not here: which t a pixel has (`gradient`).
 
-use super::gradient::GradientStop;
+use crate::math::srgb::Color;
+
+/// A colour at a position of the ramp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GradientStop {
+    /// In `[0, 1]`, not decreasing from stop to stop.
+    pub t: f32,
+    pub color: Color,
+}
 
 /// The stops, sorted, with the integral of the premultiplied colour up to each.
 pub struct Ramp {

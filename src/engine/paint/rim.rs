@@ -11,9 +11,9 @@
 
 use super::brush::{Brush, Tip};
 use super::dynamics::Property;
-use super::grain::kept;
 use super::habits::Falloff;
 use super::profile::RoundProfile;
+use crate::memory::made_once;
 use std::sync::{Arc, Mutex};
 
 /// Where a stroke of a dab's like ends, in radii of the dab.
@@ -89,7 +89,7 @@ impl Rims {
         let step = (2.0 * brush.spacing).max(0.02).min(4.0);
         let (hardness, softness) = (unit(brush.hardness), unit(brush.softness));
         let key = [u32::from(is_square), hardness.to_bits(), softness.to_bits(), step.to_bits()];
-        Some(kept(&MADE, KEPT, key, || Self::made(is_square, RoundProfile::new(hardness, softness), step)))
+        Some(made_once(&MADE, KEPT, key, || Self::made(is_square, RoundProfile::new(hardness, softness), step)))
     }
     /// `step`: between dabs, radii.
     fn made(is_square: bool, profile: RoundProfile, step: f32) -> Self {

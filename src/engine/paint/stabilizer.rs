@@ -2,7 +2,7 @@
 //! lifts. Floor 3.
 
 use super::brush::Stabilizer;
-use super::stroke::Sample;
+use super::sample::Sample;
 use crate::math::Vec2;
 
 /// The weight of a [`Stabilizer::Average`] is the share of the past that is left after the pen has moved this many px.

@@ -1,12 +1,9 @@
 //! Picture tips: a picture prepared as a stamp, blurred by its softness.
 //! Floor 3. Not here: placing a stamp (`dab`), reading pictures through a deformation (`raster::sampler`).
 
-use super::dab_walker::Dab;
-use super::image::PictureSource;
-use crate::math::{Affine2, Size, Vec2};
+use crate::math::Size;
 use crate::raster::texture::MipLevel;
 use crate::raster::{Picture, Texture, blur};
-use crate::surface::support::DabExtent;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A tip as it is sampled. Its picture covers the square of the dab's diameter; softness makes it larger.
@@ -15,7 +12,7 @@ pub struct TipStamp {
     /// Whether it has its own colours; otherwise only its alpha counts.
     pub is_colored: bool,
     /// Texels of `texture` along the radius of a dab.
-    texels_per_radius: f32,
+    pub(in crate::paint) texels_per_radius: f32,
 }
 
 /// The stamps made from one picture, by softness: a brush's strokes share theirs.
@@ -28,69 +25,29 @@ pub struct StampCache {
 /// Cached stamps of one picture: the steps of one brush whose softness varies, and a few of others.
 const KEPT: usize = STEPS as usize + 8;
 /// Softnesses in between are mixed from the two nearest of these steps; the difference to the true blur is invisible.
-const STEPS: u32 = 12;
+pub(in crate::paint) const STEPS: u32 = 12;
 
 impl StampCache {
     /// The textures made of the picture as grain, by levels.
     pub fn grains(&self) -> &Mutex<Vec<([u32; 2], Arc<Texture>)>> {
         &self.grains
     }
-    /// The stamp of a picture with a softness in `[0, 1]`.
-    pub fn of(source: &PictureSource, softness: f32) -> Arc<TipStamp> {
-        let lock = || source.stamps().made.lock().unwrap_or_else(PoisonError::into_inner);
+    /// The stamp of the picture, by its texture, with a softness in `[0, 1]`.
+    pub fn stamp(&self, texture: &Texture, softness: f32) -> Arc<TipStamp> {
+        let lock = || self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let key = softness.to_bits();
         let find = |made: &[(u32, Arc<TipStamp>)]| made.iter().find(|(k, _)| *k == key).map(|(_, s)| s.clone());
         if let Some(stamp) = find(&lock()) {
             return stamp;
         }
         // Without the lock: two threads may both compute it; the results are equal.
-        let stamp = Arc::new(TipStamp::new(source.texture(), softness));
+        let stamp = Arc::new(TipStamp::new(texture, softness));
         let mut made = lock();
         if made.len() >= KEPT {
             made.remove(0);
         }
         made.push((key, stamp.clone()));
         stamp
-    }
-}
-
-/// The stamps of a tip, sharp to blurred.
-pub enum SoftenedStamps {
-    /// Every dab has the brush's own softness.
-    One(Arc<TipStamp>),
-    /// From softness 0 to 1 at even steps.
-    Steps(Vec<Arc<TipStamp>>),
-}
-
-impl SoftenedStamps {
-    /// `is_driven`: dabs differ in softness.
-    pub fn of(source: &PictureSource, softness: f32, is_driven: bool) -> Self {
-        if is_driven {
-            let steps = (0..=STEPS).map(|step| StampCache::of(source, step as f32 / STEPS as f32));
-            return SoftenedStamps::Steps(steps.collect());
-        }
-        SoftenedStamps::One(StampCache::of(source, softness.max(0.0).min(1.0)))
-    }
-    /// The stamp next below a softness, and the one above with its share where the dab lies between them.
-    pub fn at(&self, softness: f32) -> (&TipStamp, Option<(&TipStamp, f32)>) {
-        match self {
-            SoftenedStamps::One(stamp) => (stamp, None),
-            SoftenedStamps::Steps(stamps) => {
-                let place = softness.max(0.0).min(1.0) * STEPS as f32;
-                let below = (place as usize).min(stamps.len().saturating_sub(2));
-                let share = place - below as f32;
-                let above = stamps.get(below + 1).filter(|_| share > 0.0);
-                (&stamps[below], above.map(|above| (&**above, share)))
-            }
-        }
-    }
-    pub fn is_colored(&self) -> bool {
-        self.at(0.0).0.is_colored
-    }
-    /// The extent of a dab with the widest of its stamps.
-    pub fn extent(&self, dab: &Dab) -> DabExtent {
-        let (below, above) = self.at(dab.softness);
-        above.map_or(below, |(above, _)| above).extent(dab)
     }
 }
 
@@ -117,24 +74,6 @@ impl TipStamp {
     }
     pub fn texture(&self) -> &Texture {
         &self.texture
-    }
-    /// A⁻¹ after the shift to the dab's centre: texels from canvas px. The footprint is turned counter-clockwise as
-    /// seen.
-    pub fn texels_from_canvas(&self, dab: &Dab) -> Affine2 {
-        let texels_per_px = Vec2::splat(self.texels_per_radius / dab.radius);
-        // Counter-clockwise as seen is clockwise in y-down coordinates, so the inverse turns by +rotation.
-        let mirror = Vec2::new(if dab.is_mirrored { -1.0 } else { 1.0 }, 1.0);
-        Affine2::from_translation(self.texture.size().center())
-            * Affine2::from_scale(mirror)
-            * Affine2::from_scale_angle_translation(texels_per_px, dab.rotation_rad, Vec2::ZERO)
-            * Affine2::from_translation(-dab.at)
-    }
-    /// The distance of the picture's corners, plus a texel.
-    pub fn extent(&self, dab: &Dab) -> DabExtent {
-        let px_per_texel = dab.radius / self.texels_per_radius;
-        let corner = self.texture.size().center().length() + 1.0;
-        // Two pixels' lengths on either side, which one-sided differences may double: the grid of taps and their cells.
-        DabExtent { radius_px: corner * px_per_texel, filter_px: 4.0 }
     }
 }
 
@@ -172,41 +111,27 @@ fn transparent() -> Picture {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::vec2;
-    use crate::paint::Adjust;
+    use crate::paint::{Adjust, PictureSource};
 
     fn source(size: Size, texel: impl Fn(u32, u32) -> [u8; 4]) -> PictureSource {
         let texels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y))).map(|(x, y)| texel(x, y));
         PictureSource::new("tip.png".into(), Picture::srgb8(size, texels.collect()).unwrap(), Adjust::default())
     }
-    fn dab(radius: f32, rotation_rad: f32) -> Dab {
-        Dab { rotation_rad, ..Dab::plain(vec2(50.0, 60.0), radius) }
-    }
 
     #[test]
     fn an_opaque_grey_picture_is_coverage_and_any_other_a_coloured_stamp() {
-        let grey =
-            StampCache::of(&source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255]), 0.0);
+        let grey = source(Size::new(8, 4), |x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255]).stamp(0.0);
         assert!(!grey.is_colored);
         assert_eq!(grey.texture().levels()[0].texels[3], [90; 4], "premultiplied white of alpha 90");
-        assert!(StampCache::of(&source(Size::new(8, 4), |_, _| [1, 2, 3, 255]), 0.0).is_colored);
-        assert!(StampCache::of(&source(Size::new(8, 4), |x, _| [9, 9, 9, x as u8]), 0.0).is_colored);
-    }
-    #[test]
-    fn the_longer_side_is_the_diameter_and_turns_counter_clockwise() {
-        let stamp = StampCache::of(&source(Size::new(40, 20), |_, _| [255; 4]), 0.0);
-        let upright = stamp.texels_from_canvas(&dab(10.0, 0.0));
-        assert!((upright.transform_point2(vec2(60.0, 60.0)) - vec2(40.0, 10.0)).length() < 1e-4);
-        // A quarter turn: the right end of the tip is at the top.
-        let turned = stamp.texels_from_canvas(&dab(10.0, std::f32::consts::FRAC_PI_2));
-        assert!((turned.transform_point2(vec2(50.0, 50.0)) - vec2(40.0, 10.0)).length() < 1e-4);
+        assert!(source(Size::new(8, 4), |_, _| [1, 2, 3, 255]).stamp(0.0).is_colored);
+        assert!(source(Size::new(8, 4), |x, _| [9, 9, 9, x as u8]).stamp(0.0).is_colored);
     }
     #[test]
     fn softness_keeps_what_a_stamp_covers_and_costs_no_more_the_larger_the_tip() {
         for side in [64, 1024] {
             let source = source(Size::new(side, side), |_, _| [255; 4]);
             let covered = |softness: f32| {
-                let stamp = StampCache::of(&source, softness);
+                let stamp = source.stamp(softness);
                 let level = &stamp.texture().levels()[0];
                 assert!(level.size.longer_side() < 3.0 * side as f32);
                 let sum: f64 = level.texels.iter().map(|t| f64::from(t[3]) / 255.0).sum();
@@ -221,6 +146,6 @@ mod tests {
     #[test]
     fn strokes_of_one_brush_share_their_stamp() {
         let tip = source(Size::new(8, 8), |_, _| [255; 4]);
-        assert!(Arc::ptr_eq(&StampCache::of(&tip, 0.25), &StampCache::of(&tip.clone(), 0.25)));
+        assert!(Arc::ptr_eq(&tip.stamp(0.25), &tip.clone().stamp(0.25)));
     }
 }

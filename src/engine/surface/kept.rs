@@ -1,8 +1,8 @@
 //! What a surface takes of memory: its maps, and what was computed from them and is kept for speed. Floor 2.
 
+use super::Surface;
 use super::cache::RecentCache;
 use super::pyramid::MapPyramids;
-use super::{Curvature, Surface};
 use crate::raster::coverage::CoverageTile;
 use crate::raster::{CoverageGrid, Plane};
 
@@ -14,12 +14,6 @@ pub(super) trait KeptBytes {
 impl<T: Copy> KeptBytes for Plane<T> {
     fn kept_bytes(&self) -> u64 {
         (self.size().area() * size_of::<T>()) as u64
-    }
-}
-
-impl KeptBytes for Curvature {
-    fn kept_bytes(&self) -> u64 {
-        [&self.hxx, &self.hxy, &self.hyy].map(Plane::kept_bytes).iter().sum()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::math::hash;
 use crate::paint::dynamics::{DabInputs, Input, Property};
-use crate::paint::habits::SETTINGS;
+use crate::paint::settings::SETTINGS;
 use crate::paint::tip::RankSelect;
 use crate::paint::{Falloff, Spread, Stabilizer};
 use crate::raster::picture::Texels;

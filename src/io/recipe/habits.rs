@@ -3,7 +3,8 @@
 
 use crate::Result;
 use crate::json::{Fields, JsonObject};
-use crate::paint::habits::{Bearing, GROUPS, SETTINGS};
+use crate::paint::habits::Bearing;
+use crate::paint::settings::{GROUPS, SETTINGS};
 use crate::paint::{Brush, Falloff, Measure, Offset, Spread};
 
 /// What is not said stays as it is in `base`.

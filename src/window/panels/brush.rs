@@ -4,8 +4,9 @@
 use super::curve;
 use crate::io::recipe::written_brush;
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace};
-use crate::paint::habits::{Bearing, Falloff, Measure, SETTINGS, Spread};
+use crate::paint::habits::{Bearing, Falloff, Measure, Spread};
 use crate::paint::pattern::Pattern;
+use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Noise};
 use crate::paint::{Brush, Curve, Drive, Dynamics, Input, Property, Stabilizer, Tip};
 use crate::raster::BlendMode;

@@ -5,7 +5,7 @@ use super::Fit;
 use crate::math::range::{STOPS, at_most, within};
 use crate::math::{COORDINATE, TURNS, UNIT, Vec2};
 use crate::paint::grain::{BrushGrain, GrainSpace};
-use crate::paint::habits::SETTINGS;
+use crate::paint::settings::SETTINGS;
 use crate::paint::tip::{Bristles, Hose, Noise};
 use crate::paint::{
     Adjust, Brush, BrushMode, ColorJitter, Gradient, PlacedImage, Placement, Sample, Stabilizer, Stroke,

@@ -2,13 +2,14 @@
 //! applied to it. Floor 3. Not here: the plain round tip (`dab`), which adds its coverage directly.
 
 use super::round::{RoundTip, RowPaint, bent_row, flat_row};
+use super::shape::{self, TipShape};
+use super::softened::SoftenedStamps;
 use super::{DabScratch, DeformationField, PixelSpan, PlacedDab, SpanNeighbours, TouchedBlocks};
 use crate::math::{Affine2, Mat2, Rect};
 use crate::paint::habits::Falloff;
 use crate::paint::image::transform;
-use crate::paint::stamp::{SoftenedStamps, TipStamp};
+use crate::paint::stamp::TipStamp;
 use crate::paint::stroke_tile::{CoveredRow, StrokeTile};
-use crate::paint::tip::{TipShape, shape};
 use crate::raster::{Outside, TILE, TileAt};
 use crate::surface::deformation::DeformedRect;
 

@@ -16,6 +16,7 @@ pub use rims::Rims;
 
 use super::Surface;
 use super::contours::SheetOf;
+use super::kept::KeptBytes;
 use crate::math::{Vec2, Vec3, vec2};
 use crate::raster::Plane;
 use std::sync::Arc;
@@ -90,6 +91,12 @@ impl Curvature {
 
 /// Pixels of all curvatures kept, 12 bytes each: a few scales weighed at once, or two on a large canvas.
 const KEPT_PX: usize = 16 << 20;
+
+impl KeptBytes for Curvature {
+    fn kept_bytes(&self) -> u64 {
+        [&self.hxx, &self.hxy, &self.hyy].map(Plane::kept_bytes).iter().sum()
+    }
+}
 
 impl Surface {
     /// The curvature of the surface, its normals blurred first by a Gaussian of standard deviation `blur_px` (0: not at

@@ -1,9 +1,9 @@
 //! Tips in closed form that are not round: ellipses and squares, averaged over each pixel's piece of the image plane.
 //! Floor 3. They are evaluated in *tip space*, where the dab's centre is the origin and its half-axes have length 1.
 
+use super::round::slope;
 use crate::math::{Affine2, Mat2, Vec2};
 use crate::paint::brush::Tip;
-use crate::paint::dab::slope;
 use crate::paint::dab_walker::Dab;
 use crate::paint::habits::Falloff;
 use crate::paint::peaked::PeakedProfile;

@@ -1,7 +1,8 @@
 //! Strokes of every tip against what their definitions say, pixel by pixel, on a ball and on a flat canvas.
 
-use super::{Bristles, Hose, HoseRank, Noise, RankSelect, TipShape, shape};
+use super::TipShape;
 use crate::math::{Size, Vec2, srgb::Color, vec2, vec3};
+use crate::paint::dab::shape;
 use crate::paint::dab_walker::Dab;
 use crate::paint::dynamics::{Curve, Dynamics, Input, Property};
 use crate::paint::grain::{BrushGrain, GrainSource, GrainSpace, StrokeGrain};
@@ -9,6 +10,7 @@ use crate::paint::pattern::Pattern;
 use crate::paint::profile::RoundProfile;
 use crate::paint::rim::Rim;
 use crate::paint::stroke::render_tile;
+use crate::paint::tip::{Bristles, Hose, HoseRank, Noise, RankSelect};
 use crate::paint::{Adjust, Brush, PictureSource, Sample, Scene, Stroke, Tip};
 use crate::raster::{Picture, Plane, TILE, TileAt, TileGrid};
 use crate::surface::{Deformation, Maps, Operator, Surface, links};

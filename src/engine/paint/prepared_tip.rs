@@ -1,18 +1,16 @@
 //! A brush's tip prepared for its dabs: pictures are blurred and textures made once, then each dab is painted on its
 //! tiles. Floor 3.
 
-use super::hose::{DabMoment, Hose};
-use super::shape::TipShape;
-use super::texture::TipTexture;
-use crate::paint::brush::{Brush, Tip};
-use crate::paint::dab::{DabScratch, Footprint, PlacedDab, round_extent};
-use crate::paint::dab_walker::Dab;
-use crate::paint::dynamics::Property;
-use crate::paint::habits::Falloff;
-use crate::paint::image::PictureSource;
-use crate::paint::scene::Scene;
-use crate::paint::stamp::SoftenedStamps;
-use crate::paint::stroke_tile::StrokeTile;
+use super::brush::{Brush, Tip};
+use super::dab::{DabScratch, Footprint, PlacedDab, SoftenedStamps, TipShape, round_extent};
+use super::dab_walker::Dab;
+use super::dynamics::Property;
+use super::habits::Falloff;
+use super::image::PictureSource;
+use super::scene::Scene;
+use super::stroke_tile::StrokeTile;
+use super::tip::hose::{DabMoment, Hose};
+use super::tip::texture::TipTexture;
 use crate::raster::TileAt;
 use crate::surface::support::DabExtent;
 
@@ -92,3 +90,6 @@ impl PreparedTip {
 fn choice(hose: &Hose, dab: &Dab) -> usize {
     hose.choose(&DabMoment { number: dab.number, inputs: dab.inputs })
 }
+
+#[cfg(test)]
+mod tests;

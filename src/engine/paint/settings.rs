@@ -1,0 +1,128 @@
+//! The numbers of a brush's habits: each one's name, range and words, said once for documents and for the window.
+//! Floor 3. What they mean is `habits`'.
+
+use super::brush::Brush;
+use crate::math::{Range, range::held};
+
+/// One number of a brush.
+pub struct Setting {
+    /// The object of a brush's that documents keep it in; empty: the brush's own.
+    pub group: &'static str,
+    /// In documents.
+    pub name: &'static str,
+    pub range: Range,
+    /// In the window, and what it means there.
+    pub label: &'static str,
+    pub hint: &'static str,
+    get: fn(&Brush) -> f32,
+    set: fn(&mut Brush, f32),
+}
+
+impl Setting {
+    pub fn of(&self, brush: &Brush) -> f32 {
+        (self.get)(brush)
+    }
+    /// Within its range.
+    pub fn set(&self, brush: &mut Brush, to: f32) {
+        (self.set)(brush, held(to, &self.range));
+    }
+    pub fn default(&self) -> f32 {
+        self.of(&Brush::default())
+    }
+}
+
+/// The objects that the settings lie in, as documents call them, in their order.
+pub const GROUPS: [&str; 6] = ["", "rate", "offset", "hand", "cycle", "pickup"];
+
+macro_rules! settings {
+    ($($group:literal $name:literal $($field:ident).+ in $range:expr, $label:literal, $hint:literal;)*) => {
+        /// Every number of these habits.
+        pub const SETTINGS: [Setting; [$($name),*].len()] = [$(Setting {
+            group: $group,
+            name: $name,
+            range: $range,
+            label: $label,
+            hint: $hint,
+            get: |brush| brush.$($field).+,
+            set: |brush, to| brush.$($field).+ = to,
+        }),*];
+    };
+}
+
+settings! {
+    "" "overlap" overlap in 1.0..=100.0, "Overlap",
+        "So many dabs that lie over each other come to the flow together";
+    "" "size_jitter" size_jitter in 0.0..=4.0, "Size ±",
+        "How far a dab's size may be from the brush's, in doublings";
+    "rate" "per_diameter" rate.per_diameter in 0.0..=200.0, "Dabs a diameter",
+        "Dabs beside those of the spacing, along the brush's own diameter";
+    "rate" "per_sec" rate.per_sec in 0.0..=200.0, "Dabs a second",
+        "Dabs while time passes, also where the pen rests";
+    "offset" "amount" offset.amount in -10.0..=10.0, "Offset",
+        "How far beside the stroke dabs stand, in diameters";
+    "offset" "turn" offset.turn_degrees in -360.0..=360.0, "Offset turn",
+        "To where dabs stand beside the stroke, degrees counter-clockwise";
+    "hand" "tremor" hand.tremor in 0.0..=20.0, "Tremor",
+        "How far the hand shakes, in diameters";
+    "hand" "lag" hand.lag_dabs in 0.0..=100.0, "Lag",
+        "After how many dabs the stroke comes to where the pen is";
+    "hand" "lead" hand.lead_secs in -1.0..=1.0, "Lead",
+        "Dabs stand where the pen would be so many seconds later";
+    "hand" "direction" hand.direction_px in 0.0..=1000.0, "Steadiness",
+        "The way in pixels over which the stroke's direction is averaged";
+    "hand" "pace" hand.pace_secs in 0.0..=10.0, "Pace over",
+        "Seconds over which the pace is averaged";
+    "hand" "slow_pace" hand.slow_pace_secs in 0.0..=10.0, "Slow pace over",
+        "Seconds over which the slow pace is averaged";
+    "hand" "pace_pixel" hand.pace_px in 0.001..=1000.0, "Pace pixel",
+        "How many pixels count as one where the hand's pace is read";
+    "hand" "custom" hand.custom_dabs in 0.0..=1000.0, "Custom over",
+        "Dabs over which the custom input is averaged";
+    "cycle" "length" cycle.length in 0.01..=10_000.0, "Cycle",
+        "How far the cycle takes to rise, in diameters";
+    "cycle" "hold" cycle.hold in 0.0..=10.0, "Cycle hold",
+        "How long the cycle stays up, of its length; 10 is for ever";
+    "cycle" "pressure" cycle.pressure in 0.0..=1.0, "Cycle pressure",
+        "The pressure that the cycle begins at";
+    "pickup" "amount" pickup.amount in 0.0..=1.0, "Picks up",
+        "How much of its paint the brush takes from a paint layer instead of its own colour";
+    "pickup" "length" pickup.length in 0.0..=1.0, "Carries",
+        "How much of the paint that it took up is still there a dab later";
+    "pickup" "radius" pickup.radius in 0.05..=20.0, "Reaches",
+        "The radius that it takes paint up from, of the dab's";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_setting_sets_what_it_gets_and_no_other() {
+        for (i, setting) in SETTINGS.iter().enumerate() {
+            let mut brush = Brush::default();
+            let to = 0.5 * (setting.range.start() + setting.range.end()) + 0.25;
+            setting.set(&mut brush, to);
+            assert_eq!(setting.of(&brush), to, "{}.{}", setting.group, setting.name);
+            let others = SETTINGS.iter().enumerate().filter(|(j, _)| *j != i);
+            assert!(others.map(|(_, other)| other).all(|other| other.of(&brush) == other.default()));
+        }
+    }
+    #[test]
+    fn defaults_lie_within_their_ranges_and_names_are_of_one_thing() {
+        assert!(SETTINGS.iter().all(|setting| setting.range.contains(&setting.default())));
+        assert!(SETTINGS.iter().all(|setting| GROUPS.contains(&setting.group)));
+        let names: BTreeSet<_> = SETTINGS.iter().map(|setting| (setting.group, setting.name)).collect();
+        let labels: BTreeSet<_> = SETTINGS.iter().map(|setting| setting.label).collect();
+        assert_eq!((names.len(), labels.len()), (SETTINGS.len(), SETTINGS.len()));
+    }
+    #[test]
+    fn what_cannot_be_becomes_what_can() {
+        let mut brush = Brush::default();
+        for (to, is) in [(f32::NAN, 0.0), (-3.0, 0.0), (7.0, 1.0)] {
+            let setting = SETTINGS.iter().find(|setting| setting.label == "Picks up").unwrap();
+            setting.set(&mut brush, to);
+            assert_eq!(brush.pickup.amount, is);
+        }
+    }
+}
